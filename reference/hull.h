@@ -1,0 +1,45 @@
+// Convex hull (Qhull) with its edge graph, and the support function by hill climbing on that graph:
+// on a convex polyhedron a vertex none of whose neighbours is farther along a direction is the farthest of all.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "reference/geometry.h"
+
+namespace lodestone {
+
+/// A convex polyhedron. `neighbors(i)` are the vertices that share an edge with vertex i.
+struct Hull {
+  std::vector<Vec3> vertices;                  ///< m, hull corners only
+  std::vector<std::array<int, 3>> faces;       ///< triangulated, counter-clockwise seen from outside
+  std::vector<std::int32_t> neighbor_start;    ///< size vertices + 1: where each vertex's run of `neighbor` begins
+  std::vector<std::int32_t> neighbor;
+
+  std::span<const std::int32_t> neighbors(int vertex) const {
+    return {neighbor.data() + neighbor_start[vertex], neighbor.data() + neighbor_start[vertex + 1]};
+  }
+};
+
+/// The hull of `points`. Throws InputError where they lie in a plane or are fewer than four.
+Hull make_hull(std::span<const Vec3> points);
+
+/// Index of the vertex farthest along `direction` (any length), climbing from `start`.
+int find_support(const Hull& hull, const Vec3& direction, int start = 0);
+
+/// For a direction, a vertex near the farthest one: cube map of 6 × `side` × `side` cells (a start for the climb, which is then exact).
+class SupportMap {
+ public:
+  SupportMap() = default;
+  explicit SupportMap(const Hull& hull, int side = 32);
+  int find_start(const Vec3& direction) const;
+  std::span<const std::uint16_t> cells() const { return cells_; }
+
+ private:
+  int side_ = 0;
+  std::vector<std::uint16_t> cells_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,44 @@
+// A rigid body's shape, ready for every level: its mesh about the centre of mass, hull, mass distribution and content hash.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "reference/hull.h"
+#include "reference/mass_properties.h"
+#include "reference/mesh.h"
+
+namespace lodestone {
+
+/// Immutable once made; shared by all bodies of that shape. The body frame has the mesh's axes and its origin at the centre of mass.
+struct Shape {
+  std::string name;
+  Mesh mesh;                                   ///< vertices relative to the centre of mass
+  Hull hull;
+  SupportMap support_map;
+  double volume = 0.0;                         ///< m³
+  Vec3 center_of_mass_in_mesh = Vec3::Zero();  ///< m, where the body frame's origin lies in the mesh that was given
+  Mat3 inertia_per_mass = Mat3::Identity();    ///< m², body axes
+  Mat3 inverse_inertia_per_mass = Mat3::Identity();
+  double radius = 0.0;                         ///< m, greatest distance of a vertex from the centre of mass: the paper's bounding sphere
+  double size = 0.0;                           ///< m, longest side of the mesh's bounding box
+  std::optional<double> sphere_radius;         ///< set where the shape is exactly a sphere
+  std::uint64_t content_hash = 0;              ///< of geometry and mass distribution over `radius`: equal for scaled copies
+};
+
+/// What may be given instead of being measured from the mesh.
+struct MassOverride {
+  std::optional<Vec3> center_of_mass_m;        ///< in the mesh's frame
+  std::optional<Mat3> inertia_per_mass_m2;     ///< about the centre of mass, mesh axes
+};
+
+/// Checks, repairs and measures `mesh`. Throws InputError, with `name` at its head, for a mesh that cannot be a solid, an open
+/// mesh without a full override, and an impossible inertia.
+Shape make_shape(std::string name, Mesh mesh, const MassOverride& mass = {}, MeshReport* report = nullptr);
+Shape make_sphere_shape(double radius_m);
+
+/// The well-known bunny of Debian's glmark2-data, its longest side `size_m`, simplified to `faces` faces (the paper's 4,698).
+/// Throws InputError naming the package where the file is missing.
+Shape make_bunny_shape(double size_m, int faces = 4698);
+
+}  // namespace lodestone
