@@ -1,0 +1,37 @@
+// What one step did and cost: a timing per stage, in the order of the stages, and counts.
+#pragma once
+
+#include <cstdint>
+
+namespace lodestone {
+
+/// Wall time of each stage of the last step, ms.
+struct StageTimes {
+  double choose_ms = 0, transfer_ms = 0, full_ms = 0;
+  double flight_ms = 0;       ///< statistical level: flight, contacts with the ground and their responses
+  double broad_phase_ms = 0;  ///< statistical level: which bodies are near each other
+  double pairs_ms = 0;        ///< statistical level: contacts between bodies
+  double rest_ms = 0;         ///< statistical level: coming to rest, sleeping and waking
+  double cross_level_ms = 0;
+  double total_ms = 0;
+};
+
+/// Counts since the manager was made: what the scene needed, and trouble that was met and mended.
+struct Counters {
+  std::int64_t ode_bodies_created = 0, trimeshes_built = 0, signatures_loaded = 0, pair_phases = 0;
+  std::int64_t ode_messages = 0, contacts_dropped = 0, states_recovered = 0;
+  std::int64_t energy_clamps = 0;        ///< responses scaled so as not to add energy
+  std::int64_t table_extrapolations = 0; ///< look-ups outside the measured range
+  std::int64_t promotions_put_off = 0;   ///< for overlap with another body
+};
+
+struct StepReport {
+  std::int64_t step = 0;
+  StageTimes times;
+  int full = 0, statistical = 0, asleep = 0;  ///< bodies at the end of the step; asleep counts within both
+  int promotions = 0, demotions = 0;          ///< in this step
+  int contacts = 0;                           ///< of statistical bodies, with ground and each other, in this step
+  Counters counters;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,68 @@
+// A scene as a value: what a YAML file says, checked, in SI units (scene_file.h loads it, runner.h runs it).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "lod/manager.h"
+
+namespace lodestone {
+
+struct SceneStep {
+  double dt_s = 1.0 / 60.0;
+  int full_substeps = 4;
+  Vec3 gravity_m_per_s2{0, 0, -9.81};
+  std::uint64_t seed = 1;
+};
+
+struct GroundPlane { Vec3 normal = Vec3::UnitZ(); double offset_m = 0; MaterialId material = 0; };
+struct GroundBox { Vec3 sides_m; Vec3 position_m; Quat orientation; MaterialId material = 0; };
+struct GroundMesh { Mesh mesh; MaterialId material = 0; };
+using Ground = std::variant<GroundPlane, GroundBox, GroundMesh>;
+
+struct SceneBody {
+  std::string name;  ///< may be empty
+  BodyDefinition definition;
+};
+
+/// A camera, standing or moving along `path` (piecewise linear in time).
+struct Viewpoint {
+  struct Key { double time_s; Vec3 position_m; };
+  Vec3 position_m = Vec3::Zero();
+  Vec3 look_at_m = Vec3::Zero();
+  std::vector<Key> path;
+  Vec3 position_at(double time_s) const;
+};
+
+struct SceneOutput {
+  std::string trajectory;  ///< .glb file, relative to the output folder; empty: none
+  int every_n_steps = 2;
+};
+
+/// What the run must show; each absent unless given.
+struct SceneChecks {
+  std::optional<double> max_penetration_m, all_asleep_by_s;
+};
+
+struct Scene {
+  std::filesystem::path file;
+  SceneStep step;
+  MaterialTable materials;
+  std::vector<std::string> material_names;
+  std::map<std::string, std::shared_ptr<const Shape>> shapes;
+  std::vector<Ground> ground;
+  std::vector<SceneBody> bodies;  ///< scatters expanded
+  std::vector<Viewpoint> viewpoints;
+  PolicySettings lod;
+  StatisticalModel model = StatisticalModel::support;
+  SceneOutput output;
+  SceneChecks checks;
+  int default_steps = 600;        ///< `step: {steps: …}`
+};
+
+}  // namespace lodestone
