@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
 #include "reference/error.h"
 #include "reference/mass_properties.h"
@@ -77,17 +78,33 @@ int drop_faces(Mesh& mesh, Predicate is_dropped) {
   return int(std::erase_if(mesh.faces, is_dropped));
 }
 
-/// Of faces on the same three corners, whichever way round, keeps the first.
-int drop_duplicate_faces(Mesh& mesh) {
-  struct CornersHash {
-    std::size_t operator()(const std::array<int, 3>& face) const { return XXH3_64bits(face.data(), sizeof(face)); }
-  };
-  std::unordered_map<std::array<int, 3>, bool, CornersHash> seen;
-  seen.reserve(mesh.faces.size());
-  return drop_faces(mesh, [&](std::array<int, 3> corners) {
-    std::sort(corners.begin(), corners.end());
-    return !seen.try_emplace(corners, true).second;
-  });
+/// Faces on the same three corners, whichever way round: how many there are, and their forward less their backward ones.
+struct Duplicates {
+  int count = 0, net = 0;
+};
+
+struct CornersHash {
+  std::size_t operator()(const std::array<int, 3>& face) const { return XXH3_64bits(face.data(), sizeof(face)); }
+};
+using DuplicatesByCorners = std::unordered_map<std::array<int, 3>, Duplicates, CornersHash>;
+
+/// The corners in ascending order, and whether the face runs round them that way (+1) or the other (−1).
+std::pair<std::array<int, 3>, int> sorted_corners(std::array<int, 3> face) {
+  const int sense = (face[0] < face[1]) + (face[1] < face[2]) + (face[2] < face[0]) == 2 ? 1 : -1;
+  std::sort(face.begin(), face.end());
+  return {face, sense};
+}
+
+DuplicatesByCorners find_duplicates(const Mesh& mesh) {
+  DuplicatesByCorners duplicates;
+  duplicates.reserve(mesh.faces.size());
+  for (const auto& face : mesh.faces) {
+    const auto [corners, sense] = sorted_corners(face);
+    Duplicates& found = duplicates[corners];
+    ++found.count;
+    found.net += sense;
+  }
+  return duplicates;
 }
 
 int count_defects(const Mesh& mesh) {
@@ -98,6 +115,25 @@ int count_defects(const Mesh& mesh) {
     defects += end - begin != 2;
   }
   return defects;
+}
+
+/// Of faces on the same corners keeps the first, or none where two back to back (a fin, an inner wall) are better both gone.
+int drop_duplicate_faces(Mesh& mesh) {
+  DuplicatesByCorners duplicates = find_duplicates(mesh);
+  if (duplicates.size() == mesh.faces.size()) return 0;
+  Mesh without_pairs = mesh;
+  const int in_pairs = drop_faces(without_pairs, [&](const auto& face) {
+    const Duplicates& found = duplicates[sorted_corners(face).first];
+    return found.count > 1 && found.net == 0;
+  });
+  const auto drop_all_but_first = [&](Mesh& from) {
+    auto left = duplicates;
+    return drop_faces(from, [&](const auto& face) { return std::exchange(left[sorted_corners(face).first].count, 0) == 0; });
+  };
+  const int repeated_beside = drop_all_but_first(without_pairs), repeated = drop_all_but_first(mesh);
+  if (count_defects(mesh) <= count_defects(without_pairs)) return repeated;
+  mesh = std::move(without_pairs);
+  return in_pairs + repeated_beside;
 }
 
 /// Drops faces whose three corners lie in a line, unless that would tear the surface open: such slivers may fill a seam.
