@@ -10,76 +10,118 @@ namespace {
 constexpr double kSameDirection = 0.9;  // least cosine between contacts of one direction
 constexpr double kShallow = 2e-2;       // × size: depths below it need no second look where all directions agree
 constexpr double kDepthSlack = 2e-3;    // × size: depths below it cost about the same
-constexpr double kDepthRatio = 1.5;     // a way out clears depths up to this times its own, and the slack
-constexpr int kSample = 16;             // places that directions are judged by
+constexpr double kDepthRatio = 1.5;     // a displacement clears depths up to this times its own, and the slack
+constexpr int kSample = 12;             // places that directions are judged by
 // Places lie on edges, where any way out seems short; they are measured this part of the way towards their middle, as far as that is inside.
 constexpr double kInward = 0.15, kBarelyInward = 1e-3;
 
-/// A displacement of the first body.
-struct WayOut {
+/// Of the first body.
+struct Displacement {
   Vec3 direction = Vec3::UnitZ();
   double depth = 0.0;
+  int cleared = 0;  // places of the sample
 };
 
-class Cover {
+/// Ways out at the contacts' places.
+class Places {
  public:
-  Cover(std::span<const ContactPoint> contacts, double size, const OverlapMeasure& overlap)
-      : slack_(kDepthSlack * size), overlap_(overlap), middle_(Vec3::Zero()) {
+  Places(std::span<const ContactPoint> contacts, const WayOutMeasure& measure) : measure_(measure), middle_(Vec3::Zero()) {
     for (const ContactPoint& contact : contacts) middle_ += contact.point / double(contacts.size());
   }
-
-  std::optional<double> depth_along(const Vec3& direction, const Vec3& place) const {
-    if (const auto depth = overlap_(place + kInward * (middle_ - place), direction)) return depth;
-    return overlap_(place + kBarelyInward * (middle_ - place), direction);
-  }
-
-  bool clears(const WayOut& way, double depth) const { return depth <= kDepthRatio * way.depth + slack_; }
-
-  /// Whether the contact says itself what the way out says.
-  bool agrees(const ContactPoint& contact, const WayOut& way) const {
-    return contact.normal.dot(way.direction) > kSameDirection && clears(way, contact.depth);
-  }
-
-  /// The displacement with the least depth for each of the places that it clears.
-  std::optional<WayOut> best_of(std::span<const Vec3> directions, std::span<const ContactPoint> sample) const {
-    std::optional<WayOut> best;
-    double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& direction : directions) {
-      depths_.clear();
-      for (const ContactPoint& contact : sample)
-        if (const auto depth = depth_along(direction, contact.point)) depths_.push_back(*depth);
-      std::ranges::sort(depths_);
-      for (std::size_t i = 0; i < depths_.size(); ++i)
-        if (const double each = (depths_[i] + slack_) / double(i + 1); each < least) least = each, best = WayOut{direction, depths_[i]};
-    }
-    return best;
+  std::optional<WayOut> measure(const Vec3& place, const Vec3& direction) const {
+    if (auto way = measure_(place + kInward * (middle_ - place), direction)) return way;
+    return measure_(place + kBarelyInward * (middle_ - place), direction);
   }
 
  private:
-  double slack_;
-  const OverlapMeasure& overlap_;
+  const WayOutMeasure& measure_;
   Vec3 middle_;
-  mutable std::vector<double> depths_;
 };
 
-void add_unlike(std::vector<Vec3>& directions, const Vec3& direction, double least_cosine) {
-  const auto like = [&](const Vec3& other) { return other.dot(direction) > least_cosine; };
-  if (std::ranges::none_of(directions, like)) directions.push_back(direction);
-}
+/// Looks for the displacement with the least depth for each of the places that it clears.
+class Search {
+ public:
+  Search(std::span<const ContactPoint> sample, double slack, const Places& places) : sample_(sample), slack_(slack), places_(places) {}
 
-std::vector<Vec3> directions_of(std::span<const ContactPoint> contacts, std::span<const Vec3> proposals) {
-  std::vector<Vec3> directions;
-  for (const Vec3& proposal : proposals) add_unlike(directions, proposal, 0.999);
-  for (const ContactPoint& contact : contacts) add_unlike(directions, contact.normal, 0.99);
-  return directions;
+  void consider(const Vec3& direction) {
+    if (std::ranges::any_of(tried_, [&](const Vec3& other) { return other.dot(direction) > 0.999; })) return;
+    tried_.push_back(direction);
+    const auto ways = measure(direction);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const double each = (ways[i].depth + slack_) / double(i + 1);
+      if (each >= least_) continue;
+      least_ = each;
+      best_ = Displacement{direction, ways[i].depth, int(i) + 1};
+      faces_of_best_ = ways;
+    }
+  }
+
+  /// The faces met on the best way out ask for their own normals.
+  void refine() {
+    for (std::size_t tried = 0; tried != tried_.size();) {
+      tried = tried_.size();
+      for (const WayOut& way : std::vector(faces_of_best_)) consider(way.second_face), consider(way.first_face);
+    }
+  }
+
+  /// The faces around a few of the places.
+  void look_around() {
+    for (const ContactPoint& contact : sample_.first(std::min<std::size_t>(sample_.size(), 3)))
+      for (int axis = 0; axis < 6; ++axis)
+        if (const auto way = places_.measure(contact.point, axis < 3 ? Vec3::Unit(axis) : Vec3(-Vec3::Unit(axis - 3))))
+          consider(way->second_face), consider(way->first_face);
+  }
+
+  const std::optional<Displacement>& best() const { return best_; }
+  bool clears_all_within(double depth) const { return best_ && best_->cleared == int(sample_.size()) && best_->depth <= depth; }
+
+ private:
+  /// Shallowest first; gives up where the direction can no longer be the best.
+  std::vector<WayOut> measure(const Vec3& direction) const {
+    std::vector<WayOut> ways;
+    const double count = double(sample_.size());
+    double useful = count;
+    for (const ContactPoint& contact : sample_) {
+      const auto way = places_.measure(contact.point, direction);
+      if (way && way->depth + slack_ < least_ * count)
+        ways.push_back(*way);
+      else if (slack_ >= least_ * --useful)
+        return {};
+    }
+    std::ranges::sort(ways, {}, &WayOut::depth);
+    return ways;
+  }
+
+  std::span<const ContactPoint> sample_;
+  double slack_;
+  const Places& places_;
+  std::vector<Vec3> tried_;
+  std::optional<Displacement> best_;
+  std::vector<WayOut> faces_of_best_;
+  double least_ = std::numeric_limits<double>::infinity();
+};
+
+std::optional<Displacement> find_displacement(std::span<ContactPoint> contacts, double size, const Places& places) {
+  Search search(contacts.first(reduce_contacts(contacts, kSample, size)), kDepthSlack * size, places);
+  std::vector<ContactPoint> shallow_first(contacts.begin(), contacts.end());
+  std::ranges::stable_sort(shallow_first, {}, &ContactPoint::depth);
+  for (const ContactPoint& contact : shallow_first) search.consider(contact.normal);
+  search.refine();
+  if (!search.clears_all_within(kShallow * size)) {
+    search.look_around();
+    search.refine();
+  }
+  return search.best();
 }
 
 /// Turns the contacts that `way` clears to its direction and moves them to the front; returns the others.
-std::span<ContactPoint> turn_cleared(std::span<ContactPoint> contacts, const WayOut& way, const Cover& cover) {
+std::span<ContactPoint> turn_cleared(std::span<ContactPoint> contacts, const Displacement& way, double slack, const Places& places) {
+  const auto clears = [&](double depth) { return depth <= kDepthRatio * way.depth + slack; };
   const auto turn = [&](ContactPoint& contact) {
-    if (cover.agrees(contact, way)) return true;
-    const double depth = cover.depth_along(way.direction, contact.point).value_or(0.0);
-    if (!cover.clears(way, depth)) return false;
+    if (contact.normal.dot(way.direction) > kSameDirection && clears(contact.depth)) return true;
+    const auto measured = places.measure(contact.point, way.direction);
+    const double depth = measured ? measured->depth : 0.0;
+    if (!clears(depth)) return false;
     contact = {contact.point, way.direction, depth};
     return true;
   };
@@ -97,14 +139,13 @@ bool plainly_believable(std::span<const ContactPoint> contacts, double size) {
   });
 }
 
-int filter_contacts(std::span<ContactPoint> contacts, std::span<const Vec3> proposals, double size, const OverlapMeasure& overlap) {
-  const Cover cover(contacts, size, overlap);
+int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure) {
+  const Places places(contacts, measure);
   std::span<ContactPoint> left = contacts;
   while (!left.empty()) {
-    const auto sample = left.first(reduce_contacts(left, kSample, size));
-    const auto way = cover.best_of(directions_of(left, proposals), sample);
+    const auto way = find_displacement(left, size, places);
     if (!way) break;
-    left = turn_cleared(left, *way, cover);
+    left = turn_cleared(left, *way, kDepthSlack * size, places);
   }
   return int(contacts.size() - left.size());
 }

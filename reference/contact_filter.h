@@ -21,13 +21,18 @@ struct ContactPoint {
   double depth = 0.0;
 };
 
-/// How far (m) the first body must move along `direction` (unit) for the two to be clear of each other at `place`, 0 where they are clear
-/// already; nothing where the place is outside either of them by more than rounding.
-using OverlapMeasure = std::function<std::optional<double>(const Vec3& place, const Vec3& direction)>;
+/// What moving the first body along a direction meets.
+struct WayOut {
+  double depth = 0.0;                     ///< m until the two are clear of each other at the place; 0 where they are already
+  Vec3 second_face = Vec3::UnitZ();       ///< the directions (unit) that the faces met last ask for: the outward normal of the second body's …
+  Vec3 first_face = Vec3::UnitZ();        ///< … and the inward normal of the first's
+};
 
-/// Moves the contacts to believe to the front and returns how many they are. `proposals` are unit directions to try besides the contacts' own;
-/// `size` (m) is the smaller body's radius.
-int filter_contacts(std::span<ContactPoint> contacts, std::span<const Vec3> proposals, double size, const OverlapMeasure& overlap);
+/// Measures the way out along `direction` (unit) at `place`; nothing where the place is outside either body by more than rounding.
+using WayOutMeasure = std::function<std::optional<WayOut>(const Vec3& place, const Vec3& direction)>;
+
+/// Moves the contacts to believe to the front and returns how many they are. `size` (m) is the smaller body's radius.
+int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure);
 
 /// Whether filter_contacts would let `contacts` pass as they are: their directions agree and they are shallow.
 bool plainly_believable(std::span<const ContactPoint> contacts, double size);

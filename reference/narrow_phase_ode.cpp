@@ -7,17 +7,19 @@ namespace {
 
 // ODE gives the first contacts that it finds, not the deepest: room for more than any real touch has.
 constexpr int kMostContacts = 512;
+// × size: overlap that is left to bodies at rest, so that they still overlap in OPCODE's float arithmetic and their contacts stay.
+constexpr double kRestingDepth = 1e-4;
 constexpr double kWithin = 0.01;  // × size
 constexpr int kMostFiltered = 64;  // of those, well spread, are looked at twice
 
 bool is_mesh(dGeomID geom) { return dGeomGetClass(geom) == dTriMeshClass; }
 
-/// Outward; not of unit length.
+/// Outward.
 Vec3 face_normal(dGeomID mesh, int face) {
   dVector3 corner[3];
   dGeomTriMeshGetTriangle(mesh, face, &corner[0], &corner[1], &corner[2]);
   const Vec3 a = to_vec3(corner[0]);
-  return (to_vec3(corner[1]) - a).cross(to_vec3(corner[2]) - a);
+  return (to_vec3(corner[1]) - a).cross(to_vec3(corner[2]) - a).normalized();
 }
 
 }  // namespace
@@ -53,32 +55,21 @@ void NarrowPhase::find_of_meshes(dGeomID first, dGeomID second, double size, std
   const auto found = std::span(points).subspan(before);
   if (!plainly_believable(found, size)) {
     const auto few = found.first(reduce_contacts(found, kMostFiltered, size));
-    const auto overlap = [&](const Vec3& place, const Vec3& direction) { return measure_overlap(place, direction); };
-    points.resize(before + filter_contacts(few, propose_directions(few), size, overlap));
+    const auto measure = [&](const Vec3& place, const Vec3& direction) { return measure_way_out(place, direction); };
+    points.resize(before + filter_contacts(few, size, measure));
   }
-  for (ContactPoint& point : std::span(points).subspan(before)) point.point += origin_;
+  for (ContactPoint& point : std::span(points).subspan(before)) {
+    point.point += origin_;
+    point.depth = std::max(0.0, point.depth - kRestingDepth * size);
+  }
 }
 
-std::optional<double> NarrowPhase::measure_overlap(const Vec3& place, const Vec3& direction) const {
+std::optional<WayOut> NarrowPhase::measure_way_out(const Vec3& place, const Vec3& direction) const {
   const auto second = find_exit(1, place, direction);
   if (!second) return {};
   const auto first = find_exit(0, place, -direction);
   if (!first) return {};
-  return std::max(0.0, second->distance + first->distance);
-}
-
-/// The faces around the contacts: what rays from among them meet on their way out of either body.
-std::vector<Vec3> NarrowPhase::propose_directions(std::span<const ContactPoint> contacts) const {
-  std::vector<Vec3> directions;
-  Vec3 middle = Vec3::Zero();
-  for (const ContactPoint& contact : contacts) middle += contact.point / double(contacts.size());
-  for (const ContactPoint& contact : contacts.first(std::min<std::size_t>(contacts.size(), 3)))
-    for (int axis = 0; axis < 6; ++axis) {
-      const Vec3 along = Vec3::Unit(axis % 3) * (axis < 3 ? 1.0 : -1.0), place = 0.5 * (contact.point + middle);
-      if (const auto exit = find_exit(1, place, along)) directions.push_back(exit->normal.normalized());
-      if (const auto exit = find_exit(0, place, along)) directions.push_back(-exit->normal.normalized());
-    }
-  return directions;
+  return WayOut{std::max(0.0, second->distance + first->distance), second->normal, -first->normal};
 }
 
 /// ODE tells contacts apart by a hash of their places, in rows of four, and fails an assertion where a row overflows and one of its

@@ -12,7 +12,7 @@ namespace lodestone::ode {
 class NarrowPhase {
   struct Exit {
     double distance;
-    Vec3 normal;  // of the face, outward, not of unit length
+    Vec3 normal;  // of the face, outward
   };
 
  public:
@@ -28,9 +28,7 @@ class NarrowPhase {
   void find_of_meshes(dGeomID first, dGeomID second, double size, std::vector<ContactPoint>& points);
   int collide_meshes(dGeomID first, dGeomID second);
   void place(dGeomID first, dGeomID second, const Vec3& origin);
-  std::vector<Vec3> propose_directions(std::span<const ContactPoint> contacts) const;
-  /// Along `direction`, at `place`: see OverlapMeasure.
-  std::optional<double> measure_overlap(const Vec3& place, const Vec3& direction) const;
+  std::optional<WayOut> measure_way_out(const Vec3& place, const Vec3& direction) const;
   std::optional<Exit> find_exit(int which, const Vec3& place, const Vec3& direction) const;
   std::optional<Exit> cast_ray(dGeomID mesh, const Vec3& point, const Vec3& direction) const;
 
