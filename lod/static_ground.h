@@ -1,0 +1,23 @@
+// What does not move and everything rests on: planes, and later static triangles.
+#pragma once
+
+#include <vector>
+
+#include "reference/geometry.h"
+#include "reference/material.h"
+
+namespace lodestone {
+
+/// All x with normal·x ≤ offset are solid. `normal` has unit length.
+struct HalfSpace {
+  Vec3 normal = Vec3::UnitZ();
+  double offset = 0.0;  ///< m
+  MaterialId material = 0;
+  double height_of(const Vec3& point) const { return normal.dot(point) - offset; }
+};
+
+struct StaticGround {
+  std::vector<HalfSpace> planes;
+};
+
+}  // namespace lodestone

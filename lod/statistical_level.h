@@ -1,0 +1,76 @@
+// The statistical level: bodies as dense arrays, stepped without ODE (sections 3.3 and 3.4). One step: 1 near pairs (broad phase),
+// 2 contacts of those pairs, 3 flight and ground contact of bodies that touch no other, 4 the contact solver for bodies that do, 5 rest.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lod/body.h"
+#include "lod/static_ground.h"
+#include "lod/step_report.h"
+#include "signature/signature.h"
+
+namespace lodestone {
+
+/// Options of the paper's model, `tables`, that the paper names or that were found to matter.
+struct TablesOptions {
+  bool interpolate = true;          ///< look-up between cells; else the nearest cell (3.3.1)
+  bool draw_height = false;         ///< radius drawn from (μ, σ) at each contact instead of the mean
+  int radius_update_interval = 1;   ///< steps between updates of the sphere's radius (3.3.1)
+  bool paper_pair_rule = false;     ///< each body responds as against an immovable plane (3.3.2); gains energy
+};
+
+struct StatisticalSettings {
+  Vec3 gravity{0, 0, -9.81};
+  std::uint64_t seed = 1;
+  int threads = 1;
+  StatisticalModel model = StatisticalModel::support;
+  TablesOptions tables;
+  bool sleeping = true;
+};
+
+/// A body of the full level, as statistical ones meet it: it takes part in this step's contacts with its own mass and shape.
+struct FullNeighbor {
+  const Shape* shape = nullptr;
+  double mass = 1.0;
+  MaterialId material = 0;
+  RigidState state;                       ///< at the start of the step
+  bool asleep = false;
+  Vec3 impulse = Vec3::Zero();            ///< out: N s, to be given to the body before the full level's step
+  Vec3 angular_impulse = Vec3::Zero();    ///< out: N m s, about its centre of mass
+};
+
+class StatisticalLevel {
+ public:
+  /// `ground` and `materials` must outlive the level.
+  StatisticalLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials);
+  ~StatisticalLevel();
+
+  /// Adds a body for `owner` (the manager's index of it) and returns its slot. `signature` may be null for `support`, which then rests
+  /// without settling clips.
+  int add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state, bool asleep,
+          std::shared_ptr<const Signature> signature);
+  /// Frees `slot`, waking what touches it; the last body moves into it and its owner is returned (none where `slot` was the last).
+  std::optional<std::uint32_t> remove(int slot);
+
+  /// `neighbors` receive their share of the contacts. Times and counts are added to `report`.
+  void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report);
+
+  int size() const;
+  int asleep_count() const;
+  RigidState state(int slot) const;
+  void set_state(int slot, const RigidState& state);                       ///< wakes it
+  bool asleep(int slot) const;
+  void wake(int slot);
+  void add_force(int slot, const Vec3& force, const Vec3& torque);         ///< over the next step; wakes it
+  double reach() const;                                                    ///< m, greatest bounding radius
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lodestone
