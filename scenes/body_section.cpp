@@ -17,9 +17,9 @@ constexpr NumberRange kSpeed{-1e6, 1e6};
 /// One entry of the list: one body, or a scatter of bodies that are alike.
 struct BodyEntry {
   YamlCursor place;
-  SceneBody body;
+  SceneBody body = {};
   bool has_orientation = false;
-  std::optional<Scatter> scatter;
+  std::optional<Scatter> scatter = {};
   int count() const { return scatter ? scatter->count : 1; }
   double radius() const { return body.definition.shape->radius; }
 };
@@ -79,7 +79,9 @@ BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene, con
   const SceneShape& shape = find_shape(place.at("shape"), shapes);
   BodyEntry entry{.place = place};
   BodyDefinition& body = entry.body.definition;
-  body = {.shape = shape.shape, .material = load_material_id(place, scene, shape.material), .mass = shape.mass};
+  body.shape = shape.shape;
+  body.material = load_material_id(place, scene, shape.material);
+  body.mass = shape.mass;
   load_motion(place, entry);
   if (auto key = place.find("mass_kg")) body.mass = key->number(kPositive);
   if (auto key = place.find("importance")) body.importance = key->number(kPositive);

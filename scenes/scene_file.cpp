@@ -122,7 +122,8 @@ Scene load_scene(const fs::path& file, const SceneLoadSettings& settings) {
   root.at("version").integer(1, 1);
   const ShapeOptions search = search_of(file, settings);
 
-  Scene scene{.file = file};
+  Scene scene;
+  scene.file = file;
   scene.step = load_step(root, settings, scene.default_steps);
   // The quick sections first, so that their errors do not wait for meshes to load.
   scene.viewpoints = load_viewpoints(root);

@@ -10,13 +10,15 @@
 namespace lodestone {
 namespace {
 
-/// What a mesh's maker found wrong, put where the scene asked for the mesh. Such messages bring their own `expected …` where they can.
+/// Puts what a mesh's maker found (`name: found …, expected …`) where the scene asked for the mesh.
 [[noreturn]] void fail_at(const YamlCursor& place, const InputError& error, const std::string& hint = "") {
-  std::string what = error.what();
-  if (what.starts_with("found ")) what.erase(0, 6);
-  const std::size_t expected = what.find(", expected ");
-  if (expected == what.npos) place.fail(what, "a mesh that bounds a solid" + hint);
-  place.fail(what.substr(0, expected), what.substr(expected + 11) + hint);
+  const std::string what = error.what();
+  const std::size_t found = what.find("found "), expected = what.find(", expected ");
+  if (found == what.npos) place.fail(what, "a mesh that bounds a solid" + hint);
+  const std::string name = what.substr(0, found >= 2 ? found - 2 : 0);
+  const std::string defect = what.substr(found + 6, expected == what.npos ? what.npos : expected - found - 6);
+  place.fail(name.empty() ? defect : fmt::format("{} ({})", defect, name),
+             (expected == what.npos ? "a mesh that bounds a solid" : what.substr(expected + 11)) + hint);
 }
 
 /// Three numbers are the diagonal, three rows the whole tensor.

@@ -13,9 +13,9 @@ namespace lodestone {
 
 /// A shape with what bodies of it have unless they say otherwise.
 struct SceneShape {
-  std::shared_ptr<const Shape> shape;
+  std::shared_ptr<const Shape> shape = {};
   MaterialId material = 0;
-  std::optional<double> mass;  ///< kg
+  std::optional<double> mass = {};  ///< kg
 };
 
 /// By name. `search`: the scene's folder, then the mesh paths.

@@ -15,9 +15,9 @@ struct YamlValue {
   Kind kind = Kind::null;
   int line = 1;                    ///< counted from 1
   bool quoted = false;             ///< "1" is text, 1 is a number
-  std::string text;                ///< of a scalar
-  std::vector<YamlValue> items;    ///< of a sequence
-  std::vector<YamlEntry> entries;  ///< of a map, in the file's order, no key twice
+  std::string text = {};                ///< of a scalar
+  std::vector<YamlValue> items = {};    ///< of a sequence
+  std::vector<YamlEntry> entries = {};  ///< of a map, in the file's order, no key twice
 };
 
 struct YamlEntry {
