@@ -29,7 +29,8 @@ std::vector<double> parse_lengths(const std::string& text, const SolidForm& form
   std::vector<double> lengths;
   const char* at = text.data() + form.name.size() + 1;
   const char* const end = text.data() + text.size();
-  for (bool more = true; more;) {
+  bool more = true;
+  while (more) {
     double length = 0;
     const auto [stop, error] = std::from_chars(at, end, length);
     if (error != std::errc() || (stop != end && *stop != ',')) break;
@@ -37,7 +38,7 @@ std::vector<double> parse_lengths(const std::string& text, const SolidForm& form
     more = stop != end;
     at = more ? stop + 1 : stop;
   }
-  if (at != end || int(lengths.size()) != form.length_count)
+  if (more || int(lengths.size()) != form.length_count)
     throw InputError(fmt::format("shape: found {}, expected {}:{} in metres", text, form.name, form.lengths));
   return lengths;
 }

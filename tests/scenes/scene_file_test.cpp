@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenes/scene_fixture.h"
+#include "tests/scenes/scene_fixture.h"
 
 namespace lodestone {
 namespace {
@@ -78,7 +78,9 @@ TEST_F(SceneFile, GroundAndViewpointsArrive) {
   EXPECT_EQ(std::get<GroundPlane>(scene.ground[0]).offset_m, -1);
   EXPECT_EQ(std::get<GroundPlane>(scene.ground[0]).material, 2);
   EXPECT_EQ(std::get<GroundBox>(scene.ground[1]).orientation.w(), 1);
-  EXPECT_NEAR(std::get<GroundMesh>(scene.ground[2]).mesh.vertices[1].x() - std::get<GroundMesh>(scene.ground[2]).mesh.vertices[0].x(), 5, 1e-9);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : std::get<GroundMesh>(scene.ground[2]).mesh.vertices) box.extend(vertex);
+  EXPECT_TRUE(box.min().isApprox(Vec3(100, 0, 0)) && box.max().isApprox(Vec3(105, 5, 5)));
   ASSERT_EQ(scene.viewpoints.size(), 1u);
   EXPECT_EQ(scene.viewpoints[0].position_at(1.0), Vec3(0, 0, 2));
 }
@@ -180,7 +182,8 @@ TEST_F(SceneFile, MaterialErrors) {
 }
 
 TEST_F(SceneFile, ShapeErrors) {
-  write(tetrahedron_obj(3), "open.obj");
+  write("v 0 0 1\nv 0 0 -1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\n"
+        "f 1 3 4\nf 1 4 5\nf 1 5 6\nf 1 6 3\nf 2 4 3\nf 2 5 4\nf 2 6 5\n", "open.obj");
   write(tetrahedron_obj(), "shut.obj");
   std::filesystem::create_directory(folder() / "folder.obj");
   const BadScene cases[] = {

@@ -47,12 +47,9 @@ class SceneFixture : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// A tetrahedron as an OBJ file, closed unless `faces` leaves one out.
-inline std::string tetrahedron_obj(int faces = 4) {
-  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
-  const char* const lines[] = {"f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 1 4 3\n"};
-  for (int i = 0; i < faces; ++i) text += lines[i];
-  return text;
+/// A tetrahedron as an OBJ file.
+inline std::string tetrahedron_obj() {
+  return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 }
 
 }  // namespace lodestone

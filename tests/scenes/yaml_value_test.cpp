@@ -1,5 +1,6 @@
 #include "scenes/yaml_value.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -53,16 +54,16 @@ TEST(YamlValue, LimitsNesting) {
   EXPECT_EQ(error_of(nested(100'000)).substr(0, 18), "s.yaml:1: nesting:");
   // Deep by way of aliases: each level holds the one before.
   std::string text = "a0: &a0 [1]\n";
-  for (int i = 1; i < 40; ++i) text += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [*a" + std::to_string(i - 1) + "]\n";
+  for (int i = 1; i < 40; ++i) text += fmt::format("a{0}: &a{0} [*a{1}]\n", i, i - 1);
   EXPECT_NE(error_of(text).find("nesting"), std::string::npos);
 }
 
 TEST(YamlValue, LimitsExpansion) {
   std::string text = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
   for (int i = 1; i < 20; ++i) {
-    const std::string before = "*a" + std::to_string(i - 1);
-    text += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [";
-    for (int k = 0; k < 10; ++k) text += before + (k < 9 ? ", " : "]\n");
+    text += fmt::format("a{0}: &a{0} [*a{1}", i, i - 1);
+    for (int k = 1; k < 10; ++k) text += fmt::format(", *a{}", i - 1);
+    text += "]\n";
   }
   EXPECT_NE(error_of(text).find("size: found more values"), std::string::npos);
 }
