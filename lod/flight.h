@@ -1,17 +1,14 @@
-// Motion without contact: a parabola and torque-free rotation. The angular momentum is the state, so it is conserved exactly; the
-// orientation follows by the explicit midpoint rule on the rotation group (second order).
+// Motion without contact: a parabola and torque-free rotation.
 #pragma once
 
 #include "lod/statistical_body.h"
 
 namespace lodestone {
 
-/// The orientation `time` seconds later.
+/// The orientation `time` seconds later; a body with a single moment of inertia turns steadily.
 inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const BodyKind& kind, double time) {
-  const Vec3 now = angular_velocity(orientation, spin, *kind.shape);
-  if (kind.isotropic) return rotation_from_vector(now * time) * orientation;
-  const Quat middle = rotation_from_vector(now * (0.5 * time)) * orientation;
-  return rotation_from_vector(angular_velocity(middle, spin, *kind.shape) * time) * orientation;
+  if (!kind.isotropic) return advance_orientation(orientation, spin, *kind.shape, time);
+  return rotation_from_vector(angular_velocity(orientation, spin, *kind.shape) * time) * orientation;
 }
 
 /// Moves `body` along its free flight for `time` seconds. Exact for the centre of mass.

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "reference/geometry.h"
+#include "reference/free_rotation.h"
 #include "reference/material.h"
 #include "reference/shape.h"
 #include "signature/signature.h"
@@ -41,21 +41,6 @@ struct StatisticalBody {
   Motion motion = Motion::dynamic;
   bool crowded = false;                 ///< touches another body in this step
 };
-
-inline Vec3 to_world(const StatisticalBody& body, const Vec3& v) { return body.orientation * v; }
-
-inline Vec3 angular_velocity(const Quat& orientation, const Vec3& spin, const Shape& shape) {
-  const Mat3 r = orientation.toRotationMatrix();
-  return r * (shape.inverse_inertia_per_mass * (r.transpose() * spin));
-}
-inline Vec3 spin_of(const Quat& orientation, const Vec3& angular_velocity, const Shape& shape) {
-  const Mat3 r = orientation.toRotationMatrix();
-  return r * (shape.inertia_per_mass * (r.transpose() * angular_velocity));
-}
-inline Mat3 inverse_inertia_world(const Quat& orientation, const Shape& shape) {
-  const Mat3 r = orientation.toRotationMatrix();
-  return r * shape.inverse_inertia_per_mass * r.transpose();
-}
 
 /// Kinetic energy over mass, J/kg, with the true inertia.
 inline double kinetic_energy(const StatisticalBody& body, const Shape& shape) {
