@@ -1,10 +1,7 @@
-// What is observed of a running scene, outside of its timed steps: energy, penetration and whether every number is still finite.
+// What is observed of one body of a running scene: energy, penetration and whether its numbers are still finite.
 #pragma once
 
-#include <span>
-#include <vector>
-
-#include "scenes/scene.h"
+#include "reference/shape.h"
 
 namespace lodestone {
 
@@ -15,17 +12,5 @@ double kinetic_energy(const Shape& shape, double mass, const RigidState& state);
 double depth_below(const Shape& shape, const RigidState& state, const Vec3& normal, double offset);
 
 bool is_finite(const RigidState& state);
-
-/// The bodies of a manager, read once a step.
-struct RunSample {
-  std::vector<RigidState> states;
-  std::vector<Level> levels;
-  double energy_j = 0;           ///< kinetic, and potential about the origin
-  double max_penetration_m = 0;  ///< below any ground plane of the scene
-  bool finite = true;            ///< where not, the two above are of the finite bodies only
-};
-
-/// Reads `bodies` (those of `scene`, in its order) into `sample`.
-void read_sample(const Manager& manager, std::span<const BodyId> bodies, const Scene& scene, RunSample& sample);
 
 }  // namespace lodestone

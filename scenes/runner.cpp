@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "reference/error.h"
-#include "scenes/run_measures.h"
+#include "scenes/run_sample.h"
 #include "scenes/step_csv.h"
 #include "scenes/trajectory.h"
 

@@ -27,7 +27,9 @@ class TrajectoryWriter {
     add_views();
     for (int body = 0; body < trajectory_.bodies(); ++body) add_body(body);
     if (!scene_.viewpoints.empty()) add_viewpoint(scene_.viewpoints[0]);
+    // glTF allows neither an empty animation nor an empty buffer.
     if (model_.animations[0].channels.empty()) model_.animations.clear();
+    if (model_.buffers[0].data.empty()) model_.buffers.clear();
   }
   const tinygltf::Model& model() const { return model_; }
 
