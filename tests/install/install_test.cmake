@@ -8,7 +8,7 @@ function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${PREFIX}")
+run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${PREFIX}" OUTPUT_QUIET)
 run("${CMAKE_COMMAND}" -G Ninja -D CMAKE_BUILD_TYPE=Release -D "CMAKE_PREFIX_PATH=${PREFIX}"
     -S "${CONSUMER}" -B "${SCRATCH}/build")
 run("${CMAKE_COMMAND}" --build "${SCRATCH}/build")
