@@ -40,15 +40,9 @@ Target target_by_distance(const LevelCandidate& candidate, double distance, doub
   return {Level::statistical, LevelReason::far};
 }
 
-/// How many automatic bodies may be full: `grow` as long as more are wanted, `keep` before some must go.
-struct Capacity {
-  std::int64_t grow = 0, keep = 0;
-};
-
-Capacity find_capacity(double milliseconds, double full_body_step_ms, double hysteresis, std::int64_t forced) {
-  const double fit = std::clamp(milliseconds / std::max(full_body_step_ms, 1e-9), 0.0, 1e9);
-  return {std::max<std::int64_t>(0, std::int64_t(fit / (1.0 + hysteresis)) - forced),
-          std::max<std::int64_t>(0, std::int64_t(fit) - forced)};
+/// How many bodies of this cost fit the milliseconds.
+std::int64_t count_that_fit(double milliseconds, double full_body_step_ms) {
+  return std::int64_t(std::clamp(milliseconds / std::max(full_body_step_ms, 1e-9), 0.0, 1e9));
 }
 
 class Chooser {
@@ -69,28 +63,30 @@ class Chooser {
 
   LevelDecision by(const BudgetPolicy& policy, double full_body_step_ms, double statistical_ms) {
     std::int64_t forced = 0, full = 0;
-    for (const LevelCandidate& c : candidates_)
+    for (const LevelCandidate& c : candidates_) {
       if (c.choice == LevelChoice::full) ++forced;
       else if (c.choice == LevelChoice::automatic && c.level == Level::full) ++full;
-    const Capacity capacity =
-        find_capacity(policy.budget_ms - statistical_ms, full_body_step_ms, settings_.hysteresis, forced);
+    }
+    // The number of full bodies grows while part of the budget is free, and shrinks when all of it is used up.
+    const double left_ms = policy.budget_ms - statistical_ms;
+    const std::int64_t most = std::max<std::int64_t>(0, count_that_fit(left_ms, full_body_step_ms) - forced);
+    const std::int64_t grow_to = count_that_fit(left_ms / (1.0 + settings_.hysteresis), full_body_step_ms) - forced;
+    const std::int64_t wanted = std::min(most, std::max(full, grow_to));
 
-    // Where all the full bodies are wanted, nearer ones replace farther ones but their number does not grow.
-    const std::int64_t allowed = std::min(capacity.keep, std::max(capacity.grow, full));
-    const std::vector<Ranked> ranked = rank(capacity);
+    const std::vector<Ranked> ranked = rank(wanted);
     for (std::int64_t place = 0; place < std::int64_t(ranked.size()); ++place)
-      consider(ranked[place], target_by_rank(place, candidates_[ranked[place].index], capacity, full));
+      consider(ranked[place], target_by_rank(place < wanted, full > most));
     for (std::int32_t i = 0; i < count(); ++i)
       if (candidates_[i].choice != LevelChoice::automatic) consider({0.0, i}, {});
-    grant(allowed - full);
+    grant(wanted - full);
     return std::move(decision_);
   }
 
  private:
   std::int32_t count() const { return std::int32_t(candidates_.size()); }
 
-  /// The automatic bodies, full ones counting as nearer by the hysteresis, the first `grow` and the first `keep` of them set apart.
-  std::vector<Ranked> rank(const Capacity& capacity) const {
+  /// The automatic bodies, the `wanted` nearest of them before the rest; full ones count as nearer by the hysteresis.
+  std::vector<Ranked> rank(std::int64_t wanted) const {
     std::vector<Ranked> ranked;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[i];
@@ -98,18 +94,14 @@ class Chooser {
       const double distance = scaled_distance(c, viewpoints_);
       ranked.push_back({c.level == Level::full ? distance / (1.0 + settings_.hysteresis) : distance, i});
     }
-    const auto keep = ranked.begin() + std::min(capacity.keep, std::int64_t(ranked.size()));
-    const auto grow = ranked.begin() + std::min(capacity.grow, std::int64_t(ranked.size()));
-    std::ranges::nth_element(ranked, keep, nearer);
-    std::nth_element(ranked.begin(), grow, keep, nearer);
+    std::ranges::nth_element(ranked, ranked.begin() + std::min(wanted, std::int64_t(ranked.size())), nearer);
     return ranked;
   }
 
-  Target target_by_rank(std::int64_t place, const LevelCandidate& c, const Capacity& capacity, std::int64_t full) const {
+  Target target_by_rank(bool wanted, bool over_budget) const {
     if (viewpoints_.empty()) return {Level::statistical, LevelReason::far};
-    if (place < capacity.grow) return {Level::full, LevelReason::in_budget};
-    if (place < capacity.keep && c.level == Level::full) return {Level::full, LevelReason::within_hysteresis};
-    return {Level::statistical, LevelReason::over_budget, full > capacity.keep};
+    if (wanted) return {Level::full, LevelReason::in_budget};
+    return {Level::statistical, LevelReason::over_budget, over_budget};
   }
 
   /// Notes why body `by_distance.index` has its level, and its wish for a change.

@@ -8,6 +8,7 @@ namespace {
 void append_planes(dSpaceID space, std::vector<StaticPlane>& planes) {
   for (int i = 0; i < dSpaceGetNumGeoms(space); ++i) {
     const dGeomID geom = dSpaceGetGeom(space, i);
+    if (dGeomGetCategoryBits(geom) == 0) continue;  // hidden: an OdeWorld's own
     if (dGeomIsSpace(geom)) {
       append_planes(reinterpret_cast<dSpaceID>(geom), planes);
     } else if (dGeomGetClass(geom) == dPlaneClass && dGeomIsEnabled(geom)) {

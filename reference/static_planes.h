@@ -16,7 +16,7 @@ struct StaticPlane {
   friend bool operator==(const StaticPlane&, const StaticPlane&) = default;
 };
 
-/// The enabled planes of `space` and the spaces in it, in ODE's order.
+/// The enabled planes of `space` and the spaces in it, in ODE's order; those that an OdeWorld put there are left out.
 std::vector<StaticPlane> find_static_planes(dxSpace* space);
 
 /// m/s²
