@@ -98,9 +98,9 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     const Participant p = participants_[i];
     if (p >= 0 && bodies[p].motion != Motion::asleep) add_ground_contacts(int(i), bodies[p], kinds[bodies[p].kind], world, model, time);
   }
-  ContactSolverSettings solver = settings_.solver;
-  solver.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
-  solve_contacts(solver_bodies_, solver_contacts_, time, solver);
+  ContactSolverSettings settings = settings_.solver;
+  settings.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
+  solve_contacts(solver_bodies_, solver_contacts_, time, settings);
 
   // Velocities back, and motion; full neighbours take theirs as impulses.
   for (std::size_t i = 0; i < participants_.size(); ++i) {
