@@ -33,11 +33,9 @@ class Writer {
     bytes.insert(bytes.end(), from, from + sizeof(T));
   }
   void put(const Vec3& v) { for (double x : v) put(x); }
-  void put(const Eigen::Vector3f& v) { for (float x : v) put(x); }
   void put(const Response& r) { for (float x : r) put(x); }
   void put(const std::string& text) { put_each(std::span(text.data(), text.size())); }
   void put(const RestPose& p) { put(p.normal), put(p.height), put(p.frequency); }
-  void put(const ClipEntry& e) { put(e.clip), put(e.frame), put(e.normal), put(e.velocity), put(e.angular_velocity), put(e.energy); }
   template <class Range>
   void put_each(const Range& values) {
     put(std::uint64_t(values.size()));
@@ -70,10 +68,8 @@ class Reader {
     bytes_ = bytes_.subspan(sizeof(T));
   }
   void get(Vec3& v) { for (double& x : v) get(x); }
-  void get(Eigen::Vector3f& v) { for (float& x : v) get(x); }
   void get(Response& r) { for (float& x : r) get(x); }
   void get(RestPose& p) { get(p.normal), get(p.height), get(p.frequency); }
-  void get(ClipEntry& e) { get(e.clip), get(e.frame), get(e.normal), get(e.velocity), get(e.angular_velocity), get(e.energy); }
   template <class Container>
   void get_each(Container& values) {
     std::uint64_t count = 0;
