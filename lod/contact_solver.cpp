@@ -32,10 +32,10 @@ void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& imp
 }
 
 // The normal velocity to reach: a bounce, or closing the gap just within the step.
-double target_velocity(const SolverContact& c, double approach, double step, const ContactSolverSettings& s) {
+double target_velocity(SolverContact& c, double approach, double step, const ContactSolverSettings& s) {
   const double closing = std::min(0.0, -c.gap / step);
-  const bool bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
-  return bounces ? std::max(-c.law.restitution * approach, closing) : closing;
+  c.bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
+  return c.bounces ? std::max(-c.law.restitution * approach, closing) : closing;
 }
 
 void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const ContactSolverSettings& s) {

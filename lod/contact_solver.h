@@ -28,6 +28,7 @@ struct SolverContact {
   Vec3 tangent[2] = {Vec3::Zero(), Vec3::Zero()};
   double effective_mass[3] = {0.0, 0.0, 0.0};
   double target = 0.0;                  ///< m/s, normal velocity asked for
+  bool bounces = false;                 ///< an impact, fast enough for restitution
   double impulse[3] = {0, 0, 0};        ///< N s, along the normal and both tangents
 };
 
