@@ -23,6 +23,7 @@ struct SolverContact {
   Vec3 normal = Vec3::UnitZ();          ///< points into `first`
   Vec3 arm_first = Vec3::Zero(), arm_second = Vec3::Zero();  ///< from each centre of mass to the shared point
   double gap = 0.0;                     ///< m, negative where they overlap
+  double share = 1.0;                   ///< of undoing the overlap: contacts of one pair share it
   ContactLaw law;
   // Filled by the solver:
   Vec3 tangent[2] = {Vec3::Zero(), Vec3::Zero()};

@@ -131,12 +131,17 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     c.first = solver_index(pair.first, bodies, kinds, neighbors, world, time);
     c.second = solver_index(pair.second, bodies, kinds, neighbors, world, time);
     c.normal = pair.contact.normal;
-    c.arm_first = pair.contact.point - position_of(pair.first, bodies, neighbors);
-    c.arm_second = pair.contact.point - position_of(pair.second, bodies, neighbors);
-    c.gap = pair.contact.gap;
     c.law = world.materials->law(material_of(pair.first, bodies, kinds, neighbors), material_of(pair.second, bodies, kinds, neighbors));
-    solver_contacts_.push_back(c);
+    const Manifold& manifold = pair.contact.manifold;
+    c.share = 1.0 / manifold.count;
+    for (int i = 0; i < manifold.count; ++i) {
+      c.arm_first = manifold.points[i].point - position_of(pair.first, bodies, neighbors);
+      c.arm_second = manifold.points[i].point - position_of(pair.second, bodies, neighbors);
+      c.gap = manifold.points[i].gap;
+      solver_contacts_.push_back(c);
+    }
   }
+  const std::size_t pair_contacts = solver_contacts_.size();
   sort_full_contacts(full_contacts, neighbors.size());
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     const Participant p = participants_[i];
@@ -164,7 +169,7 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
     ++body.events;
   }
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+  for (std::size_t i = 0; i < pair_contacts; ++i) {
     const SolverContact& c = solver_contacts_[i];
     const Vec3 impulse = c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1];
     const auto give = [&](Participant to, const Vec3& j, const Vec3& arm) {
@@ -173,8 +178,8 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
       share.linear += j;
       share.angular += arm.cross(j);
     };
-    give(contacts[i].first, impulse, c.arm_first);
-    give(contacts[i].second, -impulse, c.arm_second);
+    give(participants_[c.first], impulse, c.arm_first);
+    give(participants_[c.second], -impulse, c.arm_second);
   }
   // Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's matter.
   const auto move = [&](std::int32_t index, const Vec3& by) {
@@ -185,7 +190,7 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   for (const SolverContact& c : solver_contacts_) {
     const Participant p = std::max(participants_[c.first], c.second < 0 ? -1 : participants_[c.second]);
     if (p < 0) continue;
-    const double distance = push_out_overlap(c.gap, kinds[bodies[p].kind].shape->radius);
+    const double distance = c.share * push_out_overlap(c.gap, kinds[bodies[p].kind].shape->radius);
     if (distance == 0.0) continue;
     const double first = solver_bodies_[c.first].inverse_mass, second = c.second < 0 ? 0.0 : solver_bodies_[c.second].inverse_mass;
     if (first + second == 0.0) continue;

@@ -207,8 +207,12 @@ std::optional<CrowdContact> StatisticalLevel::Impl::find_contact(Participant fir
   const std::optional<PairContact> contact = tables() ? find_sphere_contact(a, b, margin) : find_hull_contact(a, b, margin);
   if (!contact) return {};
   // It counts if it closes within the step.
-  const double approach = (point_velocity(first, contact->point, neighbors) - point_velocity(second, contact->point, neighbors)).dot(contact->normal);
-  if (contact->gap + approach * dt > touching) return {};
+  const auto closes = [&](const ManifoldPoint& p) {
+    const Vec3 velocity = point_velocity(first, p.point, neighbors) - point_velocity(second, p.point, neighbors);
+    return p.gap + velocity.dot(contact->normal) * dt <= touching;
+  };
+  const auto points = std::span(contact->manifold.points).first(std::size_t(contact->manifold.count));
+  if (std::ranges::none_of(points, closes)) return {};
   return CrowdContact{first, second, *contact};
 }
 
@@ -244,7 +248,7 @@ void StatisticalLevel::Impl::wake_touched(std::span<FullNeighbor> neighbors) {
     for (const auto& [sleeper, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
       if (!is_asleep(sleeper, neighbors)) continue;
       const double radius = sleeper < 0 ? neighbors[-1 - sleeper].shape->radius : kind_of(bodies[sleeper]).shape->radius;
-      const double speed = point_velocity(other, c.contact.point, neighbors).norm();
+      const double speed = point_velocity(other, c.contact.manifold.points[0].point, neighbors).norm();
       if (speed <= kWakeFactor * sleep_speed(radius)) continue;
       if (sleeper < 0) neighbors[-1 - sleeper].asleep = false;
       else wake(sleeper);
