@@ -62,10 +62,19 @@ void relax(std::span<SolverBody> bodies, SolverContact& c) {
   apply(bodies, c, change);
 }
 
+void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
+  if (c.bounces || c.guess.isZero(0.0)) return;
+  c.impulse[0] = std::max(0.0, c.guess.dot(c.normal));
+  const double bound = c.law.friction * c.impulse[0];
+  for (int t = 0; t < 2; ++t) c.impulse[t + 1] = std::clamp(c.guess.dot(c.tangent[t]), -bound, bound);
+  apply(bodies, c, impulse_of(c));
+}
+
 }  // namespace
 
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings) {
   for (SolverContact& c : contacts) prepare(bodies, c, step, settings);
+  for (SolverContact& c : contacts) start_from_guess(bodies, c);
   for (int sweep = 0; sweep < settings.sweeps; ++sweep)
     for (SolverContact& c : contacts) relax(bodies, c);
 }

@@ -25,6 +25,7 @@ struct SolverContact {
   double gap = 0.0;                     ///< m, negative where they overlap
   double share = 1.0;                   ///< of undoing the overlap: contacts of one pair share it
   ContactLaw law;
+  Vec3 guess = Vec3::Zero();            ///< N s, on `first`: what a resting contact starts from
   // Filled by the solver:
   Vec3 tangent[2] = {Vec3::Zero(), Vec3::Zero()};
   double effective_mass[3] = {0.0, 0.0, 0.0};
@@ -32,6 +33,9 @@ struct SolverContact {
   bool bounces = false;                 ///< an impact, fast enough for restitution
   double impulse[3] = {0, 0, 0};        ///< N s, along the normal and both tangents
 };
+
+/// N s, on the first body.
+inline Vec3 impulse_of(const SolverContact& c) { return c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1]; }
 
 struct ContactSolverSettings {
   int sweeps = 8;

@@ -6,6 +6,7 @@ namespace {
 FullNeighbor neighbor_of(const Levels& levels, const FullLevel::Member& member) {
   const BodyRecord& record = levels.bodies[member.owner];
   FullNeighbor neighbor;
+  neighbor.owner = member.owner;
   neighbor.shape = record.definition.shape.get();
   neighbor.mass = record.mass;
   neighbor.material = record.definition.material;

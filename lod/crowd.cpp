@@ -15,6 +15,10 @@ const Vec3& position_of(Participant p, std::span<const StatisticalBody> bodies, 
   return p >= 0 ? bodies[p].position : neighbors[-1 - p].state.position;
 }
 
+std::uint32_t owner_of(Participant p, std::span<const StatisticalBody> bodies, std::span<const FullNeighbor> neighbors) {
+  return p >= 0 ? bodies[p].owner : neighbors[-1 - p].owner;
+}
+
 }  // namespace
 
 int Crowd::solver_index(Participant p, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
@@ -52,7 +56,8 @@ void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind
   const double reach = model == StatisticalModel::support ? kind.shape->radius : double(body.sphere_radius);
   const double spin_speed = model == StatisticalModel::support ? solver_bodies_[index].angular_velocity.norm() * reach : 0.0;
   const double margin = settings_.contact_margin * kind.shape->radius + (body.velocity.norm() + spin_speed) * time;
-  for (const HalfSpace& plane : world.ground->planes) {
+  for (std::size_t number = 0; number < world.ground->planes.size(); ++number) {
+    const HalfSpace& plane = world.ground->planes[number];
     const double height = plane.height_of(body.position);
     if (height > reach + margin) continue;
     HullContacts found;
@@ -71,6 +76,7 @@ void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind
       c.gap = found.contact[i].gap;
       c.law = world.law(kind, plane);
       solver_contacts_.push_back(c);
+      keys_.push_back(ground_key(body.owner, number));
     }
   }
 }
@@ -112,6 +118,7 @@ void Crowd::add_full_contacts(int index, std::span<const StatisticalBody> bodies
     c.gap = contact.gap;
     c.law = {.restitution = 0.0, .friction = contact.friction};
     solver_contacts_.push_back(c);
+    keys_.push_back(contact_key(neighbors[self].owner, other < 0 ? 0xffffffff : neighbors[other].owner));
   }
 }
 
@@ -122,6 +129,7 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   solver_bodies_.clear();
   angular_before_.clear();
   solver_contacts_.clear();
+  keys_.clear();
   index_of_slot_.resize(bodies.size(), -1);
   index_of_neighbor_.assign(neighbors.size(), -1);
 
@@ -139,6 +147,7 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
       c.arm_second = manifold.points[i].point - position_of(pair.second, bodies, neighbors);
       c.gap = manifold.points[i].gap;
       solver_contacts_.push_back(c);
+      keys_.push_back(contact_key(owner_of(pair.first, bodies, neighbors), owner_of(pair.second, bodies, neighbors)));
     }
   }
   const std::size_t pair_contacts = solver_contacts_.size();
@@ -150,7 +159,9 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   }
   ContactSolverSettings settings = settings_.solver;
   settings.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
+  memory_.recall(keys_, solver_contacts_, time);
   solve_contacts(solver_bodies_, solver_contacts_, time, settings);
+  memory_.remember(keys_, solver_contacts_, time);
 
   // Velocities back, and motion; full neighbours take theirs as impulses.
   for (std::size_t i = 0; i < participants_.size(); ++i) {
@@ -171,7 +182,7 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   }
   for (std::size_t i = 0; i < pair_contacts; ++i) {
     const SolverContact& c = solver_contacts_[i];
-    const Vec3 impulse = c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1];
+    const Vec3 impulse = impulse_of(c);
     const auto give = [&](Participant to, const Vec3& j, const Vec3& arm) {
       if (to >= 0 || neighbors[-1 - to].asleep) return;
       Impulse& share = c.bounces ? neighbors[-1 - to].hit : neighbors[-1 - to].push;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lod/contact_memory.h"
 #include "lod/ground_contact.h"
 #include "lod/pair_contacts.h"
 #include "lod/statistical_level.h"
@@ -52,6 +53,8 @@ class Crowd {
   std::vector<SolverBody> solver_bodies_;
   std::vector<Vec3> angular_before_;
   std::vector<SolverContact> solver_contacts_;
+  std::vector<ContactKey> keys_;  // of each solver contact
+  ContactMemory memory_;
 };
 
 /// The paper's rule for a pair of the statistical level (3.3.2).

@@ -39,6 +39,7 @@ struct Impulse {
 
 /// A body of the full level, as statistical ones meet it: it takes part in this step's contacts with its own mass and shape.
 struct FullNeighbor {
+  std::uint32_t owner = 0;                ///< as in StatisticalLevel::add
   const Shape* shape = nullptr;
   double mass = 1.0;
   MaterialId material = 0;
