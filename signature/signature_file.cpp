@@ -162,6 +162,7 @@ Signature decode_signature(std::span<const std::byte> bytes, const std::string& 
   if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0) reader.fail("a file of another kind", "a signature (it begins with LODESIG)");
   if (header.version != kSignatureFormatVersion)
     reader.fail(fmt::format("format version {}", header.version), fmt::format("version {}: measure it again", kSignatureFormatVersion));
+  if (header.reserved != 0) reader.fail("a header of another kind", "zeros after the version");
   const std::span<const std::byte> payload = bytes.subspan(sizeof(Header));
   if (payload.size() != header.payload_bytes) reader.fail(fmt::format("{} bytes of payload", payload.size()), fmt::format("{}", header.payload_bytes));
   if (XXH3_64bits(payload.data(), payload.size()) != header.payload_hash) reader.fail("a checksum that does not match", "undamaged bytes");
