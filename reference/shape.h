@@ -28,12 +28,13 @@ struct Shape {
 
 /// What may be given instead of being measured from the mesh.
 struct MassOverride {
-  std::optional<Vec3> center_of_mass_m;        ///< in the mesh's frame
-  std::optional<Mat3> inertia_per_mass_m2;     ///< about the centre of mass, mesh axes
+  std::optional<Vec3> center_of_mass_m = {};     ///< in the mesh's frame, inside the mesh's hull
+  std::optional<Mat3> inertia_per_mass_m2 = {};  ///< about the centre of mass, mesh axes
 };
 
 /// Checks, repairs and measures `mesh`. Throws InputError, with `name` at its head, for a mesh that cannot be a solid, an open
-/// mesh without a full override, and an impossible inertia.
+/// mesh without a full override, an impossible inertia and a centre of mass outside the hull. A given centre of mass does not
+/// change the measured inertia. An open mesh has its hull's volume.
 Shape make_shape(std::string name, Mesh mesh, const MassOverride& mass = {}, MeshReport* report = nullptr);
 Shape make_sphere_shape(double radius_m);
 
