@@ -56,7 +56,10 @@ constexpr std::array<NamedMaker, 7> kOdeMethods = {{
 constexpr std::string_view kStatistical = "statistical";
 
 std::vector<DropMethod> make_statistical(const DropJob& job, int threads, const Progress& progress) {
-  const auto signature = find_or_measure_signature(*job.shape, job.law(), {.threads = threads, .progress = progress}).signature;
+  SignatureSourceSettings source;
+  source.threads = threads;
+  source.progress = progress;
+  const auto signature = find_or_measure_signature(*job.shape, job.law(), source).signature;
   std::vector<DropMethod> methods;
   for (const StatisticalModel model : {StatisticalModel::tables, StatisticalModel::support})
     methods.push_back({std::string(kStatistical), StatisticalMethod{model, signature}, ""});

@@ -24,8 +24,8 @@ struct OdeMethod {
   int substeps = 1;                                  ///< ODE steps in a step
   OdeGeometry geometry = OdeGeometry::trimesh;
   bool plane_contacts_from_hull = true;              ///< else dCollide of the trimesh with the plane
-  std::shared_ptr<const Shape> collision_shape;      ///< with the mass distribution of the job's shape
-  std::vector<Sphere> spheres;                       ///< for OdeGeometry::spheres
+  std::shared_ptr<const Shape> collision_shape = {};      ///< with the mass distribution of the job's shape
+  std::vector<Sphere> spheres = {};                  ///< for OdeGeometry::spheres
 };
 
 /// The statistical level.
@@ -37,7 +37,7 @@ struct StatisticalMethod {
 struct DropMethod {
   std::string name;
   std::variant<OdeMethod, StatisticalMethod> way;
-  std::string left_out;  ///< why it cannot be had for this shape; empty where it can
+  std::string left_out = {};  ///< why it cannot be had for this shape; empty where it can
 
   int substeps() const;
   std::string model() const;  ///< "tables" or "support"; empty for ODE

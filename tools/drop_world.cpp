@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "reference/random.h"
+
 namespace lodestone {
 namespace {
 
@@ -23,7 +25,11 @@ Manager make_manager(const DropJob& job, const StatisticalMethod& method, std::u
 }
 
 BodyDefinition statistical_body(const DropJob& job, const RigidState& state) {
-  return {.shape = job.shape, .state = state, .level = LevelChoice::statistical};
+  BodyDefinition body;
+  body.shape = job.shape;
+  body.state = state;
+  body.level = LevelChoice::statistical;
+  return body;
 }
 
 // Draws are keyed by (seed, body, event), and the body is the first of its manager: each drop needs a seed of its own.
