@@ -45,10 +45,10 @@ struct OdeBodyId {
 };
 
 struct OdeBodyDefinition {
-  std::shared_ptr<const Shape> shape;
+  std::shared_ptr<const Shape> shape{};
   double mass = 1.0;  ///< kg
   MaterialId material = 0;
-  RigidState state;
+  RigidState state{};
   OdeGeometry geometry = OdeGeometry::trimesh;
   std::span<const Sphere> spheres = {};  ///< for OdeGeometry::spheres, about the centre of mass
 };

@@ -1,0 +1,48 @@
+// ODE as a process-wide thing: started once, its data made for each thread, its messages counted, its shared state locked.
+// Headers named *_ode.h are the only ones that include ODE; no header outside this family includes them.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cstdint>
+#include <mutex>
+
+namespace lodestone::ode {
+
+/// Starts ODE on the first call of the process and makes its data for the calling thread on the first call of each thread.
+/// From then on ODE's messages are counted and no longer printed; where the caller had set a handler it is still called.
+void prepare();
+
+/// Messages that ODE raised on the calling thread since the process began. A world steps on its caller's thread alone, so
+/// the difference over a step is that world's own.
+std::int64_t messages_of_this_thread();
+
+/// Debian's ODE keeps one process-wide cache for its trimesh colliders (ODE_EXT_mt_collisions is off): hold this around
+/// every dCollide that involves a trimesh, except with a plane.
+std::mutex& trimesh_mutex();
+
+/// Holds ODE's process-wide random generator for one scope, seeded by `seed`, and gives it back as it was found.
+class SeededRandom {
+ public:
+  explicit SeededRandom(std::uint64_t seed);
+  ~SeededRandom();
+
+ private:
+  std::scoped_lock<std::mutex> lock_;
+  unsigned long before_;
+};
+
+/// A world's step runs on its caller's thread alone, with nothing shared with other worlds.
+class StepThreading {
+ public:
+  explicit StepThreading(dWorldID world);
+  ~StepThreading();
+  StepThreading(const StepThreading&) = delete;
+  StepThreading& operator=(const StepThreading&) = delete;
+
+ private:
+  dWorldID world_;
+  dThreadingImplementationID threading_;
+};
+
+}  // namespace lodestone::ode
