@@ -1,5 +1,7 @@
 // What is observed of a drop. Every method, truth included, is observed alike: states sampled at 60 Hz, whatever its own step.
 // On a slope "up" is the plane's normal, and only gravity's part along it counts where a bounce is told from free flight.
+// The thresholds are those of bodies up to .4 m; for larger ones speeds and times are multiplied by √λ, energies by λ (drop_scale). Smaller
+// ones keep them, because a slower bounce would drown in what gravity does between two samples.
 #pragma once
 
 #include <vector>
@@ -8,7 +10,7 @@
 
 namespace lodestone {
 
-inline constexpr int kKineticEnergySamples = 361;  ///< at 60 Hz over the first 6 s, both ends included
+inline constexpr int kKineticEnergySamples = 361;  ///< every 1/60 s over the first 6 s, both ends included
 
 /// What is kept of one drop.
 struct DropObservation {
@@ -31,7 +33,10 @@ class DropObserver {
   void sample(double time_s, const RigidState& state);
 
   /// Below 1e-6 J/kg for the last second: later samples would only repeat the last.
-  bool settled() const { return last_time_ - last_stir_time_ >= 1.0; }
+  bool settled() const;
+
+  /// How long a drop is observed, s: 10 s for bodies up to .4 m.
+  double horizon_s() const;
 
   DropObservation result() const;
 
@@ -43,6 +48,7 @@ class DropObserver {
   const Shape& shape_;
   Vec3 normal_;
   double gravity_along_normal_;
+  double scale_;  // of lengths, ≥ 1
   RigidState start_, last_;
   double last_time_ = 0, last_stir_time_ = 0, rest_time_ = 0, rebound_ = 0;
   int samples_ = 0, bounces_ = 0;

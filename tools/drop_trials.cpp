@@ -12,11 +12,11 @@
 namespace lodestone {
 namespace {
 
-constexpr double kHorizon = 10.0;        // s
 constexpr int kTrialsInATask = 8;
 constexpr int kTimedOdeDrops = 31;
 constexpr int kTimedStatisticalBodies = 1024;
 constexpr int kTimedRepeats = 5;
+constexpr double kTimedSeconds = 10.0;
 constexpr double kLeastTimedSeconds = 0.5;
 
 // Steps until the horizon or until the body has settled; the observer sees the states that were reached by each 1/60 s.
@@ -24,18 +24,12 @@ DropObservation observe_drop(const DropJob& job, DropWorld& world, double dt) {
   DropObserver observer(*job.shape, drop_plane_normal(job.conditions));
   observer.sample(0.0, world.state());
   std::int64_t steps = 0;
-  for (int k = 1; k * kObservationStep <= kHorizon + 1e-9 && !observer.settled(); ++k) {
+  for (int k = 1; k * kObservationStep <= observer.horizon_s() + 1e-9 && !observer.settled(); ++k) {
     const std::int64_t before = steps;
     for (; double(steps + 1) * dt <= k * kObservationStep + 0.01 * dt; ++steps) world.step(dt);
     if (steps > before) observer.sample(double(steps) * dt, world.state());
   }
   return observer.result();
-}
-
-// dCollide of a trimesh uses a cache that ODE shares between all threads of a process.
-bool runs_on_one_thread(const DropMethod& method) {
-  const auto* ode = std::get_if<OdeMethod>(&method.way);
-  return ode && !ode->plane_contacts_from_hull;
 }
 
 using Clock = std::chrono::steady_clock;
@@ -72,7 +66,7 @@ double measure_statistical(const DropJob& job, const DropMethod& method, const D
     Manager manager = make_many_drops(job, std::get<StatisticalMethod>(method.way), batch.seed + repeat, kTimedStatisticalBodies);
     double spent = 0.0, body_steps = 0.0;
     int awake = kTimedStatisticalBodies;
-    for (double t = 0; t < kHorizon && awake > kTimedStatisticalBodies / 4; t += batch.dt_s) {
+    for (double t = 0; t < kTimedSeconds && awake > kTimedStatisticalBodies / 4; t += batch.dt_s) {
       body_steps += awake;
       spent += measure_ns([&] { manager.step(batch.dt_s); });
       awake = kTimedStatisticalBodies - manager.report().asleep;
@@ -99,8 +93,7 @@ std::vector<DropObservation> observe_drops(const DropJob& job, const DropMethod&
     const std::scoped_lock lock(mutex);
     if (progress) progress(double(++done) / tasks);
   };
-  const int threads = batch.threads > 0 ? batch.threads : tbb::task_arena::automatic;
-  tbb::task_arena arena(runs_on_one_thread(method) ? 1 : threads);
+  tbb::task_arena arena(batch.threads > 0 ? batch.threads : tbb::task_arena::automatic);
   arena.execute([&] { tbb::parallel_for(0, tasks, run_task, tbb::simple_partitioner()); });
   return drops;
 }
