@@ -117,4 +117,19 @@ Shape make_sphere_shape(double radius_m) {
   return shape;
 }
 
+Shape scale_shape(const Shape& shape, double factor) {
+  check_that(factor > 0.0 && std::isfinite(factor), "a scale factor is positive and finite", fmt::format("found {}", factor));
+  Shape scaled = shape;
+  for (Vec3& vertex : scaled.mesh.vertices) vertex *= factor;
+  for (Vec3& vertex : scaled.hull.vertices) vertex *= factor;
+  scaled.volume *= factor * factor * factor;
+  scaled.center_of_mass_in_mesh *= factor;
+  scaled.inertia_per_mass *= factor * factor;
+  scaled.inverse_inertia_per_mass /= factor * factor;
+  scaled.radius *= factor;
+  scaled.size *= factor;
+  if (scaled.sphere_radius) *scaled.sphere_radius *= factor;
+  return scaled;
+}
+
 }  // namespace lodestone

@@ -1,0 +1,163 @@
+#include "lod/crowd.h"
+
+#include <algorithm>
+
+#include "lod/flight.h"
+
+namespace lodestone {
+namespace {
+
+MaterialId material_of(Participant p, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<const FullNeighbor> neighbors) {
+  return p >= 0 ? kinds[bodies[p].kind].material : neighbors[-1 - p].material;
+}
+
+const Vec3& position_of(Participant p, std::span<const StatisticalBody> bodies, std::span<const FullNeighbor> neighbors) {
+  return p >= 0 ? bodies[p].position : neighbors[-1 - p].state.position;
+}
+
+}  // namespace
+
+int Crowd::solver_index(Participant p, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
+                        std::span<const FullNeighbor> neighbors, const StepWorld& world, double time) {
+  std::int32_t& index = p >= 0 ? index_of_slot_[p] : index_of_neighbor_[-1 - p];
+  if (index >= 0) return index;
+  index = std::int32_t(solver_bodies_.size());
+  participants_.push_back(p);
+  SolverBody solver;
+  if (p >= 0) {
+    const StatisticalBody& body = bodies[p];
+    const BodyKind& kind = kinds[body.kind];
+    if (body.motion != Motion::asleep) {
+      solver.velocity = body.velocity + world.gravity * time;
+      solver.angular_velocity = angular_velocity(body.orientation, body.spin, *kind.shape);
+      solver.inverse_mass = 1.0 / kind.mass;
+      solver.inverse_inertia = inverse_inertia_world(body.orientation, *kind.shape) / kind.mass;
+    }
+  } else {
+    const FullNeighbor& body = neighbors[-1 - p];
+    solver.velocity = body.state.velocity + (body.asleep ? Vec3::Zero() : Vec3(world.gravity * time));
+    solver.angular_velocity = body.state.angular_velocity;
+    solver.inverse_mass = 1.0 / body.mass;
+    solver.inverse_inertia = inverse_inertia_world(body.state.orientation, *body.shape) / body.mass;
+  }
+  angular_before_.push_back(solver.angular_velocity);
+  solver_bodies_.push_back(solver);
+  return index;
+}
+
+void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                                StatisticalModel model, double time) {
+  const double reach = model == StatisticalModel::support ? kind.shape->radius : double(body.sphere_radius);
+  const double spin_speed = model == StatisticalModel::support ? solver_bodies_[index].angular_velocity.norm() * reach : 0.0;
+  const double margin = settings_.contact_margin * kind.shape->radius + (body.velocity.norm() + spin_speed) * time;
+  for (const HalfSpace& plane : world.ground->planes) {
+    const double height = plane.height_of(body.position);
+    if (height > reach + margin) continue;
+    HullContacts found;
+    if (model == StatisticalModel::support) {
+      found = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, margin, body.support_hint);
+    } else {
+      found.contact[0] = {-reach * plane.normal, height - reach};
+      found.count = 1;
+    }
+    for (int i = 0; i < found.count; ++i) {
+      if (found.contact[i].gap > margin) continue;
+      SolverContact c;
+      c.first = index;
+      c.normal = plane.normal;
+      c.arm_first = found.contact[i].arm;
+      c.gap = found.contact[i].gap;
+      c.law = world.law(kind, plane);
+      solver_contacts_.push_back(c);
+    }
+  }
+}
+
+ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
+                         std::span<const CrowdContact> contacts, const StepWorld& world, StatisticalModel model, double time) {
+  participants_.clear();
+  solver_bodies_.clear();
+  angular_before_.clear();
+  solver_contacts_.clear();
+  index_of_slot_.resize(bodies.size(), -1);
+  index_of_neighbor_.assign(neighbors.size(), -1);
+
+  // Pair contacts, then the ground under every moving participant.
+  for (const CrowdContact& pair : contacts) {
+    SolverContact c;
+    c.first = solver_index(pair.first, bodies, kinds, neighbors, world, time);
+    c.second = solver_index(pair.second, bodies, kinds, neighbors, world, time);
+    c.normal = pair.contact.normal;
+    c.arm_first = pair.contact.point - position_of(pair.first, bodies, neighbors);
+    c.arm_second = pair.contact.point - position_of(pair.second, bodies, neighbors);
+    c.gap = pair.contact.gap;
+    c.law = world.materials->law(material_of(pair.first, bodies, kinds, neighbors), material_of(pair.second, bodies, kinds, neighbors));
+    solver_contacts_.push_back(c);
+  }
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    const Participant p = participants_[i];
+    if (p >= 0 && bodies[p].motion != Motion::asleep) add_ground_contacts(int(i), bodies[p], kinds[bodies[p].kind], world, model, time);
+  }
+  ContactSolverSettings solver = settings_.solver;
+  solver.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
+  solve_contacts(solver_bodies_, solver_contacts_, time, solver);
+
+  // Velocities back, and motion; full neighbours take theirs as impulses.
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    const Participant p = participants_[i];
+    const SolverBody& solved = solver_bodies_[i];
+    if (p < 0) {
+      continue;
+    }
+    index_of_slot_[p] = -1;
+    StatisticalBody& body = bodies[p];
+    if (body.motion == Motion::asleep) continue;
+    const BodyKind& kind = kinds[body.kind];
+    body.velocity = solved.velocity;
+    body.spin += spin_of(body.orientation, solved.angular_velocity - angular_before_[i], *kind.shape);
+    body.position += body.velocity * time;
+    body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
+    ++body.events;
+  }
+  for (const SolverContact& c : solver_contacts_) {
+    const Vec3 impulse = c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1];
+    const auto give = [&](std::int32_t solver, const Vec3& j, const Vec3& arm) {
+      if (solver < 0 || participants_[solver] >= 0) return;
+      FullNeighbor& neighbor = neighbors[-1 - participants_[solver]];
+      neighbor.impulse += j;
+      neighbor.angular_impulse += arm.cross(j);
+    };
+    give(c.first, impulse, c.arm_first);
+    give(c.second, -impulse, c.arm_second);
+  }
+  // Overlaps are undone by moving apart, the lighter body farther.
+  const auto move = [&](std::int32_t solver, const Vec3& by) {
+    if (solver >= 0 && participants_[solver] >= 0 && solver_bodies_[solver].inverse_mass > 0.0) bodies[participants_[solver]].position += by;
+  };
+  for (const SolverContact& c : solver_contacts_) {
+    const Participant p = participants_[c.first] >= 0 ? participants_[c.first] : participants_[c.second];
+    const double distance = push_out_overlap(c.gap, kinds[bodies[p].kind].shape->radius);
+    if (distance == 0.0) continue;
+    const double first = solver_bodies_[c.first].inverse_mass, second = c.second < 0 ? 0.0 : solver_bodies_[c.second].inverse_mass;
+    if (first + second == 0.0) continue;
+    move(c.first, distance * first / (first + second) * c.normal);
+    move(c.second, -distance * second / (first + second) * c.normal);
+  }
+  ContactTally tally;
+  tally.contacts = std::int64_t(solver_contacts_.size());
+  return tally;
+}
+
+void respond_pair_as_paper(StatisticalBody& first, const BodyKind& first_kind, StatisticalBody& second, const BodyKind& second_kind,
+                           const PairContact& contact, const StepWorld& world, const ContactLaw& law, const TablesOptions& options,
+                           ContactTally& tally) {
+  const Vec3 first_velocity = first.velocity, second_velocity = second.velocity;
+  first.velocity -= second_velocity;
+  respond_from_tables(first, first_kind, contact.normal, world, law, options, tally);
+  first.velocity += second_velocity;
+  second.velocity -= first_velocity;
+  respond_from_tables(second, second_kind, -contact.normal, world, law, options, tally);
+  second.velocity += first_velocity;
+}
+
+}  // namespace lodestone
