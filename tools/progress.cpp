@@ -26,6 +26,7 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::show(const std::string& stage, double fraction) {
+  const std::scoped_lock lock(mutex_);
   if (!terminal_ || monotonic_seconds() < next_s_) return;
   next_s_ = monotonic_seconds() + kLeastPause;
   shown_ = true;

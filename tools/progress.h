@@ -1,6 +1,7 @@
 // A line of progress on stderr, on a terminal only.
 #pragma once
 
+#include <mutex>
 #include <string>
 
 #include "signature/signature_source.h"
@@ -8,6 +9,7 @@
 namespace lodestone {
 
 /// One line, rewritten at most ten times a second and cleared at the end. Writes nothing where stderr is no terminal.
+/// May be called from several threads.
 class ProgressLine {
  public:
   ProgressLine();
@@ -23,6 +25,7 @@ class ProgressLine {
 
  private:
   bool terminal_;
+  std::mutex mutex_;
   bool shown_ = false;
   double next_s_ = 0.0;  // monotonic time before which nothing is written
 };
