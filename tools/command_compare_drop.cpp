@@ -32,16 +32,6 @@ DropJob make_job(const Arguments& arguments) {
   return job;
 }
 
-void print_table(const DropJob& job, const DropComparison& comparison) {
-  fmt::print("{}: {} drops, restitution {}, friction {}, slope {:.4g} deg; truth: ODE at {:.3g} ms\n\n", comparison.shape,
-             comparison.trials, job.material.restitution, job.material.friction,
-             job.conditions.slope * 180.0 / std::numbers::pi, 1e3 * kObservationStep / comparison.truth_substeps);
-  fmt::print("{}", table_of(comparison));
-  fmt::print(
-      "\nscore: mean of the parts to its right, 95 % bootstrap interval from .. to; the noise floor is truth against truth with other starts.\n"
-      "bounces .. rebound: Wasserstein-1 over the truth's deviation; energy: of the kinetic energy over 0-6 s; rest pose: total variation.\n");
-}
-
 void compare_drop(const Arguments& arguments) {
   const DropJob job = make_job(arguments);
   DropComparisonSettings settings = arguments.comparison;
@@ -54,7 +44,7 @@ void compare_drop(const Arguments& arguments) {
   }
   if (!arguments.out.empty()) save_drops(comparison, arguments.out);
   if (arguments.json) fmt::print("{}\n", json_of(comparison).dump(2));
-  else print_table(job, comparison);
+  else fmt::print("{}", text_of(job, comparison));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "reference/error.h"
 #include "tools/text_table.h"
@@ -83,8 +84,6 @@ void write_drops(std::ostream& out, const std::string& method, const std::string
   }
 }
 
-}  // namespace
-
 std::string table_of(const DropComparison& comparison) {
   TextTable table({"method", "model", "step s", "substeps", "score", "from", "to", "bounces", "rest time", "distance",
                    "rebound", "energy", "rest pose", "ns/body-step"});
@@ -98,6 +97,17 @@ std::string table_of(const DropComparison& comparison) {
     if (!row.reason.empty()) left_out += fmt::format("{} left out: {} {}\n", row.method, comparison.shape, row.reason);
   }
   return table.text() + left_out;
+}
+
+}  // namespace
+
+std::string text_of(const DropJob& job, const DropComparison& comparison) {
+  return fmt::format("{}: {} drops, restitution {}, friction {}, slope {:.4g} deg; truth: ODE at {:.3g} ms\n\n", comparison.shape,
+                     comparison.trials, job.material.restitution, job.material.friction,
+                     job.conditions.slope * 180.0 / std::numbers::pi, 1e3 * kObservationStep / comparison.truth_substeps) +
+         table_of(comparison) +
+         "\nscore: mean of the parts to its right; its 95 % bootstrap interval from .. to; the noise floor is truth against truth with other starts\n"
+         "bounces .. rebound: Wasserstein-1 over the truth's deviation; energy: of the kinetic energy over 0-6 s; rest pose: total variation\n";
 }
 
 ordered_json json_of(const DropComparison& comparison) {

@@ -9,8 +9,8 @@
 
 namespace lodestone {
 
-/// The floor in the first row, then each method at each step.
-std::string table_of(const DropComparison& comparison);
+/// What was dropped, then a table: the floor in its first row, then each method at each step; then what the columns are.
+std::string text_of(const DropJob& job, const DropComparison& comparison);
 
 /// Keys as README lists them; what is undefined is null.
 nlohmann::ordered_json json_of(const DropComparison& comparison);
