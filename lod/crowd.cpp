@@ -98,9 +98,9 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     const Participant p = participants_[i];
     if (p >= 0 && bodies[p].motion != Motion::asleep) add_ground_contacts(int(i), bodies[p], kinds[bodies[p].kind], world, model, time);
   }
-  ContactSolverSettings solver = settings_.solver;
-  solver.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
-  solve_contacts(solver_bodies_, solver_contacts_, time, solver);
+  ContactSolverSettings settings = settings_.solver;
+  settings.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
+  solve_contacts(solver_bodies_, solver_contacts_, time, settings);
 
   // Velocities back, and motion; full neighbours take theirs as impulses.
   for (std::size_t i = 0; i < participants_.size(); ++i) {
@@ -121,9 +121,9 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   }
   for (const SolverContact& c : solver_contacts_) {
     const Vec3 impulse = c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1];
-    const auto give = [&](std::int32_t solver, const Vec3& j, const Vec3& arm) {
-      if (solver < 0 || participants_[solver] >= 0) return;
-      FullNeighbor& neighbor = neighbors[-1 - participants_[solver]];
+    const auto give = [&](std::int32_t index, const Vec3& j, const Vec3& arm) {
+      if (index < 0 || participants_[index] >= 0) return;
+      FullNeighbor& neighbor = neighbors[-1 - participants_[index]];
       neighbor.impulse += j;
       neighbor.angular_impulse += arm.cross(j);
     };
@@ -131,8 +131,8 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     give(c.second, -impulse, c.arm_second);
   }
   // Overlaps are undone by moving apart, the lighter body farther.
-  const auto move = [&](std::int32_t solver, const Vec3& by) {
-    if (solver >= 0 && participants_[solver] >= 0 && solver_bodies_[solver].inverse_mass > 0.0) bodies[participants_[solver]].position += by;
+  const auto move = [&](std::int32_t index, const Vec3& by) {
+    if (index >= 0 && participants_[index] >= 0 && solver_bodies_[index].inverse_mass > 0.0) bodies[participants_[index]].position += by;
   };
   for (const SolverContact& c : solver_contacts_) {
     const Participant p = participants_[c.first] >= 0 ? participants_[c.first] : participants_[c.second];
