@@ -10,7 +10,7 @@
 namespace lodestone {
 namespace {
 
-constexpr int kBusySteps = 8;  // a step of a thousand trimeshes takes seconds
+constexpr int kBusySteps = 8;     // a step of a thousand trimeshes takes seconds
 constexpr int kUntimedSteps = 2;  // in which ODE's bodies are made
 
 // Where the statistical level has the most contacts.
@@ -19,43 +19,100 @@ int find_busy_step(const RunResult& result) {
   return std::clamp(int(busiest - result.reports.begin()), 0, std::max(0, result.steps - kBusySteps));
 }
 
-TimeSummary summarize_window(const RunResult& result, int first, int count) {
+TimeSummary summarize_window(const RunResult& result, int first) {
   std::vector<double> ms;
-  for (int i = first; i < std::min(first + count, result.steps); ++i) ms.push_back(result.reports[i].times.total_ms);
+  for (int i = first; i < std::min(first + kBusySteps, result.steps); ++i) ms.push_back(result.reports[i].times.total_ms);
   return summarize(ms);
 }
 
 DemoRow make_row(std::string name, const RunResult& result, int busy_step) {
-  DemoRow row{.name = std::move(name), .whole_ms = result.step_ms, .busy_ms = summarize_window(result, busy_step, kBusySteps)};
-  row.most_full = std::ranges::max_element(result.reports, {}, &StepReport::full)->full;
-  return row;
+  const int most_full = std::ranges::max_element(result.reports, {}, &StepReport::full)->full;
+  return {.name = std::move(name), .whole_ms = result.step_ms, .busy_ms = summarize_window(result, busy_step), .most_full = most_full};
 }
 
-// The scene as a statistical run leaves it after `steps` steps.
-Scene scene_after(const Scene& scene, RunSettings settings, int steps) {
-  settings.steps = steps;
-  settings.level = LevelChoice::statistical;
-  const RunResult result = run_scene(scene, settings);
-  Scene later = scene;
-  for (std::size_t i = 0; i < later.bodies.size(); ++i) later.bodies[i].definition.state = result.states[i];
-  return later;
-}
+class Demo {
+ public:
+  Demo(const Scene& scene, const RunSettings& settings, const Progress& progress)
+      : scene_(scene), settings_(settings), progress_(progress) {}
 
-DemoRow run_full(const Scene& scene, RunSettings settings, int busy_step) {
-  const Scene busy = busy_step > 0 ? scene_after(scene, settings, busy_step) : scene;
-  settings.level = LevelChoice::full;
-  settings.steps = kUntimedSteps + kBusySteps;
-  const RunResult result = run_scene(busy, settings);
-  return {.name = "full", .whole_ms = std::nullopt, .busy_ms = summarize_window(result, kUntimedSteps, kBusySteps), .most_full = result.bodies};
-}
+  DemoResult run(int trials) {
+    DemoResult result;
+    result.dt_s = settings_.dt_s.value_or(scene_.step.dt_s);
+    measure_times(result);
+    result.drop = make_drop_job();
+    result.errors = compare(result.drop, result.dt_s, trials);
+    return result;
+  }
 
-DropJob make_drop_job(const Scene& scene) {
-  const BodyDefinition& body = scene.bodies.front().definition;
-  DropJob job;
-  job.shape = body.shape;
-  job.material = scene.materials[body.material];
-  return job;
-}
+ private:
+  void measure_times(DemoResult& result) {
+    const RunResult support = run_statistical(StatisticalModel::support);
+    result.busy_step = find_busy_step(support);
+    result.busy_steps = kBusySteps;
+    result.rows.push_back(make_row("statistical, support", support, result.busy_step));
+    result.rows.push_back(make_row("statistical, tables", run_statistical(StatisticalModel::tables), result.busy_step));
+    result.mixed = run_scene(scene_, reporting(settings_, "mixed"));
+    result.rows.push_back(make_row("mixed", result.mixed, result.busy_step));
+    result.rows.push_back(run_full(result.busy_step));
+  }
+
+  RunSettings reporting(RunSettings settings, const std::string& name) const {
+    settings.progress = [this, name](int step, int steps) { if (progress_) progress_(name, double(step) / steps); };
+    return settings;
+  }
+
+  RunSettings at_level(LevelChoice level, const std::string& name) const {
+    RunSettings settings = reporting(settings_, name);
+    settings.out.clear();
+    settings.level = level;
+    return settings;
+  }
+
+  RunResult run_statistical(StatisticalModel model) const {
+    RunSettings settings = at_level(LevelChoice::statistical, "statistical");
+    settings.model = model;
+    return run_scene(scene_, settings);
+  }
+
+  DemoRow run_full(int busy_step) const {
+    RunSettings settings = at_level(LevelChoice::full, "full");
+    settings.steps = kUntimedSteps + kBusySteps;
+    const RunResult result = run_scene(scene_after(busy_step), settings);
+    return {.name = "full", .whole_ms = std::nullopt, .busy_ms = summarize_window(result, kUntimedSteps), .most_full = result.bodies};
+  }
+
+  // The scene as a statistical run leaves it.
+  Scene scene_after(int steps) const {
+    Scene later = scene_;
+    if (steps == 0) return later;
+    RunSettings settings = at_level(LevelChoice::statistical, "statistical, up to the busy window");
+    settings.steps = steps;
+    const RunResult result = run_scene(scene_, settings);
+    for (std::size_t i = 0; i < later.bodies.size(); ++i) later.bodies[i].definition.state = result.states[i];
+    return later;
+  }
+
+  DropJob make_drop_job() const {
+    const BodyDefinition& body = scene_.bodies.front().definition;
+    DropJob job;
+    job.shape = body.shape;
+    job.material = scene_.materials[body.material];
+    return job;
+  }
+
+  DropComparison compare(const DropJob& job, double dt_s, int trials) const {
+    DropComparisonSettings settings;
+    settings.trials = trials;
+    settings.dt_s = {dt_s};
+    settings.methods = {"full", "full_1", "statistical"};
+    settings.progress = progress_;
+    return compare_drops(job, settings);
+  }
+
+  const Scene& scene_;
+  const RunSettings& settings_;
+  const Progress& progress_;
+};
 
 std::string text_of_times(const DemoResult& result) {
   const auto number = [](double ms) { return fmt::format("{:.2f}", ms); };
@@ -69,42 +126,12 @@ std::string text_of_times(const DemoResult& result) {
 }  // namespace
 
 DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials, const Progress& progress) {
-  RunSettings quiet = settings;
-  quiet.out.clear();
-  DemoResult result;
-  const auto run_with = [&](const std::string& name, RunSettings with) {
-    with.progress = [&](int step, int steps) { if (progress) progress(name, double(step) / steps); };
-    return run_scene(scene, with);
-  };
-  RunSettings statistical = quiet;
-  statistical.level = LevelChoice::statistical;
-  statistical.model = StatisticalModel::support;
-  const RunResult support = run_with("statistical, support", statistical);
-  result.busy_step = find_busy_step(support);
-  result.busy_steps = kBusySteps;
-  result.rows.push_back(make_row("statistical, support", support, result.busy_step));
-  statistical.model = StatisticalModel::tables;
-  result.rows.push_back(make_row("statistical, tables", run_with("statistical, tables", statistical), result.busy_step));
-  result.mixed = run_with("mixed", settings);
-  result.rows.push_back(make_row("mixed", result.mixed, result.busy_step));
-  if (progress) progress("full, in the busy window", 0.0);
-  result.rows.push_back(run_full(scene, quiet, result.busy_step));
-  result.bodies = result.mixed.bodies;
-  result.steps = result.mixed.steps;
-  result.dt_s = settings.dt_s.value_or(scene.step.dt_s);
-  result.drop = make_drop_job(scene);
-  DropComparisonSettings comparison;
-  comparison.trials = trials;
-  comparison.dt_s = {result.dt_s};
-  comparison.methods = {"full", "full_1", "statistical"};
-  comparison.progress = progress;
-  result.errors = compare_drops(result.drop, comparison);
-  return result;
+  return Demo(scene, settings, progress).run(trials);
 }
 
 std::string text_of(const DemoResult& result) {
   std::string text;
-  text += fmt::format("{} bodies, {} steps of {:.4g} ms\n\n", result.bodies, result.steps, 1e3 * result.dt_s);
+  text += fmt::format("{} bodies, {} steps of {:.4g} ms\n\n", result.mixed.bodies, result.mixed.steps, 1e3 * result.dt_s);
   text += "What a step costs\n\n" + text_of_times(result);
   text += fmt::format("\nbusy: steps {} to {}, those of the most contacts; full is run over these alone\n\n", result.busy_step + 1,
                       result.busy_step + result.busy_steps);

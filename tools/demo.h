@@ -18,7 +18,6 @@ struct DemoRow {
 };
 
 struct DemoResult {
-  int bodies = 0, steps = 0;
   double dt_s = 0.0;
   int busy_step = 0, busy_steps = 0;    ///< where the window of the most contacts begins, and its length
   std::vector<DemoRow> rows;

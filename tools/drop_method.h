@@ -8,6 +8,7 @@
 
 #include "lod/manager.h"
 #include "reference/trial.h"
+#include "signature/signature_source.h"
 
 namespace lodestone {
 

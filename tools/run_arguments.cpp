@@ -6,6 +6,7 @@
 #include <map>
 #include <thread>
 
+#include "signature/signature_source.h"
 #include "tools/step_argument.h"
 
 namespace lodestone {

@@ -60,7 +60,7 @@ std::string text_of_counters(const Counters& counters) {
 }
 
 std::string text_of(const CheckResult& check) {
-  return fmt::format("check        {} {}: {:.4g}, bound {:.4g}\n", check.pass ? "holds: " : "FAILED:", check.name, check.value, check.bound);
+  return fmt::format("check        {} {}: {:.4g}, bound {:.4g}\n", !check.decided ? "open:  " : check.pass ? "holds: " : "FAILED:", check.name, check.value, check.bound);
 }
 
 }  // namespace
@@ -78,7 +78,8 @@ std::string text_of(const RunResult& result) {
   text += fmt::format("counters     {}\n", text_of_counters(last.counters));
   for (const CheckResult& check : result.checks) text += text_of(check);
   if (!result.finite) text += "DIVERGED: a state was not finite\n";
-  if (!result.trajectory.empty()) text += fmt::format("trajectory   {}\n", result.trajectory.string());
+  for (const auto& file : {result.trajectory, result.csv})
+    if (!file.empty()) text += fmt::format("written      {}\n", file.string());
   text += fmt::format("state hash   {:016x}\n", result.state_hash);
   return text;
 }
@@ -102,7 +103,7 @@ ordered_json json_of(const RunResult& result) {
   json["finite"] = result.finite;
   json["checks"] = ordered_json::array();
   for (const CheckResult& check : result.checks)
-    json["checks"].push_back({{"name", check.name}, {"value", number_or_null(check.value)}, {"bound", check.bound}, {"pass", check.pass}});
+    json["checks"].push_back({{"name", check.name}, {"value", number_or_null(check.value)}, {"bound", check.bound}, {"pass", check.pass}, {"decided", check.decided}});
   json["trajectory"] = result.trajectory.empty() ? ordered_json(nullptr) : ordered_json(result.trajectory.string());
   return json;
 }
