@@ -1,17 +1,17 @@
 // The engine's public face: bodies that live at the full (ODE trimesh) or the statistical level, moved between the two by a policy.
-// One step: 1 choose levels, 2 transfer, 3 full level, 4 statistical level, 5 contacts between levels, 6 report.
+// One step: 1 choose levels, 2 transfer, 3 statistical level and its contacts with full bodies, 4 full level, with the impulses of those
+// contacts, 5 report.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 
 #include "lod/body.h"
 #include "lod/policy.h"
+#include "lod/signature_store.h"
 #include "lod/step_report.h"
 #include "reference/mesh.h"
-#include "signature/signature_source.h"
 
 struct dxWorld;
 struct dxSpace;
@@ -19,14 +19,12 @@ struct dxBody;
 
 namespace lodestone {
 
-/// Supplies the signature of a shape under a contact law, when a first statistical body needs it.
-using SignatureFunction = std::function<std::shared_ptr<const Signature>(const Shape&, const ContactLaw&)>;
-
 struct ManagerSettings {
   Vec3 gravity{0, 0, -9.81};  ///< m/s²
   std::uint64_t seed = 1;
   int threads = 1;            ///< for the statistical level; the results do not depend on it
   int full_substeps = 4;      ///< ODE steps per step
+  bool sleeping = true;       ///< bodies at rest cost nothing until something wakes them
   StatisticalModel model = StatisticalModel::support;
   PolicySettings policy;
   SignatureFunction signatures;  ///< empty: find_or_measure_signature with its defaults
@@ -36,8 +34,9 @@ class Manager {
  public:
   /// With an ODE world of its own, made when a first body is full.
   explicit Manager(const ManagerSettings& settings = {});
-  /// On the caller's world and space (dWorldID, dSpaceID): static geoms there are ground for every body, and step() advances the
-  /// caller's own bodies too. World and space must outlive the manager.
+  /// On the caller's world and space (dWorldID, dSpaceID), with that world's gravity; step() advances the caller's own bodies too. Static geoms
+  /// there are ground, of material 0, for full bodies; statistical ones meet the planes among them only, and none of the caller's bodies.
+  /// World and space must outlive the manager.
   Manager(dxWorld* world, dxSpace* space, const ManagerSettings& settings = {});
   ~Manager();
   Manager(Manager&&) noexcept;
@@ -47,18 +46,21 @@ class Manager {
   MaterialTable& materials();
 
   void add_plane(const Vec3& normal, double offset, MaterialId material = 0);  ///< normal·x = offset, unit normal
+  // Static meshes and boxes are ground for full bodies only: statistical ones do not meet them yet.
   void add_static_mesh(const Mesh& mesh, MaterialId material = 0);             ///< vertices in the world frame
   void add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material = 0);
 
-  /// Aborts unless the state is finite and the mass positive.
+  /// Aborts unless the state is finite, within 1e8 m of the origin and its orientation of unit length within 1e-6, the mass and importance
+  /// positive, the material known. A body that is forced full is so at once. Any other gets its level in its next step, whatever the dwell
+  /// and the cap; that is not counted as a promotion, and until then the body waits as it was given.
   BodyId add_body(const BodyDefinition& definition);
   void remove_body(BodyId body);
-  void set_level(BodyId body, LevelChoice choice);
+  void set_level(BodyId body, LevelChoice choice);              ///< from the next step on
   void set_viewpoints(std::span<const Vec3> positions);
   void set_state(BodyId body, const RigidState& state);         ///< wakes it
   void add_force(BodyId body, const Vec3& force, const Vec3& torque = Vec3::Zero());  ///< N, N m, over the next step; wakes it
 
-  /// Advances every body by `dt` seconds (0 < dt ≤ 0.1).
+  /// Advances every body by `dt` seconds (0 < dt ≤ 0.1). Throws InputError only where a signature that is needed cannot be had.
   const StepReport& step(double dt);
 
   int bodies() const;
@@ -68,7 +70,7 @@ class Manager {
   const Shape& shape(BodyId body) const;
   Level level(BodyId body) const;
   bool asleep(BodyId body) const;
-  std::string why(BodyId body) const;                           ///< the rule that decided the level
+  std::string why(BodyId body) const;                           ///< the rule that decided the level, in words
   dxBody* ode_body(BodyId body) const;                          ///< dBodyID while full, else null
   const StepReport& report() const;                             ///< of the last step
   std::uint64_t state_hash() const;                             ///< of every body's state and level, in order of creation

@@ -16,7 +16,8 @@ struct DistancePolicy {
   double full_within = 4.0;  ///< m
 };
 
-/// As many of the nearest bodies full as fit `budget_ms` of a step, by the measured cost of a full body-step.
+/// As many of the nearest bodies full as fit `budget_ms` of a step, by the measured cost of a full body-step. Bodies are promoted only
+/// while 1 / (1 + hysteresis) of the budget is not used up, and demoted only beyond the whole of it, or for one that is clearly nearer.
 struct BudgetPolicy {
   double budget_ms = 4.0;
 };
@@ -35,18 +36,25 @@ std::string_view text_of(LevelReason reason);
 /// What the policy looks at, one per body.
 struct LevelCandidate {
   Vec3 position = Vec3::Zero();
+  double radius = 0.0;      ///< m, distance is measured to the nearest point of the bounding sphere
   double importance = 1.0;
   LevelChoice choice = LevelChoice::automatic;
   Level level = Level::statistical;
+  bool newcomer = false;    ///< at no level yet: takes its level now, whatever the dwell and the cap
+  bool put_off = false;     ///< its promotion was put off lately: it waits as it is
   std::int32_t frames_since_change = 1 << 30;
 };
 
 struct LevelDecision {
-  std::vector<std::int32_t> promote, demote;  ///< candidate indices, in order of urgency, at most max_transitions_per_frame in all (forced ones are not limited)
-  std::vector<LevelReason> reasons;           ///< one per candidate
+  /// Candidate indices. Forced ones, newcomers and demotions that bring the cost back within the budget come first and are not limited;
+  /// of the rest at most max_transitions_per_frame, promotions (nearest first) and demotions (farthest first) by turns.
+  std::vector<std::int32_t> promote, demote;
+  std::vector<LevelReason> reasons;  ///< one per candidate
 };
 
-/// `full_body_step_ms`: measured mean cost of one full body for one step (budget policy). `statistical_ms`: measured cost of the statistical level's step.
+/// The distance of a body is its distance from the nearest viewpoint, less its radius, over its importance; without viewpoints it is infinite.
+/// `full_body_step_ms`: measured mean cost of one full body for one step (budget policy). `statistical_ms`: measured cost of the statistical
+/// level's step. Measured times differ from run to run and so do the levels that a BudgetPolicy chooses.
 LevelDecision choose_levels(std::span<const LevelCandidate> candidates, std::span<const Vec3> viewpoints, const PolicySettings& settings,
                             double full_body_step_ms, double statistical_ms);
 

@@ -7,12 +7,13 @@ namespace lodestone {
 
 /// Wall time of each stage of the last step, ms.
 struct StageTimes {
-  double choose_ms = 0, transfer_ms = 0, full_ms = 0;
+  double choose_ms = 0, transfer_ms = 0;
   double flight_ms = 0;       ///< statistical level: flight, contacts with the ground and their responses
   double broad_phase_ms = 0;  ///< statistical level: which bodies are near each other
   double pairs_ms = 0;        ///< statistical level: contacts between bodies
   double rest_ms = 0;         ///< statistical level: coming to rest, sleeping and waking
-  double cross_level_ms = 0;
+  double cross_level_ms = 0;  ///< full bodies handed to the statistical level, and the impulses that come back
+  double full_ms = 0;
   double total_ms = 0;
 };
 

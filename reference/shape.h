@@ -38,6 +38,9 @@ struct MassOverride {
 Shape make_shape(std::string name, Mesh mesh, const MassOverride& mass = {}, MeshReport* report = nullptr);
 Shape make_sphere_shape(double radius_m);
 
+/// A copy `factor` times as large, of the same density.
+Shape scale_shape(const Shape& shape, double factor);
+
 /// The well-known bunny of Debian's glmark2-data, its longest side `size_m`, simplified to `faces` faces (the paper's 4,698).
 /// Throws InputError naming the package where the file is missing.
 Shape make_bunny_shape(double size_m, int faces = 4698);

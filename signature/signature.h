@@ -45,16 +45,23 @@ struct RestPose {
   double frequency = 0.0;       ///< fraction of settling trials that ended in it
 };
 
-/// One frame of a settling clip: pose relative to the clip's start, yaw-free (16 bits a number, see decode_frame in settling_clips.h).
+/// One frame of a settling clip, 16 bits a number (encode_frame and decode_frame in settling_clips.h).
 struct ClipFrame {
-  std::array<std::int16_t, 3> position;     ///< x, y over the clip's `extent`, z over 2: of 32767
-  std::array<std::int16_t, 4> orientation;  ///< w, x, y, z of 32767
+  std::array<std::int16_t, 3> position;          ///< x, y from the clip's start over its `extent`, z over kClipHeightRange; of 32767
+  std::array<std::int16_t, 4> orientation;       ///< w, x, y, z; of 32767
+  std::array<std::int16_t, 3> velocity;          ///< over kClipSpeedRange √(gR); of 32767
+  std::array<std::int16_t, 3> angular_velocity;  ///< over kClipSpeedRange √(g/R); of 32767
 };
 
-/// ODE's own settling from low energy to rest, recorded.
+/// ODE's own settling from low energy to rest on a horizontal plane, recorded (position over R).
 struct SettlingClip {
   std::uint32_t first_frame = 0, frames = 0;  ///< run of Signature::clip_frames
-  float extent = 1.0f;                        ///< greatest |x|, |y|, over R
+  float extent = 1.0f;                        ///< greatest |x|, |y| in it, over R
+};
+
+/// A frame of a clip in contact with the plane, where a body may join it.
+struct ClipEntry {
+  std::uint32_t clip = 0, frame = 0;  ///< frame counted within the clip
 };
 
 /// When a single-collision trial stops.
@@ -89,6 +96,7 @@ struct Signature {
   int rest_poses_above_5_percent = 0;  ///< the paper's count
   std::vector<SettlingClip> clips;
   std::vector<ClipFrame> clip_frames;
+  std::vector<ClipEntry> clip_entries;
   float clip_frame_interval = 0.0f;  ///< time between frames over √(R/g)
   std::uint64_t trials = 0;          ///< collision and settling trials simulated
   double measuring_seconds = 0.0;    ///< wall time

@@ -1,0 +1,53 @@
+// Many contacts at once: sequential impulses (Catto, Iterative dynamics with temporal coherence, 2005), projected Gauss–Seidel on
+// velocities. Each impulse acts on both bodies equally and oppositely, so momentum is exact to rounding.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "reference/geometry.h"
+#include "reference/material.h"
+
+namespace lodestone {
+
+/// Velocities that the solver changes. An inverse mass of zero cannot be moved.
+struct SolverBody {
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+  double inverse_mass = 0.0;
+  Mat3 inverse_inertia = Mat3::Zero();  ///< world axes
+};
+
+struct SolverContact {
+  std::int32_t first = 0, second = -1;  ///< indices of SolverBody; second −1: the ground
+  Vec3 normal = Vec3::UnitZ();          ///< points into `first`
+  Vec3 arm_first = Vec3::Zero(), arm_second = Vec3::Zero();  ///< from each centre of mass to the shared point
+  double gap = 0.0;                     ///< m, negative where they overlap
+  double share = 1.0;                   ///< of undoing the overlap: contacts of one pair share it
+  ContactLaw law;
+  Vec3 guess = Vec3::Zero();            ///< N s, on `first`: what a resting contact starts from
+  // Filled by the solver:
+  Vec3 tangent[2] = {Vec3::Zero(), Vec3::Zero()};
+  double effective_mass[3] = {0.0, 0.0, 0.0};
+  double target = 0.0;                  ///< m/s, normal velocity asked for
+  bool bounces = false;                 ///< an impact, fast enough for restitution
+  double impulse[3] = {0, 0, 0};        ///< N s, along the normal and both tangents
+};
+
+/// N s, on the first body.
+inline Vec3 impulse_of(const SolverContact& c) { return c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1]; }
+
+struct ContactSolverSettings {
+  int sweeps = 8;
+  double bounce_velocity = 0.05;         ///< m/s, slower approaches do not bounce (as in ODE)
+};
+
+/// Changes the bodies' velocities so that no contact closes further than its gap within `step` seconds, with restitution and Coulomb friction.
+/// An overlap is kept from growing, not undone: that is a matter of positions (see push_out_overlap).
+void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings);
+
+/// How far to move apart two bodies that overlap by −`gap`, m: a fraction a step, leaving a sliver so that resting contacts persist. Moving positions
+/// rather than adding velocity keeps the correction out of the kinetic energy.
+inline double push_out_overlap(double gap, double radius) { return gap < -0.002 * radius ? 0.25 * (-gap - 0.002 * radius) : 0.0; }
+
+}  // namespace lodestone

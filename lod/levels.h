@@ -1,0 +1,43 @@
+// The bodies of a manager and the two levels that they live at: what is the same to do with a body whatever its level.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lod/body_table.h"
+#include "lod/full_level.h"
+#include "lod/signature_store.h"
+#include "lod/statistical_level.h"
+
+namespace lodestone {
+
+struct Levels {
+  Levels(const StatisticalSettings& statistical_level, const FullSettings& full_level, SignatureFunction source)
+      : full(full_level, materials), statistical_settings(statistical_level), signatures(std::move(source)) {}
+  Levels(dxWorld* world, dxSpace* space, const StatisticalSettings& statistical_level, const FullSettings& full_level,
+         SignatureFunction source)
+      : full(world, space, full_level, materials), statistical_settings(statistical_level), signatures(std::move(source)) {}
+  Levels(const Levels&) = delete;  // the levels point at materials and ground
+  Levels& operator=(const Levels&) = delete;
+
+  MaterialTable materials;
+  StaticGround ground;
+  BodyTable bodies;
+  FullLevel full;
+  std::unique_ptr<StatisticalLevel> statistical;  ///< null until a first body is statistical
+  std::vector<std::uint32_t> owner_of_slot;       ///< the body in each slot of `statistical`
+  StatisticalSettings statistical_settings;
+  SignatureStore signatures;
+
+  RigidState state(std::uint32_t body) const;
+  bool asleep(std::uint32_t body) const;
+  /// Wakes the body and what was near it.
+  void set_state(std::uint32_t body, const RigidState& state);
+  void wake(std::uint32_t body);
+  /// Wakes every other body of `level` whose bounding sphere meets that of `body`.
+  void wake_near(std::uint32_t body, Level level);
+  /// Gives a body the force that is held for it, over the next step of its level.
+  void give_force(std::uint32_t body);
+};
+
+}  // namespace lodestone

@@ -1,0 +1,176 @@
+#include "lod/manager.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lod/manager_impl.h"
+#include "lod/transfer.h"
+#include "reference/error.h"
+#include "reference/static_planes.h"
+
+namespace lodestone {
+namespace {
+
+StatisticalSettings statistical_settings(const ManagerSettings& settings, const Vec3& gravity) {
+  return {.gravity = gravity,
+          .seed = settings.seed,
+          .threads = settings.threads,
+          .model = settings.model,
+          .tables = {},
+          .sleeping = settings.sleeping};
+}
+
+FullSettings full_settings(const ManagerSettings& settings) {
+  check_that(settings.full_substeps > 0, "full_substeps is positive:", std::to_string(settings.full_substeps));
+  return {.gravity = settings.gravity, .seed = settings.seed, .substeps = settings.full_substeps, .sleeping = settings.sleeping};
+}
+
+/// A state that both levels can take; aborts where there is none.
+RigidState checked(RigidState state) {
+  const bool finite = state.position.allFinite() && state.velocity.allFinite() && state.angular_velocity.allFinite();
+  check_that(finite && state.position.lpNorm<Eigen::Infinity>() <= 1e8, "a body's state is finite and within 1e8 m of the origin:",
+             fmt::format("position {} {} {}", state.position.x(), state.position.y(), state.position.z()));
+  const double norm = state.orientation.norm();
+  check_that(std::abs(norm - 1.0) <= 1e-6, "an orientation has unit length:", fmt::format("length {}", norm));
+  state.orientation.normalize();
+  return state;
+}
+
+double checked_mass(const BodyDefinition& definition, const MaterialTable& materials) {
+  check_that(definition.shape != nullptr, "a body has a shape");
+  check_that(definition.material >= 0 && definition.material < materials.size(), "a body's material is in the table:",
+             std::to_string(definition.material));
+  check_that(definition.importance > 0.0, "a body's importance is positive:", std::to_string(definition.importance));
+  const double mass = definition.mass.value_or(materials[definition.material].density * definition.shape->volume);
+  check_that(mass > 0.0 && std::isfinite(mass), "a body's mass is positive:", std::to_string(mass));
+  return mass;
+}
+
+}  // namespace
+
+Manager::Impl::Impl(const ManagerSettings& s)
+    : levels(statistical_settings(s, s.gravity), full_settings(s), s.signatures), policy(s.policy) {}
+Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
+    : levels(world, space, statistical_settings(s, gravity_of(world)), full_settings(s), s.signatures),
+      policy(s.policy),
+      callers_space(space) {}
+
+Manager::Manager(const ManagerSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Manager::Manager(dxWorld* world, dxSpace* space, const ManagerSettings& settings)
+    : impl_(std::make_unique<Impl>(world, space, settings)) {}
+Manager::~Manager() = default;
+Manager::Manager(Manager&&) noexcept = default;
+Manager& Manager::operator=(Manager&&) noexcept = default;
+
+MaterialTable& Manager::materials() { return impl_->levels.materials; }
+
+void Manager::add_plane(const Vec3& normal, double offset, MaterialId material) {
+  check_that(std::abs(normal.norm() - 1.0) <= 1e-6 && std::isfinite(offset), "a plane has a unit normal and a finite offset:",
+             fmt::format("normal {} {} {}, offset {}", normal.x(), normal.y(), normal.z(), offset));
+  const HalfSpace plane{normal.normalized(), offset, material};
+  auto& planes = impl_->levels.ground.planes;
+  planes.insert(planes.begin() + std::ptrdiff_t(impl_->own_planes++), plane);
+  impl_->levels.full.add_plane(plane);
+}
+
+void Manager::add_static_mesh(const Mesh& mesh, MaterialId material) { impl_->levels.full.add_static_mesh(mesh, material); }
+
+void Manager::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+  impl_->levels.full.add_static_box(sides, position, orientation, material);
+}
+
+BodyId Manager::add_body(const BodyDefinition& definition) {
+  Levels& levels = impl_->levels;
+  const double mass = checked_mass(definition, levels.materials);
+  BodyDefinition normalized = definition;
+  normalized.state = checked(definition.state);
+  const BodyId body = levels.bodies.add(normalized, mass);
+  impl_->reasons.resize(levels.bodies.indices());
+  if (definition.level == LevelChoice::full) {
+    place(levels, body.index, Level::full);
+    impl_->reasons[body.index] = LevelReason::forced;
+  } else {
+    impl_->newcomers.push_back(body.index);
+  }
+  return body;
+}
+
+void Manager::remove_body(BodyId body) {
+  take_out(impl_->levels, impl_->levels.bodies.index_of(body));
+  impl_->levels.bodies.remove(body);
+  std::erase(impl_->newcomers, body.index);
+  std::erase(impl_->put_off, body.index);
+  std::erase(impl_->pushed, body.index);
+}
+
+void Manager::set_level(BodyId body, LevelChoice choice) {
+  BodyTable& bodies = impl_->levels.bodies;
+  bodies.candidates()[bodies.index_of(body)].choice = choice;
+}
+
+void Manager::set_viewpoints(std::span<const Vec3> positions) {
+  for (const Vec3& position : positions) check_that(position.allFinite(), "a viewpoint is finite");
+  impl_->viewpoints.assign(positions.begin(), positions.end());
+}
+
+void Manager::set_state(BodyId body, const RigidState& state) {
+  impl_->levels.set_state(impl_->levels.bodies.index_of(body), checked(state));
+}
+
+void Manager::add_force(BodyId body, const Vec3& force, const Vec3& torque) {
+  check_that(force.allFinite() && torque.allFinite(), "force and torque are finite");
+  const std::uint32_t index = impl_->levels.bodies.index_of(body);
+  BodyRecord& record = impl_->levels.bodies[index];
+  record.force += force;
+  record.torque += torque;
+  if (std::ranges::find(impl_->pushed, index) == impl_->pushed.end()) impl_->pushed.push_back(index);
+  impl_->levels.wake(index);
+}
+
+const StepReport& Manager::step(double dt) {
+  check_that(dt > 0.0 && dt <= 0.1, "a step lasts more than 0 and at most 0.1 s:", std::to_string(dt));
+  return impl_->step(dt);
+}
+
+int Manager::bodies() const { return impl_->levels.bodies.size(); }
+bool Manager::valid(BodyId body) const { return impl_->levels.bodies.valid(body); }
+RigidState Manager::state(BodyId body) const { return impl_->levels.state(impl_->levels.bodies.index_of(body)); }
+double Manager::mass(BodyId body) const { return impl_->levels.bodies[impl_->levels.bodies.index_of(body)].mass; }
+const Shape& Manager::shape(BodyId body) const {
+  return *impl_->levels.bodies[impl_->levels.bodies.index_of(body)].definition.shape;
+}
+Level Manager::level(BodyId body) const {
+  return impl_->levels.bodies[impl_->levels.bodies.index_of(body)].ode ? Level::full : Level::statistical;
+}
+bool Manager::asleep(BodyId body) const { return impl_->levels.asleep(impl_->levels.bodies.index_of(body)); }
+dxBody* Manager::ode_body(BodyId body) const {
+  const BodyRecord& record = impl_->levels.bodies[impl_->levels.bodies.index_of(body)];
+  return record.ode ? impl_->levels.full.world()->ode_body(record.ode) : nullptr;
+}
+const StepReport& Manager::report() const { return impl_->report; }
+
+std::string Manager::why(BodyId body) const {
+  const std::uint32_t index = impl_->levels.bodies.index_of(body);
+  const LevelCandidate& candidate = impl_->levels.bodies.candidates()[index];
+  if (candidate.newcomer) return "at no level yet: the next step chooses one";
+  return fmt::format("{}: {}", candidate.level == Level::full ? "full" : "statistical", text_of(impl_->reasons[index]));
+}
+
+std::uint64_t Manager::state_hash() const {
+  const Levels& levels = impl_->levels;
+  std::uint64_t hash = 0;
+  for (const std::uint32_t body : levels.bodies.in_order_of_creation()) {
+    const auto [x, q, v, w] = levels.state(body);
+    const bool full(levels.bodies[body].ode), asleep = levels.asleep(body);
+    const std::array<double, 15> numbers{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(), v.x(),
+                                         v.y(), v.z(), w.x(), w.y(), w.z(), double(full), double(asleep)};
+    hash = XXH64(numbers.data(), sizeof numbers, hash);
+  }
+  return hash;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,45 @@
+// What a Manager is made of. manager.cpp is its public face, manager_step.cpp the stages of a step.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lod/cross_level.h"
+#include "lod/manager.h"
+
+namespace lodestone {
+
+struct Manager::Impl {
+  explicit Impl(const ManagerSettings& settings);
+  Impl(dxWorld* world, dxSpace* space, const ManagerSettings& settings);
+
+  Levels levels;
+  PolicySettings policy;
+  dxSpace* callers_space = nullptr;
+  std::size_t own_planes = 0;  // those of the caller's space follow in levels.ground
+  std::vector<Vec3> viewpoints;
+  std::vector<LevelReason> reasons;             // of the last step's decisions
+  std::vector<std::uint32_t> newcomers;         // at no level yet
+  std::vector<std::uint32_t> put_off;           // waiting to be tried again
+  std::vector<std::uint32_t> pushed;            // with a force for the next step
+  Neighborhood neighborhood;
+  StepReport report;
+  // Smoothed measurements; the first is a guess until a body was full.
+  double full_body_step_ms = 0.1, statistical_ms = 0.0;
+
+  const StepReport& step(double dt);
+  void begin_report();
+  LevelDecision choose();
+  void move_bodies(const LevelDecision& decision);
+  void step_statistical(double dt);
+  void step_full(double dt);
+  void finish_report();
+
+  void read_callers_planes();
+  void promote(std::uint32_t body);
+  void put_promotion_off(std::uint32_t body);
+  void count_down_retries();
+  void give_forces();
+};
+
+}  // namespace lodestone

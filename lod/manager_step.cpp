@@ -1,0 +1,148 @@
+// The stages of a step, in order.
+#include <algorithm>
+
+#include "lod/manager_impl.h"
+#include "lod/stage_timer.h"
+#include "lod/transfer.h"
+#include "reference/static_planes.h"
+
+namespace lodestone {
+namespace {
+
+// A promotion that was put off is tried again after 8 frames, then 16, … 128: overlapping bodies must not use up every frame's changes.
+constexpr int kFirstRetry = 8, kLastRetry = 128;
+// Weight of the newest measurement in a smoothed cost.
+constexpr double kNewest = 0.1;
+
+void smooth(double& value, double newest) { value += kNewest * (newest - value); }
+
+}  // namespace
+
+const StepReport& Manager::Impl::step(double dt) {
+  begin_report();
+  {
+    const StageTimer timer(report.times.total_ms);
+    // 1 choose levels
+    const LevelDecision decision = choose();
+    // 2 transfer
+    move_bodies(decision);
+    // 3 statistical level and its contacts with full bodies
+    step_statistical(dt);
+    // 4 full level
+    step_full(dt);
+  }
+  // 5 report
+  finish_report();
+  return report;
+}
+
+void Manager::Impl::begin_report() { report = {.step = report.step + 1, .times = {}, .counters = report.counters}; }
+
+LevelDecision Manager::Impl::choose() {
+  const StageTimer timer(report.times.choose_ms);
+  count_down_retries();
+  std::vector<LevelCandidate>& candidates = levels.bodies.candidates();
+  for (std::size_t slot = 0; slot < levels.owner_of_slot.size(); ++slot)
+    candidates[levels.owner_of_slot[slot]].position = levels.statistical->state(int(slot)).position;
+  for (const FullLevel::Member& member : levels.full.members())
+    candidates[member.owner].position = levels.full.world()->state(member.id).position;
+  for (LevelCandidate& candidate : candidates)
+    candidate.frames_since_change += candidate.frames_since_change < LevelCandidate{}.frames_since_change;
+  return choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
+}
+
+void Manager::Impl::move_bodies(const LevelDecision& decision) {
+  const StageTimer timer(report.times.transfer_ms);
+  read_callers_planes();
+  reasons = decision.reasons;
+  for (const std::int32_t body : decision.demote) {
+    transfer(levels, body);
+    ++report.demotions;
+  }
+  for (const std::int32_t body : decision.promote) promote(body);
+  for (const std::uint32_t body : newcomers)
+    if (levels.bodies.candidates()[body].newcomer) place(levels, body, Level::statistical);
+  newcomers.clear();
+}
+
+void Manager::Impl::promote(std::uint32_t body) {
+  const LevelCandidate& candidate = levels.bodies.candidates()[body];
+  const bool placed_full = candidate.newcomer && candidate.choice == LevelChoice::full;
+  if (!placed_full && overlaps(levels, body)) {
+    put_promotion_off(body);
+  } else if (candidate.newcomer) {
+    place(levels, body, Level::full);
+  } else {
+    transfer(levels, body);
+    levels.bodies[body].retry_after = 0;
+    ++report.promotions;
+  }
+}
+
+void Manager::Impl::put_promotion_off(std::uint32_t body) {
+  BodyRecord& record = levels.bodies[body];
+  record.frames_to_retry = record.retry_after = std::clamp(2 * record.retry_after, kFirstRetry, kLastRetry);
+  levels.bodies.candidates()[body].put_off = true;
+  put_off.push_back(body);
+  reasons[body] = LevelReason::overlap_put_off;
+  ++report.counters.promotions_put_off;
+}
+
+void Manager::Impl::count_down_retries() {
+  std::erase_if(put_off, [this](std::uint32_t body) {
+    if (--levels.bodies[body].frames_to_retry > 0) return false;
+    levels.bodies.candidates()[body].put_off = false;
+    return true;
+  });
+}
+
+void Manager::Impl::step_statistical(double dt) {
+  if (levels.owner_of_slot.empty()) {
+    give_forces();
+    statistical_ms = 0.0;
+    return;
+  }
+  {
+    const StageTimer timer(report.times.cross_level_ms);
+    gather(levels, neighborhood);
+    give_forces();
+  }
+  levels.statistical->step(dt, neighborhood.bodies, report, neighborhood.contacts);
+  {
+    const StageTimer timer(report.times.cross_level_ms);
+    hand_over(levels, neighborhood, dt);
+  }
+  const StageTimes& t = report.times;
+  smooth(statistical_ms, t.flight_ms + t.broad_phase_ms + t.pairs_ms + t.rest_ms + t.cross_level_ms);
+}
+
+void Manager::Impl::step_full(double dt) {
+  {
+    const StageTimer timer(report.times.full_ms);
+    levels.full.step(dt, report.counters);
+  }
+  const auto bodies = levels.full.members().size();
+  if (bodies > 0) smooth(full_body_step_ms, report.times.full_ms / double(bodies));
+}
+
+void Manager::Impl::finish_report() {
+  report.full = int(levels.full.members().size());
+  report.statistical = int(levels.owner_of_slot.size());
+  report.asleep = levels.full.asleep_count() + (levels.statistical ? levels.statistical->asleep_count() : 0);
+  report.counters.signatures_loaded = levels.signatures.loaded();
+}
+
+void Manager::Impl::give_forces() {
+  for (const std::uint32_t body : pushed)
+    if (levels.bodies.alive(body)) levels.give_force(body);
+  pushed.clear();
+}
+
+void Manager::Impl::read_callers_planes() {
+  if (!callers_space) return;
+  std::vector<HalfSpace>& planes = levels.ground.planes;
+  planes.resize(own_planes);
+  for (const StaticPlane& plane : find_static_planes(callers_space)) planes.push_back({plane.normal, plane.offset, 0});
+}
+
+}  // namespace lodestone

@@ -1,0 +1,51 @@
+// A body of the statistical level: the state that a step touches, apart from the description that bodies of a kind share.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "reference/free_rotation.h"
+#include "reference/material.h"
+#include "reference/shape.h"
+#include "signature/settling_clips.h"
+
+namespace lodestone {
+
+/// What all bodies of one shape, mass and material share.
+struct BodyKind {
+  std::shared_ptr<const Shape> shape;
+  std::shared_ptr<const Signature> signature;  ///< may be null (support model)
+  ClipIndex clips;                             ///< of the signature's settling clips (support model)
+  double mass = 1.0;                           ///< kg
+  MaterialId material = 0;
+  bool isotropic = false;                      ///< a sphere or a cube: rotates steadily
+};
+
+enum class Motion : std::uint8_t {
+  dynamic,   ///< flies and collides
+  settling,  ///< under the resting conditions of section 3.4, or in a settling clip
+  asleep,
+};
+
+struct StatisticalBody {
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 spin = Vec3::Zero();             ///< angular momentum over mass, m²/s, world frame: what free flight conserves
+  float sphere_radius = 0.0f;           ///< m, `tables`: of the colliding sphere
+  float quiet_time = 0.0f;              ///< s spent below the sleeping threshold
+  std::int32_t support_hint = 0;        ///< hull vertex last found lowest: where the next climb starts
+  std::int32_t settling = -1;           ///< index of the settling record (clip or rest pose) while Motion::settling
+  std::uint32_t owner = 0;
+  std::uint32_t events = 0;             ///< collisions so far: keys the random draws
+  std::uint16_t kind = 0;
+  Motion motion = Motion::dynamic;
+  bool crowded = false;                 ///< touches another body in this step
+};
+
+/// Kinetic energy over mass, J/kg, with the true inertia.
+inline double kinetic_energy(const StatisticalBody& body, const Shape& shape) {
+  return 0.5 * (body.velocity.squaredNorm() + body.spin.dot(angular_velocity(body.orientation, body.spin, shape)));
+}
+
+}  // namespace lodestone

@@ -1,0 +1,147 @@
+#include "scenes/body_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "scenes/material_section.h"
+#include "scenes/scatter.h"
+
+namespace lodestone {
+namespace {
+
+constexpr NumberRange kSpeed{-1e6, 1e6};
+
+/// One entry of the list: one body, or a scatter of bodies that are alike.
+struct BodyEntry {
+  YamlCursor place;
+  SceneBody body = {};
+  bool has_orientation = false;
+  std::optional<Scatter> scatter = {};
+  int count() const { return scatter ? scatter->count : 1; }
+  double radius() const { return body.definition.shape->radius; }
+};
+
+LevelChoice load_level(const YamlCursor& key) {
+  static const std::array<std::string, 3> kNames{"auto", "full", "statistical"};
+  return std::array{LevelChoice::automatic, LevelChoice::full, LevelChoice::statistical}[key.choice(kNames)];
+}
+
+ScatterRegion load_region(const YamlCursor& scatter) {
+  if (scatter.one_key_of({"box_m", "cylinder"}) == "box_m") {
+    const YamlCursor key = scatter.at("box_m");
+    const std::vector<YamlCursor> corners = key.items(2);
+    const ScatterBox box{corners[0].vector(), corners[1].vector()};
+    if ((box.high.array() < box.low.array()).any()) key.fail("a second corner below the first", "[[low x, y, z], [high x, y, z]]");
+    return box;
+  }
+  const YamlCursor key = scatter.at("cylinder");
+  key.expect_keys({"base_m", "radius_m", "height_m"});
+  return ScatterCylinder{key.at("base_m").vector(), key.at("radius_m").number(kNotNegative), key.at("height_m").number(kNotNegative)};
+}
+
+Scatter load_scatter(const YamlCursor& place, std::uint64_t otherwise_seed, const SceneLoadSettings& settings) {
+  place.expect_keys({"count", "box_m", "cylinder", "seed", "spacing_m"});
+  Scatter scatter{.region = load_region(place), .seed = otherwise_seed};
+  scatter.count = int(place.at("count").integer(1, settings.max_bodies));
+  if (auto key = place.find("seed")) {
+    // Added to the run's seed, not replaced by it, so that scatters given the same seed stay alike.
+    scatter.seed = std::uint64_t(key->integer(0, std::numeric_limits<std::int64_t>::max())) + settings.seed.value_or(0);
+  }
+  if (auto key = place.find("spacing_m")) scatter.spacing_m = key->number(kNotNegative);
+  return scatter;
+}
+
+const SceneShape& find_shape(const YamlCursor& key, const std::map<std::string, SceneShape>& shapes) {
+  std::vector<std::string> names;
+  for (const auto& [name, shape] : shapes) names.push_back(name);
+  return shapes.at(names[key.choice(names)]);
+}
+
+void load_motion(const YamlCursor& place, BodyEntry& entry) {
+  RigidState& state = entry.body.definition.state;
+  if (auto key = place.find("position_m")) state.position = key->vector();
+  if (auto key = place.find("orientation")) {
+    state.orientation = key->rotation();
+    entry.has_orientation = true;
+  }
+  if (auto key = place.find("velocity_m_per_s")) state.velocity = key->vector(kSpeed);
+  if (auto key = place.find("angular_velocity_rad_per_s")) state.angular_velocity = key->vector(kSpeed);
+}
+
+BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
+                     const SceneLoadSettings& settings) {
+  place.expect_keys({"shape", "position_m", "orientation", "velocity_m_per_s", "angular_velocity_rad_per_s", "scatter", "level", "name",
+                     "material", "mass_kg", "importance"});
+  place.one_key_of({"position_m", "scatter"});
+  const SceneShape& shape = find_shape(place.at("shape"), shapes);
+  BodyEntry entry{.place = place};
+  BodyDefinition& body = entry.body.definition;
+  body.shape = shape.shape;
+  body.material = load_material_id(place, scene, shape.material);
+  body.mass = shape.mass;
+  load_motion(place, entry);
+  if (auto key = place.find("mass_kg")) body.mass = key->number(kPositive);
+  if (auto key = place.find("importance")) body.importance = key->number(kPositive);
+  if (auto key = place.find("level")) body.level = load_level(*key);
+  if (auto key = place.find("name")) entry.body.name = key->text();
+  if (auto key = place.find("scatter")) entry.scatter = load_scatter(*key, scene.step.seed + std::uint64_t(index), settings);
+  return entry;
+}
+
+std::vector<BodyEntry> load_entries(const YamlCursor& list, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
+                                    const SceneLoadSettings& settings) {
+  std::vector<BodyEntry> entries;
+  std::int64_t bodies = 0;
+  for (const YamlCursor& place : list.items()) {
+    entries.push_back(load_entry(place, int(entries.size()), scene, shapes, settings));
+    bodies += entries.back().count();
+    if (bodies > settings.max_bodies) place.fail(fmt::format("{} bodies", bodies), fmt::format("at most {}", settings.max_bodies));
+  }
+  return entries;
+}
+
+void expand_scatter(const BodyEntry& entry, std::span<const KeepAbove> grounds, PlacedSpheres& placed, std::vector<SceneBody>& bodies) {
+  const Scatter& scatter = *entry.scatter;
+  const std::vector<Vec3> centers = place_scatter(scatter, entry.radius(), grounds, placed);
+  if (int(centers.size()) < scatter.count)
+    entry.place.at("scatter").fail(fmt::format("{} bodies of radius {:.3g} m", scatter.count, entry.radius()),
+                                   fmt::format("at most the {} that found room without overlap (a larger region, or fewer)", centers.size()));
+  for (int i = 0; i < scatter.count; ++i) {
+    SceneBody body = entry.body;
+    body.definition.state.position = centers[std::size_t(i)];
+    if (!entry.has_orientation) body.definition.state.orientation = scatter_orientation(scatter, i);
+    if (!body.name.empty()) body.name += fmt::format("[{}]", i);
+    bodies.push_back(std::move(body));
+  }
+}
+
+std::vector<KeepAbove> planes_of(const Scene& scene) {
+  std::vector<KeepAbove> planes;
+  for (const Ground& ground : scene.ground)
+    if (const auto* plane = std::get_if<GroundPlane>(&ground)) planes.push_back({plane->normal, plane->offset_m});
+  return planes;
+}
+
+}  // namespace
+
+std::vector<SceneBody> load_bodies(const YamlCursor& root, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
+                                   const SceneLoadSettings& settings) {
+  const std::vector<BodyEntry> entries = load_entries(root.at("bodies"), scene, shapes, settings);
+  double largest = 1e-4;
+  for (const BodyEntry& entry : entries) largest = std::max(largest, entry.radius());
+  PlacedSpheres placed(largest);
+  for (const BodyEntry& entry : entries)
+    if (!entry.scatter) placed.add(entry.body.definition.state.position, entry.radius());
+  const std::vector<KeepAbove> planes = planes_of(scene);
+  std::vector<SceneBody> bodies;
+  for (const BodyEntry& entry : entries) {
+    if (entry.scatter) expand_scatter(entry, planes, placed, bodies);
+    else bodies.push_back(entry.body);
+  }
+  return bodies;
+}
+
+}  // namespace lodestone

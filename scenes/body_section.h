@@ -1,0 +1,17 @@
+// The `bodies:` of a scene, scatters expanded.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "scenes/scene_file.h"
+#include "scenes/shape_section.h"
+
+namespace lodestone {
+
+/// In the file's order. Scatters keep clear of the bodies placed one by one (wherever in the list these are), of earlier scatters and of
+/// the ground planes in `scene.ground`.
+std::vector<SceneBody> load_bodies(const YamlCursor& root, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
+                                   const SceneLoadSettings& settings);
+
+}  // namespace lodestone

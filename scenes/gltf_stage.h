@@ -1,0 +1,42 @@
+// What a saved trajectory shows besides motion: meshes, materials, the ground and the camera.
+#pragma once
+
+#include <map>
+
+#include "scenes/gltf_buffer.h"
+#include "scenes/scene.h"
+
+namespace lodestone {
+
+/// Adds to `model` under one root node, which turns the scene's z upwards into glTF's y upwards.
+class GltfStage {
+ public:
+  GltfStage(tinygltf::Model& model, GltfBuffer& buffer);
+
+  int add_node(tinygltf::Node node);                      ///< under the root
+  int add_child(int parent, tinygltf::Node node);
+  int body_mesh(const Shape& shape, Level level);         ///< made once for each shape and level; the levels share their arrays
+  void add_ground(const Ground& ground, double extent_m); ///< planes are drawn `extent_m` to each side
+  int add_camera(const Viewpoint& viewpoint);             ///< returns its node
+
+ private:
+  struct Arrays { int positions = -1, normals = -1, indices = -1; };
+  Arrays add_arrays(const Mesh& mesh, bool smooth);
+  int add_mesh(const Arrays& arrays, int material, const std::string& name);
+  int add_material(const std::string& name, std::array<double, 3> color);
+
+  tinygltf::Model& model_;
+  GltfBuffer& buffer_;
+  std::map<const Shape*, Arrays> arrays_;
+  std::map<std::pair<const Shape*, Level>, int> meshes_;
+  int ground_material_, full_material_, statistical_material_;
+};
+
+/// As glTF writes them: x, y, z and x, y, z, w.
+std::vector<double> gltf_vector(const Vec3& v);
+std::vector<double> gltf_rotation(const Quat& q);
+
+/// The rotation of a glTF camera, which looks along its −z with y upwards, at `position` looking at `target` with z upwards.
+Quat camera_rotation(const Vec3& position, const Vec3& target);
+
+}  // namespace lodestone

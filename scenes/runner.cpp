@@ -1,0 +1,167 @@
+#include "scenes/runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "reference/error.h"
+#include "scenes/run_sample.h"
+#include "scenes/step_csv.h"
+#include "scenes/trajectory.h"
+
+namespace lodestone {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_settings(const Scene& scene, int steps, double dt_s, const RunSettings& settings) {
+  const auto fail = [](const std::string& what) { throw InputError(what); };
+  if (steps < 1) fail(fmt::format("steps: found {}, expected at least 1", steps));
+  if (!(dt_s > 0 && dt_s <= 0.1)) fail(fmt::format("dt: found {} s, expected a number in (0, 0.1]", dt_s));
+  if (settings.threads < 1) fail(fmt::format("threads: found {}, expected at least 1", settings.threads));
+  const int frames = steps / scene.output.every_n_steps + 1, most = max_trajectory_frames(int(scene.bodies.size()));
+  if (!settings.out.empty() && !scene.output.trajectory.empty() && frames > most)
+    fail(fmt::format("{}: output.every_n_steps: found {} ({} frames of {} bodies), expected at least {} (a .glb holds 4 GB)", scene.file.string(),
+                     scene.output.every_n_steps, frames, scene.bodies.size(), steps / std::max(1, most - 1) + 1));
+}
+
+Manager make_manager(const Scene& scene, const RunSettings& settings) {
+  Manager manager({.gravity = scene.step.gravity_m_per_s2, .seed = scene.step.seed, .threads = settings.threads,
+                   .full_substeps = scene.step.full_substeps, .model = settings.model.value_or(scene.model), .policy = scene.lod,
+                   .signatures = settings.signatures});
+  manager.materials() = scene.materials;
+  for (const Ground& ground : scene.ground) {
+    if (const auto* plane = std::get_if<GroundPlane>(&ground)) manager.add_plane(plane->normal, plane->offset_m, plane->material);
+    else if (const auto* box = std::get_if<GroundBox>(&ground)) manager.add_static_box(box->sides_m, box->position_m, box->orientation, box->material);
+    else manager.add_static_mesh(std::get<GroundMesh>(ground).mesh, std::get<GroundMesh>(ground).material);
+  }
+  return manager;
+}
+
+/// One run, step by step.
+class Run {
+ public:
+  Run(const Scene& scene, const RunSettings& settings, int steps, double dt_s)
+      : scene_(scene), settings_(settings), steps_(steps), dt_s_(dt_s), manager_(make_manager(scene, settings)),
+        trajectory_(int(scene.bodies.size())) {
+    open_output();
+    move_viewpoints(0);
+    for (const SceneBody& body : scene.bodies) {
+      BodyDefinition definition = body.definition;
+      if (settings.level != LevelChoice::automatic) definition.level = settings.level;
+      bodies_.push_back(manager_.add_body(definition));
+    }
+    result_.bodies = int(bodies_.size());
+    observe();
+    result_.energy_start_j = result_.energy_max_j = sample_.energy_j;
+    result_.max_penetration_m = 0;  // of the run, not of how the scene was set up
+    record(0);
+  }
+
+  RunResult result() {
+    for (int step = 0; step < steps_ && result_.finite; ++step) advance(step);
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  void open_output() {
+    if (settings_.out.empty()) return;
+    std::error_code error;
+    fs::create_directories(settings_.out, error);
+    result_.csv = settings_.out / "steps.csv";
+    csv_.emplace(result_.csv);
+    if (!scene_.output.trajectory.empty()) result_.trajectory = settings_.out / scene_.output.trajectory;
+  }
+
+  void advance(int step) {
+    move_viewpoints(step * dt_s_);
+    const auto start = std::chrono::steady_clock::now();
+    const StepReport report = manager_.step(dt_s_);
+    times_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    result_.reports.push_back(report);
+    result_.promotions += report.promotions;
+    result_.transitions += report.promotions + report.demotions;
+    if (report.asleep < result_.bodies) last_awake_s_ = (step + 1) * dt_s_;
+    observe();
+    record(step + 1);
+    if (csv_) csv_->add(report, (step + 1) * dt_s_, sample_.energy_j, sample_.max_penetration_m);
+    if (settings_.progress) settings_.progress(step + 1, steps_);
+  }
+
+  void move_viewpoints(double time_s) {
+    std::vector<Vec3> positions;
+    for (const Viewpoint& viewpoint : scene_.viewpoints) positions.push_back(viewpoint.position_at(time_s));
+    manager_.set_viewpoints(positions);
+  }
+
+  void observe() {
+    read_sample(manager_, bodies_, scene_, sample_);
+    result_.finite = result_.finite && sample_.finite;
+    result_.energy_max_j = std::max(result_.energy_max_j, sample_.energy_j);
+    result_.max_penetration_m = std::max(result_.max_penetration_m, sample_.max_penetration_m);
+  }
+
+  void record(int step) {
+    if (result_.trajectory.empty() || step % scene_.output.every_n_steps != 0 || !sample_.finite) return;
+    trajectory_.add_frame(step * dt_s_, sample_.states, sample_.levels);
+  }
+
+  void finish() {
+    result_.steps = int(result_.reports.size());
+    result_.state_hash = manager_.state_hash();
+    result_.step_ms = summarize(times_ms_);
+    result_.states = sample_.states;
+    if (const auto bound = scene_.checks.max_penetration_m)
+      result_.checks.push_back({"max_penetration_m", result_.max_penetration_m, *bound, result_.max_penetration_m <= *bound});
+    if (scene_.checks.all_asleep_by_s) result_.checks.push_back(asleep_check(*scene_.checks.all_asleep_by_s));
+    if (!result_.trajectory.empty()) save_trajectory(result_.trajectory, trajectory_, scene_);
+  }
+
+  /// Its value is when the last body fell asleep; a body that is awake after the bound fails it, even where it slept before.
+  CheckResult asleep_check(double bound_s) const {
+    const double end_s = result_.steps * dt_s_;
+    const bool all_asleep = last_awake_s_ < end_s;
+    return {"all_asleep_by_s", last_awake_s_, bound_s, last_awake_s_ <= bound_s, all_asleep || end_s >= bound_s};
+  }
+
+  const Scene& scene_;
+  const RunSettings& settings_;
+  int steps_;
+  double dt_s_;
+  Manager manager_;
+  std::vector<BodyId> bodies_;
+  Trajectory trajectory_;
+  std::optional<StepCsv> csv_;
+  RunSample sample_;
+  std::vector<double> times_ms_;
+  double last_awake_s_ = 0;
+  RunResult result_;
+};
+
+}  // namespace
+
+TimeSummary summarize(std::span<const double> sample_ms) {
+  if (sample_ms.empty()) return {};
+  std::vector<double> sorted(sample_ms.begin(), sample_ms.end());
+  std::ranges::sort(sorted);
+  const auto percentile = [&](double part) {
+    const double rank = part * double(sorted.size() - 1);
+    const std::size_t below = std::size_t(rank), above = std::min(below + 1, sorted.size() - 1);
+    return sorted[below] + (rank - double(below)) * (sorted[above] - sorted[below]);
+  };
+  const double mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / double(sorted.size());
+  return {percentile(0.5), percentile(0.95), percentile(0.99), mean, sorted.back()};
+}
+
+RunResult run_scene(const Scene& scene, const RunSettings& settings) {
+  const int steps = settings.steps.value_or(scene.default_steps);
+  const double dt_s = settings.dt_s.value_or(scene.step.dt_s);
+  check_settings(scene, steps, dt_s, settings);
+  return Run(scene, settings, steps, dt_s).result();
+}
+
+}  // namespace lodestone

@@ -1,0 +1,154 @@
+#include "scenes/shape_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reference/error.h"
+#include "scenes/material_section.h"
+
+namespace lodestone {
+namespace {
+
+/// Puts what a mesh's maker found (`name: found …, expected …`) where the scene asked for the mesh.
+[[noreturn]] void fail_at(const YamlCursor& place, const InputError& error, const std::string& hint = "") {
+  const std::string what = error.what();
+  const std::size_t found = what.find("found "), expected = what.find(", expected ");
+  if (found == what.npos) place.fail(what, "a mesh that bounds a solid" + hint);
+  const std::string name = what.substr(0, found >= 2 ? found - 2 : 0);
+  const std::string defect = what.substr(found + 6, expected == what.npos ? what.npos : expected - found - 6);
+  place.fail(name.empty() ? defect : fmt::format("{} ({})", defect, name),
+             (expected == what.npos ? "a mesh that bounds a solid" : what.substr(expected + 11)) + hint);
+}
+
+/// Three numbers are the diagonal, three rows the whole tensor.
+Mat3 load_inertia(const YamlCursor& key) {
+  const std::vector<YamlCursor> items = key.items(3);
+  if (!items[0].is_list()) return key.vector(kPositive).asDiagonal();
+  Mat3 inertia;
+  for (int row = 0; row < 3; ++row) inertia.row(row) = items[std::size_t(row)].vector();
+  return inertia;
+}
+
+MassOverride load_mass_override(const YamlCursor& place, const std::optional<double>& mass) {
+  MassOverride result;
+  if (auto key = place.find("center_of_mass_m")) result.center_of_mass_m = key->vector();
+  if (auto key = place.find("inertia")) {
+    if (!mass) key->fail("an inertia without a mass", "mass_kg beside it");
+    const Mat3 inertia = load_inertia(*key) / *mass;
+    if (!is_possible_inertia(inertia)) key->fail("an impossible inertia", "a symmetric, positive one with I1 + I2 ≥ I3 (kg m²)");
+    result.inertia_per_mass_m2 = inertia;
+  }
+  return result;
+}
+
+Shape load_mesh_shape(const YamlCursor& place, ShapeOptions options, const MassOverride& mass, bool has_mass) {
+  place.expect_keys({"mesh", "size_m", "faces", "obtain", "material", "mass_kg", "inertia", "center_of_mass_m"});
+  const YamlCursor mesh = place.at("mesh");
+  const std::string name = mesh.text();
+  if (auto key = place.find("size_m")) options.size_m = key->number(kLength);
+  if (auto key = place.find("faces")) options.faces = int(key->integer(4, 10'000'000));
+  std::string hint;
+  if (auto key = place.find("obtain")) hint = ". To obtain it: " + key->text();
+  MeshReport report;
+  try {
+    Shape shape = make_mesh_shape(name, options, mass, &report);
+    if (report.closed() || has_mass) return shape;
+  } catch (const InputError& error) {
+    fail_at(mesh, error, hint);
+  }
+  place.fail(fmt::format("a mesh with {} open edges and no mass", report.open_edges), "a closed mesh, or mass_kg");
+}
+
+/// The solid that `place` describes with a key such as `box_m`; none where it names a mesh.
+std::optional<Shape> load_solid(const YamlCursor& place, const MassOverride& mass) {
+  for (const SolidForm& form : solid_forms()) {
+    const auto key = place.find(form.scene_key);
+    if (!key) continue;
+    place.expect_keys({form.scene_key, "material", "mass_kg", "inertia", "center_of_mass_m"});
+    const std::vector<double> lengths =
+        form.length_count == 1 ? std::vector{key->number(kPositive)} : key->numbers(std::size_t(form.length_count), kPositive);
+    try {
+      return make_solid(form.kind, lengths, mass);
+    } catch (const InputError& error) {
+      fail_at(*key, error);
+    }
+  }
+  return std::nullopt;
+}
+
+SceneShape load_shape(const std::string& name, const YamlCursor& place, const Scene& scene, const ShapeOptions& search) {
+  place.expect_keys({"mesh", "box_m", "sphere_m", "l_m", "plate_m", "needle_m", "size_m", "faces", "obtain", "material", "mass_kg",
+                     "inertia", "center_of_mass_m"});
+  place.one_key_of({"mesh", "box_m", "sphere_m", "l_m", "plate_m", "needle_m"});
+  SceneShape result{.material = load_material_id(place, scene)};
+  if (auto key = place.find("mass_kg")) result.mass = key->number(kPositive);
+  const MassOverride mass = load_mass_override(place, result.mass);
+  std::optional<Shape> shape = load_solid(place, mass);
+  if (!shape) shape = load_mesh_shape(place, search, mass, result.mass.has_value());
+  shape->name = name;
+  result.shape = std::make_shared<const Shape>(std::move(*shape));
+  return result;
+}
+
+GroundMesh load_ground_mesh(const YamlCursor& place, const ShapeOptions& search) {
+  place.expect_keys({"mesh", "size_m", "position_m", "material"});
+  const YamlCursor key = place.at("mesh");
+  const std::string name = key.text();
+  const auto size = place.find("size_m"), position = place.find("position_m");
+  const std::optional<double> size_m = size ? std::optional(size->number(kLength)) : std::nullopt;
+  const Vec3 position_m = position ? position->vector() : Vec3::Zero();
+  try {
+    GroundMesh ground{.mesh = load_mesh(find_mesh_file(name, search))};
+    if (size_m) ground.mesh = scale_to_size(std::move(ground.mesh), *size_m);
+    for (Vec3& vertex : ground.mesh.vertices) vertex += position_m;
+    return ground;
+  } catch (const InputError& error) {
+    fail_at(key, error);
+  }
+}
+
+GroundPlane load_ground_plane(const YamlCursor& plane) {
+  plane.expect_keys({"normal", "offset_m"});
+  GroundPlane ground;
+  if (auto key = plane.find("normal")) ground.normal = key->direction();
+  if (auto key = plane.find("offset_m")) ground.offset_m = key->number();
+  return ground;
+}
+
+GroundBox load_ground_box(const YamlCursor& box) {
+  box.expect_keys({"sides_m", "position_m", "orientation"});
+  GroundBox ground{.sides_m = box.at("sides_m").vector(kPositive), .position_m = Vec3::Zero(), .orientation = Quat::Identity()};
+  if (auto key = box.find("position_m")) ground.position_m = key->vector();
+  if (auto key = box.find("orientation")) ground.orientation = key->rotation();
+  return ground;
+}
+
+Ground load_ground_part(const YamlCursor& place, const Scene& scene, const ShapeOptions& search) {
+  place.expect_keys({"plane", "box", "mesh", "size_m", "position_m", "material"});
+  const std::string_view kind = place.one_key_of({"plane", "box", "mesh"});
+  if (kind != "mesh") place.expect_keys({kind, "material"});
+  Ground ground = kind == "plane" ? Ground(load_ground_plane(place.at("plane")))
+                  : kind == "box" ? Ground(load_ground_box(place.at("box")))
+                                  : Ground(load_ground_mesh(place, search));
+  std::visit([&](auto& part) { part.material = load_material_id(place, scene); }, ground);
+  return ground;
+}
+
+}  // namespace
+
+std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scene& scene, const ShapeOptions& search) {
+  std::map<std::string, SceneShape> shapes;
+  if (auto section = root.find("shapes"))
+    for (const auto& [name, place] : section->entries()) shapes.emplace(name, load_shape(name, place, scene, search));
+  return shapes;
+}
+
+std::vector<Ground> load_ground(const YamlCursor& root, const Scene& scene, const ShapeOptions& search) {
+  std::vector<Ground> ground;
+  if (auto section = root.find("ground"))
+    for (const YamlCursor& place : section->items()) ground.push_back(load_ground_part(place, scene, search));
+  return ground;
+}
+
+}  // namespace lodestone

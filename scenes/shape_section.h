@@ -1,0 +1,26 @@
+// The `shapes:` and `ground:` of a scene.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "scenes/scene.h"
+#include "scenes/shape_source.h"
+#include "scenes/yaml_cursor.h"
+
+namespace lodestone {
+
+/// A shape with what bodies of it have unless they say otherwise.
+struct SceneShape {
+  std::shared_ptr<const Shape> shape = {};
+  MaterialId material = 0;
+  std::optional<double> mass = {};  ///< kg
+};
+
+/// By name. `search`: the scene's folder, then the mesh paths.
+std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scene& scene, const ShapeOptions& search);
+
+std::vector<Ground> load_ground(const YamlCursor& root, const Scene& scene, const ShapeOptions& search);
+
+}  // namespace lodestone

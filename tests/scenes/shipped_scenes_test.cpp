@@ -1,0 +1,109 @@
+// The scene files of scenes/: each loads, and nothing in them overlaps at the start.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+#include "reference/error.h"
+#include "scenes/scene_file.h"
+
+namespace lodestone {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = fs::path(LODESTONE_SOURCE_DIR) / "scenes";
+
+Scene load(const std::string& name) { return load_scene(kFolder / (name + ".yaml")); }
+
+/// Pairs of bounding spheres that overlap, by sweeping along x.
+int count_overlaps(const Scene& scene) {
+  std::vector<const BodyDefinition*> bodies;
+  for (const SceneBody& body : scene.bodies) bodies.push_back(&body.definition);
+  std::ranges::sort(bodies, {}, [](const BodyDefinition* b) { return b->state.position.x(); });
+  int overlaps = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      const Vec3 between = bodies[j]->state.position - bodies[i]->state.position;
+      if (between.x() > 1.0) break;  // no shipped shape is larger
+      overlaps += between.norm() < bodies[i]->shape->radius + bodies[j]->shape->radius;
+    }
+  return overlaps;
+}
+
+double lowest_point(const Scene& scene) {
+  double lowest = 1e9;
+  for (const SceneBody& body : scene.bodies)
+    lowest = std::min(lowest, body.definition.state.position.z() - body.definition.shape->radius);
+  return lowest;
+}
+
+struct Shipped { std::string name; int bodies; };
+class ShippedScene : public testing::TestWithParam<Shipped> {};
+
+TEST_P(ShippedScene, LoadsAndStartsApart) {
+  const Scene scene = load(GetParam().name);
+  EXPECT_EQ(int(scene.bodies.size()), GetParam().bodies);
+  EXPECT_EQ(count_overlaps(scene), 0);
+  EXPECT_GE(lowest_point(scene), 0.0);
+  EXPECT_EQ(scene.output.trajectory, GetParam().name + ".glb");
+  for (const SceneBody& body : scene.bodies) EXPECT_LT(body.definition.shape->radius, 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
+                         testing::Values(Shipped{"bunnies", 1000}, Shipped{"drop", 1}, Shipped{"boxes", 100}, Shipped{"l_shapes", 300},
+                                         Shipped{"side_by_side", 100}, Shipped{"ten_thousand", 10000}, Shipped{"forced", 1000}),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(ShippedScenes, NoneIsLeftOut) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(kFolder)) {
+    if (entry.path().extension() != ".yaml" || entry.path().stem() == "armadillo") continue;
+    EXPECT_NO_THROW(load(entry.path().stem().string())) << entry.path();
+  }
+}
+
+TEST(ShippedScenes, SidesAreAlike) {
+  const Scene scene = load("side_by_side");
+  for (std::size_t i = 0; i < 50; ++i) {
+    const BodyDefinition &left = scene.bodies[i].definition, &right = scene.bodies[50 + i].definition;
+    EXPECT_LT((right.state.position - left.state.position - Vec3(8, 0, 0)).norm(), 1e-12);
+    EXPECT_EQ(left.state.orientation.coeffs(), right.state.orientation.coeffs());
+    EXPECT_EQ(left.level, LevelChoice::statistical);
+    EXPECT_EQ(right.level, LevelChoice::full);
+  }
+}
+
+TEST(ShippedScenes, BunniesStartAroundTheViewpoint) {
+  const Scene scene = load("bunnies");
+  const double within = std::get<DistancePolicy>(scene.lod.policy).full_within;
+  for (double time = 0; time < 1; time += 0.25) {
+    const Vec3 eye = scene.viewpoints[0].position_at(time);
+    const auto near = std::ranges::count_if(
+        scene.bodies, [&](const SceneBody& body) { return (body.definition.state.position - eye).norm() < within; });
+    EXPECT_GE(near, 5) << time;
+    EXPECT_LE(near, 40) << time;
+  }
+}
+
+TEST(ShippedScenes, ForcedOnesAreFarAndNear) {
+  const Scene scene = load("forced");
+  const auto distance = [&](int i) { return (scene.bodies[i].definition.state.position - scene.viewpoints[0].position_m).norm(); };
+  for (int i : {0, 1}) EXPECT_TRUE(scene.bodies[i].definition.level == LevelChoice::full && distance(i) >= 100);
+  for (int i : {2, 3}) EXPECT_TRUE(scene.bodies[i].definition.level == LevelChoice::statistical && distance(i) < 1);
+}
+
+TEST(ShippedScenes, ArmadilloSaysWhereToGetTheMesh) {
+  try {
+    load("armadillo");
+    FAIL() << "found a mesh that is not part of the project";
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("armadillo.yaml:7: shapes.armadillo.mesh: found no armadillo.obj in"), std::string::npos) << what;
+    EXPECT_NE(what.find("Stanford 3D Scanning Repository"), std::string::npos) << what;
+    EXPECT_NE(what.find("--mesh-path"), std::string::npos) << what;
+  }
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,211 @@
+#include "scenes/trajectory.h"
+
+#include <tiny_gltf.h>
+
+#include <cstring>
+#include <numbers>
+
+#include "tests/scenes/scene_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using TrajectoryFile = SceneFixture;
+
+/// Two boxes (one changes level, one sleeps from frame 10 on) and a ball that never moves.
+Scene small_scene() {
+  Scene scene;
+  const auto box = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.1));
+  scene.ground = {GroundPlane{Vec3(0, 0, 1), -0.5, 0}, GroundBox{{1, 1, 1}, {9, 0, 0}, Quat::Identity(), 0}};
+  scene.bodies.resize(3);
+  scene.bodies[0].name = "hero";
+  scene.bodies[0].definition.shape = scene.bodies[1].definition.shape = box;
+  scene.bodies[2].definition.shape = ball;
+  Viewpoint viewpoint;
+  viewpoint.path = {{0, {0, -5, 1}}, {1, {5, 0, 1}}};
+  scene.viewpoints = {viewpoint};
+  return scene;
+}
+
+constexpr int kFrames = 31;
+
+RigidState pose(int frame, int body) {
+  RigidState state;
+  if (body == 1) frame = std::min(frame, 10);
+  if (body == 2) frame = 0;
+  const double angle = 0.35 * frame;  // more than a full turn, so that the quaternion's sign comes round
+  state.position = {body + 0.1 * frame, -2.0 * body, 3.0 - 0.01 * frame * frame};
+  state.orientation = Quat(Eigen::AngleAxisd(angle, Vec3(1, 2, 3).normalized()));
+  return state;
+}
+
+Trajectory record() {
+  Trajectory trajectory(3);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    std::vector<RigidState> states;
+    for (int body = 0; body < 3; ++body) states.push_back(pose(frame, body));
+    const bool near = frame >= 5 && frame < 20;
+    trajectory.add_frame(frame / 30.0, states, std::vector{near ? Level::full : Level::statistical, Level::full, Level::statistical});
+  }
+  return trajectory;
+}
+
+/// A saved file, read back by tinygltf.
+struct Loaded {
+  explicit Loaded(const std::filesystem::path& file) {
+    tinygltf::TinyGLTF loader;
+    std::string warnings;
+    ok = loader.LoadBinaryFromFile(&model, &error, &warnings, file.string());
+    error += warnings;
+  }
+
+  int node(const std::string& name) const {
+    for (std::size_t i = 0; i < model.nodes.size(); ++i)
+      if (model.nodes[i].name == name) return int(i);
+    return -1;
+  }
+  const tinygltf::AnimationSampler* sampler(int node_index, const std::string& path) const {
+    for (const tinygltf::AnimationChannel& channel : model.animations.at(0).channels)
+      if (channel.target_node == node_index && channel.target_path == path) return &model.animations[0].samplers.at(std::size_t(channel.sampler));
+    return nullptr;
+  }
+  template <class Number>
+  std::vector<Number> numbers(int accessor_index) const {
+    const tinygltf::Accessor& accessor = model.accessors.at(std::size_t(accessor_index));
+    const tinygltf::BufferView& view = model.bufferViews.at(std::size_t(accessor.bufferView));
+    std::vector<Number> values(accessor.count * std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type))));
+    const std::vector<unsigned char>& data = model.buffers.at(0).data;
+    EXPECT_EQ(sizeof(Number), std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType))));
+    EXPECT_LE(accessor.byteOffset + values.size() * sizeof(Number), view.byteLength);
+    std::memcpy(values.data(), data.data() + view.byteOffset + accessor.byteOffset, values.size() * sizeof(Number));
+    return values;
+  }
+
+  tinygltf::Model model;
+  std::string error;
+  bool ok = false;
+};
+
+class SavedTrajectory : public SceneFixture {
+ protected:
+  SavedTrajectory() : scene_(small_scene()) { save_trajectory(folder() / "run.glb", record(), scene_); }
+  Scene scene_;
+};
+
+TEST_F(SavedTrajectory, LoadsWithoutComplaint) {
+  const Loaded loaded(folder() / "run.glb");
+  EXPECT_TRUE(loaded.ok);
+  EXPECT_EQ(loaded.error, "");
+  EXPECT_FALSE(std::filesystem::exists(folder() / "run.glb.part"));
+}
+
+TEST_F(SavedTrajectory, HoldsPosesWithinQuantization) {
+  const Loaded loaded(folder() / "run.glb");
+  const int hero = loaded.node("hero");
+  ASSERT_GE(hero, 0);
+  const auto* translation = loaded.sampler(hero, "translation");
+  const auto* rotation = loaded.sampler(hero, "rotation");
+  ASSERT_TRUE(translation && rotation);
+  const auto times = loaded.numbers<float>(translation->input), places = loaded.numbers<float>(translation->output);
+  const auto turns = loaded.numbers<std::int16_t>(rotation->output);
+  EXPECT_TRUE(loaded.model.accessors[std::size_t(rotation->output)].normalized);
+  ASSERT_EQ(times.size(), std::size_t(kFrames));
+  ASSERT_EQ(turns.size(), 4u * kFrames);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const RigidState truth = pose(frame, 0);
+    const std::size_t p = std::size_t(3 * frame), q = std::size_t(4 * frame);
+    EXPECT_FLOAT_EQ(times[std::size_t(frame)], float(frame / 30.0));
+    EXPECT_LT((Vec3(places[p], places[p + 1], places[p + 2]) - truth.position).norm(), 1e-6);
+    const Quat turn = Quat(turns[q + 3], turns[q], turns[q + 1], turns[q + 2]).normalized();
+    EXPECT_LT(turn.angularDistance(truth.orientation), 1e-4);
+  }
+  for (std::size_t q = 4; q < turns.size(); q += 4) {
+    int dot = 0;
+    for (std::size_t i = 0; i < 4; ++i) dot += turns[q + i] / 2 * (turns[q + i - 4] / 2);
+    EXPECT_GT(dot, 0) << "a change of sign between neighbours spins a body the long way round";
+  }
+}
+
+TEST_F(SavedTrajectory, LeavesOutWhatDoesNotMove) {
+  const Loaded loaded(folder() / "run.glb");
+  const auto* sleeper = loaded.sampler(loaded.node("body 1"), "translation");
+  ASSERT_TRUE(sleeper);
+  EXPECT_EQ(loaded.numbers<float>(sleeper->output).size(), 3u * 11);
+  const int still = loaded.node("body 2");
+  EXPECT_FALSE(loaded.sampler(still, "translation"));
+  EXPECT_NEAR(loaded.model.nodes[std::size_t(still)].translation[1], -4.0, 1e-6);
+}
+
+TEST_F(SavedTrajectory, ShowsLevels) {
+  const Loaded loaded(folder() / "run.glb");
+  const auto material_of = [&](int node) {
+    const auto& mesh = loaded.model.meshes.at(std::size_t(loaded.model.nodes.at(std::size_t(node)).mesh));
+    return loaded.model.materials.at(std::size_t(mesh.primitives[0].material)).name;
+  };
+  EXPECT_EQ(material_of(loaded.node("body 1")), "full");
+  EXPECT_EQ(material_of(loaded.node("body 2")), "statistical");
+  const tinygltf::Node& hero = loaded.model.nodes[std::size_t(loaded.node("hero"))];
+  EXPECT_EQ(hero.mesh, -1);
+  ASSERT_EQ(hero.children.size(), 2u);
+  for (int child : hero.children) {
+    const auto* scale = loaded.sampler(child, "scale");
+    ASSERT_TRUE(scale);
+    EXPECT_EQ(scale->interpolation, "STEP");
+    const auto times = loaded.numbers<float>(scale->input), scales = loaded.numbers<float>(scale->output);
+    ASSERT_EQ(times.size(), 3u);
+    EXPECT_FLOAT_EQ(times[1], float(5 / 30.0));
+    EXPECT_FLOAT_EQ(times[2], float(20 / 30.0));
+    const float before = material_of(child) == "full" ? 0.0f : 1.0f;
+    EXPECT_EQ(scales, (std::vector<float>{before, before, before, 1 - before, 1 - before, 1 - before, before, before, before}));
+  }
+}
+
+TEST_F(SavedTrajectory, SharesArraysOfAShape) {
+  const Loaded loaded(folder() / "run.glb");
+  int boxes = 0;
+  std::vector<int> positions;
+  for (const tinygltf::Mesh& mesh : loaded.model.meshes)
+    if (mesh.name.starts_with("box")) {
+      ++boxes;
+      positions.push_back(mesh.primitives[0].attributes.at("POSITION"));
+    }
+  ASSERT_EQ(boxes, 2);
+  EXPECT_EQ(positions[0], positions[1]);
+}
+
+TEST_F(SavedTrajectory, HasGroundAndCamera) {
+  const Loaded loaded(folder() / "run.glb");
+  EXPECT_NE(loaded.node("ground"), -1);
+  const int camera = loaded.node("viewpoint");
+  ASSERT_NE(camera, -1);
+  EXPECT_EQ(loaded.model.nodes[std::size_t(camera)].camera, 0);
+  const auto* motion = loaded.sampler(camera, "translation");
+  ASSERT_TRUE(motion);
+  const auto places = loaded.numbers<float>(motion->output);
+  EXPECT_FLOAT_EQ(places[places.size() - 3], 5.0f);
+  // The camera looks along −z of its own: from (0, −5, 1) to the origin.
+  const auto turn = loaded.numbers<float>(loaded.sampler(camera, "rotation")->output);
+  const Vec3 forward = Quat(turn[3], turn[0], turn[1], turn[2]) * Vec3(0, 0, -1);
+  EXPECT_LT((forward - Vec3(0, 5, -1).normalized()).norm(), 1e-6);
+}
+
+TEST_F(TrajectoryFile, OneFrameAndNoBodies) {
+  Scene scene;
+  Trajectory empty(0);
+  empty.add_frame(0, {}, {});
+  save_trajectory(folder() / "empty.glb", empty, scene);
+  EXPECT_TRUE(Loaded(folder() / "empty.glb").ok);
+}
+
+TEST_F(TrajectoryFile, RefusesAPlaceThatCannotBeWritten) {
+  EXPECT_THROW(save_trajectory(folder() / "missing" / "run.glb", record(), small_scene()), InputError);
+}
+
+TEST(Trajectory, BoundsItsSize) {
+  EXPECT_GE(max_trajectory_frames(1000), 100'000);
+  EXPECT_LE(20.0 * max_trajectory_frames(2'000'000) * 2'000'000, 4e9);
+}
+
+}  // namespace
+}  // namespace lodestone
