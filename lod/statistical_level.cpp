@@ -16,9 +16,12 @@
 namespace lodestone {
 namespace {
 
-// Sleeping (3.4's second threshold away from rest poses): slower than .05 m/s at R = .2 m, scaled with √R, for .1 s.
+// Sleeping (3.4's second threshold). Among other bodies: slower than .05 m/s at R = .2 m, scaled with √R, for .1 s. Alone a body may still rock
+// slowly, so it must be nearly still for longer: kinetic energy over m g R below 1e-4 for .5 s.
 constexpr double kSleepSpeed = 0.05, kSleepSpeedRadius = 0.2;
 constexpr float kSleepTime = 0.1f;
+constexpr double kAloneSleepEnergy = 1e-4;
+constexpr float kAloneSleepTime = 0.5f;
 constexpr double kWakeFactor = 2.0;  // a sleeper wakes when touched faster than this times the sleeping speed
 
 double sleep_speed(double radius) { return kSleepSpeed * std::sqrt(radius / kSleepSpeedRadius); }
@@ -111,7 +114,9 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
   const Mat3& inertia = shape->inertia_per_mass;
   const bool isotropic = (inertia - inertia.trace() / 3.0 * Mat3::Identity()).norm() < 1e-9 * inertia.norm();
-  kinds.push_back({std::move(shape), std::move(signature), mass, material, isotropic});
+  ClipIndex index;
+  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.max_distance);
+  kinds.push_back({std::move(shape), std::move(signature), std::move(index), mass, material, isotropic});
   return std::uint16_t(kinds.size() - 1);
 }
 
@@ -266,9 +271,9 @@ void StatisticalLevel::Impl::wake_touched(std::span<FullNeighbor> neighbors) {
 void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, bool touching, double dt) {
   const BodyKind& kind = kind_of(body);
   const double speed = sleep_speed(kind.shape->radius);
-  const bool quiet = touching && 2.0 * kinetic_energy(body, *kind.shape) < speed * speed;
-  body.quiet_time = quiet ? body.quiet_time + float(dt) : 0.0f;
-  if (settings.sleeping && body.quiet_time >= kSleepTime) put_to_sleep(body);
+  const double limit = body.crowded ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
+  body.quiet_time = touching && kinetic_energy(body, *kind.shape) < limit ? body.quiet_time + float(dt) : 0.0f;
+  if (settings.sleeping && body.quiet_time >= (body.crowded ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
 }
 
 void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
@@ -289,7 +294,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
     return;
   }
   const HalfSpace& plane = ground.planes[tally.touched_plane];
-  if (!near_other[slot] && kind.signature && !kind.signature->clip_entries.empty() && world().is_horizontal(plane)) {
+  if (!near_other[slot] && !kind.clips.empty() && world().is_horizontal(plane)) {
     if (const auto clip = find_clip(body, kind, plane, gravity, clip_settings)) {
       clips[slot] = *clip;
       resting[slot].plane = tally.touched_plane;

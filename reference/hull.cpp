@@ -13,7 +13,8 @@
 namespace lodestone {
 namespace {
 
-/// A corner must stand out from the rest by this much × size: points on a face or an edge of the hull are no corners.
+/// A corner must stand out from the rest by this much × size: points on a face or an edge of the hull are no
+/// corners.
 constexpr double kLeastProtrusion = 1e-10;
 
 using Faces = std::vector<std::array<int, 3>>;
@@ -21,10 +22,12 @@ using Faces = std::vector<std::array<int, 3>>;
 /// Owns one run of Qhull (its reentrant interface) and the stream that swallows its messages.
 class QhullRun {
  public:
-  explicit QhullRun(std::vector<Vec3> points) : points_(std::move(points)), messages_(open_memstream(&text_, &length_)) {
+  explicit QhullRun(std::vector<Vec3> points)
+      : points_(std::move(points)), messages_(open_memstream(&text_, &length_)) {
     qh_zero(&qh_, messages_);
     char command[] = "qhull Qt";  // Qt: triangulated
-    exit_code_ = qh_new_qhull(&qh_, 3, int(points_.size()), points_.data()->data(), False, command, nullptr, messages_);
+    exit_code_ = qh_new_qhull(&qh_, 3, int(points_.size()), points_.data()->data(), False, command, nullptr,
+                              messages_);
   }
   ~QhullRun() {
     qh_freeqhull(&qh_, !qh_ALL);
@@ -70,7 +73,8 @@ Faces find_hull_faces(std::span<const Vec3> points) {
   std::vector<Vec3> centred(points.begin(), points.end());
   for (Vec3& point : centred) point -= box.center();  // Qhull's tolerances grow with the coordinates
   QhullRun run(std::move(centred));
-  if (!run.succeeded()) throw InputError("hull: found points that lie in a plane, expected a solid's corners");
+  if (!run.succeeded())
+    throw InputError("hull: found points that lie in a plane, expected a solid's corners");
   return run.faces();
 }
 
@@ -89,7 +93,8 @@ void connect_neighbors(Hull& hull) {
     ++hull.neighbor_start[from + 1];
     hull.neighbor.push_back(to);
   }
-  for (std::size_t i = 1; i < hull.neighbor_start.size(); ++i) hull.neighbor_start[i] += hull.neighbor_start[i - 1];
+  for (std::size_t i = 1; i < hull.neighbor_start.size(); ++i)
+    hull.neighbor_start[i] += hull.neighbor_start[i - 1];
 }
 
 /// The hull of `points` with every vertex that Qhull finds, in the order of `points`.
@@ -109,25 +114,28 @@ Hull make_raw_hull(std::span<const Vec3> points) {
   return hull;
 }
 
-/// How far each vertex stands out from its neighbours along the mean normal of its faces: zero on a face or an edge.
+/// How far each vertex stands out from its neighbours along the mean normal of its faces: zero on a face or
+/// an edge.
 std::vector<double> measure_protrusions(const Hull& hull) {
   std::vector<Vec3> normals(hull.vertices.size(), Vec3::Zero());
   for (const auto& [a, b, c] : hull.faces) {
-    const Vec3 normal = (hull.vertices[b] - hull.vertices[a]).cross(hull.vertices[c] - hull.vertices[a]).normalized();
+    const Vec3 normal =
+        (hull.vertices[b] - hull.vertices[a]).cross(hull.vertices[c] - hull.vertices[a]).normalized();
     for (int i : {a, b, c}) normals[i] += normal;
   }
   std::vector<double> protrusions(hull.vertices.size());
   for (int i = 0; i < int(protrusions.size()); ++i) {
     const Vec3 normal = normals[i].normalized();
     double highest = -1e300;
-    for (int j : hull.neighbors(i)) highest = std::max(highest, normal.dot(hull.vertices[j] - hull.vertices[i]));
+    for (int j : hull.neighbors(i))
+      highest = std::max(highest, normal.dot(hull.vertices[j] - hull.vertices[i]));
     protrusions[i] = -highest;
   }
   return protrusions;
 }
 
-/// The vertices of `hull` less those that are no corners. Of two neighbours only one goes at a time: each may be redundant
-/// only because of the other.
+/// The vertices of `hull` less those that are no corners. Of two neighbours only one goes at a time: each may
+/// be redundant only because of the other.
 std::vector<Vec3> drop_flat_vertices(const Hull& hull) {
   Eigen::AlignedBox3d box;
   for (const Vec3& vertex : hull.vertices) box.extend(vertex);
@@ -137,7 +145,8 @@ std::vector<Vec3> drop_flat_vertices(const Hull& hull) {
   std::vector<Vec3> kept;
   for (int i = 0; i < int(dropped.size()); ++i) {
     const auto neighbors = hull.neighbors(i);
-    dropped[i] = protrusions[i] < least && std::none_of(neighbors.begin(), neighbors.end(), [&](int j) { return dropped[j]; });
+    dropped[i] = protrusions[i] < least &&
+                 std::none_of(neighbors.begin(), neighbors.end(), [&](int j) { return dropped[j]; });
     if (!dropped[i]) kept.push_back(hull.vertices[i]);
   }
   return kept;
@@ -146,12 +155,15 @@ std::vector<Vec3> drop_flat_vertices(const Hull& hull) {
 }  // namespace
 
 Hull make_hull(std::span<const Vec3> points) {
-  if (points.size() < 4) throw InputError(fmt::format("hull: found {} points, expected at least 4", points.size()));
+  if (points.size() < 4)
+    throw InputError(fmt::format("hull: found {} points, expected at least 4", points.size()));
   for (const Vec3& point : points)
     if (!point.allFinite()) throw InputError("hull: found a coordinate that is not finite");
   Hull hull = make_raw_hull(points);
-  for (auto corners = drop_flat_vertices(hull); corners.size() < hull.vertices.size(); corners = drop_flat_vertices(hull)) {
-    if (corners.size() < 4) throw InputError("hull: found points that lie in a plane, expected a solid's corners");
+  for (auto corners = drop_flat_vertices(hull); corners.size() < hull.vertices.size();
+       corners = drop_flat_vertices(hull)) {
+    if (corners.size() < 4)
+      throw InputError("hull: found points that lie in a plane, expected a solid's corners");
     hull = make_raw_hull(corners);
   }
   return hull;

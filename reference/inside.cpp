@@ -8,8 +8,9 @@
 namespace lodestone {
 namespace {
 
-/// +1 where the edge from `a` to `b`, seen along z, passes upwards (in y) to the right of `point`, −1 downwards, else 0. The
-/// half-open rule on y and one formula for both directions make neighbouring faces agree to the last bit, so a closed surface has no chinks.
+/// +1 where the edge from `a` to `b`, seen along z, passes upwards (in y) to the right of `point`, −1
+/// downwards, else 0. The half-open rule on y and one formula for both directions make neighbouring faces
+/// agree to the last bit, so a closed surface has no chinks.
 int count_passing(const Vec3& a, const Vec3& b, double x, double y) {
   const bool a_below = a.y() <= y, b_below = b.y() <= y;
   if (a_below == b_below) return 0;
@@ -18,7 +19,8 @@ int count_passing(const Vec3& a, const Vec3& b, double x, double y) {
   return side > 0.0 ? (a_below ? 1 : -1) : 0;
 }
 
-/// Where and in what sense the vertical line through (x, y) passes through a face: sense +1 where the face looks up.
+/// Where and in what sense the vertical line through (x, y) passes through a face: sense +1 where the face
+/// looks up.
 struct Crossing {
   double z = 0.0;
   int sense = 0;
@@ -55,11 +57,14 @@ std::vector<Column> find_columns(const Mesh& mesh, const Grid& grid) {
   std::vector<Column> columns(std::size_t(grid.counts[0]) * grid.counts[1]);
   for (const auto& face : mesh.faces) {
     const Vec3 &a = mesh.vertices[face[0]], &b = mesh.vertices[face[1]], &c = mesh.vertices[face[2]];
-    const Vec3 low = (a.cwiseMin(b).cwiseMin(c) - grid.low) / grid.cell, high = (a.cwiseMax(b).cwiseMax(c) - grid.low) / grid.cell;
-    const int last_i = std::min(grid.counts[0] - 1, int(std::ceil(high.x()))), last_j = std::min(grid.counts[1] - 1, int(std::ceil(high.y())));
+    const Vec3 low = (a.cwiseMin(b).cwiseMin(c) - grid.low) / grid.cell,
+               high = (a.cwiseMax(b).cwiseMax(c) - grid.low) / grid.cell;
+    const int last_i = std::min(grid.counts[0] - 1, int(std::ceil(high.x()))),
+              last_j = std::min(grid.counts[1] - 1, int(std::ceil(high.y())));
     for (int i = std::max(0, int(std::floor(low.x()))); i <= last_i; ++i)
       for (int j = std::max(0, int(std::floor(low.y()))); j <= last_j; ++j) {
-        const Crossing crossing = find_crossing(a, b, c, grid.low.x() + i * grid.cell, grid.low.y() + j * grid.cell);
+        const Crossing crossing =
+            find_crossing(a, b, c, grid.low.x() + i * grid.cell, grid.low.y() + j * grid.cell);
         if (crossing.sense != 0) columns[std::size_t(i) * grid.counts[1] + j].push_back(crossing);
       }
   }
@@ -73,7 +78,8 @@ std::vector<Column> find_columns(const Mesh& mesh, const Grid& grid) {
 int winding_number(const Mesh& mesh, const Vec3& point) {
   int winding = 0;
   for (const auto& [a, b, c] : mesh.faces) {
-    const Crossing crossing = find_crossing(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], point.x(), point.y());
+    const Crossing crossing =
+        find_crossing(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], point.x(), point.y());
     if (crossing.sense != 0 && crossing.z > point.z()) winding += crossing.sense;
   }
   return winding;
@@ -91,7 +97,8 @@ std::vector<Vec3> find_inside_points(const Mesh& mesh, double cell_m) {
       int winding = 0;
       for (int k = 0; k < grid.counts[2]; ++k) {
         const Vec3 point = grid.low + grid.cell * Vec3(i, j, k);
-        for (; passed < column.size() && column[passed].z <= point.z(); ++passed) winding -= column[passed].sense;
+        for (; passed < column.size() && column[passed].z <= point.z(); ++passed)
+          winding -= column[passed].sense;
         if (winding > 0) points.push_back(point);
       }
     }

@@ -20,8 +20,8 @@ MassProperties measure_mass_properties(const Mesh& mesh) {
     const double det = a.dot(b.cross(c));
     volume += det / 6.0;
     first_moment += det / 24.0 * sum;
-    second_moment += det / 120.0 *
-                     (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+    second_moment +=
+        det / 120.0 * (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
   }
   const Vec3 center = first_moment / volume;
   const Mat3 covariance = second_moment / volume - center * center.transpose();
@@ -32,7 +32,8 @@ bool is_possible_inertia(const Mat3& inertia_per_mass) {
   constexpr double kTolerance = 1e-9;
   if (!inertia_per_mass.allFinite()) return false;
   const double scale = inertia_per_mass.cwiseAbs().maxCoeff();
-  if ((inertia_per_mass - inertia_per_mass.transpose()).cwiseAbs().maxCoeff() > kTolerance * scale) return false;
+  if ((inertia_per_mass - inertia_per_mass.transpose()).cwiseAbs().maxCoeff() > kTolerance * scale)
+    return false;
   const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(inertia_per_mass).eigenvalues();  // ascending
   return moments[0] > 0.0 && moments[0] + moments[1] >= moments[2] * (1.0 - kTolerance);
 }

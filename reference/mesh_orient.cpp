@@ -3,18 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
 
 #include "reference/error.h"
 #include "reference/inside.h"
 #include "reference/mass_properties.h"
+#include "reference/mesh_edges.h"
 
 namespace lodestone {
 namespace {
 
 constexpr int kMaxPieces = 1000;
 
-/// A face's neighbour across an edge that belongs to these two alone; `opposed` where their directions along it disagree as they should.
+/// A face's neighbour across an edge that belongs to these two alone; `opposed` where their directions along
+/// it disagree as they should.
 struct Neighbor {
   int face = -1;
   bool opposed = true;
@@ -25,16 +26,14 @@ using Neighbors = std::vector<std::array<Neighbor, 3>>;
 Neighbors find_neighbors(const Mesh& mesh, MeshReport& report) {
   Neighbors neighbors(mesh.faces.size());
   std::vector<int> found(mesh.faces.size(), 0);
-  const std::vector<EdgeUse> uses = find_edge_uses(mesh);
-  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    for (end = begin; end < uses.size() && uses[end].low == uses[begin].low && uses[end].high == uses[begin].high;) ++end;
-    if (end - begin == 1) ++report.open_edges;
-    if (end - begin > 2) ++report.non_manifold_edges;
-    if (end - begin != 2) continue;
-    const EdgeUse &a = uses[begin], &b = uses[begin + 1];
+  visit_edges(mesh, [&](std::span<const EdgeUse> uses) {
+    if (uses.size() == 1) ++report.open_edges;
+    if (uses.size() > 2) ++report.non_manifold_edges;
+    if (uses.size() != 2) return;
+    const EdgeUse &a = uses[0], &b = uses[1];
     neighbors[a.face][found[a.face]++] = {b.face, a.forward != b.forward};
     neighbors[b.face][found[b.face]++] = {a.face, a.forward != b.forward};
-  }
+  });
   return neighbors;
 }
 
@@ -45,13 +44,16 @@ struct Piece {
 };
 
 /// The pieces, and in `flipped` the faces to turn so that each piece agrees with its own first face.
-std::vector<Piece> find_pieces(const Neighbors& neighbors, const std::string& name, std::vector<bool>& flipped) {
+std::vector<Piece> find_pieces(const Neighbors& neighbors, const std::string& name,
+                               std::vector<bool>& flipped) {
   std::vector<Piece> pieces;
   std::vector<bool> reached(neighbors.size(), false);
   flipped.assign(neighbors.size(), false);
   for (int first = 0; first < int(neighbors.size()); ++first) {
     if (reached[first]) continue;
-    if (int(pieces.size()) == kMaxPieces) throw InputError(fmt::format("{}: found over {} separate pieces, expected one solid", name, kMaxPieces));
+    if (int(pieces.size()) == kMaxPieces)
+      throw InputError(
+          fmt::format("{}: found over {} separate pieces, expected one solid", name, kMaxPieces));
     reached[first] = true;
     Piece piece{{first}};
     for (std::size_t next = 0; next < piece.faces.size(); ++next) {
@@ -60,7 +62,8 @@ std::vector<Piece> find_pieces(const Neighbors& neighbors, const std::string& na
         if (other < 0) piece.open = true;
         if (other < 0) continue;
         const bool turned = flipped[face] == opposed;
-        if (reached[other] && flipped[other] != turned) throw InputError(name + ": found a one-sided surface, expected one with an inside and an outside");
+        if (reached[other] && flipped[other] != turned)
+          throw InputError(name + ": found a one-sided surface, expected one with an inside and an outside");
         if (reached[other]) continue;
         reached[other] = true;
         flipped[other] = turned;
@@ -105,20 +108,6 @@ std::vector<bool> find_cavities(const std::vector<Mesh>& parts, const std::vecto
 void flip(std::array<int, 3>& face) { std::swap(face[1], face[2]); }
 
 }  // namespace
-
-std::vector<EdgeUse> find_edge_uses(const Mesh& mesh) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * mesh.faces.size());
-  for (int face = 0; face < int(mesh.faces.size()); ++face)
-    for (int i = 0; i < 3; ++i) {
-      const int from = mesh.faces[face][i], to = mesh.faces[face][(i + 1) % 3];
-      uses.push_back({std::min(from, to), std::max(from, to), face, from < to});
-    }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
-  });
-  return uses;
-}
 
 void orient_faces(Mesh& mesh, const std::string& name, MeshReport& report) {
   std::vector<bool> flipped;

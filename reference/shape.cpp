@@ -11,18 +11,24 @@
 namespace lodestone {
 namespace {
 
-/// What the hash covers is rounded to this much of the radius, so that copies at another scale agree in spite of rounding.
+/// What the hash covers is rounded to this much of the radius, so that copies at another scale agree in spite
+/// of rounding.
 constexpr double kHashQuantum = 1e-5;
 
 void require_solid(const std::string& name, const MeshReport& report, const MassOverride& mass) {
   if (report.closed() || (mass.center_of_mass_m && mass.inertia_per_mass_m2)) return;
-  const auto [count, kind] = report.open_edges > 0 ? std::pair(report.open_edges, "open edges (with one face only)")
-                                                   : std::pair(report.non_manifold_edges, "non-manifold edges (with more than two faces)");
-  throw InputError(fmt::format("{}: found {} {}, expected a closed mesh, or both a centre of mass and an inertia given for it", name, count, kind));
+  const auto [count, kind] =
+      report.open_edges > 0
+          ? std::pair(report.open_edges, "open edges (with one face only)")
+          : std::pair(report.non_manifold_edges, "non-manifold edges (with more than two faces)");
+  throw InputError(fmt::format(
+      "{}: found {} {}, expected a closed mesh, or both a centre of mass and an inertia given for it", name,
+      count, kind));
 }
 
 /// Measured, then overridden. The mass of an open mesh is spread over its hull's volume.
-MassProperties find_mass_properties(const Mesh& mesh, const Hull& hull, bool closed, const MassOverride& given) {
+MassProperties find_mass_properties(const Mesh& mesh, const Hull& hull, bool closed,
+                                    const MassOverride& given) {
   MassProperties mass = measure_mass_properties(closed ? mesh : Mesh{hull.vertices, hull.faces});
   if (given.center_of_mass_m) mass.center_of_mass = *given.center_of_mass_m;
   if (given.inertia_per_mass_m2) mass.inertia_per_mass = *given.inertia_per_mass_m2;
@@ -40,9 +46,13 @@ bool is_inside(const Hull& hull, const Vec3& point) {
 void require_possible(const std::string& name, const MassProperties& mass, const Hull& hull) {
   const Vec3& center = mass.center_of_mass;
   if (!center.allFinite() || !is_inside(hull, center))
-    throw InputError(fmt::format("{}: center of mass: found ({:g}, {:g}, {:g}) m, expected a point inside the mesh's hull", name, center.x(), center.y(), center.z()));
+    throw InputError(
+        fmt::format("{}: center of mass: found ({:g}, {:g}, {:g}) m, expected a point inside the mesh's hull",
+                    name, center.x(), center.y(), center.z()));
   if (!is_possible_inertia(mass.inertia_per_mass))
-    throw InputError(name + ": inertia: found one that no body can have, expected a symmetric positive definite matrix with I1 + I2 ≥ I3");
+    throw InputError(name +
+                     ": inertia: found one that no body can have, expected a symmetric positive definite "
+                     "matrix with I1 + I2 ≥ I3");
 }
 
 double greatest_distance(std::span<const Vec3> points) {

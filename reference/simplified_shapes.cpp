@@ -5,12 +5,11 @@
 
 #include <optional>
 
+#include "reference/edge_collapse.h"
 #include "reference/error.h"
 
 namespace lodestone {
 namespace {
-
-constexpr int kAttempts = 12;
 
 /// About the middle of the bounding box, its longest side 1: copies at any scale then simplify alike.
 struct Normalized {
@@ -22,44 +21,44 @@ struct Normalized {
 Normalized normalize(Mesh mesh, MeshReport& report) {
   Eigen::AlignedBox3d box;
   for (const Vec3& vertex : mesh.vertices) box.extend(vertex);
-  if (mesh.vertices.empty() || !(box.sizes().maxCoeff() > 0.0)) throw InputError("mesh: found no extent, expected a solid to simplify");
+  if (mesh.vertices.empty() || !(box.sizes().maxCoeff() > 0.0))
+    throw InputError("mesh: found no extent, expected a solid to simplify");
   const Vec3 middle = box.center();
   const double size = box.sizes().maxCoeff();
   for (Vec3& vertex : mesh.vertices) vertex = (vertex - middle) / size;
   return {repair_mesh(std::move(mesh), "mesh to simplify", &report), middle, size};
 }
 
-/// What meshoptimizer makes of a mesh, as it comes: it may hold a fin or a pinched edge.
-struct Simplified {
-  Mesh mesh;
-  double error = 0.0;
-};
-
-Simplified simplify_once(const Mesh& mesh, int faces) {
+/// Simplified by meshoptimizer: fast, but thin parts may come out pinched or torn.
+Mesh run_meshoptimizer(const Mesh& mesh, int faces, double& error) {
   std::vector<float> positions;
-  for (const Vec3& vertex : mesh.vertices) positions.insert(positions.end(), {float(vertex.x()), float(vertex.y()), float(vertex.z())});
+  for (const Vec3& vertex : mesh.vertices)
+    for (double coordinate : vertex) positions.push_back(float(coordinate));
   std::vector<unsigned> indices;
   for (const auto& face : mesh.faces) indices.insert(indices.end(), face.begin(), face.end());
   std::vector<unsigned> kept(indices.size());
-  float error = 0.0f;
-  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(), mesh.vertices.size(), 3 * sizeof(float),
-                               3 * std::size_t(faces), 1.0f, 0, &error));
-  Simplified simplified{{mesh.vertices, {}}, error};
-  for (std::size_t i = 0; i < kept.size(); i += 3) simplified.mesh.faces.push_back({int(kept[i]), int(kept[i + 1]), int(kept[i + 2])});
+  float relative_error = 0.0f;
+  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(),
+                               mesh.vertices.size(), 3 * sizeof(float), 3 * std::size_t(faces), 1.0f,
+                               meshopt_SimplifyLockBorder, &relative_error));
+  error = relative_error;
+  Mesh simplified{mesh.vertices, {}};
+  for (std::size_t i = 0; i < kept.size(); i += 3)
+    simplified.faces.push_back({int(kept[i]), int(kept[i + 1]), int(kept[i + 2])});
   return simplified;
 }
 
-/// Repaired, and nothing where that tore it open or apart.
+/// Repaired, or nothing where it is more open or in more pieces than the whole mesh was.
 std::optional<Mesh> repair_simplified(Mesh mesh, const MeshReport& whole) {
+  MeshReport report;
   try {
-    MeshReport report;
-    Mesh repaired = repair_mesh(std::move(mesh), "simplified mesh", &report);
-    const bool is_sound = report.components <= whole.components && report.open_edges <= whole.open_edges && report.non_manifold_edges <= whole.non_manifold_edges;
-    if (is_sound) return repaired;
+    mesh = repair_mesh(std::move(mesh), "simplified mesh", &report);
   } catch (const InputError&) {
-    // so few faces bound nothing: as good as torn
+    return std::nullopt;  // so coarse that it bounds nothing
   }
-  return std::nullopt;
+  const bool is_sound = report.components <= whole.components && report.open_edges <= whole.open_edges &&
+                        report.non_manifold_edges <= whole.non_manifold_edges;
+  return is_sound ? std::optional(std::move(mesh)) : std::nullopt;
 }
 
 }  // namespace
@@ -68,22 +67,26 @@ Mesh simplify_mesh(const Mesh& mesh, int faces, double* error_m) {
   if (faces < 4) throw InputError(fmt::format("faces: found {}, expected at least 4", faces));
   if (error_m) *error_m = 0.0;
   if (int(mesh.faces.size()) <= faces) return mesh;
-  MeshReport whole;
-  const Normalized normalized = normalize(mesh, whole);
+  MeshReport report;
+  const Normalized whole = normalize(mesh, report);
+  Mesh simplified = whole.mesh;
 
-  // Repair takes fins away, two faces each: ask for a few more until exactly as many as wanted are left.
-  std::optional<Mesh> best;
-  for (int attempt = 0; attempt < kAttempts && (!best || int(best->faces.size()) < faces); ++attempt) {
-    const Simplified simplified = simplify_once(normalized.mesh, faces + 2 * attempt);
-    auto repaired = repair_simplified(simplified.mesh, whole);
-    if (!repaired || int(repaired->faces.size()) > faces || (best && repaired->faces.size() <= best->faces.size())) continue;
-    best = std::move(repaired);
-    if (error_m) *error_m = simplified.error * normalized.size;
+  // The coarsest sound mesh that meshoptimizer finds, and from there by collapses that cannot tear.
+  double fast_error = 0.0, safe_error = 0.0;
+  for (int target = faces; target < int(whole.mesh.faces.size()); target *= 2) {
+    auto sound = repair_simplified(run_meshoptimizer(whole.mesh, target, fast_error), report);
+    if (!sound || int(sound->faces.size()) < faces - 1) continue;
+    simplified = std::move(*sound);
+    break;
   }
-  if (!best || int(best->faces.size()) < 0.9 * faces)
-    throw InputError(fmt::format("faces: found {} that a simplified mesh cannot keep to, expected more (it has {})", faces, mesh.faces.size()));
-  for (Vec3& vertex : best->vertices) vertex = normalized.middle + normalized.size * vertex;
-  return *best;
+  if (int(simplified.faces.size()) > faces) simplified = collapse_edges(simplified, faces, &safe_error);
+  simplified = repair_mesh(std::move(simplified), "simplified mesh");
+  if (int(simplified.faces.size()) > 1.1 * faces)
+    throw InputError(fmt::format("faces: found {}, but this mesh keeps its form only down to {}", faces,
+                                 simplified.faces.size()));
+  for (Vec3& vertex : simplified.vertices) vertex = whole.middle + whole.size * vertex;
+  if (error_m) *error_m = (fast_error + safe_error) * whole.size;
+  return simplified;
 }
 
 }  // namespace lodestone

@@ -18,7 +18,8 @@ void require_length(double length_m, const char* what) {
     throw InputError(fmt::format("{}: found {} m, expected a positive, finite length", what, length_m));
 }
 
-/// `outline` (counter-clockwise in x, y; its first corner sees all others) extruded along z to `height`, centred at z = 0.
+/// `outline` (counter-clockwise in x, y; its first corner sees all others) extruded along z to `height`,
+/// centred at z = 0.
 Mesh make_prism(std::span<const Vec2> outline, double height) {
   const int n = int(outline.size());
   Mesh mesh;
@@ -39,11 +40,11 @@ Mesh make_prism(std::span<const Vec2> outline, double height) {
 Mesh make_icosahedron() {
   const double a = 1.0, b = std::numbers::phi;
   Mesh mesh;
-  mesh.vertices = {{-a, b, 0}, {a, b, 0}, {-a, -b, 0}, {a, -b, 0}, {0, -a, b}, {0, a, b},
-                   {0, -a, -b}, {0, a, -b}, {b, 0, -a}, {b, 0, a}, {-b, 0, -a}, {-b, 0, a}};
-  mesh.faces = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  mesh.vertices = {{-a, b, 0},  {a, b, 0},  {-a, -b, 0}, {a, -b, 0}, {0, -a, b},  {0, a, b},
+                   {0, -a, -b}, {0, a, -b}, {b, 0, -a},  {b, 0, a},  {-b, 0, -a}, {-b, 0, a}};
+  mesh.faces = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   return mesh;
 }
 
@@ -87,7 +88,8 @@ Mesh make_sphere(double radius_m, int subdivisions) {
 Mesh make_l(double leg_a_m, double leg_b_m, double width_m, double thickness_m) {
   for (double length : {leg_a_m, leg_b_m, width_m, thickness_m}) require_length(length, "L side");
   if (width_m >= std::min(leg_a_m, leg_b_m))
-    throw InputError(fmt::format("L width: found {} m, expected less than both legs ({} m and {} m)", width_m, leg_a_m, leg_b_m));
+    throw InputError(fmt::format("L width: found {} m, expected less than both legs ({} m and {} m)", width_m,
+                                 leg_a_m, leg_b_m));
   const double x = 0.5 * leg_a_m, y = 0.5 * leg_b_m, w = width_m;
   const Vec2 outline[] = {{-x + w, -y + w}, {-x + w, y}, {-x, y}, {-x, -y}, {x, -y}, {x, -y + w}};
   return make_prism(outline, thickness_m);

@@ -59,7 +59,8 @@ int SupportMap::find_start(const Vec3& direction) const {
     return cell >= 0.0 && cell < side_ ? int(cell) : (cell >= side_ ? side_ - 1 : 0);
   };
   const int face = 2 * axis + (direction[axis] < 0.0);
-  return cells_[(face * side_ + cell_of(direction[kAfterNext[axis]])) * side_ + cell_of(direction[kNext[axis]])];
+  return cells_[(face * side_ + cell_of(direction[kAfterNext[axis]])) * side_ +
+                cell_of(direction[kNext[axis]])];
 }
 
 }  // namespace lodestone

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <thread>
 
 #include "reference/error.h"
 #include "reference/random.h"
@@ -35,7 +36,8 @@ void expect_exact_support(const Hull& hull, std::span<const Vec3> points, int tr
     const double truth = greatest_height(points, direction);
     const int far_start = int(random.uniform() * double(hull.vertices.size()));
     for (int start : {map.find_start(direction), far_start})
-      worst = std::max(worst, std::abs(truth - hull.vertices[find_support(hull, direction, start)].dot(direction)));
+      worst = std::max(worst,
+                       std::abs(truth - hull.vertices[find_support(hull, direction, start)].dot(direction)));
   }
   EXPECT_LE(worst, 1e-12 * size);
 }
@@ -49,7 +51,8 @@ void expect_sound(const Hull& hull) {
   for (const Vec3& vertex : hull.vertices) size = std::max(size, 2.0 * (vertex - middle).norm());
   for (const auto& face : hull.faces) {
     for (int i = 0; i < 3; ++i) ++directed[{face[i], face[(i + 1) % 3]}];
-    const Vec3 a = hull.vertices[face[0]], cross = (hull.vertices[face[1]] - a).cross(hull.vertices[face[2]] - a);
+    const Vec3 a = hull.vertices[face[0]],
+               cross = (hull.vertices[face[1]] - a).cross(hull.vertices[face[2]] - a);
     EXPECT_LT(cross.dot(middle - a), 0.0);
     for (const Vec3& vertex : hull.vertices) EXPECT_LE(cross.normalized().dot(vertex - a), 1e-10 * size);
   }
@@ -78,7 +81,8 @@ TEST(Hull, ClimbsPastAxisAlignedTies) {
     for (double sign : {-1.0, 1.0}) {
       const Vec3 direction = sign * Vec3::Unit(axis);
       for (int start = 0; start < 8; ++start)
-        EXPECT_EQ(hull.vertices[find_support(hull, direction, start)].dot(direction), greatest_height(hull.vertices, direction));
+        EXPECT_EQ(hull.vertices[find_support(hull, direction, start)].dot(direction),
+                  greatest_height(hull.vertices, direction));
     }
 }
 
@@ -123,7 +127,8 @@ TEST(Hull, OfTheBunny) {
 }
 
 TEST(Hull, OfSpheresPlatesAndNeedles) {
-  for (const Mesh& mesh : {make_sphere(0.1), make_sphere(0.1, 5), make_box({1, 1, 1e-4}), make_needle(1, 1e-4), make_l(0.3, 0.2, 0.05, 0.1)}) {
+  for (const Mesh& mesh : {make_sphere(0.1), make_sphere(0.1, 4), make_box({1, 1, 1e-4}),
+                           make_needle(1, 1e-4), make_l(0.3, 0.2, 0.05, 0.1)}) {
     const Hull hull = make_hull(mesh.vertices);
     expect_sound(hull);
     expect_exact_support(hull, mesh.vertices, 1000);
@@ -136,11 +141,26 @@ TEST(Hull, RefusesFlatAndFewPointsInSilence) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   EXPECT_THROW(make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), InputError);
-  EXPECT_THROW(make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}), InputError);
+  EXPECT_THROW(make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}),
+               InputError);
   EXPECT_THROW(make_hull(std::vector<Vec3>(10, Vec3(1, 2, 3))), InputError);
-  EXPECT_THROW(make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::nan("")}}), InputError);
+  EXPECT_THROW(make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::nan("")}}),
+               InputError);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(Hull, IsTheSameFromSeveralThreadsAtOnce) {
+  const auto points = random_points(2000, 9);
+  const Hull expected = make_hull(points);
+  std::vector<std::thread> threads;
+  std::vector<int> same(4, 0);
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < 10; ++i) same[t] += make_hull(points).vertices == expected.vertices;
+    });
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(same, std::vector<int>(4, 10));
 }
 
 TEST(SupportMap, StartsAtOrBesideTheFarthestVertex) {

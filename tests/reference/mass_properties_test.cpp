@@ -10,7 +10,9 @@ namespace lodestone {
 namespace {
 
 void expect_close(const Mat3& found, const Mat3& expected, double relative) {
-  EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), relative * expected.cwiseAbs().maxCoeff()) << found << "\n\n" << expected;
+  EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), relative * expected.cwiseAbs().maxCoeff())
+      << found << "\n\n"
+      << expected;
 }
 
 Mat3 box_inertia(const Vec3& sides) {
@@ -40,8 +42,12 @@ TEST(MassProperties, OfAnLAreThoseOfItsTwoBoxes) {
   const double a = 0.3, b = 0.2, w = 0.05, t = 0.1;
   const double v1 = a * w * t, v2 = w * (b - w) * t;
   const Vec3 c1(0, (w - b) / 2, 0), c2((w - a) / 2, w / 2, 0), center = (v1 * c1 + v2 * c2) / (v1 + v2);
-  const auto shifted = [&](const Mat3& inertia, const Vec3& arm) { return Mat3(inertia + arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose()); };
-  const Mat3 expected = (v1 * shifted(box_inertia({a, w, t}), c1 - center) + v2 * shifted(box_inertia({w, b - w, t}), c2 - center)) / (v1 + v2);
+  const auto shifted = [&](const Mat3& inertia, const Vec3& arm) {
+    return Mat3(inertia + arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+  };
+  const Mat3 expected = (v1 * shifted(box_inertia({a, w, t}), c1 - center) +
+                         v2 * shifted(box_inertia({w, b - w, t}), c2 - center)) /
+                        (v1 + v2);
   const auto mass = measure_mass_properties(make_l(a, b, w, t));
   EXPECT_NEAR(mass.volume, v1 + v2, 1e-16);
   EXPECT_LE((mass.center_of_mass - center).norm(), 1e-15);
@@ -53,7 +59,8 @@ TEST(MassProperties, OfAnIcosphereConvergeToTheSphere) {
   double previous = 1.0;
   for (int subdivisions = 1; subdivisions <= 5; ++subdivisions) {
     const auto mass = measure_mass_properties(make_sphere(1.0, subdivisions));
-    const double error = std::abs(mass.volume - volume) / volume + std::abs(mass.inertia_per_mass(0, 0) - 0.4) / 0.4;
+    const double error =
+        std::abs(mass.volume - volume) / volume + std::abs(mass.inertia_per_mass(0, 0) - 0.4) / 0.4;
     EXPECT_LT(error, 0.3 * previous);  // second order: a quarter each time
     previous = error;
   }

@@ -66,7 +66,8 @@ TEST(Shape, OfTheBunny) {
 }
 
 TEST(ContentHash, IsEqualForScaledCopies) {
-  for (const Mesh& mesh : {make_box({0.2, 0.3, 0.4}), make_l(0.3, 0.2, 0.05, 0.1), make_needle(1, 0.02), make_sphere(0.7)}) {
+  for (const Mesh& mesh :
+       {make_box({0.2, 0.3, 0.4}), make_l(0.3, 0.2, 0.05, 0.1), make_needle(1, 0.02), make_sphere(0.7)}) {
     const std::uint64_t hash = make_shape("original", mesh).content_hash;
     for (double scale : {1e-3, 0.013, 0.3, 1.7, 10.0}) {
       Mesh copy = mesh;
@@ -102,7 +103,8 @@ TEST(Shape, OfAnOpenMeshNeedsItsMassGiven) {
   EXPECT_THROW(make_shape("shell", open_box(), {.inertia_per_mass_m2 = inertia}), InputError);
 
   MeshReport report;
-  const Shape shape = make_shape("shell", open_box(), {.center_of_mass_m = Vec3(0, 0, 0.1), .inertia_per_mass_m2 = inertia}, &report);
+  const Shape shape = make_shape(
+      "shell", open_box(), {.center_of_mass_m = Vec3(0, 0, 0.1), .inertia_per_mass_m2 = inertia}, &report);
   EXPECT_EQ(report.open_edges, 3);
   EXPECT_EQ(shape.inertia_per_mass, inertia);
   EXPECT_NEAR(shape.volume, 1.0, 1e-12);
@@ -111,12 +113,14 @@ TEST(Shape, OfAnOpenMeshNeedsItsMassGiven) {
 
 TEST(Shape, WithAnImpossibleMassIsRefused) {
   const Mesh box = make_box({1, 1, 1});
-  EXPECT_THROW(make_shape("box", box, {.inertia_per_mass_m2 = Mat3(Vec3(1, 1, 100).asDiagonal())}), InputError);
+  EXPECT_THROW(make_shape("box", box, {.inertia_per_mass_m2 = Mat3(Vec3(1, 1, 100).asDiagonal())}),
+               InputError);
   EXPECT_THROW(make_shape("box", box, {.inertia_per_mass_m2 = Mat3::Zero()}), InputError);
   EXPECT_THROW(make_shape("box", box, {.inertia_per_mass_m2 = Mat3::Constant(std::nan(""))}), InputError);
   EXPECT_THROW(make_shape("box", box, {.center_of_mass_m = Vec3(0, 0, 0.6)}), InputError);
   EXPECT_THROW(make_shape("box", box, {.center_of_mass_m = Vec3(0, 0, std::nan(""))}), InputError);
-  const std::string message = message_of([&] { make_shape("odd", box, {.inertia_per_mass_m2 = Mat3(Vec3(1, 1, 100).asDiagonal())}); });
+  const std::string message = message_of(
+      [&] { make_shape("odd", box, {.inertia_per_mass_m2 = Mat3(Vec3(1, 1, 100).asDiagonal())}); });
   EXPECT_EQ(message.rfind("odd: inertia: found", 0), 0u) << message;
 }
 
