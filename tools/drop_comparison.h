@@ -34,7 +34,7 @@ struct DropRow {
 };
 
 struct DropComparison {
-  std::string shape;
+  std::string shape = {};
   int trials = 0;
   ScoreWithInterval floor = {};
   int truth_substeps = 0;                          ///< in 1/60 s

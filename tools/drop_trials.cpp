@@ -3,8 +3,9 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 
 #include "tools/drop_world.h"
@@ -32,13 +33,18 @@ DropObservation observe_drop(const DropJob& job, DropWorld& world, double dt) {
   return observer.result();
 }
 
-using Clock = std::chrono::steady_clock;
+// Of the calling thread, so that what else the machine does counts little.
+double processor_ns() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * double(now.tv_sec) + double(now.tv_nsec);
+}
 
 template <typename Work>
 double measure_ns(Work work) {
-  const Clock::time_point start = Clock::now();
+  const double start = processor_ns();
   work();
-  return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+  return processor_ns() - start;
 }
 
 double median_of(std::vector<double> values) {
@@ -59,24 +65,25 @@ double measure_ode(const DropJob& job, const DropMethod& method, const DropBatch
   return median_of(std::move(ns));
 }
 
-// Without the phases that find and treat pairs, which one body does not have.
-double ns_of_single_bodies(const StageTimes& times) { return 1e6 * (times.total_ms - times.broad_phase_ms - times.pairs_ms); }
+// The part of a step that is not spent on pairs, which one body does not have.
+double single_body_part(const StageTimes& times) { return 1.0 - (times.broad_phase_ms + times.pairs_ms) / times.total_ms; }
 
 // While at least a quarter is awake, so that what a step costs whoever is awake is shared by many.
 double measure_statistical(const DropJob& job, const DropMethod& method, const DropBatch& batch) {
-  std::vector<double> ns;
+  std::vector<double> ns_per_body_step;
   for (int repeat = 0; repeat < kTimedRepeats; ++repeat) {
     Manager manager = make_many_drops(job, std::get<StatisticalMethod>(method.way), batch.seed + repeat, kTimedStatisticalBodies);
     double spent = 0.0, body_steps = 0.0;
     int awake = kTimedStatisticalBodies;
     for (double t = 0; t < kTimedSeconds && awake > kTimedStatisticalBodies / 4; t += batch.dt_s) {
       body_steps += awake;
-      spent += ns_of_single_bodies(manager.step(batch.dt_s).times);
+      const double ns = measure_ns([&] { manager.step(batch.dt_s); });
+      spent += ns * single_body_part(manager.report().times);
       awake = kTimedStatisticalBodies - manager.report().asleep;
     }
-    ns.push_back(spent / body_steps);
+    ns_per_body_step.push_back(spent / body_steps);
   }
-  return median_of(std::move(ns));
+  return median_of(std::move(ns_per_body_step));
 }
 
 }  // namespace

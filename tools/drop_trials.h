@@ -24,9 +24,9 @@ struct DropBatch {
 std::vector<DropObservation> observe_drops(const DropJob& job, const DropMethod& method, const DropBatch& batch,
                                            const std::function<void(double)>& progress = {});
 
-/// Wall time of a body's step, ns, over the steps in which it is awake, on one thread. ODE: one body at a time, up to the rest that
-/// `observed` found; the median of some of the batch's drops. Statistical: a thousand bodies in one manager, too far apart to meet, by the
-/// manager's own clock without its pair phases.
+/// Processor time of a body's step, ns, over the steps in which it is awake, on one thread. ODE: one body at a time, up to the rest that
+/// `observed` found; the median of some of the batch's drops. Statistical: a thousand bodies in one manager, too far apart to meet, without
+/// the phases that look for pairs.
 double measure_ns_per_body_step(const DropJob& job, const DropMethod& method, const DropBatch& batch,
                                 std::span<const DropObservation> observed);
 
