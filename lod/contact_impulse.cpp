@@ -26,8 +26,9 @@ Mat3 contact_response_matrix(double inverse_mass, const Mat3& inverse_inertia_wo
 Mat3 contact_frame(const Vec3& normal, const Vec3& velocity) {
   Vec3 slip = velocity - velocity.dot(normal) * normal;
   const double speed = slip.norm();
-  if (speed > 1e-9 * (1.0 + velocity.norm())) {
+  if (speed > 1e-9 * velocity.norm()) {
     slip /= speed;
+    slip = (slip - slip.dot(normal) * normal).normalized();  // again: little is left of a nearly head-on velocity
   } else {
     slip = std::abs(normal.z()) < 0.7 ? Vec3::UnitZ().cross(normal).normalized() : Vec3::UnitX().cross(normal).normalized();
   }

@@ -11,6 +11,7 @@
 #include "scenes/run_sample.h"
 #include "scenes/step_csv.h"
 #include "scenes/trajectory.h"
+#include "signature/signature_source.h"
 
 namespace lodestone {
 namespace {
@@ -28,10 +29,10 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
                      scene.output.every_n_steps, frames, scene.bodies.size(), steps / std::max(1, most - 1) + 1));
 }
 
-Manager make_manager(const Scene& scene, const RunSettings& settings) {
+Manager make_manager(const Scene& scene, const RunSettings& settings, const SignatureFunction& signatures) {
   Manager manager({.gravity = scene.step.gravity_m_per_s2, .seed = scene.step.seed, .threads = settings.threads,
                    .full_substeps = scene.step.full_substeps, .model = settings.model.value_or(scene.model), .policy = scene.lod,
-                   .signatures = settings.signatures});
+                   .signatures = signatures});
   manager.materials() = scene.materials;
   for (const Ground& ground : scene.ground) {
     if (const auto* plane = std::get_if<GroundPlane>(&ground)) manager.add_plane(plane->normal, plane->offset_m, plane->material);
@@ -45,7 +46,7 @@ Manager make_manager(const Scene& scene, const RunSettings& settings) {
 class Run {
  public:
   Run(const Scene& scene, const RunSettings& settings, int steps, double dt_s)
-      : scene_(scene), settings_(settings), steps_(steps), dt_s_(dt_s), manager_(make_manager(scene, settings)),
+      : scene_(scene), settings_(settings), steps_(steps), dt_s_(dt_s), manager_(make_manager(scene, settings, timed_signatures())),
         trajectory_(int(scene.bodies.size())) {
     open_output();
     move_viewpoints(0);
@@ -68,6 +69,19 @@ class Run {
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+  /// The source of signatures, on the clock: to measure one is preparation, though it happens within a step.
+  SignatureFunction timed_signatures() {
+    return [this](const Shape& shape, const ContactLaw& law) {
+      const auto start = Clock::now();
+      auto signature = settings_.signatures ? settings_.signatures(shape, law) : find_or_measure_signature(shape, law).signature;
+      result_.signature_seconds += seconds_since(start);
+      return signature;
+    };
+  }
+
   void open_output() {
     if (settings_.out.empty()) return;
     std::error_code error;
@@ -79,9 +93,10 @@ class Run {
 
   void advance(int step) {
     move_viewpoints(step * dt_s_);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
+    const double signatures_before = result_.signature_seconds;
     const StepReport report = manager_.step(dt_s_);
-    times_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    times_ms_.push_back(1e3 * (seconds_since(start) - (result_.signature_seconds - signatures_before)));
     result_.reports.push_back(report);
     result_.promotions += report.promotions;
     result_.transitions += report.promotions + report.demotions;
@@ -132,6 +147,7 @@ class Run {
   const RunSettings& settings_;
   int steps_;
   double dt_s_;
+  RunResult result_;
   Manager manager_;
   std::vector<BodyId> bodies_;
   Trajectory trajectory_;
@@ -139,7 +155,6 @@ class Run {
   RunSample sample_;
   std::vector<double> times_ms_;
   double last_awake_s_ = 0;
-  RunResult result_;
 };
 
 }  // namespace

@@ -40,7 +40,8 @@ struct CheckResult {
 struct RunResult {
   int steps = 0, bodies = 0;
   std::uint64_t state_hash = 0;
-  TimeSummary step_ms;
+  TimeSummary step_ms;                         ///< without signature_seconds
+  double signature_seconds = 0;                ///< spent on loading or measuring signatures when bodies first needed them
   std::vector<StepReport> reports;             ///< one per step
   std::int64_t transitions = 0, promotions = 0;
   double max_penetration_m = 0;                ///< deepest hull vertex below a ground plane, over the run

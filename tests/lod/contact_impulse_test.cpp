@@ -26,7 +26,7 @@ Touching random_touch(const Shape& shape, RandomStream& random) {
     const Vec3 down = s.orientation.conjugate() * Vec3(0, 0, -1);
     const int vertex = find_support(shape.hull, down);
     const Vec3 arm = s.orientation * shape.hull.vertices[vertex];
-    s.position = {0, 0, -arm.z() - 1e-10};
+    s.position = {0, 0, -arm.z() - 1e-13};
     if ((s.velocity + s.angular_velocity.cross(arm)).z() < -0.1) return {s, arm};
   }
 }
@@ -43,6 +43,7 @@ TEST(ContactImpulse, MatchesDWorldStepInNearlyEveryRandomCase) {
     settings.gravity.setZero();
     settings.max_contacts_per_pair = 1;
     settings.gyroscopic = false;
+    settings.cfm = 1e-14;  // over the step it softens the contact: at the usual 1e-10 by some 1e-6
     OdeWorld world(settings, materials);
     world.add_plane(Vec3::UnitZ(), 0.0, 0);
     RigidState start;
@@ -61,7 +62,8 @@ TEST(ContactImpulse, MatchesDWorldStepInNearlyEveryRandomCase) {
       const Vec3 at_contact = s.velocity + s.angular_velocity.cross(touching.arm);
       const Vec3 impulse = respond_contact(response, Vec3::UnitZ(), at_contact, law).impulse;
       const Vec3 v = s.velocity + impulse, w = s.angular_velocity + inverse_inertia * touching.arm.cross(impulse);
-      const double error = std::max((v - by_ode.velocity).norm() / s.velocity.norm(), (w - by_ode.angular_velocity).norm() / s.angular_velocity.norm());
+      const double speed = s.velocity.norm() + shape->radius * s.angular_velocity.norm();
+      const double error = ((v - by_ode.velocity).norm() + shape->radius * (w - by_ode.angular_velocity).norm()) / speed;
       ++cases;
       matches += error < 1e-6;
       worst = std::max(worst, error);
