@@ -26,10 +26,10 @@ enum class LevelChoice : std::uint8_t { automatic, full, statistical };
 enum class StatisticalModel : std::uint8_t { tables, support };
 
 struct BodyDefinition {
-  std::shared_ptr<const Shape> shape;
-  RigidState state;
+  std::shared_ptr<const Shape> shape = {};
+  RigidState state = {};
   MaterialId material = 0;
-  std::optional<double> mass;  ///< kg; else the material's density times the shape's volume
+  std::optional<double> mass = {};  ///< kg; else the material's density times the shape's volume
   LevelChoice level = LevelChoice::automatic;
   double importance = 1.0;     ///< > 0, scales the distance within which the policy makes it full
 };

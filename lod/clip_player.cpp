@@ -20,14 +20,14 @@ Vec3 rotation_vector(const Quat& q) {
   return turn.angle() * turn.axis();
 }
 
-struct PlayedPose { Vec3 position; Quat orientation; };
-
 // Clips are recorded over the plane z = 0; `yaw` takes z to the ground's normal too.
-PlayedPose pose_of(const ClipPlayback& p, const BodyKind& kind) {
-  const ClipPose pose = find_clip_pose(*kind.signature, kind.signature->clips[p.clip], p.frame);
+RigidState state_of(const ClipPlayback& p, const BodyKind& kind, double gravity) {
+  const ClipState clip = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
+  const double radius = kind.shape->radius, speed_unit = std::sqrt(gravity * radius);
   const double fade = p.residual_left * p.residual_left * (3.0 - 2.0 * p.residual_left);
-  return {p.origin + p.yaw * (pose.position * kind.shape->radius) + fade * p.residual_position,
-          rotation_from_vector(fade * p.residual_rotation) * (p.yaw * pose.orientation)};
+  return {p.origin + p.yaw * (clip.position * radius) + fade * p.residual_position,
+          rotation_from_vector(fade * p.residual_rotation) * (p.yaw * clip.orientation), p.yaw * (clip.velocity * speed_unit),
+          p.yaw * (clip.angular_velocity * (speed_unit / radius))};
 }
 
 }  // namespace
@@ -35,7 +35,6 @@ PlayedPose pose_of(const ClipPlayback& p, const BodyKind& kind) {
 std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKind& kind, const HalfSpace& ground, double gravity,
                                       const ClipSettings& settings) {
   const Shape& shape = *kind.shape;
-  const Signature& signature = *kind.signature;
   const double radius = shape.radius, speed_unit = std::sqrt(gravity * radius);
   const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
   const double kinetic = 0.5 * (body.velocity.squaredNorm() + body.spin.dot(omega));
@@ -43,20 +42,16 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
 
   const Quat to_body = body.orientation.conjugate();
   const double height = ground.height_of(body.position);
-  SettlingState state;
-  state.normal = (to_body * ground.normal).cast<float>();
-  state.velocity = (to_body * body.velocity / speed_unit).cast<float>();
-  state.angular_velocity = (to_body * omega * (radius / speed_unit)).cast<float>();
-  state.energy = float(kinetic / (gravity * radius) + height / radius);
-  const std::optional<int> nearest = find_nearest_entry(signature, state, settings.max_distance);
-  if (!nearest) return {};
+  const SettlingKey key{(to_body * ground.normal).cast<float>(), (to_body * body.velocity / speed_unit).cast<float>(),
+                        (to_body * omega * (radius / speed_unit)).cast<float>(), float(kinetic / (gravity * radius) + height / radius)};
+  const std::optional<ClipEntry> entry = kind.clips.find_nearest(key, settings.energy_slack);
+  if (!entry) return {};
 
-  const ClipEntry& entry = signature.clip_entries[*nearest];
   ClipPlayback p;
-  p.clip = entry.clip;
-  p.frame = entry.frame;
+  p.clip = entry->clip;
+  p.frame = entry->frame;
   p.residual_left = 1.0;
-  const ClipPose pose = find_clip_pose(signature, signature.clips[p.clip], p.frame);
+  const ClipState pose = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
   const Quat upright = Quat::FromTwoVectors(Vec3::UnitZ(), ground.normal);
   p.yaw = twist_about(body.orientation * (upright * pose.orientation).conjugate(), ground.normal) * upright;
   const Vec3 above_origin = p.yaw * (pose.position * radius);
@@ -72,16 +67,15 @@ bool advance_clip(ClipPlayback& p, StatisticalBody& body, const BodyKind& kind, 
   const double time_unit = std::sqrt(kind.shape->radius / gravity);
   p.frame += time / (kind.signature->clip_frame_interval * time_unit);
   p.residual_left = std::max(0.0, p.residual_left - time / (settings.fade_time * time_unit / std::sqrt(0.2 / 9.81)));
-  PlayedPose pose = pose_of(p, kind);
+  RigidState state = state_of(p, kind, gravity);
   if (p.residual_left > 0.0) {  // between two poses the hull may dip below the ground
-    const double gap = find_lowest_point(*kind.shape, pose.orientation, ground.normal, ground.height_of(pose.position), body.support_hint).gap;
-    if (gap < 0.0) pose.position -= gap * ground.normal;
+    const double gap = find_lowest_point(*kind.shape, state.orientation, ground.normal, ground.height_of(state.position), body.support_hint).gap;
+    if (gap < 0.0) state.position -= gap * ground.normal;
   }
-  body.velocity = (pose.position - body.position) / time;
-  const Vec3 omega = rotation_vector(pose.orientation * body.orientation.conjugate()) / time;
-  body.position = pose.position;
-  body.orientation = pose.orientation.normalized();
-  body.spin = spin_of(body.orientation, omega, *kind.shape);
+  body.position = state.position;
+  body.orientation = state.orientation.normalized();
+  body.velocity = state.velocity;
+  body.spin = spin_of(body.orientation, state.angular_velocity, *kind.shape);
   return p.frame >= kind.signature->clips[p.clip].frames - 1.0 && p.residual_left <= 0.0;
 }
 

@@ -19,9 +19,9 @@ struct ClipPlayback {
 };
 
 struct ClipSettings {
-  double energy_limit = 0.15;     ///< J/kg over g R: kinetic energy below which a body at a contact may join a clip
-  double contact_gap = 0.01;      ///< over R: what counts as contact
-  float max_distance = 1.0f;      ///< of the nearest entry, in find_nearest_entry's measure
+  double energy_limit = 0.02;     ///< J/kg over g R: kinetic energy below which a body at a contact may join a clip
+  float energy_slack = 0.002f;    ///< over m g R: what a clip's energy may exceed the body's by
+  float max_distance = 0.05f;     ///< of the nearest entry, in ClipIndex::find_nearest's measure
   double fade_time = 0.15;        ///< s at R = .2 m and 9.81 m/s², scaled with √(R/g)
 };
 

@@ -32,10 +32,10 @@ void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& imp
 }
 
 // The normal velocity to reach: a bounce, or closing the gap just within the step.
-double target_velocity(const SolverContact& c, double approach, double step, const ContactSolverSettings& s) {
+double target_velocity(SolverContact& c, double approach, double step, const ContactSolverSettings& s) {
   const double closing = std::min(0.0, -c.gap / step);
-  const bool bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
-  return bounces ? std::max(-c.law.restitution * approach, closing) : closing;
+  c.bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
+  return c.bounces ? std::max(-c.law.restitution * approach, closing) : closing;
 }
 
 void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const ContactSolverSettings& s) {
@@ -62,10 +62,19 @@ void relax(std::span<SolverBody> bodies, SolverContact& c) {
   apply(bodies, c, change);
 }
 
+void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
+  if (c.bounces || c.guess.isZero(0.0)) return;
+  c.impulse[0] = std::max(0.0, c.guess.dot(c.normal));
+  const double bound = c.law.friction * c.impulse[0];
+  for (int t = 0; t < 2; ++t) c.impulse[t + 1] = std::clamp(c.guess.dot(c.tangent[t]), -bound, bound);
+  apply(bodies, c, impulse_of(c));
+}
+
 }  // namespace
 
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings) {
   for (SolverContact& c : contacts) prepare(bodies, c, step, settings);
+  for (SolverContact& c : contacts) start_from_guess(bodies, c);
   for (int sweep = 0; sweep < settings.sweeps; ++sweep)
     for (SolverContact& c : contacts) relax(bodies, c);
 }

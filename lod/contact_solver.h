@@ -23,13 +23,19 @@ struct SolverContact {
   Vec3 normal = Vec3::UnitZ();          ///< points into `first`
   Vec3 arm_first = Vec3::Zero(), arm_second = Vec3::Zero();  ///< from each centre of mass to the shared point
   double gap = 0.0;                     ///< m, negative where they overlap
+  double share = 1.0;                   ///< of undoing the overlap: contacts of one pair share it
   ContactLaw law;
+  Vec3 guess = Vec3::Zero();            ///< N s, on `first`: what a resting contact starts from
   // Filled by the solver:
   Vec3 tangent[2] = {Vec3::Zero(), Vec3::Zero()};
   double effective_mass[3] = {0.0, 0.0, 0.0};
   double target = 0.0;                  ///< m/s, normal velocity asked for
+  bool bounces = false;                 ///< an impact, fast enough for restitution
   double impulse[3] = {0, 0, 0};        ///< N s, along the normal and both tangents
 };
+
+/// N s, on the first body.
+inline Vec3 impulse_of(const SolverContact& c) { return c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1]; }
 
 struct ContactSolverSettings {
   int sweeps = 8;

@@ -1,5 +1,6 @@
 // Contacts between a full and a statistical body. The statistical level solves them, with the full bodies as they are at the start of the
-// step; what they get from it is handed to ODE's bodies before the full level's step, so that momentum is kept to rounding.
+// step and with what held them up in ODE's last substep; what they get from it is handed to ODE's bodies before the full level's step, so
+// that momentum is kept to rounding.
 #pragma once
 
 #include <vector>
@@ -8,10 +9,16 @@
 
 namespace lodestone {
 
-/// The full bodies as the statistical level meets them, in the order of the full level's members.
-void gather_neighbors(const Levels& levels, std::vector<FullNeighbor>& neighbors);
+/// The full bodies, in the order of the full level's members, and the contacts among them.
+struct Neighborhood {
+  std::vector<FullNeighbor> bodies;
+  std::vector<FullContact> contacts;
+};
 
-/// Gives each full body the impulses that came back, for a step of `dt` seconds.
-void hand_over(Levels& levels, std::span<const FullNeighbor> neighbors, double dt);
+/// To be called while the bodies' forces are still held for them.
+void gather(const Levels& levels, Neighborhood& neighborhood);
+
+/// Gives each full body what came back, for a step of `dt` seconds.
+void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt);
 
 }  // namespace lodestone

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lod/contact_memory.h"
 #include "lod/ground_contact.h"
 #include "lod/pair_contacts.h"
 #include "lod/statistical_level.h"
@@ -30,23 +31,30 @@ class Crowd {
  public:
   explicit Crowd(const CrowdSettings& settings = {}) : settings_(settings) {}
 
-  /// Solves `contacts` and the ground contacts of every crowded body, then moves those bodies by `time`. Bodies asleep hold still; full
-  /// neighbours receive impulses and are not moved.
+  /// Solves `contacts`, the ground contacts of every crowded body and those of `full_contacts` that hold up a full one, then moves the crowded
+  /// bodies by `time`. Bodies asleep hold still; full neighbours receive impulses and are not moved.
   ContactTally step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
-                    std::span<const CrowdContact> contacts, const StepWorld& world, StatisticalModel model, double time);
+                    std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts, const StepWorld& world,
+                    StatisticalModel model, double time);
 
  private:
   int solver_index(Participant participant, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
                    std::span<const FullNeighbor> neighbors, const StepWorld& world, double time);
   void add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
                            StatisticalModel model, double time);
+  void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
+  void add_full_contacts(int index, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
+                         std::span<const FullNeighbor> neighbors, std::span<const FullContact> full_contacts, const StepWorld& world, double time);
 
   CrowdSettings settings_;
   std::vector<Participant> participants_;     // of each solver body
   std::vector<std::int32_t> index_of_slot_, index_of_neighbor_;
+  std::vector<std::int32_t> full_start_, full_order_;  // of each neighbour: its run of full contacts
   std::vector<SolverBody> solver_bodies_;
   std::vector<Vec3> angular_before_;
   std::vector<SolverContact> solver_contacts_;
+  std::vector<ContactKey> keys_;  // of each solver contact
+  ContactMemory memory_;
 };
 
 /// The paper's rule for a pair of the statistical level (3.3.2).

@@ -47,6 +47,7 @@ OdeBodyId FullLevel::add(std::uint32_t owner, const OdeBodyDefinition& definitio
   }
   const OdeBodyId body = world_->add_body(definition);
   if (asleep) world_->set_asleep(body, true);
+  index_of_id_[body.value] = std::int32_t(members_.size());
   members_.push_back({owner, body});
   return body;
 }
@@ -54,9 +55,16 @@ OdeBodyId FullLevel::add(std::uint32_t owner, const OdeBodyDefinition& definitio
 void FullLevel::remove(OdeBodyId body) {
   world_->remove_body(body);
   // Swapped with the last: order does not matter to ODE, and is the same in every run.
-  const auto member = std::ranges::find(members_, body, &Member::id);
-  *member = members_.back();
+  const std::int32_t index = index_of(body);
+  members_[index] = members_.back();
+  index_of_id_[members_[index].id.value] = index;
   members_.pop_back();
+  index_of_id_.erase(body.value);
+}
+
+std::int32_t FullLevel::index_of(OdeBodyId body) const {
+  const auto found = index_of_id_.find(body.value);
+  return found == index_of_id_.end() ? -1 : found->second;
 }
 
 void FullLevel::step(double dt, Counters& counters) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "lod/static_ground.h"
@@ -45,6 +46,8 @@ class FullLevel {
   void step(double dt, Counters& counters);
 
   std::span<const Member> members() const { return members_; }
+  /// Where in members() a body is; −1 for one that was removed.
+  std::int32_t index_of(OdeBodyId body) const;
   int asleep_count() const;
   /// Null before a first body was full, unless it is the caller's.
   const OdeWorld* world() const { return world_ ? &*world_ : nullptr; }
@@ -59,6 +62,7 @@ class FullLevel {
   std::optional<OdeWorld> world_;
   std::vector<std::function<void(OdeWorld&)>> waiting_ground_;
   std::vector<Member> members_;
+  std::unordered_map<std::uint32_t, std::int32_t> index_of_id_;
   OdeCounters counted_;
 };
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lod/levels.h"
+#include "lod/cross_level.h"
 #include "lod/manager.h"
 
 namespace lodestone {
@@ -22,7 +22,7 @@ struct Manager::Impl {
   std::vector<std::uint32_t> newcomers;         // at no level yet
   std::vector<std::uint32_t> put_off;           // waiting to be tried again
   std::vector<std::uint32_t> pushed;            // with a force for the next step
-  std::vector<FullNeighbor> neighbors;
+  Neighborhood neighborhood;
   StepReport report;
   // Smoothed measurements; the first is a guess until a body was full.
   double full_body_step_ms = 0.1, statistical_ms = 0.0;

@@ -1,7 +1,6 @@
 // The stages of a step, in order.
 #include <algorithm>
 
-#include "lod/cross_level.h"
 #include "lod/manager_impl.h"
 #include "lod/stage_timer.h"
 #include "lod/transfer.h"
@@ -98,19 +97,20 @@ void Manager::Impl::count_down_retries() {
 }
 
 void Manager::Impl::step_statistical(double dt) {
-  give_forces();
   if (levels.owner_of_slot.empty()) {
+    give_forces();
     statistical_ms = 0.0;
     return;
   }
   {
     const StageTimer timer(report.times.cross_level_ms);
-    gather_neighbors(levels, neighbors);
+    gather(levels, neighborhood);
+    give_forces();
   }
-  levels.statistical->step(dt, neighbors, report);
+  levels.statistical->step(dt, neighborhood.bodies, report, neighborhood.contacts);
   {
     const StageTimer timer(report.times.cross_level_ms);
-    hand_over(levels, neighbors, dt);
+    hand_over(levels, neighborhood, dt);
   }
   const StageTimes& t = report.times;
   smooth(statistical_ms, t.flight_ms + t.broad_phase_ms + t.pairs_ms + t.rest_ms + t.cross_level_ms);

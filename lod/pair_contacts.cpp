@@ -3,6 +3,9 @@
 namespace lodestone {
 namespace {
 
+// Vertices this near the touching plane, over R, belong to the touching feature.
+constexpr double kFeatureMargin = 0.02;
+
 struct Separation {
   Vec3 normal = Vec3::UnitZ();  // from second to first
   double gap = -1e300;
@@ -51,14 +54,31 @@ void climb(const PairBody& first, const PairBody& second, Separation& best) {
   }
 }
 
-// The middle of the vertices that lie within a hair of the touching plane: a point for a corner, an edge's or a face's middle.
-Vec3 touching_middle(const PairBody& body, const Vec3& normal, std::int32_t vertex) {
+// The vertices that lie within a hair of the touching plane, as arms from `origin`.
+HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin) {
   const HullContact lowest = find_lowest_point(*body.shape, body.orientation, normal, 0.0, vertex);
-  const double margin = lowest.gap + 0.02 * body.shape->radius;
-  const HullContacts near = find_hull_contacts(*body.shape, body.orientation, normal, 0.0, margin, vertex);
+  const double margin = lowest.gap + kFeatureMargin * body.shape->radius;
+  HullContacts feature = find_hull_contacts(*body.shape, body.orientation, normal, 0.0, margin, vertex);
+  for (int i = 0; i < feature.count; ++i) feature.contact[i].arm += body.position - origin;
+  return feature;
+}
+
+Vec3 middle_of(const HullContacts& feature) {
   Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < near.count; ++i) sum += near.contact[i].arm;
-  return body.position + sum / near.count;
+  for (int i = 0; i < feature.count; ++i) sum += feature.contact[i].arm;
+  return sum / feature.count;
+}
+
+Manifold find_points(const PairBody& first, const PairBody& second, const Separation& best) {
+  const HullContacts upper = find_feature(first, best.normal, best.vertex_first, second.position);
+  const HullContacts lower = find_feature(second, -best.normal, best.vertex_second, second.position);
+  Manifold manifold = find_manifold(upper, lower, best.normal, best.gap);
+  if (manifold.count == 0) {  // the axis is not quite that of the nearest features
+    manifold.points[0] = {0.5 * (middle_of(upper) + middle_of(lower)), best.gap};
+    manifold.count = 1;
+  }
+  for (ManifoldPoint& p : manifold.points) p.point += second.position;
+  return manifold;
 }
 
 }  // namespace
@@ -68,7 +88,10 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   const double distance = between.norm(), gap = distance - first.sphere_radius - second.sphere_radius;
   if (gap > margin) return {};
   const Vec3 normal = distance > 1e-12 ? Vec3(between / distance) : Vec3::UnitZ();
-  return PairContact{normal, second.position + (second.sphere_radius + 0.5 * gap) * normal, gap};
+  PairContact contact{normal, gap, {}};
+  contact.manifold.points[0] = {second.position + (second.sphere_radius + 0.5 * gap) * normal, gap};
+  contact.manifold.count = 1;
+  return contact;
 }
 
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
@@ -82,8 +105,7 @@ std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBo
   if (best.gap > margin) return {};
   climb(first, second, best);
   if (best.gap > margin) return {};
-  const Vec3 a = touching_middle(first, best.normal, best.vertex_first), b = touching_middle(second, -best.normal, best.vertex_second);
-  return PairContact{best.normal, 0.5 * (a + b), best.gap};
+  return PairContact{best.normal, best.gap, find_points(first, second, best)};
 }
 
 }  // namespace lodestone

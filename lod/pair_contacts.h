@@ -1,11 +1,11 @@
-// Where two statistical bodies meet: one shared point and normal.
+// Where two statistical bodies meet: a shared normal and shared points.
 #pragma once
 
 #include <optional>
 #include <span>
 
 #include "lod/body.h"
-#include "lod/hull_contacts.h"
+#include "lod/contact_manifold.h"
 #include "signature/signature.h"
 
 namespace lodestone {
@@ -21,8 +21,8 @@ struct PairBody {
 
 struct PairContact {
   Vec3 normal = Vec3::UnitZ();  ///< from the second body into the first
-  Vec3 point = Vec3::Zero();    ///< shared, world
-  double gap = 0.0;             ///< m, negative where they overlap
+  double gap = 0.0;             ///< m, the least; negative where they overlap
+  Manifold manifold;            ///< one to four points that both bodies share, world
 };
 
 /// `tables`: the two spheres. None where the gap is above `margin`.

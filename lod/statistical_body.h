@@ -7,7 +7,7 @@
 #include "reference/free_rotation.h"
 #include "reference/material.h"
 #include "reference/shape.h"
-#include "signature/signature.h"
+#include "signature/settling_clips.h"
 
 namespace lodestone {
 
@@ -15,6 +15,7 @@ namespace lodestone {
 struct BodyKind {
   std::shared_ptr<const Shape> shape;
   std::shared_ptr<const Signature> signature;  ///< may be null (support model)
+  ClipIndex clips;                             ///< of the signature's settling clips (support model)
   double mass = 1.0;                           ///< kg
   MaterialId material = 0;
   bool isotropic = false;                      ///< a sphere or a cube: rotates steadily

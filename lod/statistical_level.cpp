@@ -16,9 +16,12 @@
 namespace lodestone {
 namespace {
 
-// Sleeping (3.4's second threshold away from rest poses): slower than .05 m/s at R = .2 m, scaled with √R, for .1 s.
+// Sleeping (3.4's second threshold). Among other bodies: slower than .05 m/s at R = .2 m, scaled with √R, for .1 s. Alone a body may still rock
+// slowly, so it must be nearly still for longer: kinetic energy over m g R below 1e-4 for .5 s.
 constexpr double kSleepSpeed = 0.05, kSleepSpeedRadius = 0.2;
 constexpr float kSleepTime = 0.1f;
+constexpr double kAloneSleepEnergy = 1e-4;
+constexpr float kAloneSleepTime = 0.5f;
 constexpr double kWakeFactor = 2.0;  // a sleeper wakes when touched faster than this times the sleeping speed
 
 double sleep_speed(double radius) { return kSleepSpeed * std::sqrt(radius / kSleepSpeedRadius); }
@@ -36,6 +39,15 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// Drops `gone` from a list in order, and where `last`, the greatest of all, is in it, puts `gone` there instead.
+void rename_in_order(std::vector<std::int32_t>& list, std::int32_t last, std::int32_t gone) {
+  const auto place = std::ranges::lower_bound(list, gone);
+  if (place != list.end() && *place == gone) list.erase(place);
+  if (list.empty() || list.back() != last) return;
+  list.pop_back();
+  list.insert(std::ranges::lower_bound(list, gone), gone);
+}
+
 struct Push { Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); };
 
 }  // namespace
@@ -52,6 +64,7 @@ struct StatisticalLevel::Impl {
   std::vector<ClipPlayback> clips;
   std::vector<RestingRecord> resting;
   std::vector<bool> near_other;
+  std::vector<std::optional<Vec3>> angular_velocity_given;  // until the next step: a state that was set is read back to the bit
   std::vector<std::pair<int, Push>> pushes;  // of the next step
 
   std::vector<std::int32_t> awake, asleep;   // slots
@@ -84,7 +97,10 @@ struct StatisticalLevel::Impl {
   PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;
   std::optional<CrowdContact> find_contact(Participant first, Participant second, double dt, std::span<const FullNeighbor> neighbors) const;
   Vec3 point_velocity(Participant p, const Vec3& point, std::span<const FullNeighbor> neighbors) const;
-  void wake_touched(std::span<const FullNeighbor> neighbors);
+  bool is_asleep(Participant p, std::span<const FullNeighbor> neighbors) const {
+    return p < 0 ? neighbors[-1 - p].asleep : bodies[p].motion == Motion::asleep;
+  }
+  void wake_touched(std::span<FullNeighbor> neighbors);
   void move_alone(int slot, double dt, ContactTally& tally);
   void move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally);
   void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
@@ -98,7 +114,9 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
   const Mat3& inertia = shape->inertia_per_mass;
   const bool isotropic = (inertia - inertia.trace() / 3.0 * Mat3::Identity()).norm() < 1e-9 * inertia.norm();
-  kinds.push_back({std::move(shape), std::move(signature), mass, material, isotropic});
+  ClipIndex index;
+  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.max_distance);
+  kinds.push_back({std::move(shape), std::move(signature), std::move(index), mass, material, isotropic});
   return std::uint16_t(kinds.size() - 1);
 }
 
@@ -194,8 +212,12 @@ std::optional<CrowdContact> StatisticalLevel::Impl::find_contact(Participant fir
   const std::optional<PairContact> contact = tables() ? find_sphere_contact(a, b, margin) : find_hull_contact(a, b, margin);
   if (!contact) return {};
   // It counts if it closes within the step.
-  const double approach = (point_velocity(first, contact->point, neighbors) - point_velocity(second, contact->point, neighbors)).dot(contact->normal);
-  if (contact->gap + approach * dt > touching) return {};
+  const auto closes = [&](const ManifoldPoint& p) {
+    const Vec3 velocity = point_velocity(first, p.point, neighbors) - point_velocity(second, p.point, neighbors);
+    return p.gap + velocity.dot(contact->normal) * dt <= touching;
+  };
+  const auto points = std::span(contact->manifold.points).first(std::size_t(contact->manifold.count));
+  if (std::ranges::none_of(points, closes)) return {};
   return CrowdContact{first, second, *contact};
 }
 
@@ -210,6 +232,7 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
     for (std::int64_t i = begin; i < end; ++i) {
       const Participant first = mover(pairs[i].first), second = pairs[i].second >= 0 ? mover(pairs[i].second) : asleep[-1 - pairs[i].second];
       if (first < 0 && second < 0) continue;  // two full bodies are the full level's matter
+      if (is_asleep(first, neighbors) && is_asleep(second, neighbors)) continue;
       found[i] = find_contact(first, second, dt, neighbors);
     }
   });
@@ -225,12 +248,15 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   }
 }
 
-void StatisticalLevel::Impl::wake_touched(std::span<const FullNeighbor> neighbors) {
+void StatisticalLevel::Impl::wake_touched(std::span<FullNeighbor> neighbors) {
   for (const CrowdContact& c : contacts)
     for (const auto& [sleeper, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
-      if (sleeper < 0 || bodies[sleeper].motion != Motion::asleep) continue;
-      const double speed = point_velocity(other, c.contact.point, neighbors).norm();
-      if (speed > kWakeFactor * sleep_speed(kind_of(bodies[sleeper]).shape->radius)) wake(sleeper);
+      if (!is_asleep(sleeper, neighbors)) continue;
+      const double radius = sleeper < 0 ? neighbors[-1 - sleeper].shape->radius : kind_of(bodies[sleeper]).shape->radius;
+      const double speed = point_velocity(other, c.contact.manifold.points[0].point, neighbors).norm();
+      if (speed <= kWakeFactor * sleep_speed(radius)) continue;
+      if (sleeper < 0) neighbors[-1 - sleeper].asleep = false;
+      else wake(sleeper);
     }
 }
 
@@ -239,9 +265,9 @@ void StatisticalLevel::Impl::wake_touched(std::span<const FullNeighbor> neighbor
 void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, bool touching, double dt) {
   const BodyKind& kind = kind_of(body);
   const double speed = sleep_speed(kind.shape->radius);
-  const bool quiet = touching && 2.0 * kinetic_energy(body, *kind.shape) < speed * speed;
-  body.quiet_time = quiet ? body.quiet_time + float(dt) : 0.0f;
-  if (settings.sleeping && body.quiet_time >= kSleepTime) put_to_sleep(body);
+  const double limit = body.crowded ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
+  body.quiet_time = touching && kinetic_energy(body, *kind.shape) < limit ? body.quiet_time + float(dt) : 0.0f;
+  if (settings.sleeping && body.quiet_time >= (body.crowded ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
 }
 
 void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
@@ -262,7 +288,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
     return;
   }
   const HalfSpace& plane = ground.planes[tally.touched_plane];
-  if (!near_other[slot] && kind.signature && !kind.signature->clip_entries.empty() && world().is_horizontal(plane)) {
+  if (!near_other[slot] && !kind.clips.empty() && world().is_horizontal(plane)) {
     if (const auto clip = find_clip(body, kind, plane, gravity, clip_settings)) {
       clips[slot] = *clip;
       resting[slot].plane = tally.touched_plane;
@@ -313,11 +339,13 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
   level.clips.emplace_back();
   level.resting.emplace_back();
   level.near_other.push_back(false);
+  level.angular_velocity_given.emplace_back();
   level.awake.push_back(slot);
   set_state(slot, state);
   if (level.tables()) level.bodies[slot].sphere_radius = float(find_sphere_radius(level.bodies[slot], level.kind_of(level.bodies[slot]), level.settings.tables, level.settings.seed));
   if (asleep) {
     level.put_to_sleep(level.bodies[slot]);
+    level.angular_velocity_given[slot].reset();
     level.sort_by_motion();
   }
   return slot;
@@ -336,12 +364,8 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
   for (const int other : touching) level.wake(other);
 
   const int last = size() - 1;
-  std::erase(level.awake, slot);
-  std::erase(level.asleep, slot);
-  for (auto* list : {&level.awake, &level.asleep}) {
-    std::replace(list->begin(), list->end(), last, slot);
-    std::sort(list->begin(), list->end());
-  }
+  if (!std::ranges::is_sorted(level.awake)) std::ranges::sort(level.awake);
+  for (auto* list : {&level.awake, &level.asleep}) rename_in_order(*list, last, slot);
   std::erase_if(level.pushes, [&](const auto& push) { return push.first == slot; });
   for (auto& push : level.pushes)
     if (push.first == last) push.first = slot;
@@ -352,13 +376,16 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
   level.clips.pop_back();
   level.resting.pop_back();
   level.near_other.pop_back();
+  level.angular_velocity_given[slot] = level.angular_velocity_given[last];
+  level.angular_velocity_given.pop_back();
   level.sleepers_changed = true;
   return slot == last ? std::nullopt : std::optional(level.bodies[slot].owner);
 }
 
-void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report) {
+void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
   Impl& level = *impl_;
   Stopwatch watch;
+  level.angular_velocity_given.assign(level.bodies.size(), std::nullopt);
   level.apply_pushes(dt);
 
   // 1 Near pairs: none to look for with a single body.
@@ -372,6 +399,8 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     level.find_contacts(dt, neighbors);
     level.wake_touched(neighbors);
     report.times.pairs_ms += watch.lap_ms();
+  } else {
+    for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = level.near_other[slot] = false;
   }
 
   // 3 Bodies that touch no other.
@@ -389,7 +418,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   if (!level.contacts.empty()) {
     for (const std::int32_t slot : level.awake)
       if (level.bodies[slot].crowded && level.bodies[slot].motion == Motion::settling) level.bodies[slot].motion = Motion::dynamic;
-    tally += level.crowd.step(level.bodies, level.kinds, neighbors, level.contacts, level.world(), level.settings.model, dt);
+    tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.world(), level.settings.model, dt);
     for (const std::int32_t slot : level.awake)
       if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], true, dt);
     report.times.pairs_ms += watch.lap_ms();
@@ -408,7 +437,9 @@ int StatisticalLevel::asleep_count() const { return int(impl_->asleep.size()); }
 
 RigidState StatisticalLevel::state(int slot) const {
   const StatisticalBody& body = impl_->bodies[slot];
-  return {body.position, body.orientation, body.velocity, angular_velocity(body.orientation, body.spin, *impl_->kind_of(body).shape)};
+  const std::optional<Vec3>& given = impl_->angular_velocity_given[slot];
+  return {body.position, body.orientation, body.velocity,
+          given ? *given : angular_velocity(body.orientation, body.spin, *impl_->kind_of(body).shape)};
 }
 
 void StatisticalLevel::set_state(int slot, const RigidState& state) {
@@ -418,6 +449,7 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   body.orientation = state.orientation;
   body.velocity = state.velocity;
   body.spin = spin_of(state.orientation, state.angular_velocity, *impl_->kind_of(body).shape);
+  impl_->angular_velocity_given[slot] = state.angular_velocity;
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
 }

@@ -156,14 +156,15 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
     tally.touched_plane = touched;
     const double energy_before = kinetic_energy(body, shape);
     const double approach = -body.velocity.dot(plane.normal);
-    respond_from_tables(body, kind, plane.normal, world, law, settings.options, tally);
+    const bool presses = approach < world.bounce_velocity + world.gravity_strength() * time;  // no impact: what gravity adds in a step
+    if (body.motion != Motion::settling || !presses) respond_from_tables(body, kind, plane.normal, world, law, settings.options, tally);
     if (body.motion == Motion::dynamic && world.is_horizontal(plane) && energy_before < settings.resting_energy * energy_unit) {
       resting = {find_nearest_rest_pose(*kind.signature, body.orientation.conjugate() * plane.normal), touched};
       if (resting.pose >= 0) body.motion = Motion::settling;
     }
     if (body.motion == Motion::settling && energy_before > 2.0 * settings.resting_energy * energy_unit) body.motion = Motion::dynamic;
     if (body.motion == Motion::settling) turn_to_rest(body, kind, resting.pose, plane, energy_before, blend, std::max(left, 1e-3));
-    if (approach < world.bounce_velocity || hit + 1 >= settings.max_impacts) {
+    if (approach < world.bounce_velocity || (presses && body.motion == Motion::settling) || hit + 1 >= settings.max_impacts) {
       slide(body, kind, plane, world, law.friction, left);
       return tally;
     }

@@ -55,6 +55,7 @@ void set_sleeping(dBodyID body, bool sleeps, double radius) {
   dBodySetAutoDisableAngularThreshold(body, 0.05 / radius);
   dBodySetAutoDisableTime(body, 0.5);
   dBodySetAutoDisableSteps(body, 0);
+  dBodyEnable(body);  // starts the .5 s; else a new body at rest would sleep in its first step
 }
 
 double reach_of(const Shape& shape, std::span<const Sphere> spheres) {

@@ -10,26 +10,48 @@
 namespace lodestone {
 
 inline constexpr float kClipHeightRange = 4.0f;  ///< over R
+inline constexpr float kClipSpeedRange = 4.0f;   ///< over √(gR), and times √(R/g)
 
-/// Pose in a clip: position over R relative to the clip's start (z over the plane), orientation up to the yaw that the player adds.
-struct ClipPose {
+/// State in a clip: position over R relative to the clip's start (z over the plane), orientation up to the yaw that the player adds, velocities over
+/// √(gR) and √(g/R).
+struct ClipState {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
 };
 
-ClipFrame encode_frame(const ClipPose& pose, float extent);
-ClipPose decode_frame(const ClipFrame& frame, float extent);
+ClipFrame encode_frame(const ClipState& state, float extent);
+ClipState decode_frame(const ClipFrame& frame, float extent);
 
-/// Pose of `clip` at `frame` (fractional, clamped to the clip), between frames by interpolation.
-ClipPose find_clip_pose(const Signature& signature, const SettlingClip& clip, double frame);
+/// State in `clip` at `frame` (fractional, clamped to the clip), between frames by interpolation.
+ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, double frame);
 
-/// How a body moves at a contact, dimensionless and in body axes (as ClipEntry).
-struct SettlingState {
-  Eigen::Vector3f normal, velocity, angular_velocity;
-  float energy = 0.0f;
+/// How a body moves at a contact, dimensionless and in body axes, so that yaw does not matter.
+struct SettlingKey {
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< of the plane
+  Eigen::Vector3f velocity = Eigen::Vector3f::Zero(), angular_velocity = Eigen::Vector3f::Zero();
+  float energy = 0.0f;                                ///< kinetic and potential over m g R, height zero at the plane
 };
 
-/// The entry nearest to `state` by 4|Δn|² + |Δv|² + |Δω|², among those of no higher energy; none where every one is farther than `max_distance`.
-std::optional<int> find_nearest_entry(const Signature& signature, const SettlingState& state, float max_distance);
+/// The entries of a signature's clips, arranged for look-up by the plane's normal in body axes.
+class ClipIndex {
+ public:
+  ClipIndex() = default;
+  /// `inertia_per_mass`: of the shape, over R²; `max_distance`: of what find_nearest may return.
+  ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance);
+
+  /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`; none beyond the greatest distance.
+  std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack) const;
+  bool empty() const { return keys_.empty(); }
+
+ private:
+  static constexpr int kSide = 6;  // cells along an edge of the cube of normals
+  float max_distance_ = 0.0f;
+  std::vector<SettlingKey> keys_;
+  std::vector<ClipEntry> entries_;
+  std::vector<std::uint32_t> start_;  // of each cell's run of `near_`
+  std::vector<std::uint32_t> near_;   // keys within reach of the cell
+};
 
 }  // namespace lodestone

@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kGravity = 9.81;           // m/s²
 constexpr int kSubsteps = 33;               // ODE steps of .505 ms in 1/60 s: the ground truth's
-constexpr double kHorizon = 10.0;           // s
+constexpr double kHorizon = 20.0;           // s
 constexpr double kRestEnergy = 1e-4;        // J/kg over g R: below it for kRestTime the body rests
 constexpr double kRestTime = 0.5;           // s
 constexpr double kClipEnergy = 0.3;         // J/kg over g R: kinetic energy at a contact below which a clip starts
 constexpr double kEntryGap = 0.02;          // over R: near enough to the plane to be an entry
-constexpr int kEntriesPerClip = 12;
+constexpr int kEntriesPerClip = 24;
 constexpr double kSamePose = 12.0 * std::numbers::pi / 180.0;
 
 double kinetic_energy(const Shape& shape, const RigidState& s) {
@@ -112,22 +112,19 @@ void add_clips(std::span<const SettlingRecord> records, const Shape& shape, int 
     double extent = 1e-3;
     for (const RigidState& s : record.states) extent = std::max(extent, (s.position - start).head<2>().cwiseAbs().maxCoeff() / radius);
     clip.extent = float(extent);
-    int entries = 0;
+    std::vector<std::uint32_t> touching;  // frames where a body may join
     for (std::uint32_t i = 0; i < clip.frames; ++i) {
       const RigidState& s = record.states[i];
-      signature.clip_frames.push_back(encode_frame({(s.position - start) / radius, s.orientation}, clip.extent));
+      signature.clip_frames.push_back(
+          encode_frame({(s.position - start) / radius, s.orientation, s.velocity / speed_unit, s.angular_velocity * (radius / speed_unit)}, clip.extent));
       const double energy = kinetic_energy(shape, s) / (kGravity * radius);
-      if (entries >= kEntriesPerClip || energy > kClipEnergy || gap_of(shape, s) > kEntryGap * radius) continue;
-      ++entries;
-      const Quat to_body = s.orientation.conjugate();
-      ClipEntry entry;
-      entry.clip = std::uint32_t(signature.clips.size());
-      entry.frame = i;
-      entry.normal = (to_body * Vec3::UnitZ()).cast<float>();
-      entry.velocity = (to_body * s.velocity / speed_unit).cast<float>();
-      entry.angular_velocity = (to_body * s.angular_velocity * (radius / speed_unit)).cast<float>();
-      entry.energy = float(energy + s.position.z() / radius);
-      signature.clip_entries.push_back(entry);
+      if (energy < kClipEnergy && gap_of(shape, s) < kEntryGap * radius) touching.push_back(i);
+    }
+    // Spread more closely at the start, where states differ most from clip to clip.
+    const auto n = double(touching.size());
+    for (int i = 0; i < std::min(kEntriesPerClip, int(n)); ++i) {
+      const double part = double(i) / kEntriesPerClip;
+      signature.clip_entries.push_back({std::uint32_t(signature.clips.size()), touching[std::size_t(std::max(double(i), n * part * part))]});
     }
     signature.clips.push_back(clip);
   }

@@ -47,8 +47,10 @@ struct RestPose {
 
 /// One frame of a settling clip, 16 bits a number (encode_frame and decode_frame in settling_clips.h).
 struct ClipFrame {
-  std::array<std::int16_t, 3> position;     ///< x, y from the clip's start over its `extent`, z over kClipHeightRange; of 32767
-  std::array<std::int16_t, 4> orientation;  ///< w, x, y, z; of 32767
+  std::array<std::int16_t, 3> position;          ///< x, y from the clip's start over its `extent`, z over kClipHeightRange; of 32767
+  std::array<std::int16_t, 4> orientation;       ///< w, x, y, z; of 32767
+  std::array<std::int16_t, 3> velocity;          ///< over kClipSpeedRange √(gR); of 32767
+  std::array<std::int16_t, 3> angular_velocity;  ///< over kClipSpeedRange √(g/R); of 32767
 };
 
 /// ODE's own settling from low energy to rest on a horizontal plane, recorded (position over R).
@@ -57,13 +59,9 @@ struct SettlingClip {
   float extent = 1.0f;                        ///< greatest |x|, |y| in it, over R
 };
 
-/// A frame of a clip in contact with the plane, where a body may join it. All in body axes, so that yaw does not matter.
+/// A frame of a clip in contact with the plane, where a body may join it.
 struct ClipEntry {
-  std::uint32_t clip = 0, frame = 0;                ///< frame counted within the clip
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero(); ///< the plane's
-  Eigen::Vector3f velocity = Eigen::Vector3f::Zero();          ///< over √(gR)
-  Eigen::Vector3f angular_velocity = Eigen::Vector3f::Zero();  ///< times √(R/g)
-  float energy = 0.0f;                              ///< kinetic and potential over m g R, height zero at the plane
+  std::uint32_t clip = 0, frame = 0;  ///< frame counted within the clip
 };
 
 /// When a single-collision trial stops.

@@ -33,11 +33,9 @@ class Writer {
     bytes.insert(bytes.end(), from, from + sizeof(T));
   }
   void put(const Vec3& v) { for (double x : v) put(x); }
-  void put(const Eigen::Vector3f& v) { for (float x : v) put(x); }
   void put(const Response& r) { for (float x : r) put(x); }
   void put(const std::string& text) { put_each(std::span(text.data(), text.size())); }
   void put(const RestPose& p) { put(p.normal), put(p.height), put(p.frequency); }
-  void put(const ClipEntry& e) { put(e.clip), put(e.frame), put(e.normal), put(e.velocity), put(e.angular_velocity), put(e.energy); }
   template <class Range>
   void put_each(const Range& values) {
     put(std::uint64_t(values.size()));
@@ -70,10 +68,8 @@ class Reader {
     bytes_ = bytes_.subspan(sizeof(T));
   }
   void get(Vec3& v) { for (double& x : v) get(x); }
-  void get(Eigen::Vector3f& v) { for (float& x : v) get(x); }
   void get(Response& r) { for (float& x : r) get(x); }
   void get(RestPose& p) { get(p.normal), get(p.height), get(p.frequency); }
-  void get(ClipEntry& e) { get(e.clip), get(e.frame), get(e.normal), get(e.velocity), get(e.angular_velocity), get(e.energy); }
   template <class Container>
   void get_each(Container& values) {
     std::uint64_t count = 0;
@@ -166,6 +162,7 @@ Signature decode_signature(std::span<const std::byte> bytes, const std::string& 
   if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0) reader.fail("a file of another kind", "a signature (it begins with LODESIG)");
   if (header.version != kSignatureFormatVersion)
     reader.fail(fmt::format("format version {}", header.version), fmt::format("version {}: measure it again", kSignatureFormatVersion));
+  if (header.reserved != 0) reader.fail("a header of another kind", "zeros after the version");
   const std::span<const std::byte> payload = bytes.subspan(sizeof(Header));
   if (payload.size() != header.payload_bytes) reader.fail(fmt::format("{} bytes of payload", payload.size()), fmt::format("{}", header.payload_bytes));
   if (XXH3_64bits(payload.data(), payload.size()) != header.payload_hash) reader.fail("a checksum that does not match", "undamaged bytes");
