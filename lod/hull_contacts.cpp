@@ -75,4 +75,13 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   return result;
 }
 
+void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane) {
+  const double height = plane.height_of(body.position);
+  if (height > shape.radius) return;
+  const double gap = find_lowest_point(shape, body.orientation, plane.normal, height, body.support_hint).gap;
+  if (gap >= 0.0) return;
+  body.position -= gap * plane.normal;
+  body.velocity -= std::min(0.0, body.velocity.dot(plane.normal)) * plane.normal;
+}
+
 }  // namespace lodestone
