@@ -20,6 +20,7 @@ struct BodyRecord {
   OdeBodyId ode = {};                ///< at the full level, else null
   Vec3 force = Vec3::Zero();         ///< N, over the next step; held here so that a change of level carries it
   Vec3 torque = Vec3::Zero();        ///< N m
+  double still_s = 0.0;              ///< how long it has been still at the full level, held up by statistical bodies
   int frames_to_retry = 0, retry_after = 0;  ///< of a promotion that was put off: left to wait, and the whole wait
 };
 

@@ -1,5 +1,7 @@
 #include "lod/cross_level.h"
 
+#include <algorithm>
+
 namespace lodestone {
 namespace {
 
@@ -8,6 +10,7 @@ FullNeighbor neighbor_of(const Levels& levels, const FullLevel::Member& member) 
   FullNeighbor neighbor;
   neighbor.owner = member.owner;
   neighbor.shape = record.definition.shape.get();
+  neighbor.signature = levels.signatures.find_known(*neighbor.shape, levels.ground_law(record.definition.material));
   neighbor.mass = record.mass;
   neighbor.material = record.definition.material;
   neighbor.state = levels.full.world()->state(member.id);
@@ -21,10 +24,27 @@ double friction_between(const Levels& levels, const Neighborhood& neighborhood, 
   return levels.materials.law(first, contact.second < 0 ? 0 : neighborhood.bodies[contact.second].material).friction;
 }
 
+// ODE's contacts of the last substep, and those of the last steps whose pair it did not find again.
+void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Seen>& seen) {
+  constexpr int kKept = 3;  // steps
+  const auto pair_of = [](const Neighborhood::Seen& s) { return std::pair(s.contact.first.value, s.contact.second.value); };
+  std::vector<Neighborhood::Seen> now;
+  for (const OdeContact& contact : found) now.push_back({contact});
+  std::ranges::stable_sort(now, {}, pair_of);
+  const std::size_t fresh = now.size();
+  for (Neighborhood::Seen& old : seen) {
+    if (++old.age > kKept || std::ranges::binary_search(now.begin(), now.begin() + std::ptrdiff_t(fresh), pair_of(old), {}, pair_of)) continue;
+    old.contact.depth = 0.0;
+    now.push_back(old);
+  }
+  std::ranges::stable_sort(now, {}, pair_of);
+  seen = std::move(now);
+}
+
 void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
-  const auto index_of = [&](OdeBodyId body) { return levels.full.index_of(body); };
-  for (const OdeContact& contact : levels.full.world()->contacts()) {
-    const std::int32_t first = index_of(contact.first), second = contact.second ? index_of(contact.second) : -1;
+  update_seen(levels.full.world()->contacts(), neighborhood.seen);
+  for (const auto& [contact, age] : neighborhood.seen) {
+    const std::int32_t first = levels.full.index_of(contact.first), second = contact.second ? levels.full.index_of(contact.second) : -1;
     const bool gone = first < 0 || (contact.second && second < 0);
     if (gone) continue;
     FullContact& full = neighborhood.contacts.emplace_back(FullContact{first, second, contact.point, contact.normal, -contact.depth});
@@ -39,10 +59,25 @@ Vec3 angular_velocity_change(const FullNeighbor& body, const Vec3& angular_impul
 
 bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impulse.angular.isZero(0.0); }
 
+// ODE lets no body sleep that none of its own contacts holds up: by the same measure, one that statistical bodies hold up sleeps here.
+bool falls_asleep(BodyRecord& record, const FullNeighbor& neighbor, double dt) {
+  constexpr double kStillSpeed = 0.05, kStillTime = 0.5;  // m/s and s
+  const double turning = neighbor.state.angular_velocity.norm() * neighbor.shape->radius;
+  const bool still = !is_zero(neighbor.push) && neighbor.state.velocity.norm() < kStillSpeed && turning < kStillSpeed;
+  record.still_s = still ? record.still_s + dt : 0.0;
+  return record.still_s >= kStillTime;
+}
+
+void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
+  state.velocity = state.angular_velocity = Vec3::Zero();
+  world.set_state(body, state);
+  world.set_asleep(body, true);
+}
+
 // A hit changes the velocity before the first substep. Support is a force over the whole step: it then balances gravity in every substep,
 // where a change of velocity would make the body hop, and bounce on what holds it up.
 void hand_over(OdeWorld& world, OdeBodyId body, const FullNeighbor& neighbor, double dt) {
-  if (neighbor.asleep) return;
+  if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
   if (world.asleep(body)) world.set_asleep(body, false);
   if (!is_zero(neighbor.push)) world.add_force(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
   if (is_zero(neighbor.hit) && neighbor.shift.isZero(0.0)) return;
@@ -63,8 +98,13 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
 }
 
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
-  for (std::size_t i = 0; i < neighborhood.bodies.size(); ++i)
-    hand_over(*levels.full.world(), levels.full.members()[i].id, neighborhood.bodies[i], dt);
+  for (std::size_t i = 0; i < neighborhood.bodies.size(); ++i) {
+    const auto [owner, id] = levels.full.members()[i];
+    const FullNeighbor& neighbor = neighborhood.bodies[i];
+    const bool sleeps = falls_asleep(levels.bodies[owner], neighbor, dt) && levels.statistical_settings.sleeping;
+    if (sleeps) put_to_sleep(*levels.full.world(), id, neighbor.state);
+    else hand_over(*levels.full.world(), id, neighbor, dt);
+  }
 }
 
 }  // namespace lodestone

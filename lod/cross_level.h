@@ -13,6 +13,13 @@ namespace lodestone {
 struct Neighborhood {
   std::vector<FullNeighbor> bodies;
   std::vector<FullContact> contacts;
+
+  /// A contact that ODE found, kept for some steps after: bodies at rest touch and part from substep to substep.
+  struct Seen {
+    OdeContact contact;
+    int age = 0;  ///< steps
+  };
+  std::vector<Seen> seen;  // in order of their pairs
 };
 
 /// To be called while the bodies' forces are still held for them.

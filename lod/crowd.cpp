@@ -19,6 +19,13 @@ std::uint32_t owner_of(Participant p, std::span<const StatisticalBody> bodies, s
   return p >= 0 ? bodies[p].owner : neighbors[-1 - p].owner;
 }
 
+void lift_sphere_out(StatisticalBody& body, const HalfSpace& plane) {
+  const double gap = plane.height_of(body.position) - body.sphere_radius;
+  if (gap >= 0.0) return;
+  body.position -= gap * plane.normal;
+  body.velocity -= std::min(0.0, body.velocity.dot(plane.normal)) * plane.normal;
+}
+
 }  // namespace
 
 int Crowd::solver_index(Participant p, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
@@ -208,6 +215,13 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     move(c.first, distance * first / (first + second) * c.normal);
     move(c.second, -distance * second / (first + second) * c.normal);
   }
+  // The ground has the last word.
+  for (const Participant p : participants_)
+    if (p >= 0 && bodies[p].motion != Motion::asleep)
+      for (const HalfSpace& plane : world.ground->planes) {
+        if (model == StatisticalModel::support) lift_out(bodies[p], *kinds[bodies[p].kind].shape, plane);
+        else lift_sphere_out(bodies[p], plane);
+      }
   ContactTally tally;
   tally.contacts = std::int64_t(solver_contacts_.size());
   return tally;

@@ -8,6 +8,10 @@ constexpr double kTouchMargin = 0.05;
 
 }  // namespace
 
+ContactLaw Levels::ground_law(MaterialId material) const {
+  return materials.law(material, ground.planes.empty() ? 0 : ground.planes.front().material);
+}
+
 RigidState Levels::state(std::uint32_t body) const {
   const BodyRecord& record = bodies[body];
   if (record.ode) return full.world()->state(record.ode);

@@ -29,6 +29,9 @@ struct Levels {
   StatisticalSettings statistical_settings;
   SignatureStore signatures;
 
+  /// The law between a body and the ground that it most likely meets: the first plane, else ground of the default material.
+  ContactLaw ground_law(MaterialId material) const;
+
   RigidState state(std::uint32_t body) const;
   bool asleep(std::uint32_t body) const;
   /// Wakes the body and what was near it.

@@ -25,6 +25,11 @@ Separation separation_along(const PairBody& first, const PairBody& second, const
   return s;
 }
 
+// A hull vertex near the one farthest along `direction` in the world.
+std::int32_t find_start(const PairBody& body, const Vec3& direction) {
+  return body.shape->sphere_radius ? 0 : body.shape->support_map.find_start(body.orientation.conjugate() * direction);
+}
+
 void try_axis(const PairBody& first, const PairBody& second, const Vec3& normal, Separation& best) {
   const Separation s = separation_along(first, second, normal, best.vertex_first, best.vertex_second);
   if (s.gap > best.gap) best = s;
@@ -41,10 +46,11 @@ void try_rest_normals(const PairBody& owner, const PairBody& first, const PairBo
   }
 }
 
-void climb(const PairBody& first, const PairBody& second, Separation& best) {
+// Up the gradient until the gap is above `enough`.
+void climb(const PairBody& first, const PairBody& second, double enough, Separation& best) {
   const double size = first.shape->radius + second.shape->radius;
   double stride = 0.5;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 6 && best.gap <= enough; ++i) {
     const Vec3 between = best.point_first - best.point_second;
     const Vec3 uphill = between - best.normal.dot(between) * best.normal;
     if (uphill.squaredNorm() < 1e-8 * size * size) return;
@@ -94,16 +100,20 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
+// Most near pairs do not touch, and a few steps uphill show it; the rest normals, which matter where faces meet, are for the others.
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
   const Vec3 between = first.position - second.position;
   const double distance = between.norm();
-  Separation best = separation_along(first, second, distance > 1e-12 ? Vec3(between / distance) : Vec3::UnitZ(), 0, 0);
+  const Vec3 line = distance > 1e-12 ? Vec3(between / distance) : Vec3::UnitZ();
+  Separation best = separation_along(first, second, line, find_start(first, -line), find_start(second, line));
   if (best.gap > margin) return {};
+  climb(first, second, margin, best);
+  if (best.gap > margin) return {};
+  const double before = best.gap;
   try_rest_normals(first, first, second, best);
   if (best.gap > margin) return {};
   try_rest_normals(second, first, second, best);
-  if (best.gap > margin) return {};
-  climb(first, second, best);
+  if (best.gap > before) climb(first, second, margin, best);
   if (best.gap > margin) return {};
   return PairContact{best.normal, best.gap, find_points(first, second, best)};
 }

@@ -13,4 +13,10 @@ std::shared_ptr<const Signature> SignatureStore::find(const Shape& shape, const 
   return entries_.back().signature;
 }
 
+const Signature* SignatureStore::find_known(const Shape& shape, const ContactLaw& law) const {
+  for (const Entry& entry : entries_)
+    if (entry.shape_hash == shape.content_hash && entry.law == law) return entry.signature.get();
+  return nullptr;
+}
+
 }  // namespace lodestone

@@ -20,6 +20,8 @@ class SignatureStore {
 
   /// The signature of `shape`, or of a scaled copy of it, under `law`; null where the source has none.
   std::shared_ptr<const Signature> find(const Shape& shape, const ContactLaw& law);
+  /// Null, too, where it was not asked for before.
+  const Signature* find_known(const Shape& shape, const ContactLaw& law) const;
   std::int64_t loaded() const { return loaded_; }
 
  private:

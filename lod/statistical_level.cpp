@@ -186,7 +186,7 @@ void StatisticalLevel::Impl::find_near_pairs(double dt, std::span<const FullNeig
 PairBody StatisticalLevel::Impl::pair_body(Participant p, std::span<const FullNeighbor> neighbors) const {
   if (p < 0) {
     const FullNeighbor& n = neighbors[-1 - p];
-    return {n.shape, nullptr, n.state.position, n.state.orientation, 0.8 * n.shape->radius};
+    return {n.shape, n.signature, n.state.position, n.state.orientation, 0.8 * n.shape->radius};
   }
   const StatisticalBody& body = bodies[p];
   const BodyKind& kind = kind_of(body);
@@ -223,6 +223,12 @@ std::optional<CrowdContact> StatisticalLevel::Impl::find_contact(Participant fir
 
 void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighbor> neighbors) {
   const auto mover = [&](std::int32_t i) { return i < std::int32_t(awake.size()) ? awake[i] : -1 - (i - std::int32_t(awake.size())); };
+  // The lower owner first, so that a contact is the same whichever of its bodies is full.
+  const auto owner = [&](Participant p) { return p < 0 ? neighbors[-1 - p].owner : bodies[p].owner; };
+  const auto both = [&](const NearPair& pair) {
+    const Participant a = mover(pair.first), b = pair.second >= 0 ? mover(pair.second) : asleep[-1 - pair.second];
+    return owner(b) < owner(a) ? std::pair(b, a) : std::pair(a, b);
+  };
   for (const std::int32_t slot : awake) {
     bodies[slot].crowded = false;
     near_other[slot] = false;
@@ -230,7 +236,7 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   found.assign(pairs.size(), std::nullopt);
   parallel(std::int64_t(pairs.size()), 64, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
-      const Participant first = mover(pairs[i].first), second = pairs[i].second >= 0 ? mover(pairs[i].second) : asleep[-1 - pairs[i].second];
+      const auto [first, second] = both(pairs[i]);
       if (first < 0 && second < 0) continue;  // two full bodies are the full level's matter
       if (is_asleep(first, neighbors) && is_asleep(second, neighbors)) continue;
       found[i] = find_contact(first, second, dt, neighbors);
@@ -238,7 +244,7 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   });
   contacts.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const Participant first = mover(pairs[i].first), second = pairs[i].second >= 0 ? mover(pairs[i].second) : asleep[-1 - pairs[i].second];
+    const auto [first, second] = both(pairs[i]);
     if (first >= 0) near_other[first] = true;
     if (second >= 0) near_other[second] = true;
     if (!found[i]) continue;

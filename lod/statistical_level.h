@@ -41,6 +41,7 @@ struct Impulse {
 struct FullNeighbor {
   std::uint32_t owner = 0;                ///< as in StatisticalLevel::add
   const Shape* shape = nullptr;
+  const Signature* signature = nullptr;   ///< null where it was never needed
   double mass = 1.0;
   MaterialId material = 0;
   RigidState state;                       ///< at the start of the step

@@ -10,11 +10,6 @@ namespace {
 // Deeper overlap puts a promotion off, as a fraction of the smaller radius. ODE parts less without a visible jump.
 constexpr double kOverlapAllowed = 0.02;
 
-/// The law between a body and the ground that it most likely meets: the first plane, else ground of the default material.
-ContactLaw ground_law(const Levels& levels, MaterialId material) {
-  return levels.materials.law(material, levels.ground.planes.empty() ? 0 : levels.ground.planes.front().material);
-}
-
 void enter_full(Levels& levels, std::uint32_t body, const RigidState& state, bool asleep) {
   BodyRecord& record = levels.bodies[body];
   const OdeBodyDefinition definition{
@@ -29,7 +24,7 @@ void enter_statistical(Levels& levels, std::uint32_t body, const RigidState& sta
   if (!levels.statistical)
     levels.statistical = std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
   record.slot = levels.statistical->add(body, definition.shape, record.mass, definition.material, state, asleep,
-                                        levels.signatures.find(*definition.shape, ground_law(levels, definition.material)));
+                                        levels.signatures.find(*definition.shape, levels.ground_law(definition.material)));
   levels.owner_of_slot.resize(std::max<std::size_t>(levels.owner_of_slot.size(), record.slot + 1));
   levels.owner_of_slot[record.slot] = body;
   levels.bodies.candidates()[body].level = Level::statistical;

@@ -94,7 +94,7 @@ void Collision::find_sphere_points(const Body& body, const Plane& plane) {
     const double depth = sphere.radius - (plane.normal.dot(center) - plane.offset);
     if (depth > 0.0) points_.push_back({center - sphere.radius * plane.normal, plane.normal, depth});
   }
-  keep_deepest();
+  reduce_points(body.reach);
 }
 
 // As plain ODE does it: the first contacts that it finds, whatever their depth.
@@ -105,7 +105,7 @@ void Collision::find_mesh_points(const Body& body, const Plane& plane) {
     for (const dContactGeom& contact : std::span(found).first(count))
       points_.push_back({to_vec3(contact.pos), to_vec3(contact.normal), contact.depth});
   }
-  keep_deepest();
+  reduce_points(body.reach);
 }
 
 void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
@@ -121,14 +121,14 @@ void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
       const double size = other ? std::min(body.reach, other->reach) : body.reach;
       for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next)
         narrow_phase_.find(candidates[next].first, candidates[next].second, size, points_);
-      keep_deepest();
+      reduce_points(size);
     }
     if (!points_.empty()) joints.add(ode::side_of(body), side_of(bodies, candidates[i].second), points_);
   }
 }
 
-void Collision::keep_deepest() {
-  const int kept = reduce_contacts(points_, settings_.max_contacts_per_pair);
+void Collision::reduce_points(double size) {
+  const int kept = reduce_contacts(points_, settings_.max_contacts_per_pair, size);
   dropped_ += std::int64_t(points_.size()) - kept;
   points_.resize(kept);
 }

@@ -44,7 +44,7 @@ class Collision {
   void find_sphere_points(const Body& body, const Plane& plane);
   void find_mesh_points(const Body& body, const Plane& plane);
   void collide_candidates(Bodies& bodies, ContactJoints& joints);
-  void keep_deepest();
+  void reduce_points(double size);
   void add_ground(dGeomID geom, MaterialId material);
   ContactSide side_of(Bodies& bodies, dGeomID geom) const;
 

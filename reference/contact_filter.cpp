@@ -1,58 +1,169 @@
 #include "reference/contact_filter.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace lodestone {
 namespace {
 
-constexpr double kSameGroup = 0.9;   // least cosine between normals of one group
-constexpr double kDepthRatio = 3.0;  // believed without question: this times the shallowest group's depth …
-constexpr double kDepthSlack = 2e-3; // … plus this times the size
-constexpr double kClearance = 1e-4;  // a way out goes this times the size farther than the depth
+constexpr double kSameDirection = 0.9;  // least cosine between contacts of one direction
+constexpr double kShallow = 2e-2;       // × size: depths below it need no second look where all directions agree
+constexpr double kDepthSlack = 2e-3;    // × size: depths below it cost about the same
+constexpr double kDepthRatio = 1.5;     // a displacement clears depths up to this times its own, and the slack
+constexpr int kSample = 12;             // places that directions are judged by
+// Places lie on edges, where any way out seems short; they are measured this part of the way towards their middle, as far as that is inside.
+constexpr double kInward = 0.15, kBarelyInward = 1e-3;
 
-struct Group {
-  Vec3 normal;
-  double depth;  // of its deepest contact
+/// Of the first body.
+struct Displacement {
+  Vec3 direction = Vec3::UnitZ();
+  double depth = 0.0;
+  int cleared = 0;  // places of the sample
 };
 
-std::vector<Group> group_by_normal(std::span<const ContactPoint> contacts) {
-  std::vector<Group> groups;
-  for (const ContactPoint& contact : contacts) {
-    const auto same = [&](const Group& group) { return group.normal.dot(contact.normal) > kSameGroup; };
-    const auto group = std::ranges::find_if(groups, same);
-    if (group == groups.end())
-      groups.push_back({contact.normal, contact.depth});
-    else
-      group->depth = std::max(group->depth, contact.depth);
+/// Ways out at the contacts' places.
+class Places {
+ public:
+  Places(std::span<const ContactPoint> contacts, const WayOutMeasure& measure) : measure_(measure), middle_(Vec3::Zero()) {
+    for (const ContactPoint& contact : contacts) middle_ += contact.point / double(contacts.size());
   }
-  return groups;
+  std::optional<WayOut> measure(const Vec3& place, const Vec3& direction) const {
+    if (auto way = measure_(place + kInward * (middle_ - place), direction)) return way;
+    return measure_(place + kBarelyInward * (middle_ - place), direction);
+  }
+
+ private:
+  const WayOutMeasure& measure_;
+  Vec3 middle_;
+};
+
+/// Looks for the displacement with the least depth for each of the places that it clears.
+class Search {
+ public:
+  Search(std::span<const ContactPoint> sample, double slack, const Places& places) : sample_(sample), slack_(slack), places_(places) {}
+
+  void consider(const Vec3& direction) {
+    if (std::ranges::any_of(tried_, [&](const Vec3& other) { return other.dot(direction) > 0.999; })) return;
+    tried_.push_back(direction);
+    const auto ways = measure(direction);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const double each = (ways[i].depth + slack_) / double(i + 1);
+      if (each >= least_) continue;
+      least_ = each;
+      best_ = Displacement{direction, ways[i].depth, int(i) + 1};
+      faces_of_best_ = ways;
+    }
+  }
+
+  /// The faces met on the best way out ask for their own normals.
+  void refine() {
+    for (std::size_t tried = 0; tried != tried_.size();) {
+      tried = tried_.size();
+      for (const WayOut& way : std::vector(faces_of_best_)) consider(way.second_face), consider(way.first_face);
+    }
+  }
+
+  /// The faces around a few of the places.
+  void look_around() {
+    for (const ContactPoint& contact : sample_.first(std::min<std::size_t>(sample_.size(), 3)))
+      for (int axis = 0; axis < 6; ++axis)
+        if (const auto way = places_.measure(contact.point, axis < 3 ? Vec3::Unit(axis) : Vec3(-Vec3::Unit(axis - 3))))
+          consider(way->second_face), consider(way->first_face);
+  }
+
+  const std::optional<Displacement>& best() const { return best_; }
+  bool clears_all_within(double depth) const { return best_ && best_->cleared == int(sample_.size()) && best_->depth <= depth; }
+
+ private:
+  /// Shallowest first; gives up where the direction can no longer be the best.
+  std::vector<WayOut> measure(const Vec3& direction) const {
+    std::vector<WayOut> ways;
+    const double count = double(sample_.size());
+    double useful = count;
+    for (const ContactPoint& contact : sample_) {
+      const auto way = places_.measure(contact.point, direction);
+      if (way && way->depth + slack_ < least_ * count)
+        ways.push_back(*way);
+      else if (slack_ >= least_ * --useful)
+        return {};
+    }
+    std::ranges::sort(ways, {}, &WayOut::depth);
+    return ways;
+  }
+
+  std::span<const ContactPoint> sample_;
+  double slack_;
+  const Places& places_;
+  std::vector<Vec3> tried_;
+  std::optional<Displacement> best_;
+  std::vector<WayOut> faces_of_best_;
+  double least_ = std::numeric_limits<double>::infinity();
+};
+
+std::optional<Displacement> find_displacement(std::span<ContactPoint> contacts, double size, const Places& places) {
+  Search search(contacts.first(reduce_contacts(contacts, kSample, size)), kDepthSlack * size, places);
+  std::vector<ContactPoint> shallow_first(contacts.begin(), contacts.end());
+  std::ranges::stable_sort(shallow_first, {}, &ContactPoint::depth);
+  for (const ContactPoint& contact : shallow_first) search.consider(contact.normal);
+  search.refine();
+  if (!search.clears_all_within(kShallow * size)) {
+    search.look_around();
+    search.refine();
+  }
+  return search.best();
+}
+
+/// Turns the contacts that `way` clears to its direction and moves them to the front; returns the others.
+std::span<ContactPoint> turn_cleared(std::span<ContactPoint> contacts, const Displacement& way, double slack, const Places& places) {
+  const auto clears = [&](double depth) { return depth <= kDepthRatio * way.depth + slack; };
+  const auto turn = [&](ContactPoint& contact) {
+    if (contact.normal.dot(way.direction) > kSameDirection && clears(contact.depth)) return true;
+    const auto measured = places.measure(contact.point, way.direction);
+    const double depth = measured ? measured->depth : 0.0;
+    if (!clears(depth)) return false;
+    contact = {contact.point, way.direction, depth};
+    return true;
+  };
+  auto end = contacts.begin();
+  for (ContactPoint& contact : contacts)
+    if (turn(contact)) std::swap(contact, *end++);
+  return {end, contacts.end()};
 }
 
 }  // namespace
 
-int filter_contacts(std::span<ContactPoint> contacts, double size, const OverlapTest& still_overlaps) {
-  if (contacts.empty()) return 0;
-  std::vector<Group> groups = group_by_normal(contacts);
-  const double shallowest = std::ranges::min(groups, {}, &Group::depth).depth;
-  const double believed_depth = kDepthRatio * shallowest + kDepthSlack * size;
-  std::erase_if(groups, [&](const Group& group) { return group.depth > believed_depth; });
-
-  const auto resolved_by = [&](const ContactPoint& contact, const Group& group) {
-    return !still_overlaps(contact, group.normal * (group.depth + kClearance * size));
-  };
-  const auto is_false = [&](const ContactPoint& contact) {
-    return contact.depth > believed_depth &&
-           std::ranges::any_of(groups, [&](const Group& group) { return resolved_by(contact, group); });
-  };
-  const auto removed = std::ranges::stable_partition(contacts, std::not_fn(is_false));
-  return int(removed.begin() - contacts.begin());
+bool plainly_believable(std::span<const ContactPoint> contacts, double size) {
+  return std::ranges::all_of(contacts, [&](const ContactPoint& contact) {
+    return contact.depth < kShallow * size && contact.normal.dot(contacts[0].normal) > kSameDirection;
+  });
 }
 
-int reduce_contacts(std::span<ContactPoint> contacts, int max_contacts) {
-  const int kept = std::min(int(contacts.size()), max_contacts);
-  std::ranges::stable_sort(contacts, std::ranges::greater{}, &ContactPoint::depth);
-  return kept;
+int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure) {
+  const Places places(contacts, measure);
+  std::span<ContactPoint> left = contacts;
+  while (!left.empty()) {
+    const auto way = find_displacement(left, size, places);
+    if (!way) break;
+    left = turn_cleared(left, *way, kDepthSlack * size, places);
+  }
+  return int(contacts.size() - left.size());
+}
+
+int reduce_contacts(std::span<ContactPoint> contacts, int max_contacts, double size) {
+  if (int(contacts.size()) <= max_contacts) return int(contacts.size());
+  std::iter_swap(contacts.begin(), std::ranges::max_element(contacts, {}, &ContactPoint::depth));
+  std::vector<double> distance(contacts.size(), std::numeric_limits<double>::infinity());
+  for (int taken = 1; taken < max_contacts; ++taken) {
+    const ContactPoint& last = contacts[taken - 1];
+    for (std::size_t i = taken; i < contacts.size(); ++i)
+      distance[i] = std::min(distance[i], (contacts[i].point - last.point).squaredNorm() +
+                                              size * size * (contacts[i].normal - last.normal).squaredNorm());
+    const auto farthest = std::max_element(distance.begin() + taken, distance.end()) - distance.begin();
+    std::swap(contacts[taken], contacts[farthest]);
+    std::swap(distance[taken], distance[farthest]);
+  }
+  return max_contacts;
 }
 
 }  // namespace lodestone

@@ -23,13 +23,13 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
       max_correcting_velocity_(settings.max_correcting_velocity) {
   joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactFDir1;
   joint_.surface.soft_erp = settings.erp;
-  joint_.surface.soft_cfm = settings.cfm;
   joint_.surface.bounce_vel = settings.bounce_velocity;
 }
 
 ContactJoints::~ContactJoints() { dJointGroupDestroy(group_); }
 
-void ContactJoints::begin(double h) {
+void ContactJoints::begin(double h, double cfm) {
+  joint_.surface.soft_cfm = cfm;
   contacts_.clear();
   h_ = h;
   // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone, whosever the world is.

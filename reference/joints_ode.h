@@ -24,8 +24,8 @@ class ContactJoints {
   ContactJoints(const ContactJoints&) = delete;
   ContactJoints& operator=(const ContactJoints&) = delete;
 
-  /// Forgets the last substep's contacts; the next take steps of `h` seconds.
-  void begin(double h);
+  /// Forgets the last substep's contacts; the next are for a step of `h` seconds, with constraint force mixing `cfm`.
+  void begin(double h, double cfm);
   void add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points);
   /// Destroys the joints; contacts() stays.
   void end() { dJointGroupEmpty(group_); }

@@ -36,7 +36,8 @@ struct OdeWorld::Impl {
 
   void substep(double h);
   void push_bodies();
-  void advance(double h);
+  bool advance(double h);
+  void take_back_bodies();
   void recover_bodies();
   void wake_neighbors(const Body& body);
 
@@ -97,13 +98,26 @@ void OdeWorld::step(double dt, int substeps) {
   impl_->counters.messages += messages_of_this_thread() - messages_before;
 }
 
+// ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in a message and leaving the
+// bodies without their contact forces. Such a substep is taken back and repeated with a little more softness. Not in a caller's world,
+// whose other bodies cannot be taken back.
 void OdeWorld::Impl::substep(double h) {
-  push_bodies();
-  joints.begin(h);
-  collision.collide(bodies, joints);
-  advance(h);
-  joints.end();
+  constexpr double kSoftness[] = {1.0, 1e2, 1e4};
+  for (const double softness : kSoftness) {
+    push_bodies();
+    joints.begin(h, softness * settings.cfm);
+    collision.collide(bodies, joints);
+    const bool solved = advance(h);
+    joints.end();
+    if (solved || !own_world || softness == std::end(kSoftness)[-1]) break;
+    take_back_bodies();
+  }
   recover_bodies();
+}
+
+void OdeWorld::Impl::take_back_bodies() {
+  for (const Body& body : bodies.slots())
+    if (body.body) ode::set_state(body.body, body.last_good);
 }
 
 void OdeWorld::Impl::push_bodies() {
@@ -114,14 +128,16 @@ void OdeWorld::Impl::push_bodies() {
   }
 }
 
-void OdeWorld::Impl::advance(double h) {
-  ++steps;
-  if (!settings.quick_step) {
+/// False where ODE had something to complain of.
+bool OdeWorld::Impl::advance(double h) {
+  const std::int64_t messages_before = messages_of_this_thread();
+  if (settings.quick_step) {
+    const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++steps);
+    dWorldQuickStep(world, h);
+  } else {
     dWorldStep(world, h);
-    return;
   }
-  const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * steps);
-  dWorldQuickStep(world, h);
+  return messages_of_this_thread() == messages_before;
 }
 
 void OdeWorld::Impl::recover_bodies() {

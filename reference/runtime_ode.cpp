@@ -9,6 +9,7 @@ namespace lodestone::ode {
 namespace {
 
 thread_local std::int64_t messages = 0;
+thread_local bool recoverable = false;
 // What the caller had set before ODE was prepared; null where ODE would have printed.
 dMessageFunction* callers_message_handler = nullptr;
 dMessageFunction* callers_error_handler = nullptr;
@@ -33,6 +34,10 @@ void report_error(int number, const char* message, va_list arguments) {
 }
 
 void report_debug(int number, const char* message, va_list arguments) {
+  if (recoverable) {
+    ++messages;
+    throw AssertionFailed{};
+  }
   report_fatal(callers_debug_handler, number, message, arguments);
 }
 
@@ -77,6 +82,9 @@ std::mutex& trimesh_mutex() {
   static std::mutex mutex;
   return mutex;
 }
+
+RecoverableScope::RecoverableScope() { recoverable = true; }
+RecoverableScope::~RecoverableScope() { recoverable = false; }
 
 SeededRandom::SeededRandom(std::uint64_t seed) : lock_(random_mutex()), before_(dRandGetSeed()) {
   // ODE's generator keeps 32 bits; fold the rest in.

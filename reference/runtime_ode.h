@@ -21,6 +21,19 @@ std::int64_t messages_of_this_thread();
 /// every dCollide that involves a trimesh, except with a plane.
 std::mutex& trimesh_mutex();
 
+/// Thrown out of ODE by one of its own assertions, while a RecoverableScope of the thread lasts.
+struct AssertionFailed {};
+
+/// While it lasts, an assertion that fails inside ODE on this thread throws AssertionFailed instead of ending the process. Only for
+/// calls that leave nothing half-changed, such as dCollide of two trimeshes.
+class RecoverableScope {
+ public:
+  RecoverableScope();
+  ~RecoverableScope();
+  RecoverableScope(const RecoverableScope&) = delete;
+  RecoverableScope& operator=(const RecoverableScope&) = delete;
+};
+
 /// Holds ODE's process-wide random generator for one scope, seeded by `seed`, and gives it back as it was found.
 class SeededRandom {
  public:
