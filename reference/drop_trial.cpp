@@ -9,7 +9,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kNominalSize = 0.3;  // m, the size that DropConditions' ranges are meant for
+constexpr double kNominalSizeMin = 0.2, kNominalSizeMax = 0.4;  // m, the sizes that DropConditions' ranges are meant for
 
 /// Height of the lowest point over the plane through the centre of mass; below zero.
 double lowest_height(const Shape& shape, const Quat& orientation, const Vec3& normal) {
@@ -20,13 +20,15 @@ double lowest_height(const Shape& shape, const Quat& orientation, const Vec3& no
 
 }  // namespace
 
+double drop_scale(const Shape& shape) { return shape.size / std::clamp(shape.size, kNominalSizeMin, kNominalSizeMax); }
+
 Vec3 drop_plane_normal(const DropConditions& conditions) {
   return {std::sin(conditions.slope), 0.0, std::cos(conditions.slope)};
 }
 
 RigidState drop_state(const Shape& shape, const DropConditions& conditions, std::uint64_t seed, std::uint32_t trial) {
   RandomStream random(seed, trial, 1);
-  const double scale = shape.size / kNominalSize, speed = std::sqrt(scale) * conditions.speed_scale;
+  const double scale = drop_scale(shape), speed = std::sqrt(scale) * conditions.speed_scale;
   const Vec3 normal = drop_plane_normal(conditions);
   RigidState state;
   state.orientation = random.orientation();

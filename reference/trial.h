@@ -10,7 +10,7 @@ namespace lodestone {
 
 inline constexpr double kObservationStep = 1.0 / 60.0;  ///< s: every method is observed at these instants, whatever its own step
 
-/// Ranges of a drop's start for a body of about .2–.4 m; other sizes scale lengths by λ and times by √λ (see `drop_state`).
+/// Ranges of a drop's start for a body of .2–.4 m; other sizes scale lengths by λ and times by √λ (see `drop_scale`).
 struct DropConditions {
   double lowest_point_min = 0.3, lowest_point_max = 0.8;  ///< m above the plane
   double horizontal_speed = 1.0;                          ///< m/s, each of x and y uniform within ±
@@ -19,6 +19,9 @@ struct DropConditions {
   double speed_scale = 1.0;                               ///< multiplies the three speeds
   double slope = 0.0;                                     ///< rad, tilt of the plane about y
 };
+
+/// λ: 1 for a body whose longest side is .2–.4 m, else that side over the nearer of the two.
+double drop_scale(const Shape& shape);
 
 /// The start of drop number `trial`: a function of (seed, trial) alone.
 RigidState drop_state(const Shape& shape, const DropConditions& conditions, std::uint64_t seed, std::uint32_t trial);

@@ -114,6 +114,7 @@ class Run {
     result_.steps = int(result_.reports.size());
     result_.state_hash = manager_.state_hash();
     result_.step_ms = summarize(times_ms_);
+    result_.states = sample_.states;
     if (const auto bound = scene_.checks.max_penetration_m)
       result_.checks.push_back({"max_penetration_m", result_.max_penetration_m, *bound, result_.max_penetration_m <= *bound});
     if (scene_.checks.all_asleep_by_s) result_.checks.push_back(asleep_check(*scene_.checks.all_asleep_by_s));

@@ -46,6 +46,7 @@ struct RunResult {
   double max_penetration_m = 0;                ///< deepest hull vertex below a ground plane, over the run
   double energy_start_j = 0, energy_max_j = 0; ///< kinetic and potential, all bodies
   bool finite = true;                          ///< no NaN or infinity at any step; the run ends at the first
+  std::vector<RigidState> states;              ///< at the end, in the scene's order
   std::vector<CheckResult> checks;
   std::filesystem::path trajectory, csv;       ///< written files, or empty
   const StepReport& last() const { return reports.back(); }

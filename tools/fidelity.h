@@ -3,44 +3,16 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
-#include "reference/shape.h"
+#include "tools/drop_observation.h"
 
 namespace lodestone {
 
-/// What is kept of one drop.
-struct DropObservation {
-  int bounces = 0;                     ///< samples between which v_n + g Δt rises by more than .3 m/s
-  double rest_time_s = 0;              ///< last time that the kinetic energy per mass is above 2e-3 J/kg
-  double distance_m = 0;               ///< from start to end, along the plane
-  double first_rebound_m = 0;          ///< greatest height of the lowest point between the first and the second bounce
-  bool at_rest = false;
-  Vec3 up_in_body = Vec3::UnitZ();     ///< the plane's normal in body axes at the end
-  std::vector<float> kinetic_energy;   ///< per mass, J/kg, at 60 Hz over the first 6 s (361 values)
-};
-
-/// Collects a DropObservation from samples 1/60 s apart.
-class DropObserver {
- public:
-  DropObserver(const Shape& shape, const Vec3& plane_normal, double gravity_m_per_s2 = 9.81);
-  void sample(double time_s, const RigidState& state);
-  DropObservation result() const;
-
- private:
-  const Shape& shape_;
-  Vec3 normal_;
-  double gravity_;
-  RigidState start_, previous_, last_;
-  double last_time_ = 0, rest_time_ = 0, rebound_ = 0;
-  int samples_ = 0, bounces_ = 0;
-  std::vector<float> kinetic_energy_;
-};
-
-/// The score's parts against truth, and their mean over those that are defined (`parts` of them).
+/// The score's parts against truth, and their mean over those that are defined (`parts` of them). A part is undefined where the truth does
+/// not vary in it, and rest time and rest poses also where fewer than a tenth of the truth's drops come to rest (a sphere rolls for ever).
 struct DropScore {
   double score = 0;
   int parts = 0;
@@ -49,12 +21,16 @@ struct DropScore {
 
 struct ScoreWithInterval {
   DropScore value;
-  std::array<double, 2> interval{};  ///< 95 % bootstrap interval of the score
+  /// 95 % bootstrap interval of the score, both samples drawn anew: the percentiles, moved so that the resamples' mean is the score.
+  /// (A distance between resamples is greater than between the samples, by the noise of drawing: the percentiles alone may lie wholly above it. At the
+  /// noise floor the interval remains up to √2 too wide.)
+  std::array<double, 2> interval{};
 };
 
-/// Scores `method` against `truth`. W: Wasserstein-1 over the truth's deviation; KEw: Σ_t W1(KE_t) / Σ_t mean KE_t; TV: total variation over rest-pose
-/// classes (12°, plus "none"). `seed` feeds the bootstrap.
-ScoreWithInterval score_drops(std::span<const DropObservation> truth, std::span<const DropObservation> method, std::uint64_t seed = 1,
-                              int bootstrap_samples = 200);
+/// Scores `method` against `truth`, neither empty. W: Wasserstein-1 over the truth's deviation; KEw: Σ_t W1(KE_t) / Σ_t mean KE_t; TV: total
+/// variation over the rest-pose classes of the truth's drops and "none" (not at rest, or farther than 12° from every class). Truth and method
+/// are sorted into the classes by the same rule. `seed` feeds the bootstrap.
+ScoreWithInterval score_drops(std::span<const DropObservation> truth, std::span<const DropObservation> method,
+                              std::uint64_t seed = 1, int bootstrap_samples = 200);
 
 }  // namespace lodestone

@@ -1,2 +1,4 @@
 // The command line: `lodestone run | sign | inspect | compare …`.
-int main() { return 0; }
+#include "tools/commands.h"
+
+int main(int argc, char** argv) { return int(lodestone::run_lodestone(argc, argv)); }

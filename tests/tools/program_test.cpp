@@ -1,0 +1,70 @@
+// The program as scripts see it: exit codes, what goes to stdout and what does not.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace lodestone {
+namespace {
+
+struct Ended {
+  int exit_code = -1;
+  std::string out;
+};
+
+// Runs `lodestone` with `arguments`; stderr is joined where asked for.
+Ended run(const std::string& arguments, bool with_errors = false) {
+  const std::string command = std::string(LODESTONE_CLI) + ' ' + arguments + (with_errors ? " 2>&1" : " 2>/dev/null");
+  Ended ended;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> buffer;
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) ended.out.append(buffer.data(), count);
+  ended.exit_code = WEXITSTATUS(pclose(pipe));
+  return ended;
+}
+
+TEST(Program, HelpIsDone) {
+  for (const char* arguments : {"--help", "run --help", "sign --help", "inspect --help", "compare drop --help", "demo --help"}) {
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.exit_code, 0) << arguments;
+    EXPECT_FALSE(ended.out.empty()) << arguments;
+  }
+}
+
+TEST(Program, WrongUsageIsTwoAndSilentOnStdout) {
+  for (const char* arguments : {"", "nonsense", "run", "compare", "compare drop", "run a.yaml --steps 0", "run a.yaml --level fast", "run a.yaml --dt 0",
+                                "compare drop box:1,1,1 --trials 1", "compare drop box:1,1,1 --dt 1/0", "compare drop box:1,1,1 --methods nonsense",
+                                "compare drop box:1,1,1 --restitution 2", "sign box:1,1,1 --threads -1"}) {
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.exit_code, 2) << arguments;
+    EXPECT_EQ(ended.out, "") << arguments;
+    EXPECT_FALSE(run(arguments, true).out.empty()) << arguments;
+  }
+}
+
+TEST(Program, BadInputIsThreeAndSilentOnStdout) {
+  for (const char* arguments : {"run /nowhere/scene.yaml --json", "sign box:1,2 --json", "sign nowhere.obj", "inspect /nowhere/file.sig --json",
+                                "compare drop cube:1 --json", "demo /nowhere/scene.yaml"}) {
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.exit_code, 3) << arguments;
+    EXPECT_EQ(ended.out, "") << arguments;
+    EXPECT_EQ(run(arguments, true).out.substr(0, 11), "lodestone: ") << arguments;
+  }
+}
+
+TEST(Program, CompareDropPrintsOneJsonObjectAndNothingElse) {
+  const Ended ended = run("compare drop box:0.2,0.3,0.4 --trials 4 --methods full_1,hull --dt 1/60,1/120 --json", true);
+  EXPECT_EQ(ended.exit_code, 0);
+  const auto json = nlohmann::json::parse(ended.out);
+  ASSERT_EQ(json["rows"].size(), 4U);
+  EXPECT_EQ(json["trials"], 4);
+  EXPECT_EQ(json["rows"][0]["method"], "full_1");
+  EXPECT_NEAR(json["rows"][1]["dt_s"].get<double>(), 1.0 / 120.0, 1e-12);
+  EXPECT_GT(json["rows"][3]["ns_per_body_step"].get<double>(), 0.0);
+}
+
+}  // namespace
+}  // namespace lodestone

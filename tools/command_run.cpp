@@ -1,0 +1,40 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "tools/commands.h"
+#include "tools/run_arguments.h"
+#include "tools/run_report.h"
+
+namespace lodestone {
+namespace {
+
+struct Arguments {
+  RunArguments run;
+  bool json = false;
+};
+
+ExitCode run(const Arguments& arguments) {
+  const Scene scene = load_scene(arguments.run.scene, arguments.run.loading);
+  RunResult result;
+  {
+    ProgressLine line;
+    result = run_scene(scene, run_settings(arguments.run, line));
+  }
+  if (arguments.json) fmt::print("{}\n", json_of(result).dump(2));
+  else fmt::print("{}: {} bodies, {} steps\n{}", arguments.run.scene.string(), result.bodies, result.steps, text_of(result));
+  return exit_code_of(result);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, ExitCode& exit_code) {
+  CLI::App* command = program.add_subcommand("run", "run a scene without a window and say what happened");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE", arguments->run.scene, "a YAML file")->required();
+  add_run_arguments(*command, arguments->run);
+  command->add_option("--out", arguments->run.running.out, "folder for the trajectory (.glb) and the report of each step (.csv)");
+  command->add_flag("--json", arguments->json, "one JSON object on stdout");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace lodestone

@@ -1,0 +1,58 @@
+// The ways to simulate a drop that `--methods` names, prepared for one shape: what each of them collides with, and how finely it steps.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "lod/manager.h"
+#include "reference/trial.h"
+#include "signature/signature_source.h"
+
+namespace lodestone {
+
+/// What falls on what: the same for every method.
+struct DropJob {
+  std::shared_ptr<const Shape> shape;
+  DropConditions conditions;
+  Material material;  ///< of the body and of the plane
+  ContactLaw law() const { return {material.restitution, material.friction}; }
+};
+
+/// ODE, with one or another collision geometry.
+struct OdeMethod {
+  int substeps = 1;                                  ///< ODE steps in a step
+  OdeGeometry geometry = OdeGeometry::trimesh;
+  bool plane_contacts_from_hull = true;              ///< else dCollide of the trimesh with the plane
+  std::shared_ptr<const Shape> collision_shape = {};      ///< with the mass distribution of the job's shape
+  std::vector<Sphere> spheres = {};                  ///< for OdeGeometry::spheres
+};
+
+/// The statistical level.
+struct StatisticalMethod {
+  StatisticalModel model = StatisticalModel::support;
+  std::shared_ptr<const Signature> signature;
+};
+
+struct DropMethod {
+  std::string name;
+  std::variant<OdeMethod, StatisticalMethod> way;
+  std::string left_out = {};  ///< why it cannot be had for this shape; empty where it can
+
+  int substeps() const;
+  std::string model() const;  ///< "tables" or "support"; empty for ODE
+};
+
+/// The ground truth: ODE at 34 steps in 1/60 s, just under .5 ms, so that 60 Hz falls on whole steps.
+DropMethod make_truth(const DropJob& job);
+
+/// Every name that `make_drop_methods` knows.
+std::vector<std::string> drop_method_names();
+
+/// The methods of these names; `statistical` gives one for each model, with a signature from the cache or measured now on `threads` threads
+/// (0: all cores). Throws InputError for an unknown name.
+std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job, int threads,
+                                          const Progress& progress);
+
+}  // namespace lodestone

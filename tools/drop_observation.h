@@ -1,0 +1,61 @@
+// What is observed of a drop. Every method, truth included, is observed alike: states sampled at 60 Hz, whatever its own step.
+// On a slope "up" is the plane's normal, and only gravity's part along it counts where a bounce is told from free flight.
+// The thresholds are those of bodies up to .4 m; for larger ones speeds and times are multiplied by √λ, energies by λ (drop_scale). Smaller
+// ones keep them, because a slower bounce would drown in what gravity does between two samples.
+#pragma once
+
+#include <vector>
+
+#include "reference/shape.h"
+
+namespace lodestone {
+
+inline constexpr int kKineticEnergySamples = 361;  ///< every 1/60 s over the first 6 s, both ends included
+
+/// What is kept of one drop.
+struct DropObservation {
+  int bounces = 0;             ///< pairs of successive samples between which the velocity along the normal rises by more than .3 m/s above free flight
+  double rest_time_s = 0;      ///< last time that the kinetic energy per mass is above 2e-3 J/kg
+  double distance_m = 0;       ///< from start to end, along the plane
+  double first_rebound_m = 0;  ///< greatest height of the lowest point between the first and the second bounce; 0 without a bounce
+  bool at_rest = false;        ///< below 2e-3 J/kg for the last quarter of a second
+  Vec3 up_in_body = Vec3::UnitZ();    ///< the plane's normal in body axes at the end
+  std::vector<float> kinetic_energy;  ///< per mass, J/kg, kKineticEnergySamples values; the last state's goes on where a drop ends earlier
+};
+
+/// Collects a DropObservation from samples. The plane goes through the origin.
+class DropObserver {
+ public:
+  /// `shape` must outlive the observer. Gravity points along −z.
+  DropObserver(const Shape& shape, const Vec3& plane_normal, double gravity_m_per_s2 = 9.81);
+
+  /// In order of time, at 1/60 s or, for a method with longer steps, at each of them.
+  void sample(double time_s, const RigidState& state);
+
+  /// Below 1e-6 J/kg for the last second: later samples would only repeat the last.
+  bool settled() const;
+
+  /// How long a drop is observed, s: 10 s for bodies up to .4 m.
+  double horizon_s() const;
+
+  DropObservation result() const;
+
+ private:
+  double rise_above_free_flight(double time_s, const RigidState& state) const;
+  double lowest_point(const RigidState& state) const;
+  void keep_energy(double time_s, float energy);
+
+  const Shape& shape_;
+  Vec3 normal_;
+  double gravity_along_normal_;
+  double scale_;  // of lengths, ≥ 1
+  RigidState start_, last_;
+  double last_time_ = 0, last_stir_time_ = 0, rest_time_ = 0, rebound_ = 0;
+  int samples_ = 0, bounces_ = 0;
+  std::vector<float> kinetic_energy_;
+};
+
+/// Translational and rotational, J/kg.
+double kinetic_energy_per_mass(const Shape& shape, const RigidState& state);
+
+}  // namespace lodestone

@@ -1,0 +1,33 @@
+// A line of progress on stderr, on a terminal only.
+#pragma once
+
+#include <mutex>
+#include <string>
+
+#include "signature/signature_source.h"
+
+namespace lodestone {
+
+/// One line, rewritten at most ten times a second and cleared at the end. Writes nothing where stderr is no terminal.
+/// May be called from several threads.
+class ProgressLine {
+ public:
+  ProgressLine();
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// `fraction` done, 0 … 1.
+  void show(const std::string& stage, double fraction);
+
+  /// For those who report to a function; valid as long as this line.
+  Progress function();
+
+ private:
+  bool terminal_;
+  std::mutex mutex_;
+  bool shown_ = false;
+  double next_s_ = 0.0;  // monotonic time before which nothing is written
+};
+
+}  // namespace lodestone

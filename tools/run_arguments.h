@@ -1,0 +1,30 @@
+// The arguments of commands that run a scene.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "scenes/runner.h"
+#include "scenes/scene_file.h"
+#include "tools/progress.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lodestone {
+
+struct RunArguments {
+  std::filesystem::path scene;
+  SceneLoadSettings loading;
+  RunSettings running;
+  std::string step;  ///< empty: the scene's
+};
+
+/// Adds --steps, --dt, --seed, --threads, --level, --model, --mesh-path to `command`. `arguments` outlives the parsing.
+void add_run_arguments(CLI::App& command, RunArguments& arguments);
+
+/// The settings that the arguments ask for, with progress and the measuring of signatures shown on `line`, which outlives the run.
+RunSettings run_settings(const RunArguments& arguments, ProgressLine& line);
+
+}  // namespace lodestone

@@ -1,0 +1,117 @@
+#include "tools/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+namespace lodestone {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array<std::pair<std::string_view, double StageTimes::*>, 8> kStages = {{
+    {"choose", &StageTimes::choose_ms},
+    {"transfer", &StageTimes::transfer_ms},
+    {"full", &StageTimes::full_ms},
+    {"flight", &StageTimes::flight_ms},
+    {"broad_phase", &StageTimes::broad_phase_ms},
+    {"pairs", &StageTimes::pairs_ms},
+    {"rest", &StageTimes::rest_ms},
+    {"cross_level", &StageTimes::cross_level_ms},
+}};
+
+constexpr std::array<std::pair<std::string_view, std::int64_t Counters::*>, 10> kCounters = {{
+    {"ode_bodies_created", &Counters::ode_bodies_created},
+    {"trimeshes_built", &Counters::trimeshes_built},
+    {"signatures_loaded", &Counters::signatures_loaded},
+    {"pair_phases", &Counters::pair_phases},
+    {"ode_messages", &Counters::ode_messages},
+    {"contacts_dropped", &Counters::contacts_dropped},
+    {"states_recovered", &Counters::states_recovered},
+    {"energy_clamps", &Counters::energy_clamps},
+    {"table_extrapolations", &Counters::table_extrapolations},
+    {"promotions_put_off", &Counters::promotions_put_off},
+}};
+
+double mean_stage_ms(const RunResult& result, double StageTimes::*stage) {
+  double sum = 0.0;
+  for (const StepReport& report : result.reports) sum += report.times.*stage;
+  return sum / double(result.reports.size());
+}
+
+ordered_json number_or_null(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
+
+std::string text_of_stages(const RunResult& result) {
+  std::string text;
+  for (const auto& [name, stage] : kStages)
+    if (const double ms = mean_stage_ms(result, stage); ms >= 0.0005) text += fmt::format("{}{} {:.3f}", text.empty() ? "" : ", ", name, ms);
+  return text;
+}
+
+std::string text_of_counters(const Counters& counters) {
+  std::string text;
+  for (const auto& [name, counter] : kCounters)
+    if (counters.*counter != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, counters.*counter);
+  return text.empty() ? "all 0" : text;
+}
+
+std::string text_of(const CheckResult& check) {
+  return fmt::format("check        {} {}: {:.4g}, bound {:.4g}\n", !check.decided ? "open:  " : check.pass ? "holds: " : "FAILED:", check.name, check.value, check.bound);
+}
+
+}  // namespace
+
+std::string text_of(const RunResult& result) {
+  const StepReport& last = result.last();
+  const TimeSummary& ms = result.step_ms;
+  std::string text;
+  text += fmt::format("step         median {:.3f} ms, 95 % {:.3f}, 99 % {:.3f}, longest {:.3f}\n", ms.p50, ms.p95, ms.p99, ms.max);
+  text += fmt::format("stages       mean ms: {}\n", text_of_stages(result));
+  text += fmt::format("at the end   {} full, {} statistical, {} of all asleep\n", last.full, last.statistical, last.asleep);
+  text += fmt::format("transitions  {}, of which {} promotions\n", result.transitions, result.promotions);
+  text += fmt::format("deepest      {:.4g} m below the ground\n", result.max_penetration_m);
+  text += fmt::format("energy       {:.6g} J at the start, {:.6g} J at most\n", result.energy_start_j, result.energy_max_j);
+  text += fmt::format("counters     {}\n", text_of_counters(last.counters));
+  for (const CheckResult& check : result.checks) text += text_of(check);
+  if (!result.finite) text += "DIVERGED: a state was not finite\n";
+  for (const auto& file : {result.trajectory, result.csv})
+    if (!file.empty()) text += fmt::format("written      {}\n", file.string());
+  text += fmt::format("state hash   {:016x}\n", result.state_hash);
+  return text;
+}
+
+ordered_json json_of(const RunResult& result) {
+  const StepReport& last = result.last();
+  const TimeSummary& ms = result.step_ms;
+  ordered_json json;
+  json["steps"] = result.steps;
+  json["bodies"] = result.bodies;
+  json["state_hash"] = fmt::format("{:016x}", result.state_hash);
+  json["step_ms"] = {{"p50", ms.p50}, {"p95", ms.p95}, {"p99", ms.p99}, {"mean", ms.mean}, {"max", ms.max}};
+  for (const auto& [name, stage] : kStages) json["stage_mean_ms"][name] = mean_stage_ms(result, stage);
+  json["levels"] = {{"full", last.full}, {"statistical", last.statistical}, {"asleep", last.asleep}};
+  json["transitions"] = result.transitions;
+  json["promotions"] = result.promotions;
+  for (const auto& [name, counter] : kCounters) json["counters"][name] = last.counters.*counter;
+  json["max_penetration_m"] = number_or_null(result.max_penetration_m);
+  json["energy_start_j"] = number_or_null(result.energy_start_j);
+  json["energy_max_j"] = number_or_null(result.energy_max_j);
+  json["finite"] = result.finite;
+  json["checks"] = ordered_json::array();
+  for (const CheckResult& check : result.checks)
+    json["checks"].push_back({{"name", check.name}, {"value", number_or_null(check.value)}, {"bound", check.bound}, {"pass", check.pass}, {"decided", check.decided}});
+  json["trajectory"] = result.trajectory.empty() ? ordered_json(nullptr) : ordered_json(result.trajectory.string());
+  return json;
+}
+
+ExitCode exit_code_of(const RunResult& result) {
+  if (!result.finite) return ExitCode::diverged;
+  const bool all_hold = std::ranges::all_of(result.checks, &CheckResult::pass);
+  return all_hold ? ExitCode::done : ExitCode::check_failed;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,29 @@
+// The arguments that say which shape, of which material: SHAPE and its options, alike for every command.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "reference/material.h"
+#include "scenes/shape_source.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lodestone {
+
+struct ShapeArguments {
+  std::string shape;
+  ShapeOptions options;
+  Material material;
+  ContactLaw law() const { return {material.restitution, material.friction}; }
+};
+
+/// Adds SHAPE, --size, --faces, --mesh-path, --restitution, --friction and --density to `command`. `arguments` outlives the parsing.
+void add_shape_arguments(CLI::App& command, ShapeArguments& arguments);
+
+/// Throws InputError for a shape that does not exist.
+std::shared_ptr<const Shape> make_shape_from_arguments(const ShapeArguments& arguments);
+
+}  // namespace lodestone
