@@ -102,14 +102,14 @@ void OdeWorld::step(double dt, int substeps) {
 // bodies without their contact forces. Such a substep is taken back and repeated with a little more softness. Not in a caller's world,
 // whose other bodies cannot be taken back.
 void OdeWorld::Impl::substep(double h) {
-  constexpr double kSoftness[] = {1.0, 1e2, 1e4};
-  for (const double softness : kSoftness) {
+  constexpr double kAddedCfm[] = {0.0, 1e-8, 1e-6};
+  for (const double added : kAddedCfm) {
     push_bodies();
-    joints.begin(h, softness * settings.cfm);
+    joints.begin(h, settings.cfm + added);
     collision.collide(bodies, joints);
     const bool solved = advance(h);
     joints.end();
-    if (solved || !own_world || softness == std::end(kSoftness)[-1]) break;
+    if (solved || !own_world || added == std::end(kAddedCfm)[-1]) break;
     take_back_bodies();
   }
   recover_bodies();
