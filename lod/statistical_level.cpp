@@ -63,7 +63,6 @@ struct StatisticalLevel::Impl {
   std::vector<StatisticalBody> bodies;
   std::vector<ClipPlayback> clips;
   std::vector<RestingRecord> resting;
-  std::vector<bool> near_other;
   std::vector<std::optional<Vec3>> angular_velocity_given;  // until the next step: a state that was set is read back to the bit
   std::vector<std::pair<int, Push>> pushes;  // of the next step
 
@@ -231,7 +230,6 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   };
   for (const std::int32_t slot : awake) {
     bodies[slot].crowded = false;
-    near_other[slot] = false;
   }
   found.assign(pairs.size(), std::nullopt);
   parallel(std::int64_t(pairs.size()), 64, [&](std::int64_t begin, std::int64_t end) {
@@ -245,8 +243,6 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   contacts.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto [first, second] = both(pairs[i]);
-    if (first >= 0) near_other[first] = true;
-    if (second >= 0) near_other[second] = true;
     if (!found[i]) continue;
     contacts.push_back(*found[i]);
     if (first >= 0) bodies[first].crowded = true;
@@ -294,7 +290,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
     return;
   }
   const HalfSpace& plane = ground.planes[tally.touched_plane];
-  if (!near_other[slot] && !kind.clips.empty() && world().is_horizontal(plane)) {
+  if (!kind.clips.empty() && world().is_horizontal(plane)) {
     if (const auto clip = find_clip(body, kind, plane, gravity, clip_settings)) {
       clips[slot] = *clip;
       resting[slot].plane = tally.touched_plane;
@@ -344,7 +340,6 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
   level.bodies.push_back(body);
   level.clips.emplace_back();
   level.resting.emplace_back();
-  level.near_other.push_back(false);
   level.angular_velocity_given.emplace_back();
   level.awake.push_back(slot);
   set_state(slot, state);
@@ -381,7 +376,6 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
   level.bodies.pop_back();
   level.clips.pop_back();
   level.resting.pop_back();
-  level.near_other.pop_back();
   level.angular_velocity_given[slot] = level.angular_velocity_given[last];
   level.angular_velocity_given.pop_back();
   level.sleepers_changed = true;
@@ -406,7 +400,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     level.wake_touched(neighbors);
     report.times.pairs_ms += watch.lap_ms();
   } else {
-    for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = level.near_other[slot] = false;
+    for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = false;
   }
 
   // 3 Bodies that touch no other.
