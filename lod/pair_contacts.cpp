@@ -5,6 +5,8 @@ namespace {
 
 // Vertices this near the touching plane, over R, belong to the touching feature.
 constexpr double kFeatureMargin = 0.02;
+// An overlap this deep, over R, is looked at anew: another axis may be the shorter way out.
+constexpr double kDeep = 0.03;
 
 struct Separation {
   Vec3 normal = Vec3::UnitZ();  // from second to first
@@ -100,22 +102,22 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
-// Most near pairs do not touch, and a few steps uphill show it; the rest normals, which matter where faces meet, are for the others.
-std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
+// Most near pairs do not touch, and a few steps uphill show it; the rest normals, which matter where faces meet, are for pairs that are new.
+HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
   const Vec3 between = first.position - second.position;
-  const double distance = between.norm();
-  const Vec3 line = distance > 1e-12 ? Vec3(between / distance) : Vec3::UnitZ();
-  Separation best = separation_along(first, second, line, find_start(first, -line), find_start(second, line));
-  if (best.gap > margin) return {};
+  const bool known = !start.isZero(0.0);
+  const Vec3 axis = known ? start : between.norm() > 1e-12 ? Vec3(between.normalized()) : Vec3::UnitZ();
+  Separation best = separation_along(first, second, axis, find_start(first, -axis), find_start(second, axis));
   climb(first, second, margin, best);
-  if (best.gap > margin) return {};
-  const double before = best.gap;
-  try_rest_normals(first, first, second, best);
-  if (best.gap > margin) return {};
-  try_rest_normals(second, first, second, best);
-  if (best.gap > before) climb(first, second, margin, best);
-  if (best.gap > margin) return {};
-  return PairContact{best.normal, best.gap, find_points(first, second, best)};
+  if (!known || best.gap < -kDeep * first.shape->radius) {
+    const double before = best.gap;
+    if (best.gap <= margin) try_rest_normals(first, first, second, best);
+    if (best.gap <= margin) try_rest_normals(second, first, second, best);
+    if (best.gap > before) climb(first, second, margin, best);
+  }
+  HullContactSearch search{best.normal, best.gap, {}};
+  if (best.gap <= margin) search.contact = PairContact{best.normal, best.gap, find_points(first, second, best)};
+  return search;
 }
 
 }  // namespace lodestone
