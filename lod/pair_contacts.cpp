@@ -4,7 +4,7 @@ namespace lodestone {
 namespace {
 
 // Vertices this near the touching plane, over R, belong to the touching feature.
-constexpr double kFeatureMargin = 0.02;
+constexpr double kFeatureMargin = 0.01;
 // An overlap this deep, over R, is looked at anew: another axis may be the shorter way out.
 constexpr double kDeep = 0.03;
 

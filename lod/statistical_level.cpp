@@ -23,6 +23,7 @@ constexpr double kSleepSpeed = 0.05, kSleepSpeedRadius = 0.2;
 constexpr float kSleepTime = 0.1f;
 constexpr double kAloneSleepEnergy = 1e-4;
 constexpr float kAloneSleepTime = 0.5f;
+constexpr int kLeaningSteps = 12;  // a body that touched another so lately still leans on it, though a hair apart
 constexpr double kWakeFactor = 2.0;  // a sleeper wakes when touched faster than this times the sleeping speed
 
 double sleep_speed(double radius) { return kSleepSpeed * std::sqrt(radius / kSleepSpeedRadius); }
@@ -122,7 +123,7 @@ struct StatisticalLevel::Impl {
   void move_alone(int slot, double dt, ContactTally& tally);
   void move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally);
   void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
-  void update_quiet(StatisticalBody& body, bool touching, double dt);
+  void update_quiet(StatisticalBody& body, double dt);
 };
 
 std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> shape, double mass, MaterialId material,
@@ -316,12 +317,14 @@ void StatisticalLevel::Impl::wake_touched(std::span<FullNeighbor> neighbors) {
 
 // ---- 3 flight and ground contact of bodies that touch no other
 
-void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, bool touching, double dt) {
+void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, double dt) {
   const BodyKind& kind = kind_of(body);
   const double speed = sleep_speed(kind.shape->radius);
-  const double limit = body.crowded ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
-  body.quiet_time = touching && kinetic_energy(body, *kind.shape) < limit ? body.quiet_time + float(dt) : 0.0f;
-  if (settings.sleeping && body.quiet_time >= (body.crowded ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
+  const bool among_others = body.crowded || body.since_crowded < kLeaningSteps;
+  const double limit = among_others ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
+  body.since_crowded = body.crowded ? 0 : std::uint8_t(std::min(255, body.since_crowded + 1));
+  body.quiet_time = kinetic_energy(body, *kind.shape) < limit ? body.quiet_time + float(dt) : 0.0f;
+  if (settings.sleeping && body.quiet_time >= (among_others ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
 }
 
 void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
@@ -337,10 +340,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
   }
   static const SupportSettings support_settings;
   tally = step_support_body(body, kind, world(), dt, support_settings);
-  if (tally.touched_plane < 0) {
-    body.quiet_time = 0.0f;
-    return;
-  }
+  if (tally.touched_plane < 0) return update_quiet(body, dt);
   const HalfSpace& plane = ground.planes[tally.touched_plane];
   if (!kind.clips.empty() && world().is_horizontal(plane)) {
     if (const auto clip = find_clip(body, kind, plane, gravity, clip_settings)) {
@@ -350,7 +350,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
       return;
     }
   }
-  update_quiet(body, true, dt);
+  update_quiet(body, dt);
 }
 
 void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
@@ -366,7 +366,7 @@ void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double
     body.sphere_radius = float(find_sphere_radius(body, kind, settings.tables, settings.seed));
   }
   tally = step_tables_body(body, resting[slot], kind, world(), dt, tables_settings);
-  update_quiet(body, tally.touched_plane >= 0, dt);
+  update_quiet(body, dt);
 }
 
 void StatisticalLevel::Impl::move_alone(int slot, double dt, ContactTally& tally) {
@@ -478,7 +478,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
       if (level.bodies[slot].crowded && level.bodies[slot].motion == Motion::settling) level.bodies[slot].motion = Motion::dynamic;
     tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.world(), level.settings.model, dt);
     for (const std::int32_t slot : level.awake)
-      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], true, dt);
+      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt);
     report.times.pairs_ms += watch.lap_ms();
   }
 
