@@ -41,7 +41,7 @@ double kinetic_energy(const Velocities& v, const StatisticalBody& body, const Sh
 std::optional<double> find_touch(const StatisticalBody& body, const HalfSpace& plane, const Vec3& gravity, double left) {
   const double gap = plane.height_of(body.position) - body.sphere_radius;
   const double speed = body.velocity.dot(plane.normal), acceleration = gravity.dot(plane.normal);
-  if (gap <= 0.0) return speed < 0.0 ? std::optional(0.0) : std::nullopt;
+  if (gap <= 0.0) return speed < 0.0 || (speed == 0.0 && acceleration < 0.0) ? std::optional(0.0) : std::nullopt;
   if (gap + speed * left + 0.5 * acceleration * left * left > 0.0 && (acceleration <= 0.0 || speed >= 0.0)) return {};
   const double root = speed * speed - 2.0 * acceleration * gap;
   if (root < 0.0) return {};
@@ -86,6 +86,9 @@ void slide(StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, 
   const double speed = body.velocity.norm(), lost = friction * pressure * time;
   body.velocity *= speed > lost ? 1.0 - lost / speed : 0.0;
   body.position += body.velocity * time;
+  // The sphere may have grown into the plane: it comes out gradually.
+  const double gap = plane.height_of(body.position) - body.sphere_radius;
+  if (gap < 0.0) body.position -= 0.25 * gap * plane.normal;
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
 }
 
