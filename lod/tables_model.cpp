@@ -77,14 +77,32 @@ void turn_to_rest(StatisticalBody& body, const BodyKind& kind, int pose, const H
   body.spin = spin_of(body.orientation, omega, *kind.shape);
 }
 
-// The rest of a step on the ground: no normal motion, Coulomb friction on the slip.
+// Coulomb friction of the sphere's lowest point for `time` seconds under `pressure` (m/s²), and of its footprint against pivoting.
+void rub(StatisticalBody& body, const Shape& shape, const Vec3& normal, double friction, double pressure, double time) {
+  const Vec3 arm = -double(body.sphere_radius) * normal;
+  const Mat3 inverse_inertia = inverse_inertia_world(body.orientation, shape);
+  const Vec3 omega = inverse_inertia * body.spin;
+  const double available = friction * pressure * time;
+  const Vec3 contact = body.velocity + omega.cross(arm), slip = contact - contact.dot(normal) * normal;
+  if (const double speed = slip.norm(); speed > 1e-12) {
+    const Vec3 direction = slip / speed, lever = arm.cross(direction);
+    const double needed = speed / (1.0 + lever.dot(inverse_inertia * lever));
+    const Vec3 impulse = -std::min(available, needed) * direction;
+    body.velocity += impulse;
+    body.spin += arm.cross(impulse);
+  }
+  constexpr double kFootprint = 0.3;  // lever of pivoting friction over R
+  const double pivot = body.spin.dot(normal);
+  body.spin -= std::copysign(std::min(std::abs(pivot), kFootprint * shape.radius * available), pivot) * normal;
+}
+
+// The rest of a step on the ground: no normal motion, friction on the slip.
 void slide(StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, const StepWorld& world, double friction, double time) {
   const double pressure = std::max(0.0, -world.gravity.dot(plane.normal));
   const Vec3 along = world.gravity - world.gravity.dot(plane.normal) * plane.normal;
   body.velocity -= body.velocity.dot(plane.normal) * plane.normal;
   body.velocity += along * time;
-  const double speed = body.velocity.norm(), lost = friction * pressure * time;
-  body.velocity *= speed > lost ? 1.0 - lost / speed : 0.0;
+  rub(body, *kind.shape, plane.normal, friction, pressure, time);
   body.position += body.velocity * time;
   // The sphere may have grown into the plane: it comes out gradually.
   const double gap = plane.height_of(body.position) - body.sphere_radius;
