@@ -12,6 +12,7 @@ OdeSettings ode_settings(const FullSettings& settings) {
   return {.gravity = settings.gravity,
           .seed = settings.seed,
           .max_correcting_velocity = kMaxCorrectingVelocity,
+          .early_plane_contacts = true,
           .auto_disable = settings.sleeping};
 }
 

@@ -106,7 +106,7 @@ void OdeWorld::Impl::substep(double h) {
   for (const double added : kAddedCfm) {
     push_bodies();
     joints.begin(h, settings.cfm + added);
-    collision.collide(bodies, joints);
+    collision.collide(bodies, joints, h);
     const bool solved = advance(h);
     joints.end();
     if (solved || !own_world || added == std::end(kAddedCfm)[-1]) break;
