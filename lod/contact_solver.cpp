@@ -48,7 +48,8 @@ void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const 
   c.target = target_velocity(c, velocity.dot(c.normal), step, s);
 }
 
-void relax(std::span<SolverBody> bodies, SolverContact& c) {
+// Returns the size of the change, N s.
+double relax(std::span<SolverBody> bodies, SolverContact& c) {
   const Vec3 velocity = contact_velocity(bodies, c);
   const double before = c.impulse[0];
   c.impulse[0] = std::max(0.0, before + c.effective_mass[0] * (c.target - velocity.dot(c.normal)));
@@ -60,6 +61,7 @@ void relax(std::span<SolverBody> bodies, SolverContact& c) {
     change += (c.impulse[t + 1] - held) * c.tangent[t];
   }
   apply(bodies, c, change);
+  return change.lpNorm<1>();
 }
 
 void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
@@ -75,8 +77,14 @@ void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings) {
   for (SolverContact& c : contacts) prepare(bodies, c, step, settings);
   for (SolverContact& c : contacts) start_from_guess(bodies, c);
-  for (int sweep = 0; sweep < settings.sweeps; ++sweep)
-    for (SolverContact& c : contacts) relax(bodies, c);
+  for (int sweep = 0; sweep < settings.sweeps; ++sweep) {
+    double changed = 0.0, greatest = 0.0;
+    for (SolverContact& c : contacts) {
+      changed = std::max(changed, relax(bodies, c));
+      greatest = std::max(greatest, c.impulse[0]);
+    }
+    if (changed <= settings.tolerance * greatest) return;
+  }
 }
 
 }  // namespace lodestone

@@ -38,7 +38,8 @@ struct SolverContact {
 inline Vec3 impulse_of(const SolverContact& c) { return c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1]; }
 
 struct ContactSolverSettings {
-  int sweeps = 8;
+  int sweeps = 10;                       ///< at most; fewer once no impulse changes by more than `tolerance` of the greatest
+  double tolerance = 1e-4;
   double bounce_velocity = 0.05;         ///< m/s, slower approaches do not bounce (as in ODE)
 };
 

@@ -19,6 +19,13 @@ std::uint32_t owner_of(Participant p, std::span<const StatisticalBody> bodies, s
   return p >= 0 ? bodies[p].owner : neighbors[-1 - p].owner;
 }
 
+void lift_sphere_out(StatisticalBody& body, const HalfSpace& plane) {
+  const double gap = plane.height_of(body.position) - body.sphere_radius;
+  if (gap >= 0.0) return;
+  body.position -= gap * plane.normal;
+  body.velocity -= std::min(0.0, body.velocity.dot(plane.normal)) * plane.normal;
+}
+
 }  // namespace
 
 int Crowd::solver_index(Participant p, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
@@ -55,10 +62,11 @@ void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind
                                 StatisticalModel model, double time) {
   const double reach = model == StatisticalModel::support ? kind.shape->radius : double(body.sphere_radius);
   const double spin_speed = model == StatisticalModel::support ? solver_bodies_[index].angular_velocity.norm() * reach : 0.0;
-  const double margin = settings_.contact_margin * kind.shape->radius + (body.velocity.norm() + spin_speed) * time;
   for (std::size_t number = 0; number < world.ground->planes.size(); ++number) {
     const HalfSpace& plane = world.ground->planes[number];
     const double height = plane.height_of(body.position);
+    const double falling = std::max(0.0, -solver_bodies_[index].velocity.dot(plane.normal));
+    const double margin = settings_.contact_margin * kind.shape->radius + (falling + 0.5 * spin_speed) * time;
     if (height > reach + margin) continue;
     HullContacts found;
     if (model == StatisticalModel::support) {
@@ -208,6 +216,13 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     move(c.first, distance * first / (first + second) * c.normal);
     move(c.second, -distance * second / (first + second) * c.normal);
   }
+  // The ground has the last word.
+  for (const Participant p : participants_)
+    if (p >= 0 && bodies[p].motion != Motion::asleep)
+      for (const HalfSpace& plane : world.ground->planes) {
+        if (model == StatisticalModel::support) lift_out(bodies[p], *kinds[bodies[p].kind].shape, plane);
+        else lift_sphere_out(bodies[p], plane);
+      }
   ContactTally tally;
   tally.contacts = std::int64_t(solver_contacts_.size());
   return tally;

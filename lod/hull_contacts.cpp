@@ -12,7 +12,16 @@ struct Submerged {
   std::array<HullContact, kCapacity> contact;
   int count = 0;
 
-  bool holds(std::int32_t v) const { return std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count; }
+  // Marks by the vertex's low bits tell most newcomers at once; where two share a mark, the list decides.
+  std::array<std::uint64_t, 8> marks{};
+  bool holds(std::int32_t v) const {
+    return (marks[v / 64 % 8] >> v % 64 & 1) && std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
+  }
+  void add(std::int32_t v, const HullContact& c) {
+    marks[v / 64 % 8] |= std::uint64_t(1) << v % 64;
+    vertex[count] = v;
+    contact[count++] = c;
+  }
 };
 
 void walk_below(const Shape& shape, const Mat3& rotation, const Vec3& normal_in_body, double height, double margin, Submerged& found) {
@@ -21,8 +30,7 @@ void walk_below(const Shape& shape, const Mat3& rotation, const Vec3& normal_in_
       if (found.count == Submerged::kCapacity) return;
       const double gap = height + shape.hull.vertices[next].dot(normal_in_body);
       if (gap >= margin || found.holds(next)) continue;
-      found.vertex[found.count] = next;
-      found.contact[found.count++] = {rotation * shape.hull.vertices[next], gap};
+      found.add(next, {rotation * shape.hull.vertices[next], gap});
     }
   }
 }
@@ -49,9 +57,7 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   if (shape.sphere_radius) return result;
 
   Submerged found;
-  found.vertex[0] = hint;
-  found.contact[0] = result.contact[0];
-  found.count = 1;
+  found.add(hint, result.contact[0]);
   walk_below(shape, orientation.toRotationMatrix(), orientation.conjugate() * normal, height, margin, found);
   if (found.count <= kMaxGroundContacts) {
     std::copy_n(found.contact.begin(), found.count, result.contact.begin());
@@ -67,6 +73,15 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   for (const int i : {second, left, right})
     if (i != 0 && (result.count < 2 || i != second)) result.contact[result.count++] = found.contact[i];
   return result;
+}
+
+void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane) {
+  const double height = plane.height_of(body.position);
+  if (height > shape.radius) return;
+  const double gap = find_lowest_point(shape, body.orientation, plane.normal, height, body.support_hint).gap;
+  if (gap >= 0.0) return;
+  body.position -= gap * plane.normal;
+  body.velocity -= std::min(0.0, body.velocity.dot(plane.normal)) * plane.normal;
 }
 
 }  // namespace lodestone

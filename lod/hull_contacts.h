@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "lod/static_ground.h"
 #include "lod/statistical_body.h"
 
 namespace lodestone {
@@ -31,5 +32,8 @@ struct HullContacts {
 /// The lowest point, and up to three more vertices with a gap below `margin`, chosen to span the widest area of support.
 HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal, double height, double margin,
                                 std::int32_t& hint);
+
+/// Lifts a body that has sunk into `plane` out of it, and stops it from sinking further.
+void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane);
 
 }  // namespace lodestone

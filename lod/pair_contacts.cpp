@@ -4,7 +4,9 @@ namespace lodestone {
 namespace {
 
 // Vertices this near the touching plane, over R, belong to the touching feature.
-constexpr double kFeatureMargin = 0.02;
+constexpr double kFeatureMargin = 0.01;
+// An overlap this deep, over R, is looked at anew: another axis may be the shorter way out.
+constexpr double kDeep = 0.03;
 
 struct Separation {
   Vec3 normal = Vec3::UnitZ();  // from second to first
@@ -25,6 +27,11 @@ Separation separation_along(const PairBody& first, const PairBody& second, const
   return s;
 }
 
+// A hull vertex near the one farthest along `direction` in the world.
+std::int32_t find_start(const PairBody& body, const Vec3& direction) {
+  return body.shape->sphere_radius ? 0 : body.shape->support_map.find_start(body.orientation.conjugate() * direction);
+}
+
 void try_axis(const PairBody& first, const PairBody& second, const Vec3& normal, Separation& best) {
   const Separation s = separation_along(first, second, normal, best.vertex_first, best.vertex_second);
   if (s.gap > best.gap) best = s;
@@ -41,10 +48,11 @@ void try_rest_normals(const PairBody& owner, const PairBody& first, const PairBo
   }
 }
 
-void climb(const PairBody& first, const PairBody& second, Separation& best) {
+// Up the gradient until the gap is above `enough`.
+void climb(const PairBody& first, const PairBody& second, double enough, Separation& best) {
   const double size = first.shape->radius + second.shape->radius;
   double stride = 0.5;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 6 && best.gap <= enough; ++i) {
     const Vec3 between = best.point_first - best.point_second;
     const Vec3 uphill = between - best.normal.dot(between) * best.normal;
     if (uphill.squaredNorm() < 1e-8 * size * size) return;
@@ -94,18 +102,22 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
-std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
+// Most near pairs do not touch, and a few steps uphill show it; the rest normals, which matter where faces meet, are for pairs that are new.
+HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
   const Vec3 between = first.position - second.position;
-  const double distance = between.norm();
-  Separation best = separation_along(first, second, distance > 1e-12 ? Vec3(between / distance) : Vec3::UnitZ(), 0, 0);
-  if (best.gap > margin) return {};
-  try_rest_normals(first, first, second, best);
-  if (best.gap > margin) return {};
-  try_rest_normals(second, first, second, best);
-  if (best.gap > margin) return {};
-  climb(first, second, best);
-  if (best.gap > margin) return {};
-  return PairContact{best.normal, best.gap, find_points(first, second, best)};
+  const bool known = !start.isZero(0.0);
+  const Vec3 axis = known ? start : between.norm() > 1e-12 ? Vec3(between.normalized()) : Vec3::UnitZ();
+  Separation best = separation_along(first, second, axis, find_start(first, -axis), find_start(second, axis));
+  climb(first, second, margin, best);
+  if (!known || best.gap < -kDeep * first.shape->radius) {
+    const double before = best.gap;
+    if (best.gap <= margin) try_rest_normals(first, first, second, best);
+    if (best.gap <= margin) try_rest_normals(second, first, second, best);
+    if (best.gap > before) climb(first, second, margin, best);
+  }
+  HullContactSearch search{best.normal, best.gap, {}};
+  if (best.gap <= margin) search.contact = PairContact{best.normal, best.gap, find_points(first, second, best)};
+  return search;
 }
 
 }  // namespace lodestone

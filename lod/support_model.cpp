@@ -141,6 +141,7 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
     const double longest = settings.contact_step * std::sqrt(kind.shape->radius / std::max(1e-9, world.gravity_strength()));
     const int steps = std::clamp(int(std::ceil(left / longest)), 1, 32);
     for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, tally);
+    if (tally.touched_plane >= 0) lift_out(body, *kind.shape, world.ground->planes[tally.touched_plane]);
   }
   return tally;
 }

@@ -23,10 +23,11 @@ struct Hull {
   }
 };
 
-/// The hull of `points`. Throws InputError where they lie in a plane or are fewer than four.
+/// The hull of `points`: its corners only, in the order of `points`; what stands out from the rest by less than 1e-10 × size is no corner. Throws InputError where they lie in a plane or are fewer than four.
 Hull make_hull(std::span<const Vec3> points);
 
-/// Index of the vertex farthest along `direction` (any length), climbing from `start`.
+/// Index of the vertex farthest along `direction` (any length), climbing from `start`. Exact to rounding: 1e-11 × size at worst, where
+/// `direction` is normal to a face with a thousand corners, else 1e-15. Direction zero or not finite: some vertex.
 int find_support(const Hull& hull, const Vec3& direction, int start = 0);
 
 /// For a direction, a vertex near the farthest one: cube map of 6 × `side` × `side` cells (a start for the climb, which is then exact).

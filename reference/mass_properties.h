@@ -1,5 +1,5 @@
-// Volume, centre of mass and inertia of a closed mesh, by integration over its faces
-// (Mirtich, Fast and accurate computation of polyhedral mass properties, 1996).
+// Volume, centre of mass and inertia of a closed mesh: exact sums over the signed tetrahedra between its faces and a point
+// (Blow and Binstock, How to find the inertia tensor (or other mass properties) of a 3D solid body represented by a triangle mesh, 2004).
 #pragma once
 
 #include "reference/mesh.h"

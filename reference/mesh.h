@@ -23,7 +23,7 @@ struct MeshReport {
   int vertices_welded = 0;
   int degenerate_faces_dropped = 0;
   int duplicate_faces_dropped = 0;
-  int faces_flipped = 0;          ///< turned so that neighbours agree and normals point outwards
+  int faces_flipped = 0;          ///< turned so that neighbours agree and normals point out of the solid
   int unused_vertices_dropped = 0;
   int open_edges = 0;             ///< edges with one face only
   int non_manifold_edges = 0;     ///< edges with more than two faces
@@ -40,9 +40,10 @@ struct MeshLoadSettings {
 /// Checks each index and coordinate. Throws InputError naming the file and the defect.
 Mesh load_mesh(const std::filesystem::path& file, const MeshLoadSettings& settings = {});
 
-/// Welds equal vertices, drops degenerate, duplicate faces and unused vertices, orients faces consistently and outwards.
+/// Welds vertices within 1e-7 × size, drops degenerate and duplicate faces and unused vertices, orients faces consistently and out of the
+/// solid: a piece inside another bounds a cavity. Open edges and edges with more than two faces are counted and left.
 /// Throws InputError, with `name` at its head, where what is left bounds no volume: fewer than four faces, coordinates not
-/// finite, an extent outside 1e-4 … 1e4 m, a volume of zero.
+/// finite, indices out of range, an extent outside 1e-4 … 1e4 m, a volume of zero; and for a one-sided surface or over 1,000 pieces.
 Mesh repair_mesh(Mesh mesh, const std::string& name, MeshReport* report = nullptr);
 
 /// Scales about the origin so that the longest side of the bounding box is `size_m`.

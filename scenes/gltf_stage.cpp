@@ -138,6 +138,7 @@ int GltfStage::add_camera(const Viewpoint& viewpoint) {
   camera.type = "perspective";
   camera.perspective.yfov = 0.9;
   camera.perspective.znear = 0.02;
+  camera.perspective.zfar = 1000.0;  // optional in glTF, but not to every reader
   camera.perspective.aspectRatio = 16.0 / 9.0;
   model_.cameras.push_back(std::move(camera));
   tinygltf::Node node;

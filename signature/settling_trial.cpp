@@ -14,10 +14,11 @@ namespace {
 
 constexpr double kGravity = 9.81;           // m/s²
 constexpr int kSubsteps = 33;               // ODE steps of .505 ms in 1/60 s: the ground truth's
-constexpr double kHorizon = 20.0;           // s
-constexpr double kRestEnergy = 1e-4;        // J/kg over g R: below it for kRestTime the body rests
-constexpr double kRestTime = 0.5;           // s
-constexpr double kClipEnergy = 0.3;         // J/kg over g R: kinetic energy at a contact below which a clip starts
+constexpr double kHorizon = 30.0;           // s: a rounded body rocks for long
+constexpr double kRestEnergy = 2.5e-4;      // J/kg over g R: below it for kRestTime the body rests
+constexpr double kRestTime = 0.75;          // s
+constexpr double kClipEnergy = 0.06;        // J/kg over g R: kinetic energy at a contact below which a clip starts
+constexpr int kSamplesPerFrame = 2;         // observations, at 60 Hz, for each frame of a clip
 constexpr double kEntryGap = 0.02;          // over R: near enough to the plane to be an entry
 constexpr int kEntriesPerClip = 24;
 constexpr double kSamePose = 12.0 * std::numbers::pi / 180.0;
@@ -57,16 +58,20 @@ SettlingRecord simulate_settling(const std::shared_ptr<const Shape>& shape, cons
   SettlingRecord record;
   const double energy_unit = kGravity * shape->radius;
   double quiet_since = 0.0;
+  int sample = 0, started = 0;
   simulate_drop(world, body, kHorizon, kSubsteps, [&](double time, const RigidState& state) {
     const double energy = kinetic_energy(*shape, state);
     const bool low_contact = energy < kClipEnergy * energy_unit && gap_of(*shape, state) < kEntryGap * shape->radius;
-    if (!record.states.empty() || low_contact) record.states.push_back(state);
+    const bool starts = record.states.empty() && low_contact;
+    if (starts) started = sample;
+    if (starts || (!record.states.empty() && (sample - started) % kSamplesPerFrame == 0)) record.states.push_back(state);
+    ++sample;
     if (energy > kRestEnergy * energy_unit) quiet_since = time;
     record.rests = !record.states.empty() && time - quiet_since >= kRestTime;
     return !record.rests;
   });
   if (record.rests) {
-    const auto still = std::ptrdiff_t(kRestTime / kObservationStep) - 3;  // a few frames of stillness are enough to end on
+    const auto still = std::ptrdiff_t(kRestTime / (kSamplesPerFrame * kObservationStep)) - 3;  // a few frames of stillness are enough to end on
     if (std::ptrdiff_t(record.states.size()) > still) record.states.resize(record.states.size() - std::size_t(still));
     const RigidState& last = record.states.back();
     record.normal = last.orientation.conjugate() * Vec3::UnitZ();
@@ -101,7 +106,7 @@ std::vector<RestPose> find_rest_poses(std::span<const SettlingRecord> records, d
 
 void add_clips(std::span<const SettlingRecord> records, const Shape& shape, int count, Signature& signature) {
   const double radius = shape.radius, speed_unit = std::sqrt(kGravity * radius);
-  signature.clip_frame_interval = float(kObservationStep / std::sqrt(radius / kGravity));
+  signature.clip_frame_interval = float(kSamplesPerFrame * kObservationStep / std::sqrt(radius / kGravity));
   for (const SettlingRecord& record : records) {
     if (int(signature.clips.size()) >= count) return;
     if (!record.rests || record.states.size() < 2) continue;

@@ -10,15 +10,15 @@
 
 namespace lodestone {
 
-/// What is kept of one drop, observed at 60 Hz.
+/// What is kept of one drop.
 struct SettlingRecord {
-  std::vector<RigidState> states;  ///< from the first low-energy contact to rest
+  std::vector<RigidState> states;  ///< from the first low-energy contact to rest, 1/30 s apart
   bool rests = false;
   Vec3 normal = Vec3::UnitZ();     ///< at rest, in body axes
   double height = 0.0;             ///< at rest, m
 };
 
-/// Drops `shape` on z = 0 under gravity 9.81 m/s² and follows it to rest (at most 20 s at R = .2 m). Orientation and velocities are drawn from (seed, trial),
+/// Drops `shape` on z = 0 under gravity 9.81 m/s² and follows it to rest (at most 30 s at R = .2 m). Orientation and velocities are drawn from (seed, trial),
 /// over heights up to 3 R and speeds up to what a fall from there gives.
 SettlingRecord simulate_settling(const std::shared_ptr<const Shape>& shape, const ContactLaw& law, std::uint64_t seed, std::uint32_t trial);
 

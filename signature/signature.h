@@ -78,7 +78,7 @@ struct SignatureSettings {
   int trials_per_cell = 60;
   int height_samples = 16, height_trials = 2000;
   int settling_trials = 1000;
-  int clips = 300;
+  int clips = 200;
   double rest_pose_frequency_min = 0.004;      ///< rarer rest poses are dropped (the paper: .05)
   std::uint64_t seed = 1;
   friend bool operator==(const SignatureSettings&, const SignatureSettings&) = default;

@@ -13,7 +13,7 @@ namespace lodestone {
 namespace {
 
 // Raised when measuring changes its results: older files are then measured anew.
-constexpr std::uint32_t kMeasuringVersion = 2;
+constexpr std::uint32_t kMeasuringVersion = 3;
 
 std::filesystem::path default_cache_folder() {
   if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder) return std::filesystem::path(folder) / "lodestone";

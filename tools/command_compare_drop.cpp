@@ -55,10 +55,10 @@ void add_compare_drop_command(CLI::App& compare, ExitCode& exit_code) {
   DropComparisonSettings& comparison = arguments->comparison;
   add_shape_arguments(*drop, arguments->shape);
   drop->add_option("--dt", arguments->steps, "steps of the methods, s: 0.01 or 1/60, several with commas")
-      ->delimiter(',')->check(find_step_fault, "SECONDS")->capture_default_str();
+      ->delimiter(',')->allow_extra_args(false)->check(find_step_fault, "SECONDS")->capture_default_str();
   drop->add_option("--trials", comparison.trials, "drops of each")->check(CLI::Range(2, 1'000'000))->capture_default_str();
   drop->add_option("--methods", comparison.methods, fmt::format("some of {}", fmt::join(drop_method_names(), ",")))
-      ->delimiter(',')->check(CLI::IsMember(drop_method_names()))->capture_default_str();
+      ->delimiter(',')->allow_extra_args(false)->check(CLI::IsMember(drop_method_names()))->capture_default_str();
   drop->add_option("--seed", comparison.seed, "of the starts")->capture_default_str();
   drop->add_option("--speed-scale", arguments->speed_scale, "multiplies the starting speeds")->check(CLI::Range(0.0, 1e3))->capture_default_str();
   drop->add_option("--slope-deg", arguments->slope_deg, "of the plane")->check(CLI::Range(0.0, 80.0))->capture_default_str();

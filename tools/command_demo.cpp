@@ -12,6 +12,7 @@ namespace {
 struct Arguments {
   RunArguments run;
   int trials = 300;
+  bool json = false;
 };
 
 ExitCode demo(const Arguments& arguments) {
@@ -21,7 +22,8 @@ ExitCode demo(const Arguments& arguments) {
     ProgressLine line;
     result = run_demo(scene, run_settings(arguments.run, line), arguments.trials, line.function());
   }
-  fmt::print("{}: {}", arguments.run.scene.string(), text_of(result));
+  if (arguments.json) fmt::print("{}\n", json_of(result).dump(2));
+  else fmt::print("{}: {}", arguments.run.scene.string(), text_of(result));
   return exit_code_of(result.mixed);
 }
 
@@ -35,6 +37,7 @@ void add_demo_command(CLI::App& program, ExitCode& exit_code) {
   add_run_arguments(*command, arguments->run);
   command->add_option("--trials", arguments->trials, "single drops for the accuracy")->check(CLI::Range(2, 1'000'000))->capture_default_str();
   command->add_option("--out", arguments->run.running.out, "folder for the trajectory")->capture_default_str();
+  command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->callback([arguments, &exit_code] { exit_code = demo(*arguments); });
 }
 

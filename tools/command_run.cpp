@@ -4,6 +4,7 @@
 #include "tools/commands.h"
 #include "tools/run_arguments.h"
 #include "tools/run_report.h"
+#include "tools/scene_signatures.h"
 
 namespace lodestone {
 namespace {
@@ -18,7 +19,9 @@ ExitCode run(const Arguments& arguments) {
   RunResult result;
   {
     ProgressLine line;
-    result = run_scene(scene, run_settings(arguments.run, line));
+    const RunSettings settings = run_settings(arguments.run, line);
+    fetch_signatures(scene, settings);
+    result = run_scene(scene, settings);
   }
   if (arguments.json) fmt::print("{}\n", json_of(result).dump(2));
   else fmt::print("{}: {} bodies, {} steps\n{}", arguments.run.scene.string(), result.bodies, result.steps, text_of(result));

@@ -1,11 +1,8 @@
 #include "tools/demo.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "tools/drop_report.h"
-#include "tools/text_table.h"
+#include "tools/scene_signatures.h"
 
 namespace lodestone {
 namespace {
@@ -37,6 +34,7 @@ class Demo {
 
   DemoResult run(int trials) {
     DemoResult result;
+    fetch_signatures(scene_, settings_);
     result.dt_s = settings_.dt_s.value_or(scene_.step.dt_s);
     measure_times(result);
     result.drop = make_drop_job();
@@ -114,31 +112,10 @@ class Demo {
   const Progress& progress_;
 };
 
-std::string text_of_times(const DemoResult& result) {
-  const auto number = [](double ms) { return fmt::format("{:.2f}", ms); };
-  TextTable table({"level", "median ms", "99 % ms", "busy median ms", "most at full"});
-  for (const DemoRow& row : result.rows)
-    table.add_row({row.name, row.whole_ms ? number(row.whole_ms->p50) : "-", row.whole_ms ? number(row.whole_ms->p99) : "-",
-                   number(row.busy_ms.p50), fmt::format("{}", row.most_full)});
-  return table.text();
-}
-
 }  // namespace
 
 DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials, const Progress& progress) {
   return Demo(scene, settings, progress).run(trials);
-}
-
-std::string text_of(const DemoResult& result) {
-  std::string text;
-  text += fmt::format("{} bodies, {} steps of {:.4g} ms\n\n", result.mixed.bodies, result.mixed.steps, 1e3 * result.dt_s);
-  text += "What a step costs\n\n" + text_of_times(result);
-  text += fmt::format("\nbusy: steps {} to {}, those of the most contacts; full is run over these alone\n\n", result.busy_step + 1,
-                      result.busy_step + result.busy_steps);
-  text += "What it costs in accuracy\n\n" + text_of(result.drop, result.errors);
-  if (!result.mixed.trajectory.empty())
-    text += fmt::format("\nThe mixed run is in {}, for any viewer of glTF\n", result.mixed.trajectory.string());
-  return text;
 }
 
 }  // namespace lodestone

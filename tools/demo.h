@@ -1,6 +1,8 @@
 // One scene at every level: what a step costs, and what the speed costs in accuracy.
 #pragma once
 
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,5 +33,6 @@ struct DemoResult {
 DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials, const Progress& progress);
 
 std::string text_of(const DemoResult& result);
+nlohmann::ordered_json json_of(const DemoResult& result);
 
 }  // namespace lodestone

@@ -6,7 +6,7 @@
 #include <map>
 #include <thread>
 
-#include "signature/signature_source.h"
+#include "tools/scene_signatures.h"
 #include "tools/step_argument.h"
 
 namespace lodestone {
@@ -26,11 +26,11 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
   command.add_option("--dt", arguments.step, "step, s: 0.01 or 1/60, instead of the scene's")->check(find_step_fault, "SECONDS");
   command.add_option("--seed", arguments.loading.seed, "instead of the scene's, for scatters too");
   command.add_option("--threads", running.threads, "of the statistical level; 0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
-  command.add_option("--level", running.level, "auto, or one level for every body: full, statistical")
-      ->transform(CLI::CheckedTransformer(kLevels))->option_text("auto|full|statistical");
-  command.add_option("--model", running.model, "of the statistical level: tables, support")
-      ->transform(CLI::CheckedTransformer(kModels))->option_text("tables|support");
-  command.add_option("--mesh-path", arguments.loading.mesh_paths, "folders in which mesh files are looked up")->delimiter(':');
+  command.add_option_function<std::string>("--level", [&](const std::string& name) { running.level = kLevels.at(name); }, "auto: the scene's policy; else one level for every body")
+      ->check(CLI::IsMember({"auto", "full", "statistical"}));
+  command.add_option_function<std::string>("--model", [&](const std::string& name) { running.model = kModels.at(name); }, "of the statistical level")
+      ->check(CLI::IsMember({"tables", "support"}));
+  command.add_option("--mesh-path", arguments.loading.mesh_paths, "folders in which mesh files are looked up")->delimiter(':')->allow_extra_args(false);
 }
 
 RunSettings run_settings(const RunArguments& arguments, ProgressLine& line) {
@@ -38,13 +38,7 @@ RunSettings run_settings(const RunArguments& arguments, ProgressLine& line) {
   settings.threads = threads_of(arguments.running.threads);
   if (!arguments.step.empty()) settings.dt_s = step_of(arguments.step);
   settings.progress = [&line](int step, int steps) { line.show(fmt::format("step {} of {}", step, steps), double(step) / steps); };
-  settings.signatures = [&line](const Shape& shape, const ContactLaw& law) {
-    SignatureSourceSettings source;
-    source.progress = [&](const std::string& stage, double fraction) {
-      line.show(fmt::format("signature of {}: {}", shape.name, stage), fraction);
-    };
-    return find_or_measure_signature(shape, law, source).signature;
-  };
+  settings.signatures = make_signature_function(line);
   return settings;
 }
 

@@ -31,6 +31,7 @@ constexpr std::array<std::pair<std::string_view, std::int64_t Counters::*>, 10> 
     {"pair_phases", &Counters::pair_phases},
     {"ode_messages", &Counters::ode_messages},
     {"contacts_dropped", &Counters::contacts_dropped},
+    {"full_quick_steps", &Counters::full_quick_steps},
     {"states_recovered", &Counters::states_recovered},
     {"energy_clamps", &Counters::energy_clamps},
     {"table_extrapolations", &Counters::table_extrapolations},

@@ -18,7 +18,7 @@ void add_shape_arguments(CLI::App& command, ShapeArguments& arguments) {
       ->required();
   command.add_option("--size", arguments.options.size_m, "longest side of a mesh's bounding box, m")->check(kPositive);
   command.add_option("--faces", arguments.options.faces, "simplify a mesh to this many faces")->check(CLI::Range(4, 1'000'000));
-  command.add_option("--mesh-path", arguments.options.search, "folders in which mesh files are looked up")->delimiter(':');
+  command.add_option("--mesh-path", arguments.options.search, "folders in which mesh files are looked up")->delimiter(':')->allow_extra_args(false);
   command.add_option("--restitution", arguments.material.restitution, "coefficient of restitution, 0 to 1")
       ->check(CLI::Range(0.0, 1.0))->capture_default_str();
   command.add_option("--friction", arguments.material.friction, "coefficient of friction")

@@ -51,6 +51,7 @@ ordered_json json_of(const Signature& signature, std::size_t bytes) {
   json["seconds"] = signature.measuring_seconds;
   json["trials_per_s"] = signature.measuring_seconds > 0 ? ordered_json(double(signature.trials) / signature.measuring_seconds) : ordered_json(nullptr);
   json["bytes"] = bytes;
+  json["held_out_ks"] = nullptr;  // not measured yet
   json["clips"] = signature.clips.size();
   json["rest_poses"] = ordered_json::array();
   for (const RestPose& pose : signature.rest_poses) json["rest_poses"].push_back(json_of(pose));

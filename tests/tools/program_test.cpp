@@ -66,5 +66,22 @@ TEST(Program, CompareDropPrintsOneJsonObjectAndNothingElse) {
   EXPECT_GT(json["rows"][3]["ns_per_body_step"].get<double>(), 0.0);
 }
 
+TEST(Program, ListsDoNotSwallowTheShape) {
+  const Ended ended = run("compare drop --trials 2 --methods full_1 --dt 1/60,1/120 box:0.2,0.3,0.4 --json");
+  EXPECT_EQ(ended.exit_code, 0);
+  EXPECT_EQ(nlohmann::json::parse(ended.out)["rows"].size(), 2U);
+}
+
+TEST(Program, RunPrintsOneJsonObjectAndNothingElse) {
+  const Ended ended = run("run " LODESTONE_SOURCE_DIR "/scenes/drop.yaml --level full --steps 5 --dt 1/120 --json", true);
+  EXPECT_EQ(ended.exit_code, 0);
+  const auto json = nlohmann::json::parse(ended.out);
+  for (const char* key : {"steps", "bodies", "state_hash", "step_ms", "levels", "transitions", "counters"}) EXPECT_TRUE(json.contains(key)) << key;
+  for (const char* key : {"p50", "p95", "p99", "mean", "max"}) EXPECT_TRUE(json["step_ms"].contains(key)) << key;
+  EXPECT_EQ(json["steps"], 5);
+  EXPECT_EQ(json["levels"]["full"].get<int>() + json["levels"]["statistical"].get<int>(), json["bodies"].get<int>());
+  EXPECT_EQ(json["counters"]["signatures_loaded"], 0);
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include "tools/demo.h"
+#include "tools/drop_report.h"
+#include "tools/run_report.h"
+#include "tools/text_table.h"
+
+namespace lodestone {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string text_of(std::optional<double> ms) { return ms ? fmt::format("{:.2f}", *ms) : "-"; }
+
+std::optional<double> median_of(const DemoRow& row) {
+  if (!row.whole_ms) return std::nullopt;
+  return row.whole_ms->p50;
+}
+
+std::optional<double> tail_of(const DemoRow& row) {
+  if (!row.whole_ms) return std::nullopt;
+  return row.whole_ms->p99;
+}
+
+// Full comes last.
+double times_faster(const DemoResult& result, const DemoRow& row) { return result.rows.back().busy_ms.p50 / row.busy_ms.p50; }
+
+std::string text_of_times(const DemoResult& result) {
+  TextTable table({"level", "median ms", "99 % ms", "busy median ms", "busy, full/this", "most at full"});
+  for (const DemoRow& row : result.rows)
+    table.add_row({row.name, text_of(median_of(row)), text_of(tail_of(row)), text_of(row.busy_ms.p50),
+                   fmt::format("{:.3g}", times_faster(result, row)), fmt::format("{}", row.most_full)});
+  return table.text();
+}
+
+std::string text_of_failed_checks(const RunResult& run) {
+  std::string text;
+  for (const CheckResult& check : run.checks)
+    if (!check.pass) text += fmt::format("FAILED in the mixed run: {} {:.4g}, bound {:.4g}\n", check.name, check.value, check.bound);
+  return text;
+}
+
+ordered_json json_or_null(std::optional<double> value) { return value ? ordered_json(*value) : ordered_json(nullptr); }
+
+ordered_json json_of(const DemoRow& row) {
+  return {{"level", row.name}, {"p50_ms", json_or_null(median_of(row))}, {"p99_ms", json_or_null(tail_of(row))},
+          {"busy_p50_ms", row.busy_ms.p50}, {"most_full", row.most_full}};
+}
+
+}  // namespace
+
+std::string text_of(const DemoResult& result) {
+  std::string text;
+  text += fmt::format("{} bodies, {} steps of {:.4g} ms\n\n", result.mixed.bodies, result.mixed.steps, 1e3 * result.dt_s);
+  text += "What a step costs\n\n" + text_of_times(result);
+  text += fmt::format("\nbusy: steps {} to {}, those of the most contacts; full is run over these alone\n\n", result.busy_step + 1,
+                      result.busy_step + result.busy_steps);
+  text += "What that costs in accuracy\n\n" + text_of(result.drop, result.errors) + '\n';
+  text += text_of_failed_checks(result.mixed);
+  if (!result.mixed.trajectory.empty())
+    text += fmt::format("The mixed run is in {}, for any viewer of glTF\n", result.mixed.trajectory.string());
+  return text;
+}
+
+ordered_json json_of(const DemoResult& result) {
+  ordered_json json;
+  json["busy_step"] = result.busy_step;
+  json["busy_steps"] = result.busy_steps;
+  json["levels"] = ordered_json::array();
+  for (const DemoRow& row : result.rows) json["levels"].push_back(json_of(row));
+  json["mixed"] = json_of(result.mixed);
+  json["errors"] = json_of(result.errors);
+  return json;
+}
+
+}  // namespace lodestone
