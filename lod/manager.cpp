@@ -20,7 +20,7 @@ StatisticalSettings statistical_settings(const ManagerSettings& settings, const 
           .seed = settings.seed,
           .threads = settings.threads,
           .model = settings.model,
-          .tables = {},
+          .tables = settings.tables,
           .sleeping = settings.sleeping};
 }
 
@@ -77,9 +77,16 @@ void Manager::add_plane(const Vec3& normal, double offset, MaterialId material) 
   impl_->levels.full.add_plane(plane);
 }
 
-void Manager::add_static_mesh(const Mesh& mesh, MaterialId material) { impl_->levels.full.add_static_mesh(mesh, material); }
+void Manager::add_static_mesh(const Mesh& mesh, MaterialId material) {
+  Eigen::AlignedBox3d bounds;
+  for (const Vec3& vertex : mesh.vertices) bounds.extend(vertex);
+  impl_->static_bounds.push_back(bounds);
+  impl_->levels.full.add_static_mesh(mesh, material);
+}
 
 void Manager::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+  const Vec3 reach = orientation.toRotationMatrix().cwiseAbs() * (0.5 * sides);
+  impl_->static_bounds.emplace_back(position - reach, position + reach);
   impl_->levels.full.add_static_box(sides, position, orientation, material);
 }
 

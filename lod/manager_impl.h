@@ -18,6 +18,7 @@ struct Manager::Impl {
   dxSpace* callers_space = nullptr;
   std::size_t own_planes = 0;  // those of the caller's space follow in levels.ground
   std::vector<Vec3> viewpoints;
+  std::vector<Eigen::AlignedBox3d> static_bounds;  // of the static boxes and meshes
   std::vector<LevelReason> reasons;             // of the last step's decisions
   std::vector<std::uint32_t> newcomers;         // at no level yet
   std::vector<std::uint32_t> put_off;           // waiting to be tried again
@@ -29,6 +30,7 @@ struct Manager::Impl {
 
   const StepReport& step(double dt);
   void begin_report();
+  bool near_static_ground(const RigidState& state, double radius) const;
   LevelDecision choose();
   void move_bodies(const LevelDecision& decision);
   void step_statistical(double dt);

@@ -42,13 +42,22 @@ LevelDecision Manager::Impl::choose() {
   const StageTimer timer(report.times.choose_ms);
   count_down_retries();
   std::vector<LevelCandidate>& candidates = levels.bodies.candidates();
-  for (std::size_t slot = 0; slot < levels.owner_of_slot.size(); ++slot)
-    candidates[levels.owner_of_slot[slot]].position = levels.statistical->state(int(slot)).position;
-  for (const FullLevel::Member& member : levels.full.members())
-    candidates[member.owner].position = levels.full.world()->state(member.id).position;
+  const auto see = [&](std::uint32_t body, const RigidState& state) {
+    candidates[body].position = state.position;
+    candidates[body].on_static_ground = near_static_ground(state, levels.bodies[body].definition.shape->radius);
+  };
+  for (std::size_t slot = 0; slot < levels.owner_of_slot.size(); ++slot) see(levels.owner_of_slot[slot], levels.statistical->state(int(slot)));
+  for (const FullLevel::Member& member : levels.full.members()) see(member.owner, levels.full.world()->state(member.id));
+  for (const std::uint32_t body : newcomers) see(body, levels.bodies[body].definition.state);
   for (LevelCandidate& candidate : candidates)
     candidate.frames_since_change += candidate.frames_since_change < LevelCandidate{}.frames_since_change;
   return choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
+}
+
+// Near enough to be there within three frames of a game.
+bool Manager::Impl::near_static_ground(const RigidState& state, double radius) const {
+  const double reach = 1.5 * radius + 0.05 * state.velocity.norm();
+  return std::ranges::any_of(static_bounds, [&](const Eigen::AlignedBox3d& box) { return box.exteriorDistance(state.position) < reach; });
 }
 
 void Manager::Impl::move_bodies(const LevelDecision& decision) {

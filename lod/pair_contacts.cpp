@@ -5,8 +5,6 @@ namespace {
 
 // Vertices this near the touching plane, over R, belong to the touching feature.
 constexpr double kFeatureMargin = 0.01;
-// An overlap this deep, over R, is looked at anew: another axis may be the shorter way out.
-constexpr double kDeep = 0.03;
 
 struct Separation {
   Vec3 normal = Vec3::UnitZ();  // from second to first
@@ -102,19 +100,22 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
-// Most near pairs do not touch, and a few steps uphill show it; the rest normals, which matter where faces meet, are for pairs that are new.
+// Most near pairs do not touch, and the last step's axis or a few steps uphill show it. A contact itself is found without memory, so that it is
+// a function of the two poses alone.
 HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
+  const auto from = [&](const Vec3& axis) {
+    Separation best = separation_along(first, second, axis, find_start(first, -axis), find_start(second, axis));
+    climb(first, second, margin, best);
+    return best;
+  };
+  if (!start.isZero(0.0))
+    if (const Separation apart = from(start); apart.gap > margin) return {apart.normal, apart.gap, {}};
   const Vec3 between = first.position - second.position;
-  const bool known = !start.isZero(0.0);
-  const Vec3 axis = known ? start : between.norm() > 1e-12 ? Vec3(between.normalized()) : Vec3::UnitZ();
-  Separation best = separation_along(first, second, axis, find_start(first, -axis), find_start(second, axis));
-  climb(first, second, margin, best);
-  if (!known || best.gap < -kDeep * first.shape->radius) {
-    const double before = best.gap;
-    if (best.gap <= margin) try_rest_normals(first, first, second, best);
-    if (best.gap <= margin) try_rest_normals(second, first, second, best);
-    if (best.gap > before) climb(first, second, margin, best);
-  }
+  Separation best = from(between.norm() > 1e-12 ? Vec3(between.normalized()) : Vec3::UnitZ());
+  const double before = best.gap;
+  if (best.gap <= margin) try_rest_normals(first, first, second, best);
+  if (best.gap <= margin) try_rest_normals(second, first, second, best);
+  if (best.gap > before) climb(first, second, margin, best);
   HullContactSearch search{best.normal, best.gap, {}};
   if (best.gap <= margin) search.contact = PairContact{best.normal, best.gap, find_points(first, second, best)};
   return search;

@@ -35,7 +35,7 @@ struct HullContactSearch {
   std::optional<PairContact> contact;  ///< where the gap is at most the margin
 };
 
-/// `support`: searches from `start` (the last step's axis; zero: the centre line), both bodies' rest normals, and refines by steps up the
+/// `support`: searches from the centre line and both bodies' rest normals; `start`, where not zero, is an axis that may still separate them, and refines by steps up the
 /// separation's gradient (as in Gilbert, An iterative procedure for computing the minimum of a quadratic form, 1966).
 HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin);
 

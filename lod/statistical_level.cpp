@@ -89,6 +89,7 @@ struct StatisticalLevel::Impl {
   double longest_travel = 0.0;               // m, of any body so far: one that is added begins beyond it, so that its pairs are looked at anew
   Crowd crowd;
   double reach = 0.0;
+  std::int64_t steps = 0;
 
   // Work arrays of a step.
   std::vector<Bound> bounds;
@@ -120,6 +121,7 @@ struct StatisticalLevel::Impl {
     return p < 0 ? neighbors[-1 - p].asleep : bodies[p].motion == Motion::asleep;
   }
   void wake_touched(std::span<FullNeighbor> neighbors);
+  ContactTally respond_pairs_as_paper();
   void move_alone(int slot, double dt, ContactTally& tally);
   void move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally);
   void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
@@ -315,6 +317,21 @@ void StatisticalLevel::Impl::wake_touched(std::span<FullNeighbor> neighbors) {
     }
 }
 
+// Both bodies of a pair respond by themselves and then move as if alone; pairs with full bodies keep the impulse that both share.
+ContactTally StatisticalLevel::Impl::respond_pairs_as_paper() {
+  ContactTally tally;
+  std::erase_if(contacts, [&](const CrowdContact& c) {
+    if (c.first < 0 || c.second < 0) return false;
+    StatisticalBody &first = bodies[c.first], &second = bodies[c.second];
+    const BodyKind &first_kind = kind_of(first), &second_kind = kind_of(second);
+    respond_pair_as_paper(first, first_kind, second, second_kind, c.contact, world(), materials.law(first_kind.material, second_kind.material),
+                          settings.tables, tally);
+    first.crowded = second.crowded = false;
+    return true;
+  });
+  return tally;
+}
+
 // ---- 3 flight and ground contact of bodies that touch no other
 
 void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, double dt) {
@@ -362,7 +379,7 @@ void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double
     const double rest = kind.signature->rest_poses[resting[slot].pose].height * kind.shape->radius;
     const double blend = defaults.blend_time * std::sqrt(kind.shape->radius / std::max(1e-9, settings.gravity.norm()));
     body.sphere_radius += float((rest - body.sphere_radius) * std::min(1.0, 2.0 * dt / blend));
-  } else {
+  } else if (steps % std::max(1, settings.tables.radius_update_interval) == 0) {
     body.sphere_radius = float(find_sphere_radius(body, kind, settings.tables, settings.seed));
   }
   tally = step_tables_body(body, resting[slot], kind, world(), dt, tables_settings);
@@ -445,6 +462,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   level.angular_velocity_given.assign(level.bodies.size(), std::nullopt);
   level.apply_pushes(dt);
 
+  ContactTally paper_tally;
   // 1 Near pairs: none to look for with a single body.
   level.contacts.clear();
   const bool pair_phase = level.bodies.size() + neighbors.size() > 1 && !level.awake.empty() + !neighbors.empty() > 0;
@@ -456,6 +474,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     level.plan_travel(dt);
     level.find_contacts(dt, neighbors);
     level.wake_touched(neighbors);
+    if (level.tables() && level.settings.tables.paper_pair_rule) paper_tally = level.respond_pairs_as_paper();
     report.times.pairs_ms += watch.lap_ms();
   } else {
     for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = false;
@@ -468,7 +487,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     for (std::int64_t i = begin; i < end; ++i)
       if (!level.bodies[level.awake[i]].crowded) level.move_alone(level.awake[i], dt, level.tallies[i]);
   });
-  ContactTally tally;
+  ContactTally tally = paper_tally;
   for (const ContactTally& t : level.tallies) tally += t;
   report.times.flight_ms += watch.lap_ms();
 
@@ -483,6 +502,8 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   }
 
   if (pair_phase) level.add_travel();
+
+  ++level.steps;
 
   // 5 Rest.
   level.sort_by_motion();

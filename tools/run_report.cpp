@@ -24,7 +24,7 @@ constexpr std::array<std::pair<std::string_view, double StageTimes::*>, 8> kStag
     {"cross_level", &StageTimes::cross_level_ms},
 }};
 
-constexpr std::array<std::pair<std::string_view, std::int64_t Counters::*>, 10> kCounters = {{
+constexpr std::array<std::pair<std::string_view, std::int64_t Counters::*>, 11> kCounters = {{
     {"ode_bodies_created", &Counters::ode_bodies_created},
     {"trimeshes_built", &Counters::trimeshes_built},
     {"signatures_loaded", &Counters::signatures_loaded},

@@ -13,7 +13,7 @@ install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lodestone/scenes
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/lodestone)
 
 install(EXPORT lodestone NAMESPACE lodestone:: FILE lodestoneTargets.cmake DESTINATION ${LODESTONE_PACKAGE})
-configure_package_config_file(cmake/lodestoneConfig.cmake.in lodestoneConfig.cmake INSTALL_DESTINATION ${LODESTONE_PACKAGE})
+configure_package_config_file(tools/cmake/lodestoneConfig.cmake.in lodestoneConfig.cmake INSTALL_DESTINATION ${LODESTONE_PACKAGE})
 write_basic_package_version_file(lodestoneConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lodestoneConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/lodestoneConfigVersion.cmake
   DESTINATION ${LODESTONE_PACKAGE})
