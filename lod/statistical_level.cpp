@@ -18,10 +18,10 @@ namespace lodestone {
 namespace {
 
 // Sleeping (3.4's second threshold). Among other bodies: slower than .05 m/s at R = .2 m, scaled with √R, for .1 s. Alone a body may still rock
-// slowly, so it must be nearly still for longer: kinetic energy over m g R below 1e-4 for .5 s.
+// slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s.
 constexpr double kSleepSpeed = 0.05, kSleepSpeedRadius = 0.2;
 constexpr float kSleepTime = 0.1f;
-constexpr double kAloneSleepEnergy = 1e-4;
+constexpr double kAloneSleepEnergy = 2.5e-4;
 constexpr float kAloneSleepTime = 0.5f;
 constexpr int kLeaningSteps = 12;  // a body that touched another so lately still leans on it, though a hair apart
 constexpr double kWakeFactor = 2.0;  // a sleeper wakes when touched faster than this times the sleeping speed
