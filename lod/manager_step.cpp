@@ -23,9 +23,9 @@ const StepReport& Manager::Impl::step(double dt) {
   {
     const StageTimer timer(report.times.total_ms);
     // 1 choose levels
-    const LevelDecision decision = choose();
+    LevelDecision decision = choose();
     // 2 transfer
-    move_bodies(decision);
+    move_bodies(std::move(decision));
     // 3 statistical level and its contacts with full bodies
     step_statistical(dt);
     // 4 full level
@@ -42,8 +42,6 @@ LevelDecision Manager::Impl::choose() {
   const StageTimer timer(report.times.choose_ms);
   count_down_retries();
   std::vector<LevelCandidate>& candidates = levels.bodies.candidates();
-  for (std::size_t slot = 0; slot < levels.owner_of_slot.size(); ++slot)
-    candidates[levels.owner_of_slot[slot]].position = levels.statistical->state(int(slot)).position;
   for (const FullLevel::Member& member : levels.full.members())
     candidates[member.owner].position = levels.full.world()->state(member.id).position;
   for (LevelCandidate& candidate : candidates)
@@ -51,10 +49,10 @@ LevelDecision Manager::Impl::choose() {
   return choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
 }
 
-void Manager::Impl::move_bodies(const LevelDecision& decision) {
+void Manager::Impl::move_bodies(LevelDecision decision) {
   const StageTimer timer(report.times.transfer_ms);
   read_callers_planes();
-  reasons = decision.reasons;
+  reasons = std::move(decision.reasons);
   for (const std::int32_t body : decision.demote) {
     transfer(levels, body);
     ++report.demotions;
@@ -107,13 +105,25 @@ void Manager::Impl::step_statistical(double dt) {
     gather(levels, neighborhood);
     give_forces();
   }
+  const auto was_awake = levels.statistical->awake();
+  moved.assign(was_awake.begin(), was_awake.end());
   levels.statistical->step(dt, neighborhood.bodies, report, neighborhood.contacts);
+  follow_moved();
   {
     const StageTimer timer(report.times.cross_level_ms);
     hand_over(levels, neighborhood, dt);
   }
   const StageTimes& t = report.times;
   smooth(statistical_ms, t.flight_ms + t.broad_phase_ms + t.pairs_ms + t.rest_ms + t.cross_level_ms);
+}
+
+// Those that slept through the step have not moved, and cost nothing here.
+void Manager::Impl::follow_moved() {
+  const StageTimer timer(report.times.choose_ms);
+  const auto awake = levels.statistical->awake();
+  moved.insert(moved.end(), awake.begin(), awake.end());
+  for (const std::int32_t slot : moved)
+    levels.bodies.candidates()[levels.owner_of_slot[slot]].position = levels.statistical->position(slot);
 }
 
 void Manager::Impl::step_full(double dt) {

@@ -433,6 +433,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
 }
 
 int StatisticalLevel::size() const { return int(impl_->bodies.size()); }
+std::span<const std::int32_t> StatisticalLevel::awake() const { return impl_->awake; }
 int StatisticalLevel::asleep_count() const { return int(impl_->asleep.size()); }
 
 RigidState StatisticalLevel::state(int slot) const {
@@ -441,6 +442,8 @@ RigidState StatisticalLevel::state(int slot) const {
   return {body.position, body.orientation, body.velocity,
           given ? *given : angular_velocity(body.orientation, body.spin, *impl_->kind_of(body).shape)};
 }
+
+const Vec3& StatisticalLevel::position(int slot) const { return impl_->bodies[slot].position; }
 
 void StatisticalLevel::set_state(int slot, const RigidState& state) {
   wake(slot);
