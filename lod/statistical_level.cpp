@@ -176,6 +176,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
 }
 
 int StatisticalLevel::size() const { return int(impl_->bodies.size()); }
+std::span<const std::int32_t> StatisticalLevel::awake() const { return impl_->awake; }
 int StatisticalLevel::asleep_count() const { return int(impl_->asleep.size()); }
 
 RigidState StatisticalLevel::state(int slot) const {
@@ -184,6 +185,7 @@ RigidState StatisticalLevel::state(int slot) const {
   return {body.position, body.orientation, body.velocity,
           given ? *given : angular_velocity(body.orientation, body.spin, *impl_->kind_of(body).shape)};
 }
+
 
 void StatisticalLevel::set_state(int slot, const RigidState& state) {
   wake(slot);

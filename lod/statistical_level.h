@@ -73,6 +73,7 @@ class StatisticalLevel {
 
   int size() const;
   int asleep_count() const;
+  std::span<const std::int32_t> awake() const;                             ///< slots
   RigidState state(int slot) const;
   void set_state(int slot, const RigidState& state);                       ///< wakes it
   bool asleep(int slot) const;
