@@ -62,10 +62,11 @@ void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind
                                 StatisticalModel model, double time) {
   const double reach = model == StatisticalModel::support ? kind.shape->radius : double(body.sphere_radius);
   const double spin_speed = model == StatisticalModel::support ? solver_bodies_[index].angular_velocity.norm() * reach : 0.0;
-  const double margin = settings_.contact_margin * kind.shape->radius + (body.velocity.norm() + spin_speed) * time;
   for (std::size_t number = 0; number < world.ground->planes.size(); ++number) {
     const HalfSpace& plane = world.ground->planes[number];
     const double height = plane.height_of(body.position);
+    const double falling = std::max(0.0, -solver_bodies_[index].velocity.dot(plane.normal));
+    const double margin = settings_.contact_margin * kind.shape->radius + (falling + 0.5 * spin_speed) * time;
     if (height > reach + margin) continue;
     HullContacts found;
     if (model == StatisticalModel::support) {

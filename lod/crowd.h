@@ -22,8 +22,8 @@ struct CrowdContact {
 };
 
 struct CrowdSettings {
-  ContactSolverSettings solver{.sweeps = 10};
-  double contact_margin = 0.01;  ///< over R
+  ContactSolverSettings solver{.sweeps = 10, .tolerance = 1e-3};
+  double contact_margin = 0.002;  ///< over R
 };
 
 /// The contact solver's work arrays, kept between steps so that a warm step allocates nothing.

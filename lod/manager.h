@@ -9,6 +9,7 @@
 
 #include "lod/body.h"
 #include "lod/policy.h"
+#include "lod/tables_options.h"
 #include "lod/signature_store.h"
 #include "lod/step_report.h"
 #include "reference/mesh.h"
@@ -26,6 +27,7 @@ struct ManagerSettings {
   int full_substeps = 4;      ///< ODE steps per step
   bool sleeping = true;       ///< bodies at rest cost nothing until something wakes them
   StatisticalModel model = StatisticalModel::support;
+  TablesOptions tables = {};  ///< of the tables model
   PolicySettings policy;
   SignatureFunction signatures;  ///< empty: find_or_measure_signature with its defaults
 };
@@ -46,7 +48,8 @@ class Manager {
   MaterialTable& materials();
 
   void add_plane(const Vec3& normal, double offset, MaterialId material = 0);  ///< normal·x = offset, unit normal
-  // Static meshes and boxes are ground for full bodies only: statistical ones do not meet them yet.
+  // Static meshes and boxes are ground for full bodies only, so a body that nears one's bounding box becomes full (unless forced statistical:
+  // it then passes through).
   void add_static_mesh(const Mesh& mesh, MaterialId material = 0);             ///< vertices in the world frame
   void add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material = 0);
 

@@ -18,6 +18,7 @@ struct Manager::Impl {
   dxSpace* callers_space = nullptr;
   std::size_t own_planes = 0;  // those of the caller's space follow in levels.ground
   std::vector<Vec3> viewpoints;
+  std::vector<Eigen::AlignedBox3d> static_bounds;  // of the static boxes and meshes
   std::vector<LevelReason> reasons;             // of the last step's decisions
   std::vector<std::uint32_t> newcomers;         // at no level yet
   std::vector<std::uint32_t> put_off;           // waiting to be tried again
@@ -37,6 +38,9 @@ struct Manager::Impl {
   void finish_report();
 
   void read_callers_planes();
+  void see(std::uint32_t body, const RigidState& state);  ///< what the policy is to know of where a body is
+  bool near_static_ground(const RigidState& state, double radius) const;
+  void add_static_bounds(const Eigen::AlignedBox3d& bounds);
   void follow_moved();
   void promote(std::uint32_t body);
   void put_promotion_off(std::uint32_t body);

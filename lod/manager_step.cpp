@@ -42,11 +42,23 @@ LevelDecision Manager::Impl::choose() {
   const StageTimer timer(report.times.choose_ms);
   count_down_retries();
   std::vector<LevelCandidate>& candidates = levels.bodies.candidates();
-  for (const FullLevel::Member& member : levels.full.members())
-    candidates[member.owner].position = levels.full.world()->state(member.id).position;
+  for (const FullLevel::Member& member : levels.full.members()) see(member.owner, levels.full.world()->state(member.id));
+  for (const std::uint32_t body : newcomers) see(body, levels.bodies[body].definition.state);
   for (LevelCandidate& candidate : candidates)
     candidate.frames_since_change += candidate.frames_since_change < LevelCandidate{}.frames_since_change;
   return choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
+}
+
+void Manager::Impl::see(std::uint32_t body, const RigidState& state) {
+  LevelCandidate& candidate = levels.bodies.candidates()[body];
+  candidate.position = state.position;
+  candidate.on_static_ground = near_static_ground(state, candidate.radius);
+}
+
+// Near enough to be there within three frames of a game.
+bool Manager::Impl::near_static_ground(const RigidState& state, double radius) const {
+  const double reach = 1.5 * radius + 0.05 * state.velocity.norm();
+  return std::ranges::any_of(static_bounds, [&](const Eigen::AlignedBox3d& box) { return box.exteriorDistance(state.position) < reach; });
 }
 
 void Manager::Impl::move_bodies(LevelDecision decision) {
@@ -122,8 +134,11 @@ void Manager::Impl::follow_moved() {
   const StageTimer timer(report.times.choose_ms);
   const auto awake = levels.statistical->awake();
   moved.insert(moved.end(), awake.begin(), awake.end());
-  for (const std::int32_t slot : moved)
-    levels.bodies.candidates()[levels.owner_of_slot[slot]].position = levels.statistical->position(slot);
+  for (const std::int32_t slot : moved) {
+    const std::uint32_t body = levels.owner_of_slot[slot];
+    if (static_bounds.empty()) levels.bodies.candidates()[body].position = levels.statistical->position(slot);
+    else see(body, levels.statistical->state(slot));
+  }
 }
 
 void Manager::Impl::step_full(double dt) {

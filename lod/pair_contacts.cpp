@@ -4,7 +4,7 @@ namespace lodestone {
 namespace {
 
 // Vertices this near the touching plane, over R, belong to the touching feature.
-constexpr double kFeatureMargin = 0.02;
+constexpr double kFeatureMargin = 0.01;
 
 struct Separation {
   Vec3 normal = Vec3::UnitZ();  // from second to first
@@ -87,6 +87,35 @@ Manifold find_points(const PairBody& first, const PairBody& second, const Separa
   return manifold;
 }
 
+// Most near pairs do not touch, and the last step's axis or a few steps uphill show it. A contact itself is found without memory, so that it is
+// a function of the two poses alone.
+HullContactSearch search_relative(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
+  const auto from = [&](const Vec3& axis) {
+    Separation best = separation_along(first, second, axis, find_start(first, -axis), find_start(second, axis));
+    climb(first, second, margin, best);
+    return best;
+  };
+  if (!start.isZero(0.0))
+    if (const Separation apart = from(start); apart.gap > margin) return {apart.normal, apart.gap, {}};
+  const Vec3& line = first.position;
+  Separation best = from(line.norm() > 1e-12 ? Vec3(line.normalized()) : Vec3::UnitZ());
+  const double before = best.gap;
+  if (best.gap <= margin) try_rest_normals(first, first, second, best);
+  if (best.gap <= margin) try_rest_normals(second, first, second, best);
+  if (best.gap > before) climb(first, second, margin, best);
+  HullContactSearch search{best.normal, best.gap, {}};
+  if (best.gap <= margin) search.contact = PairContact{best.normal, best.gap, find_points(first, second, best)};
+  return search;
+}
+
+// Rounded well above what the last bits of a state hold (and far below what shows), so that the path of the search does not hang on them: the same
+// two bodies meet alike whichever of them is full.
+template <class Numbers>
+Numbers without_last_bits(const Numbers& values) {
+  constexpr double kGrain = 0x1p-36;
+  return ((values / kGrain).array().round() * kGrain).matrix();
+}
+
 }  // namespace
 
 std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin) {
@@ -100,22 +129,16 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
-// Most near pairs do not touch, and a few steps uphill show it; the rest normals, which matter where faces meet, are for the others.
-std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
-  const Vec3 between = first.position - second.position;
-  const double distance = between.norm();
-  const Vec3 line = distance > 1e-12 ? Vec3(between / distance) : Vec3::UnitZ();
-  Separation best = separation_along(first, second, line, find_start(first, -line), find_start(second, line));
-  if (best.gap > margin) return {};
-  climb(first, second, margin, best);
-  if (best.gap > margin) return {};
-  const double before = best.gap;
-  try_rest_normals(first, first, second, best);
-  if (best.gap > margin) return {};
-  try_rest_normals(second, first, second, best);
-  if (best.gap > before) climb(first, second, margin, best);
-  if (best.gap > margin) return {};
-  return PairContact{best.normal, best.gap, find_points(first, second, best)};
+HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
+  PairBody a = first, b = second;
+  a.position = without_last_bits(Vec3(first.position - second.position));
+  b.position.setZero();
+  a.orientation.coeffs() = without_last_bits(Eigen::Vector4d(first.orientation.coeffs()));
+  b.orientation.coeffs() = without_last_bits(Eigen::Vector4d(second.orientation.coeffs()));
+  HullContactSearch search = search_relative(a, b, start, margin);
+  if (search.contact)
+    for (ManifoldPoint& p : search.contact->manifold.points) p.point += second.position;
+  return search;
 }
 
 }  // namespace lodestone

@@ -28,9 +28,15 @@ struct PairContact {
 /// `tables`: the two spheres. None where the gap is above `margin`.
 std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin);
 
-/// `support`: the axis of greatest separation of the two hulls, searched from the centre line and both bodies' rest normals and refined by
-/// steps up the separation's gradient (as in Gilbert, An iterative procedure for computing the minimum of a quadratic form, 1966). The gap is never
-/// overestimated as an overlap: the true distance is at least it. None where it is above `margin`.
-std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);
+/// Two hulls along the axis of greatest separation that was found.
+struct HullContactSearch {
+  Vec3 normal = Vec3::UnitZ();         ///< from the second body to the first
+  double gap = 0.0;                    ///< m along it: the true distance is at least this
+  std::optional<PairContact> contact;  ///< where the gap is at most the margin
+};
+
+/// `support`: searches from the centre line and both bodies' rest normals; `start`, where not zero, is an axis that may still separate them, and refines by steps up the
+/// separation's gradient (as in Gilbert, An iterative procedure for computing the minimum of a quadratic form, 1966).
+HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin);
 
 }  // namespace lodestone

@@ -40,7 +40,7 @@ double scaled_distance(const LevelCandidate& candidate, std::span<const Vec3> vi
 // Most bodies of a large scene: told without a root or a division.
 bool stays_far(const LevelCandidate& c, std::span<const Vec3> viewpoints, double full_within) {
   const double reach = full_within * c.importance + c.radius;
-  return c.level == Level::statistical && c.choice == LevelChoice::automatic && squared_distance(c, viewpoints) > 1.001 * reach * reach;
+  return c.level == Level::statistical && !c.decided() && squared_distance(c, viewpoints) > 1.001 * reach * reach;
 }
 
 Target target_by_distance(const LevelCandidate& candidate, double distance, double full_within, double hysteresis) {
@@ -78,8 +78,8 @@ class Chooser {
   LevelDecision by(const BudgetPolicy& policy, double full_body_step_ms, double statistical_ms) {
     std::int64_t forced = 0, full = 0;
     for (const LevelCandidate& c : candidates_) {
-      if (c.choice == LevelChoice::full) ++forced;
-      else if (c.choice == LevelChoice::automatic && c.level == Level::full) ++full;
+      if (c.must_be_full()) ++forced;
+      else if (!c.decided() && c.level == Level::full) ++full;
     }
     // The number of full bodies grows while part of the budget is free, and shrinks when all of it is used up.
     const double left_ms = policy.budget_ms - statistical_ms;
@@ -91,7 +91,7 @@ class Chooser {
     for (std::int64_t place = 0; place < std::int64_t(ranked.size()); ++place)
       consider(ranked[place], target_by_rank(place < wanted, full > most));
     for (std::int32_t i = 0; i < count(); ++i)
-      if (candidates_[i].choice != LevelChoice::automatic) consider({0.0, i}, {});
+      if (candidates_[i].decided()) consider({0.0, i}, {});
     grant(wanted - full);
     return std::move(decision_);
   }
@@ -104,7 +104,7 @@ class Chooser {
     std::vector<Ranked> ranked;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[i];
-      if (c.choice != LevelChoice::automatic) continue;
+      if (c.decided()) continue;
       const double distance = scaled_distance(c, viewpoints_);
       ranked.push_back({c.level == Level::full ? distance / (1.0 + settings_.hysteresis) : distance, i});
     }
@@ -122,8 +122,10 @@ class Chooser {
   void consider(const Ranked& by_distance, Target target) {
     const LevelCandidate& c = candidates_[by_distance.index];
     LevelReason& reason = decision_.reasons[by_distance.index];
-    const bool forced = c.choice != LevelChoice::automatic;
-    if (forced) target = {c.choice == LevelChoice::full ? Level::full : Level::statistical, LevelReason::forced, true};
+    const bool forced = c.decided();
+    if (forced)
+      target = {c.must_be_full() ? Level::full : Level::statistical,
+                c.choice == LevelChoice::automatic ? LevelReason::static_ground : LevelReason::forced, true};
     reason = target.reason;
     if (target.level == c.level) return;
 
@@ -192,6 +194,7 @@ std::string_view text_of(LevelReason reason) {
     case LevelReason::over_budget: return "nearer bodies use up the budget";
     case LevelReason::in_budget: return "among the nearest bodies that fit the budget";
     case LevelReason::overlap_put_off: return "its promotion waits until it overlaps no other body";
+    case LevelReason::static_ground: return "near static boxes or meshes, which only the full level meets";
     case LevelReason::contact_group: return "it goes with the bodies that it touches";
   }
   return "";

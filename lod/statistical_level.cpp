@@ -8,6 +8,7 @@
 #include "lod/clip_player.h"
 #include "lod/crowd.h"
 #include "lod/flight.h"
+#include "lod/pair_memory.h"
 #include "lod/parallel.h"
 #include "lod/support_model.h"
 #include "lod/tables_model.h"
@@ -17,11 +18,12 @@ namespace lodestone {
 namespace {
 
 // Sleeping (3.4's second threshold). Among other bodies: slower than .05 m/s at R = .2 m, scaled with √R, for .1 s. Alone a body may still rock
-// slowly, so it must be nearly still for longer: kinetic energy over m g R below 1e-4 for .5 s.
+// slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s.
 constexpr double kSleepSpeed = 0.05, kSleepSpeedRadius = 0.2;
 constexpr float kSleepTime = 0.1f;
-constexpr double kAloneSleepEnergy = 1e-4;
+constexpr double kAloneSleepEnergy = 2.5e-4;
 constexpr float kAloneSleepTime = 0.5f;
+constexpr int kLeaningSteps = 12;  // a body that touched another so lately still leans on it, though a hair apart
 constexpr double kWakeFactor = 2.0;  // a sleeper wakes when touched faster than this times the sleeping speed
 
 double sleep_speed(double radius) { return kSleepSpeed * std::sqrt(radius / kSleepSpeedRadius); }
@@ -50,6 +52,19 @@ void rename_in_order(std::vector<std::int32_t>& list, std::int32_t last, std::in
 
 struct Push { Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); };
 
+struct FoundPair {
+  ContactKey key = 0;
+  PairRecord record;
+  std::optional<CrowdContact> contact;
+};
+
+// The way of a body's farthest point, m.
+struct Travel {
+  double gone = 0.0, ahead = 0.0;     // since it was added; at most in this step
+  Vec3 position = Vec3::Zero();       // at the step's start
+  Quat orientation = Quat::Identity();
+};
+
 }  // namespace
 
 struct StatisticalLevel::Impl {
@@ -64,18 +79,22 @@ struct StatisticalLevel::Impl {
   std::vector<ClipPlayback> clips;
   std::vector<RestingRecord> resting;
   std::vector<std::optional<Vec3>> angular_velocity_given;  // until the next step: a state that was set is read back to the bit
+  std::vector<Travel> travels;
   std::vector<std::pair<int, Push>> pushes;  // of the next step
 
   std::vector<std::int32_t> awake, asleep;   // slots
   bool sleepers_changed = true;
   BroadPhase broad_phase;
+  PairMemory pair_memory;
+  double longest_travel = 0.0;               // m, of any body so far: one that is added begins beyond it, so that its pairs are looked at anew
   Crowd crowd;
   double reach = 0.0;
+  std::int64_t steps = 0;
 
   // Work arrays of a step.
   std::vector<Bound> bounds;
   std::vector<NearPair> pairs;
-  std::vector<std::optional<CrowdContact>> found;
+  std::vector<FoundPair> found;
   std::vector<CrowdContact> contacts;
   std::vector<ContactTally> tallies;
 
@@ -93,17 +112,20 @@ struct StatisticalLevel::Impl {
   void apply_pushes(double dt);
   void find_near_pairs(double dt, std::span<const FullNeighbor> neighbors);
   void find_contacts(double dt, std::span<const FullNeighbor> neighbors);
+  void plan_travel(double dt);
+  void add_travel();
   PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;
-  std::optional<CrowdContact> find_contact(Participant first, Participant second, double dt, std::span<const FullNeighbor> neighbors) const;
+  void find_contact(Participant first, Participant second, double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const;
   Vec3 point_velocity(Participant p, const Vec3& point, std::span<const FullNeighbor> neighbors) const;
   bool is_asleep(Participant p, std::span<const FullNeighbor> neighbors) const {
     return p < 0 ? neighbors[-1 - p].asleep : bodies[p].motion == Motion::asleep;
   }
   void wake_touched(std::span<FullNeighbor> neighbors);
+  ContactTally respond_pairs_as_paper();
   void move_alone(int slot, double dt, ContactTally& tally);
   void move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally);
   void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
-  void update_quiet(StatisticalBody& body, bool touching, double dt);
+  void update_quiet(StatisticalBody& body, double dt);
 };
 
 std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> shape, double mass, MaterialId material,
@@ -202,51 +224,84 @@ Vec3 StatisticalLevel::Impl::point_velocity(Participant p, const Vec3& point, st
   return body.velocity + angular_velocity(body.orientation, body.spin, *kind_of(body).shape).cross(point - body.position);
 }
 
-std::optional<CrowdContact> StatisticalLevel::Impl::find_contact(Participant first, Participant second, double dt,
-                                                                 std::span<const FullNeighbor> neighbors) const {
+void StatisticalLevel::Impl::find_contact(Participant first, Participant second, double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const {
   const PairBody a = pair_body(first, neighbors), b = pair_body(second, neighbors);
   const double touching = 0.01 * std::min(a.shape->radius, b.shape->radius);
+  const bool statistical = first >= 0 && second >= 0;
+  const double gone = statistical ? travels[first].gone + travels[second].gone : 0.0;
+  const PairRecord* known = pair_memory.find(pair.key);
+  if (statistical && known && known->gap - (gone - known->travel) > touching + travels[first].ahead + travels[second].ahead) {
+    pair.record = *known;
+    return;
+  }
   const Vec3 closing = point_velocity(first, a.position, neighbors) - point_velocity(second, b.position, neighbors);
   const double margin = touching + closing.norm() * dt;
-  const std::optional<PairContact> contact = tables() ? find_sphere_contact(a, b, margin) : find_hull_contact(a, b, margin);
-  if (!contact) return {};
+  std::optional<PairContact> contact;
+  if (tables()) {
+    contact = find_sphere_contact(a, b, margin);
+  } else {
+    HullContactSearch search = find_hull_contact(a, b, known ? Vec3(known->normal.cast<double>()) : Vec3::Zero(), margin);
+    pair.record = {search.normal.cast<float>(), float(search.gap), gone};
+    contact = std::move(search.contact);
+  }
+  if (!contact) return;
   // It counts if it closes within the step.
   const auto closes = [&](const ManifoldPoint& p) {
     const Vec3 velocity = point_velocity(first, p.point, neighbors) - point_velocity(second, p.point, neighbors);
     return p.gap + velocity.dot(contact->normal) * dt <= touching;
   };
   const auto points = std::span(contact->manifold.points).first(std::size_t(contact->manifold.count));
-  if (std::ranges::none_of(points, closes)) return {};
-  return CrowdContact{first, second, *contact};
+  if (std::ranges::any_of(points, closes)) pair.contact = CrowdContact{first, second, *contact};
 }
 
 void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighbor> neighbors) {
   const auto mover = [&](std::int32_t i) { return i < std::int32_t(awake.size()) ? awake[i] : -1 - (i - std::int32_t(awake.size())); };
   // The lower owner first, so that a contact is the same whichever of its bodies is full.
   const auto owner = [&](Participant p) { return p < 0 ? neighbors[-1 - p].owner : bodies[p].owner; };
-  const auto both = [&](const NearPair& pair) {
-    const Participant a = mover(pair.first), b = pair.second >= 0 ? mover(pair.second) : asleep[-1 - pair.second];
-    return owner(b) < owner(a) ? std::pair(b, a) : std::pair(a, b);
-  };
-  for (const std::int32_t slot : awake) {
-    bodies[slot].crowded = false;
-  }
-  found.assign(pairs.size(), std::nullopt);
+  for (const std::int32_t slot : awake) bodies[slot].crowded = false;
+  found.resize(pairs.size());
   parallel(std::int64_t(pairs.size()), 64, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
-      const auto [first, second] = both(pairs[i]);
+      Participant first = mover(pairs[i].first), second = pairs[i].second >= 0 ? mover(pairs[i].second) : asleep[-1 - pairs[i].second];
+      if (owner(second) < owner(first)) std::swap(first, second);
+      found[i] = {contact_key(owner(first), owner(second)), {}, {}};
       if (first < 0 && second < 0) continue;  // two full bodies are the full level's matter
       if (is_asleep(first, neighbors) && is_asleep(second, neighbors)) continue;
-      found[i] = find_contact(first, second, dt, neighbors);
+      find_contact(first, second, dt, neighbors, found[i]);
     }
   });
   contacts.clear();
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto [first, second] = both(pairs[i]);
-    if (!found[i]) continue;
-    contacts.push_back(*found[i]);
-    if (first >= 0) bodies[first].crowded = true;
-    if (second >= 0) bodies[second].crowded = true;
+  if (!tables()) pair_memory.begin(pairs.size());
+  for (const FoundPair& pair : found) {
+    if (!tables()) pair_memory.put(pair.key, pair.record);
+    if (!pair.contact) continue;
+    contacts.push_back(*pair.contact);
+    for (const Participant p : {pair.contact->first, pair.contact->second})
+      if (p >= 0) bodies[p].crowded = true;
+  }
+  if (!tables()) pair_memory.end();
+}
+
+// No point of a body goes farther than its centre does plus R times the angle turned.
+void StatisticalLevel::Impl::plan_travel(double dt) {
+  const double fall = 0.5 * settings.gravity.norm() * dt * dt;
+  for (const std::int32_t slot : awake) {
+    const StatisticalBody& body = bodies[slot];
+    const Shape& shape = *kind_of(body).shape;
+    travels[slot].ahead = body.velocity.norm() * dt + fall + angular_velocity(body.orientation, body.spin, shape).norm() * shape.radius * dt;
+    travels[slot].position = body.position;
+    travels[slot].orientation = body.orientation;
+  }
+}
+
+void StatisticalLevel::Impl::add_travel() {
+  for (const std::int32_t slot : awake) {
+    const StatisticalBody& body = bodies[slot];
+    Travel& t = travels[slot];
+    const double same = (body.orientation.coeffs() - t.orientation.coeffs()).squaredNorm();
+    const double opposite = (body.orientation.coeffs() + t.orientation.coeffs()).squaredNorm();
+    t.gone += (body.position - t.position).norm() + 2.2 * std::sqrt(std::min(same, opposite)) * kind_of(body).shape->radius;
+    t.ahead = 0.0;
   }
 }
 
@@ -262,14 +317,31 @@ void StatisticalLevel::Impl::wake_touched(std::span<FullNeighbor> neighbors) {
     }
 }
 
+// Both bodies of a pair respond by themselves and then move as if alone; pairs with full bodies keep the impulse that both share.
+ContactTally StatisticalLevel::Impl::respond_pairs_as_paper() {
+  ContactTally tally;
+  std::erase_if(contacts, [&](const CrowdContact& c) {
+    if (c.first < 0 || c.second < 0) return false;
+    StatisticalBody &first = bodies[c.first], &second = bodies[c.second];
+    const BodyKind &first_kind = kind_of(first), &second_kind = kind_of(second);
+    respond_pair_as_paper(first, first_kind, second, second_kind, c.contact, world(), materials.law(first_kind.material, second_kind.material),
+                          settings.tables, tally);
+    first.crowded = second.crowded = false;
+    return true;
+  });
+  return tally;
+}
+
 // ---- 3 flight and ground contact of bodies that touch no other
 
-void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, bool touching, double dt) {
+void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, double dt) {
   const BodyKind& kind = kind_of(body);
   const double speed = sleep_speed(kind.shape->radius);
-  const double limit = body.crowded ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
-  body.quiet_time = touching && kinetic_energy(body, *kind.shape) < limit ? body.quiet_time + float(dt) : 0.0f;
-  if (settings.sleeping && body.quiet_time >= (body.crowded ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
+  const bool among_others = body.crowded || body.since_crowded < kLeaningSteps;
+  const double limit = among_others ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
+  body.since_crowded = body.crowded ? 0 : std::uint8_t(std::min(255, body.since_crowded + 1));
+  body.quiet_time = kinetic_energy(body, *kind.shape) < limit ? body.quiet_time + float(dt) : 0.0f;
+  if (settings.sleeping && body.quiet_time >= (among_others ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
 }
 
 void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
@@ -285,10 +357,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
   }
   static const SupportSettings support_settings;
   tally = step_support_body(body, kind, world(), dt, support_settings);
-  if (tally.touched_plane < 0) {
-    body.quiet_time = 0.0f;
-    return;
-  }
+  if (tally.touched_plane < 0) return update_quiet(body, dt);
   const HalfSpace& plane = ground.planes[tally.touched_plane];
   if (!kind.clips.empty() && world().is_horizontal(plane)) {
     if (const auto clip = find_clip(body, kind, plane, gravity, clip_settings)) {
@@ -298,7 +367,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
       return;
     }
   }
-  update_quiet(body, true, dt);
+  update_quiet(body, dt);
 }
 
 void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
@@ -310,11 +379,11 @@ void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double
     const double rest = kind.signature->rest_poses[resting[slot].pose].height * kind.shape->radius;
     const double blend = defaults.blend_time * std::sqrt(kind.shape->radius / std::max(1e-9, settings.gravity.norm()));
     body.sphere_radius += float((rest - body.sphere_radius) * std::min(1.0, 2.0 * dt / blend));
-  } else {
+  } else if (steps % std::max(1, settings.tables.radius_update_interval) == 0) {
     body.sphere_radius = float(find_sphere_radius(body, kind, settings.tables, settings.seed));
   }
   tally = step_tables_body(body, resting[slot], kind, world(), dt, tables_settings);
-  update_quiet(body, tally.touched_plane >= 0, dt);
+  update_quiet(body, dt);
 }
 
 void StatisticalLevel::Impl::move_alone(int slot, double dt, ContactTally& tally) {
@@ -340,6 +409,8 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
   level.bodies.push_back(body);
   level.clips.emplace_back();
   level.resting.emplace_back();
+  level.travels.emplace_back();
+  level.travels.back().gone = level.longest_travel + 10.0 * level.reach;
   level.angular_velocity_given.emplace_back();
   level.awake.push_back(slot);
   set_state(slot, state);
@@ -373,6 +444,9 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
   level.bodies[slot] = level.bodies[last];
   level.clips[slot] = level.clips[last];
   level.resting[slot] = level.resting[last];
+  level.longest_travel = std::max(level.longest_travel, level.travels[slot].gone);
+  level.travels[slot] = level.travels[last];
+  level.travels.pop_back();
   level.bodies.pop_back();
   level.clips.pop_back();
   level.resting.pop_back();
@@ -388,6 +462,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   level.angular_velocity_given.assign(level.bodies.size(), std::nullopt);
   level.apply_pushes(dt);
 
+  ContactTally paper_tally;
   // 1 Near pairs: none to look for with a single body.
   level.contacts.clear();
   const bool pair_phase = level.bodies.size() + neighbors.size() > 1 && !level.awake.empty() + !neighbors.empty() > 0;
@@ -396,8 +471,10 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     ++report.counters.pair_phases;
     report.times.broad_phase_ms += watch.lap_ms();
     // 2 Contacts of those pairs.
+    level.plan_travel(dt);
     level.find_contacts(dt, neighbors);
     level.wake_touched(neighbors);
+    if (level.tables() && level.settings.tables.paper_pair_rule) paper_tally = level.respond_pairs_as_paper();
     report.times.pairs_ms += watch.lap_ms();
   } else {
     for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = false;
@@ -410,7 +487,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     for (std::int64_t i = begin; i < end; ++i)
       if (!level.bodies[level.awake[i]].crowded) level.move_alone(level.awake[i], dt, level.tallies[i]);
   });
-  ContactTally tally;
+  ContactTally tally = paper_tally;
   for (const ContactTally& t : level.tallies) tally += t;
   report.times.flight_ms += watch.lap_ms();
 
@@ -420,9 +497,13 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
       if (level.bodies[slot].crowded && level.bodies[slot].motion == Motion::settling) level.bodies[slot].motion = Motion::dynamic;
     tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.world(), level.settings.model, dt);
     for (const std::int32_t slot : level.awake)
-      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], true, dt);
+      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt);
     report.times.pairs_ms += watch.lap_ms();
   }
+
+  if (pair_phase) level.add_travel();
+
+  ++level.steps;
 
   // 5 Rest.
   level.sort_by_motion();
@@ -448,6 +529,7 @@ const Vec3& StatisticalLevel::position(int slot) const { return impl_->bodies[sl
 void StatisticalLevel::set_state(int slot, const RigidState& state) {
   wake(slot);
   StatisticalBody& body = impl_->bodies[slot];
+  impl_->travels[slot].gone += (state.position - body.position).norm() + 4.0 * impl_->kind_of(body).shape->radius;
   body.position = state.position;
   body.orientation = state.orientation;
   body.velocity = state.velocity;

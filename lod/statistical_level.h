@@ -11,17 +11,10 @@
 #include "lod/body.h"
 #include "lod/static_ground.h"
 #include "lod/step_report.h"
+#include "lod/tables_options.h"
 #include "signature/signature.h"
 
 namespace lodestone {
-
-/// Options of the paper's model, `tables`, that the paper names or that were found to matter.
-struct TablesOptions {
-  bool interpolate = true;          ///< look-up between cells; else the nearest cell (3.3.1)
-  bool draw_height = false;         ///< radius drawn from (μ, σ) at each contact instead of the mean
-  int radius_update_interval = 1;   ///< steps between updates of the sphere's radius (3.3.1)
-  bool paper_pair_rule = false;     ///< each body responds as against an immovable plane (3.3.2); gains energy
-};
 
 struct StatisticalSettings {
   Vec3 gravity{0, 0, -9.81};

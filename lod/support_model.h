@@ -10,7 +10,7 @@ namespace lodestone {
 struct SupportSettings {
   int max_impacts = 4;               ///< exact impacts a step; what is left of the step is done in contact steps
   double contact_step = 0.03;        ///< longest contact step over √(R/g)
-  double contact_margin = 0.01;      ///< over R: vertices this near the ground can carry
+  double contact_margin = 0.002;     ///< over R: vertices this near the ground can carry
   ContactSolverSettings solver{.sweeps = 10};
 };
 

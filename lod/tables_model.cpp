@@ -41,7 +41,7 @@ double kinetic_energy(const Velocities& v, const StatisticalBody& body, const Sh
 std::optional<double> find_touch(const StatisticalBody& body, const HalfSpace& plane, const Vec3& gravity, double left) {
   const double gap = plane.height_of(body.position) - body.sphere_radius;
   const double speed = body.velocity.dot(plane.normal), acceleration = gravity.dot(plane.normal);
-  if (gap <= 0.0) return speed < 0.0 ? std::optional(0.0) : std::nullopt;
+  if (gap <= 0.0) return speed < 0.0 || (speed == 0.0 && acceleration < 0.0) ? std::optional(0.0) : std::nullopt;
   if (gap + speed * left + 0.5 * acceleration * left * left > 0.0 && (acceleration <= 0.0 || speed >= 0.0)) return {};
   const double root = speed * speed - 2.0 * acceleration * gap;
   if (root < 0.0) return {};
@@ -77,15 +77,36 @@ void turn_to_rest(StatisticalBody& body, const BodyKind& kind, int pose, const H
   body.spin = spin_of(body.orientation, omega, *kind.shape);
 }
 
-// The rest of a step on the ground: no normal motion, Coulomb friction on the slip.
+// Coulomb friction of the sphere's lowest point for `time` seconds under `pressure` (m/s²), and of its footprint against pivoting.
+void rub(StatisticalBody& body, const Shape& shape, const Vec3& normal, double friction, double pressure, double time) {
+  const Vec3 arm = -double(body.sphere_radius) * normal;
+  const Mat3 inverse_inertia = inverse_inertia_world(body.orientation, shape);
+  const Vec3 omega = inverse_inertia * body.spin;
+  const double available = friction * pressure * time;
+  const Vec3 contact = body.velocity + omega.cross(arm), slip = contact - contact.dot(normal) * normal;
+  if (const double speed = slip.norm(); speed > 1e-12) {
+    const Vec3 direction = slip / speed, lever = arm.cross(direction);
+    const double needed = speed / (1.0 + lever.dot(inverse_inertia * lever));
+    const Vec3 impulse = -std::min(available, needed) * direction;
+    body.velocity += impulse;
+    body.spin += arm.cross(impulse);
+  }
+  constexpr double kFootprint = 0.3;  // lever of pivoting friction over R
+  const double pivot = body.spin.dot(normal);
+  body.spin -= std::copysign(std::min(std::abs(pivot), kFootprint * shape.radius * available), pivot) * normal;
+}
+
+// The rest of a step on the ground: no normal motion, friction on the slip.
 void slide(StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, const StepWorld& world, double friction, double time) {
   const double pressure = std::max(0.0, -world.gravity.dot(plane.normal));
   const Vec3 along = world.gravity - world.gravity.dot(plane.normal) * plane.normal;
   body.velocity -= body.velocity.dot(plane.normal) * plane.normal;
   body.velocity += along * time;
-  const double speed = body.velocity.norm(), lost = friction * pressure * time;
-  body.velocity *= speed > lost ? 1.0 - lost / speed : 0.0;
+  rub(body, *kind.shape, plane.normal, friction, pressure, time);
   body.position += body.velocity * time;
+  // The sphere may have grown into the plane: it comes out gradually.
+  const double gap = plane.height_of(body.position) - body.sphere_radius;
+  if (gap < 0.0) body.position -= 0.25 * gap * plane.normal;
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
 }
 

@@ -30,8 +30,8 @@ class Collision {
   void add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
   void add_mesh(const Mesh& mesh, MaterialId material);
 
-  /// Finds the contacts of every awake body and gives them to `joints`.
-  void collide(Bodies& bodies, ContactJoints& joints);
+  /// Finds the contacts of every awake body and gives them to `joints`; `h` is the step to come, s.
+  void collide(Bodies& bodies, ContactJoints& joints, double h);
 
   BroadPhase& broad_phase() { return broad_phase_; }
   std::int64_t contacts_dropped() const { return dropped_; }
@@ -45,6 +45,7 @@ class Collision {
   void find_mesh_points(const Body& body, const Plane& plane);
   void collide_candidates(Bodies& bodies, ContactJoints& joints);
   void reduce_points(double size);
+  double nearing(const Body& body, const Vec3& normal) const;
   void add_ground(dGeomID geom, MaterialId material);
   ContactSide side_of(Bodies& bodies, dGeomID geom) const;
 
@@ -57,6 +58,7 @@ class Collision {
   std::vector<std::unique_ptr<TrimeshData>> ground_meshes_;
   std::vector<ContactPoint> points_;          // of the pair at hand
   bool attached_;
+  double step_ = 0.0;                         // s, the one to come
   std::int64_t dropped_ = 0;
 };
 

@@ -6,6 +6,7 @@
 
 #include "reference/collision_ode.h"
 #include "reference/error.h"
+#include "reference/islands.h"
 
 namespace lodestone {
 
@@ -106,7 +107,7 @@ void OdeWorld::Impl::substep(double h) {
   for (const double added : kAddedCfm) {
     push_bodies();
     joints.begin(h, settings.cfm + added);
-    collision.collide(bodies, joints);
+    collision.collide(bodies, joints, h);
     const bool solved = advance(h);
     joints.end();
     if (solved || !own_world || added == std::end(kAddedCfm)[-1]) break;
@@ -131,7 +132,10 @@ void OdeWorld::Impl::push_bodies() {
 /// False where ODE had something to complain of.
 bool OdeWorld::Impl::advance(double h) {
   const std::int64_t messages_before = messages_of_this_thread();
-  if (settings.quick_step) {
+  const std::span<const OdeContact> contacts = joints.contacts();
+  const bool too_many = int(contacts.size()) > settings.direct_contacts_max && largest_island(contacts) > settings.direct_contacts_max;
+  if (settings.quick_step || too_many) {
+    ++counters.quick_steps;
     const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++steps);
     dWorldQuickStep(world, h);
   } else {

@@ -25,11 +25,13 @@ struct OdeSettings {
   std::uint64_t seed = 1;
   bool quick_step = false;              ///< dWorldQuickStep instead of dWorldStep (another friction law)
   int quick_step_iterations = 20;
+  int direct_contacts_max = 1 << 30;    ///< contacts of one island above which a substep is QuickStep's: dWorldStep's time grows with their cube
   double erp = 0.2, cfm = 1e-10;        ///< ODE's error reduction and constraint force mixing at contacts
   double bounce_velocity = 0.05;        ///< m/s, slower contacts do not bounce
   double max_correcting_velocity = 1e9; ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
   int max_contacts_per_pair = 8;
   bool plane_contacts_from_hull = true; ///< false: dCollide of the trimesh with the plane, brute force over all faces
+  bool early_plane_contacts = false;    ///< a hull vertex about to strike a plane within the step bounces now, rather than up to v·h inside it
   bool gyroscopic = true;
   bool auto_disable = false;            ///< ODE's sleeping: below .05 m/s and .05/R rad/s for .5 s
 };
@@ -55,7 +57,7 @@ struct OdeBodyDefinition {
 
 /// Since the world was made.
 struct OdeCounters {
-  std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0, states_recovered = 0;
+  std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0, quick_steps = 0, states_recovered = 0;
 };
 
 /// Two of this world's bodies that touched in the last substep (`second` null: static ground or a body of the caller's).

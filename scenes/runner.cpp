@@ -31,7 +31,7 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
 
 Manager make_manager(const Scene& scene, const RunSettings& settings, const SignatureFunction& signatures) {
   Manager manager({.gravity = scene.step.gravity_m_per_s2, .seed = scene.step.seed, .threads = settings.threads,
-                   .full_substeps = scene.step.full_substeps, .model = settings.model.value_or(scene.model), .policy = scene.lod,
+                   .full_substeps = scene.step.full_substeps, .model = settings.model.value_or(scene.model), .tables = scene.tables, .policy = scene.lod,
                    .signatures = signatures});
   manager.materials() = scene.materials;
   for (const Ground& ground : scene.ground) {

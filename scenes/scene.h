@@ -60,6 +60,7 @@ struct Scene {
   std::vector<Viewpoint> viewpoints;
   PolicySettings lod;
   StatisticalModel model = StatisticalModel::support;
+  TablesOptions tables;
   SceneOutput output;
   SceneChecks checks;
   int default_steps = 600;        ///< `step: {steps: …}`

@@ -68,17 +68,33 @@ void load_policy(const YamlCursor& section, PolicySettings& lod) {
   }
 }
 
+bool truth_of(const YamlCursor& key) {
+  static const std::array<std::string, 2> kTruths{"false", "true"};
+  return key.choice(kTruths) == 1;
+}
+
+TablesOptions load_tables_options(const YamlCursor& section) {
+  TablesOptions options;
+  section.expect_keys({"interpolate", "draw_height", "radius_update_interval", "paper_pair_rule"});
+  if (auto key = section.find("interpolate")) options.interpolate = truth_of(*key);
+  if (auto key = section.find("draw_height")) options.draw_height = truth_of(*key);
+  if (auto key = section.find("radius_update_interval")) options.radius_update_interval = int(key->integer(1, 1000));
+  if (auto key = section.find("paper_pair_rule")) options.paper_pair_rule = truth_of(*key);
+  return options;
+}
+
 void load_lod(const YamlCursor& root, Scene& scene) {
   static const std::array<std::string, 2> kModels{"tables", "support"};
   const auto section = root.find("lod");
   if (!section) return;
-  section->expect_keys({"policy", "full_within_m", "budget_ms", "hysteresis", "min_dwell_frames", "max_transitions_per_frame", "model"});
+  section->expect_keys({"policy", "full_within_m", "budget_ms", "hysteresis", "min_dwell_frames", "max_transitions_per_frame", "model", "tables"});
   load_policy(*section, scene.lod);
   if (auto key = section->find("hysteresis")) scene.lod.hysteresis = key->number({0, 10});
   if (auto key = section->find("min_dwell_frames")) scene.lod.min_dwell_frames = int(key->integer(0, 1'000'000));
   if (auto key = section->find("max_transitions_per_frame")) scene.lod.max_transitions_per_frame = int(key->integer(1, 1'000'000));
   if (auto key = section->find("model"))
     scene.model = std::array{StatisticalModel::tables, StatisticalModel::support}[key->choice(kModels)];
+  if (auto tables = section->find("tables")) scene.tables = load_tables_options(*tables);
 }
 
 SceneOutput load_output(const YamlCursor& root) {

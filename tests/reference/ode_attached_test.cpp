@@ -10,9 +10,9 @@ namespace {
 using namespace testing;
 
 // What a user of plain ODE has: a world, a space, a floor, and contacts of his own.
-class CallersWorld : public ::testing::Test {
+class AttachedOdeWorld : public ::testing::Test {
  protected:
-  CallersWorld() {
+  AttachedOdeWorld() {
     dInitODE2(0);
     dAllocateODEDataForThread(dAllocateMaskAll);
     world = dWorldCreate();
@@ -20,7 +20,7 @@ class CallersWorld : public ::testing::Test {
     contacts = dJointGroupCreate(0);
     dWorldSetGravity(world, 0, 0, -kGravity);
   }
-  ~CallersWorld() override {
+  ~AttachedOdeWorld() override {
     dJointGroupDestroy(contacts);
     dSpaceDestroy(space);
     dWorldDestroy(world);
@@ -40,7 +40,7 @@ class CallersWorld : public ::testing::Test {
   void collide_his_own() {
     dJointGroupEmpty(contacts);
     met = 0;
-    dSpaceCollide(space, this, [](void* self, dGeomID a, dGeomID b) { static_cast<CallersWorld*>(self)->meet(a, b); });
+    dSpaceCollide(space, this, [](void* self, dGeomID a, dGeomID b) { static_cast<AttachedOdeWorld*>(self)->meet(a, b); });
   }
   void meet(dGeomID a, dGeomID b) {
     ++met;
@@ -59,7 +59,7 @@ class CallersWorld : public ::testing::Test {
   const MaterialTable materials = material(0.0, 0.5);
 };
 
-TEST_F(CallersWorld, OurBodyRestsOnHisPlaneBoxAndMesh) {
+TEST_F(AttachedOdeWorld, OurBodyRestsOnHisPlaneBoxAndMesh) {
   dCreatePlane(space, 0, 0, 1, 0);
   dGeomSetPosition(dCreateBox(space, 2, 2, 1), 5, 0, 0.5);
   const auto shape = box_shape({0.4, 0.4, 0.4});
@@ -71,7 +71,7 @@ TEST_F(CallersWorld, OurBodyRestsOnHisPlaneBoxAndMesh) {
   EXPECT_NEAR(ours.state(on_box).position.z(), 1.2, 2e-3);
 }
 
-TEST_F(CallersWorld, HisBodyIsMetAndStepped) {
+TEST_F(AttachedOdeWorld, HisBodyIsMetAndStepped) {
   dCreatePlane(space, 0, 0, 1, 0);
   const auto shape = box_shape({1, 1, 0.4});
   OdeWorld ours(world, space, {}, materials);
@@ -88,7 +88,7 @@ TEST_F(CallersWorld, HisBodyIsMetAndStepped) {
   EXPECT_TRUE(met_his);
 }
 
-TEST_F(CallersWorld, HisOwnContactsStayHis) {
+TEST_F(AttachedOdeWorld, HisOwnContactsStayHis) {
   const dGeomID floor = dCreatePlane(space, 0, 0, 1, 0);
   const dBodyID ball = add_sphere(0.1, 4.0, {3, 0, 0.1});
   {
@@ -110,7 +110,7 @@ TEST_F(CallersWorld, HisOwnContactsStayHis) {
   EXPECT_NEAR(height_of(ball), 0.1, 1e-3);
 }
 
-TEST_F(CallersWorld, SettingsOfHisWorldStayHis) {
+TEST_F(AttachedOdeWorld, SettingsOfHisWorldStayHis) {
   dWorldSetContactMaxCorrectingVel(world, 3.0);
   dWorldSetQuickStepNumIterations(world, 33);
   OdeWorld ours(world, space, {.gravity = Vec3::Zero(), .quick_step_iterations = 5, .max_correcting_velocity = 1.0}, materials);
@@ -122,7 +122,7 @@ TEST_F(CallersWorld, SettingsOfHisWorldStayHis) {
   EXPECT_EQ(dWorldGetQuickStepNumIterations(world), 33);
 }
 
-TEST_F(CallersWorld, RemovalWakesHisBody) {
+TEST_F(AttachedOdeWorld, RemovalWakesHisBody) {
   const auto shape = box_shape({1, 1, 0.4});
   OdeWorld ours(world, space, {}, materials);
   const OdeBodyId box = ours.add_body({.shape = shape, .mass = 400.0, .state = at({0, 0, 0.2})});
@@ -134,7 +134,7 @@ TEST_F(CallersWorld, RemovalWakesHisBody) {
   EXPECT_FALSE(dBodyIsEnabled(far));
 }
 
-TEST_F(CallersWorld, HisJointHoldsOurBody) {
+TEST_F(AttachedOdeWorld, HisJointHoldsOurBody) {
   OdeWorld ours(world, space, {}, materials);
   const OdeBodyId box = ours.add_body({.shape = box_shape({0.4, 0.4, 0.4}), .mass = 64.0, .state = at({0, 0, 5})});
   const dJointID joint = dJointCreateBall(world, nullptr);
@@ -147,7 +147,7 @@ TEST_F(CallersWorld, HisJointHoldsOurBody) {
   dJointDestroy(joint);
 }
 
-TEST_F(CallersWorld, MessagesOutsideItsStepsAreNotTheWorlds) {
+TEST_F(AttachedOdeWorld, MessagesOutsideItsStepsAreNotTheWorlds) {
   OdeWorld ours({}, materials);
   ::testing::internal::CaptureStderr();
   dMessage(1, "as ODE would say it");

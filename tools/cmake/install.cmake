@@ -9,11 +9,11 @@ install(TARGETS lodestone_cli RUNTIME)
 install(DIRECTORY reference signature lod scenes DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lodestone
   FILES_MATCHING PATTERN "*.h" PATTERN "*_ode.h" EXCLUDE PATTERN "*_internal.h" EXCLUDE)
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lodestone/scenes
-  PATTERN "*.h" EXCLUDE PATTERN "*.cpp" EXCLUDE)
+  PATTERN "*.h" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "*.png" EXCLUDE)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/lodestone)
 
 install(EXPORT lodestone NAMESPACE lodestone:: FILE lodestoneTargets.cmake DESTINATION ${LODESTONE_PACKAGE})
-configure_package_config_file(cmake/lodestoneConfig.cmake.in lodestoneConfig.cmake INSTALL_DESTINATION ${LODESTONE_PACKAGE})
+configure_package_config_file(tools/cmake/lodestoneConfig.cmake.in lodestoneConfig.cmake INSTALL_DESTINATION ${LODESTONE_PACKAGE})
 write_basic_package_version_file(lodestoneConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lodestoneConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/lodestoneConfigVersion.cmake
   DESTINATION ${LODESTONE_PACKAGE})

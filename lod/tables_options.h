@@ -1,0 +1,14 @@
+// What of the paper's model can be chosen.
+#pragma once
+
+namespace lodestone {
+
+/// Options of the paper's model, `tables`, that the paper names or that were found to matter.
+struct TablesOptions {
+  bool interpolate = true;          ///< look-up between cells; else the nearest cell (3.3.1)
+  bool draw_height = false;         ///< radius drawn from (μ, σ) at each contact instead of the mean
+  int radius_update_interval = 1;   ///< steps between updates of the sphere's radius (3.3.1)
+  bool paper_pair_rule = false;     ///< each body responds as against an immovable plane (3.3.2); gains energy
+};
+
+}  // namespace lodestone
