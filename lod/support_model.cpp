@@ -63,12 +63,34 @@ Impact find_impact(const StatisticalBody& start, const StatisticalBody& end, con
   return after;
 }
 
-void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& contact, const Vec3& normal, const ContactLaw& law) {
+// The impulses of several vertices that strike at once, an edge's or a face's.
+void respond_together(StatisticalBody& body, const BodyKind& kind, const HullContacts& found, const Vec3& normal, const ContactLaw& law,
+                      const SupportSettings& settings) {
+  std::array<SolverBody, 1> bodies{SolverBody{body.velocity, angular_velocity(body.orientation, body.spin, *kind.shape), 1.0,
+                                              inverse_inertia_world(body.orientation, *kind.shape)}};
+  std::array<SolverContact, kMaxGroundContacts> contacts;
+  for (int i = 0; i < found.count; ++i) {
+    contacts[i].normal = normal;
+    contacts[i].arm_first = found.contact[i].arm;
+    contacts[i].law = law;
+  }
+  constexpr double kInstant = 1e-9;  // s: no gap is closed meanwhile
+  solve_contacts(bodies, std::span(contacts).first(std::size_t(found.count)), kInstant, settings.impact_solver);
+  body.velocity = bodies[0].velocity;
+  for (int i = 0; i < found.count; ++i) body.spin += contacts[i].arm_first.cross(impulse_of(contacts[i]));
+}
+
+void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& contact, const HalfSpace& plane, const ContactLaw& law,
+             const SupportSettings& settings) {
+  const double height = plane.height_of(body.position);
+  const HullContacts together = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height,
+                                                   contact.gap + settings.impact_margin * kind.shape->radius, body.support_hint);
+  ++body.events;
+  if (together.count > 1) return respond_together(body, kind, together, plane.normal, law, settings);
   const Mat3 response = contact_response_matrix(1.0, inverse_inertia_world(body.orientation, *kind.shape), contact.arm);
-  const Vec3 impulse = respond_contact(response, normal, velocity_at(body, kind, contact.arm), law).impulse;
+  const Vec3 impulse = respond_contact(response, plane.normal, velocity_at(body, kind, contact.arm), law).impulse;
   body.velocity += impulse;
   body.spin += contact.arm.cross(impulse);
-  ++body.events;
 }
 
 // One step of sliding, rolling or rocking: gravity, every vertex near the ground held or bounced at once, then motion.
@@ -133,7 +155,7 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
     if (approach > -world.bounce_velocity) break;  // not a bounce: it stays in contact
     body = impact.body;
     left -= impact.time;
-    respond(body, kind, impact.lowest.contact, plane.normal, world.law(kind, plane));
+    respond(body, kind, impact.lowest.contact, plane, world.law(kind, plane), settings);
     tally.touched_plane = impact.lowest.plane;
     ++tally.contacts;
   }

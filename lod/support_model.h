@@ -12,6 +12,8 @@ struct SupportSettings {
   double contact_step = 0.03;        ///< longest contact step over √(R/g)
   double contact_margin = 0.002;     ///< over R: vertices this near the ground can carry
   ContactSolverSettings solver{.sweeps = 10};
+  double impact_margin = 1e-6;       ///< over R: vertices this near the one that strikes strike with it
+  ContactSolverSettings impact_solver{.sweeps = 40};
 };
 
 /// Moves a body that touches no other by `time` seconds over the ground's planes.
