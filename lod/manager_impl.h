@@ -31,8 +31,6 @@ struct Manager::Impl {
 
   const StepReport& step(double dt);
   void begin_report();
-  void see(std::uint32_t body, const RigidState& state);
-  bool near_static_ground(const RigidState& state, double radius) const;
   LevelDecision choose();
   void move_bodies(LevelDecision decision);
   void step_statistical(double dt);
@@ -40,6 +38,9 @@ struct Manager::Impl {
   void finish_report();
 
   void read_callers_planes();
+  void see(std::uint32_t body, const RigidState& state);  ///< what the policy is to know of where a body is
+  bool near_static_ground(const RigidState& state, double radius) const;
+  void add_static_bounds(const Eigen::AlignedBox3d& bounds);
   void follow_moved();
   void promote(std::uint32_t body);
   void put_promotion_off(std::uint32_t body);

@@ -49,7 +49,6 @@ LevelDecision Manager::Impl::choose() {
   return choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
 }
 
-// What the policy is to know of a body.
 void Manager::Impl::see(std::uint32_t body, const RigidState& state) {
   LevelCandidate& candidate = levels.bodies.candidates()[body];
   candidate.position = state.position;
@@ -135,7 +134,11 @@ void Manager::Impl::follow_moved() {
   const StageTimer timer(report.times.choose_ms);
   const auto awake = levels.statistical->awake();
   moved.insert(moved.end(), awake.begin(), awake.end());
-  for (const std::int32_t slot : moved) see(levels.owner_of_slot[slot], levels.statistical->state(slot));
+  for (const std::int32_t slot : moved) {
+    const std::uint32_t body = levels.owner_of_slot[slot];
+    if (static_bounds.empty()) levels.bodies.candidates()[body].position = levels.statistical->position(slot);
+    else see(body, levels.statistical->state(slot));
+  }
 }
 
 void Manager::Impl::step_full(double dt) {
