@@ -69,6 +69,23 @@ INSTANTIATE_TEST_SUITE_P(OdePairs, TrimeshStack,
                          ::testing::Combine(::testing::Values(2, 5), ::testing::Values(1.0, 0.2), ::testing::Values(1.0 / 60, 1.0 / 100, 1.0 / 500),
                                             ::testing::Values(false, true)));
 
+// Hard case F14.
+TEST(OdePairs, StackStandsFarFromTheOrigin) {
+  const MaterialTable materials = material(0.0, 0.5);
+  double rest[2];
+  for (const bool far : {false, true}) {
+    Stack stack = make_stack(materials, make_box(Vec3::Constant(0.5)), 0.5, 5);
+    for (const OdeBodyId body : stack.bodies) {
+      RigidState state = stack.world->state(body);
+      state.position.head<2>().array() += far ? 1e7 : 0.0;
+      stack.world->set_state(body, state);
+    }
+    for (int i = 0; i < 100; ++i) stack.world->step(1.0 / 100);
+    rest[far] = stack.world->state(stack.bodies.back()).position.z();
+  }
+  EXPECT_NEAR(rest[0], rest[1], 1e-5);
+}
+
 // Two spheres head-on without friction: momentum and, at restitution one, energy are kept (hard case F18).
 TEST(OdePairs, ElasticSpheresExchangeMomentum) {
   const MaterialTable materials = material(1.0, 0.0);
