@@ -7,7 +7,7 @@
 #include "lod/body_table.h"
 #include "lod/full_level.h"
 #include "lod/signature_store.h"
-#include "lod/statistical_level.h"
+#include "lod/statistical/statistical_level.h"
 
 namespace lodestone {
 

@@ -59,6 +59,12 @@ Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
       policy(s.policy),
       callers_space(space) {}
 
+void Manager::Impl::add_static_bounds(const Eigen::AlignedBox3d& bounds) {
+  static_bounds.push_back(bounds);
+  for (std::uint32_t body = 0; body < levels.bodies.indices(); ++body)
+    if (levels.bodies.alive(body)) see(body, levels.state(body));
+}
+
 Manager::Manager(const ManagerSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
 Manager::Manager(dxWorld* world, dxSpace* space, const ManagerSettings& settings)
     : impl_(std::make_unique<Impl>(world, space, settings)) {}
@@ -80,13 +86,13 @@ void Manager::add_plane(const Vec3& normal, double offset, MaterialId material) 
 void Manager::add_static_mesh(const Mesh& mesh, MaterialId material) {
   Eigen::AlignedBox3d bounds;
   for (const Vec3& vertex : mesh.vertices) bounds.extend(vertex);
-  impl_->static_bounds.push_back(bounds);
+  impl_->add_static_bounds(bounds);
   impl_->levels.full.add_static_mesh(mesh, material);
 }
 
 void Manager::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
   const Vec3 reach = orientation.toRotationMatrix().cwiseAbs() * (0.5 * sides);
-  impl_->static_bounds.emplace_back(position - reach, position + reach);
+  impl_->add_static_bounds({position - reach, position + reach});
   impl_->levels.full.add_static_box(sides, position, orientation, material);
 }
 
@@ -125,7 +131,10 @@ void Manager::set_viewpoints(std::span<const Vec3> positions) {
 }
 
 void Manager::set_state(BodyId body, const RigidState& state) {
-  impl_->levels.set_state(impl_->levels.bodies.index_of(body), checked(state));
+  const std::uint32_t index = impl_->levels.bodies.index_of(body);
+  const RigidState sound = checked(state);
+  impl_->levels.set_state(index, sound);
+  impl_->see(index, sound);
 }
 
 void Manager::add_force(BodyId body, const Vec3& force, const Vec3& torque) {

@@ -23,6 +23,7 @@ struct Manager::Impl {
   std::vector<std::uint32_t> newcomers;         // at no level yet
   std::vector<std::uint32_t> put_off;           // waiting to be tried again
   std::vector<std::uint32_t> pushed;            // with a force for the next step
+  std::vector<std::int32_t> moved;              // slots that may have moved in the last step
   Neighborhood neighborhood;
   StepReport report;
   // Smoothed measurements; the first is a guess until a body was full.
@@ -30,14 +31,17 @@ struct Manager::Impl {
 
   const StepReport& step(double dt);
   void begin_report();
-  bool near_static_ground(const RigidState& state, double radius) const;
   LevelDecision choose();
-  void move_bodies(const LevelDecision& decision);
+  void move_bodies(LevelDecision decision);
   void step_statistical(double dt);
   void step_full(double dt);
   void finish_report();
 
   void read_callers_planes();
+  void see(std::uint32_t body, const RigidState& state);  ///< what the policy is to know of where a body is
+  bool near_static_ground(const RigidState& state, double radius) const;
+  void add_static_bounds(const Eigen::AlignedBox3d& bounds);
+  void follow_moved();
   void promote(std::uint32_t body);
   void put_promotion_off(std::uint32_t body);
   void count_down_retries();

@@ -23,9 +23,9 @@ const StepReport& Manager::Impl::step(double dt) {
   {
     const StageTimer timer(report.times.total_ms);
     // 1 choose levels
-    const LevelDecision decision = choose();
+    LevelDecision decision = choose();
     // 2 transfer
-    move_bodies(decision);
+    move_bodies(std::move(decision));
     // 3 statistical level and its contacts with full bodies
     step_statistical(dt);
     // 4 full level
@@ -42,16 +42,17 @@ LevelDecision Manager::Impl::choose() {
   const StageTimer timer(report.times.choose_ms);
   count_down_retries();
   std::vector<LevelCandidate>& candidates = levels.bodies.candidates();
-  const auto see = [&](std::uint32_t body, const RigidState& state) {
-    candidates[body].position = state.position;
-    candidates[body].on_static_ground = near_static_ground(state, levels.bodies[body].definition.shape->radius);
-  };
-  for (std::size_t slot = 0; slot < levels.owner_of_slot.size(); ++slot) see(levels.owner_of_slot[slot], levels.statistical->state(int(slot)));
   for (const FullLevel::Member& member : levels.full.members()) see(member.owner, levels.full.world()->state(member.id));
   for (const std::uint32_t body : newcomers) see(body, levels.bodies[body].definition.state);
   for (LevelCandidate& candidate : candidates)
     candidate.frames_since_change += candidate.frames_since_change < LevelCandidate{}.frames_since_change;
   return choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
+}
+
+void Manager::Impl::see(std::uint32_t body, const RigidState& state) {
+  LevelCandidate& candidate = levels.bodies.candidates()[body];
+  candidate.position = state.position;
+  candidate.on_static_ground = near_static_ground(state, candidate.radius);
 }
 
 // Near enough to be there within three frames of a game.
@@ -60,10 +61,10 @@ bool Manager::Impl::near_static_ground(const RigidState& state, double radius) c
   return std::ranges::any_of(static_bounds, [&](const Eigen::AlignedBox3d& box) { return box.exteriorDistance(state.position) < reach; });
 }
 
-void Manager::Impl::move_bodies(const LevelDecision& decision) {
+void Manager::Impl::move_bodies(LevelDecision decision) {
   const StageTimer timer(report.times.transfer_ms);
   read_callers_planes();
-  reasons = decision.reasons;
+  reasons = std::move(decision.reasons);
   for (const std::int32_t body : decision.demote) {
     transfer(levels, body);
     ++report.demotions;
@@ -116,13 +117,28 @@ void Manager::Impl::step_statistical(double dt) {
     gather(levels, neighborhood);
     give_forces();
   }
+  const auto was_awake = levels.statistical->awake();
+  moved.assign(was_awake.begin(), was_awake.end());
   levels.statistical->step(dt, neighborhood.bodies, report, neighborhood.contacts);
+  follow_moved();
   {
     const StageTimer timer(report.times.cross_level_ms);
     hand_over(levels, neighborhood, dt);
   }
   const StageTimes& t = report.times;
   smooth(statistical_ms, t.flight_ms + t.broad_phase_ms + t.pairs_ms + t.rest_ms + t.cross_level_ms);
+}
+
+// Those that slept through the step have not moved, and cost nothing here.
+void Manager::Impl::follow_moved() {
+  const StageTimer timer(report.times.choose_ms);
+  const auto awake = levels.statistical->awake();
+  moved.insert(moved.end(), awake.begin(), awake.end());
+  for (const std::int32_t slot : moved) {
+    const std::uint32_t body = levels.owner_of_slot[slot];
+    if (static_bounds.empty()) levels.bodies.candidates()[body].position = levels.statistical->position(slot);
+    else see(body, levels.statistical->state(slot));
+  }
 }
 
 void Manager::Impl::step_full(double dt) {

@@ -27,10 +27,20 @@ bool farther(const Ranked& a, const Ranked& b) {
   return a.distance != b.distance ? a.distance > b.distance : a.index < b.index;
 }
 
-double scaled_distance(const LevelCandidate& candidate, std::span<const Vec3> viewpoints) {
+double squared_distance(const LevelCandidate& candidate, std::span<const Vec3> viewpoints) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Vec3& viewpoint : viewpoints) nearest = std::min(nearest, (candidate.position - viewpoint).squaredNorm());
-  return std::max(0.0, std::sqrt(nearest) - candidate.radius) / candidate.importance;
+  return nearest;
+}
+
+double scaled_distance(const LevelCandidate& candidate, std::span<const Vec3> viewpoints) {
+  return std::max(0.0, std::sqrt(squared_distance(candidate, viewpoints)) - candidate.radius) / candidate.importance;
+}
+
+// Most bodies of a large scene: told without a root or a division.
+bool stays_far(const LevelCandidate& c, std::span<const Vec3> viewpoints, double full_within) {
+  const double reach = full_within * c.importance + c.radius;
+  return c.level == Level::statistical && !c.decided() && squared_distance(c, viewpoints) > 1.001 * reach * reach;
 }
 
 Target target_by_distance(const LevelCandidate& candidate, double distance, double full_within, double hysteresis) {
@@ -54,6 +64,10 @@ class Chooser {
 
   LevelDecision by(const DistancePolicy& policy) {
     for (std::int32_t i = 0; i < count(); ++i) {
+      if (stays_far(candidates_[i], viewpoints_, policy.full_within)) {
+        decision_.reasons[i] = LevelReason::far;
+        continue;
+      }
       const double distance = scaled_distance(candidates_[i], viewpoints_);
       consider({distance, i}, target_by_distance(candidates_[i], distance, policy.full_within, settings_.hysteresis));
     }

@@ -172,14 +172,16 @@ TEST(CrossLevel, T10MomentumIsKept) {
 }
 
 TEST(CrossLevel, T10SameOutcomeWithTheRolesSwapped) {
-  for (std::uint32_t trial = 0; trial < 50; ++trial) {
+  constexpr int kTrials = 50;
+  int same = 0;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     const Pair one = collide(kFull, kStatistical, trial), other = collide(kStatistical, kFull, trial);
     ASSERT_TRUE(one.met && other.met);
-    EXPECT_LT((one.first.velocity - other.first.velocity).norm(), 1e-6) << trial;
-    EXPECT_LT((one.second.velocity - other.second.velocity).norm(), 1e-6) << trial;
-    EXPECT_LT((one.first.angular_velocity - other.first.angular_velocity).norm(), 1e-5) << trial;
-    EXPECT_LT((one.second.angular_velocity - other.second.angular_velocity).norm(), 1e-5) << trial;
+    same += (one.first.velocity - other.first.velocity).norm() < 1e-9 && (one.second.velocity - other.second.velocity).norm() < 1e-9 &&
+            (one.first.angular_velocity - other.first.angular_velocity).norm() < 1e-8 &&
+            (one.second.angular_velocity - other.second.angular_velocity).norm() < 1e-8;
   }
+  EXPECT_EQ(same, kTrials);
 }
 
 TEST(CrossLevel, HitWakesASleeperOfTheOtherLevelAndATouchDoesNot) {
@@ -212,7 +214,8 @@ TEST(CrossLevel, T6PromotionInsideAPileDisturbsNobody) {
                            Vec3::Zero(), Vec3::Zero()};
     bodies.push_back(add(manager, cube, state, kStatistical));
   }
-  run(manager, 4.0);
+  for (int second = 0; second < 20 && manager.report().asleep < int(bodies.size()); ++second) run(manager, 1.0);
+  ASSERT_EQ(manager.report().asleep, int(bodies.size()));
   const auto top_speed = [&](BodyId but) {
     double top = 0.0;
     for (const BodyId body : bodies)
@@ -221,11 +224,10 @@ TEST(CrossLevel, T6PromotionInsideAPileDisturbsNobody) {
   };
   int promoted = 0;
   for (const int inside : {30, 60, 90, 120}) {
-    const double before = top_speed(bodies[inside]);
     manager.set_level(bodies[inside], kFull);
     for (int i = 0; i < 60; ++i) {
       manager.step(kFrame);
-      EXPECT_LT(top_speed(bodies[inside]) - before, 1.0) << inside;
+      EXPECT_LT(top_speed(bodies[inside]), 1.0) << inside;
     }
     promoted += manager.level(bodies[inside]) == Level::full;
   }

@@ -232,6 +232,18 @@ TEST(ManagerDeathTest, F17StepOfBadLengthIsNamed) {
   for (const double dt : {0.0, -0.01, 0.2, std::numeric_limits<double>::quiet_NaN()}) EXPECT_DEATH(manager.step(dt), "step lasts");
 }
 
+TEST(Manager, SleeperNearANewStaticBoxBecomesFull) {
+  Manager manager = on_floor();
+  const BodyId near = add(manager, box_shape(kSides), at({0, 0, 0.2})), apart = add(manager, box_shape(kSides), at({9, 0, 0.2}));
+  run(manager, 2.0);
+  ASSERT_TRUE(manager.asleep(near));
+  manager.add_static_box({1, 1, 1}, {0.8, 0, 0.5}, Quat::Identity());
+  manager.step(kFrame);
+  EXPECT_EQ(manager.level(near), Level::full);
+  EXPECT_EQ(manager.why(near), "full: near static boxes or meshes, which only the full level meets");
+  EXPECT_EQ(manager.level(apart), Level::statistical);
+}
+
 std::uint64_t hash_of_a_mixed_run() {
   Manager manager = on_floor();
   const auto shape = box_shape(kSides);

@@ -15,9 +15,16 @@ struct Ended {
   std::string out;
 };
 
+// As one word to the shell.
+std::string quoted(const std::string& path) {
+  std::string word = "'";
+  word.append(path).push_back('\'');
+  return word;
+}
+
 // Runs `lodestone` with `arguments`; stderr is joined where asked for.
 Ended run(const std::string& arguments, bool with_errors = false) {
-  const std::string command = std::string(LODESTONE_CLI) + ' ' + arguments + (with_errors ? " 2>&1" : " 2>/dev/null");
+  const std::string command = quoted(LODESTONE_CLI) + ' ' + arguments + (with_errors ? " 2>&1" : " 2>/dev/null");
   Ended ended;
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> buffer;
@@ -73,7 +80,7 @@ TEST(Program, ListsDoNotSwallowTheShape) {
 }
 
 TEST(Program, RunPrintsOneJsonObjectAndNothingElse) {
-  const Ended ended = run("run " LODESTONE_SOURCE_DIR "/scenes/drop.yaml --level full --steps 5 --dt 1/120 --json", true);
+  const Ended ended = run("run " + quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml") + " --level full --steps 5 --dt 1/120 --json", true);
   EXPECT_EQ(ended.exit_code, 0);
   const auto json = nlohmann::json::parse(ended.out);
   for (const char* key : {"steps", "bodies", "state_hash", "step_ms", "levels", "transitions", "counters"}) EXPECT_TRUE(json.contains(key)) << key;

@@ -1,0 +1,90 @@
+#include "lod/statistical/contact_solver.h"
+
+#include <algorithm>
+
+#include "lod/statistical/contact_impulse.h"
+
+namespace lodestone {
+namespace {
+
+const SolverBody kGround;
+
+const SolverBody& second_of(std::span<SolverBody> bodies, const SolverContact& c) { return c.second < 0 ? kGround : bodies[c.second]; }
+
+Vec3 contact_velocity(std::span<SolverBody> bodies, const SolverContact& c) {
+  const SolverBody &a = bodies[c.first], &b = second_of(bodies, c);
+  return a.velocity + a.angular_velocity.cross(c.arm_first) - b.velocity - b.angular_velocity.cross(c.arm_second);
+}
+
+double effective_mass_along(const SolverBody& a, const SolverBody& b, const SolverContact& c, const Vec3& axis) {
+  const Vec3 ra = c.arm_first.cross(axis), rb = c.arm_second.cross(axis);
+  return 1.0 / (a.inverse_mass + b.inverse_mass + ra.dot(a.inverse_inertia * ra) + rb.dot(b.inverse_inertia * rb));
+}
+
+void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& impulse) {
+  SolverBody& a = bodies[c.first];
+  a.velocity += a.inverse_mass * impulse;
+  a.angular_velocity += a.inverse_inertia * c.arm_first.cross(impulse);
+  if (c.second < 0) return;
+  SolverBody& b = bodies[c.second];
+  b.velocity -= b.inverse_mass * impulse;
+  b.angular_velocity -= b.inverse_inertia * c.arm_second.cross(impulse);
+}
+
+// The normal velocity to reach: a bounce, or closing the gap just within the step.
+double target_velocity(SolverContact& c, double approach, double step, const ContactSolverSettings& s) {
+  const double closing = std::min(0.0, -c.gap / step);
+  c.bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
+  return c.bounces ? std::max(-c.law.restitution * approach, closing) : closing;
+}
+
+void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const ContactSolverSettings& s) {
+  const Vec3 velocity = contact_velocity(bodies, c);
+  const Mat3 frame = contact_frame(c.normal, velocity);
+  c.tangent[0] = frame.col(1);
+  c.tangent[1] = frame.col(2);
+  const SolverBody &a = bodies[c.first], &b = second_of(bodies, c);
+  for (int i = 0; i < 3; ++i) c.effective_mass[i] = effective_mass_along(a, b, c, frame.col(i));
+  c.target = target_velocity(c, velocity.dot(c.normal), step, s);
+}
+
+// Returns the size of the change, N s.
+double relax(std::span<SolverBody> bodies, SolverContact& c) {
+  const Vec3 velocity = contact_velocity(bodies, c);
+  const double before = c.impulse[0];
+  c.impulse[0] = std::max(0.0, before + c.effective_mass[0] * (c.target - velocity.dot(c.normal)));
+  Vec3 change = (c.impulse[0] - before) * c.normal;
+  const double bound = c.law.friction * c.impulse[0];
+  for (int t = 0; t < 2; ++t) {
+    const double held = c.impulse[t + 1];
+    c.impulse[t + 1] = std::clamp(held - c.effective_mass[t + 1] * velocity.dot(c.tangent[t]), -bound, bound);
+    change += (c.impulse[t + 1] - held) * c.tangent[t];
+  }
+  apply(bodies, c, change);
+  return change.lpNorm<1>();
+}
+
+void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
+  if (c.bounces || c.guess.isZero(0.0)) return;
+  c.impulse[0] = std::max(0.0, c.guess.dot(c.normal));
+  const double bound = c.law.friction * c.impulse[0];
+  for (int t = 0; t < 2; ++t) c.impulse[t + 1] = std::clamp(c.guess.dot(c.tangent[t]), -bound, bound);
+  apply(bodies, c, impulse_of(c));
+}
+
+}  // namespace
+
+void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings) {
+  for (SolverContact& c : contacts) prepare(bodies, c, step, settings);
+  for (SolverContact& c : contacts) start_from_guess(bodies, c);
+  for (int sweep = 0; sweep < settings.sweeps; ++sweep) {
+    double changed = 0.0, greatest = 0.0;
+    for (SolverContact& c : contacts) {
+      changed = std::max(changed, relax(bodies, c));
+      greatest = std::max(greatest, c.impulse[0]);
+    }
+    if (changed <= settings.tolerance * greatest) return;
+  }
+}
+
+}  // namespace lodestone

@@ -1,0 +1,243 @@
+#include "lod/statistical/crowd.h"
+
+#include <algorithm>
+
+#include "lod/statistical/flight.h"
+
+namespace lodestone {
+namespace {
+
+MaterialId material_of(Participant p, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<const FullNeighbor> neighbors) {
+  return p >= 0 ? kinds[bodies[p].kind].material : neighbors[-1 - p].material;
+}
+
+const Vec3& position_of(Participant p, std::span<const StatisticalBody> bodies, std::span<const FullNeighbor> neighbors) {
+  return p >= 0 ? bodies[p].position : neighbors[-1 - p].state.position;
+}
+
+std::uint32_t owner_of(Participant p, std::span<const StatisticalBody> bodies, std::span<const FullNeighbor> neighbors) {
+  return p >= 0 ? bodies[p].owner : neighbors[-1 - p].owner;
+}
+
+void lift_sphere_out(StatisticalBody& body, const HalfSpace& plane) {
+  const double gap = plane.height_of(body.position) - body.sphere_radius;
+  if (gap >= 0.0) return;
+  body.position -= gap * plane.normal;
+  body.velocity -= std::min(0.0, body.velocity.dot(plane.normal)) * plane.normal;
+}
+
+}  // namespace
+
+int Crowd::solver_index(Participant p, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
+                        std::span<const FullNeighbor> neighbors, const StepWorld& world, double time) {
+  std::int32_t& index = p >= 0 ? index_of_slot_[p] : index_of_neighbor_[-1 - p];
+  if (index >= 0) return index;
+  index = std::int32_t(solver_bodies_.size());
+  participants_.push_back(p);
+  SolverBody solver;
+  if (p >= 0) {
+    const StatisticalBody& body = bodies[p];
+    const BodyKind& kind = kinds[body.kind];
+    if (body.motion != Motion::asleep) {
+      solver.velocity = body.velocity + world.gravity * time;
+      solver.angular_velocity = angular_velocity(body.orientation, body.spin, *kind.shape);
+      solver.inverse_mass = 1.0 / kind.mass;
+      solver.inverse_inertia = inverse_inertia_world(body.orientation, *kind.shape) / kind.mass;
+    }
+  } else {
+    const FullNeighbor& body = neighbors[-1 - p];
+    if (!body.asleep) {
+      solver.velocity = body.state.velocity + (world.gravity + body.force / body.mass) * time;
+      solver.angular_velocity = body.state.angular_velocity;
+      solver.inverse_mass = 1.0 / body.mass;
+      solver.inverse_inertia = inverse_inertia_world(body.state.orientation, *body.shape) / body.mass;
+    }
+  }
+  angular_before_.push_back(solver.angular_velocity);
+  solver_bodies_.push_back(solver);
+  return index;
+}
+
+void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                                StatisticalModel model, double time) {
+  const double reach = model == StatisticalModel::support ? kind.shape->radius : double(body.sphere_radius);
+  const double spin_speed = model == StatisticalModel::support ? solver_bodies_[index].angular_velocity.norm() * reach : 0.0;
+  for (std::size_t number = 0; number < world.ground->planes.size(); ++number) {
+    const HalfSpace& plane = world.ground->planes[number];
+    const double height = plane.height_of(body.position);
+    const double falling = std::max(0.0, -solver_bodies_[index].velocity.dot(plane.normal));
+    const double margin = settings_.contact_margin * kind.shape->radius + (falling + 0.5 * spin_speed) * time;
+    if (height > reach + margin) continue;
+    HullContacts found;
+    if (model == StatisticalModel::support) {
+      found = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, margin, body.support_hint);
+    } else {
+      found.contact[0] = {-reach * plane.normal, height - reach};
+      found.count = 1;
+    }
+    for (int i = 0; i < found.count; ++i) {
+      if (found.contact[i].gap > margin) continue;
+      SolverContact c;
+      c.first = index;
+      c.normal = plane.normal;
+      c.arm_first = found.contact[i].arm;
+      c.gap = found.contact[i].gap;
+      c.law = world.law(kind, plane);
+      solver_contacts_.push_back(c);
+      keys_.push_back(ground_key(body.owner, number));
+    }
+  }
+}
+
+// A counting sort of the contacts by neighbour; a contact of two is in both runs.
+void Crowd::sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors) {
+  full_start_.assign(neighbors + 1, 0);
+  const auto each_end = [&](const auto& visit) {
+    for (std::size_t i = 0; i < full_contacts.size(); ++i)
+      for (const std::int32_t end : {full_contacts[i].first, full_contacts[i].second})
+        if (end >= 0) visit(end, std::int32_t(i));
+  };
+  each_end([&](std::int32_t end, std::int32_t) { ++full_start_[end + 1]; });
+  for (std::size_t i = 0; i < neighbors; ++i) full_start_[i + 1] += full_start_[i];
+  full_order_.resize(std::size_t(full_start_[neighbors]));
+  std::vector<std::int32_t> next(full_start_.begin(), full_start_.end() - 1);
+  each_end([&](std::int32_t end, std::int32_t contact) { full_order_[next[end]++] = contact; });
+}
+
+// What holds up a full body, and what holds that up in turn: bodies met here take their place among the participants.
+void Crowd::add_full_contacts(int index, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
+                              std::span<const FullNeighbor> neighbors, std::span<const FullContact> full_contacts, const StepWorld& world,
+                              double time) {
+  const std::int32_t self = -1 - participants_[index];
+  for (std::int32_t i = full_start_[self]; i < full_start_[self + 1]; ++i) {
+    const FullContact& contact = full_contacts[full_order_[i]];
+    const bool is_first = contact.first == self;
+    const std::int32_t other = is_first ? contact.second : contact.first;
+    SolverContact c;
+    c.first = index;
+    if (other >= 0) {
+      c.second = solver_index(-1 - other, bodies, kinds, neighbors, world, time);
+      const bool added_by_the_other = c.second < index && !neighbors[other].asleep;
+      if (added_by_the_other) continue;
+      c.arm_second = contact.point - neighbors[other].state.position;
+    }
+    c.normal = is_first ? contact.normal : Vec3(-contact.normal);
+    c.arm_first = contact.point - neighbors[self].state.position;
+    c.gap = contact.gap;
+    c.law = {.restitution = 0.0, .friction = contact.friction};
+    solver_contacts_.push_back(c);
+    keys_.push_back(contact_key(neighbors[self].owner, other < 0 ? 0xffffffff : neighbors[other].owner));
+  }
+}
+
+ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
+                         std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts, const StepWorld& world,
+                         StatisticalModel model, double time) {
+  participants_.clear();
+  solver_bodies_.clear();
+  angular_before_.clear();
+  solver_contacts_.clear();
+  keys_.clear();
+  index_of_slot_.resize(bodies.size(), -1);
+  index_of_neighbor_.assign(neighbors.size(), -1);
+
+  // Pair contacts, then what is under every moving participant.
+  for (const CrowdContact& pair : contacts) {
+    SolverContact c;
+    c.first = solver_index(pair.first, bodies, kinds, neighbors, world, time);
+    c.second = solver_index(pair.second, bodies, kinds, neighbors, world, time);
+    c.normal = pair.contact.normal;
+    c.law = world.materials->law(material_of(pair.first, bodies, kinds, neighbors), material_of(pair.second, bodies, kinds, neighbors));
+    const Manifold& manifold = pair.contact.manifold;
+    c.share = 1.0 / manifold.count;
+    for (int i = 0; i < manifold.count; ++i) {
+      c.arm_first = manifold.points[i].point - position_of(pair.first, bodies, neighbors);
+      c.arm_second = manifold.points[i].point - position_of(pair.second, bodies, neighbors);
+      c.gap = manifold.points[i].gap;
+      solver_contacts_.push_back(c);
+      keys_.push_back(contact_key(owner_of(pair.first, bodies, neighbors), owner_of(pair.second, bodies, neighbors)));
+    }
+  }
+  const std::size_t pair_contacts = solver_contacts_.size();
+  sort_full_contacts(full_contacts, neighbors.size());
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    const Participant p = participants_[i];
+    if (p < 0 && !neighbors[-1 - p].asleep) add_full_contacts(int(i), bodies, kinds, neighbors, full_contacts, world, time);
+    if (p >= 0 && bodies[p].motion != Motion::asleep) add_ground_contacts(int(i), bodies[p], kinds[bodies[p].kind], world, model, time);
+  }
+  ContactSolverSettings settings = settings_.solver;
+  settings.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
+  memory_.recall(keys_, solver_contacts_, time);
+  solve_contacts(solver_bodies_, solver_contacts_, time, settings);
+  memory_.remember(keys_, solver_contacts_, time);
+
+  // Velocities back, and motion; full neighbours take theirs as impulses.
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    const Participant p = participants_[i];
+    const SolverBody& solved = solver_bodies_[i];
+    if (p < 0) {
+      continue;
+    }
+    index_of_slot_[p] = -1;
+    StatisticalBody& body = bodies[p];
+    if (body.motion == Motion::asleep) continue;
+    const BodyKind& kind = kinds[body.kind];
+    body.velocity = solved.velocity;
+    body.spin += spin_of(body.orientation, solved.angular_velocity - angular_before_[i], *kind.shape);
+    body.position += body.velocity * time;
+    body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
+    ++body.events;
+  }
+  for (std::size_t i = 0; i < pair_contacts; ++i) {
+    const SolverContact& c = solver_contacts_[i];
+    const Vec3 impulse = impulse_of(c);
+    const auto give = [&](Participant to, const Vec3& j, const Vec3& arm) {
+      if (to >= 0 || neighbors[-1 - to].asleep) return;
+      Impulse& share = c.bounces ? neighbors[-1 - to].hit : neighbors[-1 - to].push;
+      share.linear += j;
+      share.angular += arm.cross(j);
+    };
+    give(participants_[c.first], impulse, c.arm_first);
+    give(participants_[c.second], -impulse, c.arm_second);
+  }
+  // Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's matter.
+  const auto move = [&](std::int32_t index, const Vec3& by) {
+    if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
+    const Participant p = participants_[index];
+    (p >= 0 ? bodies[p].position : neighbors[-1 - p].shift) += by;
+  };
+  for (const SolverContact& c : solver_contacts_) {
+    const Participant p = std::max(participants_[c.first], c.second < 0 ? -1 : participants_[c.second]);
+    if (p < 0) continue;
+    const double distance = c.share * push_out_overlap(c.gap, kinds[bodies[p].kind].shape->radius);
+    if (distance == 0.0) continue;
+    const double first = solver_bodies_[c.first].inverse_mass, second = c.second < 0 ? 0.0 : solver_bodies_[c.second].inverse_mass;
+    if (first + second == 0.0) continue;
+    move(c.first, distance * first / (first + second) * c.normal);
+    move(c.second, -distance * second / (first + second) * c.normal);
+  }
+  // The ground has the last word.
+  for (const Participant p : participants_)
+    if (p >= 0 && bodies[p].motion != Motion::asleep)
+      for (const HalfSpace& plane : world.ground->planes) {
+        if (model == StatisticalModel::support) lift_out(bodies[p], *kinds[bodies[p].kind].shape, plane);
+        else lift_sphere_out(bodies[p], plane);
+      }
+  ContactTally tally;
+  tally.contacts = std::int64_t(solver_contacts_.size());
+  return tally;
+}
+
+void respond_pair_as_paper(StatisticalBody& first, const BodyKind& first_kind, StatisticalBody& second, const BodyKind& second_kind,
+                           const PairContact& contact, const StepWorld& world, const ContactLaw& law, const TablesOptions& options,
+                           ContactTally& tally) {
+  const Vec3 first_velocity = first.velocity, second_velocity = second.velocity;
+  first.velocity -= second_velocity;
+  respond_from_tables(first, first_kind, contact.normal, world, law, options, tally);
+  first.velocity += second_velocity;
+  second.velocity -= first_velocity;
+  respond_from_tables(second, second_kind, -contact.normal, world, law, options, tally);
+  second.velocity += first_velocity;
+}
+
+}  // namespace lodestone

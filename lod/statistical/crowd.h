@@ -1,0 +1,64 @@
+// Bodies that touch other bodies: their pair contacts and ground contacts solved together, momentum exact to rounding. The paper's rule,
+// in which each body of a pair responds as against an immovable plane (3.3.2), is kept as an option of `tables`.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lod/statistical/contact_memory.h"
+#include "lod/statistical/ground_contact.h"
+#include "lod/statistical/pair_contacts.h"
+#include "lod/statistical/statistical_level.h"
+#include "lod/statistical/tables_model.h"
+
+namespace lodestone {
+
+/// Who takes part in a pair: a slot of the level, or (negative) −1 − index of a full neighbour.
+using Participant = std::int32_t;
+
+struct CrowdContact {
+  Participant first = 0, second = 0;
+  PairContact contact;
+};
+
+struct CrowdSettings {
+  ContactSolverSettings solver{.sweeps = 10, .tolerance = 1e-3};
+  double contact_margin = 0.002;  ///< over R
+};
+
+/// The contact solver's work arrays, kept between steps so that a warm step allocates nothing.
+class Crowd {
+ public:
+  explicit Crowd(const CrowdSettings& settings = {}) : settings_(settings) {}
+
+  /// Solves `contacts`, the ground contacts of every crowded body and those of `full_contacts` that hold up a full one, then moves the crowded
+  /// bodies by `time`. Bodies asleep hold still; full neighbours receive impulses and are not moved.
+  ContactTally step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
+                    std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts, const StepWorld& world,
+                    StatisticalModel model, double time);
+
+ private:
+  int solver_index(Participant participant, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
+                   std::span<const FullNeighbor> neighbors, const StepWorld& world, double time);
+  void add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                           StatisticalModel model, double time);
+  void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
+  void add_full_contacts(int index, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
+                         std::span<const FullNeighbor> neighbors, std::span<const FullContact> full_contacts, const StepWorld& world, double time);
+
+  CrowdSettings settings_;
+  std::vector<Participant> participants_;     // of each solver body
+  std::vector<std::int32_t> index_of_slot_, index_of_neighbor_;
+  std::vector<std::int32_t> full_start_, full_order_;  // of each neighbour: its run of full contacts
+  std::vector<SolverBody> solver_bodies_;
+  std::vector<Vec3> angular_before_;
+  std::vector<SolverContact> solver_contacts_;
+  std::vector<ContactKey> keys_;  // of each solver contact
+  ContactMemory memory_;
+};
+
+/// The paper's rule for a pair of the statistical level (3.3.2).
+void respond_pair_as_paper(StatisticalBody& first, const BodyKind& first_kind, StatisticalBody& second, const BodyKind& second_kind,
+                           const PairContact& contact, const StepWorld& world, const ContactLaw& law, const TablesOptions& options, ContactTally& tally);
+
+}  // namespace lodestone

@@ -1,0 +1,87 @@
+#include "lod/statistical/hull_contacts.h"
+
+#include <algorithm>
+
+namespace lodestone {
+namespace {
+
+// Vertices of the hull below the margin, found by walking its edges from the lowest one: below a plane they are connected.
+struct Submerged {
+  static constexpr int kCapacity = 64;
+  std::array<std::int32_t, kCapacity> vertex;
+  std::array<HullContact, kCapacity> contact;
+  int count = 0;
+
+  // Marks by the vertex's low bits tell most newcomers at once; where two share a mark, the list decides.
+  std::array<std::uint64_t, 8> marks{};
+  bool holds(std::int32_t v) const {
+    return (marks[v / 64 % 8] >> v % 64 & 1) && std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
+  }
+  void add(std::int32_t v, const HullContact& c) {
+    marks[v / 64 % 8] |= std::uint64_t(1) << v % 64;
+    vertex[count] = v;
+    contact[count++] = c;
+  }
+};
+
+void walk_below(const Shape& shape, const Mat3& rotation, const Vec3& normal_in_body, double height, double margin, Submerged& found) {
+  for (int visited = 0; visited < found.count; ++visited) {
+    for (const std::int32_t next : shape.hull.neighbors(found.vertex[visited])) {
+      if (found.count == Submerged::kCapacity) return;
+      const double gap = height + shape.hull.vertices[next].dot(normal_in_body);
+      if (gap >= margin || found.holds(next)) continue;
+      found.add(next, {rotation * shape.hull.vertices[next], gap});
+    }
+  }
+}
+
+// Greatest of `measure` over the submerged vertices.
+template <class Measure>
+int find_greatest(const Submerged& found, Measure measure) {
+  int best = 0;
+  double best_value = -1.0;
+  for (int i = 0; i < found.count; ++i) {
+    const double value = measure(found.contact[i].arm);
+    if (value > best_value) best_value = value, best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal, double height, double margin,
+                                std::int32_t& hint) {
+  HullContacts result;
+  result.contact[0] = find_lowest_point(shape, orientation, normal, height, hint);
+  result.count = 1;
+  if (shape.sphere_radius) return result;
+
+  Submerged found;
+  found.add(hint, result.contact[0]);
+  walk_below(shape, orientation.toRotationMatrix(), orientation.conjugate() * normal, height, margin, found);
+  if (found.count <= kMaxGroundContacts) {
+    std::copy_n(found.contact.begin(), found.count, result.contact.begin());
+    result.count = found.count;
+    return result;
+  }
+  // The widest support: farthest from the lowest, then farthest to either side of the line between those two.
+  const Vec3 first = result.contact[0].arm;
+  const int second = find_greatest(found, [&](const Vec3& a) { return (a - first).squaredNorm(); });
+  const Vec3 side = normal.cross(found.contact[second].arm - first);
+  const int left = find_greatest(found, [&](const Vec3& a) { return (a - first).dot(side); });
+  const int right = find_greatest(found, [&](const Vec3& a) { return (first - a).dot(side); });
+  for (const int i : {second, left, right})
+    if (i != 0 && (result.count < 2 || i != second)) result.contact[result.count++] = found.contact[i];
+  return result;
+}
+
+void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane) {
+  const double height = plane.height_of(body.position);
+  if (height > shape.radius) return;
+  const double gap = find_lowest_point(shape, body.orientation, plane.normal, height, body.support_hint).gap;
+  if (gap >= 0.0) return;
+  body.position -= gap * plane.normal;
+  body.velocity -= std::min(0.0, body.velocity.dot(plane.normal)) * plane.normal;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,74 @@
+// Stage 5, and who wakes whom.
+#include "lod/statistical/statistical_level_internal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone {
+namespace {
+
+// Sleeping (3.4's second threshold). Among other bodies: slower than .05 m/s at R = .2 m, scaled with √R, for .1 s. Alone a body may still rock
+// slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s.
+constexpr double kSleepSpeed = 0.05, kSleepSpeedRadius = 0.2;
+constexpr float kSleepTime = 0.1f;
+constexpr double kAloneSleepEnergy = 2.5e-4;
+constexpr float kAloneSleepTime = 0.5f;
+constexpr int kLeaningSteps = 12;    // a body that touched another so lately still leans on it, though a hair apart
+constexpr double kWakeFactor = 2.0;  // a sleeper wakes when touched faster than this times the sleeping speed
+
+double sleep_speed(double radius) { return kSleepSpeed * std::sqrt(radius / kSleepSpeedRadius); }
+
+}  // namespace
+
+void StatisticalLevel::Impl::wake(int slot) {
+  StatisticalBody& body = bodies[slot];
+  if (body.motion != Motion::asleep) return;
+  body.motion = Motion::dynamic;
+  body.quiet_time = 0.0f;
+  asleep.erase(std::lower_bound(asleep.begin(), asleep.end(), slot));
+  awake.push_back(slot);
+  sleepers_changed = true;
+}
+
+void StatisticalLevel::Impl::put_to_sleep(StatisticalBody& body) {
+  body.motion = Motion::asleep;
+  body.velocity.setZero();
+  body.spin.setZero();
+}
+
+// Awake slots stay in order, so that the result of a step does not depend on the history of sleeping.
+void StatisticalLevel::Impl::sort_by_motion() {
+  const auto sleeps = [&](std::int32_t slot) { return bodies[slot].motion == Motion::asleep; };
+  const auto first_asleep = std::stable_partition(awake.begin(), awake.end(), std::not_fn(sleeps));
+  if (first_asleep != awake.end()) {
+    asleep.insert(asleep.end(), first_asleep, awake.end());
+    std::sort(asleep.begin(), asleep.end());
+    awake.erase(first_asleep, awake.end());
+    sleepers_changed = true;
+  }
+  if (!std::is_sorted(awake.begin(), awake.end())) std::sort(awake.begin(), awake.end());
+}
+
+void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, double dt) {
+  const BodyKind& kind = kind_of(body);
+  const double speed = sleep_speed(kind.shape->radius);
+  const bool among_others = body.crowded || body.since_crowded < kLeaningSteps;
+  const double limit = among_others ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
+  body.since_crowded = body.crowded ? 0 : std::uint8_t(std::min(255, body.since_crowded + 1));
+  body.quiet_time = kinetic_energy(body, *kind.shape) < limit ? body.quiet_time + float(dt) : 0.0f;
+  if (settings.sleeping && body.quiet_time >= (among_others ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
+}
+
+void StatisticalLevel::Impl::wake_touched(std::span<FullNeighbor> neighbors) {
+  for (const CrowdContact& c : contacts)
+    for (const auto& [sleeper, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
+      if (!is_asleep(sleeper, neighbors)) continue;
+      const double radius = sleeper < 0 ? neighbors[-1 - sleeper].shape->radius : kind_of(bodies[sleeper]).shape->radius;
+      const double speed = point_velocity(other, c.contact.manifold.points[0].point, neighbors).norm();
+      if (speed <= kWakeFactor * sleep_speed(radius)) continue;
+      if (sleeper < 0) neighbors[-1 - sleeper].asleep = false;
+      else wake(sleeper);
+    }
+}
+
+}  // namespace lodestone

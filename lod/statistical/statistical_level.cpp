@@ -1,0 +1,215 @@
+#include "lod/statistical/statistical_level_internal.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "reference/error.h"
+
+namespace lodestone {
+namespace {
+
+class Stopwatch {
+ public:
+  double lap_ms() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
+    start_ = now;
+    return ms;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// Drops `gone` from a list in order, and where `last`, the greatest of all, is in it, puts `gone` there instead.
+void rename_in_order(std::vector<std::int32_t>& list, std::int32_t last, std::int32_t gone) {
+  const auto place = std::ranges::lower_bound(list, gone);
+  if (place != list.end() && *place == gone) list.erase(place);
+  if (list.empty() || list.back() != last) return;
+  list.pop_back();
+  list.insert(std::ranges::lower_bound(list, gone), gone);
+}
+
+}  // namespace
+
+std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> shape, double mass, MaterialId material,
+                                                std::shared_ptr<const Signature> signature) {
+  for (std::size_t i = 0; i < kinds.size(); ++i)
+    if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
+  check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
+  const Mat3& inertia = shape->inertia_per_mass;
+  const bool isotropic = (inertia - inertia.trace() / 3.0 * Mat3::Identity()).norm() < 1e-9 * inertia.norm();
+  ClipIndex index;
+  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.max_distance);
+  kinds.push_back({std::move(shape), std::move(signature), std::move(index), mass, material, isotropic});
+  return std::uint16_t(kinds.size() - 1);
+}
+
+void StatisticalLevel::Impl::apply_pushes(double dt) {
+  for (const auto& [slot, push] : pushes) {
+    StatisticalBody& body = bodies[slot];
+    const double impulse = dt / kind_of(body).mass;
+    body.velocity += impulse * push.force;
+    body.spin += impulse * push.torque;
+  }
+  pushes.clear();
+}
+
+StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials)
+    : impl_(std::make_unique<Impl>(settings, ground, materials)) {}
+StatisticalLevel::~StatisticalLevel() = default;
+
+int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state,
+                          bool asleep, std::shared_ptr<const Signature> signature) {
+  Impl& level = *impl_;
+  check_that(!level.tables() || signature != nullptr, "the tables model needs a signature");
+  level.reach = std::max(level.reach, shape->radius);
+  StatisticalBody body;
+  body.kind = level.find_kind(std::move(shape), mass, material, std::move(signature));
+  body.owner = owner;
+  const int slot = size();
+  level.bodies.push_back(body);
+  level.clips.emplace_back();
+  level.resting.emplace_back();
+  level.travels.emplace_back();
+  level.travels.back().gone = level.longest_travel + 10.0 * level.reach;
+  level.angular_velocity_given.emplace_back();
+  level.awake.push_back(slot);
+  set_state(slot, state);
+  if (level.tables()) level.bodies[slot].sphere_radius = float(find_sphere_radius(level.bodies[slot], level.kind_of(level.bodies[slot]), level.settings.tables, level.settings.seed));
+  if (asleep) {
+    level.put_to_sleep(level.bodies[slot]);
+    level.angular_velocity_given[slot].reset();
+    level.sort_by_motion();
+  }
+  return slot;
+}
+
+std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
+  Impl& level = *impl_;
+  check_that(slot >= 0 && slot < size(), "slot out of range");
+  const StatisticalBody gone = level.bodies[slot];
+  const double radius = level.kind_of(gone).shape->radius;
+  // What rests on it, or it on, must find new support.
+  std::vector<int> touching;
+  for (const std::int32_t other : level.asleep)
+    if (other != slot && (level.bodies[other].position - gone.position).norm() < 1.02 * (radius + level.kind_of(level.bodies[other]).shape->radius))
+      touching.push_back(other);
+  for (const int other : touching) level.wake(other);
+
+  const int last = size() - 1;
+  if (!std::ranges::is_sorted(level.awake)) std::ranges::sort(level.awake);
+  for (auto* list : {&level.awake, &level.asleep}) rename_in_order(*list, last, slot);
+  std::erase_if(level.pushes, [&](const auto& push) { return push.first == slot; });
+  for (auto& push : level.pushes)
+    if (push.first == last) push.first = slot;
+  level.bodies[slot] = level.bodies[last];
+  level.clips[slot] = level.clips[last];
+  level.resting[slot] = level.resting[last];
+  level.longest_travel = std::max(level.longest_travel, level.travels[slot].gone);
+  level.travels[slot] = level.travels[last];
+  level.travels.pop_back();
+  level.bodies.pop_back();
+  level.clips.pop_back();
+  level.resting.pop_back();
+  level.angular_velocity_given[slot] = level.angular_velocity_given[last];
+  level.angular_velocity_given.pop_back();
+  level.sleepers_changed = true;
+  return slot == last ? std::nullopt : std::optional(level.bodies[slot].owner);
+}
+
+void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
+  Impl& level = *impl_;
+  Stopwatch watch;
+  level.angular_velocity_given.assign(level.bodies.size(), std::nullopt);
+  level.apply_pushes(dt);
+
+  ContactTally paper_tally;
+  // 1 Near pairs: none to look for with a single body.
+  level.contacts.clear();
+  const bool pair_phase = level.bodies.size() + neighbors.size() > 1 && !level.awake.empty() + !neighbors.empty() > 0;
+  if (pair_phase) {
+    level.find_near_pairs(dt, neighbors);
+    ++report.counters.pair_phases;
+    report.times.broad_phase_ms += watch.lap_ms();
+    // 2 Contacts of those pairs.
+    level.plan_travel(dt);
+    level.find_contacts(dt, neighbors);
+    level.wake_touched(neighbors);
+    if (level.tables() && level.settings.tables.paper_pair_rule) paper_tally = level.respond_pairs_as_paper();
+    report.times.pairs_ms += watch.lap_ms();
+  } else {
+    for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = false;
+  }
+
+  // 3 Bodies that touch no other.
+  const std::int64_t awake = std::int64_t(level.awake.size());
+  level.tallies.assign(std::size_t(awake), {});
+  level.parallel(awake, 256, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i)
+      if (!level.bodies[level.awake[i]].crowded) level.move_alone(level.awake[i], dt, level.tallies[i]);
+  });
+  ContactTally tally = paper_tally;
+  for (const ContactTally& t : level.tallies) tally += t;
+  report.times.flight_ms += watch.lap_ms();
+
+  // 4 Bodies that do.
+  if (!level.contacts.empty()) {
+    for (const std::int32_t slot : level.awake)
+      if (level.bodies[slot].crowded && level.bodies[slot].motion == Motion::settling) level.bodies[slot].motion = Motion::dynamic;
+    tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.world(), level.settings.model, dt);
+    for (const std::int32_t slot : level.awake)
+      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt);
+    report.times.pairs_ms += watch.lap_ms();
+  }
+
+  if (pair_phase) level.add_travel();
+
+  ++level.steps;
+
+  // 5 Rest.
+  level.sort_by_motion();
+  report.times.rest_ms += watch.lap_ms();
+  report.contacts += int(tally.contacts);
+  report.counters.energy_clamps += tally.energy_clamps;
+  report.counters.table_extrapolations += tally.table_extrapolations;
+}
+
+int StatisticalLevel::size() const { return int(impl_->bodies.size()); }
+std::span<const std::int32_t> StatisticalLevel::awake() const { return impl_->awake; }
+int StatisticalLevel::asleep_count() const { return int(impl_->asleep.size()); }
+
+const Vec3& StatisticalLevel::position(int slot) const { return impl_->bodies[slot].position; }
+
+RigidState StatisticalLevel::state(int slot) const {
+  const StatisticalBody& body = impl_->bodies[slot];
+  const std::optional<Vec3>& given = impl_->angular_velocity_given[slot];
+  return {body.position, body.orientation, body.velocity,
+          given ? *given : angular_velocity(body.orientation, body.spin, *impl_->kind_of(body).shape)};
+}
+
+
+void StatisticalLevel::set_state(int slot, const RigidState& state) {
+  wake(slot);
+  StatisticalBody& body = impl_->bodies[slot];
+  impl_->travels[slot].gone += (state.position - body.position).norm() + 4.0 * impl_->kind_of(body).shape->radius;
+  body.position = state.position;
+  body.orientation = state.orientation;
+  body.velocity = state.velocity;
+  body.spin = spin_of(state.orientation, state.angular_velocity, *impl_->kind_of(body).shape);
+  impl_->angular_velocity_given[slot] = state.angular_velocity;
+  body.motion = Motion::dynamic;
+  body.quiet_time = 0.0f;
+}
+
+bool StatisticalLevel::asleep(int slot) const { return impl_->bodies[slot].motion == Motion::asleep; }
+void StatisticalLevel::wake(int slot) { impl_->wake(slot); }
+
+void StatisticalLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
+  wake(slot);
+  impl_->pushes.push_back({slot, {force, torque}});
+}
+
+double StatisticalLevel::reach() const { return impl_->reach; }
+
+}  // namespace lodestone

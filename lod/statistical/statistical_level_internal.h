@@ -1,0 +1,91 @@
+// The inside of the statistical level. Its stages are in near_pairs.cpp (1, 2), motion.cpp (3) and rest.cpp (5);
+// stage 4, the contact solver, is crowd.h.
+#pragma once
+
+#include "lod/statistical/broad_phase.h"
+#include "lod/statistical/clip_player.h"
+#include "lod/statistical/crowd.h"
+#include "lod/statistical/pair_memory.h"
+#include "lod/statistical/parallel.h"
+#include "lod/statistical/statistical_level.h"
+#include "lod/statistical/tables_model.h"
+
+namespace lodestone {
+
+struct Push { Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); };
+
+struct FoundPair {
+  ContactKey key = 0;
+  PairRecord record;
+  std::optional<CrowdContact> contact;
+};
+
+/// The way of a body's farthest point, m.
+struct Travel {
+  double gone = 0.0, ahead = 0.0;     ///< since it was added; at most in this step
+  Vec3 position = Vec3::Zero();       ///< at the step's start
+  Quat orientation = Quat::Identity();
+};
+
+struct StatisticalLevel::Impl {
+  StatisticalSettings settings;
+  const StaticGround& ground;
+  const MaterialTable& materials;
+  ParallelFor parallel;
+  std::vector<BodyKind> kinds;
+
+  // One of each per body, by slot.
+  std::vector<StatisticalBody> bodies;
+  std::vector<ClipPlayback> clips;
+  std::vector<RestingRecord> resting;
+  std::vector<std::optional<Vec3>> angular_velocity_given;  // until the next step: a state that was set is read back to the bit
+  std::vector<Travel> travels;
+  std::vector<std::pair<int, Push>> pushes;  // of the next step
+
+  std::vector<std::int32_t> awake, asleep;   // slots
+  bool sleepers_changed = true;
+  BroadPhase broad_phase;
+  PairMemory pair_memory;
+  double longest_travel = 0.0;               // m, of any body so far: one that is added begins beyond it, so that its pairs are looked at anew
+  Crowd crowd;
+  double reach = 0.0;
+  std::int64_t steps = 0;
+
+  // Work arrays of a step.
+  std::vector<Bound> bounds;
+  std::vector<NearPair> pairs;
+  std::vector<FoundPair> found;
+  std::vector<CrowdContact> contacts;
+  std::vector<ContactTally> tallies;
+
+  Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m) : settings(s), ground(g), materials(m), parallel(s.threads) {}
+
+  const BodyKind& kind_of(const StatisticalBody& body) const { return kinds[body.kind]; }
+  std::uint16_t find_kind(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature);
+  StepWorld world() const { return {settings.gravity, &ground, &materials, settings.seed}; }
+  bool tables() const { return settings.model == StatisticalModel::tables; }
+
+  void wake(int slot);
+  void put_to_sleep(StatisticalBody& body);
+  void sort_by_motion();
+
+  void apply_pushes(double dt);
+  void find_near_pairs(double dt, std::span<const FullNeighbor> neighbors);
+  void find_contacts(double dt, std::span<const FullNeighbor> neighbors);
+  void plan_travel(double dt);
+  void add_travel();
+  PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;
+  void find_contact(Participant first, Participant second, double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const;
+  Vec3 point_velocity(Participant p, const Vec3& point, std::span<const FullNeighbor> neighbors) const;
+  bool is_asleep(Participant p, std::span<const FullNeighbor> neighbors) const {
+    return p < 0 ? neighbors[-1 - p].asleep : bodies[p].motion == Motion::asleep;
+  }
+  void wake_touched(std::span<FullNeighbor> neighbors);
+  ContactTally respond_pairs_as_paper();
+  void move_alone(int slot, double dt, ContactTally& tally);
+  void move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally);
+  void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
+  void update_quiet(StatisticalBody& body, double dt);
+};
+
+}  // namespace lodestone

@@ -1,0 +1,171 @@
+#include "lod/statistical/support_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lod/statistical/contact_impulse.h"
+#include "lod/statistical/flight.h"
+#include "lod/statistical/hull_contacts.h"
+
+namespace lodestone {
+namespace {
+
+struct LowestPoint {
+  int plane = -1;       // −1: no plane within reach
+  HullContact contact;
+};
+
+// The lowest point over the plane it is nearest to (or deepest in); planes out of reach are not looked at.
+LowestPoint find_lowest(StatisticalBody& body, const BodyKind& kind, const StaticGround& ground) {
+  LowestPoint lowest;
+  lowest.contact.gap = 1e300;
+  for (int i = 0; i < int(ground.planes.size()); ++i) {
+    const HalfSpace& plane = ground.planes[i];
+    const double height = plane.height_of(body.position);
+    if (height > kind.shape->radius || height - kind.shape->radius > lowest.contact.gap) continue;
+    const HullContact contact = find_lowest_point(*kind.shape, body.orientation, plane.normal, height, body.support_hint);
+    if (contact.gap < lowest.contact.gap) lowest = {i, contact};
+  }
+  return lowest;
+}
+
+Vec3 velocity_at(const StatisticalBody& body, const BodyKind& kind, const Vec3& arm) {
+  return body.velocity + angular_velocity(body.orientation, body.spin, *kind.shape).cross(arm);
+}
+
+struct Impact {
+  double time = 0.0;
+  StatisticalBody body;  // at that time
+  LowestPoint lowest;
+};
+
+// When, between a body clear of the ground and the same body inside it after `time` seconds, the gap closes: bisection first, for the gap
+// may rise before it falls (another vertex has just left), then false position.
+Impact find_impact(const StatisticalBody& start, const StatisticalBody& end, const LowestPoint& end_lowest, const BodyKind& kind,
+                   const StepWorld& world, double time) {
+  const double tolerance = 1e-4 * kind.shape->radius;
+  Impact before{0.0, start, {}}, after{time, end, end_lowest};
+  double gap_before = 0.0, gap_after = end_lowest.contact.gap;
+  for (int i = 0; i < 12 && gap_after < -tolerance; ++i) {
+    const double fraction = i < 2 || gap_before <= 0.0 ? 0.5 : std::clamp(gap_before / (gap_before - gap_after), 0.1, 0.9);
+    Impact middle{before.time + fraction * (after.time - before.time), start, {}};
+    advance_flight(middle.body, kind, world.gravity, middle.time);
+    middle.lowest = find_lowest(middle.body, kind, *world.ground);
+    if (middle.lowest.contact.gap < 0.0) {
+      gap_after = middle.lowest.contact.gap;
+      after = middle;
+    } else {
+      gap_before = middle.lowest.contact.gap;
+      before = middle;
+    }
+  }
+  return after;
+}
+
+// The impulses of several vertices that strike at once, an edge's or a face's.
+void respond_together(StatisticalBody& body, const BodyKind& kind, const HullContacts& found, const Vec3& normal, const ContactLaw& law,
+                      const SupportSettings& settings) {
+  std::array<SolverBody, 1> bodies{SolverBody{body.velocity, angular_velocity(body.orientation, body.spin, *kind.shape), 1.0,
+                                              inverse_inertia_world(body.orientation, *kind.shape)}};
+  std::array<SolverContact, kMaxGroundContacts> contacts;
+  for (int i = 0; i < found.count; ++i) {
+    contacts[i].normal = normal;
+    contacts[i].arm_first = found.contact[i].arm;
+    contacts[i].law = law;
+  }
+  constexpr double kInstant = 1e-9;  // s: no gap is closed meanwhile
+  solve_contacts(bodies, std::span(contacts).first(std::size_t(found.count)), kInstant, settings.impact_solver);
+  body.velocity = bodies[0].velocity;
+  for (int i = 0; i < found.count; ++i) body.spin += contacts[i].arm_first.cross(impulse_of(contacts[i]));
+}
+
+void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& contact, const HalfSpace& plane, const ContactLaw& law,
+             const SupportSettings& settings) {
+  const double height = plane.height_of(body.position);
+  const HullContacts together = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height,
+                                                   contact.gap + settings.impact_margin * kind.shape->radius, body.support_hint);
+  ++body.events;
+  if (together.count > 1) return respond_together(body, kind, together, plane.normal, law, settings);
+  const Mat3 response = contact_response_matrix(1.0, inverse_inertia_world(body.orientation, *kind.shape), contact.arm);
+  const Vec3 impulse = respond_contact(response, plane.normal, velocity_at(body, kind, contact.arm), law).impulse;
+  body.velocity += impulse;
+  body.spin += contact.arm.cross(impulse);
+}
+
+// One step of sliding, rolling or rocking: gravity, every vertex near the ground held or bounced at once, then motion.
+void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time, const SupportSettings& settings,
+                  ContactTally& tally) {
+  const Shape& shape = *kind.shape;
+  body.velocity += world.gravity * time;
+  std::array<SolverBody, 1> bodies{SolverBody{body.velocity, angular_velocity(body.orientation, body.spin, shape), 1.0,
+                                              inverse_inertia_world(body.orientation, shape)}};
+  std::array<SolverContact, 3 * kMaxGroundContacts> contacts;
+  int count = 0;
+  double deepest = 0.0;
+  for (int i = 0; i < int(world.ground->planes.size()) && count + kMaxGroundContacts <= int(contacts.size()); ++i) {
+    const HalfSpace& plane = world.ground->planes[i];
+    const double height = plane.height_of(body.position);
+    const double margin = settings.contact_margin * shape.radius + (body.velocity.norm() + bodies[0].angular_velocity.norm() * shape.radius) * time;
+    if (height > shape.radius + margin) continue;
+    const HullContacts found = find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint);
+    for (int k = 0; k < found.count; ++k) {
+      if (found.contact[k].gap > margin) continue;
+      SolverContact& c = contacts[count++];
+      c.normal = plane.normal;
+      c.arm_first = found.contact[k].arm;
+      c.gap = found.contact[k].gap;
+      c.law = world.law(kind, plane);
+      deepest = std::min(deepest, c.gap);
+      tally.touched_plane = i;
+    }
+  }
+  if (count > 0) {
+    ContactSolverSettings solver = settings.solver;
+    solver.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
+    solve_contacts(bodies, std::span(contacts).first(count), time, solver);
+    body.velocity = bodies[0].velocity;
+    for (int k = 0; k < count; ++k) {
+      const SolverContact& c = contacts[k];
+      body.spin += c.arm_first.cross(c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1]);
+    }
+    tally.contacts += count;
+  }
+  body.position += body.velocity * time;
+  if (deepest < 0.0) body.position += push_out_overlap(deepest, shape.radius) * world.ground->planes[tally.touched_plane].normal;
+  body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
+}
+
+}  // namespace
+
+ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time, const SupportSettings& settings) {
+  ContactTally tally;
+  double left = time;
+  for (int hit = 0; hit < settings.max_impacts && left > 0.0; ++hit) {
+    StatisticalBody end = body;
+    advance_flight(end, kind, world.gravity, left);
+    const LowestPoint lowest = find_lowest(end, kind, *world.ground);
+    if (lowest.plane < 0 || lowest.contact.gap >= 0.0) {
+      body = end;
+      return tally;
+    }
+    const Impact impact = find_impact(body, end, lowest, kind, world, left);
+    const HalfSpace& plane = world.ground->planes[impact.lowest.plane];
+    const double approach = velocity_at(impact.body, kind, impact.lowest.contact.arm).dot(plane.normal);
+    if (approach > -world.bounce_velocity) break;  // not a bounce: it stays in contact
+    body = impact.body;
+    left -= impact.time;
+    respond(body, kind, impact.lowest.contact, plane, world.law(kind, plane), settings);
+    tally.touched_plane = impact.lowest.plane;
+    ++tally.contacts;
+  }
+  if (left > 0.0) {
+    const double longest = settings.contact_step * std::sqrt(kind.shape->radius / std::max(1e-9, world.gravity_strength()));
+    const int steps = std::clamp(int(std::ceil(left / longest)), 1, 32);
+    for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, tally);
+    if (tally.touched_plane >= 0) lift_out(body, *kind.shape, world.ground->planes[tally.touched_plane]);
+  }
+  return tally;
+}
+
+}  // namespace lodestone
