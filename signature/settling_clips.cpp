@@ -13,6 +13,12 @@ double from_16_bits(std::int16_t value) { return value / 32767.0; }
 Packed pack(const Vec3& v, double range) { return {to_16_bits(v.x() / range), to_16_bits(v.y() / range), to_16_bits(v.z() / range)}; }
 Vec3 unpack(const Packed& p, double range) { return range * Vec3(from_16_bits(p[0]), from_16_bits(p[1]), from_16_bits(p[2])); }
 
+// Between two frames, which differ by little: along the chord, with hardly an error against the arc.
+Quat blend(const Quat& a, const Quat& b, double part) {
+  const double sign = a.dot(b) < 0.0 ? -1.0 : 1.0;
+  return Quat((1.0 - part) * a.coeffs() + sign * part * b.coeffs()).normalized();
+}
+
 // The cell of a cube of directions: face, then position on it.
 int cube_cell(const Eigen::Vector3f& direction, int side) {
   int axis = 0;
@@ -64,7 +70,7 @@ ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, 
   const double part = frame - index;
   if (part <= 1e-9 || index + 1 >= clip.frames) return a;
   const ClipState b = decode_frame(signature.clip_frames[clip.first_frame + index + 1], clip.extent);
-  return {a.position + part * (b.position - a.position), a.orientation.slerp(part, b.orientation),
+  return {a.position + part * (b.position - a.position), blend(a.orientation, b.orientation, part),
           a.velocity + part * (b.velocity - a.velocity), a.angular_velocity + part * (b.angular_velocity - a.angular_velocity)};
 }
 

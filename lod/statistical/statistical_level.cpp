@@ -179,6 +179,8 @@ int StatisticalLevel::size() const { return int(impl_->bodies.size()); }
 std::span<const std::int32_t> StatisticalLevel::awake() const { return impl_->awake; }
 int StatisticalLevel::asleep_count() const { return int(impl_->asleep.size()); }
 
+const Vec3& StatisticalLevel::position(int slot) const { return impl_->bodies[slot].position; }
+
 RigidState StatisticalLevel::state(int slot) const {
   const StatisticalBody& body = impl_->bodies[slot];
   const std::optional<Vec3>& given = impl_->angular_velocity_given[slot];

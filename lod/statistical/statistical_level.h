@@ -75,6 +75,7 @@ class StatisticalLevel {
   int asleep_count() const;
   std::span<const std::int32_t> awake() const;                             ///< slots
   RigidState state(int slot) const;
+  const Vec3& position(int slot) const;
   void set_state(int slot, const RigidState& state);                       ///< wakes it
   bool asleep(int slot) const;
   void wake(int slot);
