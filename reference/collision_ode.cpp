@@ -64,11 +64,14 @@ void Collision::add_ground(dGeomID geom, MaterialId material) {
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
   step_ = h;
-  for (Body& body : bodies.slots())
-    if (body.body && dBodyIsEnabled(body.body))
-      for (const Plane& plane : planes_) collide_plane(body, plane, joints);
-  // One body over planes needs no broad phase.
-  if (bodies.count() > 1 || attached_ || !ground_materials_.empty()) collide_candidates(bodies, joints);
+  bool any_awake = false;
+  for (Body& body : bodies.slots()) {
+    if (!body.body || !dBodyIsEnabled(body.body)) continue;
+    any_awake = true;
+    for (const Plane& plane : planes_) collide_plane(body, plane, joints);
+  }
+  // One body over planes needs no broad phase, nor do sleepers, except from a caller's bodies.
+  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_materials_.empty()))) collide_candidates(bodies, joints);
 }
 
 void Collision::collide_plane(Body& body, const Plane& plane, ContactJoints& joints) {
@@ -115,7 +118,7 @@ void Collision::find_sphere_points(const Body& body, const Plane& plane) {
     const double depth = sphere.radius - (plane.normal.dot(center) - plane.offset);
     if (depth > 0.0) points_.push_back({center - sphere.radius * plane.normal, plane.normal, depth});
   }
-  reduce_points(body.reach);
+  keep_deepest();
 }
 
 // As plain ODE does it: the first contacts that it finds, whatever their depth.
@@ -126,7 +129,7 @@ void Collision::find_mesh_points(const Body& body, const Plane& plane) {
     for (const dContactGeom& contact : std::span(found).first(count))
       points_.push_back({to_vec3(contact.pos), to_vec3(contact.normal), contact.depth});
   }
-  reduce_points(body.reach);
+  keep_deepest();
 }
 
 void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
@@ -142,15 +145,20 @@ void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
       const double size = other ? std::min(body.reach, other->reach) : body.reach;
       for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next)
         narrow_phase_.find(candidates[next].first, candidates[next].second, size, points_);
-      reduce_points(size);
+      drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
     }
     if (!points_.empty()) joints.add(ode::side_of(body), side_of(bodies, candidates[i].second), points_);
   }
 }
 
-void Collision::reduce_points(double size) {
-  const int kept = reduce_contacts(points_, settings_.max_contacts_per_pair, size);
-  dropped_ += std::int64_t(points_.size()) - kept;
+void Collision::keep_deepest() {
+  std::ranges::stable_sort(points_, std::ranges::greater{}, &ContactPoint::depth);
+  drop_beyond(std::min(int(points_.size()), settings_.max_contacts_per_pair));
+}
+
+void Collision::drop_beyond(int kept) {
+  // Fewer than the cap: those left out say what others say.
+  if (kept == settings_.max_contacts_per_pair) dropped_ += std::int64_t(points_.size()) - kept;
   points_.resize(kept);
 }
 

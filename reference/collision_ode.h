@@ -44,7 +44,8 @@ class Collision {
   void find_sphere_points(const Body& body, const Plane& plane);
   void find_mesh_points(const Body& body, const Plane& plane);
   void collide_candidates(Bodies& bodies, ContactJoints& joints);
-  void reduce_points(double size);
+  void keep_deepest();
+  void drop_beyond(int kept);
   double nearing(const Body& body, const Vec3& normal) const;
   void add_ground(dGeomID geom, MaterialId material);
   ContactSide side_of(Bodies& bodies, dGeomID geom) const;

@@ -13,6 +13,7 @@ constexpr double kShallow = 2e-2;       // × size: depths below it need no seco
 constexpr double kDepthSlack = 2e-3;    // × size: depths below it cost about the same
 constexpr double kDepthRatio = 1.5;     // a displacement clears depths up to this times its own, and the slack
 constexpr int kSample = 12;             // places that directions are judged by
+constexpr double kTooNear = 2e-2;       // × size: contacts nearer to each other say the same
 // Places lie on edges, where any way out seems short; they are measured part of the way towards their middle, as far as that is inside:
 // far along where directions are compared, not so far where a depth is wanted.
 constexpr double kToCompare = 0.5, kToMeasure = 0.15, kBarely = 1e-3;
@@ -182,19 +183,21 @@ int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutM
 }
 
 int reduce_contacts(std::span<ContactPoint> contacts, int max_contacts, double size) {
-  if (int(contacts.size()) <= max_contacts) return int(contacts.size());
+  if (contacts.empty()) return 0;
   std::iter_swap(contacts.begin(), std::ranges::max_element(contacts, {}, &ContactPoint::depth));
   std::vector<double> distance(contacts.size(), std::numeric_limits<double>::infinity());
-  for (int taken = 1; taken < max_contacts; ++taken) {
+  const int most = std::min(int(contacts.size()), max_contacts);
+  for (int taken = 1; taken < most; ++taken) {
     const ContactPoint& last = contacts[taken - 1];
     for (std::size_t i = taken; i < contacts.size(); ++i)
       distance[i] = std::min(distance[i], (contacts[i].point - last.point).squaredNorm() +
                                               size * size * (contacts[i].normal - last.normal).squaredNorm());
     const auto farthest = std::max_element(distance.begin() + taken, distance.end()) - distance.begin();
+    if (distance[farthest] < kTooNear * size * kTooNear * size) return taken;
     std::swap(contacts[taken], contacts[farthest]);
     std::swap(distance[taken], distance[farthest]);
   }
-  return max_contacts;
+  return most;
 }
 
 }  // namespace lodestone

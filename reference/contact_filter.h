@@ -38,7 +38,7 @@ int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutM
 bool plainly_believable(std::span<const ContactPoint> contacts, double size);
 
 /// Moves to the front the at most `max_contacts` that hold the bodies apart best: the deepest, then each time the one farthest (in place
-/// and in direction) from those taken. Returns how many they are.
+/// and in direction) from those taken, until none is farther than .02 × `size`. Returns how many they are.
 int reduce_contacts(std::span<ContactPoint> contacts, int max_contacts, double size);
 
 }  // namespace lodestone

@@ -1,6 +1,7 @@
 #include "reference/joints_ode.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "reference/geometry_ode.h"
 
@@ -20,6 +21,7 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
       group_(dJointGroupCreate(0)),
       materials_(&materials),
       erp_(settings.erp),
+      cfm_(settings.cfm),
       max_correcting_velocity_(settings.max_correcting_velocity) {
   joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactFDir1;
   joint_.surface.soft_erp = settings.erp;
@@ -28,15 +30,17 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
 
 ContactJoints::~ContactJoints() { dJointGroupDestroy(group_); }
 
-void ContactJoints::begin(double h, double cfm) {
-  joint_.surface.soft_cfm = cfm;
-  contacts_.clear();
-  h_ = h;
-  // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone, whosever the world is.
-  deepest_ = erp_ > 0.0 ? max_correcting_velocity_ * h / erp_ : dInfinity;
+void ContactJoints::begin(double h, int attempt) {
+  constexpr double kAddedCfm[] = {0.0, 1e-8, 1e-6}, kUnevenness[] = {1e-4, 1e-2, 1e-1};
   dVector3 gravity;
   dWorldGetGravity(world_, gravity);
   gravity_ = to_vec3(gravity);
+  contacts_.clear();
+  h_ = h;
+  joint_.surface.soft_cfm = cfm_ + kAddedCfm[attempt];
+  unevenness_ = kUnevenness[attempt] * gravity_.norm() * h * h;
+  // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone, whosever the world is.
+  deepest_ = erp_ > 0.0 ? max_correcting_velocity_ * h / erp_ : dInfinity;
 }
 
 void ContactJoints::add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points) {
@@ -55,9 +59,16 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second, std
 void ContactJoints::add_joint(const ContactSide& first, const ContactSide& second, const ContactPoint& point) {
   copy(point.point, joint_.geom.pos);
   copy(point.normal, joint_.geom.normal);
-  joint_.geom.depth = std::min(point.depth, deepest_);
+  joint_.geom.depth = second.body ? depth_of(point) : std::min(point.depth, deepest_);
   copy(slip_direction(first.body, second.body, point), joint_.fdir1);
   dJointAttach(dJointCreateContact(world_, group_, &joint_), first.body, second.body);
+}
+
+// ODE's solver gives up where two contacts tie exactly, as those of bodies at rest on each other do; a small part of what a body falls in a
+// step sets them apart.
+double ContactJoints::depth_of(const ContactPoint& point) const {
+  const double turn = 0.6180339887498949 * double(contacts_.size());  // of the golden angle: no two alike
+  return std::min(point.depth + unevenness_ * (turn - std::floor(turn)), deepest_);
 }
 
 // ODE's friction is a box: μ along fdir1 and μ across it, so only along fdir1 is it Coulomb's. Friction opposes the slip that the step

@@ -24,8 +24,9 @@ class ContactJoints {
   ContactJoints(const ContactJoints&) = delete;
   ContactJoints& operator=(const ContactJoints&) = delete;
 
-  /// Forgets the last substep's contacts; the next are for a step of `h` seconds, with constraint force mixing `cfm`.
-  void begin(double h, double cfm);
+  /// Forgets the last substep's contacts; the next are for a step of `h` seconds. From one attempt at a step to the next (0, 1, …) the contacts
+  /// are a little softer and their depths a little more uneven.
+  void begin(double h, int attempt);
   void add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points);
   /// Destroys the joints; contacts() stays.
   void end() { dJointGroupEmpty(group_); }
@@ -35,6 +36,7 @@ class ContactJoints {
 
  private:
   void add_joint(const ContactSide& first, const ContactSide& second, const ContactPoint& point);
+  double depth_of(const ContactPoint& point) const;
   Vec3 slip_direction(dBodyID first, dBodyID second, const ContactPoint& point) const;
   Vec3 unhindered_velocity(dBodyID body, const Vec3& point) const;
 
@@ -42,8 +44,8 @@ class ContactJoints {
   dJointGroupID group_;
   const MaterialTable* materials_;
   dContact joint_{};  // what every contact has in common is filled in once
-  double erp_, max_correcting_velocity_;
-  double h_ = 0.0, deepest_ = 0.0;
+  double erp_, cfm_, max_correcting_velocity_;
+  double h_ = 0.0, deepest_ = 0.0, unevenness_ = 0.0;
   Vec3 gravity_ = Vec3::Zero();
   std::vector<OdeContact> contacts_;
   std::int64_t made_ = 0;

@@ -100,17 +100,17 @@ void OdeWorld::step(double dt, int substeps) {
 }
 
 // ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in a message and leaving the
-// bodies without their contact forces. Such a substep is taken back and repeated with a little more softness. Not in a caller's world,
+// bodies without their contact forces. Such a substep is taken back and repeated with contacts a little softer and more uneven. Not in a caller's world,
 // whose other bodies cannot be taken back.
 void OdeWorld::Impl::substep(double h) {
-  constexpr double kAddedCfm[] = {0.0, 1e-8, 1e-6};
-  for (const double added : kAddedCfm) {
+  constexpr int kAttempts = 3;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     push_bodies();
-    joints.begin(h, settings.cfm + added);
+    joints.begin(h, attempt);
     collision.collide(bodies, joints, h);
     const bool solved = advance(h);
     joints.end();
-    if (solved || !own_world || added == std::end(kAddedCfm)[-1]) break;
+    if (solved || !own_world || attempt == kAttempts - 1) break;
     take_back_bodies();
   }
   recover_bodies();

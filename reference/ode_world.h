@@ -36,7 +36,8 @@ struct OdeSettings {
   bool auto_disable = false;            ///< ODE's sleeping: below .05 m/s and .05/R rad/s for .5 s
 };
 
-/// What a body is to ODE's collision detection.
+/// What a body is to ODE's collision detection. `hull` is a trimesh of the hull: ODE's own dConvex gives one contact a pair, on which nothing stacks.
+/// `sphere` has the shape's volume.
 enum class OdeGeometry { trimesh, hull, spheres, sphere };
 
 /// A body of an OdeWorld; stays valid until removed. Zero is null.
@@ -71,7 +72,10 @@ class OdeWorld {
  public:
   /// A world of its own. `materials` must outlive it.
   OdeWorld(const OdeSettings& settings, const MaterialTable& materials);
-  /// Joins the caller's world and space (dWorldID, dSpaceID); static geoms and other bodies there take part, with material 0.
+  /// Joins the caller's world and space (dWorldID, dSpaceID), both of which must outlive it. Static geoms and other bodies there are met, with
+  /// material 0, and stepped; their contacts with each other remain the caller's to make, before step(), and last all its substeps. Of `settings` those of
+  /// a whole world (gravity, QuickStep's iterations) are left as the caller has them. Our geoms are in a space of their own within his,
+  /// hidden from his dSpaceCollide (cast rays into ode_space() to meet them); the caller must not collide trimeshes on another thread meanwhile.
   OdeWorld(dxWorld* world, dxSpace* space, const OdeSettings& settings, const MaterialTable& materials);
   ~OdeWorld();
   OdeWorld(OdeWorld&&) noexcept;
@@ -83,16 +87,16 @@ class OdeWorld {
 
   /// Aborts where mass ≤ 0 or the state is not finite or beyond 1e8 m. The first body of a shape builds its trimesh data, shared by the rest.
   OdeBodyId add_body(const OdeBodyDefinition& definition);
-  /// Wakes what touched it.
+  /// Wakes what touched it, the caller's bodies too.
   void remove_body(OdeBodyId body);
 
   /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). A body whose state stops being finite is
-  /// put back to its last good pose at rest, and counted.
+  /// put back to its last good pose at rest, and counted. A substep that ODE's solver gives up on is repeated a little softer (not in a caller's world).
   void step(double dt, int substeps = 1);
 
   RigidState state(OdeBodyId body) const;
   void set_state(OdeBodyId body, const RigidState& state);  ///< leaves sleep as it is
-  void add_force(OdeBodyId body, const Vec3& force, const Vec3& torque);  ///< N and N m, over the whole of the next step()
+  void add_force(OdeBodyId body, const Vec3& force, const Vec3& torque);  ///< N and N m, over the whole of the next step(); does not wake
   bool asleep(OdeBodyId body) const;
   void set_asleep(OdeBodyId body, bool asleep);
   dxBody* ode_body(OdeBodyId body) const;                    ///< dBodyID, for joints and the like
@@ -100,7 +104,7 @@ class OdeWorld {
   std::span<const OdeContact> contacts() const;              ///< of the last substep
   const OdeCounters& counters() const;
   dxWorld* ode_world() const;
-  dxSpace* ode_space() const;
+  dxSpace* ode_space() const;                                ///< dSpaceID that holds this world's bodies
 
  private:
   struct Impl;

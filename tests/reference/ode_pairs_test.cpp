@@ -117,6 +117,21 @@ TEST(OdePairs, SupportRemovedWakesWhatItHeld) {
   EXPECT_NEAR(stack.world->state(stack.bodies[2]).position.z(), before, 0.02);
 }
 
+// Boxes exactly on boxes: contacts tie, and at such ties ODE's solver drops every contact of the pile.
+TEST(OdePairs, AlignedPileFallsAsleepAndStands) {
+  const MaterialTable materials = material(0.0, 0.5);
+  OdeWorld world({.auto_disable = true}, materials);
+  world.add_plane(Vec3::UnitZ(), 0.0, 0);
+  const auto shape = box_shape(Vec3::Constant(0.3));
+  std::vector<OdeBodyId> bodies;
+  for (int i = 0; i < 12; ++i) bodies.push_back(world.add_body({.shape = shape, .mass = 27.0, .state = at({0.4 * (i % 4), 0, 0.16 + 0.31 * (i / 4)})}));
+  for (int i = 0; i < 120; ++i) world.step(1.0 / 60, 2);
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_TRUE(world.asleep(bodies[i])) << i;
+    EXPECT_NEAR(world.state(bodies[i]).position.z(), 0.15 + 0.3 * (i / 4), 1e-3) << i;
+  }
+}
+
 // Without any softness ODE's solver gives up on stacked boxes again and again, and says so.
 TEST(OdePairs, SolverFailuresAreCountedQuietAndRepaired) {
   const MaterialTable materials = material(0.0, 0.5);
