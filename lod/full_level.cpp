@@ -18,7 +18,7 @@ OdeSettings ode_settings(const FullSettings& settings) {
           .quick_step_iterations = kQuickStepIterations,
           .direct_contacts_max = kDirectContactsMax,
           .max_correcting_velocity = kMaxCorrectingVelocity,
-          .early_plane_contacts = true,
+          .plane_depth_max = kPlaneDepthMax,
           .auto_disable = settings.sleeping};
 }
 

@@ -14,6 +14,10 @@
 
 namespace lodestone {
 
+/// Over the shape's size. ODE notices an impact up to v·h inside the plane; bouncing before that is as wrong in height as after it, so it is done only
+/// where the depth would show.
+inline constexpr double kPlaneDepthMax = 0.04;
+
 struct FullSettings {
   Vec3 gravity{0, 0, -9.81};  ///< m/s²; the caller's world keeps its own
   std::uint64_t seed = 1;

@@ -134,11 +134,7 @@ void Manager::Impl::follow_moved() {
   const StageTimer timer(report.times.choose_ms);
   const auto awake = levels.statistical->awake();
   moved.insert(moved.end(), awake.begin(), awake.end());
-  for (const std::int32_t slot : moved) {
-    const std::uint32_t body = levels.owner_of_slot[slot];
-    if (static_bounds.empty()) levels.bodies.candidates()[body].position = levels.statistical->position(slot);
-    else see(body, levels.statistical->state(slot));
-  }
+  for (const std::int32_t slot : moved) see(levels.owner_of_slot[slot], levels.statistical->state(slot));
 }
 
 void Manager::Impl::step_full(double dt) {

@@ -19,13 +19,11 @@ Plane plane_of(dGeomID geom) {
   return {to_vec3(p), p[3], 0, geom};
 }
 
-// Slower points meet the plane as ODE has it: what they sink in a step does not show, and rest is undisturbed.
-constexpr double kStrikingSpeed = 0.5;  // m/s
-
-bool strikes(dBodyID body, const Vec3& point, const Vec3& normal, double gap, double h) {
+/// Whether a point of the body goes farther than `way` against `normal` within `h` seconds.
+bool strikes(dBodyID body, const Vec3& point, const Vec3& normal, double way, double h) {
   const Vec3 arm = point - to_vec3(dBodyGetPosition(body));
   const double approach = -normal.dot(to_vec3(dBodyGetLinearVel(body)) + to_vec3(dBodyGetAngularVel(body)).cross(arm));
-  return approach > kStrikingSpeed && gap < approach * h;
+  return approach * h > way;
 }
 
 }  // namespace
@@ -98,14 +96,14 @@ void Collision::find_hull_points(Body& body, const Plane& plane) {
                                                           settings_.max_contacts_per_pair, body.last_support, &dropped)) {
     const Vec3 point = position + rotation * hull.vertices[contact.vertex];
     const double depth = contact.depth - margin;
-    if (depth > 0.0 || strikes(body.body, point, plane.normal, -depth, step_)) points_.push_back({point, plane.normal, std::max(depth, 0.0)});
+    if (depth > 0.0 || strikes(body.body, point, plane.normal, -depth + settings_.plane_depth_max * body.shape->size, step_)) points_.push_back({point, plane.normal, std::max(depth, 0.0)});
   }
   dropped_ += dropped;
 }
 
 // How far the body's lowest point may come nearer to a plane in the step, m; 0 where contacts are not made early.
 double Collision::nearing(const Body& body, const Vec3& normal) const {
-  if (!settings_.early_plane_contacts) return 0.0;
+  if (settings_.plane_depth_max > 1.0) return 0.0;
   const double falling = -normal.dot(to_vec3(dBodyGetLinearVel(body.body)));
   return std::max(0.0, falling + to_vec3(dBodyGetAngularVel(body.body)).norm() * body.reach) * step_;
 }

@@ -31,7 +31,7 @@ struct OdeSettings {
   double max_correcting_velocity = 1e9; ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
   int max_contacts_per_pair = 8;
   bool plane_contacts_from_hull = true; ///< false: dCollide of the trimesh with the plane, brute force over all faces
-  bool early_plane_contacts = false;    ///< a hull vertex about to strike a plane within the step bounces now, rather than up to v·h inside it
+  double plane_depth_max = 1e9;         ///< over the shape's size: a hull vertex that would sink deeper into a plane within the step bounces beforehand
   bool gyroscopic = true;
   bool auto_disable = false;            ///< ODE's sleeping: below .05 m/s and .05/R rad/s for .5 s
 };
