@@ -6,7 +6,7 @@
 
 #include "lod/body.h"
 #include "lod/policy.h"
-#include "reference/ode_world.h"
+#include "reference/ode/ode_world.h"
 
 namespace lodestone {
 

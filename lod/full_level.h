@@ -10,7 +10,7 @@
 
 #include "lod/static_ground.h"
 #include "lod/step_report.h"
-#include "reference/ode_world.h"
+#include "reference/ode/ode_world.h"
 
 namespace lodestone {
 

@@ -10,7 +10,7 @@
 #include "lod/manager_impl.h"
 #include "lod/transfer.h"
 #include "reference/error.h"
-#include "reference/static_planes.h"
+#include "reference/ode/static_planes.h"
 
 namespace lodestone {
 namespace {

@@ -12,7 +12,7 @@
 #include "lod/tables_options.h"
 #include "lod/signature_store.h"
 #include "lod/step_report.h"
-#include "reference/mesh.h"
+#include "reference/mesh/mesh.h"
 
 struct dxWorld;
 struct dxSpace;

@@ -4,7 +4,7 @@
 #include "lod/manager_impl.h"
 #include "lod/stage_timer.h"
 #include "lod/transfer.h"
-#include "reference/static_planes.h"
+#include "reference/ode/static_planes.h"
 
 namespace lodestone {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "reference/hull_overlap.h"
+#include "reference/hull/hull_overlap.h"
 
 namespace lodestone {
 namespace {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "reference/hull.h"
-#include "reference/mass_properties.h"
-#include "reference/mesh.h"
+#include "reference/hull/hull.h"
+#include "reference/mesh/mass_properties.h"
+#include "reference/mesh/mesh.h"
 
 namespace lodestone {
 

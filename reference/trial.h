@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "reference/ode_world.h"
+#include "reference/ode/ode_world.h"
 
 namespace lodestone {
 

@@ -8,7 +8,7 @@
 #include <charconv>
 
 #include "reference/error.h"
-#include "reference/simplified_shapes.h"
+#include "reference/mesh/simplified_shapes.h"
 
 namespace lodestone {
 namespace {

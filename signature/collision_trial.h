@@ -2,7 +2,7 @@
 // No gravity, as in the paper.
 #pragma once
 
-#include "reference/ode_world.h"
+#include "reference/ode/ode_world.h"
 #include "signature/signature.h"
 
 namespace lodestone {

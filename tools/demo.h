@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenes/runner.h"
-#include "tools/drop_comparison.h"
+#include "tools/compare/drop_comparison.h"
 
 namespace lodestone {
 

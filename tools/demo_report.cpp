@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "tools/demo.h"
-#include "tools/drop_report.h"
+#include "tools/compare/drop_report.h"
 #include "tools/run_report.h"
 #include "tools/text_table.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lod/manager.h"
-#include "tests/reference/ode_fixture.h"
+#include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone::testing {
 

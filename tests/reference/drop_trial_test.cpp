@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "reference/random.h"
-#include "tests/reference/ode_fixture.h"
+#include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {
 namespace {

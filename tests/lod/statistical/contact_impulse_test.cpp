@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "reference/free_rotation.h"
-#include "reference/ode_world.h"
+#include "reference/ode/ode_world.h"
 #include "reference/random.h"
 
 namespace lodestone {

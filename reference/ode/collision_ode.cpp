@@ -1,0 +1,169 @@
+#include "reference/ode/collision_ode.h"
+
+#include <algorithm>
+
+#include "reference/error.h"
+
+namespace lodestone::ode {
+namespace {
+
+ContactSide side_of(const Body& body) { return {body.body, body.material, body.id}; }
+
+bool same_pair(const Candidate& a, const Candidate& b) {
+  return a.first_order == b.first_order && a.second_order == b.second_order;
+}
+
+Plane plane_of(dGeomID geom) {
+  dVector4 p;
+  dGeomPlaneGetParams(geom, p);
+  return {to_vec3(p), p[3], 0, geom};
+}
+
+/// Whether a point of the body goes farther than `way` against `normal` within `h` seconds.
+bool strikes(dBodyID body, const Vec3& point, const Vec3& normal, double way, double h) {
+  const Vec3 arm = point - to_vec3(dBodyGetPosition(body));
+  const double approach = -normal.dot(to_vec3(dBodyGetLinearVel(body)) + to_vec3(dBodyGetAngularVel(body)).cross(arm));
+  return approach * h > way;
+}
+
+}  // namespace
+
+Collision::Collision(dSpaceID around, const OdeSettings& settings)
+    : settings_(settings), broad_phase_(around), attached_(around != nullptr) {}
+
+Collision::~Collision() {
+  for (const Plane& plane : planes_) dGeomDestroy(plane.geom);
+}
+
+void Collision::add_plane(const Vec3& normal, double offset, MaterialId material) {
+  check_that(std::abs(normal.norm() - 1.0) < 1e-6 && std::isfinite(offset), "a plane's normal has unit length, its offset is finite");
+  planes_.push_back({normal, offset, material, dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), offset)});
+}
+
+void Collision::add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+  check_that(sides.allFinite() && sides.minCoeff() > 0.0, "a box's sides are positive");
+  check_that(is_sound({position, orientation, Vec3::Zero(), Vec3::Zero()}), "a box's pose is finite, below 1e8 m");
+  const dGeomID box = dCreateBox(broad_phase_.ground_space(), sides.x(), sides.y(), sides.z());
+  dGeomSetPosition(box, position.x(), position.y(), position.z());
+  const dQuaternion q = {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
+  dGeomSetQuaternion(box, q);
+  add_ground(box, material);
+}
+
+void Collision::add_mesh(const Mesh& mesh, MaterialId material) {
+  ground_meshes_.push_back(std::make_unique<TrimeshData>(mesh.vertices, mesh.faces));
+  add_ground(dCreateTriMesh(broad_phase_.ground_space(), ground_meshes_.back()->id(), nullptr, nullptr, nullptr), material);
+}
+
+void Collision::add_ground(dGeomID geom, MaterialId material) {
+  dGeomSetData(geom, reinterpret_cast<void*>(ground_materials_.size()));
+  ground_materials_.push_back(material);
+}
+
+void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
+  step_ = h;
+  bool any_awake = false;
+  for (Body& body : bodies.slots()) {
+    if (!body.body || !dBodyIsEnabled(body.body)) continue;
+    any_awake = true;
+    for (const Plane& plane : planes_) collide_plane(body, plane, joints);
+  }
+  // One body over planes needs no broad phase, nor do sleepers, except from a caller's bodies.
+  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_materials_.empty()))) collide_candidates(bodies, joints);
+}
+
+void Collision::collide_plane(Body& body, const Plane& plane, ContactJoints& joints) {
+  if (plane.normal.dot(to_vec3(dBodyGetPosition(body.body))) - plane.offset > body.reach + nearing(body, plane.normal)) return;
+  points_.clear();
+  find_plane_points(body, plane);
+  if (!points_.empty()) joints.add(ode::side_of(body), {nullptr, plane.material, {}}, points_);
+}
+
+void Collision::find_plane_points(Body& body, const Plane& plane) {
+  if (!settings_.plane_contacts_from_hull) return find_mesh_points(body, plane);
+  if (body.spheres.empty()) return find_hull_points(body, plane);
+  find_sphere_points(body, plane);
+}
+
+void Collision::find_hull_points(Body& body, const Plane& plane) {
+  const Hull& hull = body.shape->hull;
+  const Vec3 position = to_vec3(dBodyGetPosition(body.body));
+  const Mat3 rotation = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(dBodyGetRotation(body.body)).leftCols<3>();
+  const Vec3 normal = rotation.transpose() * plane.normal;
+  const double margin = nearing(body, plane.normal);
+  std::int64_t dropped = 0;
+  for (const PlaneContact& contact : plane_contacts_.find(hull, normal, plane.offset - plane.normal.dot(position) + margin,
+                                                          settings_.max_contacts_per_pair, body.last_support, &dropped)) {
+    const Vec3 point = position + rotation * hull.vertices[contact.vertex];
+    const double depth = contact.depth - margin;
+    if (depth > 0.0 || strikes(body.body, point, plane.normal, -depth + settings_.plane_depth_max * body.shape->size, step_)) points_.push_back({point, plane.normal, std::max(depth, 0.0)});
+  }
+  dropped_ += dropped;
+}
+
+// How far the body's lowest point may come nearer to a plane in the step, m; 0 where contacts are not made early.
+double Collision::nearing(const Body& body, const Vec3& normal) const {
+  if (settings_.plane_depth_max > 1.0) return 0.0;
+  const double falling = -normal.dot(to_vec3(dBodyGetLinearVel(body.body)));
+  return std::max(0.0, falling + to_vec3(dBodyGetAngularVel(body.body)).norm() * body.reach) * step_;
+}
+
+void Collision::find_sphere_points(const Body& body, const Plane& plane) {
+  const Vec3 position = to_vec3(dBodyGetPosition(body.body));
+  const Quat orientation = to_quat(dBodyGetQuaternion(body.body));
+  for (const Sphere& sphere : body.spheres) {
+    const Vec3 center = position + orientation * sphere.center;
+    const double depth = sphere.radius - (plane.normal.dot(center) - plane.offset);
+    if (depth > 0.0) points_.push_back({center - sphere.radius * plane.normal, plane.normal, depth});
+  }
+  keep_deepest();
+}
+
+// As plain ODE does it: the first contacts that it finds, whatever their depth.
+void Collision::find_mesh_points(const Body& body, const Plane& plane) {
+  std::vector<dContactGeom> found(settings_.max_contacts_per_pair);
+  for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) {
+    const int count = dCollide(geom, plane.geom, int(found.size()), found.data(), sizeof(dContactGeom));
+    for (const dContactGeom& contact : std::span(found).first(count))
+      points_.push_back({to_vec3(contact.pos), to_vec3(contact.normal), contact.depth});
+  }
+  keep_deepest();
+}
+
+void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
+  const auto candidates = broad_phase_.find(bodies);
+  for (std::size_t i = 0, next; i < candidates.size(); i = next) {
+    points_.clear();
+    Body& body = *bodies.owner(candidates[i].first);
+    const Body* other = bodies.owner(candidates[i].second);
+    if (dGeomGetClass(candidates[i].second) == dPlaneClass) {
+      find_plane_points(body, plane_of(candidates[i].second));
+      next = i + 1;
+    } else {
+      const double size = other ? std::min(body.reach, other->reach) : body.reach;
+      for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next)
+        narrow_phase_.find(candidates[next].first, candidates[next].second, size, points_);
+      drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
+    }
+    if (!points_.empty()) joints.add(ode::side_of(body), side_of(bodies, candidates[i].second), points_);
+  }
+}
+
+void Collision::keep_deepest() {
+  std::ranges::stable_sort(points_, std::ranges::greater{}, &ContactPoint::depth);
+  drop_beyond(std::min(int(points_.size()), settings_.max_contacts_per_pair));
+}
+
+void Collision::drop_beyond(int kept) {
+  // Fewer than the cap: those left out say what others say.
+  if (kept == settings_.max_contacts_per_pair) dropped_ += std::int64_t(points_.size()) - kept;
+  points_.resize(kept);
+}
+
+ContactSide Collision::side_of(Bodies& bodies, dGeomID geom) const {
+  if (const Body* body = bodies.owner(geom)) return ode::side_of(*body);
+  if (dGeomGetSpace(geom) != const_cast<Collision*>(this)->broad_phase_.ground_space()) return {dGeomGetBody(geom), 0, {}};
+  return {nullptr, ground_materials_[reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))], {}};
+}
+
+}  // namespace lodestone::ode

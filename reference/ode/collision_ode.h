@@ -1,0 +1,66 @@
+// Collision detection of one OdeWorld: bodies against planes, the other bodies, the ground and the caller's geoms.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "reference/ode/bodies_ode.h"
+#include "reference/ode/broad_phase_ode.h"
+#include "reference/ode/joints_ode.h"
+#include "reference/ode/narrow_phase_ode.h"
+#include "reference/ode/plane_contacts.h"
+
+namespace lodestone::ode {
+
+struct Plane {
+  Vec3 normal;
+  double offset;         ///< m
+  MaterialId material;
+  dGeomID geom;
+};
+
+class Collision {
+ public:
+  Collision(dSpaceID around, const OdeSettings& settings);
+  ~Collision();
+  Collision(const Collision&) = delete;
+  Collision& operator=(const Collision&) = delete;
+
+  void add_plane(const Vec3& normal, double offset, MaterialId material);
+  void add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
+  void add_mesh(const Mesh& mesh, MaterialId material);
+
+  /// Finds the contacts of every awake body and gives them to `joints`; `h` is the step to come, s.
+  void collide(Bodies& bodies, ContactJoints& joints, double h);
+
+  BroadPhase& broad_phase() { return broad_phase_; }
+  std::int64_t contacts_dropped() const { return dropped_; }
+  std::int64_t ground_trimeshes() const { return std::int64_t(ground_meshes_.size()); }
+
+ private:
+  void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);
+  void find_plane_points(Body& body, const Plane& plane);
+  void find_hull_points(Body& body, const Plane& plane);
+  void find_sphere_points(const Body& body, const Plane& plane);
+  void find_mesh_points(const Body& body, const Plane& plane);
+  void collide_candidates(Bodies& bodies, ContactJoints& joints);
+  void keep_deepest();
+  void drop_beyond(int kept);
+  double nearing(const Body& body, const Vec3& normal) const;
+  void add_ground(dGeomID geom, MaterialId material);
+  ContactSide side_of(Bodies& bodies, dGeomID geom) const;
+
+  OdeSettings settings_;
+  BroadPhase broad_phase_;
+  NarrowPhase narrow_phase_;
+  PlaneContactFinder plane_contacts_;
+  std::vector<Plane> planes_;
+  std::vector<MaterialId> ground_materials_;  // by the ground geom's number (dGeomGetData)
+  std::vector<std::unique_ptr<TrimeshData>> ground_meshes_;
+  std::vector<ContactPoint> points_;          // of the pair at hand
+  bool attached_;
+  double step_ = 0.0;                         // s, the one to come
+  std::int64_t dropped_ = 0;
+};
+
+}  // namespace lodestone::ode

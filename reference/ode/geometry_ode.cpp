@@ -1,0 +1,68 @@
+#include "reference/ode/geometry_ode.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "reference/error.h"
+
+namespace lodestone::ode {
+namespace {
+
+void check_faces(std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {
+  // A single triangle against another mesh makes OPCODE crash, and it takes indices out of range silently.
+  check_that(faces.size() >= 2, "a trimesh has two faces or more");
+  for (const Vec3& vertex : vertices) check_that(vertex.allFinite(), "vertices of a trimesh are finite");
+  for (const auto& face : faces)
+    for (const int i : face) check_that(i >= 0 && i < int(vertices.size()), "faces of a trimesh name its vertices");
+}
+
+Sphere sphere_of_volume(const Shape& shape) {
+  const double radius = shape.sphere_radius.value_or(std::cbrt(shape.volume * 0.75 / std::numbers::pi));
+  return {Vec3::Zero(), radius};
+}
+
+}  // namespace
+
+TrimeshData::TrimeshData(std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {
+  check_faces(vertices, faces);
+  for (const Vec3& v : vertices) vertices_.insert(vertices_.end(), {float(v.x()), float(v.y()), float(v.z())});
+  for (const auto& f : faces) indices_.insert(indices_.end(), {dTriIndex(f[0]), dTriIndex(f[1]), dTriIndex(f[2])});
+  id_ = dGeomTriMeshDataCreate();
+  dGeomTriMeshDataBuildSingle(id_, vertices_.data(), 3 * sizeof(float), int(vertices.size()), indices_.data(),
+                              int(indices_.size()), 3 * sizeof(dTriIndex));
+}
+
+TrimeshData::~TrimeshData() { dGeomTriMeshDataDestroy(id_); }
+
+dTriMeshDataID TrimeshCache::find(Entries& entries, const std::shared_ptr<const Shape>& shape,
+                                  std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {
+  Entry& entry = entries[shape.get()];
+  if (!entry.data) entry = {shape, std::make_unique<TrimeshData>(vertices, faces)};
+  return entry.data->id();
+}
+
+std::vector<Sphere> spheres_of(const OdeBodyDefinition& definition) {
+  const Shape& shape = *definition.shape;
+  if (shape.sphere_radius || definition.geometry == OdeGeometry::sphere) return {sphere_of_volume(shape)};
+  if (definition.geometry != OdeGeometry::spheres) return {};
+  check_that(!definition.spheres.empty(), "OdeGeometry::spheres comes with spheres");
+  return {definition.spheres.begin(), definition.spheres.end()};
+}
+
+void make_geoms(dSpaceID space, dBodyID body, const OdeBodyDefinition& definition, std::span<const Sphere> spheres,
+                TrimeshCache& cache) {
+  if (spheres.empty()) {
+    const bool hull = definition.geometry == OdeGeometry::hull;
+    const auto data = hull ? cache.hull_of(definition.shape) : cache.mesh_of(definition.shape);
+    dGeomSetBody(dCreateTriMesh(space, data, nullptr, nullptr, nullptr), body);
+  }
+  std::uintptr_t ordinal = 0;
+  for (const Sphere& sphere : spheres) {
+    const dGeomID geom = dCreateSphere(space, sphere.radius);
+    dGeomSetBody(geom, body);
+    if (!sphere.center.isZero(0.0)) dGeomSetOffsetPosition(geom, sphere.center.x(), sphere.center.y(), sphere.center.z());
+    dGeomSetData(geom, reinterpret_cast<void*>(ordinal++));
+  }
+}
+
+}  // namespace lodestone::ode

@@ -1,0 +1,98 @@
+#include "reference/ode/joints_ode.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/ode/geometry_ode.h"
+
+namespace lodestone::ode {
+namespace {
+
+void copy(const Vec3& from, dReal* to) {
+  for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - v.dot(normal) * normal; }
+
+}  // namespace
+
+ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const MaterialTable& materials)
+    : world_(world),
+      group_(dJointGroupCreate(0)),
+      materials_(&materials),
+      erp_(settings.erp),
+      cfm_(settings.cfm),
+      max_correcting_velocity_(settings.max_correcting_velocity) {
+  joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactFDir1;
+  joint_.surface.soft_erp = settings.erp;
+  joint_.surface.bounce_vel = settings.bounce_velocity;
+}
+
+ContactJoints::~ContactJoints() { dJointGroupDestroy(group_); }
+
+void ContactJoints::begin(double h, int attempt) {
+  constexpr double kAddedCfm[] = {0.0, 1e-8, 1e-6}, kUnevenness[] = {1e-4, 1e-2, 1e-1};
+  dVector3 gravity;
+  dWorldGetGravity(world_, gravity);
+  gravity_ = to_vec3(gravity);
+  contacts_.clear();
+  h_ = h;
+  joint_.surface.soft_cfm = cfm_ + kAddedCfm[attempt];
+  unevenness_ = kUnevenness[attempt] * gravity_.norm() * h * h;
+  // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone, whosever the world is.
+  deepest_ = erp_ > 0.0 ? max_correcting_velocity_ * h / erp_ : dInfinity;
+}
+
+void ContactJoints::add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points) {
+  const ContactLaw law = materials_->law(first.material, second.material);
+  joint_.surface.mu = law.friction;
+  joint_.surface.bounce = law.restitution;
+  for (const ContactPoint& point : points) {
+    add_joint(first, second, point);
+    const double side = first.id ? 1.0 : -1.0;  // contacts() names this world's body first
+    contacts_.push_back({first.id ? first.id : second.id, first.id ? second.id : first.id, point.point,
+                         side * point.normal, point.depth});
+  }
+  made_ += std::int64_t(points.size());
+}
+
+void ContactJoints::add_joint(const ContactSide& first, const ContactSide& second, const ContactPoint& point) {
+  copy(point.point, joint_.geom.pos);
+  copy(point.normal, joint_.geom.normal);
+  joint_.geom.depth = second.body ? depth_of(point) : std::min(point.depth, deepest_);
+  copy(slip_direction(first.body, second.body, point), joint_.fdir1);
+  dJointAttach(dJointCreateContact(world_, group_, &joint_), first.body, second.body);
+}
+
+// ODE's solver gives up where two contacts tie exactly, as those of bodies at rest on each other do; a small part of what a body falls in a
+// step sets them apart.
+double ContactJoints::depth_of(const ContactPoint& point) const {
+  const double turn = 0.6180339887498949 * double(contacts_.size());  // of the golden angle: no two alike
+  return std::min(point.depth + unevenness_ * (turn - std::floor(turn)), deepest_);
+}
+
+// ODE's friction is a box: μ along fdir1 and μ across it, so only along fdir1 is it Coulomb's. Friction opposes the slip that the step
+// would have without it; taking that rather than the slip before it lets a body at rest on a slope start downhill.
+Vec3 ContactJoints::slip_direction(dBodyID first, dBodyID second, const ContactPoint& point) const {
+  const Vec3 relative = unhindered_velocity(first, point.point) - unhindered_velocity(second, point.point);
+  const double still = 1e-3 * h_ * gravity_.norm() + 1e-9;
+  for (const Vec3& direction : {relative, gravity_}) {
+    const Vec3 slip = tangential(direction, point.normal);
+    if (slip.squaredNorm() > still * still) return slip.normalized();
+  }
+  return point.normal.unitOrthogonal();
+}
+
+/// Of the body's material at `point` at the end of the step if nothing but gravity and applied forces acted on it.
+Vec3 ContactJoints::unhindered_velocity(dBodyID body, const Vec3& point) const {
+  if (!body) return Vec3::Zero();
+  const Vec3 arm = point - to_vec3(dBodyGetPosition(body));
+  const Vec3 now = to_vec3(dBodyGetLinearVel(body)) + to_vec3(dBodyGetAngularVel(body)).cross(arm);
+  if (!dBodyIsEnabled(body) || dBodyIsKinematic(body)) return now;
+  dMass mass;
+  dBodyGetMass(body, &mass);
+  const Vec3 pull = dBodyGetGravityMode(body) ? gravity_ : Vec3::Zero();
+  return now + h_ * (pull + to_vec3(dBodyGetForce(body)) / mass.mass);
+}
+
+}  // namespace lodestone::ode

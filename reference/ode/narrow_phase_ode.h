@@ -1,0 +1,42 @@
+// Contact points of two ODE geoms; those of two trimeshes made believable (contact_filter.h).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "reference/ode/contact_filter.h"
+#include "reference/ode/runtime_ode.h"
+
+namespace lodestone::ode {
+
+class NarrowPhase {
+  struct Exit {
+    double distance;
+    Vec3 normal;  // of the face, outward
+  };
+
+ public:
+  NarrowPhase();
+  ~NarrowPhase();
+  NarrowPhase(const NarrowPhase&) = delete;
+  NarrowPhase& operator=(const NarrowPhase&) = delete;
+
+  /// Appends the contacts of `first` with `second`, normals into `first`. `size`: the smaller body's radius (m). Locks where ODE needs it.
+  void find(dGeomID first, dGeomID second, double size, std::vector<ContactPoint>& points);
+
+ private:
+  void find_of_meshes(dGeomID first, dGeomID second, double size, std::vector<ContactPoint>& points);
+  int collide_meshes(dGeomID first, dGeomID second);
+  void place(dGeomID first, dGeomID second, const Vec3& origin);
+  std::optional<WayOut> measure_way_out(const Vec3& place, const Vec3& direction) const;
+  std::optional<Exit> find_exit(int which, const Vec3& place, const Vec3& direction) const;
+  std::optional<Exit> cast_ray(dGeomID mesh, const Vec3& point, const Vec3& direction) const;
+
+  std::vector<dContactGeom> found_;
+  std::array<dGeomID, 2> local_{};  // the two trimeshes at hand, about origin_
+  dGeomID ray_;
+  Vec3 origin_ = Vec3::Zero();
+  double size_ = 0.0;
+};
+
+}  // namespace lodestone::ode

@@ -1,0 +1,106 @@
+#include "reference/ode/runtime_ode.h"
+
+#include <cstdarg>
+#include <cstdio>
+
+#include "reference/error.h"
+
+namespace lodestone::ode {
+namespace {
+
+thread_local std::int64_t messages = 0;
+thread_local bool recoverable = false;
+// What the caller had set before ODE was prepared; null where ODE would have printed.
+dMessageFunction* callers_message_handler = nullptr;
+dMessageFunction* callers_error_handler = nullptr;
+dMessageFunction* callers_debug_handler = nullptr;
+
+void count_message(int number, const char* message, va_list arguments) {
+  ++messages;
+  if (callers_message_handler) callers_message_handler(number, message, arguments);
+}
+
+// ODE ends the process once these return, so they say why, as any broken contract does.
+void report_fatal(dMessageFunction* callers, int number, const char* message, va_list arguments) {
+  ++messages;
+  if (callers) return callers(number, message, arguments);
+  char text[512];
+  std::vsnprintf(text, sizeof text, message, arguments);
+  check_that(false, "ODE cannot go on:", text);
+}
+
+void report_error(int number, const char* message, va_list arguments) {
+  report_fatal(callers_error_handler, number, message, arguments);
+}
+
+void report_debug(int number, const char* message, va_list arguments) {
+  if (recoverable) {
+    ++messages;
+    throw AssertionFailed{};
+  }
+  report_fatal(callers_debug_handler, number, message, arguments);
+}
+
+void start() {
+  check_that(dInitODE2(0) != 0, "ODE starts");
+  check_that(dCheckConfiguration("ODE_double_precision") != 0, "ODE is built in double precision");
+  callers_message_handler = dGetMessageHandler();
+  callers_error_handler = dGetErrorHandler();
+  callers_debug_handler = dGetDebugHandler();
+  dSetMessageHandler(count_message);
+  dSetErrorHandler(report_error);
+  dSetDebugHandler(report_debug);
+}
+
+std::mutex& random_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+std::mutex& thread_data_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+bool prepare_thread() {
+  const std::scoped_lock lock(thread_data_mutex());
+  check_that(dAllocateODEDataForThread(dAllocateMaskAll) != 0, "ODE makes its data for this thread");
+  return true;
+}
+
+}  // namespace
+
+void prepare() {
+  static const bool started = (start(), true);
+  thread_local const bool prepared = started && prepare_thread();
+  static_cast<void>(prepared);
+}
+
+std::int64_t messages_of_this_thread() { return messages; }
+
+std::mutex& trimesh_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+RecoverableScope::RecoverableScope() { recoverable = true; }
+RecoverableScope::~RecoverableScope() { recoverable = false; }
+
+SeededRandom::SeededRandom(std::uint64_t seed) : lock_(random_mutex()), before_(dRandGetSeed()) {
+  // ODE's generator keeps 32 bits; fold the rest in.
+  dRandSetSeed((seed ^ (seed >> 32)) & 0xffffffffu);
+}
+
+SeededRandom::~SeededRandom() { dRandSetSeed(before_); }
+
+StepThreading::StepThreading(dWorldID world)
+    : world_(world), threading_(dThreadingAllocateSelfThreadedImplementation()) {
+  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
+}
+
+StepThreading::~StepThreading() {
+  dWorldSetStepThreadingImplementation(world_, nullptr, nullptr);
+  dThreadingFreeImplementation(threading_);
+}
+
+}  // namespace lodestone::ode

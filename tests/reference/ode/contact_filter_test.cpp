@@ -1,0 +1,85 @@
+// The filter by itself, on solids that are known in closed form.
+#include "reference/ode/contact_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+namespace lodestone {
+namespace {
+
+// The first body fills z ≥ −depth, the second z ≤ 0 and, with a wall, x ≤ 0 too.
+struct FloorAndWall {
+  double depth = 1e-3;
+  bool wall = false;
+  double wall_depth = 5e-3;  // of the first body's face at x = −wall_depth
+
+  std::optional<WayOut> operator()(const Vec3& place, const Vec3& direction) const {
+    constexpr double kRounding = 1e-2;
+    const bool in_second = place.z() <= kRounding || (wall && place.x() <= kRounding);
+    const bool in_first = place.z() >= -depth - kRounding && (!wall || place.x() >= -wall_depth - kRounding);
+    if (!in_second || !in_first) return {};
+    const double up = direction.z() > 1e-6 ? depth / direction.z() : 100.0;
+    const double aside = wall && direction.x() > 1e-6 ? wall_depth / direction.x() : 100.0;
+    const bool on_floor = !wall || place.x() > kRounding;
+    const double away = on_floor ? up : (place.z() > kRounding ? aside : std::max(up, aside));
+    const Vec3 face = on_floor ? Vec3::UnitZ() : Vec3::UnitX();
+    return WayOut{away, face, face};
+  }
+};
+
+TEST(ContactFilter, KeepsContactsThatAgree) {
+  std::array<ContactPoint, 3> contacts{{{{0, 0, 0}, {0, 0, 1}, 1e-3}, {{1, 0, 0}, {0, 0, 1}, 2e-3}, {{0, 1, 0}, {0.1, 0, 0.995}, 1e-3}}};
+  EXPECT_TRUE(plainly_believable(contacts, 1.0));
+  const auto before = contacts;
+  EXPECT_EQ(filter_contacts(contacts, 1.0, FloorAndWall{}), 3);
+  for (const ContactPoint& c : before)
+    EXPECT_TRUE(std::ranges::any_of(contacts, [&](const ContactPoint& d) { return c.point == d.point && c.normal == d.normal; }));
+}
+
+TEST(ContactFilter, TurnsAFalseContactThroughTheBodyUpright) {
+  std::array<ContactPoint, 4> contacts{
+      {{{0, 0, 0}, {0, 0, 1}, 1e-3}, {{1, 0, 0}, {0, 0, 1}, 1e-3}, {{0, 1, 0}, {0, 0, 1}, 1e-3}, {{1, 1, 0}, {1, 0, 0}, 0.97}}};
+  EXPECT_FALSE(plainly_believable(contacts, 1.0));
+  ASSERT_EQ(filter_contacts(contacts, 1.0, FloorAndWall{}), 4);
+  for (const ContactPoint& contact : contacts) {
+    EXPECT_EQ(contact.normal, Vec3::UnitZ());
+    EXPECT_NEAR(contact.depth, 1e-3, 1e-12);
+  }
+}
+
+TEST(ContactFilter, FindsTheDirectionWhereEveryContactIsFalse) {
+  std::array<ContactPoint, 2> contacts{{{{0, 0, 0}, {0, 1, 0}, 0.02}, {{1, 1, 0}, {1, 0, 0}, 0.3}}};
+  ASSERT_EQ(filter_contacts(contacts, 1.0, FloorAndWall{}), 2);
+  for (const ContactPoint& contact : contacts) EXPECT_EQ(contact.normal, Vec3::UnitZ());
+}
+
+TEST(ContactFilter, KeepsFloorAndWallOfACorner) {
+  std::vector<ContactPoint> contacts;
+  for (const double y : {0.0, 0.5, 1.0}) {
+    contacts.push_back({{0.5, y, 0}, {0, 0, 1}, 5e-4});
+    contacts.push_back({{1.0, y, 0}, {0, 0, 1}, 5e-4});
+    contacts.push_back({{0, y, 0.5}, {1, 0, 0}, 5e-3});
+    contacts.push_back({{0, y, 1.0}, {1, 0, 0}, 5e-3});
+  }
+  const FloorAndWall corner{.depth = 5e-4, .wall = true, .wall_depth = 5e-3};
+  const int kept = filter_contacts(contacts, 0.3, corner);
+  ASSERT_EQ(kept, 12);
+  EXPECT_EQ(std::ranges::count(contacts, Vec3(1, 0, 0), &ContactPoint::normal), 6);
+  EXPECT_EQ(std::ranges::count(contacts, Vec3(0, 0, 1), &ContactPoint::normal), 6);
+}
+
+TEST(ContactReduction, TakesTheDeepestAndSpreadsTheRest) {
+  std::vector<ContactPoint> contacts;
+  for (int i = 0; i < 100; ++i) contacts.push_back({{0.01 * (i % 10), 0.01 * (i / 10), 0}, {0, 0, 1}, i == 44 ? 2e-3 : 1e-3});
+  const int kept = reduce_contacts(contacts, 5, 1.0);
+  ASSERT_EQ(kept, 5);
+  EXPECT_EQ(contacts[0].depth, 2e-3);
+  // With the deepest near the middle, the rest are the four corners.
+  for (int i = 1; i < 5; ++i) EXPECT_GT((contacts[i].point - Vec3(0.045, 0.045, 0)).norm(), 0.06);
+  EXPECT_EQ(reduce_contacts(std::span(contacts).first(3), 5, 1.0), 3);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,14 @@
+#include <CLI/CLI.hpp>
+
+#include "tools/commands.h"
+#include "tools/compare/command_compare_drop.h"
+
+namespace lodestone {
+
+void add_compare_command(CLI::App& program, ExitCode& exit_code) {
+  CLI::App* compare = program.add_subcommand("compare", "error against the truth, beside cost");
+  compare->require_subcommand(1);
+  add_compare_drop_command(*compare, exit_code);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,110 @@
+#include "tools/compare/drop_method.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "reference/error.h"
+
+namespace lodestone {
+namespace {
+
+constexpr int kTruthSubsteps = 34;
+constexpr int kLowFaces = 194;   // the paper's low-resolution bunny
+constexpr int kSphereCount = 7;
+
+DropMethod make_ode(std::string name, const DropJob& job, OdeMethod way) {
+  if (!way.collision_shape) way.collision_shape = job.shape;
+  return {std::move(name), std::move(way), ""};
+}
+
+// Another mesh about the same centre of mass, with the same mass distribution.
+std::shared_ptr<const Shape> make_low_shape(const Shape& shape) {
+  const MassOverride mass{.center_of_mass_m = Vec3::Zero(), .inertia_per_mass_m2 = shape.inertia_per_mass};
+  return std::make_shared<const Shape>(make_shape(shape.name + " low", simplify_mesh(shape.mesh, kLowFaces), mass));
+}
+
+DropMethod make_low(const DropJob& job) {
+  DropMethod method = make_ode("low", job, {.plane_contacts_from_hull = false});
+  if (job.shape->mesh.faces.size() <= kLowFaces)
+    method.left_out = fmt::format("has no more than {} faces", kLowFaces);
+  else
+    std::get<OdeMethod>(method.way).collision_shape = make_low_shape(*job.shape);
+  return method;
+}
+
+using Maker = DropMethod (*)(const DropJob&);
+struct NamedMaker {
+  std::string_view name;
+  Maker make;
+};
+
+constexpr std::array<NamedMaker, 7> kOdeMethods = {{
+    {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.plane_contacts_from_hull = false}); }},
+    {"full", [](const DropJob& job) { return make_ode("full", job, {.substeps = ManagerSettings{}.full_substeps}); }},
+    {"full_1", [](const DropJob& job) { return make_ode("full_1", job, {}); }},
+    {"low", make_low},
+    {"spheres7", [](const DropJob& job) {
+       return make_ode("spheres7", job, {.geometry = OdeGeometry::spheres, .spheres = fit_spheres(job.shape->mesh, kSphereCount)});
+     }},
+    {"sphere", [](const DropJob& job) { return make_ode("sphere", job, {.geometry = OdeGeometry::sphere}); }},
+    {"hull", [](const DropJob& job) { return make_ode("hull", job, {.geometry = OdeGeometry::hull, .plane_contacts_from_hull = false}); }},
+}};
+
+constexpr std::string_view kStatistical = "statistical";
+
+std::vector<DropMethod> make_statistical(const DropJob& job, int threads, const Progress& progress) {
+  SignatureSourceSettings source;
+  source.threads = threads;
+  source.progress = progress;
+  const auto signature = find_or_measure_signature(*job.shape, job.law(), source).signature;
+  std::vector<DropMethod> methods;
+  for (const StatisticalModel model : {StatisticalModel::tables, StatisticalModel::support})
+    methods.push_back({std::string(kStatistical), StatisticalMethod{model, signature}, ""});
+  return methods;
+}
+
+[[noreturn]] void throw_unknown(const std::string& name) {
+  throw InputError(fmt::format("--methods: found '{}', expected some of {}", name, fmt::join(drop_method_names(), ", ")));
+}
+
+}  // namespace
+
+int DropMethod::substeps() const {
+  const auto* ode = std::get_if<OdeMethod>(&way);
+  return ode ? ode->substeps : 1;
+}
+
+std::string DropMethod::model() const {
+  const auto* statistical = std::get_if<StatisticalMethod>(&way);
+  if (!statistical) return "";
+  return statistical->model == StatisticalModel::tables ? "tables" : "support";
+}
+
+DropMethod make_truth(const DropJob& job) { return make_ode("truth", job, {.substeps = kTruthSubsteps}); }
+
+std::vector<std::string> drop_method_names() {
+  std::vector<std::string> names;
+  for (const NamedMaker& method : kOdeMethods) names.emplace_back(method.name);
+  names.emplace_back(kStatistical);
+  return names;
+}
+
+std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job, int threads,
+                                          const Progress& progress) {
+  std::vector<DropMethod> methods;
+  for (const std::string& name : names) {
+    if (name == kStatistical) {
+      std::ranges::move(make_statistical(job, threads, progress), std::back_inserter(methods));
+      continue;
+    }
+    const auto found = std::ranges::find(kOdeMethods, name, &NamedMaker::name);
+    if (found == kOdeMethods.end()) throw_unknown(name);
+    methods.push_back(found->make(job));
+  }
+  return methods;
+}
+
+}  // namespace lodestone
