@@ -23,6 +23,11 @@ inline Mat3 inverse_inertia_world(const Quat& orientation, const Shape& shape) {
   return r * shape.inverse_inertia_per_mass * r.transpose();
 }
 
+/// Kinetic energy over mass, J/kg.
+inline double kinetic_energy(const Shape& shape, const RigidState& s) {
+  return 0.5 * (s.velocity.squaredNorm() + s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, shape)));
+}
+
 /// The orientation `time` seconds later.
 inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const Shape& shape, double time) {
   const Vec3 now = angular_velocity(orientation, spin, shape);

@@ -4,8 +4,7 @@
 // Everything is dimensionless, so that one signature serves all sizes and densities of a shape: lengths over R (the greatest distance of a
 // vertex from the centre of mass), speeds over s = √(v² + R²ω²), times over √(R/g).
 //
-// Symbols: n collision plane normal, V⁻ Ω⁻ velocities before the collision, e1 = n, e3 = n × V⁻ normalised (the working plane's normal),
-// e2 = e3 × e1; θ = ∠(V⁻, −n), φ = ∠(V⁻, Ω⁻), α = atan(R‖Ω⁻‖ / ‖V⁻‖); V_particle = V⁻ − (1 + e)(V⁻·n) n.
+// The symbols of collisions are listed in response.h.
 #pragma once
 
 #include <array>
@@ -16,33 +15,17 @@
 
 #include "reference/geometry.h"
 #include "reference/material.h"
+#include "signature/collision_heights.h"
+#include "signature/response.h"
 
 namespace lodestone {
-
-/// Collision height over α: the paper's radius of the colliding sphere (3.2.1, figure 3). Sampled evenly in α from 0 to π/2, so
-/// closely at small ‖ω‖/‖v‖ and sparsely at large.
-struct CollisionHeights {
-  std::vector<float> mean;       ///< height of the centre of mass over the plane at contact, over R
-  std::vector<float> deviation;
-};
-
-/// Six numbers in the frame (e1, e2, e3): (V_rigid − V_particle)/s, then RΩ⁺/s.
-using Response = Eigen::Matrix<float, 6, 1>;
-
-/// Means and deviations of the response over cells of (θ, φ, α) (3.2.2). Cell centres: θ = (i + ½)π/(2 n_theta), φ = (j + ½)π/n_phi,
-/// α = (k + ½)π/(2 n_alpha); cell index (i n_phi + j) n_alpha + k.
-struct ResponseTable {
-  int n_theta = 0, n_phi = 0, n_alpha = 0;
-  std::vector<Response> mean, deviation;
-  std::vector<std::uint32_t> samples;  ///< trials behind each cell
-  int cells() const { return n_theta * n_phi * n_alpha; }
-};
 
 /// A pose in which the body comes to rest on a horizontal plane (3.2.3).
 struct RestPose {
   Vec3 normal = Vec3::UnitZ();  ///< the plane's normal in body axes: n_rest
   double height = 0.0;          ///< of the centre of mass over the plane, over R: h_rest
   double frequency = 0.0;       ///< fraction of settling trials that ended in it
+  double basin = 0.0;           ///< fraction of orientations from which the body, let down without speed, tips into it
 };
 
 /// One frame of a settling clip, 16 bits a number (encode_frame and decode_frame in settling_clips.h).
@@ -67,15 +50,21 @@ struct ClipEntry {
 /// When a single-collision trial stops.
 enum class TrialEnd : std::uint8_t {
   first_impulse,  ///< the paper's
-  leaves_plane,   ///< when no vertex moves into the plane any more
+  leaves_plane,   ///< when the body flies off without another impact
 };
 
 /// How a signature is measured; part of its identity.
 struct SignatureSettings {
   ContactLaw law;
   TrialEnd trial_end = TrialEnd::leaves_plane;
+  bool paper_grid = false;                     ///< responses over the paper's θ 7 × φ 10 × ‖V‖ 26 × ‖Ω‖ 16, 30 trials each, instead of over (θ, φ, α, ψ)
   int n_theta = 7, n_phi = 10, n_alpha = 16;   ///< θ and φ as in the paper; α stands for its ‖V‖ and ‖Ω‖
+  int n_psi = 1;                               ///< 1: every ψ in one cell, as in the paper
+  ResponseDraw draw = ResponseDraw::independent;  ///< what is kept for draws beyond the independent ones
   int trials_per_cell = 60;
+  double table_error = 0.0;                    ///< above 0: cells get trials until no mean has a greater standard error, over s
+  int most_trials_per_cell = 4000;             ///< even so
+  int held_out_conditions = 500;               ///< random ones, with 16 trials each kept out of the tables, that certify each table
   int height_samples = 16, height_trials = 2000;
   int settling_trials = 1000;
   int clips = 200;
@@ -84,14 +73,31 @@ struct SignatureSettings {
   friend bool operator==(const SignatureSettings&, const SignatureSettings&) = default;
 };
 
+/// How good a table of responses is.
+struct TableCertificate {
+  std::uint64_t trials = 0, missed = 0;      ///< in the table; `missed`: never touched the plane
+  std::uint32_t fewest_trials = 0, most_trials = 0;  ///< of a cell
+  double impulses = 0.0;                     ///< in a trial, mean
+  double into_plane_first = 0.0, into_plane = 0.0;        ///< fraction of bodies moving into the plane after the first impulse, and at the end
+  double energy_ratio_first = 0.0, energy_ratio = 0.0;    ///< kinetic, after over before: mean, after the first impulse, and at the end
+  double mean_over_deviation = 0.0;          ///< |μ_V|/σ_V over the table (the paper: near 0)
+  double standard_error = 0.0, greatest_standard_error = 0.0;  ///< of the six numbers of cells' means, over s: root mean square, greatest
+  std::uint64_t held_out = 0;                ///< trials that are not in the table
+  double held_out_ks = 0.0;                  ///< Kolmogorov–Smirnov distance between draws and held-out trials: normal speed, speed or spin after, the greatest
+  double held_out_error = 0.0;               ///< root mean square error of a number of the mean looked up, over s
+  double uniform_trials = 0.0;               ///< what the same greatest standard error would take with the same number of trials in each cell
+};
+
 /// Pure data; immutable once made.
 struct Signature {
   std::uint64_t shape_hash = 0;      ///< Shape::content_hash that it was measured for
   SignatureSettings settings;
   std::string shape_name;
   CollisionHeights collision_heights;
-  ResponseTable bouncing;            ///< normal speed above ODE's bounce_vel
+  ResponseTable bouncing;            ///< approach above ODE's bounce_vel; empty where measured on the paper's grid
   ResponseTable non_bouncing;        ///< below it, where restitution is 0
+  SpeedTable by_speed;               ///< the paper's grid; else empty
+  TableCertificate bouncing_certificate, non_bouncing_certificate, by_speed_certificate;
   std::vector<RestPose> rest_poses;  ///< most frequent first
   int rest_poses_above_5_percent = 0;  ///< the paper's count
   std::vector<SettlingClip> clips;

@@ -12,7 +12,7 @@
 
 namespace lodestone {
 
-inline constexpr std::uint32_t kSignatureFormatVersion = 1;
+inline constexpr std::uint32_t kSignatureFormatVersion = 2;
 
 std::vector<std::byte> encode_signature(const Signature& signature);
 

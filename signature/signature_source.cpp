@@ -6,14 +6,14 @@
 #include <cstdlib>
 
 #include "reference/error.h"
-#include "signature/measure.h"
+#include "signature/measure/measure.h"
 #include "signature/signature_file.h"
 
 namespace lodestone {
 namespace {
 
 // Raised when measuring changes its results: older files are then measured anew.
-constexpr std::uint32_t kMeasuringVersion = 3;
+constexpr std::uint32_t kMeasuringVersion = 4;
 
 std::filesystem::path default_cache_folder() {
   if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder) return std::filesystem::path(folder) / "lodestone";
@@ -23,11 +23,12 @@ std::filesystem::path default_cache_folder() {
 
 // Names the content: shape, law, settings and the versions of the format, of the measuring code and of ODE.
 std::string content_key(const Shape& shape, const SignatureSettings& settings) {
-  const std::string content =
-      fmt::format("{:016x} {} {} {} {} {} {} {} {} {} {} {} {} {} format {} measuring {} ode {}", shape.content_hash, settings.law.restitution,
-                  settings.law.friction, int(settings.trial_end), settings.n_theta, settings.n_phi, settings.n_alpha, settings.trials_per_cell,
-                  settings.height_samples, settings.height_trials, settings.settling_trials, settings.clips, settings.rest_pose_frequency_min,
-                  settings.seed, kSignatureFormatVersion, kMeasuringVersion, LODESTONE_ODE_VERSION);
+  const SignatureSettings& s = settings;
+  std::string content = fmt::format("{:016x} {} {} {} {} {} {} {} {} {}", shape.content_hash, s.law.restitution, s.law.friction, int(s.trial_end), s.paper_grid,
+                                    s.n_theta, s.n_phi, s.n_alpha, s.n_psi, int(s.draw));
+  content += fmt::format(" {} {} {} {} {} {} {} {} {} {}", s.trials_per_cell, s.table_error, s.most_trials_per_cell, s.held_out_conditions, s.height_samples,
+                         s.height_trials, s.settling_trials, s.clips, s.rest_pose_frequency_min, s.seed);
+  content += fmt::format(" format {} measuring {} ode {}", kSignatureFormatVersion, kMeasuringVersion, LODESTONE_ODE_VERSION);
   const XXH128_hash_t hash = XXH3_128bits(content.data(), content.size());
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }

@@ -8,6 +8,7 @@
 #include "tools/commands.h"
 #include "tools/progress.h"
 #include "tools/shape_arguments.h"
+#include "tools/signature_arguments.h"
 #include "tools/signature_report.h"
 
 namespace lodestone {
@@ -15,6 +16,7 @@ namespace {
 
 struct Arguments {
   ShapeArguments shape;
+  SignatureArguments signature;
   std::filesystem::path out;
   int threads = 0;
   bool no_cache = false, json = false;
@@ -23,6 +25,7 @@ struct Arguments {
 SourcedSignature find_signature(const Arguments& arguments, const Shape& shape) {
   ProgressLine line;
   SignatureSourceSettings source;
+  source.measuring = arguments.signature.measuring();
   source.use_cache = !arguments.no_cache;
   source.threads = arguments.threads;
   source.progress = line.function();
@@ -57,6 +60,7 @@ void add_sign_command(CLI::App& program, ExitCode& exit_code) {
   CLI::App* command = program.add_subcommand("sign", "measure a shape's statistical signature, or find it in the cache");
   const auto arguments = std::make_shared<Arguments>();
   add_shape_arguments(*command, arguments->shape);
+  add_signature_arguments(*command, arguments->signature);
   command->add_option("-o", arguments->out, "write it to this file, too");
   command->add_flag("--no-cache", arguments->no_cache, "measure it anew and leave the cache alone");
   command->add_option("--threads", arguments->threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();

@@ -1,4 +1,4 @@
-// θ = ∠(V⁻, −n), φ = ∠(V⁻, Ω⁻), α = atan(R‖Ω⁻‖/‖V⁻‖), s = √(v² + R²ω²); e1 = n, e3 = n × V⁻ normalised, e2 = e3 × e1.
+// Symbols as in signature/response.h.
 #include "lod/statistical/tables_model.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "lod/statistical/contact_impulse.h"
 #include "lod/statistical/flight.h"
 #include "reference/random.h"
-#include "signature/response_table.h"
+#include "signature/response_lookup.h"
 
 namespace lodestone {
 namespace {
@@ -25,12 +25,15 @@ double angle_between(const Vec3& a, const Vec3& b) {
 
 struct Velocities { Vec3 linear, angular; };
 
-// Steps 2–7 of 3.3.2: the working frame, the configuration, and one draw of both velocities.
-Velocities draw_response(const ResponseStatistics& found, const Mat3& frame, const Vec3& particle, double s, double radius, RandomStream& random) {
-  Response draw;
-  for (int i = 0; i < 6; ++i) draw[i] = found.mean[i] + found.deviation[i] * float(random.normal());
-  const Eigen::Matrix<double, 6, 1> drawn = draw.cast<double>();
-  return {particle + frame * (s * drawn.head<3>()), frame * (s / radius * drawn.tail<3>())};
+// Step 4 of 3.3.2, in the working frame (columns e1, e2, e3).
+CollisionConfiguration configuration_of(const Vec3& v, const Vec3& omega, double radius, const Mat3& frame) {
+  const Vec3 across = frame.col(2);
+  const Vec3 in_plane = across.cross(v);
+  return {.theta = angle_between(v, -frame.col(0)),
+          .phi = angle_between(v, omega),
+          .psi = std::atan2(omega.dot(across) * v.norm(), omega.dot(in_plane)),
+          .speed = v.norm(),
+          .spin = radius * omega.norm()};
 }
 
 double kinetic_energy(const Velocities& v, const StatisticalBody& body, const Shape& shape) {
@@ -126,23 +129,16 @@ void respond_from_tables(StatisticalBody& body, const BodyKind& kind, const Vec3
                          const TablesOptions& options, ContactTally& tally) {
   const Shape& shape = *kind.shape;
   const Vec3 v = body.velocity, omega = angular_velocity(body.orientation, body.spin, shape);
-  const double approach = v.dot(normal);
-  if (!(approach < 0.0)) return;
-  const double s = std::sqrt(v.squaredNorm() + shape.radius * shape.radius * omega.squaredNorm());
-  const bool bounces = -approach > world.bounce_velocity;
-  const ResponseStatistics found =
-      find_response(bounces ? kind.signature->bouncing : kind.signature->non_bouncing, angle_between(v, -normal), angle_between(v, omega),
-                    std::atan2(shape.radius * omega.norm(), v.norm()), options.interpolate);
+  if (!(v.dot(normal) < 0.0)) return;
+  const Mat3 frame = contact_frame(normal, v);  // n, slip, n × slip: its last column is e3, and e2 = e3 × e1 is the slip
+  const CollisionConfiguration configuration = configuration_of(v, omega, shape.radius, frame);
+  const FoundResponse found = find_response(*kind.signature, configuration, world.bounce_velocity, options.interpolate);
   tally.table_extrapolations += found.extrapolated;
 
-  const Mat3 slip_frame = contact_frame(normal, v);  // n, slip, n × slip: its last column is e3, and e2 = e3 × e1 is the slip
-  const Vec3 particle = v - (1.0 + (bounces ? law.restitution : 0.0)) * approach * normal;
-  const double energy_before = kinetic_energy(Velocities{v, omega}, body, shape);
+  const double energy_before = kinetic_energy(Velocities{v, omega}, body, shape), s = configuration.speed_unit();
   RandomStream random(world.seed, draw_key(body), kResponseDraw);
-  Velocities after = draw_response(found, slip_frame, particle, s, shape.radius, random);
-  for (int redraw = 0; redraw < 4 && after.linear.dot(normal) < 0.0; ++redraw)
-    after = draw_response(found, slip_frame, particle, s, shape.radius, random);
-  if (const double into = after.linear.dot(normal); into < 0.0) after.linear -= into * normal;
+  const DrawnVelocities drawn = draw_response(found, configuration, law.restitution, kind.signature->settings.draw, random);
+  Velocities after{frame * (s * drawn.linear), frame * (s / shape.radius * drawn.angular)};
   const double energy_after = kinetic_energy(after, body, shape);
   if (energy_after > energy_before) {
     const double scale = std::sqrt(energy_before / energy_after);

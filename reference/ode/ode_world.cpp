@@ -33,6 +33,7 @@ struct OdeWorld::Impl {
     threading = std::make_unique<StepThreading>(world);
     dWorldSetGravity(world, settings.gravity.x(), settings.gravity.y(), settings.gravity.z());
     dWorldSetQuickStepNumIterations(world, settings.quick_step_iterations);
+    dWorldSetCFM(world, settings.cfm);  // that of friction, too
   }
 
   void substep(double h);

@@ -9,6 +9,7 @@
 #include "tools/compare/drop_report.h"
 #include "tools/progress.h"
 #include "tools/shape_arguments.h"
+#include "tools/signature_arguments.h"
 #include "tools/step_argument.h"
 
 namespace lodestone {
@@ -16,6 +17,7 @@ namespace {
 
 struct Arguments {
   ShapeArguments shape;
+  SignatureArguments signature;
   DropComparisonSettings comparison;
   std::vector<std::string> steps = {"1/60"};
   double speed_scale = 1.0, slope_deg = 0.0;
@@ -35,6 +37,7 @@ DropJob make_job(const Arguments& arguments) {
 void compare_drop(const Arguments& arguments) {
   const DropJob job = make_job(arguments);
   DropComparisonSettings settings = arguments.comparison;
+  settings.measuring = arguments.signature.measuring();
   settings.dt_s = steps_of(arguments.steps);
   DropComparison comparison;
   {
@@ -54,6 +57,7 @@ void add_compare_drop_command(CLI::App& compare, ExitCode& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   DropComparisonSettings& comparison = arguments->comparison;
   add_shape_arguments(*drop, arguments->shape);
+  add_signature_arguments(*drop, arguments->signature);
   drop->add_option("--dt", arguments->steps, "steps of the methods, s: 0.01 or 1/60, several with commas")
       ->delimiter(',')->allow_extra_args(false)->check(find_step_fault, "SECONDS")->capture_default_str();
   drop->add_option("--trials", comparison.trials, "drops of each")->check(CLI::Range(2, 1'000'000))->capture_default_str();

@@ -19,7 +19,7 @@ class Comparison {
 
   DropComparison run() {
     // Methods first: an unknown name or an unwritable cache is found before the truth's minutes are spent.
-    const auto methods = make_drop_methods(settings_.methods, job_, settings_.threads, settings_.progress);
+    const auto methods = make_drop_methods(settings_.methods, job_, settings_.measuring, settings_.threads, settings_.progress);
     DropComparison result = compare_truth();
     for (const DropMethod& method : methods)
       for (const double dt_s : settings_.dt_s) result.rows.push_back(compare(method, dt_s, result.truth_a));

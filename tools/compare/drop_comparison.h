@@ -17,6 +17,7 @@ struct DropComparisonSettings {
   int trials = 300;                                ///< ≥ 2
   std::vector<double> dt_s = {kObservationStep};   ///< steps of the methods
   std::vector<std::string> methods = {"full", "full_1", "hull", "spheres7", "sphere", "statistical"};
+  SignatureSettings measuring = {};                ///< of the signature of `statistical`; its law is the job's
   std::uint64_t seed = 1;
   int threads = 0;                                 ///< 0: all cores
   Progress progress;

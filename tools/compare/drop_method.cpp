@@ -55,8 +55,9 @@ constexpr std::array<NamedMaker, 7> kOdeMethods = {{
 
 constexpr std::string_view kStatistical = "statistical";
 
-std::vector<DropMethod> make_statistical(const DropJob& job, int threads, const Progress& progress) {
+std::vector<DropMethod> make_statistical(const DropJob& job, const SignatureSettings& measuring, int threads, const Progress& progress) {
   SignatureSourceSettings source;
+  source.measuring = measuring;
   source.threads = threads;
   source.progress = progress;
   const auto signature = find_or_measure_signature(*job.shape, job.law(), source).signature;
@@ -92,12 +93,12 @@ std::vector<std::string> drop_method_names() {
   return names;
 }
 
-std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job, int threads,
-                                          const Progress& progress) {
+std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job, const SignatureSettings& measuring,
+                                          int threads, const Progress& progress) {
   std::vector<DropMethod> methods;
   for (const std::string& name : names) {
     if (name == kStatistical) {
-      std::ranges::move(make_statistical(job, threads, progress), std::back_inserter(methods));
+      std::ranges::move(make_statistical(job, measuring, threads, progress), std::back_inserter(methods));
       continue;
     }
     const auto found = std::ranges::find(kOdeMethods, name, &NamedMaker::name);

@@ -50,9 +50,9 @@ DropMethod make_truth(const DropJob& job);
 /// Every name that `make_drop_methods` knows.
 std::vector<std::string> drop_method_names();
 
-/// The methods of these names; `statistical` gives one for each model, with a signature from the cache or measured now on `threads` threads
-/// (0: all cores). Throws InputError for an unknown name.
-std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job, int threads,
-                                          const Progress& progress);
+/// The methods of these names; `statistical` gives one for each model, with a signature from the cache or measured now as `measuring` says on `threads`
+/// threads (0: all cores). Throws InputError for an unknown name.
+std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job, const SignatureSettings& measuring,
+                                          int threads, const Progress& progress);
 
 }  // namespace lodestone

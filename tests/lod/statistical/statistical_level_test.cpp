@@ -5,7 +5,7 @@
 #include "lod/statistical/tables_model.h"
 #include "reference/free_rotation.h"
 #include "reference/random.h"
-#include "signature/measure.h"
+#include "signature/measure/measure.h"
 
 namespace lodestone {
 namespace {

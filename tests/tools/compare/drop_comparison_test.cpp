@@ -70,7 +70,7 @@ TEST(DropComparison, WhatCannotBeHadIsLeftOutWithTheReason) {
 }
 
 TEST(DropComparison, UnknownMethodIsBadInput) {
-  EXPECT_THROW(make_drop_methods({"fulll"}, box_job(), 1, {}), InputError);
+  EXPECT_THROW(make_drop_methods({"fulll"}, box_job(), {}, 1, {}), InputError);
 }
 
 TEST(DropReport, JsonHasTheKeysThatScriptsReadAndNullsForWhatIsUndefined) {

@@ -1,0 +1,171 @@
+#include "signature/measure/measure.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+
+#include "reference/random.h"
+#include "signature/measure/cell_trials.h"
+#include "signature/measure/contact_time.h"
+#include "signature/measure/measuring_shape.h"
+#include "signature/measure/response_grid.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kAlwaysBounces = 1e-9;   // m/s, far below the speeds of the scale-free tables' trials
+constexpr std::uint64_t kHeightTrials = 1ull << 40;  // keys of what is no cell
+
+// Says how far a stage has come; called from many threads.
+class Stage {
+ public:
+  Stage(std::string name, std::int64_t total, const Progress& progress) : name_(std::move(name)), total_(total), progress_(progress) {}
+  void add(std::int64_t done) {
+    if (!progress_) return;
+    const std::lock_guard lock(mutex_);
+    done_ += done;
+    progress_(name_, double(done_) / double(total_));
+  }
+
+ private:
+  std::string name_;
+  std::int64_t total_, done_ = 0;
+  const Progress& progress_;
+  std::mutex mutex_;
+};
+
+class Measuring {
+ public:
+  Measuring(const Shape& shape, const SignatureSettings& settings, const Share& share, const Progress& progress)
+      : shape_(make_measuring_shape(shape)), settings_(settings), share_(share), progress_(progress) {}
+
+  Measurement measure() const {
+    Measurement m;
+    m.share = share_;
+    measure_heights(m.heights);
+    if (settings_.paper_grid) {
+      measure_speed_table(m.by_speed);
+    } else {
+      measure_table("responses", settings_.law, m.bouncing);
+      measure_table("responses without bounce", {0.0, settings_.law.friction}, m.non_bouncing);
+    }
+    measure_settlings(m.settlings);
+    return m;
+  }
+
+ private:
+  // Calls `measure(i)` for the units i of the share, from many threads.
+  template <class Unit>
+  void for_each(const std::string& name, std::int64_t count, std::int64_t grain, Unit measure) const {
+    Stage stage(name, count, progress_);
+    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, count, std::size_t(grain)), [&](const auto& range) {
+      for (std::int64_t i = range.begin(); i < range.end(); ++i)
+        if (share_.holds(i)) measure(i);
+      stage.add(range.end() - range.begin());
+    }, tbb::simple_partitioner{});
+  }
+
+  void measure_heights(std::vector<HeightUnit>& units) const {
+    units.resize(std::size_t(settings_.height_samples));
+    for_each("collision heights", settings_.height_samples, 1, [&](std::int64_t k) { units[k] = measure_height(k); });
+  }
+
+  // Section 3.2.1: fixed speed, random orientation and spin axis.
+  HeightUnit measure_height(std::int64_t k) const {
+    const double ratio = double(k) / (settings_.height_samples - 1);
+    const double alpha = std::min(ratio * std::numbers::pi / 2, std::numbers::pi / 2 - 0.01);  // without falling there is no collision
+    ContactTime contact_time(*shape_);
+    double sum = 0.0, squares = 0.0;
+    int count = 0;
+    for (int trial = 0; trial < settings_.height_trials; ++trial) {
+      RandomStream random(settings_.seed, std::uint64_t(k) | kHeightTrials, std::uint32_t(trial));
+      RigidState state;
+      state.orientation = random.orientation();
+      state.position.z() = shape_->radius;
+      state.velocity = {0.0, 0.0, -std::cos(alpha)};
+      state.angular_velocity = std::sin(alpha) / shape_->radius * random.direction();
+      if (!contact_time.advance(state)) continue;
+      const double height = state.position.z() / shape_->radius;
+      sum += height, squares += height * height, ++count;
+    }
+    const double mean = count ? sum / count : 1.0;
+    return {float(mean), float(count > 1 ? std::sqrt(std::max(0.0, squares / count - mean * mean)) : 0.0)};
+  }
+
+  // Section 3.2.2, over (θ, φ, α).
+  void measure_table(const std::string& name, const ContactLaw& law, TableUnits& units) const {
+    const ResponseTable grid = make_response_grid(settings_);
+    measure_cells(name, law, kAlwaysBounces, grid, units.cells);
+    const bool every_psi = grid.n_psi == 1;
+    measure_held_out(name + ", held out", law, kAlwaysBounces, every_psi, units.held_out,
+                     [&](std::int64_t i) { return held_out_condition(i, settings_.seed); });
+  }
+
+  // Over the paper's (θ, φ, ‖V⁻‖, ‖Ω⁻‖).
+  void measure_speed_table(TableUnits& units) const {
+    const SpeedTable grid = make_speed_grid(settings_);
+    const double bounce_velocity = OdeSettings{}.bounce_velocity;
+    measure_cells("responses on the paper's grid", settings_.law, bounce_velocity, grid, units.cells);
+    measure_held_out("responses, held out", settings_.law, bounce_velocity, true, units.held_out,
+                     [&](std::int64_t i) { return held_out_condition(grid, i, settings_.seed); });
+  }
+
+  template <class Grid>
+  void measure_cells(const std::string& name, const ContactLaw& law, double bounce_velocity, const Grid& grid, std::vector<CellUnit>& cells) const {
+    const CellSampling sampling = make_cell_sampling(settings_);
+    auto trials = make_trials(law, bounce_velocity);
+    cells.resize(std::size_t(grid.size()));
+    for_each(name, grid.size(), 8, [&](std::int64_t i) { cells[i] = measure_cell(trials.local(), grid.center(i), i, sampling); });
+  }
+
+  template <class Condition>
+  void measure_held_out(const std::string& name, const ContactLaw& law, double bounce_velocity, bool every_psi, std::vector<HeldOutUnit>& units,
+                        Condition condition) const {
+    auto trials = make_trials(law, bounce_velocity);
+    units.resize(std::size_t(settings_.held_out_conditions));
+    for_each(name, settings_.held_out_conditions, 8,
+             [&](std::int64_t i) { units[i] = lodestone::measure_held_out(trials.local(), condition(i), i, settings_.seed, every_psi); });
+  }
+
+  // Section 3.2.3. The first of them are followed to the end, for clips.
+  void measure_settlings(std::vector<SettlingRecord>& records) const {
+    tbb::enumerable_thread_specific<SettlingTrial> trials([&] { return SettlingTrial(shape_, settings_.law); });
+    records.resize(std::size_t(settings_.settling_trials));
+    for_each("settling", settings_.settling_trials, 1,
+             [&](std::int64_t i) { records[i] = trials.local().run(settings_.seed, std::uint32_t(i), i < settings_.clips); });
+  }
+
+  // One world for each thread.
+  tbb::enumerable_thread_specific<CollisionTrial> make_trials(const ContactLaw& law, double bounce_velocity) const {
+    return tbb::enumerable_thread_specific<CollisionTrial>([=, this] { return CollisionTrial(shape_, law, settings_.trial_end, bounce_velocity); });
+  }
+
+  std::shared_ptr<const Shape> shape_;
+  const SignatureSettings& settings_;
+  Share share_;
+  const Progress& progress_;
+};
+
+}  // namespace
+
+Measurement measure_units(const Shape& shape, const SignatureSettings& settings, const Share& share, int threads, const Progress& progress) {
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  Measurement measurement;
+  arena.execute([&] { measurement = Measuring(shape, settings, share, progress).measure(); });
+  return measurement;
+}
+
+Signature measure_signature(const Shape& shape, const SignatureSettings& settings, int threads, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  Signature signature = make_signature(shape, settings, measure_units(shape, settings, {}, threads, progress));
+  signature.measuring_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return signature;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,21 @@
+// Measures a signature with ODE as the ground truth (section 3.2).
+#pragma once
+
+#include "reference/shape.h"
+#include "signature/measure/measurement.h"
+#include "signature/signature.h"
+#include "signature/signature_source.h"
+
+namespace lodestone {
+
+/// The signature of `shape`: collision heights, response tables, rest poses and settling clips. Every trial is keyed by (seed, cell, trial), so the
+/// result is the same for any number of threads (0: all cores).
+Signature measure_signature(const Shape& shape, const SignatureSettings& settings, int threads = 0, const Progress& progress = {});
+
+/// The trials of `share`, raw.
+Measurement measure_units(const Shape& shape, const SignatureSettings& settings, const Share& share, int threads = 0, const Progress& progress = {});
+
+/// The signature that all the units give. A pure function; `measuring_seconds` is left 0.
+Signature make_signature(const Shape& shape, const SignatureSettings& settings, const Measurement& measurement);
+
+}  // namespace lodestone

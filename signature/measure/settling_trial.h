@@ -1,0 +1,49 @@
+// Drops to rest under ODE: rest poses (3.2.3) and settling clips.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "reference/hull/resting_faces.h"
+#include "reference/ode/ode_world.h"
+#include "signature/signature.h"
+
+namespace lodestone {
+
+inline constexpr double kSettlingGravity = 9.81;  ///< m/s²
+inline constexpr double kClipEnergy = 0.06;       ///< J/kg over g R: kinetic energy at a contact below which a record starts
+inline constexpr double kEntryGap = 0.02;         ///< over R: near enough to the plane to be such a contact
+inline constexpr int kSamplesPerFrame = 2;        ///< observations, at 60 Hz, for each frame of a record
+
+/// Of the lowest point over the plane z = 0, m.
+double gap_over_ground(const Shape& shape, const RigidState& state);
+
+/// What is kept of one drop.
+struct SettlingRecord {
+  bool rests = false;
+  Vec3 normal = Vec3::UnitZ();     ///< of the plane at rest, in body axes
+  double height = 0.0;             ///< of the centre of mass at rest, m
+  std::vector<RigidState> states;  ///< from the first low-energy contact to rest, 1/30 s apart; empty where only the pose was asked for
+};
+
+/// A world with one body and the plane z = 0 under gravity 9.81 m/s², used again for every drop of a thread.
+class SettlingTrial {
+ public:
+  SettlingTrial(std::shared_ptr<const Shape> shape, const ContactLaw& law);
+
+  /// Drops the body and follows it to rest (at most 30 s at R = .2 m). Orientation and velocities are drawn from (seed, trial), over heights up to 3 R and speeds up to
+  /// what a fall from there gives. Without `whole` the drop ends where the body has no longer the energy to leave the pose that it is bound for.
+  SettlingRecord run(std::uint64_t seed, std::uint32_t trial, bool whole);
+
+ private:
+  bool note_certain_pose(const RigidState& state, double gap, double energy, SettlingRecord& record) const;
+
+  std::shared_ptr<const Shape> shape_;
+  std::optional<RestingFaces> faces_;  // none for a sphere
+  std::unique_ptr<MaterialTable> materials_;
+  OdeWorld world_;
+  OdeBodyId body_;
+};
+
+}  // namespace lodestone
