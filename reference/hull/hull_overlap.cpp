@@ -87,8 +87,10 @@ class Walk {
   HullOverlap best_;
 };
 
+using Search = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*, ccd_vec3_t*);
+
 /// Where libccd says that the two overlap, a direction along which the first leaves the second by about the shortest way.
-std::optional<Vec3> find_way_out(const PlacedHull& first, const PlacedHull& second) {
+std::optional<Vec3> find_way_out(const PlacedHull& first, const PlacedHull& second, Search search) {
   ccd_t query;
   CCD_INIT(&query);
   query.support1 = query.support2 = support;
@@ -97,10 +99,7 @@ std::optional<Vec3> find_way_out(const PlacedHull& first, const PlacedHull& seco
   query.mpr_tolerance = query.epa_tolerance = ccd_real_t(1e-6 * std::min(first.shape->radius, second.shape->radius));
   ccd_real_t depth = 0;
   ccd_vec3_t out, point;
-  // It runs into an impasse now and then, where portal refinement does not.
-  if (ccdGJKPenetration(&first, &second, &query, &depth, &out, &point) != 0 &&
-      ccdMPRPenetration(&first, &second, &query, &depth, &out, &point) != 0)
-    return {};
+  if (search(&first, &second, &query, &depth, &out, &point) != 0) return {};
   const Vec3 direction = -to_vec3(out);
   const double norm = direction.norm();
   if (!(norm > 0.5)) return {};
@@ -123,9 +122,12 @@ std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidStat
   b.state.position -= a.state.position;
   a.state.position.setZero();
   if (first.sphere_radius && second.sphere_radius) return find_sphere_overlap(*first.sphere_radius + *second.sphere_radius, -b.state.position);
-  const auto way = find_way_out(a, b);
-  if (!way) return {};
-  const HullOverlap least = Walk(a, b, *way).end();
+  // The portal tells best whether the hulls overlap, but may be misled about the way out where they do so by far; the polytope now and then.
+  const auto by_portal = find_way_out(a, b, ccdMPRPenetration);
+  if (!by_portal) return {};
+  HullOverlap least = Walk(a, b, *by_portal).end();
+  if (const auto by_polytope = find_way_out(a, b, ccdGJKPenetration))
+    if (const HullOverlap other = Walk(a, b, *by_polytope).end(); other.depth < least.depth) least = other;
   return least.depth > 0.0 ? std::optional(least) : std::nullopt;
 }
 

@@ -1,6 +1,6 @@
 // How deep two hulls, or a hull and a plane, overlap, and which way out is the shortest. libccd's expanding polytope (van den Bergh,
-// Proximity Queries and Penetration Depth Computation on 3D Game Objects, 2001) on exact support functions comes near the least overlap, or
-// beside it where rounding misleads it; a walk over the faces of the Minkowski difference then ends exactly on one.
+// Proximity Queries and Penetration Depth Computation on 3D Game Objects, 2001) and its portal refinement (Snethen, XenoCollide, Game Programming
+// Gems 7, 2008) on exact support functions come near the least overlap; from there a walk over the faces of the Minkowski difference ends on it.
 #pragma once
 
 #include <optional>

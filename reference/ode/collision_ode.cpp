@@ -1,9 +1,11 @@
 #include "reference/ode/collision_ode.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "reference/error.h"
 #include "reference/hull/hull_manifold.h"
+#include "reference/mesh/inside.h"
 
 namespace lodestone::ode {
 namespace {
@@ -18,6 +20,15 @@ Plane plane_of(dGeomID geom) {
   dVector4 p;
   dGeomPlaneGetParams(geom, p);
   return {to_vec3(p), p[3], 0, geom};
+}
+
+/// Whether two meshes whose surfaces do not cross are one inside the other.
+bool is_inside_other(const Body& first, const Body& second) {
+  const auto& [inner, outer] = first.reach < second.reach ? std::tie(first, second) : std::tie(second, first);
+  if (!inner.spheres.empty() || !outer.spheres.empty()) return false;
+  const RigidState within = state_of(inner.body), around = state_of(outer.body);
+  const Vec3 point = around.orientation.conjugate() * (within.position + within.orientation * inner.shape->mesh.vertices[0] - around.position);
+  return point.norm() < outer.reach && winding_number(outer.shape->mesh, point) > 0;
 }
 
 /// Whether a point of the body goes farther than `way` against `normal` within `h` seconds.
@@ -161,6 +172,11 @@ void Collision::find_pair_points(const Body& body, const Body* other, std::span<
     find_hull_points(*body.shape, state_of(body.body), *ground->hull, ground->state);
   else
     for (const Candidate& part : parts) narrow_phase_.find(part.first, part.second, size, points_);
+  // Surfaces that do not cross make no contact, wherever they are.
+  if (points_.empty() && other && is_inside_other(body, *other)) {
+    ++swallowed_;
+    find_hull_points(*body.shape, state_of(body.body), *other->shape, state_of(other->body));
+  }
   drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
 }
 

@@ -42,6 +42,7 @@ class Collision {
 
   BroadPhase& broad_phase() { return broad_phase_; }
   std::int64_t contacts_dropped() const { return dropped_; }
+  std::int64_t swallowed() const { return swallowed_; }
   std::int64_t ground_trimeshes() const { return std::int64_t(ground_meshes_.size()); }
 
  private:
@@ -70,7 +71,7 @@ class Collision {
   std::vector<ContactPoint> points_;          // of the pair at hand
   bool attached_;
   double step_ = 0.0;                         // s, the one to come
-  std::int64_t dropped_ = 0;
+  std::int64_t dropped_ = 0, swallowed_ = 0;
 };
 
 }  // namespace lodestone::ode

@@ -67,6 +67,7 @@ struct OdeBodyDefinition {
 /// Since the world was made.
 struct OdeCounters {
   std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0, quick_steps = 0, states_recovered = 0;
+  std::int64_t swallowed = 0;  ///< times that a body was wholly inside another in a substep (both meshes, one of them concave)
 };
 
 /// Two of this world's bodies that touched in the last substep (`second` null: static ground or a body of the caller's).
