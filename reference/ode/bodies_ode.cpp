@@ -113,6 +113,7 @@ OdeBodyId Bodies::add(dWorldID world, dSpaceID space, const OdeBodyDefinition& d
   entry.shape = definition.shape;
   entry.material = definition.material;
   entry.spheres = spheres_of(definition);
+  entry.convex = entry.spheres.empty() && (entry.shape->convex || definition.geometry == OdeGeometry::hull);
   entry.reach = reach_of(*entry.shape, entry.spheres);
   entry.last_good = definition.state;
 

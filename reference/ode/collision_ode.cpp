@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "reference/error.h"
+#include "reference/hull/hull_manifold.h"
 
 namespace lodestone::ode {
 namespace {
@@ -29,7 +30,10 @@ bool strikes(dBodyID body, const Vec3& point, const Vec3& normal, double way, do
 }  // namespace
 
 Collision::Collision(dSpaceID around, const OdeSettings& settings)
-    : settings_(settings), broad_phase_(around), attached_(around != nullptr) {}
+    : settings_(settings),
+      broad_phase_(around),
+      narrow_phase_(settings.mesh_contacts != MeshContacts::plain),
+      attached_(around != nullptr) {}
 
 Collision::~Collision() {
   for (const Plane& plane : planes_) dGeomDestroy(plane.geom);
@@ -47,17 +51,17 @@ void Collision::add_box(const Vec3& sides, const Vec3& position, const Quat& ori
   dGeomSetPosition(box, position.x(), position.y(), position.z());
   const dQuaternion q = {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
   dGeomSetQuaternion(box, q);
-  add_ground(box, material);
+  add_ground(box, {material, std::make_shared<const Shape>(make_shape("static box", make_box(sides))), {position, orientation, Vec3::Zero(), Vec3::Zero()}});
 }
 
 void Collision::add_mesh(const Mesh& mesh, MaterialId material) {
   ground_meshes_.push_back(std::make_unique<TrimeshData>(mesh.vertices, mesh.faces));
-  add_ground(dCreateTriMesh(broad_phase_.ground_space(), ground_meshes_.back()->id(), nullptr, nullptr, nullptr), material);
+  add_ground(dCreateTriMesh(broad_phase_.ground_space(), ground_meshes_.back()->id(), nullptr, nullptr, nullptr), {material});
 }
 
-void Collision::add_ground(dGeomID geom, MaterialId material) {
-  dGeomSetData(geom, reinterpret_cast<void*>(ground_materials_.size()));
-  ground_materials_.push_back(material);
+void Collision::add_ground(dGeomID geom, Ground ground) {
+  dGeomSetData(geom, reinterpret_cast<void*>(ground_.size()));
+  ground_.push_back(std::move(ground));
 }
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
@@ -69,7 +73,7 @@ void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
     for (const Plane& plane : planes_) collide_plane(body, plane, joints);
   }
   // One body over planes needs no broad phase, nor do sleepers, except from a caller's bodies.
-  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_materials_.empty()))) collide_candidates(bodies, joints);
+  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_.empty()))) collide_candidates(bodies, joints);
 }
 
 void Collision::collide_plane(Body& body, const Plane& plane, ContactJoints& joints) {
@@ -140,13 +144,32 @@ void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
       find_plane_points(body, plane_of(candidates[i].second));
       next = i + 1;
     } else {
-      const double size = other ? std::min(body.reach, other->reach) : body.reach;
-      for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next)
-        narrow_phase_.find(candidates[next].first, candidates[next].second, size, points_);
-      drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
+      for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next) {}
+      find_pair_points(body, other, candidates.subspan(i, next - i));
     }
     if (!points_.empty()) joints.add(ode::side_of(body), side_of(bodies, candidates[i].second), points_);
   }
+}
+
+void Collision::find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts) {
+  const double size = other ? std::min(body.reach, other->reach) : body.reach;
+  const bool exact = settings_.mesh_contacts == MeshContacts::exact && body.convex;
+  const Ground* ground = other ? nullptr : ground_of(parts[0].second);
+  if (exact && other && other->convex)
+    find_hull_points(*body.shape, state_of(body.body), *other->shape, state_of(other->body));
+  else if (exact && ground && ground->hull)
+    find_hull_points(*body.shape, state_of(body.body), *ground->hull, ground->state);
+  else
+    for (const Candidate& part : parts) narrow_phase_.find(part.first, part.second, size, points_);
+  drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
+}
+
+void Collision::find_hull_points(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state) {
+  const auto overlap = find_hull_overlap(first, first_state, second, second_state);
+  if (!overlap) return;
+  find_hull_manifold(first, first_state, second, second_state, *overlap, points_);
+  const double resting = kRestingDepth * std::min(first.radius, second.radius);
+  for (ContactPoint& point : points_) point.depth = std::max(0.0, point.depth - resting);
 }
 
 void Collision::keep_deepest() {
@@ -162,8 +185,14 @@ void Collision::drop_beyond(int kept) {
 
 ContactSide Collision::side_of(Bodies& bodies, dGeomID geom) const {
   if (const Body* body = bodies.owner(geom)) return ode::side_of(*body);
-  if (dGeomGetSpace(geom) != const_cast<Collision*>(this)->broad_phase_.ground_space()) return {dGeomGetBody(geom), 0, {}};
-  return {nullptr, ground_materials_[reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))], {}};
+  const Ground* ground = ground_of(geom);
+  return ground ? ContactSide{nullptr, ground->material, {}} : ContactSide{dGeomGetBody(geom), 0, {}};
+}
+
+/// Null where `geom` is not of this world's ground.
+const Ground* Collision::ground_of(dGeomID geom) const {
+  if (dGeomGetSpace(geom) != broad_phase_.ground_space()) return nullptr;
+  return &ground_[reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))];
 }
 
 }  // namespace lodestone::ode

@@ -19,6 +19,13 @@ struct Plane {
   dGeomID geom;
 };
 
+/// A static box or mesh.
+struct Ground {
+  MaterialId material = 0;
+  std::shared_ptr<const Shape> hull = {};  ///< of a box; null for a mesh
+  RigidState state = {};                   ///< of the hull
+};
+
 class Collision {
  public:
   Collision(dSpaceID around, const OdeSettings& settings);
@@ -44,10 +51,13 @@ class Collision {
   void find_sphere_points(const Body& body, const Plane& plane);
   void find_mesh_points(const Body& body, const Plane& plane);
   void collide_candidates(Bodies& bodies, ContactJoints& joints);
+  void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
+  void find_hull_points(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state);
+  const Ground* ground_of(dGeomID geom) const;
   void keep_deepest();
   void drop_beyond(int kept);
   double nearing(const Body& body, const Vec3& normal) const;
-  void add_ground(dGeomID geom, MaterialId material);
+  void add_ground(dGeomID geom, Ground ground);
   ContactSide side_of(Bodies& bodies, dGeomID geom) const;
 
   OdeSettings settings_;
@@ -55,7 +65,7 @@ class Collision {
   NarrowPhase narrow_phase_;
   PlaneContactFinder plane_contacts_;
   std::vector<Plane> planes_;
-  std::vector<MaterialId> ground_materials_;  // by the ground geom's number (dGeomGetData)
+  std::vector<Ground> ground_;                // by the ground geom's number (dGeomGetData)
   std::vector<std::unique_ptr<TrimeshData>> ground_meshes_;
   std::vector<ContactPoint> points_;          // of the pair at hand
   bool attached_;

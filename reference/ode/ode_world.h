@@ -20,6 +20,13 @@ struct dxBody;
 
 namespace lodestone {
 
+/// How two trimeshes meet.
+enum class MeshContacts {
+  plain,     ///< as ODE's dCollide finds them
+  filtered,  ///< as it finds them, made believable (contact_filter.h)
+  exact,     ///< two convex bodies by their hulls (hull_manifold.h), which bound the same solids; others filtered
+};
+
 struct OdeSettings {
   Vec3 gravity{0, 0, -9.81};            ///< m/s²
   std::uint64_t seed = 1;
@@ -31,6 +38,7 @@ struct OdeSettings {
   double max_correcting_velocity = 1e9; ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
   bool friction_along_slip = true;      ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
   int max_contacts_per_pair = 8;
+  MeshContacts mesh_contacts = MeshContacts::exact;
   bool plane_contacts_from_hull = true; ///< false: dCollide of the trimesh with the plane, brute force over all faces
   double plane_depth_max = 1e9;         ///< over the shape's size: a hull vertex that would sink deeper into a plane within the step bounces beforehand
   bool gyroscopic = true;
