@@ -23,7 +23,8 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
       erp_(settings.erp),
       cfm_(settings.cfm),
       max_correcting_velocity_(settings.max_correcting_velocity) {
-  joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactFDir1;
+  joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+  if (settings.friction_along_slip) joint_.surface.mode |= dContactFDir1;
   joint_.surface.soft_erp = settings.erp;
   joint_.surface.bounce_vel = settings.bounce_velocity;
 }

@@ -36,6 +36,7 @@ struct OdeSettings {
   double erp = 0.2, cfm = 1e-10;        ///< ODE's error reduction and constraint force mixing at contacts
   double bounce_velocity = 0.05;        ///< m/s, slower contacts do not bounce
   double max_correcting_velocity = 1e9; ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
+  bool friction_along_slip = true;      ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
   int max_contacts_per_pair = 8;
   MeshContacts mesh_contacts = MeshContacts::exact;
   bool plane_contacts_from_hull = true; ///< false: dCollide of the trimesh with the plane, brute force over all faces
@@ -45,8 +46,8 @@ struct OdeSettings {
 };
 
 /// What a body is to ODE's collision detection. `hull` is a trimesh of the hull: ODE's own dConvex gives one contact a pair, on which nothing stacks.
-/// `sphere` has the shape's volume.
-enum class OdeGeometry { trimesh, hull, spheres, sphere };
+/// `sphere` has the shape's volume. `box` is ODE's primitive, with the sides of the shape's bounding box, whose centre must be that of mass.
+enum class OdeGeometry { trimesh, hull, spheres, sphere, box };
 
 /// A body of an OdeWorld; stays valid until removed. Zero is null.
 struct OdeBodyId {

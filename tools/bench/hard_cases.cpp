@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include "tools/bench/body_cases.h"
 #include "tools/bench/hard_case.h"
 #include "tools/bench/simbenchmark_cases.h"
 
@@ -13,6 +14,14 @@ bool passes(const HardCaseRow& row) {
 std::span<const HardCase> hard_cases() {
   static constexpr std::array kCases = {
       HardCase{"F1", measure_bouncing},
+      HardCase{"F2", measure_ball_cube},
+      HardCase{"F3", measure_elastic_ball_cube},
+      HardCase{"F4", measure_rolling},
+      HardCase{"F5", measure_slopes},
+      HardCase{"F6", measure_rebounds},
+      HardCase{"F11", measure_free_top},
+      HardCase{"F12", measure_slender_bodies},
+      HardCase{"F18", measure_head_on},
   };
   return kCases;
 }

@@ -9,4 +9,13 @@ namespace lodestone {
 /// 7 × 7 elastic balls bounce for 20 s: the mean squared error of their energy.
 std::vector<HardCaseRow> measure_bouncing(const HardCaseSettings& settings);
 
+/// "666": a cube of 6^3 balls collapses without friction or restitution: the mean sum of squared penetrations.
+std::vector<HardCaseRow> measure_ball_cube(const HardCaseSettings& settings);
+
+/// The same, elastic, from a metre higher: the mean squared error of the energy.
+std::vector<HardCaseRow> measure_elastic_ball_cube(const HardCaseSettings& settings);
+
+/// A box dragged over the ground makes 25 balls on top of it roll: the mean squared error of their velocities.
+std::vector<HardCaseRow> measure_rolling(const HardCaseSettings& settings);
+
 }  // namespace lodestone
