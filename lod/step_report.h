@@ -22,6 +22,7 @@ struct Counters {
   std::int64_t ode_bodies_created = 0, trimeshes_built = 0, signatures_loaded = 0, pair_phases = 0;
   std::int64_t ode_messages = 0, contacts_dropped = 0, states_recovered = 0;
   std::int64_t full_quick_steps = 0;     ///< substeps of the full level whose largest pile was too much for dWorldStep
+  std::int64_t full_swallowed = 0;       ///< times that a full body was wholly inside another in a substep
   std::int64_t energy_clamps = 0;        ///< responses scaled so as not to add energy
   std::int64_t table_extrapolations = 0; ///< look-ups outside the measured range
   std::int64_t promotions_put_off = 0;   ///< for overlap with another body

@@ -55,6 +55,12 @@ void require_possible(const std::string& name, const MassProperties& mass, const
                      "matrix with I1 + I2 ≥ I3");
 }
 
+bool is_convex(const Mesh& mesh, const Hull& hull) {
+  constexpr double kSameVolume = 1e-6;
+  const double hull_volume = measure_mass_properties(Mesh{hull.vertices, hull.faces}).volume;
+  return measure_mass_properties(mesh).volume > (1.0 - kSameVolume) * hull_volume;
+}
+
 double greatest_distance(std::span<const Vec3> points) {
   double greatest = 0.0;
   for (const Vec3& point : points) greatest = std::max(greatest, point.norm());
@@ -104,6 +110,7 @@ Shape make_shape(std::string name, Mesh mesh, const MassOverride& mass, MeshRepo
 
   shape.name = std::move(name);
   shape.volume = properties.volume;
+  shape.convex = found.closed() && is_convex(shape.mesh, shape.hull);
   shape.center_of_mass_in_mesh = properties.center_of_mass;
   shape.inertia_per_mass = properties.inertia_per_mass;
   for (Vec3& vertex : shape.mesh.vertices) vertex -= properties.center_of_mass;
@@ -118,6 +125,7 @@ Shape make_sphere_shape(double radius_m) {
   shape.name = "sphere";
   shape.mesh = repair_mesh(make_sphere(radius_m), shape.name);
   shape.hull = make_hull(shape.mesh.vertices);
+  shape.convex = true;
   shape.volume = 4.0 / 3.0 * std::numbers::pi * radius_m * radius_m * radius_m;
   shape.inertia_per_mass = 0.4 * radius_m * radius_m * Mat3::Identity();
   shape.sphere_radius = radius_m;

@@ -22,6 +22,7 @@ struct Shape {
   Mat3 inverse_inertia_per_mass = Mat3::Identity();
   double radius = 0.0;                         ///< m, greatest distance of a vertex from the centre of mass: the paper's bounding sphere
   double size = 0.0;                           ///< m, longest side of the mesh's bounding box
+  bool convex = false;                         ///< whether mesh and hull bound the same solid
   std::optional<double> sphere_radius;         ///< set where the shape is exactly a sphere
   std::uint64_t content_hash = 0;              ///< of geometry and mass distribution over `radius`: equal for scaled copies
 };

@@ -16,6 +16,7 @@ void add_sign_command(CLI::App& program, ExitCode& exit_code);
 void add_inspect_command(CLI::App& program, ExitCode& exit_code);
 void add_compare_command(CLI::App& program, ExitCode& exit_code);
 void add_demo_command(CLI::App& program, ExitCode& exit_code);
+void add_bench_command(CLI::App& program, ExitCode& exit_code);
 
 /// The whole program: parses the arguments, runs one command and says on stderr what went wrong.
 ExitCode run_lodestone(int argc, char** argv);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 
 #include "reference/error.h"
 
@@ -97,6 +98,19 @@ void connect_neighbors(Hull& hull) {
     hull.neighbor_start[i] += hull.neighbor_start[i - 1];
 }
 
+void collect_incident_faces(Hull& hull) {
+  std::vector<std::pair<int, int>> incidences;  // vertex, face
+  for (int face = 0; face < int(hull.faces.size()); ++face)
+    for (const int vertex : hull.faces[face]) incidences.emplace_back(vertex, face);
+  std::ranges::sort(incidences);
+  hull.face_start.assign(hull.vertices.size() + 1, 0);
+  for (const auto& [vertex, face] : incidences) {
+    ++hull.face_start[vertex + 1];
+    hull.incident_face.push_back(face);
+  }
+  std::partial_sum(hull.face_start.begin(), hull.face_start.end(), hull.face_start.begin());
+}
+
 /// The hull of `points` with every vertex that Qhull finds, in the order of `points`.
 Hull make_raw_hull(std::span<const Vec3> points) {
   Hull hull;
@@ -111,6 +125,7 @@ Hull make_raw_hull(std::span<const Vec3> points) {
   for (auto& face : hull.faces)
     for (int& i : face) i = index_of.at(i);
   connect_neighbors(hull);
+  collect_incident_faces(hull);
   return hull;
 }
 

@@ -11,15 +11,25 @@
 
 namespace lodestone {
 
-/// A convex polyhedron. `neighbors(i)` are the vertices that share an edge with vertex i.
+/// A convex polyhedron. `neighbors(i)` are the vertices that share an edge with vertex i, `faces_of(i)` the faces around it.
 struct Hull {
   std::vector<Vec3> vertices;                  ///< m, hull corners only
   std::vector<std::array<int, 3>> faces;       ///< triangulated, counter-clockwise seen from outside
   std::vector<std::int32_t> neighbor_start;    ///< size vertices + 1: where each vertex's run of `neighbor` begins
   std::vector<std::int32_t> neighbor;
+  std::vector<std::int32_t> face_start;        ///< size vertices + 1: where each vertex's run of `incident_face` begins
+  std::vector<std::int32_t> incident_face;
 
   std::span<const std::int32_t> neighbors(int vertex) const {
     return {neighbor.data() + neighbor_start[vertex], neighbor.data() + neighbor_start[vertex + 1]};
+  }
+  std::span<const std::int32_t> faces_of(int vertex) const {
+    return {incident_face.data() + face_start[vertex], incident_face.data() + face_start[vertex + 1]};
+  }
+  /// Outward, of any length (twice the face's area).
+  Vec3 face_normal(int face) const {
+    const auto& [a, b, c] = faces[face];
+    return (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
   }
 };
 

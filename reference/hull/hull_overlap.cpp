@@ -2,6 +2,8 @@
 
 #include <ccd/ccd.h>
 
+#include <vector>
+
 namespace lodestone {
 namespace {
 
@@ -9,47 +11,134 @@ namespace {
 struct PlacedHull {
   const Shape* shape;
   RigidState state;
+
+  int farthest_vertex(const Vec3& direction) const {
+    const Vec3 in_body = state.orientation.conjugate() * direction;
+    return find_support(shape->hull, in_body, shape->support_map.find_start(in_body));
+  }
+  /// The farthest point along `direction` (any length), relative to the centre of mass.
+  Vec3 farthest_offset(const Vec3& direction) const {
+    if (shape->sphere_radius) return *shape->sphere_radius * direction.normalized();
+    return state.orientation * shape->hull.vertices[farthest_vertex(direction)];
+  }
+  Vec3 farthest(const Vec3& direction) const { return state.position + farthest_offset(direction); }
 };
 
 Vec3 to_vec3(const ccd_vec3_t& v) { return {v.v[0], v.v[1], v.v[2]}; }
 void assign(ccd_vec3_t& to, const Vec3& v) { ccdVec3Set(&to, ccd_real_t(v.x()), ccd_real_t(v.y()), ccd_real_t(v.z())); }
 
-/// The farthest point along `direction` (any length), relative to the centre of mass.
-Vec3 support_offset(const Shape& shape, const Quat& orientation, const Vec3& direction) {
-  if (shape.sphere_radius) return *shape.sphere_radius * direction.normalized();
-  const Vec3 in_body = orientation.conjugate() * direction;
-  return orientation * shape.hull.vertices[find_support(shape.hull, in_body, shape.support_map.find_start(in_body))];
-}
-
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const auto& placed = *static_cast<const PlacedHull*>(object);
-  assign(*point, placed.state.position + support_offset(*placed.shape, placed.state.orientation, to_vec3(*direction)));
+  assign(*point, static_cast<const PlacedHull*>(object)->farthest(to_vec3(*direction)));
 }
 
 void center(const void* object, ccd_vec3_t* point) { assign(*point, static_cast<const PlacedHull*>(object)->state.position); }
 
-}  // namespace
+double depth_along(const PlacedHull& first, const PlacedHull& second, const Vec3& direction) {
+  return (second.farthest(direction) - first.farthest(-direction)).dot(direction);
+}
 
-double measure_hull_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
-                            const RigidState& second_state) {
-  // Around the origin, so that nothing is lost far from it.
-  PlacedHull a{&first, first_state}, b{&second, second_state};
-  b.state.position -= a.state.position;
-  a.state.position.setZero();
+/// Of a body's hull around its vertex farthest along `direction`, in the world.
+struct Corner {
+  std::vector<Vec3> normals, edges;
 
+  Corner(const PlacedHull& body, const Vec3& direction) {
+    if (body.shape->sphere_radius) return;
+    const Hull& hull = body.shape->hull;
+    const int vertex = body.farthest_vertex(direction);
+    for (const int face : hull.faces_of(vertex)) normals.push_back(body.state.orientation * hull.face_normal(face));
+    for (const int other : hull.neighbors(vertex)) edges.push_back(body.state.orientation * (hull.vertices[other] - hull.vertices[vertex]));
+  }
+};
+
+/// From a direction to the best of its neighbours among the normals of the Minkowski difference (a face of one body, or an edge of each), and
+/// on, until none is better.
+class Walk {
+ public:
+  Walk(const PlacedHull& first, const PlacedHull& second, const Vec3& start)
+      : first_(first), second_(second), best_{depth_along(first, second, start), start} {}
+
+  HullOverlap end() {
+    constexpr int kMostSteps = 64;
+    for (int i = 0; i < kMostSteps && step(); ++i) {}
+    return best_;
+  }
+
+ private:
+  bool step() {
+    const double before = best_.depth;
+    const Vec3 from = best_.direction;
+    const Corner first(first_, -from), second(second_, from);
+    for (const Vec3& normal : first.normals) consider(-normal, from);
+    for (const Vec3& normal : second.normals) consider(normal, from);
+    for (const Vec3& a : first.edges)
+      for (const Vec3& b : second.edges) consider(a.cross(b), from);
+    return best_.depth < before;
+  }
+  void consider(const Vec3& raw, const Vec3& from) {
+    constexpr double kParallel = 1e-20;  // squared
+    const double size = raw.squaredNorm();
+    if (!(size > kParallel * first_.shape->radius * second_.shape->radius)) return;
+    const Vec3 direction = (raw.dot(from) < 0.0 ? -raw : raw) / std::sqrt(size);
+    const double depth = depth_along(first_, second_, direction);
+    if (depth < best_.depth) best_ = {depth, direction};
+  }
+
+  const PlacedHull &first_, &second_;
+  HullOverlap best_;
+};
+
+using Search = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*, ccd_vec3_t*);
+
+/// Where libccd says that the two overlap, a direction along which the first leaves the second by about the shortest way.
+std::optional<Vec3> find_way_out(const PlacedHull& first, const PlacedHull& second, Search search) {
   ccd_t query;
   CCD_INIT(&query);
   query.support1 = query.support2 = support;
   query.center1 = query.center2 = center;
   query.max_iterations = 100;
-  query.mpr_tolerance = ccd_real_t(1e-6 * std::min(first.radius, second.radius));
+  query.mpr_tolerance = query.epa_tolerance = ccd_real_t(1e-6 * std::min(first.shape->radius, second.shape->radius));
   ccd_real_t depth = 0;
-  ccd_vec3_t direction, point;
-  return ccdMPRPenetration(&a, &b, &query, &depth, &direction, &point) == 0 ? double(depth) : 0.0;
+  ccd_vec3_t out, point;
+  if (search(&first, &second, &query, &depth, &out, &point) != 0) return {};
+  const Vec3 direction = -to_vec3(out);
+  const double norm = direction.norm();
+  if (!(norm > 0.5)) return {};
+  return direction / norm;
+}
+
+/// `between`: from the second centre to the first.
+std::optional<HullOverlap> find_sphere_overlap(double radii, const Vec3& between) {
+  const double distance = between.norm();
+  if (distance >= radii) return {};
+  return HullOverlap{radii - distance, distance > 0.0 ? Vec3(between / distance) : Vec3::UnitZ()};
+}
+
+}  // namespace
+
+std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
+                                             const RigidState& second_state) {
+  // Around the origin, so that nothing is lost far from it.
+  PlacedHull a{&first, first_state}, b{&second, second_state};
+  b.state.position -= a.state.position;
+  a.state.position.setZero();
+  if (first.sphere_radius && second.sphere_radius) return find_sphere_overlap(*first.sphere_radius + *second.sphere_radius, -b.state.position);
+  // The portal tells best whether the hulls overlap, but may be misled about the way out where they do so by far; the polytope now and then.
+  const auto by_portal = find_way_out(a, b, ccdMPRPenetration);
+  if (!by_portal) return {};
+  HullOverlap least = Walk(a, b, *by_portal).end();
+  if (const auto by_polytope = find_way_out(a, b, ccdGJKPenetration))
+    if (const HullOverlap other = Walk(a, b, *by_polytope).end(); other.depth < least.depth) least = other;
+  return least.depth > 0.0 ? std::optional(least) : std::nullopt;
+}
+
+double measure_hull_overlap(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state) {
+  const auto overlap = find_hull_overlap(first, first_state, second, second_state);
+  return overlap ? overlap->depth : 0.0;
 }
 
 double measure_plane_overlap(const Shape& shape, const RigidState& state, const Vec3& normal, double offset) {
-  return offset - normal.dot(state.position + support_offset(shape, state.orientation, -normal));
+  const PlacedHull placed{&shape, state};
+  return offset - normal.dot(state.position + placed.farthest_offset(-normal));
 }
 
 }  // namespace lodestone

@@ -1,11 +1,17 @@
 #include "reference/ode/collision_ode.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "reference/error.h"
+#include "reference/hull/hull_manifold.h"
+#include "reference/mesh/inside.h"
 
 namespace lodestone::ode {
 namespace {
+
+// × size: overlap that is left to hulls at rest on each other, so that their contacts stay.
+constexpr double kRestingHullDepth = 2e-5;
 
 ContactSide side_of(const Body& body) { return {body.body, body.material, body.id}; }
 
@@ -19,6 +25,24 @@ Plane plane_of(dGeomID geom) {
   return {to_vec3(p), p[3], 0, geom};
 }
 
+/// Whether two meshes whose surfaces do not cross are one inside the other.
+bool is_inside_other(const Body& first, const Body& second) {
+  const auto& [inner, outer] = first.reach < second.reach ? std::tie(first, second) : std::tie(second, first);
+  const RigidState within = state_of(inner.body), around = state_of(outer.body);
+  const Vec3 point = around.orientation.conjugate() * (within.position + within.orientation * inner.shape->mesh.vertices[0] - around.position);
+  return point.norm() < outer.reach && winding_number(outer.shape->mesh, point) > 0;
+}
+
+/// A contact deeper than the hulls' overlap has a false direction. Where there are no others, the hulls' way out is taken.
+void limit_depths(std::vector<ContactPoint>& contacts, const HullOverlap& overlap) {
+  const auto is_false = [&](const ContactPoint& contact) { return contact.depth > overlap.depth; };
+  if (contacts.empty() || std::ranges::none_of(contacts, is_false)) return;
+  if (!std::ranges::all_of(contacts, is_false)) return void(std::erase_if(contacts, is_false));
+  for (ContactPoint& contact : contacts) contact = {contact.point, overlap.direction, overlap.depth};
+}
+
+bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.body)) == dTriMeshClass; }
+
 /// Whether a point of the body goes farther than `way` against `normal` within `h` seconds.
 bool strikes(dBodyID body, const Vec3& point, const Vec3& normal, double way, double h) {
   const Vec3 arm = point - to_vec3(dBodyGetPosition(body));
@@ -29,7 +53,10 @@ bool strikes(dBodyID body, const Vec3& point, const Vec3& normal, double way, do
 }  // namespace
 
 Collision::Collision(dSpaceID around, const OdeSettings& settings)
-    : settings_(settings), broad_phase_(around), attached_(around != nullptr) {}
+    : settings_(settings),
+      broad_phase_(around),
+      narrow_phase_(settings.mesh_contacts != MeshContacts::plain),
+      attached_(around != nullptr) {}
 
 Collision::~Collision() {
   for (const Plane& plane : planes_) dGeomDestroy(plane.geom);
@@ -47,17 +74,17 @@ void Collision::add_box(const Vec3& sides, const Vec3& position, const Quat& ori
   dGeomSetPosition(box, position.x(), position.y(), position.z());
   const dQuaternion q = {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
   dGeomSetQuaternion(box, q);
-  add_ground(box, material);
+  add_ground(box, {material, std::make_shared<const Shape>(make_shape("static box", make_box(sides))), {position, orientation, Vec3::Zero(), Vec3::Zero()}});
 }
 
 void Collision::add_mesh(const Mesh& mesh, MaterialId material) {
   ground_meshes_.push_back(std::make_unique<TrimeshData>(mesh.vertices, mesh.faces));
-  add_ground(dCreateTriMesh(broad_phase_.ground_space(), ground_meshes_.back()->id(), nullptr, nullptr, nullptr), material);
+  add_ground(dCreateTriMesh(broad_phase_.ground_space(), ground_meshes_.back()->id(), nullptr, nullptr, nullptr), {material});
 }
 
-void Collision::add_ground(dGeomID geom, MaterialId material) {
-  dGeomSetData(geom, reinterpret_cast<void*>(ground_materials_.size()));
-  ground_materials_.push_back(material);
+void Collision::add_ground(dGeomID geom, Ground ground) {
+  dGeomSetData(geom, reinterpret_cast<void*>(ground_.size()));
+  ground_.push_back(std::move(ground));
 }
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
@@ -69,7 +96,7 @@ void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
     for (const Plane& plane : planes_) collide_plane(body, plane, joints);
   }
   // One body over planes needs no broad phase, nor do sleepers, except from a caller's bodies.
-  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_materials_.empty()))) collide_candidates(bodies, joints);
+  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_.empty()))) collide_candidates(bodies, joints);
 }
 
 void Collision::collide_plane(Body& body, const Plane& plane, ContactJoints& joints) {
@@ -140,13 +167,45 @@ void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
       find_plane_points(body, plane_of(candidates[i].second));
       next = i + 1;
     } else {
-      const double size = other ? std::min(body.reach, other->reach) : body.reach;
-      for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next)
-        narrow_phase_.find(candidates[next].first, candidates[next].second, size, points_);
-      drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
+      for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next) {}
+      find_pair_points(body, other, candidates.subspan(i, next - i));
     }
     if (!points_.empty()) joints.add(ode::side_of(body), side_of(bodies, candidates[i].second), points_);
   }
+}
+
+void Collision::find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts) {
+  const double size = other ? std::min(body.reach, other->reach) : body.reach;
+  const Ground* ground = other ? nullptr : ground_of(parts[0].second);
+  if (settings_.mesh_contacts == MeshContacts::exact && other && is_mesh(body) && is_mesh(*other))
+    find_mesh_pair_points(body, *other, parts[0], size);
+  else if (settings_.mesh_contacts == MeshContacts::exact && body.convex && ground && ground->hull)
+    find_manifold({*body.shape, state_of(body.body)}, {*ground->hull, ground->state});
+  else
+    for (const Candidate& part : parts) narrow_phase_.find(part.first, part.second, size, points_);
+  drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
+}
+
+/// Bodies are clear of each other once their hulls are.
+void Collision::find_mesh_pair_points(const Body& body, const Body& other, const Candidate& pair, double size) {
+  const Placed first{*body.shape, state_of(body.body)}, second{*other.shape, state_of(other.body)};
+  if (body.convex && other.convex) return find_manifold(first, second);
+  const auto overlap = find_hull_overlap(first.shape, first.state, second.shape, second.state);
+  if (!overlap) return;
+  narrow_phase_.find(pair.first, pair.second, size, points_);
+  if (points_.empty() && is_inside_other(body, other)) {  // surfaces that do not cross make no contact, wherever they are
+    ++swallowed_;
+    find_hull_manifold(first.shape, first.state, second.shape, second.state, *overlap, points_);
+  }
+  limit_depths(points_, *overlap);
+}
+
+void Collision::find_manifold(const Placed& first, const Placed& second) {
+  const auto overlap = find_hull_overlap(first.shape, first.state, second.shape, second.state);
+  if (!overlap) return;
+  find_hull_manifold(first.shape, first.state, second.shape, second.state, *overlap, points_);
+  const double resting = kRestingHullDepth * std::min(first.shape.radius, second.shape.radius);
+  for (ContactPoint& point : points_) point.depth -= resting;
 }
 
 void Collision::keep_deepest() {
@@ -162,8 +221,14 @@ void Collision::drop_beyond(int kept) {
 
 ContactSide Collision::side_of(Bodies& bodies, dGeomID geom) const {
   if (const Body* body = bodies.owner(geom)) return ode::side_of(*body);
-  if (dGeomGetSpace(geom) != const_cast<Collision*>(this)->broad_phase_.ground_space()) return {dGeomGetBody(geom), 0, {}};
-  return {nullptr, ground_materials_[reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))], {}};
+  const Ground* ground = ground_of(geom);
+  return ground ? ContactSide{nullptr, ground->material, {}} : ContactSide{dGeomGetBody(geom), 0, {}};
+}
+
+/// Null where `geom` is not of this world's ground.
+const Ground* Collision::ground_of(dGeomID geom) const {
+  if (dGeomGetSpace(geom) != broad_phase_.ground_space()) return nullptr;
+  return &ground_[reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))];
 }
 
 }  // namespace lodestone::ode

@@ -19,6 +19,18 @@ struct Plane {
   dGeomID geom;
 };
 
+/// A static box or mesh.
+struct Ground {
+  MaterialId material = 0;
+  std::shared_ptr<const Shape> hull = {};  ///< of a box; null for a mesh
+  RigidState state = {};                   ///< of the hull
+};
+
+struct Placed {
+  const Shape& shape;
+  RigidState state;
+};
+
 class Collision {
  public:
   Collision(dSpaceID around, const OdeSettings& settings);
@@ -35,6 +47,7 @@ class Collision {
 
   BroadPhase& broad_phase() { return broad_phase_; }
   std::int64_t contacts_dropped() const { return dropped_; }
+  std::int64_t swallowed() const { return swallowed_; }
   std::int64_t ground_trimeshes() const { return std::int64_t(ground_meshes_.size()); }
 
  private:
@@ -44,10 +57,14 @@ class Collision {
   void find_sphere_points(const Body& body, const Plane& plane);
   void find_mesh_points(const Body& body, const Plane& plane);
   void collide_candidates(Bodies& bodies, ContactJoints& joints);
+  void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
+  void find_mesh_pair_points(const Body& body, const Body& other, const Candidate& pair, double size);
+  void find_manifold(const Placed& first, const Placed& second);
+  const Ground* ground_of(dGeomID geom) const;
   void keep_deepest();
   void drop_beyond(int kept);
   double nearing(const Body& body, const Vec3& normal) const;
-  void add_ground(dGeomID geom, MaterialId material);
+  void add_ground(dGeomID geom, Ground ground);
   ContactSide side_of(Bodies& bodies, dGeomID geom) const;
 
   OdeSettings settings_;
@@ -55,12 +72,12 @@ class Collision {
   NarrowPhase narrow_phase_;
   PlaneContactFinder plane_contacts_;
   std::vector<Plane> planes_;
-  std::vector<MaterialId> ground_materials_;  // by the ground geom's number (dGeomGetData)
+  std::vector<Ground> ground_;                // by the ground geom's number (dGeomGetData)
   std::vector<std::unique_ptr<TrimeshData>> ground_meshes_;
   std::vector<ContactPoint> points_;          // of the pair at hand
   bool attached_;
   double step_ = 0.0;                         // s, the one to come
-  std::int64_t dropped_ = 0;
+  std::int64_t dropped_ = 0, swallowed_ = 0;
 };
 
 }  // namespace lodestone::ode

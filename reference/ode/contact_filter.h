@@ -10,16 +10,9 @@
 #include <optional>
 #include <span>
 
-#include "reference/geometry.h"
+#include "reference/contact_point.h"
 
 namespace lodestone {
-
-/// Where two bodies touch. `normal` (unit) points into the first body; moved along it by `depth` (m), the first body is clear.
-struct ContactPoint {
-  Vec3 point = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();
-  double depth = 0.0;
-};
 
 /// What moving the first body along a direction meets.
 struct WayOut {

@@ -21,6 +21,23 @@ Sphere sphere_of_volume(const Shape& shape) {
   return {Vec3::Zero(), radius};
 }
 
+/// Its bounding box's, m; aborts unless the centre of mass is in the middle.
+Vec3 sides_of(const Shape& shape) {
+  Eigen::AlignedBox3d bounds;
+  for (const Vec3& vertex : shape.hull.vertices) bounds.extend(vertex);
+  check_that(bounds.center().norm() <= 1e-9 * shape.size, "a box primitive's centre of mass is in its middle");
+  return bounds.sizes();
+}
+
+dGeomID make_box_or_mesh(dSpaceID space, const OdeBodyDefinition& definition, TrimeshCache& cache) {
+  if (definition.geometry == OdeGeometry::box) {
+    const Vec3 sides = sides_of(*definition.shape);
+    return dCreateBox(space, sides.x(), sides.y(), sides.z());
+  }
+  const auto data = definition.geometry == OdeGeometry::hull ? cache.hull_of(definition.shape) : cache.mesh_of(definition.shape);
+  return dCreateTriMesh(space, data, nullptr, nullptr, nullptr);
+}
+
 }  // namespace
 
 TrimeshData::TrimeshData(std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {
@@ -51,11 +68,7 @@ std::vector<Sphere> spheres_of(const OdeBodyDefinition& definition) {
 
 void make_geoms(dSpaceID space, dBodyID body, const OdeBodyDefinition& definition, std::span<const Sphere> spheres,
                 TrimeshCache& cache) {
-  if (spheres.empty()) {
-    const bool hull = definition.geometry == OdeGeometry::hull;
-    const auto data = hull ? cache.hull_of(definition.shape) : cache.mesh_of(definition.shape);
-    dGeomSetBody(dCreateTriMesh(space, data, nullptr, nullptr, nullptr), body);
-  }
+  if (spheres.empty()) dGeomSetBody(make_box_or_mesh(space, definition, cache), body);
   std::uintptr_t ordinal = 0;
   for (const Sphere& sphere : spheres) {
     const dGeomID geom = dCreateSphere(space, sphere.radius);

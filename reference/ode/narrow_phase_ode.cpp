@@ -7,8 +7,6 @@ namespace {
 
 // ODE gives the first contacts that it finds, not the deepest: room for more than any real touch has.
 constexpr int kMostContacts = 512;
-// × size: overlap that is left to bodies at rest, so that they still overlap in OPCODE's float arithmetic and their contacts stay.
-constexpr double kRestingDepth = 1e-4;
 constexpr double kWithin = 0.01;  // × size
 constexpr int kMostFiltered = 64;  // of those, well spread, are looked at twice
 
@@ -24,7 +22,7 @@ Vec3 face_normal(dGeomID mesh, int face) {
 
 }  // namespace
 
-NarrowPhase::NarrowPhase() : found_(kMostContacts), ray_(dCreateRay(nullptr, 1.0)) {
+NarrowPhase::NarrowPhase(bool filtered) : found_(kMostContacts), ray_(dCreateRay(nullptr, 1.0)), filtered_(filtered) {
   for (dGeomID& geom : local_) geom = dCreateTriMesh(nullptr, nullptr, nullptr, nullptr, nullptr);
   dGeomRaySetBackfaceCull(ray_, 0);
   dGeomRaySetClosestHit(ray_, 1);
@@ -53,14 +51,14 @@ void NarrowPhase::find_of_meshes(dGeomID first, dGeomID second, double size, std
   for (const dContactGeom& contact : std::span(found_).first(count))
     points.push_back({to_vec3(contact.pos), to_vec3(contact.normal), contact.depth});
   const auto found = std::span(points).subspan(before);
-  if (!plainly_believable(found, size)) {
+  if (filtered_ && !plainly_believable(found, size)) {
     const auto few = found.first(reduce_contacts(found, kMostFiltered, size));
     const auto measure = [&](const Vec3& place, const Vec3& direction) { return measure_way_out(place, direction); };
     points.resize(before + filter_contacts(few, size, measure));
   }
   for (ContactPoint& point : std::span(points).subspan(before)) {
     point.point += origin_;
-    point.depth = std::max(0.0, point.depth - kRestingDepth * size);
+    point.depth -= kRestingDepth * size;
   }
 }
 

@@ -9,6 +9,10 @@
 
 namespace lodestone::ode {
 
+/// × size: overlap that is left to meshes at rest on each other, so that they still overlap in the next step (in OPCODE's float arithmetic, too)
+/// and their contacts stay.
+inline constexpr double kRestingDepth = 1e-4;
+
 class NarrowPhase {
   struct Exit {
     double distance;
@@ -16,12 +20,12 @@ class NarrowPhase {
   };
 
  public:
-  NarrowPhase();
+  explicit NarrowPhase(bool filtered = true);
   ~NarrowPhase();
   NarrowPhase(const NarrowPhase&) = delete;
   NarrowPhase& operator=(const NarrowPhase&) = delete;
 
-  /// Appends the contacts of `first` with `second`, normals into `first`. `size`: the smaller body's radius (m). Locks where ODE needs it.
+  /// Appends the contacts of `first` with `second`, normals into `first`, depths less what bodies at rest are left to overlap. `size`: the smaller body's radius (m). Locks where ODE needs it.
   void find(dGeomID first, dGeomID second, double size, std::vector<ContactPoint>& points);
 
  private:
@@ -37,6 +41,7 @@ class NarrowPhase {
   dGeomID ray_;
   Vec3 origin_ = Vec3::Zero();
   double size_ = 0.0;
+  bool filtered_;
 };
 
 }  // namespace lodestone::ode

@@ -199,6 +199,7 @@ const OdeCounters& OdeWorld::counters() const {
   counters.trimeshes_built = impl_->trimeshes.built() + impl_->collision.ground_trimeshes();
   counters.contacts = impl_->joints.made();
   counters.contacts_dropped = impl_->collision.contacts_dropped();
+  counters.swallowed = impl_->collision.swallowed();
   return counters;
 }
 

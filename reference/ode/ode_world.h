@@ -20,6 +20,13 @@ struct dxBody;
 
 namespace lodestone {
 
+/// How two trimeshes meet.
+enum class MeshContacts {
+  plain,     ///< as ODE's dCollide finds them
+  filtered,  ///< as it finds them, made believable (contact_filter.h)
+  exact,     ///< two convex bodies by their hulls (hull_manifold.h), which bound the same solids; others filtered
+};
+
 struct OdeSettings {
   Vec3 gravity{0, 0, -9.81};            ///< m/s²
   std::uint64_t seed = 1;
@@ -29,7 +36,9 @@ struct OdeSettings {
   double erp = 0.2, cfm = 1e-10;        ///< ODE's error reduction and constraint force mixing at contacts
   double bounce_velocity = 0.05;        ///< m/s, slower contacts do not bounce
   double max_correcting_velocity = 1e9; ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
+  bool friction_along_slip = true;      ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
   int max_contacts_per_pair = 8;
+  MeshContacts mesh_contacts = MeshContacts::exact;
   bool plane_contacts_from_hull = true; ///< false: dCollide of the trimesh with the plane, brute force over all faces
   double plane_depth_max = 1e9;         ///< over the shape's size: a hull vertex that would sink deeper into a plane within the step bounces beforehand
   bool gyroscopic = true;
@@ -37,8 +46,8 @@ struct OdeSettings {
 };
 
 /// What a body is to ODE's collision detection. `hull` is a trimesh of the hull: ODE's own dConvex gives one contact a pair, on which nothing stacks.
-/// `sphere` has the shape's volume.
-enum class OdeGeometry { trimesh, hull, spheres, sphere };
+/// `sphere` has the shape's volume. `box` is ODE's primitive, with the sides of the shape's bounding box, whose centre must be that of mass.
+enum class OdeGeometry { trimesh, hull, spheres, sphere, box };
 
 /// A body of an OdeWorld; stays valid until removed. Zero is null.
 struct OdeBodyId {
@@ -59,13 +68,14 @@ struct OdeBodyDefinition {
 /// Since the world was made.
 struct OdeCounters {
   std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0, quick_steps = 0, states_recovered = 0;
+  std::int64_t swallowed = 0;  ///< times that a body was wholly inside another in a substep (both meshes, one of them concave)
 };
 
 /// Two of this world's bodies that touched in the last substep (`second` null: static ground or a body of the caller's).
 struct OdeContact {
   OdeBodyId first, second;
   Vec3 point, normal;  ///< world; the normal points from `second` into `first`
-  double depth;        ///< m, > 0
+  double depth;        ///< m, ≥ 0
 };
 
 class OdeWorld {

@@ -34,7 +34,7 @@ Ended run(const std::string& arguments, bool with_errors = false) {
 }
 
 TEST(Program, HelpIsDone) {
-  for (const char* arguments : {"--help", "run --help", "sign --help", "inspect --help", "compare drop --help", "demo --help"}) {
+  for (const char* arguments : {"--help", "run --help", "sign --help", "inspect --help", "compare drop --help", "demo --help", "bench hard_cases --help"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.exit_code, 0) << arguments;
     EXPECT_FALSE(ended.out.empty()) << arguments;
@@ -44,7 +44,7 @@ TEST(Program, HelpIsDone) {
 TEST(Program, WrongUsageIsTwoAndSilentOnStdout) {
   for (const char* arguments : {"", "nonsense", "run", "compare", "compare drop", "run a.yaml --steps 0", "run a.yaml --level fast", "run a.yaml --dt 0",
                                 "compare drop box:1,1,1 --trials 1", "compare drop box:1,1,1 --dt 1/0", "compare drop box:1,1,1 --methods nonsense",
-                                "compare drop box:1,1,1 --restitution 2", "sign box:1,1,1 --threads -1"}) {
+                                "compare drop box:1,1,1 --restitution 2", "sign box:1,1,1 --threads -1", "bench", "bench hard_cases --only nonsense"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.exit_code, 2) << arguments;
     EXPECT_EQ(ended.out, "") << arguments;
@@ -88,6 +88,14 @@ TEST(Program, RunPrintsOneJsonObjectAndNothingElse) {
   EXPECT_EQ(json["steps"], 5);
   EXPECT_EQ(json["levels"]["full"].get<int>() + json["levels"]["statistical"].get<int>(), json["bodies"].get<int>());
   EXPECT_EQ(json["counters"]["signatures_loaded"], 0);
+}
+
+TEST(Program, BenchHardCasesPrintsOneJsonObjectAndNothingElse) {
+  const Ended ended = run("bench hard_cases --only F1 --quick --json", true);
+  EXPECT_EQ(ended.exit_code, 0);
+  const auto json = nlohmann::json::parse(ended.out);
+  ASSERT_GE(json["cases"].size(), 1U);
+  for (const auto& one : json["cases"]) EXPECT_EQ(one["id"], "F1");
 }
 
 }  // namespace

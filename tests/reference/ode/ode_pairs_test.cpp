@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "reference/random.h"
+#include "reference/hull/hull_overlap.h"
 #include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {
@@ -119,6 +120,25 @@ TEST(OdePairs, BoxPushedIntoTheCornerOfAnLIsHeldByBothLegs) {
   EXPECT_NEAR(rest.x(), 0.15, 2e-3);
   EXPECT_NEAR(rest.z(), 0.15, 2e-3);
   EXPECT_LT(world.state(body).velocity.norm(), 0.02);
+}
+
+// Hard case T2 and pitfall 4: surfaces that do not cross make no contact of their own.
+TEST(OdePairs, ABodyWhollyInsideAnotherIsNoticedAndPushedOut) {
+  const MaterialTable materials = material(0.0, 0.3);
+  OdeWorld world({.gravity = Vec3::Zero(), .max_correcting_velocity = 1.0}, materials);
+  const auto large = std::make_shared<const Shape>(make_shape("l", make_l(1.0, 1.0, 0.4, 0.4))), small = box_shape({0.1, 0.1, 0.1});
+  const OdeBodyId around = world.add_body({.shape = large, .mass = 100.0});
+  const Vec3 in_leg = -large->center_of_mass_in_mesh + Vec3(0.3, -0.3, 0.0);  // an L reaches from −half a leg to half a leg
+  const OdeBodyId inside = world.add_body({.shape = small, .mass = 1.0, .state = at(in_leg)});
+  world.step(1.0 / 240);
+  EXPECT_EQ(world.counters().swallowed, 1);
+  double top_speed = 0.0;
+  for (int i = 0; i < 480; ++i) {
+    world.step(1.0 / 240);
+    top_speed = std::max(top_speed, world.state(inside).velocity.norm());
+  }
+  EXPECT_FALSE(find_hull_overlap(*large, world.state(around), *small, world.state(inside)));
+  EXPECT_LT(top_speed, 1.1);
 }
 
 TEST(OdePairs, SupportRemovedWakesWhatItHeld) {

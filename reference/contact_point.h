@@ -1,0 +1,15 @@
+// Where two bodies touch.
+#pragma once
+
+#include "reference/geometry.h"
+
+namespace lodestone {
+
+/// `normal` (unit) points into the first body; moved along it by `depth` (m), the first body is clear.
+struct ContactPoint {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+  double depth = 0.0;
+};
+
+}  // namespace lodestone

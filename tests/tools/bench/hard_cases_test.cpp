@@ -1,0 +1,76 @@
+// The hard cases themselves, shortened here, whole in the long suite; and what is made of their figures.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "tools/bench/hard_case_report.h"
+
+namespace lodestone {
+namespace {
+
+void expect_kept(const HardCase& one, const HardCaseSettings& settings) {
+  const auto rows = one.measure(settings);
+  EXPECT_FALSE(rows.empty());
+  for (const HardCaseRow& row : rows)
+    EXPECT_TRUE(passes(row) || !row.odes_own.empty()) << one.id << ' ' << row.what << ": " << row.value << ' ' << row.unit << ", bound " << row.bound;
+}
+
+std::string id_of(const ::testing::TestParamInfo<HardCase>& info) { return std::string(info.param.id); }
+
+// Both without a prefix: the name of a suite that takes minutes begins with Long.
+class HardCases : public ::testing::TestWithParam<HardCase> {};
+TEST_P(HardCases, KeepTheirBoundsWhenShort) { expect_kept(GetParam(), {.quick = true}); }
+INSTANTIATE_TEST_SUITE_P(, HardCases, ::testing::ValuesIn(hard_cases().begin(), hard_cases().end()), id_of);
+
+class LongHardCases : public ::testing::TestWithParam<HardCase> {};
+TEST_P(LongHardCases, KeepTheirBounds) { expect_kept(GetParam(), {}); }
+INSTANTIATE_TEST_SUITE_P(, LongHardCases, ::testing::ValuesIn(hard_cases().begin(), hard_cases().end()), id_of);
+
+TEST(HardCaseList, NamesEachCaseOnce) {
+  std::set<std::string_view> ids;
+  for (const HardCase& one : hard_cases()) EXPECT_TRUE(ids.insert(one.id).second) << one.id;
+}
+
+TEST(HardCaseRow, FailsBeyondItsBoundAndWithoutAValue) {
+  EXPECT_TRUE(passes({.what = "", .value = 1.0, .bound = 1.0}));
+  EXPECT_FALSE(passes({.what = "", .value = 1.1, .bound = 1.0}));
+  EXPECT_FALSE(passes({.what = "", .value = std::nan(""), .bound = 1.0}));
+  EXPECT_TRUE(passes({.what = "", .value = 1.1, .bound = 1.0, .side = BoundSide::at_least}));
+  EXPECT_FALSE(passes({.what = "", .value = 0.9, .bound = 1.0, .side = BoundSide::at_least}));
+  EXPECT_FALSE(passes({.what = "", .value = std::nan(""), .bound = 1.0, .side = BoundSide::at_least}));
+}
+
+HardCaseResult result_of(double value, const std::string& odes_own) {
+  return {"F0", {{.what = "a figure", .value = value, .bound = 1.0, .unit = "m", .odes_own = odes_own}}};
+}
+
+TEST(HardCaseReport, FailsTheCheckUnlessTheFailureIsOdesOwn) {
+  const HardCaseResult kept = result_of(0.5, ""), kept_after_all = result_of(0.5, "ODE sinks"), odes = result_of(2.0, "ODE sinks"), ours = result_of(2.0, "");
+  EXPECT_EQ(exit_code_of(std::vector{kept, kept_after_all}), ExitCode::done);
+  EXPECT_EQ(exit_code_of(std::vector{kept, odes}), ExitCode::done);
+  EXPECT_EQ(exit_code_of(std::vector{odes, ours}), ExitCode::check_failed);
+}
+
+TEST(HardCaseReport, GivesAReasonOnlyForAFailure) {
+  const auto json = json_of(std::vector{result_of(0.5, "ODE sinks"), result_of(2.0, "ODE sinks"), result_of(std::nan(""), "")});
+  const auto& cases = json["cases"];
+  ASSERT_EQ(cases.size(), 3U);
+  for (const auto& one : cases)
+    for (const char* key : {"id", "what", "value", "bound", "op", "unit", "pass", "reason"}) EXPECT_TRUE(one.contains(key)) << key;
+  EXPECT_TRUE(cases[0]["pass"].get<bool>() && cases[0]["reason"].is_null());
+  EXPECT_FALSE(cases[1]["pass"].get<bool>());
+  EXPECT_EQ(cases[1]["reason"], "ODE sinks");
+  EXPECT_TRUE(!cases[2]["pass"].get<bool>() && cases[2]["value"].is_null() && cases[2]["reason"].is_null());
+  EXPECT_EQ(cases[0]["op"], "<=");
+}
+
+TEST(HardCaseReport, SaysInWordsWhatFailed) {
+  const std::string text = text_of(std::vector{result_of(0.5, ""), result_of(2.0, "ODE sinks"), result_of(3.0, "")});
+  EXPECT_NE(text.find("1 of 3 figures keep their bound"), std::string::npos) << text;
+  EXPECT_NE(text.find("F0 a figure: ODE sinks"), std::string::npos) << text;
+  EXPECT_NE(text.find("F0 a figure: FAILED"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,20 @@
+// Hard cases as a table for people and as JSON for programs.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "tools/bench/hard_case_run.h"
+#include "tools/commands.h"
+
+namespace lodestone {
+
+/// One line for each figure, then how many keep their bound and why the others do not.
+std::string text_of(std::span<const HardCaseResult> results);
+
+/// Keys as README lists them.
+nlohmann::ordered_json json_of(std::span<const HardCaseResult> results);
+
+/// check_failed where a figure fails that ODE is not to blame for.
+ExitCode exit_code_of(std::span<const HardCaseResult> results);
+
+}  // namespace lodestone
