@@ -33,7 +33,7 @@ struct OdeWorld::Impl {
     threading = std::make_unique<StepThreading>(world);
     dWorldSetGravity(world, settings.gravity.x(), settings.gravity.y(), settings.gravity.z());
     dWorldSetQuickStepNumIterations(world, settings.quick_step_iterations);
-    dWorldSetCFM(world, settings.cfm);  // that of friction, too
+    if (settings.cfm > 0.0) dWorldSetCFM(world, settings.cfm);  // friction's; without any its rows may come to depend on each other
   }
 
   void substep(double h);
