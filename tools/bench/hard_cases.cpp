@@ -26,6 +26,7 @@ std::span<const HardCase> hard_cases() {
       HardCase{"F11", measure_free_top},
       HardCase{"F12", measure_slender_bodies},
       HardCase{"F18", measure_head_on},
+      HardCase{"F19", measure_concave},
   };
   return kCases;
 }
