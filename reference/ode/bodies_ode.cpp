@@ -113,8 +113,9 @@ OdeBodyId Bodies::add(dWorldID world, dSpaceID space, const OdeBodyDefinition& d
   entry.shape = definition.shape;
   entry.material = definition.material;
   entry.spheres = spheres_of(definition);
-  entry.convex = entry.spheres.empty() && (entry.shape->convex || definition.geometry == OdeGeometry::hull);
+  entry.convex = entry.spheres.empty() && definition.geometry != OdeGeometry::box && (entry.shape->convex || definition.geometry == OdeGeometry::hull);
   entry.reach = reach_of(*entry.shape, entry.spheres);
+  entry.thickness = entry.spheres.size() == 1 ? entry.spheres[0].radius : entry.shape->inner_radius;
   entry.last_good = definition.state;
 
   entry.body = dBodyCreate(world);

@@ -3,6 +3,7 @@
 
 #include "tools/bench/body_cases.h"
 #include "tools/bench/hard_case.h"
+#include "tools/bench/pair_cases.h"
 #include "tools/bench/simbenchmark_cases.h"
 
 namespace lodestone {
@@ -19,8 +20,11 @@ std::span<const HardCase> hard_cases() {
       HardCase{"F4", measure_rolling},
       HardCase{"F5", measure_slopes},
       HardCase{"F6", measure_rebounds},
+      HardCase{"F10", measure_heavy_on_light},
       HardCase{"F11", measure_free_top},
       HardCase{"F12", measure_slender_bodies},
+      HardCase{"F13", measure_fast_bodies},
+      HardCase{"F14", measure_far_stacks},
       HardCase{"F18", measure_head_on},
   };
   return kCases;
