@@ -58,6 +58,11 @@ void set_sleeping(dBodyID body, bool sleeps, double radius) {
   dBodyEnable(body);  // starts the .5 s; else a new body at rest would sleep in its first step
 }
 
+bool is_hull(const OdeBodyDefinition& definition) {
+  const Shape& shape = *definition.shape;
+  return definition.geometry == OdeGeometry::hull || (definition.geometry == OdeGeometry::trimesh && shape.convex && !shape.sphere_radius);
+}
+
 double reach_of(const Shape& shape, std::span<const Sphere> spheres) {
   if (spheres.empty()) return shape.radius;
   double reach = 0.0;
@@ -113,7 +118,7 @@ OdeBodyId Bodies::add(dWorldID world, dSpaceID space, const OdeBodyDefinition& d
   entry.shape = definition.shape;
   entry.material = definition.material;
   entry.spheres = spheres_of(definition);
-  entry.convex = entry.spheres.empty() && definition.geometry != OdeGeometry::box && (entry.shape->convex || definition.geometry == OdeGeometry::hull);
+  entry.convex = is_hull(definition);
   entry.reach = reach_of(*entry.shape, entry.spheres);
   entry.thickness = entry.spheres.size() == 1 ? entry.spheres[0].radius : entry.shape->inner_radius;
   entry.last_good = definition.state;

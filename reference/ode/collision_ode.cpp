@@ -10,6 +10,9 @@
 namespace lodestone::ode {
 namespace {
 
+// × size: overlap that is left to hulls at rest on each other, so that their contacts stay.
+constexpr double kRestingHullDepth = 2e-5;
+
 ContactSide side_of(const Body& body) { return {body.body, body.material, body.id}; }
 
 bool same_pair(const Candidate& a, const Candidate& b) {
@@ -25,11 +28,20 @@ Plane plane_of(dGeomID geom) {
 /// Whether two meshes whose surfaces do not cross are one inside the other.
 bool is_inside_other(const Body& first, const Body& second) {
   const auto& [inner, outer] = first.reach < second.reach ? std::tie(first, second) : std::tie(second, first);
-  if (!inner.spheres.empty() || !outer.spheres.empty()) return false;
   const RigidState within = state_of(inner.body), around = state_of(outer.body);
   const Vec3 point = around.orientation.conjugate() * (within.position + within.orientation * inner.shape->mesh.vertices[0] - around.position);
   return point.norm() < outer.reach && winding_number(outer.shape->mesh, point) > 0;
 }
+
+/// A contact deeper than the hulls' overlap has a false direction. Where there are no others, the hulls' way out is taken.
+void limit_depths(std::vector<ContactPoint>& contacts, const HullOverlap& overlap) {
+  const auto is_false = [&](const ContactPoint& contact) { return contact.depth > overlap.depth; };
+  if (contacts.empty() || std::ranges::none_of(contacts, is_false)) return;
+  if (!std::ranges::all_of(contacts, is_false)) return void(std::erase_if(contacts, is_false));
+  for (ContactPoint& contact : contacts) contact = {contact.point, overlap.direction, overlap.depth};
+}
+
+bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.body)) == dTriMeshClass; }
 
 /// Whether a point of the body goes farther than `way` against `normal` within `h` seconds.
 bool strikes(dBodyID body, const Vec3& point, const Vec3& normal, double way, double h) {
@@ -164,28 +176,36 @@ void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
 
 void Collision::find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts) {
   const double size = other ? std::min(body.reach, other->reach) : body.reach;
-  const bool exact = settings_.mesh_contacts == MeshContacts::exact && body.convex;
   const Ground* ground = other ? nullptr : ground_of(parts[0].second);
-  if (exact && other && other->convex)
-    find_hull_points(*body.shape, state_of(body.body), *other->shape, state_of(other->body));
-  else if (exact && ground && ground->hull)
-    find_hull_points(*body.shape, state_of(body.body), *ground->hull, ground->state);
+  if (settings_.mesh_contacts == MeshContacts::exact && other && is_mesh(body) && is_mesh(*other))
+    find_mesh_pair_points(body, *other, parts[0], size);
+  else if (settings_.mesh_contacts == MeshContacts::exact && body.convex && ground && ground->hull)
+    find_manifold({*body.shape, state_of(body.body)}, {*ground->hull, ground->state});
   else
     for (const Candidate& part : parts) narrow_phase_.find(part.first, part.second, size, points_);
-  // Surfaces that do not cross make no contact, wherever they are.
-  if (points_.empty() && other && is_inside_other(body, *other)) {
-    ++swallowed_;
-    find_hull_points(*body.shape, state_of(body.body), *other->shape, state_of(other->body));
-  }
   drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
 }
 
-void Collision::find_hull_points(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state) {
-  const auto overlap = find_hull_overlap(first, first_state, second, second_state);
+/// Bodies are clear of each other once their hulls are.
+void Collision::find_mesh_pair_points(const Body& body, const Body& other, const Candidate& pair, double size) {
+  const Placed first{*body.shape, state_of(body.body)}, second{*other.shape, state_of(other.body)};
+  if (body.convex && other.convex) return find_manifold(first, second);
+  const auto overlap = find_hull_overlap(first.shape, first.state, second.shape, second.state);
   if (!overlap) return;
-  find_hull_manifold(first, first_state, second, second_state, *overlap, points_);
-  const double resting = kRestingDepth * std::min(first.radius, second.radius);
-  for (ContactPoint& point : points_) point.depth = std::max(0.0, point.depth - resting);
+  narrow_phase_.find(pair.first, pair.second, size, points_);
+  if (points_.empty() && is_inside_other(body, other)) {  // surfaces that do not cross make no contact, wherever they are
+    ++swallowed_;
+    find_hull_manifold(first.shape, first.state, second.shape, second.state, *overlap, points_);
+  }
+  limit_depths(points_, *overlap);
+}
+
+void Collision::find_manifold(const Placed& first, const Placed& second) {
+  const auto overlap = find_hull_overlap(first.shape, first.state, second.shape, second.state);
+  if (!overlap) return;
+  find_hull_manifold(first.shape, first.state, second.shape, second.state, *overlap, points_);
+  const double resting = kRestingHullDepth * std::min(first.shape.radius, second.shape.radius);
+  for (ContactPoint& point : points_) point.depth -= resting;
 }
 
 void Collision::keep_deepest() {

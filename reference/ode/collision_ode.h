@@ -26,6 +26,11 @@ struct Ground {
   RigidState state = {};                   ///< of the hull
 };
 
+struct Placed {
+  const Shape& shape;
+  RigidState state;
+};
+
 class Collision {
  public:
   Collision(dSpaceID around, const OdeSettings& settings);
@@ -53,7 +58,8 @@ class Collision {
   void find_mesh_points(const Body& body, const Plane& plane);
   void collide_candidates(Bodies& bodies, ContactJoints& joints);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
-  void find_hull_points(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state);
+  void find_mesh_pair_points(const Body& body, const Body& other, const Candidate& pair, double size);
+  void find_manifold(const Placed& first, const Placed& second);
   const Ground* ground_of(dGeomID geom) const;
   void keep_deepest();
   void drop_beyond(int kept);

@@ -77,7 +77,7 @@ struct OdeCounters {
 struct OdeContact {
   OdeBodyId first, second;
   Vec3 point, normal;  ///< world; the normal points from `second` into `first`
-  double depth;        ///< m, > 0
+  double depth;        ///< m, ≥ 0
 };
 
 class OdeWorld {

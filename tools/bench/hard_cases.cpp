@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "tools/bench/body_cases.h"
+#include "tools/bench/contact_cases.h"
 #include "tools/bench/hard_case.h"
 #include "tools/bench/pair_cases.h"
 #include "tools/bench/simbenchmark_cases.h"
@@ -20,6 +21,9 @@ std::span<const HardCase> hard_cases() {
       HardCase{"F4", measure_rolling},
       HardCase{"F5", measure_slopes},
       HardCase{"F6", measure_rebounds},
+      HardCase{"F7", measure_stacks},
+      HardCase{"F8", measure_piles},
+      HardCase{"F9", measure_contact_depths},
       HardCase{"F10", measure_heavy_on_light},
       HardCase{"F11", measure_free_top},
       HardCase{"F12", measure_slender_bodies},
