@@ -22,6 +22,7 @@ struct Shape {
   Mat3 inertia_per_mass = Mat3::Identity();    ///< m², body axes
   Mat3 inverse_inertia_per_mass = Mat3::Identity();
   double radius = 0.0;                         ///< m, greatest distance of a vertex from the centre of mass: the paper's bounding sphere
+  double inner_radius = 0.0;                   ///< m, of the greatest ball about the centre of mass that the hull contains
   double size = 0.0;                           ///< m, longest side of the mesh's bounding box
   bool convex = false;                         ///< whether mesh and hull bound the same solid
   std::vector<Shape> pieces;                   ///< of a concave shape, whose union it is (convex_pieces.h), each about its own `center_of_mass_in_mesh` in this body's frame; may be none

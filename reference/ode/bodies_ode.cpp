@@ -125,6 +125,7 @@ OdeBodyId Bodies::add(dWorldID world, dSpaceID space, const OdeBodyDefinition& d
   entry.spheres = spheres_of(definition);
   entry.pieces = pieces_of(definition);
   entry.reach = reach_of(*entry.shape, entry.spheres);
+  entry.thickness = entry.spheres.size() == 1 ? entry.spheres[0].radius : entry.shape->inner_radius;
   entry.last_good = definition.state;
 
   entry.body = dBodyCreate(world);
