@@ -46,6 +46,14 @@ void limit_depths(std::vector<ContactPoint>& contacts, const HullOverlap& overla
   for (ContactPoint& contact : contacts) contact = {contact.point, overlap.direction, overlap.depth};
 }
 
+/// A body deep in another (pitfall 4) is let out one way: contacts that oppose the deepest would squeeze it like a stone from a cherry.
+void drop_opposing(std::vector<ContactPoint>& contacts, double size) {
+  constexpr double kDeep = 0.1;  // × size
+  if (contacts.empty()) return;
+  const ContactPoint deepest = std::ranges::max(contacts, {}, &ContactPoint::depth);
+  if (deepest.depth > kDeep * size) std::erase_if(contacts, [&](const ContactPoint& contact) { return contact.normal.dot(deepest.normal) < 0.0; });
+}
+
 bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.body)) == dTriMeshClass; }
 
 /// Whether a point of the body goes farther than `way` against `normal` within `h` seconds.
@@ -203,6 +211,7 @@ void Collision::find_filtered_points(const Body& body, const Body& other, const 
     find_hull_manifold(*body.shape, first, *other.shape, second, *overlap, points_);
   }
   limit_depths(points_, *overlap);
+  drop_opposing(points_, size);
 }
 
 void Collision::keep_deepest() {
