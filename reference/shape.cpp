@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "reference/error.h"
+#include "reference/hull/convex_pieces.h"
 
 namespace lodestone {
 namespace {
@@ -92,6 +93,13 @@ std::uint64_t hash_content(const Shape& shape) {
   return XXH3_64bits(content.data(), content.size() * sizeof(content[0]));
 }
 
+std::vector<Shape> make_pieces(const Shape& shape) {
+  std::vector<Shape> pieces;
+  for (const Hull& hull : find_convex_pieces(shape.mesh, shape.hull))
+    pieces.push_back(make_shape(shape.name + " piece", {hull.vertices, hull.faces}));
+  return pieces;
+}
+
 /// From vertices already about the centre of mass.
 void finish(Shape& shape) {
   shape.support_map = SupportMap(shape.hull);
@@ -125,6 +133,7 @@ Shape make_shape(std::string name, Mesh mesh, const MassOverride& mass, MeshRepo
   for (Vec3& vertex : shape.mesh.vertices) vertex -= properties.center_of_mass;
   for (Vec3& vertex : shape.hull.vertices) vertex -= properties.center_of_mass;
   finish(shape);
+  if (found.closed() && !shape.convex) shape.pieces = make_pieces(shape);
   if (report) *report = found;
   return shape;
 }
@@ -156,6 +165,7 @@ Shape scale_shape(const Shape& shape, double factor) {
   scaled.radius *= factor;
   scaled.inner_radius *= factor;
   scaled.size *= factor;
+  for (Shape& piece : scaled.pieces) piece = scale_shape(piece, factor);
   if (scaled.sphere_radius) *scaled.sphere_radius *= factor;
   return scaled;
 }

@@ -34,6 +34,7 @@ std::span<const HardCase> hard_cases() {
       HardCase{"F16", measure_sleeping_pile, true},
       HardCase{"F17", measure_step_lengths},
       HardCase{"F18", measure_head_on},
+      HardCase{"F19", measure_concave},
   };
   return kCases;
 }
