@@ -29,7 +29,7 @@ TEST(Recovery, AForceBeyondAllBoundsStopsTheBodyAtEveryLevel) {
     manager.step(kFrame);
     manager.add_force(pushed, {1e300, 0, 0}, {0, 1e300, 0});
     manager.step(kFrame);
-    EXPECT_EQ(manager.report().counters.states_recovered, 1);
+    EXPECT_EQ(manager.report().counters.states_recovered, level == LevelChoice::full ? ManagerSettings{}.full_substeps : 1);
     EXPECT_LT((manager.state(pushed).position - Vec3(1, 2, 3)).norm(), 0.1);
     EXPECT_LT((manager.state(beside).position - Vec3(1.5, 2, 3)).norm(), 0.1);
     EXPECT_TRUE(manager.state(pushed).orientation.coeffs().allFinite());
