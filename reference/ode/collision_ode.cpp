@@ -6,6 +6,7 @@
 #include "reference/error.h"
 #include "reference/hull/hull_manifold.h"
 #include "reference/mesh/inside.h"
+#include "reference/ode/piece_contacts.h"
 
 namespace lodestone::ode {
 namespace {
@@ -24,14 +25,38 @@ Plane plane_of(dGeomID geom) {
   return {to_vec3(p), p[3], 0, geom};
 }
 
+Pieces pieces_of(const Body& body) { return {body.pieces, state_of(body.body)}; }
+
+Pieces pieces_of(const Ground* ground) {
+  if (!ground || !ground->box) return {};
+  return {{{ground->box.get()}}, ground->state};
+}
+
 /// Whether two meshes whose surfaces do not cross are one inside the other.
 bool is_inside_other(const Body& first, const Body& second) {
   const auto& [inner, outer] = first.reach < second.reach ? std::tie(first, second) : std::tie(second, first);
-  if (!inner.spheres.empty() || !outer.spheres.empty()) return false;
   const RigidState within = state_of(inner.body), around = state_of(outer.body);
   const Vec3 point = around.orientation.conjugate() * (within.position + within.orientation * inner.shape->mesh.vertices[0] - around.position);
   return point.norm() < outer.reach && winding_number(outer.shape->mesh, point) > 0;
 }
+
+/// A contact deeper than the hulls' overlap has a false direction. Where there are no others, the hulls' way out is taken.
+void limit_depths(std::vector<ContactPoint>& contacts, const HullOverlap& overlap) {
+  const auto is_false = [&](const ContactPoint& contact) { return contact.depth > overlap.depth; };
+  if (contacts.empty() || std::ranges::none_of(contacts, is_false)) return;
+  if (!std::ranges::all_of(contacts, is_false)) return void(std::erase_if(contacts, is_false));
+  for (ContactPoint& contact : contacts) contact = {contact.point, overlap.direction, overlap.depth};
+}
+
+/// A body deep in another (pitfall 4) is let out one way: contacts that oppose the deepest would squeeze it like a stone from a cherry.
+void drop_opposing(std::vector<ContactPoint>& contacts, double size) {
+  constexpr double kDeep = 0.1;  // × size
+  if (contacts.empty()) return;
+  const ContactPoint deepest = std::ranges::max(contacts, {}, &ContactPoint::depth);
+  if (deepest.depth > kDeep * size) std::erase_if(contacts, [&](const ContactPoint& contact) { return contact.normal.dot(deepest.normal) < 0.0; });
+}
+
+bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.body)) == dTriMeshClass; }
 
 }  // namespace
 
@@ -122,28 +147,29 @@ void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> ca
 
 void Collision::find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts) {
   const double size = other ? std::min(body.reach, other->reach) : body.reach;
-  const bool exact = settings_.mesh_contacts == MeshContacts::exact && body.convex;
-  const Ground* ground = other ? nullptr : ground_of(parts[0].second);
-  if (exact && other && other->convex)
-    find_hull_points(*body.shape, state_of(body.body), *other->shape, state_of(other->body));
-  else if (exact && ground && ground->hull)
-    find_hull_points(*body.shape, state_of(body.body), *ground->hull, ground->state);
+  const bool exact = settings_.mesh_contacts == MeshContacts::exact;
+  const Pieces first = pieces_of(body), second = other ? pieces_of(*other) : pieces_of(ground_of(parts[0].second));
+  if (exact && !first.empty() && !second.empty())
+    find_contacts_of_pieces(first, second, points_);
+  else if (exact && other && is_mesh(body) && is_mesh(*other))
+    find_filtered_points(body, *other, parts[0], size);
   else
     for (const Candidate& part : parts) narrow_phase_.find(part.first, part.second, size, points_);
-  // Surfaces that do not cross make no contact, wherever they are.
-  if (points_.empty() && other && is_inside_other(body, *other)) {
-    ++swallowed_;
-    find_hull_points(*body.shape, state_of(body.body), *other->shape, state_of(other->body));
-  }
   drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
 }
 
-void Collision::find_hull_points(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state) {
-  const auto overlap = find_hull_overlap(first, first_state, second, second_state);
+/// Bodies are clear of each other once their hulls are.
+void Collision::find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size) {
+  const RigidState first = state_of(body.body), second = state_of(other.body);
+  const auto overlap = find_hull_overlap(*body.shape, first, *other.shape, second);
   if (!overlap) return;
-  find_hull_manifold(first, first_state, second, second_state, *overlap, points_);
-  const double resting = kRestingDepth * std::min(first.radius, second.radius);
-  for (ContactPoint& point : points_) point.depth = std::max(0.0, point.depth - resting);
+  narrow_phase_.find(pair.first, pair.second, size, points_);
+  if (points_.empty() && is_inside_other(body, other)) {  // surfaces that do not cross make no contact, wherever they are
+    ++swallowed_;
+    find_hull_manifold(*body.shape, first, *other.shape, second, *overlap, points_);
+  }
+  limit_depths(points_, *overlap);
+  drop_opposing(points_, size);
 }
 
 void Collision::drop_beyond(int kept) {

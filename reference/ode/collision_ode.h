@@ -15,8 +15,8 @@ namespace lodestone::ode {
 /// A static box or mesh.
 struct Ground {
   MaterialId material = 0;
-  std::shared_ptr<const Shape> hull = {};  ///< of a box; null for a mesh
-  RigidState state = {};                   ///< of the hull
+  std::shared_ptr<const Shape> box = {};  ///< null for a mesh
+  RigidState state = {};                  ///< of the box
 };
 
 class Collision {
@@ -43,7 +43,7 @@ class Collision {
   void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);
   void collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
-  void find_hull_points(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state);
+  void find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size);
   const Ground* ground_of(dGeomID geom) const;
   void drop_beyond(int kept);
   void add_ground(dGeomID geom, Ground ground);

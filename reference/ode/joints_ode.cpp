@@ -52,7 +52,7 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second, std
     add_joint(first, second, point);
     const double side = first.id ? 1.0 : -1.0;  // contacts() names this world's body first
     contacts_.push_back({first.id ? first.id : second.id, first.id ? second.id : first.id, point.point,
-                         side * point.normal, point.depth});
+                         side * point.normal, std::max(0.0, point.depth)});
   }
   made_ += std::int64_t(points.size());
 }
@@ -70,7 +70,7 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
 // step sets them apart.
 double ContactJoints::depth_of(const ContactPoint& point) const {
   const double turn = 0.6180339887498949 * double(contacts_.size());  // of the golden angle: no two alike
-  return std::min(point.depth + unevenness_ * (turn - std::floor(turn)), deepest_);
+  return std::clamp(point.depth + unevenness_ * (turn - std::floor(turn)), 0.0, deepest_);
 }
 
 // ODE's friction is a box: μ along fdir1 and μ across it, so only along fdir1 is it Coulomb's. Friction opposes the slip that the step

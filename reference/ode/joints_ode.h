@@ -27,6 +27,7 @@ class ContactJoints {
   /// Forgets the last substep's contacts; the next are for a step of `h` seconds. From one attempt at a step to the next (0, 1, …) the contacts
   /// are a little softer and their depths a little more uneven.
   void begin(double h, int attempt);
+  /// Depths may be negative by what bodies at rest are left to overlap (kRestingDepth).
   void add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points);
   /// Destroys the joints; contacts() stays.
   void end() { dJointGroupEmpty(group_); }

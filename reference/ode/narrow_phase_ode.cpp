@@ -58,7 +58,7 @@ void NarrowPhase::find_of_meshes(dGeomID first, dGeomID second, double size, std
   }
   for (ContactPoint& point : std::span(points).subspan(before)) {
     point.point += origin_;
-    point.depth = std::max(0.0, point.depth - kRestingDepth * size);
+    point.depth -= kRestingDepth * size;
   }
 }
 

@@ -25,7 +25,7 @@ class NarrowPhase {
   NarrowPhase(const NarrowPhase&) = delete;
   NarrowPhase& operator=(const NarrowPhase&) = delete;
 
-  /// Appends the contacts of `first` with `second`, normals into `first`. `size`: the smaller body's radius (m). Locks where ODE needs it.
+  /// Appends the contacts of `first` with `second`, normals into `first`, depths less what bodies at rest are left to overlap. `size`: the smaller body's radius (m). Locks where ODE needs it.
   void find(dGeomID first, dGeomID second, double size, std::vector<ContactPoint>& points);
 
  private:

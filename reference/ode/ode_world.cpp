@@ -2,15 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "reference/ode/collision_ode.h"
 #include "reference/error.h"
 #include "reference/ode/islands.h"
+#include "reference/ode/sweep_ode.h"
 
 namespace lodestone {
 
 using namespace ode;
+
+namespace {
+
+constexpr double kUneven = 100.0;  // QuickStep's iterations carry a weight through a body a hundredth of it no more
+
+}  // namespace
 
 struct OdeWorld::Impl {
   Impl(dWorldID callers_world, dSpaceID around, const OdeSettings& s, const MaterialTable& materials)
@@ -35,11 +43,13 @@ struct OdeWorld::Impl {
     dWorldSetQuickStepNumIterations(world, settings.quick_step_iterations);
   }
 
+  bool has_work();
   void substep(double h);
   void push_bodies();
   bool advance(double h);
   void take_back_bodies();
   void recover_bodies();
+  void count_uneven_contacts();
   void wake_neighbors(const Body& body);
 
   OdeSettings settings;
@@ -47,6 +57,7 @@ struct OdeWorld::Impl {
   std::unique_ptr<StepThreading> threading;
   ContactJoints joints;
   Collision collision;
+  Sweep sweep;
   TrimeshCache trimeshes;
   Bodies bodies;
   OdeCounters counters;
@@ -94,9 +105,15 @@ void OdeWorld::step(double dt, int substeps) {
     check_that(false, "a step is positive and finite, in one substep or more:", fmt::format("dt {} s, {} substeps", dt, substeps));
   prepare();
   const std::int64_t messages_before = messages_of_this_thread();
-  for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
+  if (impl_->has_work()) for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
+  else impl_->joints.begin(dt, 0);  // no contacts
   for (Body& body : impl_->bodies.slots()) body.force = body.torque = Vec3::Zero();
   impl_->counters.messages += messages_of_this_thread() - messages_before;
+}
+
+// Nothing moves where all sleep, save in a caller's world, whose other bodies are unknown.
+bool OdeWorld::Impl::has_work() {
+  return !own_world || std::ranges::any_of(bodies.slots(), [](const Body& body) { return body.body && dBodyIsEnabled(body.body); });
 }
 
 // ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in a message and leaving the
@@ -104,6 +121,7 @@ void OdeWorld::step(double dt, int substeps) {
 // whose other bodies cannot be taken back.
 void OdeWorld::Impl::substep(double h) {
   constexpr int kAttempts = 3;
+  sweep.begin(bodies);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     push_bodies();
     joints.begin(h, attempt);
@@ -114,6 +132,7 @@ void OdeWorld::Impl::substep(double h) {
     take_back_bodies();
   }
   recover_bodies();
+  counters.passes_prevented += sweep.stop_passing(bodies, collision.broad_phase(), joints.contacts());
 }
 
 void OdeWorld::Impl::take_back_bodies() {
@@ -136,12 +155,26 @@ bool OdeWorld::Impl::advance(double h) {
   const bool too_many = int(contacts.size()) > settings.direct_contacts_max && largest_island(contacts) > settings.direct_contacts_max;
   if (settings.quick_step || too_many) {
     ++counters.quick_steps;
+    count_uneven_contacts();
     const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++steps);
     dWorldQuickStep(world, h);
   } else {
     dWorldStep(world, h);
   }
   return messages_of_this_thread() == messages_before;
+}
+
+void OdeWorld::Impl::count_uneven_contacts() {
+  const auto mass_of = [this](OdeBodyId body) {
+    dMass mass;
+    dBodyGetMass(bodies.find(body).body, &mass);
+    return mass.mass;
+  };
+  for (const OdeContact& contact : joints.contacts()) {
+    if (!contact.second) continue;
+    const auto [lighter, heavier] = std::minmax({mass_of(contact.first), mass_of(contact.second)});
+    if (heavier >= kUneven * lighter) ++counters.uneven_contacts;
+  }
 }
 
 void OdeWorld::Impl::recover_bodies() {

@@ -1,7 +1,8 @@
 // Rigid bodies simulated by the Open Dynamics Engine (ODE): the ground truth, the full level and its baselines.
 // ODE stays behind this file. Pitfalls that it takes care of: trimesh–trimesh contacts are filtered (contact_filter.h), plane
 // contacts come from hull vertices, messages are counted and not printed, QuickStep's global generator is seeded from
-// (seed, step), sleeping neighbours wake on removal, every value is checked before ODE could abort on it.
+// (seed, step), sleeping neighbours wake on removal, bodies faster than they are thick stop at what they would have passed through (sweep_ode.h), every
+// value is checked before ODE could abort on it.
 #pragma once
 
 #include <cstdint>
@@ -72,13 +73,15 @@ struct OdeBodyDefinition {
 struct OdeCounters {
   std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0, quick_steps = 0, states_recovered = 0;
   std::int64_t swallowed = 0;  ///< times that a body was wholly inside another in a substep (both meshes, one of them concave)
+  std::int64_t passes_prevented = 0;  ///< times that a body would have gone through another, or through ground, within a substep
+  std::int64_t uneven_contacts = 0;   ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: it lets the heavy one sink in
 };
 
 /// Two of this world's bodies that touched in the last substep (`second` null: static ground or a body of the caller's).
 struct OdeContact {
   OdeBodyId first, second;
   Vec3 point, normal;  ///< world; the normal points from `second` into `first`
-  double depth;        ///< m, > 0
+  double depth;        ///< m, ≥ 0
 };
 
 class OdeWorld {
@@ -103,7 +106,7 @@ class OdeWorld {
   /// Wakes what touched it, the caller's bodies too.
   void remove_body(OdeBodyId body);
 
-  /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). A body whose state stops being finite is
+  /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). Nearly free while all bodies sleep. A body whose state stops being finite is
   /// put back to its last good pose at rest, and counted. A substep that ODE's solver gives up on is repeated a little softer (not in a caller's world).
   void step(double dt, int substeps = 1);
 
@@ -116,7 +119,7 @@ class OdeWorld {
 
   std::span<const OdeContact> contacts() const;              ///< of the last substep
   const OdeCounters& counters() const;
-  dxWorld* ode_world() const;
+  dxWorld* ode_world() const;                                ///< an own world is stepped only while a body of this OdeWorld's is awake
   dxSpace* ode_space() const;                                ///< dSpaceID that holds this world's bodies
 
  private:
