@@ -26,8 +26,16 @@ std::shared_ptr<const Shape> make_low_shape(const Shape& shape) {
   return std::make_shared<const Shape>(make_shape(shape.name + " low", simplify_mesh(shape.mesh, kLowFaces), mass));
 }
 
+// What ODE makes of a mesh over a plane by itself.
+OdeSettings plain_settings() { return {.plane_contacts_from_hull = false}; }
+
+// A body is observed for ten seconds, awake.
+DropMethod make_full(std::string name, const DropJob& job, int substeps) {
+  return make_ode(std::move(name), job, {.substeps = substeps, .settings = ode_settings_of({.sleeping = false})});
+}
+
 DropMethod make_low(const DropJob& job) {
-  DropMethod method = make_ode("low", job, {.plane_contacts_from_hull = false});
+  DropMethod method = make_ode("low", job, {.settings = plain_settings()});
   if (job.shape->mesh.faces.size() <= kLowFaces)
     method.left_out = fmt::format("has no more than {} faces", kLowFaces);
   else
@@ -46,17 +54,17 @@ struct NamedMaker {
 };
 
 constexpr std::array<NamedMaker, 9> kEngineMethods = {{
-    {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.plane_contacts_from_hull = false}); }},
-    {"full", [](const DropJob& job) { return make_ode("full", job, {.substeps = ManagerSettings{}.full_substeps}); }},
-    {"full_1", [](const DropJob& job) { return make_ode("full_1", job, {}); }},
+    {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.settings = plain_settings()}); }},
+    {"full", [](const DropJob& job) { return make_full("full", job, ManagerSettings{}.full_substeps); }},
+    {"full_1", [](const DropJob& job) { return make_full("full_1", job, 1); }},
     {"low", make_low},
     {"spheres7", [](const DropJob& job) {
        return make_ode("spheres7", job, {.geometry = OdeGeometry::spheres, .spheres = fit_spheres(job.shape->mesh, kSphereCount)});
      }},
     {"sphere", [](const DropJob& job) { return make_ode("sphere", job, {.geometry = OdeGeometry::sphere}); }},
+    {"hull", [](const DropJob& job) { return make_ode("hull", job, {.settings = plain_settings(), .geometry = OdeGeometry::hull}); }},
     {"bullet_hull", [](const DropJob&) { return make_bullet("bullet_hull", BulletGeometry::hull); }},
     {"bullet_sphere", [](const DropJob&) { return make_bullet("bullet_sphere", BulletGeometry::sphere); }},
-    {"hull", [](const DropJob& job) { return make_ode("hull", job, {.geometry = OdeGeometry::hull, .plane_contacts_from_hull = false}); }},
 }};
 
 constexpr std::string_view kStatistical = "statistical";

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "lod/full_level.h"
 #include "lod/manager.h"
 #include "reference/trial.h"
 #include "signature/signature_source.h"
@@ -24,8 +25,8 @@ struct DropJob {
 /// ODE, with one or another collision geometry.
 struct OdeMethod {
   int substeps = 1;                                  ///< ODE steps in a step
+  OdeSettings settings = {};
   OdeGeometry geometry = OdeGeometry::trimesh;
-  bool plane_contacts_from_hull = true;              ///< else dCollide of the trimesh with the plane
   std::shared_ptr<const Shape> collision_shape = {};      ///< with the mass distribution of the job's shape
   std::vector<Sphere> spheres = {};                  ///< for OdeGeometry::spheres
 };
