@@ -24,8 +24,9 @@ Mat3 rotation_of(const Body& body) {
 }  // namespace
 
 void PlanePhase::find(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step, std::vector<ContactPoint>& points) {
-  if (height_of(body, plane) > body.reach + nearing(body, plane, step)) return;
-  if (!settings_.plane_contacts_from_hull) find_mesh_points(body, plane, points);
+  const bool by_hull = settings_.plane_contacts_from_hull;
+  if (by_hull && height_of(body, plane) > body.reach + nearing(body, plane, step)) return;
+  if (!by_hull) find_mesh_points(body, plane, points);
   else if (body.spheres.empty()) find_hull_points(body, plane, law, step, points);
   else find_sphere_points(body, plane, points);
   keep_deepest(points);
@@ -86,7 +87,7 @@ void PlanePhase::find_sphere_points(const Body& body, const Plane& plane, std::v
   }
 }
 
-// As plain ODE does it: the first contacts that it finds, whatever their depth.
+// As plain ODE does it: wherever the body is, for a plane's box has no end; and the first contacts that it finds, whatever their depth.
 void PlanePhase::find_mesh_points(const Body& body, const Plane& plane, std::vector<ContactPoint>& points) const {
   std::vector<dContactGeom> found(settings_.max_contacts_per_pair);
   for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <optional>
 
 #include "reference/error.h"
 
@@ -56,7 +58,7 @@ struct NamedMaker {
 constexpr std::array<NamedMaker, 9> kEngineMethods = {{
     {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.settings = plain_settings()}); }},
     {"full", [](const DropJob& job) { return make_full("full", job, ManagerSettings{}.full_substeps); }},
-    {"full_1", [](const DropJob& job) { return make_full("full_1", job, 1); }},
+    {"full_1", [](const DropJob& job) { return make_ode("full_1", job, {}); }},
     {"low", make_low},
     {"spheres7", [](const DropJob& job) {
        return make_ode("spheres7", job, {.geometry = OdeGeometry::spheres, .spheres = fit_spheres(job.shape->mesh, kSphereCount)});
@@ -66,6 +68,15 @@ constexpr std::array<NamedMaker, 9> kEngineMethods = {{
     {"bullet_hull", [](const DropJob&) { return make_bullet("bullet_hull", BulletGeometry::hull); }},
     {"bullet_sphere", [](const DropJob&) { return make_bullet("bullet_sphere", BulletGeometry::sphere); }},
 }};
+
+/// full_2 … full_64: the full level at that many substeps.
+std::optional<int> substeps_named(std::string_view name) {
+  constexpr std::string_view kPrefix = "full_";
+  int substeps = 0;
+  if (!name.starts_with(kPrefix)) return {};
+  const auto [end, error] = std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), substeps);
+  return error == std::errc() && end == name.data() + name.size() && substeps >= 2 && substeps <= 64 ? std::optional(substeps) : std::nullopt;
+}
 
 constexpr std::string_view kStatistical = "statistical";
 
@@ -99,6 +110,8 @@ std::string DropMethod::model() const {
 
 DropMethod make_truth(const DropJob& job) { return make_ode("truth", job, {.substeps = kTruthSubsteps}); }
 
+bool is_drop_method(const std::string& name) { return substeps_named(name) || std::ranges::count(drop_method_names(), name) > 0; }
+
 std::vector<std::string> drop_method_names() {
   std::vector<std::string> names;
   for (const NamedMaker& method : kEngineMethods) names.emplace_back(method.name);
@@ -112,6 +125,10 @@ std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names,
   for (const std::string& name : names) {
     if (name == kStatistical) {
       std::ranges::move(make_statistical(job, threads, progress), std::back_inserter(methods));
+      continue;
+    }
+    if (const auto substeps = substeps_named(name)) {
+      methods.push_back(make_full(name, job, *substeps));
       continue;
     }
     const auto found = std::ranges::find(kEngineMethods, name, &NamedMaker::name);

@@ -54,7 +54,10 @@ struct DropMethod {
 /// The ground truth: ODE at 34 steps in 1/60 s, just under .5 ms, so that 60 Hz falls on whole steps.
 DropMethod make_truth(const DropJob& job);
 
-/// Every name that `make_drop_methods` knows.
+/// Whether `make_drop_methods` knows it: one of drop_method_names(), or full_2 to full_64, the full level at that many substeps.
+bool is_drop_method(const std::string& name);
+
+/// The names without a number of substeps. `full` is the full level with its default substeps, `full_1` ODE itself in one step.
 std::vector<std::string> drop_method_names();
 
 /// The methods of these names; `statistical` gives one for each model, with a signature from the cache or measured now on `threads` threads
