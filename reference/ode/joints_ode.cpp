@@ -23,7 +23,7 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
       erp_(settings.erp),
       cfm_(settings.cfm),
       max_correcting_velocity_(settings.max_correcting_velocity) {
-  joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactMotionN;
+  joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM;
   if (settings.friction_along_slip) joint_.surface.mode |= dContactFDir1;
   joint_.surface.soft_erp = settings.erp;
   joint_.surface.bounce_vel = settings.bounce_velocity;
@@ -62,6 +62,8 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
   copy(point.normal, joint_.geom.normal);
   joint_.geom.depth = second.body ? depth_of(point) : std::min(point.depth, deepest_);
   joint_.surface.motionN = point.lift;
+  if (point.lift != 0.0) joint_.surface.mode |= dContactMotionN;
+  else joint_.surface.mode &= ~dContactMotionN;
   copy(slip_direction(first.body, second.body, point), joint_.fdir1);
   dJointAttach(dJointCreateContact(world_, group_, &joint_), first.body, second.body);
 }
