@@ -45,10 +45,13 @@ void Sweep::begin(Bodies& bodies) {
 }
 
 int Sweep::stop_passing(Bodies& bodies, BroadPhase& broad_phase, std::span<const OdeContact> contacts) {
-  stopped_.clear();
+  fast_.clear(), stopped_.clear();
   for (Body& body : bodies.slots())
-    if (is_fast(body))
-      if (const double part = free_part(body, bodies, broad_phase, contacts); part < 1.0) stopped_.emplace_back(&body, part);
+    if (is_fast(body)) fast_.push_back(&body);
+  if (fast_.empty()) return 0;
+  sort_by_reach(bodies);
+  for (Body* body : fast_)
+    if (const double part = free_part(*body, broad_phase, contacts); part < 1.0) stopped_.emplace_back(body, part);
   // Only now: the others' ways were measured to where all of them would have gone.
   for (const auto& [body, part] : stopped_) {
     const Vec3 place = body->before + part * (position_of(*body) - body->before);
@@ -58,20 +61,49 @@ int Sweep::stop_passing(Bodies& bodies, BroadPhase& broad_phase, std::span<const
   return int(stopped_.size());
 }
 
-double Sweep::free_part(Body& body, Bodies& bodies, BroadPhase& broad_phase, std::span<const OdeContact> contacts) {
-  const Vec3 end = position_of(body), own = end - body.before;
-  double part = 1.0;
-  for (Body& other : bodies.slots()) {
-    if (!other.body || &other == &body) continue;
-    const Vec3 center = position_of(other), relative = own - (center - other.before);
-    const Way way{end - relative, relative.normalized(), relative.norm(), body.thickness, touch(contacts, body.id, other.id)};
-    if (way.length <= way.thickness || !comes_near(way.from, way.direction, way.length, center, other.reach + way.thickness)) continue;
-    for (dGeomID geom = dBodyGetFirstGeom(other.body); geom; geom = dBodyGetNextGeom(geom)) part = std::min(part, free_part(way, geom));
+void Sweep::sort_by_reach(Bodies& bodies) {
+  Eigen::AlignedBox3d places;
+  for (const Body& body : bodies.slots())
+    if (body.body) places.extend(position_of(body));
+  places.sizes().maxCoeff(&axis_);
+  reaches_.clear();
+  longest_ = 0.0;
+  for (Body& body : bodies.slots()) {
+    if (!body.body) continue;
+    reaches_.push_back(reach_of(body));
+    longest_ = std::max(longest_, reaches_.back().to - reaches_.back().from);
   }
-  const Way way{body.before, own.normalized(), own.norm(), body.thickness, touch(contacts, body.id, {})};
+  std::ranges::sort(reaches_, {}, &Reach::from);
+}
+
+Sweep::Reach Sweep::reach_of(Body& body) const {
+  const auto [from, to] = std::minmax({body.before[axis_], position_of(body)[axis_]});
+  return {from - body.reach, to + body.reach, &body};
+}
+
+double Sweep::free_part(Body& body, BroadPhase& broad_phase, std::span<const OdeContact> contacts) {
+  double part = 1.0;
+  const Reach own = reach_of(body);
+  for (auto it = std::ranges::lower_bound(reaches_, own.from - longest_, {}, &Reach::from); it != reaches_.end() && it->from <= own.to; ++it)
+    if (it->body != &body && it->to >= own.from) part = std::min(part, free_part(body, *it->body, contacts));
+
+  const Vec3 end = position_of(body), whole = end - body.before;
+  const Way way{body.before, whole.normalized(), whole.norm(), body.thickness, touch(contacts, body.id, {})};
   Eigen::AlignedBox3d swept(body.before.cwiseMin(end), body.before.cwiseMax(end));
   swept.extend(swept.min() - Vec3::Constant(way.thickness)).extend(swept.max() + Vec3::Constant(way.thickness));
   for (const dGeomID geom : broad_phase.find_others(swept)) part = std::min(part, free_part(way, geom));
+  return part;
+}
+
+double Sweep::free_part(const Body& body, const Body& other, std::span<const OdeContact> contacts) {
+  const Vec3 end = position_of(body), center = position_of(other), relative = (end - body.before) - (center - other.before);
+  const double length = relative.norm();
+  if (length <= body.thickness) return 1.0;
+  const Vec3 from = end - relative, direction = relative / length;
+  if (!comes_near(from, direction, length, center, other.reach + body.thickness)) return 1.0;
+  const Way way{from, direction, length, body.thickness, touch(contacts, body.id, other.id)};
+  double part = 1.0;
+  for (dGeomID geom = dBodyGetFirstGeom(other.body); geom; geom = dBodyGetNextGeom(geom)) part = std::min(part, free_part(way, geom));
   return part;
 }
 

@@ -33,12 +33,25 @@ class Sweep {
     bool touches;              // what may be in the way, at the start
   };
 
-  double free_part(Body& body, Bodies& bodies, BroadPhase& broad_phase, std::span<const OdeContact> contacts);
+  /// What a body covers in the substep along the axis on which bodies are farthest apart, m.
+  struct Reach {
+    double from, to;
+    Body* body;
+  };
+
+  void sort_by_reach(Bodies& bodies);
+  Reach reach_of(Body& body) const;
+  double free_part(Body& body, BroadPhase& broad_phase, std::span<const OdeContact> contacts);
+  double free_part(const Body& body, const Body& other, std::span<const OdeContact> contacts);
   double free_part(const Way& way, dGeomID geom);
   std::optional<double> distance_to(dGeomID geom, const Vec3& from, const Vec3& direction, double length);
   std::optional<double> distance_to_mesh(dGeomID mesh, const Vec3& from, const Vec3& direction);
 
   dGeomID ray_, mesh_;
+  int axis_ = 0;
+  std::vector<Reach> reaches_;                     // by where they begin
+  double longest_ = 0.0;                           // m, of those
+  std::vector<Body*> fast_;
   std::vector<std::pair<Body*, double>> stopped_;  // with the part of their way that is free
 };
 

@@ -33,7 +33,9 @@ Sinking sinking_of(double ratio, double dt, bool quick_step) {
   return sinking;
 }
 
-constexpr const char* kQuickStepYields = "QuickStep's iterations do not carry the weight through the light body. The full level steps with dWorldStep, which does, up to 150 contacts that hang together; beyond, full_uneven_contacts counts";
+constexpr const char* kQuickStepYields =
+    "QuickStep's iterations do not carry the weight through the light body. The full level steps with dWorldStep, which does, up to 150 contacts that hang "
+    "together; beyond, full_uneven_contacts counts";
 
 }  // namespace
 
