@@ -78,7 +78,7 @@ const OdeMethod& ode_of(const DropMethod& method) {
 }  // namespace
 
 std::vector<FullLevelBenchRow> bench_full_level(const DropJob& job, const FullLevelBenchSettings& settings) {
-  const auto methods = make_drop_methods(settings.methods, job, 1, settings.progress);
+  const auto methods = make_drop_methods(settings.methods, job, {}, 1, settings.progress);
   std::vector<StepTimes> times(methods.size());
   for (int repeat = 0; repeat < settings.repeats; ++repeat)
     for (std::size_t i = 0; i < methods.size(); ++i) {
