@@ -87,6 +87,8 @@ void FullLevel::add_new_counts(Counters& counters) {
   counters.ode_messages += now.messages - counted_.messages;
   counters.contacts_dropped += now.contacts_dropped - counted_.contacts_dropped;
   counters.full_quick_steps += now.quick_steps - counted_.quick_steps;
+  counters.full_passes_prevented += now.passes_prevented - counted_.passes_prevented;
+  counters.full_uneven_contacts += now.uneven_contacts - counted_.uneven_contacts;
   counters.full_swallowed += now.swallowed - counted_.swallowed;
   counters.states_recovered += now.states_recovered - counted_.states_recovered;
   counted_ = now;

@@ -23,6 +23,8 @@ struct Counters {
   std::int64_t ode_messages = 0, contacts_dropped = 0, states_recovered = 0;
   std::int64_t full_quick_steps = 0;     ///< substeps of the full level whose largest pile was too much for dWorldStep
   std::int64_t full_swallowed = 0;       ///< times that a full body was wholly inside another in a substep
+  std::int64_t full_passes_prevented = 0;///< times that a full body, faster than it is thick in a substep, was stopped at what it would have gone through
+  std::int64_t full_uneven_contacts = 0; ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: the heavy one sinks in
   std::int64_t energy_clamps = 0;        ///< responses scaled so as not to add energy
   std::int64_t table_extrapolations = 0; ///< look-ups outside the measured range
   std::int64_t promotions_put_off = 0;   ///< for overlap with another body

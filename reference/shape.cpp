@@ -4,9 +4,11 @@
 #include <xxhash.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "reference/error.h"
+#include "reference/hull/convex_pieces.h"
 
 namespace lodestone {
 namespace {
@@ -67,6 +69,13 @@ double greatest_distance(std::span<const Vec3> points) {
   return greatest;
 }
 
+double least_distance_of_faces(const Hull& hull) {
+  double least = std::numeric_limits<double>::max();
+  for (int face = 0; face < int(hull.faces.size()); ++face)
+    least = std::min(least, hull.face_normal(face).normalized().dot(hull.vertices[hull.faces[face][0]]));
+  return least;
+}
+
 double longest_side(std::span<const Vec3> points) {
   Eigen::AlignedBox3d box;
   for (const Vec3& point : points) box.extend(point);
@@ -84,11 +93,19 @@ std::uint64_t hash_content(const Shape& shape) {
   return XXH3_64bits(content.data(), content.size() * sizeof(content[0]));
 }
 
+std::vector<Shape> make_pieces(const Shape& shape) {
+  std::vector<Shape> pieces;
+  for (const Hull& hull : find_convex_pieces(shape.mesh, shape.hull))
+    pieces.push_back(make_shape(shape.name + " piece", {hull.vertices, hull.faces}));
+  return pieces;
+}
+
 /// From vertices already about the centre of mass.
 void finish(Shape& shape) {
   shape.support_map = SupportMap(shape.hull);
   shape.inverse_inertia_per_mass = shape.inertia_per_mass.inverse();
   shape.radius = greatest_distance(shape.hull.vertices);
+  shape.inner_radius = least_distance_of_faces(shape.hull);
   shape.size = longest_side(shape.hull.vertices);
   shape.content_hash = hash_content(shape);
 }
@@ -116,6 +133,7 @@ Shape make_shape(std::string name, Mesh mesh, const MassOverride& mass, MeshRepo
   for (Vec3& vertex : shape.mesh.vertices) vertex -= properties.center_of_mass;
   for (Vec3& vertex : shape.hull.vertices) vertex -= properties.center_of_mass;
   finish(shape);
+  if (found.closed() && !shape.convex) shape.pieces = make_pieces(shape);
   if (report) *report = found;
   return shape;
 }
@@ -130,7 +148,7 @@ Shape make_sphere_shape(double radius_m) {
   shape.inertia_per_mass = 0.4 * radius_m * radius_m * Mat3::Identity();
   shape.sphere_radius = radius_m;
   finish(shape);
-  shape.radius = radius_m;
+  shape.radius = shape.inner_radius = radius_m;
   shape.size = 2.0 * radius_m;
   return shape;
 }
@@ -145,7 +163,9 @@ Shape scale_shape(const Shape& shape, double factor) {
   scaled.inertia_per_mass *= factor * factor;
   scaled.inverse_inertia_per_mass /= factor * factor;
   scaled.radius *= factor;
+  scaled.inner_radius *= factor;
   scaled.size *= factor;
+  for (Shape& piece : scaled.pieces) piece = scale_shape(piece, factor);
   if (scaled.sphere_radius) *scaled.sphere_radius *= factor;
   return scaled;
 }

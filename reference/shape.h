@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "reference/hull/hull.h"
 #include "reference/mesh/mass_properties.h"
@@ -21,8 +22,10 @@ struct Shape {
   Mat3 inertia_per_mass = Mat3::Identity();    ///< m², body axes
   Mat3 inverse_inertia_per_mass = Mat3::Identity();
   double radius = 0.0;                         ///< m, greatest distance of a vertex from the centre of mass: the paper's bounding sphere
+  double inner_radius = 0.0;                   ///< m, of the greatest ball about the centre of mass that the hull contains
   double size = 0.0;                           ///< m, longest side of the mesh's bounding box
   bool convex = false;                         ///< whether mesh and hull bound the same solid
+  std::vector<Shape> pieces;                   ///< of a concave shape, whose union it is (convex_pieces.h), each about its own `center_of_mass_in_mesh` in this body's frame; may be none
   std::optional<double> sphere_radius;         ///< set where the shape is exactly a sphere
   std::uint64_t content_hash = 0;              ///< of geometry and mass distribution over `radius`: equal for scaled copies
 };

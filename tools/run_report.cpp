@@ -24,7 +24,7 @@ constexpr std::array<std::pair<std::string_view, double StageTimes::*>, 8> kStag
     {"cross_level", &StageTimes::cross_level_ms},
 }};
 
-constexpr std::array<std::pair<std::string_view, std::int64_t Counters::*>, 12> kCounters = {{
+constexpr std::array<std::pair<std::string_view, std::int64_t Counters::*>, 14> kCounters = {{
     {"ode_bodies_created", &Counters::ode_bodies_created},
     {"trimeshes_built", &Counters::trimeshes_built},
     {"signatures_loaded", &Counters::signatures_loaded},
@@ -32,6 +32,8 @@ constexpr std::array<std::pair<std::string_view, std::int64_t Counters::*>, 12> 
     {"ode_messages", &Counters::ode_messages},
     {"contacts_dropped", &Counters::contacts_dropped},
     {"full_quick_steps", &Counters::full_quick_steps},
+    {"full_passes_prevented", &Counters::full_passes_prevented},
+    {"full_uneven_contacts", &Counters::full_uneven_contacts},
     {"full_swallowed", &Counters::full_swallowed},
     {"states_recovered", &Counters::states_recovered},
     {"energy_clamps", &Counters::energy_clamps},

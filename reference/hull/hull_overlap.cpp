@@ -7,19 +7,20 @@
 namespace lodestone {
 namespace {
 
+constexpr double kShallow = 0.01;  // × radius: a way out that is shorter is the shortest
+
 /// A shape in the world as libccd asks for it.
 struct PlacedHull {
   const Shape* shape;
   RigidState state;
+  Mat3 axes = state.orientation.toRotationMatrix();
+  mutable int last = 0;  // vertex found before: the next one is mostly near it
 
-  int farthest_vertex(const Vec3& direction) const {
-    const Vec3 in_body = state.orientation.conjugate() * direction;
-    return find_support(shape->hull, in_body, shape->support_map.find_start(in_body));
-  }
+  int farthest_vertex(const Vec3& direction) const { return last = find_support(shape->hull, axes.transpose() * direction, last); }
   /// The farthest point along `direction` (any length), relative to the centre of mass.
   Vec3 farthest_offset(const Vec3& direction) const {
     if (shape->sphere_radius) return *shape->sphere_radius * direction.normalized();
-    return state.orientation * shape->hull.vertices[farthest_vertex(direction)];
+    return axes * shape->hull.vertices[farthest_vertex(direction)];
   }
   Vec3 farthest(const Vec3& direction) const { return state.position + farthest_offset(direction); }
 };
@@ -45,8 +46,8 @@ struct Corner {
     if (body.shape->sphere_radius) return;
     const Hull& hull = body.shape->hull;
     const int vertex = body.farthest_vertex(direction);
-    for (const int face : hull.faces_of(vertex)) normals.push_back(body.state.orientation * hull.face_normal(face));
-    for (const int other : hull.neighbors(vertex)) edges.push_back(body.state.orientation * (hull.vertices[other] - hull.vertices[vertex]));
+    for (const int face : hull.faces_of(vertex)) normals.push_back(body.axes * hull.face_normal(face));
+    for (const int other : hull.neighbors(vertex)) edges.push_back(body.axes * (hull.vertices[other] - hull.vertices[vertex]));
   }
 };
 
@@ -126,6 +127,7 @@ std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidStat
   const auto by_portal = find_way_out(a, b, ccdMPRPenetration);
   if (!by_portal) return {};
   HullOverlap least = Walk(a, b, *by_portal).end();
+  if (least.depth < kShallow * std::min(first.radius, second.radius)) return least.depth > 0.0 ? std::optional(least) : std::nullopt;
   if (const auto by_polytope = find_way_out(a, b, ccdGJKPenetration))
     if (const HullOverlap other = Walk(a, b, *by_polytope).end(); other.depth < least.depth) least = other;
   return least.depth > 0.0 ? std::optional(least) : std::nullopt;

@@ -58,9 +58,14 @@ void set_sleeping(dBodyID body, bool sleeps, double radius) {
   dBodyEnable(body);  // starts the .5 s; else a new body at rest would sleep in its first step
 }
 
-bool is_hull(const OdeBodyDefinition& definition) {
+std::vector<Piece> pieces_of(const OdeBodyDefinition& definition) {
   const Shape& shape = *definition.shape;
-  return definition.geometry == OdeGeometry::hull || (definition.geometry == OdeGeometry::trimesh && shape.convex && !shape.sphere_radius);
+  const bool mesh = definition.geometry == OdeGeometry::trimesh && !shape.sphere_radius;
+  if (definition.geometry == OdeGeometry::hull || (mesh && shape.convex)) return {{&shape}};
+  std::vector<Piece> pieces;
+  if (mesh)
+    for (const Shape& piece : shape.pieces) pieces.push_back({&piece, piece.center_of_mass_in_mesh});
+  return pieces;
 }
 
 double reach_of(const Shape& shape, std::span<const Sphere> spheres) {
@@ -118,8 +123,9 @@ OdeBodyId Bodies::add(dWorldID world, dSpaceID space, const OdeBodyDefinition& d
   entry.shape = definition.shape;
   entry.material = definition.material;
   entry.spheres = spheres_of(definition);
-  entry.convex = is_hull(definition);
+  entry.pieces = pieces_of(definition);
   entry.reach = reach_of(*entry.shape, entry.spheres);
+  entry.thickness = entry.spheres.size() == 1 ? entry.spheres[0].radius : entry.shape->inner_radius;
   entry.last_good = definition.state;
 
   entry.body = dBodyCreate(world);

@@ -6,6 +6,7 @@
 
 #include "reference/ode/geometry_ode.h"
 #include "reference/ode/ode_world.h"
+#include "reference/ode/piece_contacts.h"
 #include "reference/ode/runtime_ode.h"
 
 namespace lodestone::ode {
@@ -17,8 +18,10 @@ struct Body {
   MaterialId material = 0;
   std::shared_ptr<const Shape> shape;
   std::vector<Sphere> spheres;     ///< empty: a mesh, and its contacts with planes are those of the hull
-  bool convex = false;             ///< met by other convex bodies as the hull of its shape
+  std::vector<Piece> pieces;       ///< convex, whose union is the body; none where it is met as a trimesh or as primitives
   double reach = 0.0;              ///< m, nothing of the body is farther from its centre of mass
+  double thickness = 0.0;          ///< m, radius of a ball about its centre of mass that its hull, or its sphere, contains
+  Vec3 before = Vec3::Zero();      ///< m, its place before the substep
   int last_support = 0;            ///< the hull vertex deepest in a plane last time
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   RigidState last_good;

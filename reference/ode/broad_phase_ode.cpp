@@ -20,6 +20,12 @@ bool may_touch(dGeomID a, dGeomID b) {
 
 auto order_of(const Candidate& c) { return std::tie(c.first_order, c.second_order, c.first_part, c.second_part); }
 
+/// Whether our geoms, which are of every category, may collide with it.
+bool has_surface(dGeomID geom) {
+  const int kind = dGeomGetClass(geom);
+  return kind != dPlaneClass && kind != dRayClass && dGeomIsEnabled(geom) && (dGeomGetCategoryBits(geom) | dGeomGetCollideBits(geom)) != 0;
+}
+
 // A space nobody else's collision detection looks into: dSpaceCollide passes over a geom without categories.
 dSpaceID make_hidden(dSpaceID space) {
   const dGeomID geom = reinterpret_cast<dGeomID>(space);
@@ -66,6 +72,26 @@ void BroadPhase::add(dGeomID a, dGeomID b) {
   Candidate found{a, b, place_of(a), place_of(b), part_of(a), part_of(b)};
   if (found.second_order < found.first_order) found = {b, a, found.second_order, found.first_order, found.second_part, found.first_part};
   candidates_.push_back(found);
+}
+
+std::span<const dGeomID> BroadPhase::find_others(const Eigen::AlignedBox3d& box) {
+  others_.clear();
+  collect(around_ ? around_ : ground_space_, box);
+  return others_;
+}
+
+void BroadPhase::collect(dSpaceID space, const Eigen::AlignedBox3d& box) {
+  if (space == bodies_space_) return;
+  for (int i = 0; i < dSpaceGetNumGeoms(space); ++i) {
+    const dGeomID geom = dSpaceGetGeom(space, i);
+    if (dGeomIsSpace(geom)) {
+      collect(reinterpret_cast<dSpaceID>(geom), box);
+    } else if (has_surface(geom)) {
+      dReal b[6];
+      dGeomGetAABB(geom, b);
+      if (box.intersects(Eigen::AlignedBox3d(Vec3(b[0], b[2], b[4]), Vec3(b[1], b[3], b[5])))) others_.push_back(geom);
+    }
+  }
 }
 
 void BroadPhase::wake_around(dGeomID geom) {

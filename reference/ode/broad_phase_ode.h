@@ -29,16 +29,20 @@ class BroadPhase {
 
   /// Sorted; valid until the next call.
   std::span<const Candidate> find(Bodies& bodies);
+  /// The ground and the caller's geoms, save planes, whose boxes meet `box` (m, world); valid until the next call.
+  std::span<const dGeomID> find_others(const Eigen::AlignedBox3d& box);
   /// Wakes every body whose box meets that of `geom`.
   void wake_around(dGeomID geom);
 
  private:
   static void meet(void* self, dGeomID a, dGeomID b);
   void add(dGeomID a, dGeomID b);
+  void collect(dSpaceID space, const Eigen::AlignedBox3d& box);
 
   dSpaceID around_, bodies_space_, ground_space_;
   Bodies* bodies_ = nullptr;  // while finding
   std::vector<Candidate> candidates_;
+  std::vector<dGeomID> others_;
 };
 
 }  // namespace lodestone::ode

@@ -6,12 +6,10 @@
 #include "reference/error.h"
 #include "reference/hull/hull_manifold.h"
 #include "reference/mesh/inside.h"
+#include "reference/ode/piece_contacts.h"
 
 namespace lodestone::ode {
 namespace {
-
-// × size: overlap that is left to hulls at rest on each other, so that their contacts stay.
-constexpr double kRestingHullDepth = 2e-5;
 
 ContactSide side_of(const Body& body) { return {body.body, body.material, body.id}; }
 
@@ -23,6 +21,13 @@ Plane plane_of(dGeomID geom) {
   dVector4 p;
   dGeomPlaneGetParams(geom, p);
   return {to_vec3(p), p[3], 0, geom};
+}
+
+Pieces pieces_of(const Body& body) { return {body.pieces, state_of(body.body)}; }
+
+Pieces pieces_of(const Ground* ground) {
+  if (!ground || !ground->box) return {};
+  return {{{ground->box.get()}}, ground->state};
 }
 
 /// Whether two meshes whose surfaces do not cross are one inside the other.
@@ -39,6 +44,14 @@ void limit_depths(std::vector<ContactPoint>& contacts, const HullOverlap& overla
   if (contacts.empty() || std::ranges::none_of(contacts, is_false)) return;
   if (!std::ranges::all_of(contacts, is_false)) return void(std::erase_if(contacts, is_false));
   for (ContactPoint& contact : contacts) contact = {contact.point, overlap.direction, overlap.depth};
+}
+
+/// A body deep in another (pitfall 4) is let out one way: contacts that oppose the deepest would squeeze it like a stone from a cherry.
+void drop_opposing(std::vector<ContactPoint>& contacts, double size) {
+  constexpr double kDeep = 0.1;  // × size
+  if (contacts.empty()) return;
+  const ContactPoint deepest = std::ranges::max(contacts, {}, &ContactPoint::depth);
+  if (deepest.depth > kDeep * size) std::erase_if(contacts, [&](const ContactPoint& contact) { return contact.normal.dot(deepest.normal) < 0.0; });
 }
 
 bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.body)) == dTriMeshClass; }
@@ -176,36 +189,29 @@ void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
 
 void Collision::find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts) {
   const double size = other ? std::min(body.reach, other->reach) : body.reach;
-  const Ground* ground = other ? nullptr : ground_of(parts[0].second);
-  if (settings_.mesh_contacts == MeshContacts::exact && other && is_mesh(body) && is_mesh(*other))
-    find_mesh_pair_points(body, *other, parts[0], size);
-  else if (settings_.mesh_contacts == MeshContacts::exact && body.convex && ground && ground->hull)
-    find_manifold({*body.shape, state_of(body.body)}, {*ground->hull, ground->state});
+  const bool exact = settings_.mesh_contacts == MeshContacts::exact;
+  const Pieces first = pieces_of(body), second = other ? pieces_of(*other) : pieces_of(ground_of(parts[0].second));
+  if (exact && !first.empty() && !second.empty())
+    find_contacts_of_pieces(first, second, points_);
+  else if (exact && other && is_mesh(body) && is_mesh(*other))
+    find_filtered_points(body, *other, parts[0], size);
   else
     for (const Candidate& part : parts) narrow_phase_.find(part.first, part.second, size, points_);
   drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
 }
 
 /// Bodies are clear of each other once their hulls are.
-void Collision::find_mesh_pair_points(const Body& body, const Body& other, const Candidate& pair, double size) {
-  const Placed first{*body.shape, state_of(body.body)}, second{*other.shape, state_of(other.body)};
-  if (body.convex && other.convex) return find_manifold(first, second);
-  const auto overlap = find_hull_overlap(first.shape, first.state, second.shape, second.state);
+void Collision::find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size) {
+  const RigidState first = state_of(body.body), second = state_of(other.body);
+  const auto overlap = find_hull_overlap(*body.shape, first, *other.shape, second);
   if (!overlap) return;
   narrow_phase_.find(pair.first, pair.second, size, points_);
   if (points_.empty() && is_inside_other(body, other)) {  // surfaces that do not cross make no contact, wherever they are
     ++swallowed_;
-    find_hull_manifold(first.shape, first.state, second.shape, second.state, *overlap, points_);
+    find_hull_manifold(*body.shape, first, *other.shape, second, *overlap, points_);
   }
   limit_depths(points_, *overlap);
-}
-
-void Collision::find_manifold(const Placed& first, const Placed& second) {
-  const auto overlap = find_hull_overlap(first.shape, first.state, second.shape, second.state);
-  if (!overlap) return;
-  find_hull_manifold(first.shape, first.state, second.shape, second.state, *overlap, points_);
-  const double resting = kRestingHullDepth * std::min(first.shape.radius, second.shape.radius);
-  for (ContactPoint& point : points_) point.depth -= resting;
+  drop_opposing(points_, size);
 }
 
 void Collision::keep_deepest() {

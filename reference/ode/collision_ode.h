@@ -22,13 +22,8 @@ struct Plane {
 /// A static box or mesh.
 struct Ground {
   MaterialId material = 0;
-  std::shared_ptr<const Shape> hull = {};  ///< of a box; null for a mesh
-  RigidState state = {};                   ///< of the hull
-};
-
-struct Placed {
-  const Shape& shape;
-  RigidState state;
+  std::shared_ptr<const Shape> box = {};  ///< null for a mesh
+  RigidState state = {};                  ///< of the box
 };
 
 class Collision {
@@ -58,8 +53,7 @@ class Collision {
   void find_mesh_points(const Body& body, const Plane& plane);
   void collide_candidates(Bodies& bodies, ContactJoints& joints);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
-  void find_mesh_pair_points(const Body& body, const Body& other, const Candidate& pair, double size);
-  void find_manifold(const Placed& first, const Placed& second);
+  void find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size);
   const Ground* ground_of(dGeomID geom) const;
   void keep_deepest();
   void drop_beyond(int kept);

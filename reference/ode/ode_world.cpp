@@ -2,15 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "reference/ode/collision_ode.h"
 #include "reference/error.h"
 #include "reference/ode/islands.h"
+#include "reference/ode/sweep_ode.h"
 
 namespace lodestone {
 
 using namespace ode;
+
+namespace {
+
+constexpr double kUneven = 100.0;  // QuickStep's iterations carry a weight through a body a hundredth of it no more
+
+}  // namespace
 
 struct OdeWorld::Impl {
   Impl(dWorldID callers_world, dSpaceID around, const OdeSettings& s, const MaterialTable& materials)
@@ -33,7 +41,7 @@ struct OdeWorld::Impl {
     threading = std::make_unique<StepThreading>(world);
     dWorldSetGravity(world, settings.gravity.x(), settings.gravity.y(), settings.gravity.z());
     dWorldSetQuickStepNumIterations(world, settings.quick_step_iterations);
-    dWorldSetCFM(world, settings.cfm);  // that of friction, too
+    if (settings.cfm > 0.0) dWorldSetCFM(world, settings.cfm);  // friction's; without any its rows may come to depend on each other
   }
 
   void substep(double h);
@@ -41,6 +49,7 @@ struct OdeWorld::Impl {
   bool advance(double h);
   void take_back_bodies();
   void recover_bodies();
+  void count_uneven_contacts();
   void wake_neighbors(const Body& body);
 
   OdeSettings settings;
@@ -48,6 +57,7 @@ struct OdeWorld::Impl {
   std::unique_ptr<StepThreading> threading;
   ContactJoints joints;
   Collision collision;
+  Sweep sweep;
   TrimeshCache trimeshes;
   Bodies bodies;
   OdeCounters counters;
@@ -105,6 +115,7 @@ void OdeWorld::step(double dt, int substeps) {
 // whose other bodies cannot be taken back.
 void OdeWorld::Impl::substep(double h) {
   constexpr int kAttempts = 3;
+  sweep.begin(bodies);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     push_bodies();
     joints.begin(h, attempt);
@@ -115,6 +126,7 @@ void OdeWorld::Impl::substep(double h) {
     take_back_bodies();
   }
   recover_bodies();
+  counters.passes_prevented += sweep.stop_passing(bodies, collision.broad_phase(), joints.contacts());
 }
 
 void OdeWorld::Impl::take_back_bodies() {
@@ -137,12 +149,26 @@ bool OdeWorld::Impl::advance(double h) {
   const bool too_many = int(contacts.size()) > settings.direct_contacts_max && largest_island(contacts) > settings.direct_contacts_max;
   if (settings.quick_step || too_many) {
     ++counters.quick_steps;
+    count_uneven_contacts();
     const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++steps);
     dWorldQuickStep(world, h);
   } else {
     dWorldStep(world, h);
   }
   return messages_of_this_thread() == messages_before;
+}
+
+void OdeWorld::Impl::count_uneven_contacts() {
+  const auto mass_of = [this](OdeBodyId body) {
+    dMass mass;
+    dBodyGetMass(bodies.find(body).body, &mass);
+    return mass.mass;
+  };
+  for (const OdeContact& contact : joints.contacts()) {
+    if (!contact.second) continue;
+    const auto [lighter, heavier] = std::minmax({mass_of(contact.first), mass_of(contact.second)});
+    if (heavier >= kUneven * lighter) ++counters.uneven_contacts;
+  }
 }
 
 void OdeWorld::Impl::recover_bodies() {

@@ -69,6 +69,8 @@ struct OdeBodyDefinition {
 struct OdeCounters {
   std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0, quick_steps = 0, states_recovered = 0;
   std::int64_t swallowed = 0;  ///< times that a body was wholly inside another in a substep (both meshes, one of them concave)
+  std::int64_t passes_prevented = 0;  ///< times that a body would have gone through another, or through ground, within a substep
+  std::int64_t uneven_contacts = 0;   ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: it lets the heavy one sink in
 };
 
 /// Two of this world's bodies that touched in the last substep (`second` null: static ground or a body of the caller's).

@@ -4,6 +4,7 @@
 #include "tools/bench/body_cases.h"
 #include "tools/bench/contact_cases.h"
 #include "tools/bench/hard_case.h"
+#include "tools/bench/pair_cases.h"
 #include "tools/bench/simbenchmark_cases.h"
 
 namespace lodestone {
@@ -23,9 +24,13 @@ std::span<const HardCase> hard_cases() {
       HardCase{"F7", measure_stacks},
       HardCase{"F8", measure_piles},
       HardCase{"F9", measure_contact_depths},
+      HardCase{"F10", measure_heavy_on_light},
       HardCase{"F11", measure_free_top},
       HardCase{"F12", measure_slender_bodies},
+      HardCase{"F13", measure_fast_bodies},
+      HardCase{"F14", measure_far_stacks},
       HardCase{"F18", measure_head_on},
+      HardCase{"F19", measure_concave},
   };
   return kCases;
 }

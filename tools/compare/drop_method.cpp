@@ -35,13 +35,17 @@ DropMethod make_low(const DropJob& job) {
   return method;
 }
 
+DropMethod make_bullet(std::string name, BulletGeometry geometry) {
+  return {std::move(name), BulletMethod{geometry}, bullet_available() ? "" : "needs a build with Bullet (libbullet-dev)"};
+}
+
 using Maker = DropMethod (*)(const DropJob&);
 struct NamedMaker {
   std::string_view name;
   Maker make;
 };
 
-constexpr std::array<NamedMaker, 7> kOdeMethods = {{
+constexpr std::array<NamedMaker, 9> kEngineMethods = {{
     {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.plane_contacts_from_hull = false}); }},
     {"full", [](const DropJob& job) { return make_ode("full", job, {.substeps = ManagerSettings{}.full_substeps}); }},
     {"full_1", [](const DropJob& job) { return make_ode("full_1", job, {}); }},
@@ -50,6 +54,8 @@ constexpr std::array<NamedMaker, 7> kOdeMethods = {{
        return make_ode("spheres7", job, {.geometry = OdeGeometry::spheres, .spheres = fit_spheres(job.shape->mesh, kSphereCount)});
      }},
     {"sphere", [](const DropJob& job) { return make_ode("sphere", job, {.geometry = OdeGeometry::sphere}); }},
+    {"bullet_hull", [](const DropJob&) { return make_bullet("bullet_hull", BulletGeometry::hull); }},
+    {"bullet_sphere", [](const DropJob&) { return make_bullet("bullet_sphere", BulletGeometry::sphere); }},
     {"hull", [](const DropJob& job) { return make_ode("hull", job, {.geometry = OdeGeometry::hull, .plane_contacts_from_hull = false}); }},
 }};
 
@@ -88,7 +94,7 @@ DropMethod make_truth(const DropJob& job) { return make_ode("truth", job, {.subs
 
 std::vector<std::string> drop_method_names() {
   std::vector<std::string> names;
-  for (const NamedMaker& method : kOdeMethods) names.emplace_back(method.name);
+  for (const NamedMaker& method : kEngineMethods) names.emplace_back(method.name);
   names.emplace_back(kStatistical);
   return names;
 }
@@ -101,8 +107,8 @@ std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names,
       std::ranges::move(make_statistical(job, measuring, threads, progress), std::back_inserter(methods));
       continue;
     }
-    const auto found = std::ranges::find(kOdeMethods, name, &NamedMaker::name);
-    if (found == kOdeMethods.end()) throw_unknown(name);
+    const auto found = std::ranges::find(kEngineMethods, name, &NamedMaker::name);
+    if (found == kEngineMethods.end()) throw_unknown(name);
     methods.push_back(found->make(job));
   }
   return methods;

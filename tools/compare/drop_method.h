@@ -9,6 +9,7 @@
 #include "lod/manager.h"
 #include "reference/trial.h"
 #include "signature/signature_source.h"
+#include "tools/compare/bullet_world.h"
 
 namespace lodestone {
 
@@ -35,9 +36,14 @@ struct StatisticalMethod {
   std::shared_ptr<const Signature> signature;
 };
 
+/// Bullet, where Lodestone is built with it.
+struct BulletMethod {
+  BulletGeometry geometry = BulletGeometry::hull;
+};
+
 struct DropMethod {
   std::string name;
-  std::variant<OdeMethod, StatisticalMethod> way;
+  std::variant<OdeMethod, StatisticalMethod, BulletMethod> way;
   std::string left_out = {};  ///< why it cannot be had for this shape; empty where it can
 
   int substeps() const;

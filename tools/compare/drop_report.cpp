@@ -94,7 +94,8 @@ std::string table_of(const DropComparison& comparison) {
   std::string left_out;
   for (const DropRow& row : comparison.rows) {
     table.add_row(cells_of(row));
-    if (!row.reason.empty()) left_out += fmt::format("{} left out: {} {}\n", row.method, comparison.shape, row.reason);
+    const std::string line = fmt::format("{} left out: {} {}\n", row.method, comparison.shape, row.reason);
+    if (!row.reason.empty() && left_out.find(line) == std::string::npos) left_out += line;  // once for all steps
   }
   return table.text() + left_out;
 }

@@ -53,7 +53,7 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-double measure_ode(const DropJob& job, const DropMethod& method, const DropBatch& batch,
+double measure_one_by_one(const DropJob& job, const DropMethod& method, const DropBatch& batch,
                    std::span<const DropObservation> observed) {
   std::vector<double> ns;
   DropWorld world(job, method);
@@ -111,7 +111,7 @@ std::vector<DropObservation> observe_drops(const DropJob& job, const DropMethod&
 double measure_ns_per_body_step(const DropJob& job, const DropMethod& method, const DropBatch& batch,
                                 std::span<const DropObservation> observed) {
   if (std::holds_alternative<StatisticalMethod>(method.way)) return measure_statistical(job, method, batch);
-  return measure_ode(job, method, batch, observed);
+  return measure_one_by_one(job, method, batch, observed);
 }
 
 }  // namespace lodestone

@@ -24,7 +24,7 @@ struct DropBatch {
 std::vector<DropObservation> observe_drops(const DropJob& job, const DropMethod& method, const DropBatch& batch,
                                            const std::function<void(double)>& progress = {});
 
-/// Processor time of a body's step, ns, over the steps in which it is awake, on one thread. ODE: one body at a time, up to the rest that
+/// Processor time of a body's step, ns, over the steps in which it is awake, on one thread. ODE and Bullet: one body at a time, up to the rest that
 /// `observed` found; the median of some of the batch's drops. Statistical: a thousand bodies in one manager, too far apart to meet, without
 /// the phases that look for pairs.
 double measure_ns_per_body_step(const DropJob& job, const DropMethod& method, const DropBatch& batch,

@@ -48,6 +48,7 @@ DropWorld::DropWorld(const DropJob& job, const DropMethod& method)
 void DropWorld::start(std::uint64_t seed, std::uint32_t trial) {
   const RigidState state = drop_state(*job_.shape, job_.conditions, seed, trial);
   if (std::holds_alternative<OdeMethod>(method_.way)) start_ode(state);
+  else if (std::holds_alternative<BulletMethod>(method_.way)) start_bullet(state);
   else start_statistical(state, seed, trial);
 }
 
@@ -66,6 +67,16 @@ void DropWorld::start_ode(const RigidState& state) {
                                      .spheres = way.spheres});
 }
 
+void DropWorld::start_bullet(const RigidState& state) {
+  bullet_.emplace(BulletWorld({}), -1);  // anew, so that nothing of the last drop's contacts is left
+  bullet_->world.add_plane(drop_plane_normal(job_.conditions), 0.0, job_.material);
+  bullet_->body = bullet_->world.add_body({.shape = job_.shape,
+                                           .mass = job_.material.density * job_.shape->volume,
+                                           .material = job_.material,
+                                           .state = state,
+                                           .geometry = std::get<BulletMethod>(method_.way).geometry});
+}
+
 void DropWorld::start_statistical(const RigidState& state, std::uint64_t seed, std::uint32_t trial) {
   Manager manager = make_manager(job_, std::get<StatisticalMethod>(method_.way), seed_of_drop(seed, trial));
   const BodyId body = manager.add_body(statistical_body(job_, state));
@@ -74,10 +85,12 @@ void DropWorld::start_statistical(const RigidState& state, std::uint64_t seed, s
 
 void DropWorld::step(double dt) {
   if (ode_) ode_->world.step(dt, method_.substeps());
+  else if (bullet_) bullet_->world.step(dt);
   else statistical_->manager.step(dt);
 }
 
 RigidState DropWorld::state() const {
+  if (bullet_) return bullet_->world.state(bullet_->body);
   return ode_ ? ode_->world.state(ode_->body) : statistical_->manager.state(statistical_->body);
 }
 

@@ -30,13 +30,19 @@ class DropWorld {
     Manager manager;
     BodyId body;
   };
+  struct Bullet {
+    BulletWorld world;
+    int body;
+  };
   void start_ode(const RigidState& state);
+  void start_bullet(const RigidState& state);
   void start_statistical(const RigidState& state, std::uint64_t seed, std::uint32_t trial);
 
   const DropJob& job_;
   const DropMethod& method_;
   std::unique_ptr<MaterialTable> materials_;  // outlives the ODE world, and stays where it is
   std::optional<Ode> ode_;
+  std::optional<Bullet> bullet_;
   std::optional<Statistical> statistical_;
 };
 

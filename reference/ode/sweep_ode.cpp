@@ -1,0 +1,116 @@
+#include "reference/ode/sweep_ode.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace lodestone::ode {
+namespace {
+
+// Of the thickness: how far from the axis of the way the ring of rays is, and how far before what they meet the centre stops. The ball inscribed in
+// the body then reaches a little into it, so that the next collision detection finds a contact.
+constexpr double kRing = 0.8, kLeadOfCenter = 0.9, kLeadOfRing = 0.5;
+constexpr int kRingRays = 6;
+
+Vec3 position_of(const Body& body) { return to_vec3(dBodyGetPosition(body.body)); }
+
+bool is_fast(const Body& body) {
+  if (!body.body || !dBodyIsEnabled(body.body)) return false;
+  return (position_of(body) - body.before).squaredNorm() > body.thickness * body.thickness && dBodyGetNumJoints(body.body) == 0;
+}
+
+/// Whether the segment comes within `reach` of `center`.
+bool comes_near(const Vec3& from, const Vec3& direction, double length, const Vec3& center, double reach) {
+  const double along = std::clamp(direction.dot(center - from), 0.0, length);
+  return (from + along * direction - center).squaredNorm() <= reach * reach;
+}
+
+bool touch(std::span<const OdeContact> contacts, OdeBodyId a, OdeBodyId b) {
+  return std::ranges::any_of(contacts, [&](const OdeContact& c) { return (c.first == a && c.second == b) || (c.first == b && c.second == a); });
+}
+
+}  // namespace
+
+Sweep::Sweep() : ray_(dCreateRay(nullptr, 1.0)), mesh_(dCreateTriMesh(nullptr, nullptr, nullptr, nullptr, nullptr)) {
+  dGeomRaySetClosestHit(ray_, 1);
+}
+
+Sweep::~Sweep() {
+  dGeomDestroy(ray_);
+  dGeomDestroy(mesh_);
+}
+
+void Sweep::begin(Bodies& bodies) {
+  for (Body& body : bodies.slots())
+    if (body.body) body.before = position_of(body);
+}
+
+int Sweep::stop_passing(Bodies& bodies, BroadPhase& broad_phase, std::span<const OdeContact> contacts) {
+  stopped_.clear();
+  for (Body& body : bodies.slots())
+    if (is_fast(body))
+      if (const double part = free_part(body, bodies, broad_phase, contacts); part < 1.0) stopped_.emplace_back(&body, part);
+  // Only now: the others' ways were measured to where all of them would have gone.
+  for (const auto& [body, part] : stopped_) {
+    const Vec3 place = body->before + part * (position_of(*body) - body->before);
+    dBodySetPosition(body->body, place.x(), place.y(), place.z());
+    body->last_good.position = place;
+  }
+  return int(stopped_.size());
+}
+
+double Sweep::free_part(Body& body, Bodies& bodies, BroadPhase& broad_phase, std::span<const OdeContact> contacts) {
+  const Vec3 end = position_of(body), own = end - body.before;
+  double part = 1.0;
+  for (Body& other : bodies.slots()) {
+    if (!other.body || &other == &body) continue;
+    const Vec3 center = position_of(other), relative = own - (center - other.before);
+    const Way way{end - relative, relative.normalized(), relative.norm(), body.thickness, touch(contacts, body.id, other.id)};
+    if (way.length <= way.thickness || !comes_near(way.from, way.direction, way.length, center, other.reach + way.thickness)) continue;
+    for (dGeomID geom = dBodyGetFirstGeom(other.body); geom; geom = dBodyGetNextGeom(geom)) part = std::min(part, free_part(way, geom));
+  }
+  const Way way{body.before, own.normalized(), own.norm(), body.thickness, touch(contacts, body.id, {})};
+  Eigen::AlignedBox3d swept(body.before.cwiseMin(end), body.before.cwiseMax(end));
+  swept.extend(swept.min() - Vec3::Constant(way.thickness)).extend(swept.max() + Vec3::Constant(way.thickness));
+  for (const dGeomID geom : broad_phase.find_others(swept)) part = std::min(part, free_part(way, geom));
+  return part;
+}
+
+double Sweep::free_part(const Way& way, dGeomID geom) {
+  const Vec3 side = way.direction.unitOrthogonal(), up = way.direction.cross(side);
+  double free = way.length;
+  const auto look = [&](const Vec3& offset, double lead) {
+    const auto distance = distance_to(geom, way.from + offset, way.direction, way.length);
+    if (!distance) return;
+    const double left = *distance - lead * way.thickness;
+    // What is nearer without touching stands in a hollow of the body: were it held there, no contact would ever let it go.
+    if (left > 0.0 || way.touches) free = std::min(free, std::max(left, 0.0));
+  };
+  look(Vec3::Zero(), kLeadOfCenter);
+  for (int i = 0; i < kRingRays; ++i) {
+    const double turn = 2.0 * std::numbers::pi * i / kRingRays;
+    look(kRing * way.thickness * (std::cos(turn) * side + std::sin(turn) * up), kLeadOfRing);
+  }
+  return free / way.length;
+}
+
+std::optional<double> Sweep::distance_to(dGeomID geom, const Vec3& from, const Vec3& direction, double length) {
+  dGeomRaySetLength(ray_, length);
+  if (dGeomGetClass(geom) == dTriMeshClass) return distance_to_mesh(geom, from, direction);
+  dGeomRaySet(ray_, from.x(), from.y(), from.z(), direction.x(), direction.y(), direction.z());
+  dContactGeom hit;
+  return dCollide(ray_, geom, 1, &hit, sizeof hit) > 0 ? std::optional(hit.depth) : std::nullopt;
+}
+
+// OPCODE computes in float: about the start of the ray it is as precise far from the world's origin as near it.
+std::optional<double> Sweep::distance_to_mesh(dGeomID mesh, const Vec3& from, const Vec3& direction) {
+  const Vec3 place = to_vec3(dGeomGetPosition(mesh)) - from;
+  dGeomTriMeshSetData(mesh_, dGeomTriMeshGetData(mesh));
+  dGeomSetPosition(mesh_, place.x(), place.y(), place.z());
+  dGeomSetRotation(mesh_, dGeomGetRotation(mesh));
+  dGeomRaySet(ray_, 0, 0, 0, direction.x(), direction.y(), direction.z());
+  const std::scoped_lock lock(trimesh_mutex());
+  dContactGeom hit;
+  return dCollide(ray_, mesh_, 1, &hit, sizeof hit) > 0 ? std::optional(hit.depth) : std::nullopt;
+}
+
+}  // namespace lodestone::ode

@@ -1,0 +1,152 @@
+// Fast bodies: none passes through what it would have met (hard case F13), and slow ones go unhindered.
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include "tests/reference/ode/ode_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+constexpr double kStep = 1.0 / 60;
+const Vec3 kFast(200, 0, 0);
+
+// A wall of five centimetres across the x axis.
+void add_wall(OdeWorld& world, const Vec3& place) { world.add_static_box({0.05, 4, 4}, place, Quat::Identity(), 0); }
+
+TEST(Sweep, BallBouncesOffAThinWallWithItsWholeSpeed) {
+  const MaterialTable materials = material(1.0, 0.0);
+  OdeWorld world({.gravity = Vec3::Zero()}, materials);
+  add_wall(world, {1.0, 0, 0});
+  const OdeBodyId ball = world.add_body({.shape = sphere_shape(0.1), .state = at({-1, 0, 0}, kFast)});
+  for (int i = 0; i < 3; ++i) world.step(kStep);
+  EXPECT_NEAR(world.state(ball).velocity.x(), -200.0, 1e-3);
+  EXPECT_EQ(world.counters().passes_prevented, 1);
+}
+
+TEST(Sweep, StopsWhereTheBodyTouches) {
+  const MaterialTable materials = material(1.0, 0.0);
+  OdeWorld world({.gravity = Vec3::Zero()}, materials);
+  add_wall(world, {1.0, 0, 0});
+  const OdeBodyId ball = world.add_body({.shape = sphere_shape(0.1), .state = at({-1, 0, 0}, kFast)});
+  world.step(kStep);
+  EXPECT_NEAR(world.state(ball).position.x(), 0.975 - 0.09, 1e-12);
+  EXPECT_EQ(world.state(ball).velocity, kFast);
+}
+
+TEST(Sweep, IsAsPreciseFarFromTheOrigin) {
+  const MaterialTable materials = material(1.0, 0.0);
+  OdeWorld world({.gravity = Vec3::Zero()}, materials);
+  const Vec3 far = Vec3::Constant(1e7);
+  world.add_body({.shape = box_shape({0.05, 4, 4}), .mass = 1e6, .state = at(far + Vec3(1, 0, 0))});
+  const OdeBodyId ball = world.add_body({.shape = sphere_shape(0.1), .state = at(far - Vec3(1, 0, 0), kFast)});
+  world.step(kStep);
+  EXPECT_NEAR(world.state(ball).position.x() - far.x(), 0.975 - 0.09, 1e-6);
+}
+
+TEST(Sweep, LooksRelativeToWhatMovesAlong) {
+  const MaterialTable materials;
+  OdeWorld world({.gravity = Vec3::Zero()}, materials);
+  const OdeBodyId behind = world.add_body({.shape = sphere_shape(0.1), .state = at({0, 0, 0}, kFast)});
+  world.add_body({.shape = sphere_shape(0.1), .state = at({0.5, 0, 0}, kFast)});
+  for (int i = 0; i < 10; ++i) world.step(kStep);
+  EXPECT_EQ(world.counters().passes_prevented, 0);
+  EXPECT_NEAR(world.state(behind).position.x(), 200.0 / 6, 1e-9);
+}
+
+TEST(Sweep, LeavesBodiesAloneThatMoveLessThanTheirThickness) {
+  const MaterialTable materials = material(0.3, 0.5);
+  OdeWorld world({}, materials);
+  world.add_plane(Vec3::UnitZ(), 0.0, 0);
+  add_wall(world, {1.0, 0, 0});
+  for (int i = 0; i < 5; ++i) world.add_body({.shape = box_shape(Vec3::Constant(0.2)), .mass = 8.0, .state = at({0, 0, 0.2 + 0.3 * i}, {3, 0, 0})});
+  for (int i = 0; i < 300; ++i) world.step(1.0 / 240);
+  EXPECT_EQ(world.counters().passes_prevented, 0);
+}
+
+TEST(Sweep, LeavesJointedBodiesToTheirJoint) {
+  const MaterialTable materials;
+  OdeWorld world({.gravity = Vec3::Zero()}, materials);
+  add_wall(world, {1.0, 0, 0});
+  const OdeBodyId ball = world.add_body({.shape = sphere_shape(0.1), .state = at({-1, 0, 0}, kFast)});
+  const dJointID slider = dJointCreateSlider(world.ode_world(), nullptr);
+  dJointAttach(slider, world.ode_body(ball), nullptr);
+  dJointSetSliderAxis(slider, 1, 0, 0);
+  world.step(kStep);
+  EXPECT_EQ(world.counters().passes_prevented, 0);
+  EXPECT_GT(world.state(ball).position.x(), 2.0);
+  dJointDestroy(slider);
+}
+
+TEST(Sweep, SeesTheCallersStaticGeoms) {
+  const MaterialTable materials;
+  const dWorldID world = dWorldCreate();
+  const dSpaceID space = dHashSpaceCreate(nullptr), inner = dSimpleSpaceCreate(space);
+  const dGeomID wall = dCreateBox(inner, 0.05, 4, 4), sensor = dCreateBox(inner, 0.05, 4, 4);
+  dGeomSetPosition(wall, 1.0, 0, 0);
+  dGeomSetPosition(sensor, -0.5, 0, 0);
+  dGeomSetCategoryBits(sensor, 0);
+  dGeomSetCollideBits(sensor, 0);
+  {
+    OdeWorld ours(world, space, {}, materials);
+    const OdeBodyId ball = ours.add_body({.shape = sphere_shape(0.1), .state = at({-1, 0, 0}, kFast)});
+    ours.step(kStep);
+    EXPECT_NEAR(ours.state(ball).position.x(), 0.975 - 0.09, 1e-12);
+  }
+  dSpaceDestroy(space);
+  dWorldDestroy(world);
+}
+
+TEST(Sweep, HollowsLetGo) {
+  // The bar enters the corner of an L, where the L's centre of mass is in the air, and must not be held there.
+  const MaterialTable materials = material(0.0, 0.0);
+  OdeWorld world({.gravity = Vec3::Zero()}, materials);
+  const auto l = std::make_shared<const Shape>(make_shape("l", make_l(1.0, 1.0, 0.1, 0.1)));
+  world.add_static_box({0.02, 0.02, 4.0}, {0, 0, 0}, Quat::Identity(), 0);
+  const Vec3 way = Vec3(-1, -1, 0).normalized();  // with the open corner ahead
+  const OdeBodyId body = world.add_body({.shape = l, .mass = 1.0, .state = at(way * -3.0, 100.0 * way, Vec3::Zero(), Quat(Eigen::AngleAxisd(0.0, Vec3::UnitZ())))});
+  for (int i = 0; i < 60; ++i) world.step(kStep);
+  // Either it was struck or it is gone; it does not hang in the air with its speed.
+  const RigidState end = world.state(body);
+  EXPECT_TRUE(end.velocity.norm() < 99.0 || end.position.norm() > 10.0) << end.position.transpose() << " / " << end.velocity.transpose();
+}
+
+TEST(OdeWorld, QuickStepCountsUnevenContacts) {
+  const MaterialTable materials = material(0.0, 0.5);
+  for (const bool quick : {false, true})
+    for (const double ratio : {10.0, 1000.0}) {
+      OdeWorld world({.quick_step = quick}, materials);
+      world.add_plane(Vec3::UnitZ(), 0.0, 0);
+      world.add_body({.shape = box_shape(Vec3::Constant(0.2)), .mass = 1.0, .state = at({0, 0, 0.0999})});
+      world.add_body({.shape = box_shape(Vec3::Constant(0.2)), .mass = ratio, .state = at({0, 0, 0.2998})});
+      world.step(1.0 / 240);
+      EXPECT_EQ(world.counters().uneven_contacts > 0, quick && ratio > 100.0) << quick << ' ' << ratio;
+    }
+}
+
+TEST(OdeWorld, BoxPrimitiveStacksAndBouncesAsItsShape) {
+  const MaterialTable materials = material(0.5, 0.3);
+  OdeWorld world({}, materials);
+  world.add_plane(Vec3::UnitZ(), 0.0, 0);
+  const OdeBodyId box = world.add_body({.shape = box_shape({0.3, 0.2, 0.1}), .state = at({0, 0, 1.05}), .geometry = OdeGeometry::box});
+  double top = 0.0;
+  bool falling = true;
+  for (int i = 0; i < 1500; ++i) {
+    world.step(5e-4);
+    falling = falling && world.state(box).velocity.z() <= 0.0;
+    if (!falling) top = std::max(top, world.state(box).position.z());
+  }
+  EXPECT_NEAR(top - 0.05, 0.25, 0.005);
+  EXPECT_EQ(world.counters().trimeshes_built, 0);
+}
+
+TEST(OdeWorldDeathTest, BoxPrimitiveNeedsItsCentreOfMassInTheMiddle) {
+  const MaterialTable materials;
+  OdeWorld world({}, materials);
+  const auto loaded = std::make_shared<const Shape>(make_shape("loaded", make_box({1, 1, 1}), {.center_of_mass_m = Vec3(0, 0, 0.2)}));
+  EXPECT_DEATH(world.add_body({.shape = loaded, .geometry = OdeGeometry::box}), "in its middle");
+}
+
+}  // namespace
+}  // namespace lodestone
