@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace lodestone {
 
@@ -19,6 +20,14 @@ struct RigidState {
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
 };
+
+/// m, m/s and rad/s, in each part of a state: beyond it no level holds a body.
+inline constexpr double kStateLimit = 1e8;
+
+/// False for NaN.
+inline bool is_within_limit(const Vec3& v) {
+  return std::abs(v.x()) <= kStateLimit && std::abs(v.y()) <= kStateLimit && std::abs(v.z()) <= kStateLimit;
+}
 
 /// The rotation by `v` radians about v's own direction (exponential map).
 inline Quat rotation_from_vector(const Vec3& v) {

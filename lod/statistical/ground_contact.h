@@ -23,10 +23,11 @@ struct StepWorld {
 
 /// What moving one body found, summed into the step report.
 struct ContactTally {
-  std::int64_t contacts = 0, energy_clamps = 0, table_extrapolations = 0;
+  std::int64_t contacts = 0, energy_clamps = 0, table_extrapolations = 0, states_recovered = 0;
   int touched_plane = -1;  ///< index of the plane last touched in this step, −1 for none
   ContactTally& operator+=(const ContactTally& o) {
     contacts += o.contacts, energy_clamps += o.energy_clamps, table_extrapolations += o.table_extrapolations;
+    states_recovered += o.states_recovered;
     return *this;
   }
 };

@@ -21,7 +21,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
   }
   static const SupportSettings support_settings;
   tally = step_support_body(body, kind, world(), dt, support_settings);
-  if (tally.touched_plane < 0) return update_quiet(body, dt);
+  if (tally.touched_plane < 0) return update_quiet(body, dt, tally);
   const HalfSpace& plane = ground.planes[tally.touched_plane];
   if (!kind.clips.empty() && world().is_horizontal(plane)) {
     if (const auto clip = find_clip(body, kind, plane, gravity, clip_settings)) {
@@ -31,7 +31,7 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, doubl
       return;
     }
   }
-  update_quiet(body, dt);
+  update_quiet(body, dt, tally);
 }
 
 void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
@@ -47,7 +47,7 @@ void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double
     body.sphere_radius = float(find_sphere_radius(body, kind, settings.tables, settings.seed));
   }
   tally = step_tables_body(body, resting[slot], kind, world(), dt, tables_settings);
-  update_quiet(body, dt);
+  update_quiet(body, dt, tally);
 }
 
 void StatisticalLevel::Impl::move_alone(int slot, double dt, ContactTally& tally) {

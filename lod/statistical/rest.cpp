@@ -16,6 +16,9 @@ constexpr float kAloneSleepTime = 0.5f;
 constexpr int kLeaningSteps = 12;    // a body that touched another so lately still leans on it, though a hair apart
 constexpr double kWakeFactor = 2.0;  // a sleeper wakes when touched faster than this times the sleeping speed
 
+// J/kg: with less kinetic energy no body moves or spins too fast for a level to hold it.
+constexpr double kSurelySound = 1e3;
+
 double sleep_speed(double radius) { return kSleepSpeed * std::sqrt(radius / kSleepSpeedRadius); }
 
 }  // namespace
@@ -49,13 +52,33 @@ void StatisticalLevel::Impl::sort_by_motion() {
   if (!std::is_sorted(awake.begin(), awake.end())) std::sort(awake.begin(), awake.end());
 }
 
-void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, double dt) {
+/// `energy`: kinetic over mass, J/kg.
+bool StatisticalLevel::Impl::is_sound(const StatisticalBody& body, double energy) const {
+  if (!is_within_limit(body.position)) return false;
+  if (energy < kSurelySound) return true;  // not so for NaN
+  return is_within_limit(body.velocity) && is_within_limit(angular_velocity(body.orientation, body.spin, *kind_of(body).shape));
+}
+
+// Put to rest at the nearest place that can be held, or, where the place is no number, the last one known: what is not sound must neither spread nor
+// reach ODE, which would end the process.
+void StatisticalLevel::Impl::recover(StatisticalBody& body, ContactTally& tally) {
+  if (!body.position.allFinite()) body.position = travels[&body - bodies.data()].position;
+  body.position = body.position.cwiseMax(-kStateLimit).cwiseMin(kStateLimit);
+  if (!(std::abs(body.orientation.squaredNorm() - 1.0) < 1e-6)) body.orientation = Quat::Identity();
+  body.velocity.setZero();
+  body.spin.setZero();
+  ++tally.states_recovered;
+}
+
+void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, double dt, ContactTally& tally) {
   const BodyKind& kind = kind_of(body);
   const double speed = sleep_speed(kind.shape->radius);
   const bool among_others = body.crowded || body.since_crowded < kLeaningSteps;
   const double limit = among_others ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
   body.since_crowded = body.crowded ? 0 : std::uint8_t(std::min(255, body.since_crowded + 1));
-  body.quiet_time = kinetic_energy(body, *kind.shape) < limit ? body.quiet_time + float(dt) : 0.0f;
+  const double energy = kinetic_energy(body, *kind.shape);
+  if (!is_sound(body, energy)) recover(body, tally);
+  body.quiet_time = energy < limit ? body.quiet_time + float(dt) : 0.0f;
   if (settings.sleeping && body.quiet_time >= (among_others ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
 }
 

@@ -45,12 +45,13 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
   return std::uint16_t(kinds.size() - 1);
 }
 
-void StatisticalLevel::Impl::apply_pushes(double dt) {
+void StatisticalLevel::Impl::apply_pushes(double dt, ContactTally& tally) {
   for (const auto& [slot, push] : pushes) {
     StatisticalBody& body = bodies[slot];
     const double impulse = dt / kind_of(body).mass;
     body.velocity += impulse * push.force;
     body.spin += impulse * push.torque;
+    if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape))) recover(body, tally);
   }
   pushes.clear();
 }
@@ -122,9 +123,9 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   Impl& level = *impl_;
   Stopwatch watch;
   level.angular_velocity_given.assign(level.bodies.size(), std::nullopt);
-  level.apply_pushes(dt);
+  ContactTally tally;
+  level.apply_pushes(dt, tally);
 
-  ContactTally paper_tally;
   // 1 Near pairs: none to look for with a single body.
   level.contacts.clear();
   const bool pair_phase = level.bodies.size() + neighbors.size() > 1 && !level.awake.empty() + !neighbors.empty() > 0;
@@ -136,7 +137,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     level.plan_travel(dt);
     level.find_contacts(dt, neighbors);
     level.wake_touched(neighbors);
-    if (level.tables() && level.settings.tables.paper_pair_rule) paper_tally = level.respond_pairs_as_paper();
+    if (level.tables() && level.settings.tables.paper_pair_rule) tally += level.respond_pairs_as_paper();
     report.times.pairs_ms += watch.lap_ms();
   } else {
     for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = false;
@@ -149,7 +150,6 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     for (std::int64_t i = begin; i < end; ++i)
       if (!level.bodies[level.awake[i]].crowded) level.move_alone(level.awake[i], dt, level.tallies[i]);
   });
-  ContactTally tally = paper_tally;
   for (const ContactTally& t : level.tallies) tally += t;
   report.times.flight_ms += watch.lap_ms();
 
@@ -159,7 +159,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
       if (level.bodies[slot].crowded && level.bodies[slot].motion == Motion::settling) level.bodies[slot].motion = Motion::dynamic;
     tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.world(), level.settings.model, dt);
     for (const std::int32_t slot : level.awake)
-      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt);
+      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt, tally);
     report.times.pairs_ms += watch.lap_ms();
   }
 
@@ -173,6 +173,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   report.contacts += int(tally.contacts);
   report.counters.energy_clamps += tally.energy_clamps;
   report.counters.table_extrapolations += tally.table_extrapolations;
+  report.counters.states_recovered += tally.states_recovered;
 }
 
 int StatisticalLevel::size() const { return int(impl_->bodies.size()); }
@@ -193,7 +194,7 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   wake(slot);
   StatisticalBody& body = impl_->bodies[slot];
   impl_->travels[slot].gone += (state.position - body.position).norm() + 4.0 * impl_->kind_of(body).shape->radius;
-  body.position = state.position;
+  body.position = impl_->travels[slot].position = state.position;
   body.orientation = state.orientation;
   body.velocity = state.velocity;
   body.spin = spin_of(state.orientation, state.angular_velocity, *impl_->kind_of(body).shape);

@@ -69,7 +69,7 @@ struct StatisticalLevel::Impl {
   void put_to_sleep(StatisticalBody& body);
   void sort_by_motion();
 
-  void apply_pushes(double dt);
+  void apply_pushes(double dt, ContactTally& tally);
   void find_near_pairs(double dt, std::span<const FullNeighbor> neighbors);
   void find_contacts(double dt, std::span<const FullNeighbor> neighbors);
   void plan_travel(double dt);
@@ -85,7 +85,9 @@ struct StatisticalLevel::Impl {
   void move_alone(int slot, double dt, ContactTally& tally);
   void move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally);
   void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
-  void update_quiet(StatisticalBody& body, double dt);
+  void update_quiet(StatisticalBody& body, double dt, ContactTally& tally);
+  bool is_sound(const StatisticalBody& body, double energy) const;
+  void recover(StatisticalBody& body, ContactTally& tally);
 };
 
 }  // namespace lodestone

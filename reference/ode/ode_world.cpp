@@ -44,6 +44,7 @@ struct OdeWorld::Impl {
     if (settings.cfm > 0.0) dWorldSetCFM(world, settings.cfm);  // friction's; without any its rows may come to depend on each other
   }
 
+  bool has_work();
   void substep(double h);
   void push_bodies();
   bool advance(double h);
@@ -105,9 +106,15 @@ void OdeWorld::step(double dt, int substeps) {
     check_that(false, "a step is positive and finite, in one substep or more:", fmt::format("dt {} s, {} substeps", dt, substeps));
   prepare();
   const std::int64_t messages_before = messages_of_this_thread();
-  for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
+  if (impl_->has_work()) for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
+  else impl_->joints.begin(dt, 0);  // no contacts
   for (Body& body : impl_->bodies.slots()) body.force = body.torque = Vec3::Zero();
   impl_->counters.messages += messages_of_this_thread() - messages_before;
+}
+
+// Nothing moves where all sleep, save in a caller's world, whose other bodies are unknown.
+bool OdeWorld::Impl::has_work() {
+  return !own_world || std::ranges::any_of(bodies.slots(), [](const Body& body) { return body.body && dBodyIsEnabled(body.body); });
 }
 
 // ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in a message and leaving the

@@ -1,7 +1,8 @@
 // Rigid bodies simulated by the Open Dynamics Engine (ODE): the ground truth, the full level and its baselines.
 // ODE stays behind this file. Pitfalls that it takes care of: trimesh–trimesh contacts are filtered (contact_filter.h), plane
 // contacts come from hull vertices, messages are counted and not printed, QuickStep's global generator is seeded from
-// (seed, step), sleeping neighbours wake on removal, every value is checked before ODE could abort on it.
+// (seed, step), sleeping neighbours wake on removal, bodies faster than they are thick stop at what they would have passed through (sweep_ode.h), every
+// value is checked before ODE could abort on it.
 #pragma once
 
 #include <cstdint>
@@ -102,7 +103,7 @@ class OdeWorld {
   /// Wakes what touched it, the caller's bodies too.
   void remove_body(OdeBodyId body);
 
-  /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). A body whose state stops being finite is
+  /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). Nearly free while all bodies sleep. A body whose state stops being finite is
   /// put back to its last good pose at rest, and counted. A substep that ODE's solver gives up on is repeated a little softer (not in a caller's world).
   void step(double dt, int substeps = 1);
 
@@ -115,7 +116,7 @@ class OdeWorld {
 
   std::span<const OdeContact> contacts() const;              ///< of the last substep
   const OdeCounters& counters() const;
-  dxWorld* ode_world() const;
+  dxWorld* ode_world() const;                                ///< an own world is stepped only while a body of this OdeWorld's is awake
   dxSpace* ode_space() const;                                ///< dSpaceID that holds this world's bodies
 
  private:

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "lod/manager.h"
 #include "reference/ode/ode_world.h"
 #include "reference/shape.h"
 
@@ -19,6 +20,11 @@ inline MaterialTable materials_of(double restitution, double friction) {
   MaterialTable materials;
   materials.replace(0, {.restitution = restitution, .friction = friction});
   return materials;
+}
+
+/// Signatures are not measured: statistical bodies are those of `support` without settling clips.
+inline Manager make_unmeasured_manager() {
+  return Manager({.policy = {}, .signatures = [](const Shape&, const ContactLaw&) { return std::shared_ptr<const Signature>(); }});
 }
 
 /// J, of one body.

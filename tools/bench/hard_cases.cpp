@@ -3,6 +3,7 @@
 
 #include "tools/bench/body_cases.h"
 #include "tools/bench/contact_cases.h"
+#include "tools/bench/engine_cases.h"
 #include "tools/bench/hard_case.h"
 #include "tools/bench/pair_cases.h"
 #include "tools/bench/simbenchmark_cases.h"
@@ -29,6 +30,9 @@ std::span<const HardCase> hard_cases() {
       HardCase{"F12", measure_slender_bodies},
       HardCase{"F13", measure_fast_bodies},
       HardCase{"F14", measure_far_stacks},
+      HardCase{"F15", measure_far_coordinates},
+      HardCase{"F16", measure_sleeping_pile, true},
+      HardCase{"F17", measure_step_lengths},
       HardCase{"F18", measure_head_on},
       HardCase{"F19", measure_concave},
   };

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "reference/error.h"
 #include "reference/random.h"
 #include "tools/bench/body_cases.h"
 #include "tools/bench/case_parts.h"
+#include "tools/bench/scene_text.h"
 
 namespace lodestone {
 namespace {
@@ -62,12 +64,35 @@ void add_rows(std::vector<HardCaseRow>& rows, const std::string& name, const std
   rows.push_back({.what = what + "depth in the floor after 10 s", .value = worst.depth_at_end, .bound = 1e-3, .unit = "m"});
 }
 
+bool is_refused(const Mat3& inertia_per_mass) {
+  try {
+    make_shape("odd", make_box({1, 1, 1}), {.inertia_per_mass_m2 = inertia_per_mass});
+  } catch (const InputError& error) {
+    return std::string_view(error.what()).starts_with("odd: inertia: found");
+  }
+  return false;
+}
+
+/// As a shape's and as a scene's; among them one that a body can have, which must pass.
+HardCaseRow impossible_inertias() {
+  const auto scene_with = [](const std::string& diagonal) {
+    return "version: 1\nshapes: {crate: {box_m: [1, 1, 1], mass_kg: 1, inertia: " + diagonal + "}}\nground: [{plane: {normal: [0, 0, 1], offset_m: 0}}]\n"
+           "bodies:\n  - {shape: crate, position_m: [0, 0, 1]}\n";
+  };
+  const std::string scenes[] = {scene_with("[[1, 0, 0], [0, 1, 0], [0, 0, 100]]"), scene_with("[[1, 0, 0], [0, 1, 0], [0, 0, -1]]"), scene_with("[[1, 2, 0], [2, 1, 0], [0, 0, 1]]"),
+                                scene_with("[[0, 0, 0], [0, 0, 0], [0, 0, 0]]"), scene_with("[[.nan, 0, 0], [0, 1, 0], [0, 0, 1]]")};
+  int wrong = count_unclear(scenes, "inertia") + !scene_error_of(scene_with("[[1, 0, 0], [0, 1, 0], [0, 0, 1.9]]")).empty();
+  for (const Vec3& moments : {Vec3(1, 1, 100), Vec3(1, 1, -1), Vec3(0, 0, 0), Vec3(1, 1, std::nan(""))}) wrong += !is_refused(Mat3(moments.asDiagonal()));
+  wrong += is_refused(Mat3(Vec3(1, 1, 1.9).asDiagonal()));
+  return {.what = "inertias that no body has, (1, 1, 100) among them: accepted, or refused without a clear error", .value = double(wrong), .bound = 0.0};
+}
+
 }  // namespace
 
 std::vector<HardCaseRow> measure_slender_bodies(const HardCaseSettings&) {
   const auto needle = share(make_shape("needle", make_needle(1.0, 0.0045)));
   const auto lath = box_of({1.0, 0.01, 0.001});
-  std::vector<HardCaseRow> rows;
+  std::vector<HardCaseRow> rows{impossible_inertias()};
   for (const double dt : {1e-3, 1.0 / 240, 1.0 / 60}) {
     add_rows(rows, fmt::format("needle, inertia ratio {:.3g}", largest_inertia_ratio(*needle)), needle, dt);
     add_rows(rows, fmt::format("plate, inertia ratio {:.3g}", largest_inertia_ratio(*lath)), lath, dt);

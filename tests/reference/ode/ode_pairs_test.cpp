@@ -153,6 +153,23 @@ TEST(OdePairs, SupportRemovedWakesWhatItHeld) {
   EXPECT_NEAR(stack.world->state(stack.bodies[2]).position.z(), before, 0.02);
 }
 
+// Hard case F16, small.
+TEST(OdePairs, SleepingWorldKeepsItsBitsAndWakesWhenAsked) {
+  const MaterialTable materials = material(0.0, 0.5);
+  Stack stack = make_stack(materials, make_box(Vec3::Constant(0.5)), 0.5, 3, {.auto_disable = true});
+  for (int i = 0; i < 300; ++i) stack.world->step(1.0 / 60, 2);
+  const RigidState before = stack.world->state(stack.bodies[2]);
+  for (int i = 0; i < 1000; ++i) stack.world->step(1.0 / 60, 2);
+  EXPECT_TRUE(same_bits(stack.world->state(stack.bodies[2]), before));
+  EXPECT_TRUE(stack.world->contacts().empty());
+  stack.world->add_force(stack.bodies[2], {1e5, 0, 0}, Vec3::Zero());  // lost: it does not wake, and lasts one step
+  stack.world->step(1.0 / 60);
+  stack.world->set_asleep(stack.bodies[2], false);
+  stack.world->step(1.0 / 60);
+  EXPECT_FALSE(stack.world->contacts().empty());
+  EXPECT_LT(stack.world->state(stack.bodies[2]).velocity.norm(), 0.2);
+}
+
 // Boxes exactly on boxes: contacts tie, and at such ties ODE's solver drops every contact of the pile.
 TEST(OdePairs, AlignedPileFallsAsleepAndStands) {
   const MaterialTable materials = material(0.0, 0.5);
