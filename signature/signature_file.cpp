@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
+
 #include "reference/error.h"
 #include "signature/file_bytes.h"
 #include "signature/signature_view.h"

@@ -104,7 +104,7 @@ MeasurementPart load_part(const std::filesystem::path& file) {
     if (record.kind == UnitKind::end) part.seconds = record.seconds;
     if (!records.emplace(std::pair(record.kind, record.unit), record.bytes).second) fail(name, "a unit twice", "each unit once");
   }
-  if (records.erase({UnitKind::end, 0}) == 0 || !bytes.empty()) fail(name, "a part that was cut short or damaged", "a whole one: measure it again");
+  if (records.erase(std::pair(UnitKind::end, std::int64_t(0))) == 0 || !bytes.empty()) fail(name, "a part that was cut short or damaged", "a whole one: measure it again");
   part.measurement = decode_units(records, part.identity, name);
   return part;
 }

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -19,8 +20,8 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 // Whether `file` still names what is open: its holder before may have removed it meanwhile.
 bool is_same_file(int descriptor, const std::filesystem::path& file) {
-  struct stat open{}, named{};
-  return ::fstat(descriptor, &open) == 0 && ::stat(file.c_str(), &named) == 0 && open.st_ino == named.st_ino && open.st_dev == named.st_dev;
+  struct stat opened{}, named{};
+  return ::fstat(descriptor, &opened) == 0 && ::stat(file.c_str(), &named) == 0 && opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
 std::vector<std::byte> read_all(int descriptor) {

@@ -36,8 +36,8 @@ MeasurementIdentity decode_head(std::span<const std::byte>& bytes, const std::st
   std::uint64_t magic = 0, length = 0, expected = 0;
   ByteReader(bytes.first(std::min(bytes.size(), kHeadNumbers)))(magic, length, expected);
   if (magic != kMagic) throw InputError(fmt::format("{}: found a file of another kind, expected a part of a signature (sign --shard)", name));
+  if (bytes.size() < kHeadNumbers || length > bytes.size() - kHeadNumbers) throw InputError(fmt::format("{}: found its end in the middle of a value, expected a whole part", name));
   bytes = bytes.subspan(kHeadNumbers);
-  if (length > bytes.size()) throw InputError(fmt::format("{}: found its end in the middle of a value, expected a whole part", name));
   const std::span<const std::byte> content = bytes.first(length);
   MeasurementIdentity identity;
   ByteReader reader(content);
