@@ -14,8 +14,8 @@
 
 namespace lodestone {
 
-/// Over the shape's size. ODE notices an impact up to v·h inside the plane; bouncing before that is as wrong in height as after it, so it is done only
-/// where the depth would show.
+/// Over the shape's size. ODE notices an impact up to v·h inside the plane. Where it is not answered at its own time (timed_contacts.h) bouncing before
+/// that is as wrong in height as after it, so it is done only where the depth would show.
 inline constexpr double kPlaneDepthMax = 0.04;
 
 struct FullSettings {
@@ -24,6 +24,9 @@ struct FullSettings {
   int substeps = 4;
   bool sleeping = true;
 };
+
+/// How the full level has ODE work.
+OdeSettings ode_settings_of(const FullSettings& settings);
 
 class FullLevel {
  public:

@@ -10,6 +10,7 @@ struct ContactPoint {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
   double depth = 0.0;
+  double lift = 0.0;  ///< m/s along the normal, added to the velocity that the solver leaves the contact with
 };
 
 }  // namespace lodestone

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cstdint>
 #include <memory>
 #include <set>
 
@@ -95,8 +96,7 @@ void require_corners(const aiScene& scene, const fs::path& file) {
 }
 
 /// Appends the triangles of `part`, placed by `transform`. Points and lines are passed over.
-void append(Mesh& mesh, const aiMesh& part, const aiMatrix4x4& transform, const fs::path& file,
-            const MeshLoadSettings& settings) {
+void append(Mesh& mesh, const aiMesh& part, const aiMatrix4x4& transform, const fs::path& file) {
   const int first = int(mesh.vertices.size());
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D v = transform * part.mVertices[i];
@@ -117,23 +117,44 @@ void append(Mesh& mesh, const aiMesh& part, const aiMatrix4x4& transform, const 
     mesh.faces.push_back(
         {first + int(face.mIndices[0]), first + int(face.mIndices[1]), first + int(face.mIndices[2])});
   }
-  if (mesh.faces.size() > std::size_t(settings.max_faces) ||
-      mesh.vertices.size() > 3 * std::size_t(settings.max_faces))
-    refuse(file, fmt::format("over {} faces", settings.max_faces), "fewer (simplify the mesh first)");
 }
 
-/// Every mesh of the scene, joined, each where its nodes put it.
-Mesh join(const aiScene& scene, const fs::path& file, const MeshLoadSettings& settings) {
-  Mesh mesh;
+/// A mesh of the scene and where a node puts it.
+struct PlacedPart {
+  const aiMesh* mesh;
+  aiMatrix4x4 transform;
+};
+
+std::vector<PlacedPart> parts_of(const aiScene& scene) {
+  std::vector<PlacedPart> parts;
   std::vector<std::pair<const aiNode*, aiMatrix4x4>> open{{scene.mRootNode, aiMatrix4x4()}};
   while (!open.empty()) {
     const auto [node, above] = open.back();
     open.pop_back();
     const aiMatrix4x4 transform = above * node->mTransformation;
-    for (unsigned i = 0; i < node->mNumMeshes; ++i)
-      append(mesh, *scene.mMeshes[node->mMeshes[i]], transform, file, settings);
+    for (unsigned i = 0; i < node->mNumMeshes; ++i) parts.push_back({scene.mMeshes[node->mMeshes[i]], transform});
     for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], transform);
   }
+  return parts;
+}
+
+/// Before any is copied: one mesh may be placed many times.
+void require_few(const std::vector<PlacedPart>& parts, const fs::path& file, std::uint64_t max_faces) {
+  std::uint64_t faces = 0, vertices = 0;
+  for (const PlacedPart& part : parts) faces += part.mesh->mNumFaces, vertices += part.mesh->mNumVertices;
+  const auto refuse_many = [&](std::uint64_t found, const char* what, std::uint64_t most) {
+    refuse(file, fmt::format("{} {}", found, what), fmt::format("at most {} (simplify the mesh first)", most));
+  };
+  if (faces > max_faces) refuse_many(faces, "faces", max_faces);
+  if (vertices > 3 * max_faces) refuse_many(vertices, "vertices", 3 * max_faces);
+}
+
+/// Every mesh of the scene, joined, each where its nodes put it.
+Mesh join(const aiScene& scene, const fs::path& file, const MeshLoadSettings& settings) {
+  const std::vector<PlacedPart> parts = parts_of(scene);
+  require_few(parts, file, std::uint64_t(settings.max_faces));
+  Mesh mesh;
+  for (const PlacedPart& part : parts) append(mesh, *part.mesh, part.transform, file);
   return mesh;
 }
 

@@ -44,6 +44,14 @@ void require_sound_extent(double extent, const std::string& name) {
                                  extent, kMinExtent, kMaxExtent));
 }
 
+void require_faces(const Mesh& mesh, const std::string& name, const MeshReport& report) {
+  if (mesh.faces.size() >= 4) return;
+  std::string besides;
+  if (report.degenerate_faces_dropped > 0) besides += fmt::format(", beside {} without area", report.degenerate_faces_dropped);
+  if (report.duplicate_faces_dropped > 0) besides += fmt::format(", beside {} on the same corners", report.duplicate_faces_dropped);
+  throw InputError(fmt::format("{}: found {} faces{}, expected at least 4", name, mesh.faces.size(), besides));
+}
+
 void require_volume(const Mesh& mesh, const std::string& name, const MeshReport& report) {
   const double volume = measure_mass_properties(mesh).volume;
   if (report.closed() && !(volume > kLeastVolume * std::pow(extent_of(mesh), 3)))
@@ -65,8 +73,7 @@ Mesh repair_mesh(Mesh mesh, const std::string& name, MeshReport* report) {
   found.duplicate_faces_dropped = drop_duplicate_faces(mesh);
   found.degenerate_faces_dropped += drop_flat_faces(mesh, kWeldDistance * extent);
   found.unused_vertices_dropped += drop_unused_vertices(mesh) - found.vertices_welded;
-  if (mesh.faces.size() < 4)
-    throw InputError(fmt::format("{}: found {} faces, expected at least 4", name, mesh.faces.size()));
+  require_faces(mesh, name, found);
 
   orient_faces(mesh, name, found);
   require_volume(mesh, name, found);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "reference/ode/geometry_ode.h"
@@ -25,6 +26,8 @@ struct Body {
   int last_support = 0;            ///< the hull vertex deepest in a plane last time
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   RigidState last_good;
+  bool in_company = false;         ///< in this substep: it may touch more than planes
+  std::optional<double> impact_time = {};  ///< in this substep: s after its start, of an impact that is answered at its own time
 };
 
 /// Whether every part is finite and within ODE's reach: 1e8 m, m/s and rad/s; the squared norm of the quaternion within 1e-6 of one.

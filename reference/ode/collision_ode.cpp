@@ -17,6 +17,8 @@ bool same_pair(const Candidate& a, const Candidate& b) {
   return a.first_order == b.first_order && a.second_order == b.second_order;
 }
 
+bool is_awake(const Body& body) { return body.body && dBodyIsEnabled(body.body); }
+
 Plane plane_of(dGeomID geom) {
   dVector4 p;
   dGeomPlaneGetParams(geom, p);
@@ -56,19 +58,13 @@ void drop_opposing(std::vector<ContactPoint>& contacts, double size) {
 
 bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.body)) == dTriMeshClass; }
 
-/// Whether a point of the body goes farther than `way` against `normal` within `h` seconds.
-bool strikes(dBodyID body, const Vec3& point, const Vec3& normal, double way, double h) {
-  const Vec3 arm = point - to_vec3(dBodyGetPosition(body));
-  const double approach = -normal.dot(to_vec3(dBodyGetLinearVel(body)) + to_vec3(dBodyGetAngularVel(body)).cross(arm));
-  return approach * h > way;
-}
-
 }  // namespace
 
 Collision::Collision(dSpaceID around, const OdeSettings& settings)
     : settings_(settings),
       broad_phase_(around),
       narrow_phase_(settings.mesh_contacts != MeshContacts::plain),
+      plane_phase_(settings),
       attached_(around != nullptr) {}
 
 Collision::~Collision() {
@@ -101,83 +97,45 @@ void Collision::add_ground(dGeomID geom, Ground ground) {
 }
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
-  step_ = h;
-  bool any_awake = false;
-  for (Body& body : bodies.slots()) {
-    if (!body.body || !dBodyIsEnabled(body.body)) continue;
-    any_awake = true;
-    for (const Plane& plane : planes_) collide_plane(body, plane, joints);
-  }
+  step_ = {h, joints.gravity()};
+  const bool any_awake = std::ranges::any_of(bodies.slots(), is_awake);
   // One body over planes needs no broad phase, nor do sleepers, except from a caller's bodies.
-  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_.empty()))) collide_candidates(bodies, joints);
+  std::span<const Candidate> candidates;
+  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_.empty()))) candidates = broad_phase_.find(bodies);
+  mark_company(bodies, candidates);
+  for (Body& body : bodies.slots())
+    if (is_awake(body))
+      for (const Plane& plane : planes_) collide_plane(body, plane, joints);
+  collide_candidates(bodies, candidates, joints);
+}
+
+// Those that may touch more than planes, or hang on a joint.
+void Collision::mark_company(Bodies& bodies, std::span<const Candidate> candidates) {
+  for (Body& body : bodies.slots()) {
+    body.impact_time.reset();
+    body.in_company = body.body && dBodyGetNumJoints(body.body) > 0;
+  }
+  for (const Candidate& candidate : candidates) {
+    if (dGeomGetClass(candidate.second) == dPlaneClass) continue;
+    for (const dGeomID geom : {candidate.first, candidate.second})
+      if (Body* body = bodies.owner(geom)) body->in_company = true;
+  }
 }
 
 void Collision::collide_plane(Body& body, const Plane& plane, ContactJoints& joints) {
-  if (plane.normal.dot(to_vec3(dBodyGetPosition(body.body))) - plane.offset > body.reach + nearing(body, plane.normal)) return;
   points_.clear();
-  find_plane_points(body, plane);
+  plane_phase_.find(body, plane, joints.law(body.material, plane.material), step_, points_);
   if (!points_.empty()) joints.add(ode::side_of(body), {nullptr, plane.material, {}}, points_);
 }
 
-void Collision::find_plane_points(Body& body, const Plane& plane) {
-  if (!settings_.plane_contacts_from_hull) return find_mesh_points(body, plane);
-  if (body.spheres.empty()) return find_hull_points(body, plane);
-  find_sphere_points(body, plane);
-}
-
-void Collision::find_hull_points(Body& body, const Plane& plane) {
-  const Hull& hull = body.shape->hull;
-  const Vec3 position = to_vec3(dBodyGetPosition(body.body));
-  const Mat3 rotation = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(dBodyGetRotation(body.body)).leftCols<3>();
-  const Vec3 normal = rotation.transpose() * plane.normal;
-  const double margin = nearing(body, plane.normal);
-  std::int64_t dropped = 0;
-  for (const PlaneContact& contact : plane_contacts_.find(hull, normal, plane.offset - plane.normal.dot(position) + margin,
-                                                          settings_.max_contacts_per_pair, body.last_support, &dropped)) {
-    const Vec3 point = position + rotation * hull.vertices[contact.vertex];
-    const double depth = contact.depth - margin;
-    if (depth > 0.0 || strikes(body.body, point, plane.normal, -depth + settings_.plane_depth_max * body.shape->size, step_)) points_.push_back({point, plane.normal, std::max(depth, 0.0)});
-  }
-  dropped_ += dropped;
-}
-
-// How far the body's lowest point may come nearer to a plane in the step, m; 0 where contacts are not made early.
-double Collision::nearing(const Body& body, const Vec3& normal) const {
-  if (settings_.plane_depth_max > 1.0) return 0.0;
-  const double falling = -normal.dot(to_vec3(dBodyGetLinearVel(body.body)));
-  return std::max(0.0, falling + to_vec3(dBodyGetAngularVel(body.body)).norm() * body.reach) * step_;
-}
-
-void Collision::find_sphere_points(const Body& body, const Plane& plane) {
-  const Vec3 position = to_vec3(dBodyGetPosition(body.body));
-  const Quat orientation = to_quat(dBodyGetQuaternion(body.body));
-  for (const Sphere& sphere : body.spheres) {
-    const Vec3 center = position + orientation * sphere.center;
-    const double depth = sphere.radius - (plane.normal.dot(center) - plane.offset);
-    if (depth > 0.0) points_.push_back({center - sphere.radius * plane.normal, plane.normal, depth});
-  }
-  keep_deepest();
-}
-
-// As plain ODE does it: the first contacts that it finds, whatever their depth.
-void Collision::find_mesh_points(const Body& body, const Plane& plane) {
-  std::vector<dContactGeom> found(settings_.max_contacts_per_pair);
-  for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) {
-    const int count = dCollide(geom, plane.geom, int(found.size()), found.data(), sizeof(dContactGeom));
-    for (const dContactGeom& contact : std::span(found).first(count))
-      points_.push_back({to_vec3(contact.pos), to_vec3(contact.normal), contact.depth});
-  }
-  keep_deepest();
-}
-
-void Collision::collide_candidates(Bodies& bodies, ContactJoints& joints) {
-  const auto candidates = broad_phase_.find(bodies);
+void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints) {
   for (std::size_t i = 0, next; i < candidates.size(); i = next) {
     points_.clear();
     Body& body = *bodies.owner(candidates[i].first);
     const Body* other = bodies.owner(candidates[i].second);
     if (dGeomGetClass(candidates[i].second) == dPlaneClass) {
-      find_plane_points(body, plane_of(candidates[i].second));
+      const Plane plane = plane_of(candidates[i].second);
+      plane_phase_.find(body, plane, joints.law(body.material, plane.material), step_, points_);
       next = i + 1;
     } else {
       for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next) {}
@@ -212,11 +170,6 @@ void Collision::find_filtered_points(const Body& body, const Body& other, const 
   }
   limit_depths(points_, *overlap);
   drop_opposing(points_, size);
-}
-
-void Collision::keep_deepest() {
-  std::ranges::stable_sort(points_, std::ranges::greater{}, &ContactPoint::depth);
-  drop_beyond(std::min(int(points_.size()), settings_.max_contacts_per_pair));
 }
 
 void Collision::drop_beyond(int kept) {

@@ -8,16 +8,9 @@
 #include "reference/ode/broad_phase_ode.h"
 #include "reference/ode/joints_ode.h"
 #include "reference/ode/narrow_phase_ode.h"
-#include "reference/ode/plane_contacts.h"
+#include "reference/ode/plane_phase_ode.h"
 
 namespace lodestone::ode {
-
-struct Plane {
-  Vec3 normal;
-  double offset;         ///< m
-  MaterialId material;
-  dGeomID geom;
-};
 
 /// A static box or mesh.
 struct Ground {
@@ -41,36 +34,31 @@ class Collision {
   void collide(Bodies& bodies, ContactJoints& joints, double h);
 
   BroadPhase& broad_phase() { return broad_phase_; }
-  std::int64_t contacts_dropped() const { return dropped_; }
+  std::int64_t contacts_dropped() const { return plane_phase_.dropped() + dropped_; }
   std::int64_t swallowed() const { return swallowed_; }
   std::int64_t ground_trimeshes() const { return std::int64_t(ground_meshes_.size()); }
 
  private:
+  void mark_company(Bodies& bodies, std::span<const Candidate> candidates);
   void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);
-  void find_plane_points(Body& body, const Plane& plane);
-  void find_hull_points(Body& body, const Plane& plane);
-  void find_sphere_points(const Body& body, const Plane& plane);
-  void find_mesh_points(const Body& body, const Plane& plane);
-  void collide_candidates(Bodies& bodies, ContactJoints& joints);
+  void collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
   void find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size);
   const Ground* ground_of(dGeomID geom) const;
-  void keep_deepest();
   void drop_beyond(int kept);
-  double nearing(const Body& body, const Vec3& normal) const;
   void add_ground(dGeomID geom, Ground ground);
   ContactSide side_of(Bodies& bodies, dGeomID geom) const;
 
   OdeSettings settings_;
   BroadPhase broad_phase_;
   NarrowPhase narrow_phase_;
-  PlaneContactFinder plane_contacts_;
+  PlanePhase plane_phase_;
   std::vector<Plane> planes_;
   std::vector<Ground> ground_;                // by the ground geom's number (dGeomGetData)
   std::vector<std::unique_ptr<TrimeshData>> ground_meshes_;
   std::vector<ContactPoint> points_;          // of the pair at hand
   bool attached_;
-  double step_ = 0.0;                         // s, the one to come
+  PlaneStep step_;                            // the one to come
   std::int64_t dropped_ = 0, swallowed_ = 0;
 };
 

@@ -23,7 +23,7 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
       erp_(settings.erp),
       cfm_(settings.cfm),
       max_correcting_velocity_(settings.max_correcting_velocity) {
-  joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+  joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactMotionN;
   if (settings.friction_along_slip) joint_.surface.mode |= dContactFDir1;
   joint_.surface.soft_erp = settings.erp;
   joint_.surface.bounce_vel = settings.bounce_velocity;
@@ -45,9 +45,9 @@ void ContactJoints::begin(double h, int attempt) {
 }
 
 void ContactJoints::add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points) {
-  const ContactLaw law = materials_->law(first.material, second.material);
-  joint_.surface.mu = law.friction;
-  joint_.surface.bounce = law.restitution;
+  const ContactLaw pair = law(first.material, second.material);
+  joint_.surface.mu = pair.friction;
+  joint_.surface.bounce = pair.restitution;
   for (const ContactPoint& point : points) {
     add_joint(first, second, point);
     const double side = first.id ? 1.0 : -1.0;  // contacts() names this world's body first
@@ -61,6 +61,7 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
   copy(point.point, joint_.geom.pos);
   copy(point.normal, joint_.geom.normal);
   joint_.geom.depth = second.body ? depth_of(point) : std::min(point.depth, deepest_);
+  joint_.surface.motionN = point.lift;
   copy(slip_direction(first.body, second.body, point), joint_.fdir1);
   dJointAttach(dJointCreateContact(world_, group_, &joint_), first.body, second.body);
 }

@@ -32,6 +32,8 @@ class ContactJoints {
   /// Destroys the joints; contacts() stays.
   void end() { dJointGroupEmpty(group_); }
 
+  const Vec3& gravity() const { return gravity_; }
+  ContactLaw law(MaterialId first, MaterialId second) const { return materials_->law(first, second); }
   std::span<const OdeContact> contacts() const { return contacts_; }
   std::int64_t made() const { return made_; }
 

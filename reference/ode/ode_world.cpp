@@ -181,8 +181,9 @@ void OdeWorld::Impl::count_uneven_contacts() {
 void OdeWorld::Impl::recover_bodies() {
   for (Body& body : bodies.slots()) {
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
-    const RigidState now = state_of(body.body);
+    RigidState now = state_of(body.body);
     if (is_sound(now)) {
+      if (body.impact_time) ode::set_state(body.body, now = end_of_step(body.last_good, now, *body.impact_time));
       body.last_good = now;
       continue;
     }

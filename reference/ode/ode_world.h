@@ -42,6 +42,9 @@ struct OdeSettings {
   MeshContacts mesh_contacts = MeshContacts::exact;
   bool plane_contacts_from_hull = true; ///< false: dCollide of the trimesh with the plane, brute force over all faces
   double plane_depth_max = 1e9;         ///< over the shape's size: a hull vertex that would sink deeper into a plane within the step bounces beforehand
+  /// In substeps longer than the first and no longer than the second (s) a hull's contacts with planes are answered at their own time, where it
+  /// touches nothing else (timed_contacts.h). Nowhere unless the first is set.
+  double timed_contacts_above = 1e9, timed_contacts_up_to = 0.01;
   bool gyroscopic = true;
   bool auto_disable = false;            ///< ODE's sleeping: below .05 m/s and .05/R rad/s for .5 s
 };

@@ -1,13 +1,15 @@
 #include <CLI/CLI.hpp>
 
+#include "tools/bench/command_bench_full_level.h"
 #include "tools/bench/command_bench_hard_cases.h"
 
 namespace lodestone {
 
 void add_bench_command(CLI::App& program, ExitCode& exit_code) {
-  CLI::App* bench = program.add_subcommand("bench", "what the engine withstands");
+  CLI::App* bench = program.add_subcommand("bench", "what the engine withstands, and what it costs");
   bench->require_subcommand(1);
   add_bench_hard_cases_command(*bench, exit_code);
+  add_bench_full_level_command(*bench, exit_code);
 }
 
 }  // namespace lodestone

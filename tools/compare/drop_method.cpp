@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <optional>
 
 #include "reference/error.h"
 
@@ -26,8 +28,16 @@ std::shared_ptr<const Shape> make_low_shape(const Shape& shape) {
   return std::make_shared<const Shape>(make_shape(shape.name + " low", simplify_mesh(shape.mesh, kLowFaces), mass));
 }
 
+// What ODE makes of a mesh over a plane by itself.
+OdeSettings plain_settings() { return {.plane_contacts_from_hull = false}; }
+
+// A body is observed for ten seconds, awake.
+DropMethod make_full(std::string name, const DropJob& job, int substeps) {
+  return make_ode(std::move(name), job, {.substeps = substeps, .settings = ode_settings_of({.sleeping = false})});
+}
+
 DropMethod make_low(const DropJob& job) {
-  DropMethod method = make_ode("low", job, {.plane_contacts_from_hull = false});
+  DropMethod method = make_ode("low", job, {.settings = plain_settings()});
   if (job.shape->mesh.faces.size() <= kLowFaces)
     method.left_out = fmt::format("has no more than {} faces", kLowFaces);
   else
@@ -46,18 +56,27 @@ struct NamedMaker {
 };
 
 constexpr std::array<NamedMaker, 9> kEngineMethods = {{
-    {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.plane_contacts_from_hull = false}); }},
-    {"full", [](const DropJob& job) { return make_ode("full", job, {.substeps = ManagerSettings{}.full_substeps}); }},
+    {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.settings = plain_settings()}); }},
+    {"full", [](const DropJob& job) { return make_full("full", job, ManagerSettings{}.full_substeps); }},
     {"full_1", [](const DropJob& job) { return make_ode("full_1", job, {}); }},
     {"low", make_low},
     {"spheres7", [](const DropJob& job) {
        return make_ode("spheres7", job, {.geometry = OdeGeometry::spheres, .spheres = fit_spheres(job.shape->mesh, kSphereCount)});
      }},
     {"sphere", [](const DropJob& job) { return make_ode("sphere", job, {.geometry = OdeGeometry::sphere}); }},
+    {"hull", [](const DropJob& job) { return make_ode("hull", job, {.settings = plain_settings(), .geometry = OdeGeometry::hull}); }},
     {"bullet_hull", [](const DropJob&) { return make_bullet("bullet_hull", BulletGeometry::hull); }},
     {"bullet_sphere", [](const DropJob&) { return make_bullet("bullet_sphere", BulletGeometry::sphere); }},
-    {"hull", [](const DropJob& job) { return make_ode("hull", job, {.geometry = OdeGeometry::hull, .plane_contacts_from_hull = false}); }},
 }};
+
+/// full_2 … full_64: the full level at that many substeps.
+std::optional<int> substeps_named(std::string_view name) {
+  constexpr std::string_view kPrefix = "full_";
+  int substeps = 0;
+  if (!name.starts_with(kPrefix)) return {};
+  const auto [end, error] = std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), substeps);
+  return error == std::errc() && end == name.data() + name.size() && substeps >= 2 && substeps <= 64 ? std::optional(substeps) : std::nullopt;
+}
 
 constexpr std::string_view kStatistical = "statistical";
 
@@ -92,6 +111,8 @@ std::string DropMethod::model() const {
 
 DropMethod make_truth(const DropJob& job) { return make_ode("truth", job, {.substeps = kTruthSubsteps}); }
 
+bool is_drop_method(const std::string& name) { return substeps_named(name) || std::ranges::count(drop_method_names(), name) > 0; }
+
 std::vector<std::string> drop_method_names() {
   std::vector<std::string> names;
   for (const NamedMaker& method : kEngineMethods) names.emplace_back(method.name);
@@ -105,6 +126,10 @@ std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names,
   for (const std::string& name : names) {
     if (name == kStatistical) {
       std::ranges::move(make_statistical(job, measuring, threads, progress), std::back_inserter(methods));
+      continue;
+    }
+    if (const auto substeps = substeps_named(name)) {
+      methods.push_back(make_full(name, job, *substeps));
       continue;
     }
     const auto found = std::ranges::find(kEngineMethods, name, &NamedMaker::name);

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "lod/full_level.h"
 #include "lod/manager.h"
 #include "reference/trial.h"
 #include "signature/signature_source.h"
@@ -24,8 +25,8 @@ struct DropJob {
 /// ODE, with one or another collision geometry.
 struct OdeMethod {
   int substeps = 1;                                  ///< ODE steps in a step
+  OdeSettings settings = {};
   OdeGeometry geometry = OdeGeometry::trimesh;
-  bool plane_contacts_from_hull = true;              ///< else dCollide of the trimesh with the plane
   std::shared_ptr<const Shape> collision_shape = {};      ///< with the mass distribution of the job's shape
   std::vector<Sphere> spheres = {};                  ///< for OdeGeometry::spheres
 };
@@ -53,7 +54,10 @@ struct DropMethod {
 /// The ground truth: ODE at 34 steps in 1/60 s, just under .5 ms, so that 60 Hz falls on whole steps.
 DropMethod make_truth(const DropJob& job);
 
-/// Every name that `make_drop_methods` knows.
+/// Whether `make_drop_methods` knows it: one of drop_method_names(), or full_2 to full_64, the full level at that many substeps.
+bool is_drop_method(const std::string& name);
+
+/// The names without a number of substeps. `full` is the full level with its default substeps, `full_1` ODE itself in one step.
 std::vector<std::string> drop_method_names();
 
 /// The methods of these names; `statistical` gives one for each model, with a signature from the cache or measured now as `measuring` says on `threads`

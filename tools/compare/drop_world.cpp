@@ -57,7 +57,7 @@ void DropWorld::start_ode(const RigidState& state) {
   if (ode_) {
     ode_->world.remove_body(ode_->body);
   } else {
-    ode_.emplace(OdeWorld({.plane_contacts_from_hull = way.plane_contacts_from_hull}, *materials_), OdeBodyId{});
+    ode_.emplace(OdeWorld(way.settings, *materials_), OdeBodyId{});
     ode_->world.add_plane(drop_plane_normal(job_.conditions), 0.0, 0);
   }
   ode_->body = ode_->world.add_body({.shape = way.collision_shape,

@@ -35,9 +35,9 @@ TEST(DropComparison, TheTruthAsAMethodScoresTheFloor) {
 }
 
 TEST(DropComparison, SubstepsAreShorterSteps) {
-  const DropComparison whole = compare_drops(box_job(), few_drops({"full"}, kObservationStep));
-  const DropComparison quarter = compare_drops(box_job(), few_drops({"full_1"}, kObservationStep / 4));
-  EXPECT_DOUBLE_EQ(whole.rows[0].score->value.score, quarter.rows[0].score->value.score);
+  const DropComparison whole = compare_drops(box_job(), few_drops({"full_8"}, kObservationStep));
+  const DropComparison half = compare_drops(box_job(), few_drops({"full_4"}, kObservationStep / 2));
+  EXPECT_DOUBLE_EQ(whole.rows[0].score->value.score, half.rows[0].score->value.score);
 }
 
 TEST(DropComparison, ThreadsDoNotMatter) {

@@ -1,0 +1,42 @@
+// Contacts of one body with a plane, answered at their own time within a step.
+// ODE answers a contact at the start of the step after it happened. At game rates a body is then up to v·h inside the plane, so an impact
+// of one vertex looks like one of a whole patch; and a rocking body, lifted off by next to nothing, falls freely for a step and loses the g·h
+// that it lands with: a bunny that rocks for five seconds lies still after three. So here
+// - vertices that strike within the step bounce at the time of the first of them, later ones not yet;
+// - a vertex that gravity alone would bring back within the step is held: it may come down to the plane, and no farther.
+// All others are ODE's: a slow landing sinks in and is lifted out, at small steps as at large ones.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "reference/contact_point.h"
+#include "reference/hull/hull.h"
+
+namespace lodestone {
+
+/// What of a body, a plane and a step to come its contacts depend on.
+struct TimedStep {
+  RigidState body;
+  Vec3 normal = Vec3::UnitZ();  ///< of the plane
+  double gravity = 9.81;        ///< m/s² into the plane
+  double duration = 0.0;        ///< s
+  double restitution = 0.0;
+  double bounce_velocity = 0.05;  ///< m/s, slower contacts do not bounce
+};
+
+/// A point of a body near a plane.
+struct NearPoint {
+  Vec3 arm;      ///< m from the centre of mass, world axes
+  double depth;  ///< m below the plane; negative above it
+};
+
+/// Appends the contacts among `near` to `contacts`. Returns when within the step they strike (s after its start, negative for one noticed
+/// late); nothing where none strikes.
+std::optional<double> append_timed_contacts(std::span<const NearPoint> near, const TimedStep& step, std::vector<ContactPoint>& contacts);
+
+/// A step takes its impulses at its start. Where it ends if they came `time` after the start instead.
+RigidState end_of_step(const RigidState& start, const RigidState& end, double time);
+
+}  // namespace lodestone
