@@ -12,11 +12,11 @@
 namespace lodestone {
 
 struct Levels {
-  Levels(const StatisticalSettings& statistical_level, const FullSettings& full_level, SignatureFunction source)
-      : full(full_level, materials), statistical_settings(statistical_level), signatures(std::move(source)) {}
+  Levels(const StatisticalSettings& statistical_level, const FullSettings& full_level, SignatureStore store)
+      : full(full_level, materials), statistical_settings(statistical_level), signatures(std::move(store)) {}
   Levels(dxWorld* world, dxSpace* space, const StatisticalSettings& statistical_level, const FullSettings& full_level,
-         SignatureFunction source)
-      : full(world, space, full_level, materials), statistical_settings(statistical_level), signatures(std::move(source)) {}
+         SignatureStore store)
+      : full(world, space, full_level, materials), statistical_settings(statistical_level), signatures(std::move(store)) {}
   Levels(const Levels&) = delete;  // the levels point at materials and ground
   Levels& operator=(const Levels&) = delete;
 

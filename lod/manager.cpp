@@ -53,9 +53,9 @@ double checked_mass(const BodyDefinition& definition, const MaterialTable& mater
 }  // namespace
 
 Manager::Impl::Impl(const ManagerSettings& s)
-    : levels(statistical_settings(s, s.gravity), full_settings(s), s.signatures), policy(s.policy) {}
+    : levels(statistical_settings(s, s.gravity), full_settings(s), SignatureStore(s.signatures, s.signature_timing)), policy(s.policy) {}
 Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
-    : levels(world, space, statistical_settings(s, gravity_of(world)), full_settings(s), s.signatures),
+    : levels(world, space, statistical_settings(s, gravity_of(world)), full_settings(s), SignatureStore(s.signatures, s.signature_timing)),
       policy(s.policy),
       callers_space(space) {}
 

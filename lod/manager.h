@@ -30,6 +30,7 @@ struct ManagerSettings {
   TablesOptions tables = {};  ///< of the tables model
   PolicySettings policy;
   SignatureFunction signatures;  ///< empty: find_or_measure_signature with its defaults
+  SignatureTiming signature_timing = SignatureTiming::automatic;  ///< whether a step waits for a signature or the body stays full meanwhile
 };
 
 class Manager {
@@ -64,6 +65,7 @@ class Manager {
   void add_force(BodyId body, const Vec3& force, const Vec3& torque = Vec3::Zero());  ///< N, N m, over the next step; wakes it
 
   /// Advances every body by `dt` seconds (0 < dt ≤ 0.1). Throws InputError only where a signature that is needed cannot be had.
+  /// A body whose signature a thread is still measuring is full until it is there, whatever level was asked for.
   const StepReport& step(double dt);
 
   int bodies() const;

@@ -42,6 +42,7 @@ struct Manager::Impl {
   bool near_static_ground(const RigidState& state, double radius) const;
   void add_static_bounds(const Eigen::AlignedBox3d& bounds);
   void follow_moved();
+  void note_waiting(std::uint32_t body);  ///< whether its signature is there yet
   void promote(std::uint32_t body);
   void put_promotion_off(std::uint32_t body);
   void count_down_retries();

@@ -42,8 +42,8 @@ LevelDecision Manager::Impl::choose() {
   const StageTimer timer(report.times.choose_ms);
   count_down_retries();
   std::vector<LevelCandidate>& candidates = levels.bodies.candidates();
-  for (const FullLevel::Member& member : levels.full.members()) see(member.owner, levels.full.world()->state(member.id));
-  for (const std::uint32_t body : newcomers) see(body, levels.bodies[body].definition.state);
+  for (const FullLevel::Member& member : levels.full.members()) see(member.owner, levels.full.world()->state(member.id)), note_waiting(member.owner);
+  for (const std::uint32_t body : newcomers) see(body, levels.bodies[body].definition.state), note_waiting(body);
   for (LevelCandidate& candidate : candidates)
     candidate.frames_since_change += candidate.frames_since_change < LevelCandidate{}.frames_since_change;
   return choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
@@ -53,6 +53,13 @@ void Manager::Impl::see(std::uint32_t body, const RigidState& state) {
   LevelCandidate& candidate = levels.bodies.candidates()[body];
   candidate.position = state.position;
   candidate.on_static_ground = near_static_ground(state, candidate.radius);
+}
+
+void Manager::Impl::note_waiting(std::uint32_t body) {
+  LevelCandidate& candidate = levels.bodies.candidates()[body];
+  const BodyDefinition& definition = levels.bodies[body].definition;
+  candidate.waits_for_signature =
+      candidate.choice != LevelChoice::full && !levels.signatures.ready(*definition.shape, levels.ground_law(definition.material));
 }
 
 // Near enough to be there within three frames of a game.
@@ -77,7 +84,7 @@ void Manager::Impl::move_bodies(LevelDecision decision) {
 
 void Manager::Impl::promote(std::uint32_t body) {
   const LevelCandidate& candidate = levels.bodies.candidates()[body];
-  const bool placed_full = candidate.newcomer && candidate.choice == LevelChoice::full;
+  const bool placed_full = candidate.newcomer && (candidate.choice == LevelChoice::full || candidate.waits_for_signature);
   if (!placed_full && overlaps(levels, body)) {
     put_promotion_off(body);
   } else if (candidate.newcomer) {

@@ -50,6 +50,12 @@ Target target_by_distance(const LevelCandidate& candidate, double distance, doub
   return {Level::statistical, LevelReason::far};
 }
 
+LevelReason reason_to_have_decided(const LevelCandidate& c) {
+  if (c.choice == LevelChoice::full) return LevelReason::forced;
+  if (c.waits_for_signature) return LevelReason::signature_pending;
+  return c.choice == LevelChoice::automatic ? LevelReason::static_ground : LevelReason::forced;
+}
+
 /// How many bodies of this cost fit the milliseconds.
 std::int64_t count_that_fit(double milliseconds, double full_body_step_ms) {
   return std::int64_t(std::clamp(milliseconds / std::max(full_body_step_ms, 1e-9), 0.0, 1e9));
@@ -124,8 +130,7 @@ class Chooser {
     LevelReason& reason = decision_.reasons[by_distance.index];
     const bool forced = c.decided();
     if (forced)
-      target = {c.must_be_full() ? Level::full : Level::statistical,
-                c.choice == LevelChoice::automatic ? LevelReason::static_ground : LevelReason::forced, true};
+      target = {c.must_be_full() ? Level::full : Level::statistical, reason_to_have_decided(c), true};
     reason = target.reason;
     if (target.level == c.level) return;
 
@@ -195,6 +200,7 @@ std::string_view text_of(LevelReason reason) {
     case LevelReason::in_budget: return "among the nearest bodies that fit the budget";
     case LevelReason::overlap_put_off: return "its promotion waits until it overlaps no other body";
     case LevelReason::static_ground: return "near static boxes or meshes, which only the full level meets";
+    case LevelReason::signature_pending: return "its signature is still being measured";
     case LevelReason::contact_group: return "it goes with the bodies that it touches";
   }
   return "";

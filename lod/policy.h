@@ -30,7 +30,7 @@ struct PolicySettings {
 };
 
 /// Why a body has its level.
-enum class LevelReason : std::uint8_t { forced, near, far, within_hysteresis, dwell, queued, over_budget, in_budget, overlap_put_off, contact_group, static_ground };
+enum class LevelReason : std::uint8_t { forced, near, far, within_hysteresis, dwell, queued, over_budget, in_budget, overlap_put_off, contact_group, static_ground, signature_pending };
 std::string_view text_of(LevelReason reason);
 
 /// What the policy looks at, one per body.
@@ -41,13 +41,14 @@ struct LevelCandidate {
   LevelChoice choice = LevelChoice::automatic;
   Level level = Level::statistical;
   bool on_static_ground = false;  ///< near static boxes or meshes, which only the full level meets
+  bool waits_for_signature = false;  ///< the statistical level cannot have it yet
   bool newcomer = false;    ///< at no level yet: takes its level now, whatever the dwell and the cap
   bool put_off = false;     ///< its promotion was put off lately: it waits as it is
   std::int32_t frames_since_change = 1 << 30;
 
   /// Whether the policy has no say.
-  bool decided() const { return choice != LevelChoice::automatic || on_static_ground; }
-  bool must_be_full() const { return choice == LevelChoice::full || (choice == LevelChoice::automatic && on_static_ground); }
+  bool decided() const { return choice != LevelChoice::automatic || on_static_ground || waits_for_signature; }
+  bool must_be_full() const { return choice == LevelChoice::full || waits_for_signature || (choice == LevelChoice::automatic && on_static_ground); }
 };
 
 struct LevelDecision {

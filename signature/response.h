@@ -66,6 +66,7 @@ struct ResponseTable {
   ResponseCells cells;
   std::int64_t size() const { return std::int64_t(n_theta) * n_phi * n_alpha * n_psi; }
   CollisionConfiguration center(std::int64_t cell) const;  ///< at a speed unit of 1 m/s
+  std::int64_t find_cell(const CollisionConfiguration& c) const;  ///< whose centre is nearest along every axis
 };
 
 /// The paper's own table: responses over (θ, φ, ‖V⁻‖, ‖Ω⁻‖), on both sides of bounce_vel. Cell index ((i n_phi + j) speeds + k) spins + l.
@@ -76,6 +77,7 @@ struct SpeedTable {
   ResponseCells cells;
   std::int64_t size() const { return std::int64_t(n_theta) * n_phi * std::int64_t(speeds.size() * spins.size()); }
   CollisionConfiguration center(std::int64_t cell) const;
+  std::int64_t find_cell(const CollisionConfiguration& c) const;  ///< whose centre is nearest along every axis
 };
 
 }  // namespace lodestone

@@ -93,6 +93,8 @@ struct Signature {
   std::uint64_t shape_hash = 0;      ///< Shape::content_hash that it was measured for
   SignatureSettings settings;
   std::string shape_name;
+  std::uint32_t mesh_vertices = 0, mesh_faces = 0;  ///< of the shape that it was measured for
+  std::string versions;              ///< of the format, the measuring code and ODE that made it
   CollisionHeights collision_heights;
   ResponseTable bouncing;            ///< approach above ODE's bounce_vel; empty where measured on the paper's grid
   ResponseTable non_bouncing;        ///< below it, where restitution is 0
@@ -105,7 +107,7 @@ struct Signature {
   std::vector<ClipEntry> clip_entries;
   float clip_frame_interval = 0.0f;  ///< time between frames over √(R/g)
   std::uint64_t trials = 0;          ///< collision and settling trials simulated
-  double measuring_seconds = 0.0;    ///< wall time
+  double measuring_seconds = 0.0;    ///< wall time; not in the file, whose bytes are the same however long it took
 };
 
 }  // namespace lodestone

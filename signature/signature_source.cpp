@@ -3,10 +3,17 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <fstream>
+#include <thread>
 
 #include "reference/error.h"
+#include "signature/file_bytes.h"
 #include "signature/measure/measure.h"
+#include "signature/measure/measurement_part.h"
+#include "signature/measure/measuring_journal.h"
+#include "signature/settings_archive.h"
 #include "signature/signature_file.h"
 
 namespace lodestone {
@@ -15,52 +22,128 @@ namespace {
 // Raised when measuring changes its results: older files are then measured anew.
 constexpr std::uint32_t kMeasuringVersion = 4;
 
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 std::filesystem::path default_cache_folder() {
   if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder) return std::filesystem::path(folder) / "lodestone";
   if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "lodestone";
   return std::filesystem::temp_directory_path() / "lodestone-cache";
 }
 
-// Names the content: shape, law, settings and the versions of the format, of the measuring code and of ODE.
+MeasurementIdentity identity_of(const Shape& shape, const SignatureSettings& settings, const Share& share) {
+  MeasurementIdentity identity{measuring_versions(), settings, share, shape, std::uint32_t(shape.mesh.vertices.size()), std::uint32_t(shape.mesh.faces.size())};
+  identity.shape.mesh = {};
+  return identity;
+}
+
+// Names the content: shape, law, settings and versions.
 std::string content_key(const Shape& shape, const SignatureSettings& settings) {
-  const SignatureSettings& s = settings;
-  std::string content = fmt::format("{:016x} {} {} {} {} {} {} {} {} {}", shape.content_hash, s.law.restitution, s.law.friction, int(s.trial_end), s.paper_grid,
-                                    s.n_theta, s.n_phi, s.n_alpha, s.n_psi, int(s.draw));
-  content += fmt::format(" {} {} {} {} {} {} {} {} {} {}", s.trials_per_cell, s.table_error, s.most_trials_per_cell, s.held_out_conditions, s.height_samples,
-                         s.height_trials, s.settling_trials, s.clips, s.rest_pose_frequency_min, s.seed);
-  content += fmt::format(" format {} measuring {} ode {}", kSignatureFormatVersion, kMeasuringVersion, LODESTONE_ODE_VERSION);
-  const XXH128_hash_t hash = XXH3_128bits(content.data(), content.size());
+  ByteWriter content;
+  content(shape.content_hash, settings, measuring_versions());
+  const XXH128_hash_t hash = XXH3_128bits(content.bytes.data(), content.bytes.size());
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+std::filesystem::path beside(std::filesystem::path file, const std::string& ending) { return file += ending; }
+
+std::filesystem::path cache_file(const Shape& shape, const SignatureSettings& measuring, const SignatureSourceSettings& settings) {
+  return (settings.cache_folder.empty() ? default_cache_folder() : settings.cache_folder) / (content_key(shape, measuring) + ".sig");
 }
 
 std::shared_ptr<const Signature> find_cached(const std::filesystem::path& file, const Shape& shape) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return nullptr;
   try {
-    auto signature = std::make_shared<const Signature>(load_signature(file));
-    return signature->shape_hash == shape.content_hash ? signature : nullptr;
+    auto signature = std::make_shared<Signature>(load_signature(file));
+    std::ifstream(beside(file, ".seconds")) >> signature->measuring_seconds;
+    check_measured_for(*signature, shape, file.string());
+    return signature;
   } catch (const InputError&) {
-    return nullptr;  // damaged: it is measured and written anew
+    return nullptr;  // damaged, or another's: it is measured and written anew
   }
+}
+
+// The time first: whoever finds the signature finds its time, too.
+void keep(const Signature& signature, const std::filesystem::path& file) {
+  const std::string seconds = fmt::format("{}\n", signature.measuring_seconds);
+  write_atomically(std::as_bytes(std::span(seconds)), beside(file, ".seconds"));
+  save_signature(signature, file);
+}
+
+// Null once `done` says that another process has made it, or measuring is stopped.
+template <class Done>
+std::unique_ptr<MeasuringJournal> wait_for_journal(const std::filesystem::path& file, const MeasurementIdentity& identity,
+                                                   const SignatureSourceSettings& settings, Done done) {
+  while (!settings.stop.stop_requested() && !done()) {
+    if (auto journal = MeasuringJournal::try_open(file, identity)) return journal;
+    if (settings.progress) settings.progress("another process measures it", 0.0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return nullptr;
+}
+
+MeasureOptions options_of(const SignatureSourceSettings& settings, MeasuringJournal* journal) {
+  return {.threads = settings.threads, .progress = settings.progress, .stop = settings.stop, .journal = journal};
+}
+
+SourcedSignature find_or_measure_in(const std::filesystem::path& file, const Shape& shape, const SignatureSettings& measuring, const SignatureSourceSettings& settings) {
+  SourcedSignature sourced{.signature = find_cached(file, shape), .file = file};
+  const MeasurementIdentity identity = identity_of(shape, measuring, {});
+  std::unique_ptr<MeasuringJournal> journal;
+  if (!sourced.signature)
+    journal = wait_for_journal(beside(file, ".measuring"), identity, settings, [&] { return (sourced.signature = find_cached(file, shape)) != nullptr; });
+  // Another process may have finished between the look and the lock.
+  if (journal && (sourced.signature = find_cached(file, shape))) journal->remove();
+  sourced.cached = sourced.signature != nullptr;
+  if (sourced.cached || !journal) return sourced;
+  const Measurement units = measure_units(shape, measuring, {}, options_of(settings, journal.get()));
+  if (settings.stop.stop_requested()) return sourced;
+  Signature signature = make_signature(shape, measuring, units);
+  signature.measuring_seconds = journal->seconds();
+  keep(signature, file);
+  journal->remove();
+  sourced.signature = std::make_shared<const Signature>(std::move(signature));
+  sourced.trials_resumed = journal->trials_found(measuring);
+  return sourced;
 }
 
 }  // namespace
 
+std::string measuring_versions() { return fmt::format("format {} measuring {} ode {}", kSignatureFormatVersion, kMeasuringVersion, LODESTONE_ODE_VERSION); }
+
 SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw& law, const SignatureSourceSettings& settings) {
   SignatureSettings measuring = settings.measuring;
   measuring.law = law;
-  SourcedSignature sourced;
+  if (settings.use_cache) return find_or_measure_in(cache_file(shape, measuring, settings), shape, measuring, settings);
+  const Stopwatch watch;
+  const Measurement units = measure_units(shape, measuring, {}, options_of(settings, nullptr));
+  if (settings.stop.stop_requested()) return {};
+  Signature signature = make_signature(shape, measuring, units);
+  signature.measuring_seconds = watch.seconds();
+  return {.signature = std::make_shared<const Signature>(std::move(signature)), .file = {}};
+}
+
+MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Share& share, const SignatureSourceSettings& settings) {
+  SignatureSettings measuring = settings.measuring;
+  measuring.law = law;
+  MeasurementPart part{.identity = identity_of(shape, measuring, share), .measurement = {}};
+  std::unique_ptr<MeasuringJournal> journal;
   if (settings.use_cache) {
-    const std::filesystem::path folder = settings.cache_folder.empty() ? default_cache_folder() : settings.cache_folder;
-    sourced.file = folder / (content_key(shape, measuring) + ".sig");
-    sourced.signature = find_cached(sourced.file, shape);
-    sourced.cached = sourced.signature != nullptr;
+    const std::string ending = fmt::format(".{}-of-{}.measuring", share.index + 1, share.count);
+    journal = wait_for_journal(beside(cache_file(shape, measuring, settings), ending), part.identity, settings, [] { return false; });
   }
-  if (!sourced.signature) {
-    sourced.signature = std::make_shared<const Signature>(measure_signature(shape, measuring, settings.threads, settings.progress));
-    if (settings.use_cache) save_signature(*sourced.signature, sourced.file);
-  }
-  return sourced;
+  const Stopwatch watch;
+  part.measurement = measure_units(shape, measuring, share, options_of(settings, journal.get()));
+  part.seconds = journal ? journal->seconds() : watch.seconds();
+  part.trials_resumed = journal ? journal->trials_found(measuring) : 0;
+  if (journal && !settings.stop.stop_requested()) journal->remove();
+  return part;
 }
 
 }  // namespace lodestone

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <stop_token>
+#include <string>
 
 #include "reference/shape.h"
 #include "signature/signature.h"
@@ -19,17 +21,30 @@ struct SignatureSourceSettings {
   std::filesystem::path cache_folder;  ///< empty: $XDG_CACHE_HOME/lodestone, else ~/.cache/lodestone
   int threads = 0;                  ///< 0: all cores
   Progress progress;
+  std::stop_token stop = {};        ///< once stopped, measuring ends soon, and goes on from there the next time (with the cache)
 };
+
+struct MeasurementPart;
+struct Share;
 
 /// A signature and how it was had.
 struct SourcedSignature {
-  std::shared_ptr<const Signature> signature;
+  std::shared_ptr<const Signature> signature;  ///< null only where measuring was stopped
   bool cached = false;
-  std::filesystem::path file;       ///< in the cache; empty where the cache was not used
+  std::filesystem::path file;        ///< in the cache; empty where the cache was not used
+  std::uint64_t trials_resumed = 0;  ///< that an interrupted measurement had left
 };
 
-/// The signature of `shape` under `law`: from the cache, or measured (and cached, atomically, several processes at once being safe).
-/// A file in the cache that is damaged or of another version is measured anew. Throws InputError where the cache folder cannot be written.
+/// The signature of `shape` under `law`: from the cache, or measured and cached. Of several processes (or threads) that want the same one, one measures it
+/// and the others wait for it; one that is interrupted leaves its finished units to the next. A file in the cache that is damaged or of another version is
+/// measured anew. Throws InputError where the cache folder cannot be written.
 SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw& law, const SignatureSourceSettings& settings = {});
+
+/// One share of it, measured. An interrupted share goes on from where it was, unless the cache is not used. The signature of a measurement that is stopped
+/// is not made: check the stop token.
+MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Share& share, const SignatureSourceSettings& settings = {});
+
+/// The versions of the format, of the measuring code and of ODE, on all of which a signature depends.
+std::string measuring_versions();
 
 }  // namespace lodestone

@@ -2,12 +2,16 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 
+#include "signature/measure/measurement_part.h"
+#include "signature/measure/signature_from_trials.h"
 #include "signature/signature_file.h"
 #include "signature/signature_source.h"
 #include "tools/commands.h"
 #include "tools/progress.h"
 #include "tools/shape_arguments.h"
+#include "tools/share_argument.h"
 #include "tools/signature_arguments.h"
 #include "tools/signature_report.h"
 
@@ -20,16 +24,48 @@ struct Arguments {
   std::filesystem::path out;
   int threads = 0;
   bool no_cache = false, json = false;
+  std::optional<Share> share;
+  std::filesystem::path from_trials, export_trials;
 };
 
-SourcedSignature find_signature(const Arguments& arguments, const Shape& shape) {
-  ProgressLine line;
+SignatureSettings settings_of(const Arguments& arguments) {
+  SignatureSettings settings = arguments.signature.measuring();
+  settings.law = arguments.shape.law();
+  return settings;
+}
+
+SignatureSourceSettings source_settings(const Arguments& arguments, ProgressLine& line) {
   SignatureSourceSettings source;
   source.measuring = arguments.signature.measuring();
   source.use_cache = !arguments.no_cache;
   source.threads = arguments.threads;
   source.progress = line.function();
-  return find_or_measure_signature(shape, arguments.shape.law(), source);
+  return source;
+}
+
+SourcedSignature sign_from_trials(const Arguments& arguments, const Shape& shape) {
+  const MeasuredTrials trials = load_trials(arguments.from_trials);
+  TrialCoverage coverage;
+  ProgressLine line;
+  Signature signature = make_signature_from_trials(shape, settings_of(arguments), trials, {.threads = arguments.threads, .progress = line.function()}, &coverage);
+  fmt::print(stderr, "{} collisions fill {} of {} cells; {} left out; {} rests. The rest is ODE's.\n", coverage.collisions, coverage.measured_cells, coverage.cells,
+             coverage.left_out, coverage.rests);
+  return {.signature = std::make_shared<const Signature>(std::move(signature)), .file = {}};
+}
+
+SourcedSignature sign_and_export(const Arguments& arguments, const Shape& shape) {
+  ProgressLine line;
+  const SignatureSettings settings = settings_of(arguments);
+  const Measurement measurement = measure_units(shape, settings, {}, {.threads = arguments.threads, .progress = line.function()});
+  save_trials(list_trials(shape, settings, measurement, arguments.threads), arguments.export_trials);
+  return {.signature = std::make_shared<const Signature>(make_signature(shape, settings, measurement)), .file = {}};
+}
+
+SourcedSignature find_signature(const Arguments& arguments, const Shape& shape) {
+  if (!arguments.from_trials.empty()) return sign_from_trials(arguments, shape);
+  if (!arguments.export_trials.empty()) return sign_and_export(arguments, shape);
+  ProgressLine line;
+  return find_or_measure_signature(shape, arguments.shape.law(), source_settings(arguments, line));
 }
 
 // The lengths of a signature are over the radius; who signs a shape wants its own.
@@ -38,12 +74,45 @@ nlohmann::ordered_json json_of(const SourcedSignature& sourced, const Shape& sha
   for (std::size_t i = 0; i < sourced.signature->rest_poses.size(); ++i)
     json["rest_poses"][i]["height_m"] = sourced.signature->rest_poses[i].height * shape.radius;
   json["cached"] = sourced.cached;
+  json["trials_resumed"] = sourced.trials_resumed;
   json["file"] = sourced.file.string();
   return json;
 }
 
+// What a part knows: of the signature itself, nothing yet.
+nlohmann::ordered_json json_of(const MeasurementPart& part, const std::filesystem::path& file) {
+  const std::uint64_t trials = count_trials(part);
+  nlohmann::ordered_json json;
+  json["shape"] = part.identity.shape.name;
+  json["shape_hash"] = fmt::format("{:016x}", part.identity.shape.content_hash);
+  json["shard"] = fmt::format("{}/{}", part.identity.share.index + 1, part.identity.share.count);
+  json["trials"] = trials;
+  json["seconds"] = part.seconds;
+  json["cached"] = false;
+  json["trials_per_s"] = part.seconds > 0.0 ? nlohmann::ordered_json(double(trials) / part.seconds) : nlohmann::ordered_json(nullptr);
+  json["bytes"] = std::filesystem::file_size(file);
+  json["rest_poses"] = nlohmann::ordered_json::array();
+  json["held_out_ks"] = nullptr;
+  json["trials_resumed"] = part.trials_resumed;
+  json["file"] = file.string();
+  return json;
+}
+
+void sign_share(const Arguments& arguments, const Shape& shape) {
+  MeasurementPart part;
+  {
+    ProgressLine line;
+    part = measure_part(shape, arguments.shape.law(), *arguments.share, source_settings(arguments, line));
+  }
+  save_part(part, arguments.out);
+  if (arguments.json) fmt::print("{}\n", json_of(part, arguments.out).dump(2));
+  else fmt::print("part {} of {}: {} trials in {:.1f} s, in {}\n", arguments.share->index + 1, arguments.share->count, count_trials(part), part.seconds,
+                  arguments.out.string());
+}
+
 void sign(const Arguments& arguments) {
   const auto shape = make_shape_from_arguments(arguments.shape);
+  if (arguments.share) return sign_share(arguments, *shape);
   SourcedSignature sourced = find_signature(arguments, *shape);
   if (!arguments.out.empty()) {
     save_signature(*sourced.signature, arguments.out);
@@ -61,7 +130,11 @@ void add_sign_command(CLI::App& program, ExitCode& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   add_shape_arguments(*command, arguments->shape);
   add_signature_arguments(*command, arguments->signature);
-  command->add_option("-o", arguments->out, "write it to this file, too");
+  CLI::Option* out = command->add_option("-o", arguments->out, "write it to this file, too");
+  CLI::Option* shard = add_share_argument(*command, arguments->share)->needs(out);
+  CLI::Option* from = command->add_option("--from-trials", arguments->from_trials, "make its tables of the measured collisions and rests in this CSV file")->excludes(shard);
+  command->add_option("--export-trials", arguments->export_trials, "measure it anew and write the trials to this CSV file")->excludes(shard)->excludes(from);
+  command->add_option("--seed", arguments->signature.settings.seed, "of every random draw of the measuring")->capture_default_str();
   command->add_flag("--no-cache", arguments->no_cache, "measure it anew and leave the cache alone");
   command->add_option("--threads", arguments->threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
   command->add_flag("--json", arguments->json, "one JSON object on stdout");

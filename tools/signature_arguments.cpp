@@ -28,6 +28,11 @@ void add_signature_arguments(CLI::App& command, SignatureArguments& arguments) {
       ->transform(CLI::CheckedTransformer(kDraws))->default_str("independent")->group(group);
   command.add_option("--table-error", settings.table_error, "more trials where a cell's mean has a greater standard error than this, over the speed; 0: the same number in each")
       ->check(CLI::Range(0.0, 1.0))->capture_default_str()->group(group);
+  command.add_option("--cell-trials", settings.trials_per_cell, "collisions in each cell of the tables")->check(CLI::Range(2, 100'000))->capture_default_str()->group(group);
+  command.add_option("--height-trials", settings.height_trials, "contacts for each sample of the collision height")
+      ->check(CLI::Range(2, 10'000'000))->capture_default_str()->group(group);
+  command.add_option("--settling-trials", settings.settling_trials, "drops to rest, for rest poses and settling clips")
+      ->check(CLI::Range(1, 1'000'000))->capture_default_str()->group(group);
   command.add_option("--clips", settings.clips, "settling clips to keep")->check(CLI::Range(0, 100'000))->capture_default_str()->group(group);
 }
 

@@ -18,7 +18,7 @@ struct SignatureArguments {
   SignatureSettings measuring() const;
 };
 
-/// Adds --paper-grid, --trial-end, --psi, --draw, --table-error and --clips to `command`. `arguments` outlives the parsing.
+/// Adds --paper-grid, --trial-end, --psi, --draw, --table-error, --cell-trials, --height-trials, --settling-trials and --clips to `command`. `arguments` outlives the parsing.
 void add_signature_arguments(CLI::App& command, SignatureArguments& arguments);
 
 }  // namespace lodestone

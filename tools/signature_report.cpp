@@ -89,7 +89,8 @@ std::string text_of(const Signature& signature, std::size_t bytes) {
   std::string text;
   text += fmt::format("shape        {} ({:016x})\n", signature.shape_name, signature.shape_hash);
   text += fmt::format("contact      restitution {}, friction {}\n", settings.law.restitution, settings.law.friction);
-  text += fmt::format("trials       {} in {:.1f} s; seed {}; until the {}\n", signature.trials, signature.measuring_seconds, settings.seed,
+  text += fmt::format("trials       {}{}; seed {}; until the {}\n", signature.trials,
+                      signature.measuring_seconds > 0.0 ? fmt::format(" in {:.1f} s", signature.measuring_seconds) : "", settings.seed,
                       settings.trial_end == TrialEnd::first_impulse ? "first impulse" : "body leaves the plane");
   text += fmt::format("responses    {}; {} draws\n", text_of_axes(signature), name_of(settings.draw));
   text += fmt::format("valid for    {}\n", text_of_validity(signature));
@@ -107,7 +108,7 @@ ordered_json json_of(const Signature& signature, std::size_t bytes) {
   json["restitution"] = settings.law.restitution;
   json["friction"] = settings.law.friction;
   json["trials"] = signature.trials;
-  json["seconds"] = signature.measuring_seconds;
+  json["seconds"] = signature.measuring_seconds > 0 ? ordered_json(signature.measuring_seconds) : ordered_json(nullptr);
   json["trials_per_s"] = signature.measuring_seconds > 0 ? ordered_json(double(signature.trials) / signature.measuring_seconds) : ordered_json(nullptr);
   json["bytes"] = bytes;
   json["draw"] = name_of(settings.draw);

@@ -62,6 +62,14 @@ int trials_needed(const Moments& moments, const CellSampling& sampling) {
   return int(std::min(needed, double(sampling.most_trials)));
 }
 
+void set_moments(const Moments& moments, CellUnit& unit) {
+  unit.mean = moments.mean.cast<float>();
+  const Matrix6 covariance = moments.covariance();
+  unit.deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt().cast<float>();
+  unit.factor = factor_of(covariance);
+  unit.trials = std::uint32_t(moments.count);
+}
+
 class CellMeasuring {
  public:
   CellMeasuring(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell, const CellSampling& sampling)
@@ -74,23 +82,16 @@ class CellMeasuring {
       run_until(std::min(kFirstBatch, sampling_.most_trials));
       for (int needed; (needed = trials_needed(moments_, sampling_)) > next_;) run_until(needed);
     }
-    unit_.mean = moments_.mean.cast<float>();
-    const Matrix6 covariance = moments_.covariance();
-    unit_.deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt().cast<float>();
-    unit_.factor = factor_of(covariance);
+    set_moments(moments_, unit_);
     unit_.approach = approaches_.over(moments_.count);
-    unit_.trials = std::uint32_t(moments_.count);
     return std::move(unit_);
   }
 
  private:
   void run_until(int end) {
     for (; next_ < end; ++next_) {
-      RandomStream random(sampling_.seed, std::uint64_t(cell_), std::uint32_t(next_));
-      const Quat orientation = random.orientation();
-      CollisionConfiguration c = center_;
-      if (sampling_.every_psi) c.psi = random.uniform(0.0, 2.0 * kPi);
-      if (const auto outcome = trial_.run(c, orientation)) add(*outcome);
+      const CellTrial start = cell_trial(center_, cell_, std::uint32_t(next_), sampling_);
+      if (const auto outcome = trial_.run(start.configuration, start.orientation)) add(*outcome);
       else ++unit_.missed;
     }
   }
@@ -122,6 +123,21 @@ class CellMeasuring {
 double between_logarithms(double low, double high, double part) { return low * std::pow(high / low, part); }
 
 }  // namespace
+
+CellTrial cell_trial(const CollisionConfiguration& center, std::int64_t cell, std::uint32_t k, const CellSampling& sampling) {
+  RandomStream random(sampling.seed, std::uint64_t(cell), k);
+  CellTrial start{center, random.orientation()};
+  if (sampling.every_psi) start.configuration.psi = random.uniform(0.0, 2.0 * kPi);
+  return start;
+}
+
+CellUnit make_cell_unit(std::span<const Response> responses) {
+  Moments moments;
+  for (const Response& response : responses) moments.add(response.cast<double>());
+  CellUnit unit;
+  set_moments(moments, unit);
+  return unit;
+}
 
 CellUnit measure_cell(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell, const CellSampling& sampling) {
   return CellMeasuring(trial, center, cell, sampling).measure();

@@ -1,6 +1,8 @@
 // The trials of one cell of a table, and of one held-out condition.
 #pragma once
 
+#include <span>
+
 #include "signature/measure/collision_trial.h"
 #include "signature/measure/measurement.h"
 
@@ -15,6 +17,18 @@ struct CellSampling {
   bool every_psi = true;           ///< ψ is drawn; else the centre's
   bool keep_responses = false;
 };
+
+/// How a trial starts.
+struct CellTrial {
+  CollisionConfiguration configuration;
+  Quat orientation = Quat::Identity();
+};
+
+/// Trial k of cell `cell`: its orientation (and ψ) drawn from the key (seed, cell, k).
+CellTrial cell_trial(const CollisionConfiguration& center, std::int64_t cell, std::uint32_t k, const CellSampling& sampling);
+
+/// The mean, spread and count of these responses; the rest of the unit is left as it is made.
+CellUnit make_cell_unit(std::span<const Response> responses);
 
 /// Trial k of cell `cell` has its orientation (and ψ) from the key (seed, cell, k), so a cell is the same wherever it is measured.
 CellUnit measure_cell(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell, const CellSampling& sampling);

@@ -72,6 +72,8 @@ Signature make_signature(const Shape& shape, const SignatureSettings& settings, 
   Signature signature;
   signature.shape_hash = measured->content_hash;
   signature.shape_name = shape.name;
+  signature.mesh_vertices = std::uint32_t(shape.mesh.vertices.size()), signature.mesh_faces = std::uint32_t(shape.mesh.faces.size());
+  signature.versions = measuring_versions();
   signature.settings = settings;
   for (const HeightUnit& unit : m.heights) {
     signature.collision_heights.mean.push_back(unit.mean);

@@ -13,13 +13,13 @@
 #include "reference/random.h"
 #include "signature/measure/cell_trials.h"
 #include "signature/measure/contact_time.h"
+#include "signature/measure/measuring_journal.h"
 #include "signature/measure/measuring_shape.h"
 #include "signature/measure/response_grid.h"
 
 namespace lodestone {
 namespace {
 
-constexpr double kAlwaysBounces = 1e-9;   // m/s, far below the speeds of the scale-free tables' trials
 constexpr std::uint64_t kHeightTrials = 1ull << 40;  // keys of what is no cell
 
 // Says how far a stage has come; called from many threads.
@@ -42,38 +42,40 @@ class Stage {
 
 class Measuring {
  public:
-  Measuring(const Shape& shape, const SignatureSettings& settings, const Share& share, const Progress& progress)
-      : shape_(make_measuring_shape(shape)), settings_(settings), share_(share), progress_(progress) {}
+  Measuring(const Shape& shape, const SignatureSettings& settings, const Share& share, const MeasureOptions& options)
+      : shape_(make_measuring_shape(shape)), settings_(settings), share_(share), options_(options) {}
 
   Measurement measure() const {
-    Measurement m;
-    m.share = share_;
+    Measurement m = make_empty_measurement(settings_, share_);
     measure_heights(m.heights);
     if (settings_.paper_grid) {
       measure_speed_table(m.by_speed);
     } else {
-      measure_table("responses", settings_.law, m.bouncing);
-      measure_table("responses without bounce", {0.0, settings_.law.friction}, m.non_bouncing);
+      measure_table("responses", UnitKind::bouncing, UnitKind::bouncing_held_out, settings_.law, m.bouncing);
+      measure_table("responses without bounce", UnitKind::non_bouncing, UnitKind::non_bouncing_held_out, {0.0, settings_.law.friction}, m.non_bouncing);
     }
     measure_settlings(m.settlings);
     return m;
   }
 
  private:
-  // Calls `measure(i)` for the units i of the share, from many threads.
-  template <class Unit>
-  void for_each(const std::string& name, std::int64_t count, std::int64_t grain, Unit measure) const {
-    Stage stage(name, count, progress_);
+  // Sets the units i of the share to `measure(i)`, from many threads.
+  template <class Unit, class Measure>
+  void for_each(const std::string& name, UnitKind kind, std::vector<Unit>& units, std::int64_t grain, Measure measure) const {
+    const auto count = std::int64_t(units.size());
+    Stage stage(name, count, options_.progress);
     tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, count, std::size_t(grain)), [&](const auto& range) {
-      for (std::int64_t i = range.begin(); i < range.end(); ++i)
-        if (share_.holds(i)) measure(i);
+      for (std::int64_t i = range.begin(); i < range.end() && !options_.stop.stop_requested(); ++i) {
+        if (!share_.holds(i) || (options_.journal && options_.journal->take(kind, i, units[i]))) continue;
+        units[i] = measure(i);
+        if (options_.journal) options_.journal->note(kind, i, units[i]);
+      }
       stage.add(range.end() - range.begin());
     }, tbb::simple_partitioner{});
   }
 
   void measure_heights(std::vector<HeightUnit>& units) const {
-    units.resize(std::size_t(settings_.height_samples));
-    for_each("collision heights", settings_.height_samples, 1, [&](std::int64_t k) { units[k] = measure_height(k); });
+    for_each("collision heights", UnitKind::height, units, 1, [&](std::int64_t k) { return measure_height(k); });
   }
 
   // Section 3.2.1: fixed speed, random orientation and spin axis.
@@ -99,11 +101,11 @@ class Measuring {
   }
 
   // Section 3.2.2, over (θ, φ, α).
-  void measure_table(const std::string& name, const ContactLaw& law, TableUnits& units) const {
+  void measure_table(const std::string& name, UnitKind cells, UnitKind held_out, const ContactLaw& law, TableUnits& units) const {
     const ResponseTable grid = make_response_grid(settings_);
-    measure_cells(name, law, kAlwaysBounces, grid, units.cells);
+    measure_cells(name, cells, law, kAlwaysBounces, grid, units.cells);
     const bool every_psi = grid.n_psi == 1;
-    measure_held_out(name + ", held out", law, kAlwaysBounces, every_psi, units.held_out,
+    measure_held_out(name + ", held out", held_out, law, kAlwaysBounces, every_psi, units.held_out,
                      [&](std::int64_t i) { return held_out_condition(i, settings_.seed); });
   }
 
@@ -111,34 +113,31 @@ class Measuring {
   void measure_speed_table(TableUnits& units) const {
     const SpeedTable grid = make_speed_grid(settings_);
     const double bounce_velocity = OdeSettings{}.bounce_velocity;
-    measure_cells("responses on the paper's grid", settings_.law, bounce_velocity, grid, units.cells);
-    measure_held_out("responses, held out", settings_.law, bounce_velocity, true, units.held_out,
+    measure_cells("responses on the paper's grid", UnitKind::by_speed, settings_.law, bounce_velocity, grid, units.cells);
+    measure_held_out("responses, held out", UnitKind::by_speed_held_out, settings_.law, bounce_velocity, true, units.held_out,
                      [&](std::int64_t i) { return held_out_condition(grid, i, settings_.seed); });
   }
 
   template <class Grid>
-  void measure_cells(const std::string& name, const ContactLaw& law, double bounce_velocity, const Grid& grid, std::vector<CellUnit>& cells) const {
+  void measure_cells(const std::string& name, UnitKind kind, const ContactLaw& law, double bounce_velocity, const Grid& grid, std::vector<CellUnit>& cells) const {
     const CellSampling sampling = make_cell_sampling(settings_);
     auto trials = make_trials(law, bounce_velocity);
-    cells.resize(std::size_t(grid.size()));
-    for_each(name, grid.size(), 8, [&](std::int64_t i) { cells[i] = measure_cell(trials.local(), grid.center(i), i, sampling); });
+    for_each(name, kind, cells, 8, [&](std::int64_t i) { return measure_cell(trials.local(), grid.center(i), i, sampling); });
   }
 
   template <class Condition>
-  void measure_held_out(const std::string& name, const ContactLaw& law, double bounce_velocity, bool every_psi, std::vector<HeldOutUnit>& units,
-                        Condition condition) const {
+  void measure_held_out(const std::string& name, UnitKind kind, const ContactLaw& law, double bounce_velocity, bool every_psi,
+                        std::vector<HeldOutUnit>& units, Condition condition) const {
     auto trials = make_trials(law, bounce_velocity);
-    units.resize(std::size_t(settings_.held_out_conditions));
-    for_each(name, settings_.held_out_conditions, 8,
-             [&](std::int64_t i) { units[i] = lodestone::measure_held_out(trials.local(), condition(i), i, settings_.seed, every_psi); });
+    for_each(name, kind, units, 8,
+             [&](std::int64_t i) { return lodestone::measure_held_out(trials.local(), condition(i), i, settings_.seed, every_psi); });
   }
 
   // Section 3.2.3. The first of them are followed to the end, for clips.
   void measure_settlings(std::vector<SettlingRecord>& records) const {
     tbb::enumerable_thread_specific<SettlingTrial> trials([&] { return SettlingTrial(shape_, settings_.law); });
-    records.resize(std::size_t(settings_.settling_trials));
-    for_each("settling", settings_.settling_trials, 1,
-             [&](std::int64_t i) { records[i] = trials.local().run(settings_.seed, std::uint32_t(i), i < settings_.clips); });
+    for_each("settling", UnitKind::settling, records, 1,
+             [&](std::int64_t i) { return trials.local().run(settings_.seed, std::uint32_t(i), i < settings_.clips); });
   }
 
   // One world for each thread.
@@ -149,21 +148,21 @@ class Measuring {
   std::shared_ptr<const Shape> shape_;
   const SignatureSettings& settings_;
   Share share_;
-  const Progress& progress_;
+  const MeasureOptions& options_;
 };
 
 }  // namespace
 
-Measurement measure_units(const Shape& shape, const SignatureSettings& settings, const Share& share, int threads, const Progress& progress) {
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+Measurement measure_units(const Shape& shape, const SignatureSettings& settings, const Share& share, const MeasureOptions& options) {
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   Measurement measurement;
-  arena.execute([&] { measurement = Measuring(shape, settings, share, progress).measure(); });
+  arena.execute([&] { measurement = Measuring(shape, settings, share, options).measure(); });
   return measurement;
 }
 
 Signature measure_signature(const Shape& shape, const SignatureSettings& settings, int threads, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  Signature signature = make_signature(shape, settings, measure_units(shape, settings, {}, threads, progress));
+  Signature signature = make_signature(shape, settings, measure_units(shape, settings, {}, {.threads = threads, .progress = progress}));
   signature.measuring_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return signature;
 }

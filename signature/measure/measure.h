@@ -1,6 +1,8 @@
 // Measures a signature with ODE as the ground truth (section 3.2).
 #pragma once
 
+#include <stop_token>
+
 #include "reference/shape.h"
 #include "signature/measure/measurement.h"
 #include "signature/signature.h"
@@ -12,8 +14,17 @@ namespace lodestone {
 /// result is the same for any number of threads (0: all cores).
 Signature measure_signature(const Shape& shape, const SignatureSettings& settings, int threads = 0, const Progress& progress = {});
 
+class MeasuringJournal;
+
+struct MeasureOptions {
+  int threads = 0;                     ///< 0: all cores
+  Progress progress = {};
+  std::stop_token stop = {};           ///< once stopped, the units that are left stay empty
+  MeasuringJournal* journal = nullptr;  ///< units in it are taken from there; those measured are noted
+};
+
 /// The trials of `share`, raw.
-Measurement measure_units(const Shape& shape, const SignatureSettings& settings, const Share& share, int threads = 0, const Progress& progress = {});
+Measurement measure_units(const Shape& shape, const SignatureSettings& settings, const Share& share, const MeasureOptions& options = {});
 
 /// The signature that all the units give. A pure function; `measuring_seconds` is left 0.
 Signature make_signature(const Shape& shape, const SignatureSettings& settings, const Measurement& measurement);

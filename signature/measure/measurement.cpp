@@ -1,6 +1,8 @@
 #include "signature/measure/measurement.h"
 
 #include "reference/error.h"
+#include "signature/measure/cell_trials.h"
+#include "signature/measure/response_grid.h"
 
 namespace lodestone {
 namespace {
@@ -18,6 +20,22 @@ void take(TableUnits& into, const TableUnits& from, const Share& share) {
 }
 
 }  // namespace
+
+Measurement make_empty_measurement(const SignatureSettings& settings, const Share& share) {
+  Measurement m;
+  m.share = share;
+  m.heights.resize(std::size_t(settings.height_samples));
+  const auto make_room = [&](TableUnits& units, std::int64_t cells) {
+    units.cells.resize(std::size_t(cells));
+    units.held_out.resize(std::size_t(settings.held_out_conditions));
+  };
+  if (settings.paper_grid) make_room(m.by_speed, make_speed_grid(settings).size());
+  else for (TableUnits* units : {&m.bouncing, &m.non_bouncing}) make_room(*units, make_response_grid(settings).size());
+  m.settlings.resize(std::size_t(settings.settling_trials));
+  return m;
+}
+
+std::uint64_t trials_of(const HeldOutUnit&, const SignatureSettings&) { return kHeldOutTrials; }
 
 Measurement merge_measurements(std::span<const Measurement> shares) {
   Measurement whole;

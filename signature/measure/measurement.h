@@ -35,6 +35,9 @@ struct HeldOutUnit {
   std::vector<Response> responses;  ///< of those that touched the plane
 };
 
+/// What a unit is of; its number counts within its kind.
+enum class UnitKind : std::uint32_t { height, bouncing, bouncing_held_out, non_bouncing, non_bouncing_held_out, by_speed, by_speed_held_out, settling, end };
+
 /// The units of one table.
 struct TableUnits {
   std::vector<CellUnit> cells;
@@ -54,6 +57,15 @@ struct Measurement {
   TableUnits bouncing, non_bouncing, by_speed;
   std::vector<SettlingRecord> settlings;
 };
+
+/// A measurement of nothing yet, with a place for every unit that the settings ask for.
+Measurement make_empty_measurement(const SignatureSettings& settings, const Share& share = {});
+
+/// Trials behind a unit.
+inline std::uint64_t trials_of(const HeightUnit&, const SignatureSettings& settings) { return std::uint64_t(settings.height_trials); }
+inline std::uint64_t trials_of(const CellUnit& unit, const SignatureSettings&) { return std::uint64_t(unit.trials) + unit.missed; }
+std::uint64_t trials_of(const HeldOutUnit& unit, const SignatureSettings& settings);
+inline std::uint64_t trials_of(const SettlingRecord&, const SignatureSettings&) { return 1; }
 
 /// Puts the shares of one measurement together, given in any order.
 Measurement merge_measurements(std::span<const Measurement> shares);

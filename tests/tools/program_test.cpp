@@ -34,7 +34,7 @@ Ended run(const std::string& arguments, bool with_errors = false) {
 }
 
 TEST(Program, HelpIsDone) {
-  for (const char* arguments : {"--help", "run --help", "sign --help", "inspect --help", "compare drop --help", "demo --help", "bench hard_cases --help"}) {
+  for (const char* arguments : {"--help", "run --help", "sign --help", "merge --help", "inspect --help", "compare drop --help", "demo --help", "bench hard_cases --help"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.exit_code, 0) << arguments;
     EXPECT_FALSE(ended.out.empty()) << arguments;

@@ -39,7 +39,7 @@ TEST(Measure, SharesPutTogetherGiveTheSameBytes) {
     settings.n_theta = settings.n_phi = 1, settings.paper_grid = paper_grid, settings.draw = ResponseDraw::empirical;
     const Shape box = make_test_box();
     std::vector<Measurement> shares;
-    for (const int i : {2, 0, 1}) shares.push_back(measure_units(box, settings, {i, 3}, 1));
+    for (const int i : {2, 0, 1}) shares.push_back(measure_units(box, settings, {i, 3}, {.threads = 1}));
     EXPECT_EQ(bytes_of(make_signature(box, settings, merge_measurements(shares))), bytes_of(measure_signature(box, settings, 2)));
   }
 }
