@@ -28,8 +28,8 @@ struct ManagerSettings {
   bool sleeping = true;       ///< bodies at rest cost nothing until something wakes them
   StatisticalModel model = StatisticalModel::support;
   TablesOptions tables = {};  ///< of the tables model
-  PolicySettings policy;
-  SignatureFunction signatures;  ///< empty: find_or_measure_signature with its defaults
+  PolicySettings policy = {};
+  SignatureFunction signatures = {};  ///< empty: find_or_measure_signature with its defaults
   SignatureTiming signature_timing = SignatureTiming::automatic;  ///< whether a step waits for a signature or the body stays full meanwhile
 };
 

@@ -26,7 +26,7 @@ double largest_speed(const Manager& manager, std::span<const BodyId> bodies) {
 }
 
 TEST(Transfer, T1MidAirBothWaysChangesNoBit) {
-  Levels levels({}, {}, no_signature);
+  Levels levels({}, {}, SignatureStore(no_signature, SignatureTiming::in_step));
   const auto shape = std::make_shared<const Shape>(make_shape("l", make_l(0.3, 0.2, 0.08, 0.1)));
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
     const RigidState given = random_state(trial);
@@ -228,7 +228,7 @@ std::int64_t resident_bytes() {
 }
 
 TEST(Transfer, T9ManyCyclesDoNotGrow) {
-  Levels levels({}, {}, no_signature);
+  Levels levels({}, {}, SignatureStore(no_signature, SignatureTiming::in_step));
   const auto shape = box_shape({0.2, 0.3, 0.4});
   const std::uint32_t body = levels.bodies.add({.shape = shape, .state = at({0, 0, 0})}, 1.0).index;
   place(levels, body, Level::full);

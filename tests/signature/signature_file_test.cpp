@@ -166,7 +166,7 @@ TEST(SignatureFile, WrongMagicVersionAndChecksumAreNamed) {
 TEST(SignatureFile, SizesThatOverflowAreAnError) {
   const Bytes bytes = encode_signature(box_signature());
   for (std::size_t section = 0; section < kSections; ++section)
-    for (const std::uint64_t count : {~0ull, ~0ull / 24 + 1, 1ull << 62, std::uint64_t(bytes.size())}) {
+    for (const std::uint64_t count : {~std::uint64_t(0), ~std::uint64_t(0) / 24 + 1, std::uint64_t(1) << 62, std::uint64_t(bytes.size())}) {
       for (const std::size_t field : {offsetof(SectionEntry, count), offsetof(SectionEntry, offset)}) {
         Bytes damaged = bytes;
         std::memcpy(damaged.data() + sizeof(SignatureHeader) + section * sizeof(SectionEntry) + field, &count, sizeof(count));
