@@ -78,7 +78,7 @@ TEST_F(Interrupted, GoesOnFromWhereItWasToTheSameBytes) {
 
 TEST_F(Interrupted, AShareGoesOn) {
   const std::string share = kBox + "--shard 1/2 -o ";
-  ASSERT_EQ(run(share + name("straight"), "straight").exit_code, 0);
+  ASSERT_EQ(run(share + name("straight.part"), "straight").exit_code, 0);
   ASSERT_TRUE(interrupt(share + name("part"), "cache", SIGKILL));
   EXPECT_FALSE(std::filesystem::exists(at("part")));
   const Ended again = run(share + name("part") + " --json");
@@ -86,7 +86,7 @@ TEST_F(Interrupted, AShareGoesOn) {
   EXPECT_GT(nlohmann::json::parse(again.out)["trials_resumed"].get<int>(), 200);
   ASSERT_EQ(run(kBox + "--shard 2/2 -o " + name("other")).exit_code, 0);
   ASSERT_EQ(run("merge " + name("part") + " " + name("other") + " -o " + name("a.sig")).exit_code, 0);
-  ASSERT_EQ(run("merge " + name("straight") + " " + name("other") + " -o " + name("b.sig")).exit_code, 0);
+  ASSERT_EQ(run("merge " + name("straight.part") + " " + name("other") + " -o " + name("b.sig")).exit_code, 0);
   EXPECT_TRUE(testing::bytes_of(at("a.sig")) == testing::bytes_of(at("b.sig")));
 }
 
