@@ -155,7 +155,7 @@ TEST(SignatureFile, WrongMagicVersionAndChecksumAreNamed) {
   expect_error(other, "a file of another kind");
   other = bytes;
   other[8] = std::byte{99};
-  expect_error(other, "format version 99, expected version 3");
+  expect_error(other, "format version 99, expected version 4");
   other = bytes;
   other.back() ^= std::byte{1};
   expect_error(other, "a checksum that does not match");
