@@ -10,14 +10,10 @@
 namespace lodestone {
 
 inline constexpr float kClipHeightRange = 4.0f;  ///< over R
+inline constexpr float kClipSpeedRange = 4.0f;   ///< over √(gR), and times √(R/g)
 
-/// Pose in a clip: position over R relative to the clip's start (z over the plane), orientation up to the yaw that the player adds.
-struct ClipPose {
-  Vec3 position = Vec3::Zero();
-  Quat orientation = Quat::Identity();
-};
-
-/// The same with velocities, over √(gR) and √(g/R).
+/// State in a clip: position over R relative to the clip's start (z over the plane), orientation up to the yaw that the player adds, velocities over
+/// √(gR) and √(g/R).
 struct ClipState {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
@@ -25,11 +21,11 @@ struct ClipState {
   Vec3 angular_velocity = Vec3::Zero();
 };
 
-ClipFrame encode_frame(const ClipPose& pose, float extent);
-ClipPose decode_frame(const ClipFrame& frame, float extent);
+ClipFrame encode_frame(const ClipState& state, float extent);
+ClipState decode_frame(const ClipFrame& frame, float extent);
 
-/// State in `clip` at `frame` (fractional, clamped to the clip): poses between frames by interpolation, velocities those of the motion from the frame
-/// before to the frame after.
+/// State in `clip` at `frame` (fractional, clamped to the clip). Between frames poses are interpolated; velocities stay those of the frame before, for
+/// they change at impacts, which must stay sudden.
 ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, double frame);
 
 /// How a body moves at a contact, dimensionless and in body axes, so that yaw does not matter.
