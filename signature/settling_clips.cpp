@@ -90,11 +90,11 @@ ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, f
   start_.push_back(std::uint32_t(near_.size()));
 }
 
-std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float energy_slack) const {
+std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float energy_slack, float distance_limit) const {
   if (empty()) return {};
   const int cell = cube_cell(key.normal, kSide);
   std::optional<ClipEntry> best;
-  float best_distance = max_distance_;
+  float best_distance = std::min(max_distance_, distance_limit);
   for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
     const SettlingKey& k = keys_[near_[i]];
     const float from_normal = 4.0f * (k.normal - key.normal).squaredNorm();

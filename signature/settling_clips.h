@@ -42,8 +42,8 @@ class ClipIndex {
   /// `inertia_per_mass`: of the shape, over R²; `max_distance`: of what find_nearest may return.
   ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance);
 
-  /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`; none beyond the greatest distance.
-  std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack) const;
+  /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`; none beyond `distance_limit`, which is at most `max_distance`.
+  std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack, float distance_limit) const;
   bool empty() const { return keys_.empty(); }
 
  private:
