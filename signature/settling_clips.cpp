@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace lodestone {
 namespace {
@@ -75,17 +76,17 @@ ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, 
   return state;
 }
 
-ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance)
-    : max_distance_(max_distance), entries_(signature.clip_entries) {
-  for (const ClipEntry& entry : entries_)
-    keys_.push_back(key_of(find_clip_state(signature, signature.clips[entry.clip], entry.frame), inertia_per_mass));
+ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance) : max_distance_(max_distance) {
+  std::vector<Near> all;
+  for (const ClipEntry& entry : signature.clip_entries)
+    all.push_back({key_of(find_clip_state(signature, signature.clips[entry.clip], entry.frame), inertia_per_mass), entry});
+  std::ranges::stable_sort(all, {}, [](const Near& n) { return n.key.energy; });
   constexpr float kCellReach = 1.5f / kSide;  // no direction in a cell is farther from its middle than this
   const float reach = kCellReach + 0.5f * std::sqrt(max_distance);
   for (int cell = 0; cell < 6 * kSide * kSide; ++cell) {
     start_.push_back(std::uint32_t(near_.size()));
     const Eigen::Vector3f middle = cube_cell_direction(cell, kSide);
-    for (std::size_t i = 0; i < keys_.size(); ++i)
-      if ((keys_[i].normal - middle).norm() < reach) near_.push_back(std::uint32_t(i));
+    std::ranges::copy_if(all, std::back_inserter(near_), [&](const Near& n) { return (n.key.normal - middle).norm() < reach; });
   }
   start_.push_back(std::uint32_t(near_.size()));
 }
@@ -95,12 +96,12 @@ std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float e
   const int cell = cube_cell(key.normal, kSide);
   std::optional<ClipEntry> best;
   float best_distance = std::min(max_distance_, distance_limit);
-  for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
-    const SettlingKey& k = keys_[near_[i]];
-    const float from_normal = 4.0f * (k.normal - key.normal).squaredNorm();
-    if (from_normal >= best_distance || k.energy > key.energy + energy_slack) continue;
-    const float distance = from_normal + (k.velocity - key.velocity).squaredNorm() + (k.angular_velocity - key.angular_velocity).squaredNorm();
-    if (distance < best_distance) best_distance = distance, best = entries_[near_[i]];
+  for (const Near& n : std::span(near_).subspan(start_[cell], start_[cell + 1] - start_[cell])) {
+    if (n.key.energy > key.energy + energy_slack) break;
+    const float from_normal = 4.0f * (n.key.normal - key.normal).squaredNorm();
+    if (from_normal >= best_distance) continue;
+    const float distance = from_normal + (n.key.velocity - key.velocity).squaredNorm() + (n.key.angular_velocity - key.angular_velocity).squaredNorm();
+    if (distance < best_distance) best_distance = distance, best = n.entry;
   }
   return best;
 }

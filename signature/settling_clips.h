@@ -44,15 +44,17 @@ class ClipIndex {
 
   /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`; none beyond `distance_limit`, which is at most `max_distance`.
   std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack, float distance_limit) const;
-  bool empty() const { return keys_.empty(); }
+  bool empty() const { return near_.empty(); }
 
  private:
-  static constexpr int kSide = 6;  // cells along an edge of the cube of normals
+  struct Near {
+    SettlingKey key;
+    ClipEntry entry;
+  };
+  static constexpr int kSide = 8;  // cells along an edge of the cube of normals
   float max_distance_ = 0.0f;
-  std::vector<SettlingKey> keys_;
-  std::vector<ClipEntry> entries_;
   std::vector<std::uint32_t> start_;  // of each cell's run of `near_`
-  std::vector<std::uint32_t> near_;   // keys within reach of the cell
+  std::vector<Near> near_;            // what is within reach of the cell, of least energy first
 };
 
 }  // namespace lodestone
