@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "reference/geometry.h"
+#include "reference/hull/hull.h"
 #include "reference/material.h"
 #include "signature/collision_heights.h"
 #include "signature/response.h"
@@ -102,6 +103,7 @@ struct Signature {
   TableCertificate bouncing_certificate, non_bouncing_certificate, by_speed_certificate;
   std::vector<RestPose> rest_poses;  ///< most frequent first
   int rest_poses_above_5_percent = 0;  ///< the paper's count
+  SupportMapError support_map_error; ///< of the shape's support map without the climb, over R
   std::vector<SettlingClip> clips;
   std::vector<ClipFrame> clip_frames;
   std::vector<ClipEntry> clip_entries;
