@@ -2,11 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <numbers>
 
 #include "tools/compare/drop_report.h"
+#include "tools/compare/method_argument.h"
 #include "tools/progress.h"
 #include "tools/shape_arguments.h"
 #include "tools/signature_arguments.h"
@@ -32,12 +32,6 @@ DropJob make_job(const Arguments& arguments) {
   job.conditions.speed_scale = arguments.speed_scale;
   job.conditions.slope = arguments.slope_deg * std::numbers::pi / 180.0;
   return job;
-}
-
-/// Empty where there is none.
-std::string find_method_fault(const std::string& name) {
-  if (is_drop_method(name)) return "";
-  return fmt::format("found '{}', expected some of {}, full_2 to full_64", name, fmt::join(drop_method_names(), ", "));
 }
 
 void compare_drop(const Arguments& arguments) {
@@ -67,8 +61,7 @@ void add_compare_drop_command(CLI::App& compare, ExitCode& exit_code) {
   drop->add_option("--dt", arguments->steps, "steps of the methods, s: 0.01 or 1/60, several with commas")
       ->delimiter(',')->allow_extra_args(false)->check(find_step_fault, "SECONDS")->capture_default_str();
   drop->add_option("--trials", comparison.trials, "drops of each")->check(CLI::Range(2, 1'000'000))->capture_default_str();
-  drop->add_option("--methods", comparison.methods, fmt::format("some of {}; full_N for the full level at N substeps", fmt::join(drop_method_names(), ",")))
-      ->delimiter(',')->allow_extra_args(false)->check(find_method_fault, "METHODS")->capture_default_str();
+  add_methods_argument(*drop, comparison.methods);
   drop->add_option("--seed", comparison.seed, "of the starts")->capture_default_str();
   drop->add_option("--speed-scale", arguments->speed_scale, "multiplies the starting speeds")->check(CLI::Range(0.0, 1e3))->capture_default_str();
   drop->add_option("--slope-deg", arguments->slope_deg, "of the plane")->check(CLI::Range(0.0, 80.0))->capture_default_str();
