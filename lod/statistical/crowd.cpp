@@ -176,6 +176,9 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     const Participant p = participants_[i];
     const SolverBody& solved = solver_bodies_[i];
     if (p < 0) {
+      RigidState& state = neighbors[-1 - p].state;
+      state.velocity = solved.velocity;
+      state.angular_velocity = solved.angular_velocity;
       continue;
     }
     index_of_slot_[p] = -1;
@@ -204,7 +207,8 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   const auto move = [&](std::int32_t index, const Vec3& by) {
     if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
     const Participant p = participants_[index];
-    (p >= 0 ? bodies[p].position : neighbors[-1 - p].shift) += by;
+    (p >= 0 ? bodies[p].position : neighbors[-1 - p].state.position) += by;
+    if (p < 0) neighbors[-1 - p].shift += by;
   };
   for (const SolverContact& c : solver_contacts_) {
     const Participant p = std::max(participants_[c.first], c.second < 0 ? -1 : participants_[c.second]);

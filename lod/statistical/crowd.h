@@ -32,7 +32,7 @@ class Crowd {
   explicit Crowd(const CrowdSettings& settings = {}) : settings_(settings) {}
 
   /// Solves `contacts`, the ground contacts of every crowded body and those of `full_contacts` that hold up a full one, then moves the crowded
-  /// bodies by `time`. Bodies asleep hold still; full neighbours receive impulses and are not moved.
+  /// bodies by `time`. Bodies asleep hold still; full neighbours receive impulses, the velocities that these give them, and shifts, but do not move on.
   ContactTally step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
                     std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts, const StepWorld& world,
                     StatisticalModel model, double time);

@@ -57,22 +57,23 @@ void StatisticalLevel::Impl::find_contact(Participant first, Participant second,
   }
   const Vec3 closing = point_velocity(first, a.position, neighbors) - point_velocity(second, b.position, neighbors);
   const double margin = touching + closing.norm() * dt;
-  std::optional<PairContact> contact;
+  std::vector<PairContact> met;
   if (tables()) {
-    contact = find_sphere_contact(a, b, margin);
+    if (const auto contact = find_sphere_contact(a, b, margin)) met.push_back(*contact);
   } else {
-    HullContactSearch search = find_hull_contact(a, b, known ? Vec3(known->normal.cast<double>()) : Vec3::Zero(), margin);
+    HullContactSearch search = find_pair_contacts(a, b, known ? Vec3(known->normal.cast<double>()) : Vec3::Zero(), margin);
     pair.record = {search.normal.cast<float>(), float(search.gap), gone};
-    contact = std::move(search.contact);
+    met = std::move(search.contacts);
   }
-  if (!contact) return;
-  // It counts if it closes within the step.
-  const auto closes = [&](const ManifoldPoint& p) {
-    const Vec3 velocity = point_velocity(first, p.point, neighbors) - point_velocity(second, p.point, neighbors);
-    return p.gap + velocity.dot(contact->normal) * dt <= touching;
+  // A contact counts if it closes within the step.
+  const auto closes = [&](const PairContact& contact) {
+    return std::ranges::any_of(std::span(contact.manifold.points).first(std::size_t(contact.manifold.count)), [&](const ManifoldPoint& p) {
+      const Vec3 velocity = point_velocity(first, p.point, neighbors) - point_velocity(second, p.point, neighbors);
+      return p.gap + velocity.dot(contact.normal) * dt <= touching;
+    });
   };
-  const auto points = std::span(contact->manifold.points).first(std::size_t(contact->manifold.count));
-  if (std::ranges::any_of(points, closes)) pair.contact = CrowdContact{first, second, *contact};
+  for (const PairContact& contact : met)
+    if (closes(contact)) pair.contacts.push_back({first, second, contact});
 }
 
 void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighbor> neighbors) {
@@ -95,10 +96,10 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   if (!tables()) pair_memory.begin(pairs.size());
   for (const FoundPair& pair : found) {
     if (!tables()) pair_memory.put(pair.key, pair.record);
-    if (!pair.contact) continue;
-    contacts.push_back(*pair.contact);
-    for (const Participant p : {pair.contact->first, pair.contact->second})
-      if (p >= 0) bodies[p].crowded = true;
+    contacts.insert(contacts.end(), pair.contacts.begin(), pair.contacts.end());
+    for (const CrowdContact& contact : pair.contacts)
+      for (const Participant p : {contact.first, contact.second})
+        if (p >= 0) bodies[p].crowded = true;
   }
   if (!tables()) pair_memory.end();
 }

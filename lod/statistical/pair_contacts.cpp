@@ -1,5 +1,7 @@
 #include "lod/statistical/pair_contacts.h"
 
+#include <algorithm>
+
 namespace lodestone {
 namespace {
 
@@ -89,22 +91,93 @@ Manifold find_points(const PairBody& first, const PairBody& second, const Separa
 
 // Most near pairs do not touch, and the last step's axis or a few steps uphill show it. A contact itself is found without memory, so that it is
 // a function of the two poses alone.
-HullContactSearch search_relative(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
+Separation find_separation(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
   const auto from = [&](const Vec3& axis) {
     Separation best = separation_along(first, second, axis, find_start(first, -axis), find_start(second, axis));
     climb(first, second, margin, best);
     return best;
   };
   if (!start.isZero(0.0))
-    if (const Separation apart = from(start); apart.gap > margin) return {apart.normal, apart.gap, {}};
-  const Vec3& line = first.position;
+    if (const Separation apart = from(start); apart.gap > margin) return apart;
+  const Vec3 line = first.position - second.position;
   Separation best = from(line.norm() > 1e-12 ? Vec3(line.normalized()) : Vec3::UnitZ());
   const double before = best.gap;
   if (best.gap <= margin) try_rest_normals(first, first, second, best);
   if (best.gap <= margin) try_rest_normals(second, first, second, best);
   if (best.gap > before) climb(first, second, margin, best);
+  return best;
+}
+
+PairContact contact_along(const PairBody& first, const PairBody& second, const Separation& best) {
+  return {best.normal, best.gap, find_points(first, second, best)};
+}
+
+int count_pieces(const PairBody& body) { return std::max<int>(1, int(body.shape->pieces.size())); }
+
+// The body itself where it has none.
+PairBody piece_of(const PairBody& body, int piece) {
+  if (body.shape->pieces.empty()) return body;
+  PairBody part = body;
+  part.shape = &body.shape->pieces[std::size_t(piece)];
+  part.position += body.orientation * part.shape->center_of_mass_in_mesh;
+  return part;
+}
+
+// Deeper than this in a piece, over its R, is inside it.
+constexpr double kWithin = 1e-3;
+
+bool is_within(const PairBody& piece, const Vec3& point) {
+  const Hull& hull = piece.shape->hull;
+  const Vec3 local = piece.orientation.conjugate() * (point - piece.position);
+  const double margin = kWithin * piece.shape->radius;
+  if (local.squaredNorm() > piece.shape->radius * piece.shape->radius) return false;
+  for (int i = 0; i < int(hull.faces.size()); ++i) {
+    const Vec3 normal = hull.face_normal(i);
+    if (normal.dot(local - hull.vertices[std::size_t(hull.faces[std::size_t(i)][0])]) > -margin * normal.norm()) return false;
+  }
+  return true;
+}
+
+// Whether a point on the surface of piece `own` lies inside another piece of the body: nothing can touch it there.
+bool is_internal(const PairBody& body, int own, const Vec3& point) {
+  for (int i = 0; i < int(body.shape->pieces.size()); ++i)
+    if (i != own && is_within(piece_of(body, i), point)) return true;
+  return false;
+}
+
+void drop_internal_points(const PairBody& first, int i, const PairBody& second, int k, PairContact& contact) {
+  Manifold kept;
+  for (int m = 0; m < contact.manifold.count; ++m) {
+    const ManifoldPoint& p = contact.manifold.points[std::size_t(m)];
+    const Vec3 half = 0.5 * p.gap * contact.normal;
+    if (!is_internal(first, i, p.point + half) && !is_internal(second, k, p.point - half)) kept.points[std::size_t(kept.count++)] = p;
+  }
+  contact.manifold = kept;
+}
+
+void find_contacts_of_pieces(const PairBody& first, const PairBody& second, double margin, HullContactSearch& search) {
+  double nearest = 1e300;
+  for (int i = 0; i < count_pieces(first); ++i)
+    for (int k = 0; k < count_pieces(second); ++k) {
+      const PairBody a = piece_of(first, i), b = piece_of(second, k);
+      const double apart = (a.position - b.position).norm() - a.shape->radius - b.shape->radius;
+      const Separation best = apart > margin ? Separation{} : find_separation(a, b, Vec3::Zero(), margin);
+      nearest = std::min(nearest, std::max(apart, best.gap));
+      if (apart > margin || best.gap > margin) continue;
+      PairContact contact = contact_along(a, b, best);
+      drop_internal_points(first, i, second, k, contact);
+      if (contact.manifold.count > 0) search.contacts.push_back(contact);
+    }
+  search.gap = std::max(search.gap, nearest);
+}
+
+HullContactSearch search_relative(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
+  const bool concave = !first.shape->pieces.empty() || !second.shape->pieces.empty();
+  const Separation best = find_separation(first, second, start, margin);
   HullContactSearch search{best.normal, best.gap, {}};
-  if (best.gap <= margin) search.contact = PairContact{best.normal, best.gap, find_points(first, second, best)};
+  if (best.gap > margin) return search;
+  if (concave) find_contacts_of_pieces(first, second, margin, search);
+  else search.contacts.push_back(contact_along(first, second, best));
   return search;
 }
 
@@ -129,15 +202,15 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
-HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
+HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
   PairBody a = first, b = second;
   a.position = without_last_bits(Vec3(first.position - second.position));
   b.position.setZero();
   a.orientation.coeffs() = without_last_bits(Eigen::Vector4d(first.orientation.coeffs()));
   b.orientation.coeffs() = without_last_bits(Eigen::Vector4d(second.orientation.coeffs()));
   HullContactSearch search = search_relative(a, b, start, margin);
-  if (search.contact)
-    for (ManifoldPoint& p : search.contact->manifold.points) p.point += second.position;
+  for (PairContact& contact : search.contacts)
+    for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
   return search;
 }
 

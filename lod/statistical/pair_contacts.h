@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "lod/body.h"
 #include "lod/statistical/contact_manifold.h"
@@ -28,15 +29,16 @@ struct PairContact {
 /// `tables`: the two spheres. None where the gap is above `margin`.
 std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin);
 
-/// Two hulls along the axis of greatest separation that was found.
+/// Two bodies along the axes of greatest separation that were found.
 struct HullContactSearch {
-  Vec3 normal = Vec3::UnitZ();         ///< from the second body to the first
-  double gap = 0.0;                    ///< m along it: the true distance is at least this
-  std::optional<PairContact> contact;  ///< where the gap is at most the margin
+  Vec3 normal = Vec3::UnitZ();         ///< from the second body to the first: along it their hulls have the greatest gap found
+  double gap = 0.0;                    ///< m: the true distance is at least this
+  std::vector<PairContact> contacts;   ///< those with a gap of at most the margin: one for hulls, one for each two convex pieces that meet
 };
 
 /// `support`: searches from the centre line and both bodies' rest normals; `start`, where not zero, is an axis that may still separate them, and refines by steps up the
-/// separation's gradient (as in Gilbert, An iterative procedure for computing the minimum of a quadratic form, 1966).
-HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin);
+/// separation's gradient (as in Gilbert, An iterative procedure for computing the minimum of a quadratic form, 1966). Concave bodies that have convex
+/// pieces (Shape::pieces) meet in these, so that they may reach into each other; others as their hulls.
+HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, const Vec3& start, double margin);
 
 }  // namespace lodestone

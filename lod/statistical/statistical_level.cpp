@@ -1,25 +1,12 @@
 #include "lod/statistical/statistical_level_internal.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "lod/statistical/stopwatch.h"
 #include "reference/error.h"
 
 namespace lodestone {
 namespace {
-
-class Stopwatch {
- public:
-  double lap_ms() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
-    start_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Drops `gone` from a list in order, and where `last`, the greatest of all, is in it, puts `gone` there instead.
 void rename_in_order(std::vector<std::int32_t>& list, std::int32_t last, std::int32_t gone) {
@@ -128,42 +115,17 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
 
   // 1 Near pairs: none to look for with a single body.
   level.contacts.clear();
-  const bool pair_phase = level.bodies.size() + neighbors.size() > 1 && !level.awake.empty() + !neighbors.empty() > 0;
-  if (pair_phase) {
+  level.pairs.clear();
+  level.pair_phase = level.bodies.size() + neighbors.size() > 1 && !level.awake.empty() + !neighbors.empty() > 0;
+  if (level.pair_phase) {
     level.find_near_pairs(dt, neighbors);
     ++report.counters.pair_phases;
-    report.times.broad_phase_ms += watch.lap_ms();
-    // 2 Contacts of those pairs.
-    level.plan_travel(dt);
-    level.find_contacts(dt, neighbors);
-    level.wake_touched(neighbors);
-    if (level.tables() && level.settings.tables.paper_pair_rule) tally += level.respond_pairs_as_paper();
-    report.times.pairs_ms += watch.lap_ms();
-  } else {
-    for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = false;
   }
+  report.times.broad_phase_ms += watch.lap_ms();
 
-  // 3 Bodies that touch no other.
-  const std::int64_t awake = std::int64_t(level.awake.size());
-  level.tallies.assign(std::size_t(awake), {});
-  level.parallel(awake, 256, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i)
-      if (!level.bodies[level.awake[i]].crowded) level.move_alone(level.awake[i], dt, level.tallies[i]);
-  });
-  for (const ContactTally& t : level.tallies) tally += t;
-  report.times.flight_ms += watch.lap_ms();
-
-  // 4 Bodies that do.
-  if (!level.contacts.empty()) {
-    for (const std::int32_t slot : level.awake)
-      if (level.bodies[slot].crowded && level.bodies[slot].motion == Motion::settling) level.bodies[slot].motion = Motion::dynamic;
-    tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.world(), level.settings.model, dt);
-    for (const std::int32_t slot : level.awake)
-      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt, tally);
-    report.times.pairs_ms += watch.lap_ms();
-  }
-
-  if (pair_phase) level.add_travel();
+  // 2 to 4 Contacts, flight and the contact solver.
+  level.move(dt, neighbors, full_contacts, report.times, tally);
+  watch.lap_ms();
 
   ++level.steps;
 

@@ -1,5 +1,6 @@
 // The inside of the statistical level. Its stages are in near_pairs.cpp (1, 2), motion.cpp (3) and rest.cpp (5);
-// stage 4, the contact solver, is crowd.h.
+// crowded_motion.cpp takes stages 2 to 4
+// in substeps; stage 4, the contact solver, is crowd.h.
 #pragma once
 
 #include "lod/statistical/broad_phase.h"
@@ -17,7 +18,7 @@ struct Push { Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); };
 struct FoundPair {
   ContactKey key = 0;
   PairRecord record;
-  std::optional<CrowdContact> contact;
+  std::vector<CrowdContact> contacts;
 };
 
 /// The way of a body's farthest point, m.
@@ -50,10 +51,13 @@ struct StatisticalLevel::Impl {
   Crowd crowd;
   double reach = 0.0;
   std::int64_t steps = 0;
+  bool pair_phase = false;                   // in this step
 
   // Work arrays of a step.
   std::vector<Bound> bounds;
   std::vector<NearPair> pairs;
+  std::vector<char> near_another;            // by slot
+  std::vector<FullNeighbor> full;            // the neighbours, moved on between substeps
   std::vector<FoundPair> found;
   std::vector<CrowdContact> contacts;
   std::vector<ContactTally> tallies;
@@ -82,6 +86,12 @@ struct StatisticalLevel::Impl {
   }
   void wake_touched(std::span<FullNeighbor> neighbors);
   ContactTally respond_pairs_as_paper();
+  void move(double dt, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, StageTimes& times, ContactTally& tally);
+  void move_crowded(double time, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, ContactTally& tally);
+  template <class Select>
+  ContactTally move_those(double time, Select select);
+  void mark_near();
+  int count_substeps(double dt, std::span<const FullNeighbor> neighbors) const;
   void move_alone(int slot, double dt, ContactTally& tally);
   void move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally);
   void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
