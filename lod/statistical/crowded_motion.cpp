@@ -29,10 +29,11 @@ void StatisticalLevel::Impl::mark_near() {
     else if (i < std::int32_t(awake.size())) near_another[std::size_t(awake[std::size_t(i)])] = 1;
   };
   for (const NearPair& pair : pairs) mark(pair.first), mark(pair.second);
+  for (const SolidContact& contact : solid_contacts) near_another[std::size_t(contact.slot)] = 1;
 }
 
 int StatisticalLevel::Impl::count_substeps(double dt, std::span<const FullNeighbor> neighbors) const {
-  if (pairs.empty()) return 0;
+  if (pairs.empty()) return solid_contacts.empty() ? 0 : 1;
   if (tables()) return 1;  // its responses are whole impacts already
   struct Mover {
     Vec3 velocity;
@@ -61,7 +62,7 @@ ContactTally StatisticalLevel::Impl::move_those(double time, Select select) {
   tallies.assign(std::size_t(count), {});
   parallel(count, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
-      if (bodies[awake[i]].motion != Motion::asleep && select(awake[i])) move_alone(awake[i], time, tallies[i]);
+      if (bodies[awake[i]].motion != Motion::asleep && select(awake[i])) move_alone(std::size_t(i), time, tallies[i]);
   });
   ContactTally sum;
   for (const ContactTally& tally : tallies) sum += tally;
@@ -69,10 +70,10 @@ ContactTally StatisticalLevel::Impl::move_those(double time, Select select) {
 }
 
 void StatisticalLevel::Impl::move_crowded(double time, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, ContactTally& tally) {
-  if (contacts.empty()) return;
+  if (contacts.empty() && solid_contacts.empty()) return;
   for (const std::int32_t slot : awake)
     if (bodies[slot].crowded && bodies[slot].motion == Motion::settling) bodies[slot].motion = Motion::dynamic;
-  tally += crowd.step(bodies, kinds, neighbors, full_contacts, contacts, world(), settings.model, time);
+  tally += crowd.step(bodies, kinds, neighbors, full_contacts, contacts, solid_contacts, world(), settings.model, time);
   for (const std::int32_t slot : awake)
     if (bodies[slot].crowded && bodies[slot].motion != Motion::asleep) update_quiet(bodies[slot], time, tally);
 }
@@ -81,9 +82,10 @@ void StatisticalLevel::Impl::move(double dt, std::span<FullNeighbor> neighbors, 
                                   ContactTally& tally) {
   Stopwatch watch;
   for (const std::int32_t slot : awake) bodies[slot].crowded = false;
+  find_ground_solids(dt, false);
   mark_near();
   full.assign(neighbors.begin(), neighbors.end());
-  if (pair_phase) plan_travel(dt);
+  plan_travel(dt);
   tally += move_those(dt, [&](std::int32_t slot) { return !near_another[slot]; });
   times.flight_ms += watch.lap_ms();
 
@@ -92,8 +94,10 @@ void StatisticalLevel::Impl::move(double dt, std::span<FullNeighbor> neighbors, 
     const double time = dt / substeps;
     if (sleepers_changed) find_near_pairs(dt, full);  // it names bodies by their place among the sleepers
     if (i > 0) plan_travel(time);
-    find_contacts(time, full);
+    find_contacts(time, full);  // who is crowded is decided anew
     wake_touched(full);
+    if (substeps > 1) find_ground_solids(time, true);
+    for (const SolidContact& contact : solid_contacts) bodies[contact.slot].crowded = true;
     if (tables() && settings.tables.paper_pair_rule) tally += respond_pairs_as_paper();
     times.pairs_ms += watch.lap_ms();
 
@@ -105,7 +109,7 @@ void StatisticalLevel::Impl::move(double dt, std::span<FullNeighbor> neighbors, 
     add_travel();
     times.pairs_ms += watch.lap_ms();
   }
-  if (pair_phase && substeps == 0) add_travel();
+  if (substeps == 0) add_travel();
   for (std::size_t i = 0; i < neighbors.size(); ++i) {
     neighbors[i].asleep = full[i].asleep;
     neighbors[i].hit = full[i].hit;

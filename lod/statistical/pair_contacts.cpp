@@ -1,6 +1,7 @@
 #include "lod/statistical/pair_contacts.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lodestone {
 namespace {
@@ -48,6 +49,10 @@ void try_rest_normals(const PairBody& owner, const PairBody& first, const PairBo
   }
 }
 
+void try_face_normals(const PairBody& first, const PairBody& second, Separation& best) {
+  for (const Vec3& normal : second.face_normals) try_axis(first, second, second.orientation * normal, best);
+}
+
 // Up the gradient until the gap is above `enough`.
 void climb(const PairBody& first, const PairBody& second, double enough, Separation& best) {
   const double size = first.shape->radius + second.shape->radius;
@@ -77,10 +82,15 @@ Vec3 middle_of(const HullContacts& feature) {
   return sum / feature.count;
 }
 
+Manifold clip_features(const PairBody& first, const PairBody& second, const Separation& best, HullContacts& upper, HullContacts& lower) {
+  upper = find_feature(first, best.normal, best.vertex_first, second.position);
+  lower = find_feature(second, -best.normal, best.vertex_second, second.position);
+  return find_manifold(upper, lower, best.normal, best.gap);
+}
+
 Manifold find_points(const PairBody& first, const PairBody& second, const Separation& best) {
-  const HullContacts upper = find_feature(first, best.normal, best.vertex_first, second.position);
-  const HullContacts lower = find_feature(second, -best.normal, best.vertex_second, second.position);
-  Manifold manifold = find_manifold(upper, lower, best.normal, best.gap);
+  HullContacts upper, lower;
+  Manifold manifold = clip_features(first, second, best, upper, lower);
   if (manifold.count == 0) {  // the axis is not quite that of the nearest features
     manifold.points[0] = {0.5 * (middle_of(upper) + middle_of(lower)), best.gap};
     manifold.count = 1;
@@ -104,6 +114,7 @@ Separation find_separation(const PairBody& first, const PairBody& second, const 
   const double before = best.gap;
   if (best.gap <= margin) try_rest_normals(first, first, second, best);
   if (best.gap <= margin) try_rest_normals(second, first, second, best);
+  if (best.gap <= margin) try_face_normals(first, second, best);
   if (best.gap > before) climb(first, second, margin, best);
   return best;
 }
@@ -189,6 +200,19 @@ Numbers without_last_bits(const Numbers& values) {
   return ((values / kGrain).array().round() * kGrain).matrix();
 }
 
+std::pair<PairBody, PairBody> relative_to_second(const PairBody& first, const PairBody& second) {
+  PairBody a = first, b = second;
+  a.position = without_last_bits(Vec3(first.position - second.position));
+  b.position.setZero();
+  a.orientation.coeffs() = without_last_bits(Eigen::Vector4d(first.orientation.coeffs()));
+  b.orientation.coeffs() = without_last_bits(Eigen::Vector4d(second.orientation.coeffs()));
+  return {a, b};
+}
+
+void shift(PairContact& contact, const Vec3& by) {
+  for (ManifoldPoint& p : contact.manifold.points) p.point += by;
+}
+
 }  // namespace
 
 std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin) {
@@ -203,15 +227,29 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
 }
 
 HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
-  PairBody a = first, b = second;
-  a.position = without_last_bits(Vec3(first.position - second.position));
-  b.position.setZero();
-  a.orientation.coeffs() = without_last_bits(Eigen::Vector4d(first.orientation.coeffs()));
-  b.orientation.coeffs() = without_last_bits(Eigen::Vector4d(second.orientation.coeffs()));
+  const auto [a, b] = relative_to_second(first, second);
   HullContactSearch search = search_relative(a, b, start, margin);
-  for (PairContact& contact : search.contacts)
-    for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
+  for (PairContact& contact : search.contacts) shift(contact, second.position);
   return search;
+}
+
+std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
+  const auto [a, b] = relative_to_second(first, second);
+  const Separation best = find_separation(a, b, Vec3::Zero(), margin);
+  if (best.gap > margin) return {};
+  PairContact contact = contact_along(a, b, best);
+  shift(contact, second.position);
+  return contact;
+}
+
+std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin) {
+  const Separation s = separation_along(first, second, normal, find_start(first, -normal), find_start(second, normal));
+  if (s.gap > margin) return {};
+  HullContacts upper, lower;
+  PairContact contact{normal, s.gap, clip_features(first, second, s, upper, lower)};
+  if (contact.manifold.count == 0) return {};
+  for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
+  return contact;
 }
 
 }  // namespace lodestone

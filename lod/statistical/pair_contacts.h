@@ -18,6 +18,7 @@ struct PairBody {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
   double sphere_radius = 0.0;            ///< m, `tables`: of the colliding sphere
+  std::span<const Vec3> face_normals = {};  ///< outward, body axes: tried as separating axes, too
 };
 
 struct PairContact {
@@ -40,5 +41,12 @@ struct HullContactSearch {
 /// separation's gradient (as in Gilbert, An iterative procedure for computing the minimum of a quadratic form, 1966). Concave bodies that have convex
 /// pieces (Shape::pieces) meet in these, so that they may reach into each other; others as their hulls.
 HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, const Vec3& start, double margin);
+
+/// The two hulls, whatever pieces they have; none where the gap is above `margin`.
+std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);
+
+/// Contact of the two hulls along a given axis (unit, from `second` into `first`); none where the gap along it is above `margin` or the touching features do not
+/// overlap across it.
+std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin);
 
 }  // namespace lodestone
