@@ -23,6 +23,7 @@ class Comparison {
     DropComparison result = compare_truth();
     for (const DropMethod& method : methods)
       for (const double dt_s : settings_.dt_s) result.rows.push_back(compare(method, dt_s, result.truth_a));
+    if (!settings_.costs) return result;
     for (std::size_t i = 0; i < result.rows.size(); ++i)  // in a pass of its own, with nothing else running
       measure_cost(methods[i / settings_.dt_s.size()], result.rows[i]);
     return result;
@@ -70,6 +71,12 @@ class Comparison {
 };
 
 }  // namespace
+
+std::int64_t DropRow::table_extrapolations() const {
+  std::int64_t sum = 0;
+  for (const DropObservation& drop : drops) sum += drop.table_extrapolations;
+  return sum;
+}
 
 DropComparison compare_drops(const DropJob& job, const DropComparisonSettings& settings) { return Comparison(job, settings).run(); }
 

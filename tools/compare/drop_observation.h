@@ -4,6 +4,7 @@
 // ones keep them, because a slower bounce would drown in what gravity does between two samples.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "reference/shape.h"
@@ -19,6 +20,7 @@ struct DropObservation {
   double distance_m = 0;       ///< from start to end, along the plane
   double first_rebound_m = 0;  ///< greatest height of the lowest point between the first and the second bounce; 0 without a bounce
   bool at_rest = false;        ///< below 2e-3 J/kg for the last quarter of a second
+  std::int64_t table_extrapolations = 0;  ///< look-ups of the statistical level outside of what its signature was measured for
   Vec3 up_in_body = Vec3::UnitZ();    ///< the plane's normal in body axes at the end
   std::vector<float> kinetic_energy;  ///< per mass, J/kg, kKineticEnergySamples values; the last state's goes on where a drop ends earlier
 };
