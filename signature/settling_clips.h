@@ -10,10 +10,14 @@
 namespace lodestone {
 
 inline constexpr float kClipHeightRange = 4.0f;  ///< over R
-inline constexpr float kClipSpeedRange = 4.0f;   ///< over √(gR), and times √(R/g)
 
-/// State in a clip: position over R relative to the clip's start (z over the plane), orientation up to the yaw that the player adds, velocities over
-/// √(gR) and √(g/R).
+/// Pose in a clip: position over R relative to the clip's start (z over the plane), orientation up to the yaw that the player adds.
+struct ClipPose {
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+};
+
+/// The same with velocities, over √(gR) and √(g/R).
 struct ClipState {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
@@ -21,10 +25,11 @@ struct ClipState {
   Vec3 angular_velocity = Vec3::Zero();
 };
 
-ClipFrame encode_frame(const ClipState& state, float extent);
-ClipState decode_frame(const ClipFrame& frame, float extent);
+ClipFrame encode_frame(const ClipPose& pose, float extent);
+ClipPose decode_frame(const ClipFrame& frame, float extent);
 
-/// State in `clip` at `frame` (fractional, clamped to the clip), between frames by interpolation.
+/// State in `clip` at `frame` (fractional, clamped to the clip): poses between frames by interpolation, velocities those of the motion from the frame
+/// before to the frame after.
 ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, double frame);
 
 /// How a body moves at a contact, dimensionless and in body axes, so that yaw does not matter.

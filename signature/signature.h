@@ -28,12 +28,10 @@ struct RestPose {
   double basin = 0.0;           ///< fraction of orientations from which the body, let down without speed, tips into it
 };
 
-/// One frame of a settling clip, 16 bits a number (encode_frame and decode_frame in settling_clips.h).
+/// A pose of a settling clip, 16 bits a number (encode_frame and decode_frame in settling_clips.h); velocities follow from the poses beside it.
 struct ClipFrame {
-  std::array<std::int16_t, 3> position;          ///< x, y from the clip's start over its `extent`, z over kClipHeightRange; of 32767
-  std::array<std::int16_t, 4> orientation;       ///< w, x, y, z; of 32767
-  std::array<std::int16_t, 3> velocity;          ///< over kClipSpeedRange √(gR); of 32767
-  std::array<std::int16_t, 3> angular_velocity;  ///< over kClipSpeedRange √(g/R); of 32767
+  std::array<std::int16_t, 3> position;     ///< x, y from the clip's start over its `extent`, z over kClipHeightRange; of 32767
+  std::array<std::int16_t, 4> orientation;  ///< w, x, y, z; of 32767
 };
 
 /// ODE's own settling from low energy to rest on a horizontal plane, recorded (position over R).

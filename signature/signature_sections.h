@@ -30,7 +30,7 @@ struct Stored<RestPose> {
   static Type pack(const RestPose& p) { return {p.normal.x(), p.normal.y(), p.normal.z(), p.height, p.frequency, p.basin}; }
   static RestPose unpack(const Type& s) { return {{s[0], s[1], s[2]}, s[3], s[4], s[5]}; }
 };
-static_assert(sizeof(ResponseSample) == 14 && sizeof(SettlingClip) == 12 && sizeof(ClipFrame) == 26 && sizeof(ClipEntry) == 8 && sizeof(Approach) == 8);
+static_assert(sizeof(ResponseSample) == 14 && sizeof(SettlingClip) == 12 && sizeof(ClipFrame) == 14 && sizeof(ClipEntry) == 8 && sizeof(Approach) == 8);
 
 template <class Archive>
 void archive(Archive& a, Archived<TableCertificate> auto& c) {

@@ -5,6 +5,7 @@
 
 #include "reference/free_rotation.h"
 #include "reference/trial.h"
+#include "signature/measure/choose_clips.h"
 #include "signature/measure/settling_trial.h"
 #include "signature/settling_clips.h"
 
@@ -16,11 +17,10 @@ constexpr int kEntriesPerClip = 24;
 }  // namespace
 
 void add_clips(std::span<const SettlingRecord> records, const Shape& shape, int count, Signature& signature) {
-  const double radius = shape.radius, speed_unit = std::sqrt(kSettlingGravity * radius);
+  const double radius = shape.radius;
   signature.clip_frame_interval = float(kSamplesPerFrame * kObservationStep / std::sqrt(radius / kSettlingGravity));
-  for (const SettlingRecord& record : records) {
-    if (int(signature.clips.size()) >= count) return;
-    if (!record.rests || record.states.size() < 2) continue;
+  for (const std::size_t chosen : choose_clips(records, signature.rest_poses, count)) {
+    const SettlingRecord& record = records[chosen];
     SettlingClip clip;
     clip.first_frame = std::uint32_t(signature.clip_frames.size());
     clip.frames = std::uint32_t(record.states.size());
@@ -31,8 +31,7 @@ void add_clips(std::span<const SettlingRecord> records, const Shape& shape, int 
     std::vector<std::uint32_t> touching;  // frames where a body may join
     for (std::uint32_t i = 0; i < clip.frames; ++i) {
       const RigidState& s = record.states[i];
-      signature.clip_frames.push_back(
-          encode_frame({(s.position - start) / radius, s.orientation, s.velocity / speed_unit, s.angular_velocity * (radius / speed_unit)}, clip.extent));
+      signature.clip_frames.push_back(encode_frame({(s.position - start) / radius, s.orientation}, clip.extent));
       const double energy = kinetic_energy(shape, s) / (kSettlingGravity * radius);
       if (energy < kClipEnergy && gap_over_ground(shape, s) < kEntryGap * radius) touching.push_back(i);
     }
