@@ -9,13 +9,13 @@ namespace lodestone {
 namespace {
 
 constexpr int kBodies = 300, kFrames = 60;
-constexpr double kThrow = 3.0, kSpread = 0.6;  // m/s up, and of each at random: near the top many are slow and still collide
+constexpr double kThrow = 3.0, kInward = 1.5;  // m/s up, 1/s: near the top the cloud is dense, and many are slow
 constexpr double kStill = 0.05;                // m/s
 
 RigidState start_of(std::uint32_t seed, int i) {
   RandomStream random(118 + seed, std::uint64_t(i), 0);
-  const Vec3 cell(i % 7, i / 7 % 7, i / 49);
-  return {.position = 0.36 * cell, .orientation = random.orientation(), .velocity = kThrow * Vec3::UnitZ() + kSpread * random.direction(),
+  const Vec3 place = 0.36 * (Vec3(i % 7, i / 7 % 7, i / 49) - Vec3(3, 3, 3));
+  return {.position = place, .orientation = random.orientation(), .velocity = kThrow * Vec3::UnitZ() - kInward * place,
           .angular_velocity = random.uniform(0.0, 5.0) * random.direction()};
 }
 

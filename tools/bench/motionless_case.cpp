@@ -9,6 +9,7 @@ namespace lodestone {
 namespace {
 
 constexpr int kTrials = 300, kSteps = 30;
+constexpr double kResponse = 1e-12;  // m/s: rounding is no response
 const Vec3 kSides{0.2, 0.3, 0.4};
 
 struct Motion { double speed, spin; };  // m/s towards what is touched, rad/s
@@ -32,24 +33,25 @@ struct Touch {
   }
 };
 
-struct Figures { int lost = 0, moved = 0; };
+struct Figures { int lost = 0, answered = 0; };
 
 Figures measure(const Touch& touch, StatisticalModel model, const Motion& motion, bool pair) {
   Figures figures;
   for (int trial = 0; trial < kTrials; ++trial) {
     std::vector<BodyId> bodies;
     Manager manager = touch.make(model, motion, pair, trial, bodies);
-    std::vector<RigidState> before;
-    for (const BodyId body : bodies) before.push_back(manager.state(body));
     for (int i = 0; i < kSteps; ++i) manager.step(kCaseStep);
-    bool finite = true, moved = false;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const RigidState after = manager.state(bodies[i]);
+    bool finite = true, answered = false;
+    double side = 1.0;
+    for (const BodyId body : bodies) {
+      const RigidState after = manager.state(body);
       finite = finite && is_finite(after);
-      moved = moved || after.position != before[i].position || after.orientation.coeffs() != before[i].orientation.coeffs() || after.velocity != before[i].velocity;
+      const Vec3 before = side * motion.speed * -Vec3::UnitZ();
+      answered = answered || (after.velocity - before).norm() + touch.shape->radius * after.angular_velocity.norm() > kResponse;
+      side = 0.0;
     }
     figures.lost += !finite;
-    figures.moved += moved;
+    figures.answered += answered;
   }
   return figures;
 }
@@ -65,9 +67,9 @@ std::vector<HardCaseRow> measure_motionless_hits(const HardCaseSettings&) {
       int lost = 0;
       for (const Motion& motion : {Motion{0, 0}, {0, 10}, {2, 0}}) lost += measure(touch, model, motion, pair).lost;
       rows.push_back({.what = what + "v = 0, spin = 0, or both: no finite state", .value = double(lost), .bound = 0.0, .unit = "bodies"});
-      rows.push_back({.what = what + "v and spin 0: moved", .value = double(measure(touch, model, {0, 0}, pair).moved), .bound = 0.0, .unit = "bodies"});
-      const int struck = measure(touch, model, {2, 0}, pair).moved;
-      rows.push_back({.what = what + "spin 0: struck", .value = double(struck), .bound = double(kTrials), .unit = "bodies", .side = BoundSide::at_least});
+      rows.push_back({.what = what + "v and spin 0: a response", .value = double(measure(touch, model, {0, 0}, pair).answered), .bound = 0.0, .unit = "bodies"});
+      const int struck = measure(touch, model, {2, 0}, pair).answered;
+      rows.push_back({.what = what + "spin 0: a response", .value = double(struck), .bound = double(kTrials), .unit = "bodies", .side = BoundSide::at_least});
     }
   return rows;
 }

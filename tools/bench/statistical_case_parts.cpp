@@ -24,10 +24,6 @@ BodyId add_case_body(Manager& manager, const std::shared_ptr<const Shape>& shape
   return manager.add_body({.shape = shape, .state = state, .level = LevelChoice::statistical});
 }
 
-bool is_finite(const RigidState& state) {
-  return state.position.allFinite() && state.orientation.coeffs().allFinite() && state.velocity.allFinite() && state.angular_velocity.allFinite();
-}
-
 double resting_height(const Shape& shape, const Quat& orientation, const Vec3& normal) {
   return measure_plane_overlap(shape, {.orientation = orientation}, normal, 0.0);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lod/manager.h"
-#include "reference/error.h"
+#include "scenes/run_measures.h"
 #include "tools/bench/case_parts.h"
 
 namespace lodestone {
@@ -37,8 +37,6 @@ Manager make_case_manager(const StatisticalCase& settings);
 
 /// Forced statistical.
 BodyId add_case_body(Manager& manager, const std::shared_ptr<const Shape>& shape, const RigidState& state);
-
-bool is_finite(const RigidState& state);
 
 /// How far its centre of mass is from a plane that its lowest point touches, m.
 double resting_height(const Shape& shape, const Quat& orientation, const Vec3& normal = Vec3::UnitZ());

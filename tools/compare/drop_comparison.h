@@ -10,6 +10,7 @@
 
 #include "tools/compare/drop_trials.h"
 #include "tools/compare/fidelity.h"
+#include "tools/compare/impact_errors.h"
 
 namespace lodestone {
 
@@ -33,6 +34,7 @@ struct DropRow {
   std::optional<double> ns_per_body_step = {};
   std::string reason = {};                              ///< why left out
   std::vector<DropObservation> drops = {};
+  std::optional<ImpactErrors> first_impacts = {};       ///< against truth from the same starts
 
   /// Over all drops: how often the signature was asked for what lies outside of what was measured.
   std::int64_t table_extrapolations() const;

@@ -32,15 +32,21 @@ ordered_json json_or_null(std::optional<double> value) {
   return value && std::isfinite(*value) ? ordered_json(*value) : ordered_json(nullptr);
 }
 
+ordered_json json_of(const ImpactErrors& errors) {
+  return {{"impacts", errors.impacts},     {"impulse_error_10pct_median", errors.impulse_median}, {"impulse_error_10pct_mean", errors.impulse_mean},
+          {"unnoticed", errors.unnoticed}, {"angle_deg_median", errors.angle_deg},                {"speed_change_mean", errors.speed_change}};
+}
+
 }  // namespace
 
 std::vector<std::string> drop_row_heading() {
-  return {"method", "model", "step s", "substeps", "score", "from", "to", "bounces", "rest time", "distance", "rebound", "energy", "rest pose", "ns/body-step"};
+  return {"method", "model", "step s", "substeps", "score", "from", "to", "bounces", "rest time", "distance", "rebound", "energy", "rest pose", "impact/10%", "ns/body-step"};
 }
 
 std::string drop_row_footer() {
   return "score: mean of the parts to its right; its 95 % bootstrap interval from .. to; the noise floor is truth against truth with other starts\n"
-         "bounces .. rebound: Wasserstein-1 over the truth's deviation; energy: of the kinetic energy over 0-6 s; rest pose: total variation\n";
+         "bounces .. rebound: Wasserstein-1 over the truth's deviation; energy: of the kinetic energy over 0-6 s; rest pose: total variation\n"
+         "impact/10%: median error of the first impact's impulse against the truth from the same start, in tenths of the impulse; viewers notice about one\n";
 }
 
 std::vector<std::string> cells_of_floor(const ScoreWithInterval& floor) {
@@ -55,6 +61,7 @@ std::vector<std::string> cells_of(const DropRow& row) {
   if (row.score) {
     const std::vector<std::string> numbers = cells_of(*row.score);
     cells.insert(cells.end(), numbers.begin(), numbers.end());
+    cells.push_back(row.first_impacts ? text_of(row.first_impacts->impulse_median, 2) : "-");
   }
   if (row.ns_per_body_step) cells.push_back(text_of(row.ns_per_body_step, 0));
   return cells;
@@ -82,6 +89,7 @@ ordered_json json_of(const DropRow& row, const ScoreWithInterval& floor) {
   json["floor_ci"] = floor.interval;
   add_parts(json, row.score.value_or(ScoreWithInterval{}).value);
   json["ns_per_body_step"] = json_or_null(row.ns_per_body_step);
+  json["first_impact"] = row.first_impacts ? json_of(*row.first_impacts) : ordered_json(nullptr);
   json["table_extrapolations"] = row.table_extrapolations();
   json["reason"] = row.reason.empty() ? ordered_json(nullptr) : ordered_json(row.reason);
   return json;
