@@ -44,8 +44,10 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
   const double height = ground.height_of(body.position);
   const SettlingKey key{(to_body * ground.normal).cast<float>(), (to_body * body.velocity / speed_unit).cast<float>(),
                         (to_body * omega * (radius / speed_unit)).cast<float>(), float(kinetic / (gravity * radius) + height / radius)};
-  const std::optional<ClipEntry> entry = kind.clips.find_nearest(key, settings.energy_slack);
-  if (!entry || (kind.signature->clips[entry->clip].frames - entry->frame) * double(kind.signature->clip_frame_interval) < settings.shortest) return {};
+  const auto energy = float(kinetic / (gravity * radius));
+  const float distance = std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);
+  const std::optional<ClipEntry> entry = kind.clips.find_nearest(key, settings.energy_slack, distance);
+  if (!entry) return {};
 
   ClipPlayback p;
   p.clip = entry->clip;

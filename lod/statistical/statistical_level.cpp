@@ -40,7 +40,7 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
   const Mat3& inertia = shape->inertia_per_mass;
   const bool isotropic = (inertia - inertia.trace() / 3.0 * Mat3::Identity()).norm() < 1e-9 * inertia.norm();
   ClipIndex index;
-  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.max_distance);
+  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.greatest_distance);
   kinds.push_back({std::move(shape), std::move(signature), std::move(index), mass, material, isotropic});
   return std::uint16_t(kinds.size() - 1);
 }
