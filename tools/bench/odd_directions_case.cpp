@@ -45,7 +45,7 @@ double worst_response(const Subject& subject, StatisticalModel model, double the
     const double azimuth = random.uniform(0.0, 2.0 * std::numbers::pi), base = pair ? 5.0 : 0.0;
     const double theta = theta_deg * std::numbers::pi / 180.0, along = theta_deg == 90.0 ? 0.0 : -std::cos(theta);
     const Vec3 velocity(std::sin(theta) * std::cos(azimuth), std::sin(theta) * std::sin(azimuth), along);
-    const Quat orientation = random.orientation();
+    const Quat orientation = pair ? Quat(Quat::Identity()) : random.orientation();  // askew they might be nearest across, and meet on the way
     const Vec3 place(0, 0, base + resting_height(*subject.shape, orientation) - depth);
     std::vector<BodyId> bodies = {add_case_body(manager, subject.shape, {.position = place, .orientation = orientation, .velocity = velocity})};
     if (pair) {
@@ -65,7 +65,7 @@ double worst_response(const Subject& subject, StatisticalModel model, double the
 }  // namespace
 
 std::vector<HardCaseRow> measure_odd_directions(const HardCaseSettings&) {
-  const Subject box{box_of({0.2, 0.3, 0.4})}, ball{ball_of(0.1)};  // two boxes that overlap may be apart along another axis sooner
+  const Subject box{box_of({0.2, 0.3, 0.4})};
   std::vector<HardCaseRow> rows;
   for (const auto& [model, name] : kBothModels) {
     for (const auto& [sign, way] : {std::pair{1.0, "along"}, {-1.0, "against"}})
@@ -74,8 +74,8 @@ std::vector<HardCaseRow> measure_odd_directions(const HardCaseSettings&) {
     for (const bool pair : {false, true}) {
       double worst = 0.0;
       for (const double depth : {0.0, 0.001})
-        for (const double theta : {90.0, 90.001, 100.0, 135.0, 180.0}) worst = worse(worst, worst_response(pair ? ball : box, model, theta, depth, pair));
-      rows.push_back({.what = fmt::format("{} x {} that it touches, theta >= 90 deg, {}: change of velocity over speed", kTrials, pair ? "ball leaves another" : "box leaves a plane", name),
+        for (const double theta : {90.0, 90.001, 100.0, 135.0, 180.0}) worst = worse(worst, worst_response(box, model, theta, depth, pair));
+      rows.push_back({.what = fmt::format("{} x {}, touching, theta >= 90 deg, {}: change of velocity over speed", kTrials, pair ? "box on another leaves it, flat" : "box leaves a plane", name),
                       .value = worst, .bound = 1e-9});
     }
   }

@@ -6,7 +6,9 @@
 namespace lodestone {
 
 std::shared_ptr<const Signature> find_case_signature(const Shape& shape, const ContactLaw& law) {
-  return find_or_measure_signature(shape, law).signature;
+  SignatureSourceSettings source;
+  if (shape.sphere_radius) source.measuring.settling_trials = 1, source.measuring.clips = 0;  // a ball rolls for ever
+  return find_or_measure_signature(shape, law, source).signature;
 }
 
 Manager make_case_manager(const StatisticalCase& settings) {

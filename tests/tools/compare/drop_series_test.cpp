@@ -36,7 +36,9 @@ TEST(DropConditions, ChangeOneThingEach) {
 
 TEST(DropConditions, ASizeIsThatOfTheLongestSide) {
   for (const DropCase& one : make_condition_cases(box_job()))
-    if (one.name == "size_m=0.001") EXPECT_NEAR(one.job.shape->size, 0.001, 1e-15);
+    if (one.name == "size_m=0.001") {
+      EXPECT_NEAR(one.job.shape->size, 0.001, 1e-15);
+    }
 }
 
 TEST(DropSeries, RowsBearTheNamesOfTheirCases) {
