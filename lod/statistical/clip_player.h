@@ -11,6 +11,7 @@ namespace lodestone {
 struct ClipPlayback {
   std::uint32_t clip = 0;
   double frame = 0.0;                        ///< within the clip
+  HalfSpace ground;                          ///< what it settles on
   Quat yaw = Quat::Identity();               ///< clip frame to world
   Vec3 origin = Vec3::Zero();                ///< m, world point of the clip's x = y = 0 on the plane
   Vec3 residual_position = Vec3::Zero();     ///< m
@@ -31,7 +32,6 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
                                       const ClipSettings& settings);
 
 /// Moves `body` along its clip by `time` seconds; velocities are those of the motion shown. True when the clip is over: the body rests.
-bool advance_clip(ClipPlayback& playback, StatisticalBody& body, const BodyKind& kind, const HalfSpace& ground, double gravity, double time,
-                  const ClipSettings& settings);
+bool advance_clip(ClipPlayback& playback, StatisticalBody& body, const BodyKind& kind, double gravity, double time, const ClipSettings& settings);
 
 }  // namespace lodestone
