@@ -90,6 +90,19 @@ void respond_together(StatisticalBody& body, const BodyKind& kind, const HullCon
   for (int i = 0; i < found.count; ++i) body.spin += contacts[i].arm_first.cross(impulse_of(contacts[i]));
 }
 
+// ODE's law itself adds energy in some hits of high restitution: there the impulse, which made `body` of `before`, is scaled down until it adds none.
+// With s of the impulse the energy is E₀ + s (ΔE − C) + s² C, C being that of the change alone.
+void clamp_energy(const StatisticalBody& before, StatisticalBody& body, const Shape& shape, ContactTally& tally) {
+  const double energy = kinetic_energy(before, shape), gain = kinetic_energy(body, shape) - energy;
+  if (gain <= 1e-12 * energy) return;
+  const Vec3 velocity = body.velocity - before.velocity, spin = body.spin - before.spin;
+  const double of_change = 0.5 * (velocity.squaredNorm() + spin.dot(angular_velocity(body.orientation, spin, shape)));
+  const double share = std::clamp(1.0 - gain / of_change, 0.0, 1.0);
+  body.velocity = before.velocity + share * velocity;
+  body.spin = before.spin + share * spin;
+  ++tally.energy_clamps;
+}
+
 void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& contact, const HalfSpace& plane, const ContactLaw& law,
              const SupportSettings& settings) {
   const double height = plane.height_of(body.position);
@@ -186,6 +199,7 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
     body = impact.body;
     left -= impact.time;
     respond(body, kind, impact.lowest.contact, plane, world.law(kind, plane), settings);
+    clamp_energy(impact.body, body, *kind.shape, tally);
     tally.touched_plane = impact.lowest.plane;
     ++tally.contacts;
   }
