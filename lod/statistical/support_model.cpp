@@ -161,12 +161,15 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
     ContactSolverSettings solver = settings.solver;
     solver.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
     solve_contacts(bodies, std::span(contacts).first(count), time, solver);
+    const bool bounces = std::ranges::any_of(std::span(contacts).first(count), &SolverContact::bounces);
+    const StatisticalBody before = body;
     body.velocity = bodies[0].velocity;
     for (int k = 0; k < count; ++k) {
       const Vec3 impulse = impulse_of(contacts[k]);
       body.spin += contacts[k].arm_first.cross(impulse);
       held.impulse[k] = {vertices[k], contacts[k].bounces ? Vec3::Zero() : impulse};
     }
+    if (bounces) clamp_energy(before, body, shape, tally);
     tally.contacts += count;
   }
   held.count = count;
