@@ -10,7 +10,6 @@
 namespace lodestone {
 namespace {
 
-constexpr int kTruthSubsteps = 34;       // in 1/60 s, as for drops
 constexpr int kTruthIterations = 40;     // of QuickStep
 constexpr int kTruthDirectContacts = 10; // contacts of one island above which QuickStep takes over
 
@@ -116,10 +115,11 @@ class Comparison {
 }  // namespace
 
 DropMethod make_pile_truth(const DropJob& job) {
-  OdeMethod way{.substeps = kTruthSubsteps, .collision_shape = job.shape};
-  way.settings.quick_step_iterations = kTruthIterations;
-  way.settings.direct_contacts_max = kTruthDirectContacts;
-  return {"truth", way};
+  DropMethod truth = make_truth(job);
+  OdeSettings& settings = std::get<OdeMethod>(truth.way).settings;
+  settings.quick_step_iterations = kTruthIterations;
+  settings.direct_contacts_max = kTruthDirectContacts;
+  return truth;
 }
 
 PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span<const PileObservation> piles, const Shape& shape) {

@@ -58,7 +58,7 @@ struct PileComparison {
   std::vector<PileRow> rows = {};                 ///< by method, then by step
 };
 
-/// ODE as in this file's head.
+/// ODE as in this file's head, stepped as for drops.
 DropMethod make_pile_truth(const DropJob& job);
 
 /// Neither empty.
