@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "lod/tables/tables_level.h"
 #include "reference/error.h"
 
 namespace lodestone {
@@ -57,11 +58,13 @@ void StatisticalLevel::Impl::apply_pushes(double dt, ContactTally& tally) {
 }
 
 StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials)
-    : impl_(std::make_unique<Impl>(settings, ground, materials)) {}
+    : impl_(settings.model == StatisticalModel::support ? std::make_unique<Impl>(settings, ground, materials) : nullptr),
+      tables_(settings.model == StatisticalModel::tables ? std::make_unique<TablesLevel>(settings, ground, materials) : nullptr) {}
 StatisticalLevel::~StatisticalLevel() = default;
 
 int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state,
                           bool asleep, std::shared_ptr<const Signature> signature) {
+  if (tables_) return tables_->add(owner, std::move(shape), mass, material, state, asleep, std::move(signature));
   Impl& level = *impl_;
   check_that(!level.tables() || signature != nullptr, "the tables model needs a signature");
   level.reach = std::max(level.reach, shape->radius);
@@ -87,6 +90,7 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
 }
 
 std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
+  if (tables_) return tables_->remove(slot);
   Impl& level = *impl_;
   check_that(slot >= 0 && slot < size(), "slot out of range");
   const StatisticalBody gone = level.bodies[slot];
@@ -120,6 +124,7 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
 }
 
 void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
+  if (tables_) return tables_->step(dt, neighbors, report, full_contacts);
   Impl& level = *impl_;
   Stopwatch watch;
   level.angular_velocity_given.assign(level.bodies.size(), std::nullopt);
@@ -160,7 +165,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.world(), level.settings.model, dt);
     for (const std::int32_t slot : level.awake)
       if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt, tally);
-    report.times.pairs_ms += watch.lap_ms();
+    report.times.crowd_ms += watch.lap_ms();
   }
 
   if (pair_phase) level.add_travel();
@@ -176,13 +181,14 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   report.counters.states_recovered += tally.states_recovered;
 }
 
-int StatisticalLevel::size() const { return int(impl_->bodies.size()); }
-std::span<const std::int32_t> StatisticalLevel::awake() const { return impl_->awake; }
-int StatisticalLevel::asleep_count() const { return int(impl_->asleep.size()); }
+int StatisticalLevel::size() const { return tables_ ? tables_->size() : int(impl_->bodies.size()); }
+std::span<const std::int32_t> StatisticalLevel::awake() const { return tables_ ? tables_->awake() : std::span<const std::int32_t>(impl_->awake); }
+int StatisticalLevel::asleep_count() const { return tables_ ? tables_->asleep_count() : int(impl_->asleep.size()); }
 
-const Vec3& StatisticalLevel::position(int slot) const { return impl_->bodies[slot].position; }
+Vec3 StatisticalLevel::position(int slot) const { return tables_ ? tables_->position(slot) : impl_->bodies[slot].position; }
 
 RigidState StatisticalLevel::state(int slot) const {
+  if (tables_) return tables_->state(slot);
   const StatisticalBody& body = impl_->bodies[slot];
   const std::optional<Vec3>& given = impl_->angular_velocity_given[slot];
   return {body.position, body.orientation, body.velocity,
@@ -191,6 +197,7 @@ RigidState StatisticalLevel::state(int slot) const {
 
 
 void StatisticalLevel::set_state(int slot, const RigidState& state) {
+  if (tables_) return tables_->set_state(slot, state);
   wake(slot);
   StatisticalBody& body = impl_->bodies[slot];
   impl_->travels[slot].gone += (state.position - body.position).norm() + 4.0 * impl_->kind_of(body).shape->radius;
@@ -203,14 +210,15 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   body.quiet_time = 0.0f;
 }
 
-bool StatisticalLevel::asleep(int slot) const { return impl_->bodies[slot].motion == Motion::asleep; }
-void StatisticalLevel::wake(int slot) { impl_->wake(slot); }
+bool StatisticalLevel::asleep(int slot) const { return tables_ ? tables_->asleep(slot) : impl_->bodies[slot].motion == Motion::asleep; }
+void StatisticalLevel::wake(int slot) { tables_ ? tables_->wake(slot) : impl_->wake(slot); }
 
 void StatisticalLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
+  if (tables_) return tables_->add_force(slot, force, torque);
   wake(slot);
   impl_->pushes.push_back({slot, {force, torque}});
 }
 
-double StatisticalLevel::reach() const { return impl_->reach; }
+double StatisticalLevel::reach() const { return tables_ ? tables_->reach() : impl_->reach; }
 
 }  // namespace lodestone
