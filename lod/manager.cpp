@@ -62,7 +62,11 @@ Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
 void Manager::Impl::add_static_bounds(const Eigen::AlignedBox3d& bounds) {
   static_bounds.push_back(bounds);
   for (std::uint32_t body = 0; body < levels.bodies.indices(); ++body)
-    if (levels.bodies.alive(body)) see(body, levels.state(body));
+    if (levels.bodies.alive(body)) {
+      const RigidState state = levels.state(body);
+      see(body, state);
+      if (bounds.exteriorDistance(state.position) < levels.bodies[body].definition.shape->radius) levels.wake(body);
+    }
 }
 
 Manager::Manager(const ManagerSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -87,12 +91,14 @@ void Manager::add_static_mesh(const Mesh& mesh, MaterialId material) {
   Eigen::AlignedBox3d bounds;
   for (const Vec3& vertex : mesh.vertices) bounds.extend(vertex);
   impl_->add_static_bounds(bounds);
+  impl_->levels.ground.solids.add_mesh(mesh, material);
   impl_->levels.full.add_static_mesh(mesh, material);
 }
 
 void Manager::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
   const Vec3 reach = orientation.toRotationMatrix().cwiseAbs() * (0.5 * sides);
   impl_->add_static_bounds({position - reach, position + reach});
+  impl_->levels.ground.solids.add_box(sides, position, orientation, material);
   impl_->levels.full.add_static_box(sides, position, orientation, material);
 }
 

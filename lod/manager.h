@@ -49,7 +49,7 @@ class Manager {
   MaterialTable& materials();
 
   void add_plane(const Vec3& normal, double offset, MaterialId material = 0);  ///< normal·x = offset, unit normal
-  // Static meshes and boxes are ground for full bodies only, so a body that nears one's bounding box becomes full (unless forced statistical:
+  // Static meshes and boxes are ground for full bodies and for statistical ones of the `support` model. `tables` knows planes only, so its body that nears one's bounding box becomes full (unless forced statistical:
   // it then passes through).
   void add_static_mesh(const Mesh& mesh, MaterialId material = 0);             ///< vertices in the world frame
   void add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material = 0);

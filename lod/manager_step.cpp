@@ -62,8 +62,9 @@ void Manager::Impl::note_waiting(std::uint32_t body) {
       candidate.choice != LevelChoice::full && !levels.signatures.ready(*definition.shape, levels.ground_law(definition.material));
 }
 
-// Near enough to be there within three frames of a game.
+// Near enough to be there within three frames of a game. The support model meets static boxes and meshes by itself.
 bool Manager::Impl::near_static_ground(const RigidState& state, double radius) const {
+  if (levels.statistical_settings.model == StatisticalModel::support) return false;
   const double reach = 1.5 * radius + 0.05 * state.velocity.norm();
   return std::ranges::any_of(static_bounds, [&](const Eigen::AlignedBox3d& box) { return box.exteriorDistance(state.position) < reach; });
 }
@@ -71,6 +72,7 @@ bool Manager::Impl::near_static_ground(const RigidState& state, double radius) c
 void Manager::Impl::move_bodies(LevelDecision decision) {
   const StageTimer timer(report.times.transfer_ms);
   read_callers_planes();
+  levels.ground.solids.prepare();
   reasons = std::move(decision.reasons);
   for (const std::int32_t body : decision.demote) {
     transfer(levels, body);

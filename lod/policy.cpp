@@ -207,7 +207,7 @@ std::string_view text_of(LevelReason reason) {
     case LevelReason::over_budget: return "nearer bodies use up the budget";
     case LevelReason::in_budget: return "among the nearest bodies that fit the budget";
     case LevelReason::overlap_put_off: return "its promotion waits until it overlaps no other body";
-    case LevelReason::static_ground: return "near static boxes or meshes, which only the full level meets";
+    case LevelReason::static_ground: return "near static boxes or meshes, which the tables model does not meet";
     case LevelReason::signature_pending: return "its signature is still being measured";
     case LevelReason::contact_group: return "it goes with the bodies that it touches";
   }

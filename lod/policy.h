@@ -40,7 +40,7 @@ struct LevelCandidate {
   double importance = 1.0;
   LevelChoice choice = LevelChoice::automatic;
   Level level = Level::statistical;
-  bool on_static_ground = false;  ///< near static boxes or meshes, which only the full level meets
+  bool on_static_ground = false;  ///< near static boxes or meshes, which its model does not meet
   bool waits_for_signature = false;  ///< the statistical level cannot have it yet
   bool newcomer = false;    ///< at no level yet: takes its level now, whatever the dwell and the cap
   bool put_off = false;     ///< its promotion was put off lately: it waits as it is

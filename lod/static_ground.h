@@ -1,8 +1,9 @@
-// What does not move and everything rests on: planes, and later static triangles.
+// What does not move and everything rests on.
 #pragma once
 
 #include <vector>
 
+#include "lod/static_solids.h"
 #include "reference/geometry.h"
 #include "reference/material.h"
 
@@ -18,6 +19,7 @@ struct HalfSpace {
 
 struct StaticGround {
   std::vector<HalfSpace> planes;
+  StaticSolids solids;  ///< of boxes and meshes: met by `support` only
 };
 
 }  // namespace lodestone

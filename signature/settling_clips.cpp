@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace lodestone {
 namespace {
@@ -66,40 +67,41 @@ ClipState decode_frame(const ClipFrame& frame, float extent) {
 ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, double frame) {
   frame = std::clamp(frame, 0.0, clip.frames - 1.0);
   const auto index = std::uint32_t(frame);
-  const ClipState a = decode_frame(signature.clip_frames[clip.first_frame + index], clip.extent);
+  ClipState state = decode_frame(signature.clip_frames[clip.first_frame + index], clip.extent);
   const double part = frame - index;
-  if (part <= 1e-9 || index + 1 >= clip.frames) return a;
-  const ClipState b = decode_frame(signature.clip_frames[clip.first_frame + index + 1], clip.extent);
-  return {a.position + part * (b.position - a.position), blend(a.orientation, b.orientation, part),
-          a.velocity + part * (b.velocity - a.velocity), a.angular_velocity + part * (b.angular_velocity - a.angular_velocity)};
+  if (part <= 1e-9 || index + 1 >= clip.frames) return state;
+  const ClipState next = decode_frame(signature.clip_frames[clip.first_frame + index + 1], clip.extent);
+  state.position += part * (next.position - state.position);
+  state.orientation = blend(state.orientation, next.orientation, part);
+  return state;
 }
 
-ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance)
-    : max_distance_(max_distance), entries_(signature.clip_entries) {
-  for (const ClipEntry& entry : entries_)
-    keys_.push_back(key_of(find_clip_state(signature, signature.clips[entry.clip], entry.frame), inertia_per_mass));
+ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance) : max_distance_(max_distance) {
+  std::vector<Near> all;
+  for (const ClipEntry& entry : signature.clip_entries)
+    all.push_back({key_of(find_clip_state(signature, signature.clips[entry.clip], entry.frame), inertia_per_mass), entry});
+  std::ranges::stable_sort(all, {}, [](const Near& n) { return n.key.energy; });
   constexpr float kCellReach = 1.5f / kSide;  // no direction in a cell is farther from its middle than this
   const float reach = kCellReach + 0.5f * std::sqrt(max_distance);
   for (int cell = 0; cell < 6 * kSide * kSide; ++cell) {
     start_.push_back(std::uint32_t(near_.size()));
     const Eigen::Vector3f middle = cube_cell_direction(cell, kSide);
-    for (std::size_t i = 0; i < keys_.size(); ++i)
-      if ((keys_[i].normal - middle).norm() < reach) near_.push_back(std::uint32_t(i));
+    std::ranges::copy_if(all, std::back_inserter(near_), [&](const Near& n) { return (n.key.normal - middle).norm() < reach; });
   }
   start_.push_back(std::uint32_t(near_.size()));
 }
 
-std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float energy_slack) const {
+std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float energy_slack, float distance_limit) const {
   if (empty()) return {};
   const int cell = cube_cell(key.normal, kSide);
   std::optional<ClipEntry> best;
-  float best_distance = max_distance_;
-  for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
-    const SettlingKey& k = keys_[near_[i]];
-    const float from_normal = 4.0f * (k.normal - key.normal).squaredNorm();
-    if (from_normal >= best_distance || k.energy > key.energy + energy_slack) continue;
-    const float distance = from_normal + (k.velocity - key.velocity).squaredNorm() + (k.angular_velocity - key.angular_velocity).squaredNorm();
-    if (distance < best_distance) best_distance = distance, best = entries_[near_[i]];
+  float best_distance = std::min(max_distance_, distance_limit);
+  for (const Near& n : std::span(near_).subspan(start_[cell], start_[cell + 1] - start_[cell])) {
+    if (n.key.energy > key.energy + energy_slack) break;
+    const float from_normal = 4.0f * (n.key.normal - key.normal).squaredNorm();
+    if (from_normal >= best_distance) continue;
+    const float distance = from_normal + (n.key.velocity - key.velocity).squaredNorm() + (n.key.angular_velocity - key.angular_velocity).squaredNorm();
+    if (distance < best_distance) best_distance = distance, best = n.entry;
   }
   return best;
 }

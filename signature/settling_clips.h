@@ -24,7 +24,8 @@ struct ClipState {
 ClipFrame encode_frame(const ClipState& state, float extent);
 ClipState decode_frame(const ClipFrame& frame, float extent);
 
-/// State in `clip` at `frame` (fractional, clamped to the clip), between frames by interpolation.
+/// State in `clip` at `frame` (fractional, clamped to the clip). Between frames poses are interpolated; velocities stay those of the frame before, for
+/// they change at impacts, which must stay sudden.
 ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, double frame);
 
 /// How a body moves at a contact, dimensionless and in body axes, so that yaw does not matter.
@@ -41,17 +42,19 @@ class ClipIndex {
   /// `inertia_per_mass`: of the shape, over R²; `max_distance`: of what find_nearest may return.
   ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance);
 
-  /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`; none beyond the greatest distance.
-  std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack) const;
-  bool empty() const { return keys_.empty(); }
+  /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`; none beyond `distance_limit`, which is at most `max_distance`.
+  std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack, float distance_limit) const;
+  bool empty() const { return near_.empty(); }
 
  private:
-  static constexpr int kSide = 6;  // cells along an edge of the cube of normals
+  struct Near {
+    SettlingKey key;
+    ClipEntry entry;
+  };
+  static constexpr int kSide = 8;  // cells along an edge of the cube of normals
   float max_distance_ = 0.0f;
-  std::vector<SettlingKey> keys_;
-  std::vector<ClipEntry> entries_;
   std::vector<std::uint32_t> start_;  // of each cell's run of `near_`
-  std::vector<std::uint32_t> near_;   // keys within reach of the cell
+  std::vector<Near> near_;            // what is within reach of the cell, of least energy first
 };
 
 }  // namespace lodestone

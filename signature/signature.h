@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "reference/geometry.h"
+#include "reference/hull/hull.h"
 #include "reference/material.h"
 #include "signature/collision_heights.h"
 #include "signature/response.h"
@@ -67,7 +68,7 @@ struct SignatureSettings {
   int held_out_conditions = 500;               ///< random ones, with 16 trials each kept out of the tables, that certify each table
   int height_samples = 16, height_trials = 2000;
   int settling_trials = 1000;
-  int clips = 200;
+  int clips = 100;
   double rest_pose_frequency_min = 0.004;      ///< rarer rest poses are dropped (the paper: .05)
   std::uint64_t seed = 1;
   friend bool operator==(const SignatureSettings&, const SignatureSettings&) = default;
@@ -102,6 +103,7 @@ struct Signature {
   TableCertificate bouncing_certificate, non_bouncing_certificate, by_speed_certificate;
   std::vector<RestPose> rest_poses;  ///< most frequent first
   int rest_poses_above_5_percent = 0;  ///< the paper's count
+  SupportMapError support_map_error; ///< of the shape's support map without the climb, over R
   std::vector<SettlingClip> clips;
   std::vector<ClipFrame> clip_frames;
   std::vector<ClipEntry> clip_entries;

@@ -14,7 +14,7 @@
 
 namespace lodestone {
 
-inline constexpr std::uint32_t kSignatureFormatVersion = 3;
+inline constexpr std::uint32_t kSignatureFormatVersion = 4;
 
 /// The same signature gives the same bytes; how long it took to measure is not among them.
 std::vector<std::byte> encode_signature(const Signature& signature);

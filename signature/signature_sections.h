@@ -42,6 +42,7 @@ void archive(Archive& a, Archived<TableCertificate> auto& c) {
 template <class Archive>
 void archive_numbers(Archive& a, Archived<Signature> auto& s) {
   a(s.shape_hash, s.mesh_vertices, s.mesh_faces, s.settings, s.trials, s.rest_poses_above_5_percent, s.clip_frame_interval);
+  a(s.support_map_error.mean, s.support_map_error.greatest);
   for (auto* table : {&s.bouncing, &s.non_bouncing}) a(table->n_theta, table->n_phi, table->n_alpha, table->n_psi, table->cells.sample_range);
   a(s.by_speed.n_theta, s.by_speed.n_phi, s.by_speed.cells.sample_range);
   a(s.bouncing_certificate, s.non_bouncing_certificate, s.by_speed_certificate);

@@ -20,12 +20,12 @@ void add_signature_arguments(CLI::App& command, SignatureArguments& arguments) {
       {"independent", ResponseDraw::independent}, {"correlated", ResponseDraw::correlated}, {"empirical", ResponseDraw::empirical}};
   const std::string group = "Signature";
   command.add_flag("--paper-grid", settings.paper_grid, "responses over the paper's grid: theta 7, phi 10, speed 26, spin 16, 30 trials each")->group(group);
-  command.add_option("--trial-end", arguments.trial_end, "when a collision is over: first-impulse (default on the paper's grid) or leaves-plane (default elsewhere)")
-      ->transform(CLI::CheckedTransformer(kEnds))->group(group);
+  command.add_option("--trial-end", arguments.trial_end, "when a collision is over; leaves-plane, but first-impulse on the paper's grid")
+      ->transform(CLI::CheckedTransformer(kEnds))->option_text("first-impulse|leaves-plane")->group(group);
   command.add_option("--psi", settings.n_psi, "cells of the azimuth of the spin about the velocity; 1: all in one, as the paper's are")
       ->check(CLI::Range(1, 64))->capture_default_str()->group(group);
-  command.add_option("--draw", settings.draw, "how responses are drawn: independent, correlated or empirical")
-      ->transform(CLI::CheckedTransformer(kDraws))->default_str("independent")->group(group);
+  command.add_option("--draw", settings.draw, "how responses are drawn")
+      ->transform(CLI::CheckedTransformer(kDraws))->option_text("independent|correlated|empirical [independent]")->group(group);
   command.add_option("--table-error", settings.table_error, "more trials where a cell's mean has a greater standard error than this, over the speed; 0: the same number in each")
       ->check(CLI::Range(0.0, 1.0))->capture_default_str()->group(group);
   command.add_option("--cell-trials", settings.trials_per_cell, "collisions in each cell of the tables")->check(CLI::Range(2, 100'000))->capture_default_str()->group(group);

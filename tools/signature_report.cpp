@@ -94,6 +94,8 @@ std::string text_of(const Signature& signature, std::size_t bytes) {
                       settings.trial_end == TrialEnd::first_impulse ? "first impulse" : "body leaves the plane");
   text += fmt::format("responses    {}; {} draws\n", text_of_axes(signature), name_of(settings.draw));
   text += fmt::format("valid for    {}\n", text_of_validity(signature));
+  text += fmt::format("support map  exact with the climb; without it {:.2g} R too low in the mean, {:.2g} R at worst\n", signature.support_map_error.mean,
+                      signature.support_map_error.greatest);
   text += fmt::format("clips        {} of {} frames\n", signature.clips.size(), signature.clip_frames.size());
   text += fmt::format("size         {} bytes\n", bytes);
   text += fmt::format("rest poses   {} kept, {} above 5 %\n\n", signature.rest_poses.size(), signature.rest_poses_above_5_percent);
@@ -119,6 +121,7 @@ ordered_json json_of(const Signature& signature, std::size_t bytes) {
     worst = std::max(worst, table.certificate.held_out_ks);
   }
   json["held_out_ks"] = worst;
+  json["support_map_error"] = {{"mean_over_radius", signature.support_map_error.mean}, {"greatest_over_radius", signature.support_map_error.greatest}};
   json["clips"] = signature.clips.size();
   json["rest_poses"] = ordered_json::array();
   for (const RestPose& pose : signature.rest_poses) json["rest_poses"].push_back(json_of(pose));

@@ -44,11 +44,14 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
   const double height = ground.height_of(body.position);
   const SettlingKey key{(to_body * ground.normal).cast<float>(), (to_body * body.velocity / speed_unit).cast<float>(),
                         (to_body * omega * (radius / speed_unit)).cast<float>(), float(kinetic / (gravity * radius) + height / radius)};
-  const std::optional<ClipEntry> entry = kind.clips.find_nearest(key, settings.energy_slack);
-  if (!entry || (kind.signature->clips[entry->clip].frames - entry->frame) * double(kind.signature->clip_frame_interval) < settings.shortest) return {};
+  const auto energy = float(kinetic / (gravity * radius));
+  const float distance = std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);
+  const std::optional<ClipEntry> entry = kind.clips.find_nearest(key, settings.energy_slack, distance);
+  if (!entry) return {};
 
   ClipPlayback p;
   p.clip = entry->clip;
+  p.ground = ground;
   p.frame = entry->frame;
   p.residual_left = 1.0;
   const ClipState pose = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
@@ -62,15 +65,14 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
   return p;
 }
 
-bool advance_clip(ClipPlayback& p, StatisticalBody& body, const BodyKind& kind, const HalfSpace& ground, double gravity, double time,
-                  const ClipSettings& settings) {
+bool advance_clip(ClipPlayback& p, StatisticalBody& body, const BodyKind& kind, double gravity, double time, const ClipSettings& settings) {
   const double time_unit = std::sqrt(kind.shape->radius / gravity);
   p.frame += time / (kind.signature->clip_frame_interval * time_unit);
   p.residual_left = std::max(0.0, p.residual_left - time / (settings.fade_time * time_unit / std::sqrt(0.2 / 9.81)));
   RigidState state = state_of(p, kind, gravity);
   if (p.residual_left > 0.0) {  // between two poses the hull may dip below the ground
-    const double gap = find_lowest_point(*kind.shape, state.orientation, ground.normal, ground.height_of(state.position), body.support_hint).gap;
-    if (gap < 0.0) state.position -= gap * ground.normal;
+    const double gap = find_lowest_point(*kind.shape, state.orientation, p.ground.normal, p.ground.height_of(state.position), body.support_hint).gap;
+    if (gap < 0.0) state.position -= gap * p.ground.normal;
   }
   body.position = state.position;
   body.orientation = state.orientation.normalized();

@@ -11,6 +11,7 @@ namespace lodestone {
 struct ClipPlayback {
   std::uint32_t clip = 0;
   double frame = 0.0;                        ///< within the clip
+  HalfSpace ground;                          ///< what it settles on
   Quat yaw = Quat::Identity();               ///< clip frame to world
   Vec3 origin = Vec3::Zero();                ///< m, world point of the clip's x = y = 0 on the plane
   Vec3 residual_position = Vec3::Zero();     ///< m
@@ -19,10 +20,10 @@ struct ClipPlayback {
 };
 
 struct ClipSettings {
-  double energy_limit = 0.02;     ///< J/kg over g R: kinetic energy below which a body at a contact may join a clip
+  double energy_limit = 0.15;     ///< J/kg over g R: kinetic energy below which a body at a contact may join a clip
   float energy_slack = 0.002f;    ///< over m g R: what a clip's energy may exceed the body's by
-  float max_distance = 0.05f;     ///< of the nearest entry, in ClipIndex::find_nearest's measure
-  double shortest = 5.0;          ///< over √(R/g): a shorter rest of a clip is not worth joining, the body settles as well by itself
+  float distance_over_energy = 0.5f;  ///< how far the nearest entry may be, in ClipIndex::find_nearest's measure, over the body's kinetic energy over m g R,
+  float least_distance = 0.002f, greatest_distance = 0.1f;  ///< … within these: what differs by more than it moves is another motion
   double fade_time = 0.15;        ///< s at R = .2 m and 9.81 m/s², scaled with √(R/g)
 };
 
@@ -31,7 +32,6 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
                                       const ClipSettings& settings);
 
 /// Moves `body` along its clip by `time` seconds; velocities are those of the motion shown. True when the clip is over: the body rests.
-bool advance_clip(ClipPlayback& playback, StatisticalBody& body, const BodyKind& kind, const HalfSpace& ground, double gravity, double time,
-                  const ClipSettings& settings);
+bool advance_clip(ClipPlayback& playback, StatisticalBody& body, const BodyKind& kind, double gravity, double time, const ClipSettings& settings);
 
 }  // namespace lodestone

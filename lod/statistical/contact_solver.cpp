@@ -1,6 +1,7 @@
 #include "lod/statistical/contact_solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lod/statistical/contact_impulse.h"
 
@@ -31,11 +32,19 @@ void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& imp
   b.angular_velocity -= b.inverse_inertia * c.arm_second.cross(impulse);
 }
 
+// Along the normal at the step's end, of a body that falls through the gap, bounces off what stands still and falls on.
+double bounce_in_fall(const SolverContact& c, double approach, double fall, double step) {
+  const double before = approach - fall, acceleration = fall / step, gap = std::max(0.0, c.gap);
+  const double impact = -std::sqrt(std::max(0.0, before * before - 2.0 * acceleration * gap));
+  const double time = before + impact < 0.0 ? std::clamp(-2.0 * gap / (before + impact), 0.0, step) : 0.0;
+  return -c.law.restitution * impact + acceleration * (step - time);
+}
+
 // The normal velocity to reach: a bounce, or closing the gap just within the step.
-double target_velocity(SolverContact& c, double approach, double step, const ContactSolverSettings& s) {
-  const double closing = std::min(0.0, -c.gap / step);
+double target_velocity(SolverContact& c, bool on_still, double approach, double step, const ContactSolverSettings& s) {
+  const double closing = std::min(0.0, -c.gap / step), fall = on_still ? std::min(0.0, s.fall.dot(c.normal)) : 0.0;
   c.bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
-  return c.bounces ? std::max(-c.law.restitution * approach, closing) : closing;
+  return c.bounces ? std::max(bounce_in_fall(c, approach, fall, step), closing) : closing;
 }
 
 void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const ContactSolverSettings& s) {
@@ -45,7 +54,7 @@ void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const 
   c.tangent[1] = frame.col(2);
   const SolverBody &a = bodies[c.first], &b = second_of(bodies, c);
   for (int i = 0; i < 3; ++i) c.effective_mass[i] = effective_mass_along(a, b, c, frame.col(i));
-  c.target = target_velocity(c, velocity.dot(c.normal), step, s);
+  c.target = target_velocity(c, b.inverse_mass == 0.0, velocity.dot(c.normal), step, s);
 }
 
 // Returns the size of the change, N s.

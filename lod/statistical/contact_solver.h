@@ -41,6 +41,8 @@ struct ContactSolverSettings {
   int sweeps = 10;                       ///< at most; fewer once no impulse changes by more than `tolerance` of the greatest
   double tolerance = 1e-4;
   double bounce_velocity = 0.05;         ///< m/s, slower approaches do not bounce (as in ODE)
+  Vec3 fall = Vec3::Zero();              ///< m/s, what gravity has given the velocities for this step: an impact on what stands still is answered as fast
+                                         ///< as it is when it happens, within the step
 };
 
 /// Changes the bodies' velocities so that no contact closes further than its gap within `step` seconds, with restitution and Coulomb friction.

@@ -89,6 +89,23 @@ void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind
   }
 }
 
+void Crowd::add_solid_contact(const SolidContact& on_solid, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
+                              std::span<const FullNeighbor> neighbors, const StepWorld& world, double time) {
+  const StatisticalBody& body = bodies[on_solid.slot];
+  SolverContact c;
+  c.first = solver_index(on_solid.slot, bodies, kinds, neighbors, world, time);
+  c.normal = on_solid.contact.normal;
+  c.law = world.materials->law(kinds[body.kind].material, world.ground->solids[on_solid.solid].material);
+  const Manifold& manifold = on_solid.contact.manifold;
+  c.share = 1.0 / manifold.count;
+  for (int i = 0; i < manifold.count; ++i) {
+    c.arm_first = manifold.points[i].point - body.position;
+    c.gap = manifold.points[i].gap;
+    solver_contacts_.push_back(c);
+    keys_.push_back(ground_key(body.owner, world.ground->planes.size() + std::size_t(on_solid.solid)));
+  }
+}
+
 // A counting sort of the contacts by neighbour; a contact of two is in both runs.
 void Crowd::sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors) {
   full_start_.assign(neighbors + 1, 0);
@@ -131,8 +148,8 @@ void Crowd::add_full_contacts(int index, std::span<const StatisticalBody> bodies
 }
 
 ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
-                         std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts, const StepWorld& world,
-                         StatisticalModel model, double time) {
+                         std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts,
+                         std::span<const SolidContact> solid_contacts, const StepWorld& world, StatisticalModel model, double time) {
   participants_.clear();
   solver_bodies_.clear();
   angular_before_.clear();
@@ -159,6 +176,7 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     }
   }
   const std::size_t pair_contacts = solver_contacts_.size();
+  for (const SolidContact& on_solid : solid_contacts) add_solid_contact(on_solid, bodies, kinds, neighbors, world, time);
   sort_full_contacts(full_contacts, neighbors.size());
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     const Participant p = participants_[i];
@@ -167,6 +185,7 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   }
   ContactSolverSettings settings = settings_.solver;
   settings.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
+  settings.fall = world.gravity * time;
   memory_.recall(keys_, solver_contacts_, time);
   solve_contacts(solver_bodies_, solver_contacts_, time, settings);
   memory_.remember(keys_, solver_contacts_, time);

@@ -8,6 +8,7 @@
 #include "lod/statistical/contact_memory.h"
 #include "lod/statistical/ground_contact.h"
 #include "lod/statistical/pair_contacts.h"
+#include "lod/statistical/solid_contacts.h"
 #include "lod/statistical/statistical_level.h"
 #include "lod/statistical/tables_model.h"
 
@@ -31,13 +32,15 @@ class Crowd {
  public:
   explicit Crowd(const CrowdSettings& settings = {}) : settings_(settings) {}
 
-  /// Solves `contacts`, the ground contacts of every crowded body and those of `full_contacts` that hold up a full one, then moves the crowded
+  /// Solves `contacts`, those with static solids, the ground contacts of every crowded body and those of `full_contacts` that hold up a full one, then moves the crowded
   /// bodies by `time`. Bodies asleep hold still; full neighbours receive impulses and are not moved.
   ContactTally step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
-                    std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts, const StepWorld& world,
-                    StatisticalModel model, double time);
+                    std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts,
+                    std::span<const SolidContact> solid_contacts, const StepWorld& world, StatisticalModel model, double time);
 
  private:
+  void add_solid_contact(const SolidContact& on_solid, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
+                         std::span<const FullNeighbor> neighbors, const StepWorld& world, double time);
   int solver_index(Participant participant, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
                    std::span<const FullNeighbor> neighbors, const StepWorld& world, double time);
   void add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const StepWorld& world,

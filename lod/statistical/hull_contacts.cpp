@@ -30,7 +30,7 @@ void walk_below(const Shape& shape, const Mat3& rotation, const Vec3& normal_in_
       if (found.count == Submerged::kCapacity) return;
       const double gap = height + shape.hull.vertices[next].dot(normal_in_body);
       if (gap >= margin || found.holds(next)) continue;
-      found.add(next, {rotation * shape.hull.vertices[next], gap});
+      found.add(next, {rotation * shape.hull.vertices[next], gap, next});
     }
   }
 }

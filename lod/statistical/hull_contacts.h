@@ -11,6 +11,7 @@ namespace lodestone {
 struct HullContact {
   Vec3 arm = Vec3::Zero();  ///< m, from the centre of mass to the contact point, world axes
   double gap = 0.0;         ///< m, of the point over the plane; negative inside
+  std::int32_t vertex = -1; ///< of the hull; −1: of a sphere
 };
 
 /// The lowest point of a body over a plane with unit `normal`, its centre of mass at `height` over it. The climb over the hull starts at `hint`
@@ -19,7 +20,7 @@ inline HullContact find_lowest_point(const Shape& shape, const Quat& orientation
   if (shape.sphere_radius) return {-*shape.sphere_radius * normal, height - *shape.sphere_radius};
   hint = find_support(shape.hull, orientation.conjugate() * (-normal), hint);
   const Vec3 arm = orientation * shape.hull.vertices[hint];
-  return {arm, height + arm.dot(normal)};
+  return {arm, height + arm.dot(normal), hint};
 }
 
 inline constexpr int kMaxGroundContacts = 4;

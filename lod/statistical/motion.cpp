@@ -8,25 +8,26 @@
 
 namespace lodestone {
 
-void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
+void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, const StaticGround& over, double dt, ContactTally& tally) {
   const BodyKind& kind = kind_of(body);
   const double gravity = settings.gravity.norm();
   static const ClipSettings clip_settings;
+  // A clip plays on its own ground only: that of a static solid ends at an edge.
+  const auto same = [&](const HalfSpace& plane) { return plane.normal == clips[slot].ground.normal && plane.offset == clips[slot].ground.offset; };
+  if (body.motion == Motion::settling && std::ranges::none_of(over.planes, same)) body.motion = Motion::dynamic;
   if (body.motion == Motion::settling) {
-    const HalfSpace& plane = ground.planes[resting[slot].plane];
-    if (advance_clip(clips[slot], body, kind, plane, gravity, dt, clip_settings)) {
-      if (settings.sleeping) put_to_sleep(body);
-    }
+    if (advance_clip(clips[slot], body, kind, gravity, dt, clip_settings) && settings.sleeping) put_to_sleep(body);
     return;
   }
   static const SupportSettings support_settings;
-  tally = step_support_body(body, kind, world(), dt, support_settings);
+  StepWorld step_world = world();
+  step_world.ground = &over;
+  tally = step_support_body(body, kind, step_world, dt, support_settings);
   if (tally.touched_plane < 0) return update_quiet(body, dt, tally);
-  const HalfSpace& plane = ground.planes[tally.touched_plane];
-  if (!kind.clips.empty() && world().is_horizontal(plane)) {
+  const HalfSpace& plane = over.planes[std::size_t(tally.touched_plane)];
+  if (!kind.clips.empty() && step_world.is_horizontal(plane)) {
     if (const auto clip = find_clip(body, kind, plane, gravity, clip_settings)) {
       clips[slot] = *clip;
-      resting[slot].plane = tally.touched_plane;
       body.motion = Motion::settling;
       return;
     }
@@ -50,9 +51,19 @@ void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double
   update_quiet(body, dt, tally);
 }
 
-void StatisticalLevel::Impl::move_alone(int slot, double dt, ContactTally& tally) {
+// The planes, and the faces of static solids that the body lies over.
+const StaticGround& StatisticalLevel::Impl::ground_below(std::size_t place) const {
+  if (faces_of.empty() || faces_of[place].first == faces_of[place].second) return ground;
+  thread_local StaticGround with_faces;
+  with_faces.planes = ground.planes;
+  with_faces.planes.insert(with_faces.planes.end(), faces_below.begin() + faces_of[place].first, faces_below.begin() + faces_of[place].second);
+  return with_faces;
+}
+
+void StatisticalLevel::Impl::move_alone(std::size_t place, double dt, ContactTally& tally) {
+  const std::int32_t slot = awake[place];
   if (tables()) move_tables(bodies[slot], slot, dt, tally);
-  else move_support(bodies[slot], slot, dt, tally);
+  else move_support(bodies[slot], slot, ground_below(place), dt, tally);
 }
 
 }  // namespace lodestone

@@ -103,6 +103,20 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   if (!tables()) pair_memory.end();
 }
 
+// Static boxes and meshes: what nears one is solved with all that it touches.
+void StatisticalLevel::Impl::find_ground_solids(double dt) {
+  solid_contacts.clear();
+  faces_below.clear();
+  faces_of.clear();
+  if (ground.solids.empty() || tables()) return;
+  for (const std::int32_t slot : awake) {
+    const std::size_t before = solid_contacts.size(), faces = faces_below.size();
+    find_solid_contacts(bodies[slot], kind_of(bodies[slot]), slot, ground.solids, dt, solid_contacts, faces_below);
+    faces_of.emplace_back(faces, faces_below.size());
+    if (solid_contacts.size() > before) bodies[slot].crowded = true;
+  }
+}
+
 // No point of a body goes farther than its centre does plus R times the angle turned.
 void StatisticalLevel::Impl::plan_travel(double dt) {
   const double fall = 0.5 * settings.gravity.norm() * dt * dt;

@@ -46,6 +46,10 @@ void try_rest_normals(const PairBody& owner, const PairBody& first, const PairBo
   }
 }
 
+void try_face_normals(const PairBody& first, const PairBody& second, Separation& best) {
+  for (const Vec3& normal : second.face_normals) try_axis(first, second, second.orientation * normal, best);
+}
+
 // Up the gradient until the gap is above `enough`.
 void climb(const PairBody& first, const PairBody& second, double enough, Separation& best) {
   const double size = first.shape->radius + second.shape->radius;
@@ -75,10 +79,15 @@ Vec3 middle_of(const HullContacts& feature) {
   return sum / feature.count;
 }
 
+Manifold clip_features(const PairBody& first, const PairBody& second, const Separation& best, HullContacts& upper, HullContacts& lower) {
+  upper = find_feature(first, best.normal, best.vertex_first, second.position);
+  lower = find_feature(second, -best.normal, best.vertex_second, second.position);
+  return find_manifold(upper, lower, best.normal, best.gap);
+}
+
 Manifold find_points(const PairBody& first, const PairBody& second, const Separation& best) {
-  const HullContacts upper = find_feature(first, best.normal, best.vertex_first, second.position);
-  const HullContacts lower = find_feature(second, -best.normal, best.vertex_second, second.position);
-  Manifold manifold = find_manifold(upper, lower, best.normal, best.gap);
+  HullContacts upper, lower;
+  Manifold manifold = clip_features(first, second, best, upper, lower);
   if (manifold.count == 0) {  // the axis is not quite that of the nearest features
     manifold.points[0] = {0.5 * (middle_of(upper) + middle_of(lower)), best.gap};
     manifold.count = 1;
@@ -102,6 +111,7 @@ HullContactSearch search_relative(const PairBody& first, const PairBody& second,
   const double before = best.gap;
   if (best.gap <= margin) try_rest_normals(first, first, second, best);
   if (best.gap <= margin) try_rest_normals(second, first, second, best);
+  if (best.gap <= margin) try_face_normals(first, second, best);
   if (best.gap > before) climb(first, second, margin, best);
   HullContactSearch search{best.normal, best.gap, {}};
   if (best.gap <= margin) search.contact = PairContact{best.normal, best.gap, find_points(first, second, best)};
@@ -139,6 +149,16 @@ HullContactSearch find_hull_contact(const PairBody& first, const PairBody& secon
   if (search.contact)
     for (ManifoldPoint& p : search.contact->manifold.points) p.point += second.position;
   return search;
+}
+
+std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin) {
+  const Separation s = separation_along(first, second, normal, find_start(first, -normal), find_start(second, normal));
+  if (s.gap > margin) return {};
+  HullContacts upper, lower;
+  PairContact contact{normal, s.gap, clip_features(first, second, s, upper, lower)};
+  if (contact.manifold.count == 0) return {};
+  for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
+  return contact;
 }
 
 }  // namespace lodestone

@@ -17,6 +17,7 @@ struct PairBody {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
   double sphere_radius = 0.0;            ///< m, `tables`: of the colliding sphere
+  std::span<const Vec3> face_normals = {};  ///< outward, body axes: tried as separating axes, too
 };
 
 struct PairContact {
@@ -38,5 +39,9 @@ struct HullContactSearch {
 /// `support`: searches from the centre line and both bodies' rest normals; `start`, where not zero, is an axis that may still separate them, and refines by steps up the
 /// separation's gradient (as in Gilbert, An iterative procedure for computing the minimum of a quadratic form, 1966).
 HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin);
+
+/// Contact of the two hulls along a given axis (unit, from `second` into `first`); none where the gap along it is above `margin` or the touching features do not
+/// overlap across it.
+std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin);
 
 }  // namespace lodestone

@@ -41,7 +41,7 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
   const Mat3& inertia = shape->inertia_per_mass;
   const bool isotropic = (inertia - inertia.trace() / 3.0 * Mat3::Identity()).norm() < 1e-9 * inertia.norm();
   ClipIndex index;
-  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.max_distance);
+  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.greatest_distance);
   kinds.push_back({std::move(shape), std::move(signature), std::move(index), mass, material, isotropic});
   return std::uint16_t(kinds.size() - 1);
 }
@@ -147,22 +147,23 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   } else {
     for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = false;
   }
+  level.find_ground_solids(dt);
 
   // 3 Bodies that touch no other.
   const std::int64_t awake = std::int64_t(level.awake.size());
   level.tallies.assign(std::size_t(awake), {});
   level.parallel(awake, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
-      if (!level.bodies[level.awake[i]].crowded) level.move_alone(level.awake[i], dt, level.tallies[i]);
+      if (!level.bodies[level.awake[i]].crowded) level.move_alone(std::size_t(i), dt, level.tallies[i]);
   });
   for (const ContactTally& t : level.tallies) tally += t;
   report.times.flight_ms += watch.lap_ms();
 
   // 4 Bodies that do.
-  if (!level.contacts.empty()) {
+  if (!level.contacts.empty() || !level.solid_contacts.empty()) {
     for (const std::int32_t slot : level.awake)
       if (level.bodies[slot].crowded && level.bodies[slot].motion == Motion::settling) level.bodies[slot].motion = Motion::dynamic;
-    tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.world(), level.settings.model, dt);
+    tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.solid_contacts, level.world(), level.settings.model, dt);
     for (const std::int32_t slot : level.awake)
       if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt, tally);
     report.times.crowd_ms += watch.lap_ms();

@@ -56,6 +56,9 @@ struct StatisticalLevel::Impl {
   std::vector<NearPair> pairs;
   std::vector<FoundPair> found;
   std::vector<CrowdContact> contacts;
+  std::vector<SolidContact> solid_contacts;
+  std::vector<HalfSpace> faces_below;        // of static solids, under bodies
+  std::vector<std::pair<std::int32_t, std::int32_t>> faces_of;  // of each awake body: its run of `faces_below`; empty where there are no solids
   std::vector<ContactTally> tallies;
 
   Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m) : settings(s), ground(g), materials(m), parallel(s.threads) {}
@@ -80,10 +83,12 @@ struct StatisticalLevel::Impl {
   bool is_asleep(Participant p, std::span<const FullNeighbor> neighbors) const {
     return p < 0 ? neighbors[-1 - p].asleep : bodies[p].motion == Motion::asleep;
   }
+  void find_ground_solids(double dt);
   void wake_touched(std::span<FullNeighbor> neighbors);
   ContactTally respond_pairs_as_paper();
-  void move_alone(int slot, double dt, ContactTally& tally);
-  void move_support(StatisticalBody& body, int slot, double dt, ContactTally& tally);
+  void move_alone(std::size_t place, double dt, ContactTally& tally);  ///< place in `awake`
+  const StaticGround& ground_below(std::size_t place) const;
+  void move_support(StatisticalBody& body, int slot, const StaticGround& over, double dt, ContactTally& tally);
   void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
   void update_quiet(StatisticalBody& body, double dt, ContactTally& tally);
   bool is_sound(const StatisticalBody& body, double energy) const;

@@ -11,6 +11,8 @@
 namespace lodestone {
 namespace {
 
+constexpr double kTouching = 1e-4;  // over R: a gap that is none
+
 struct LowestPoint {
   int plane = -1;       // −1: no plane within reach
   HullContact contact;
@@ -44,7 +46,7 @@ struct Impact {
 // may rise before it falls (another vertex has just left), then false position.
 Impact find_impact(const StatisticalBody& start, const StatisticalBody& end, const LowestPoint& end_lowest, const BodyKind& kind,
                    const StepWorld& world, double time) {
-  const double tolerance = 1e-4 * kind.shape->radius;
+  const double tolerance = kTouching * kind.shape->radius;
   Impact before{0.0, start, {}}, after{time, end, end_lowest};
   double gap_before = 0.0, gap_after = end_lowest.contact.gap;
   for (int i = 0; i < 12 && gap_after < -tolerance; ++i) {
@@ -61,6 +63,14 @@ Impact find_impact(const StatisticalBody& start, const StatisticalBody& end, con
     }
   }
   return after;
+}
+
+// Whether the vertex that is lowest at the step's end touches already: then nothing strikes, the body only leans on.
+bool touches_already(const StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, std::int32_t vertex, double bounce_velocity) {
+  if (kind.shape->sphere_radius) return plane.height_of(body.position) - *kind.shape->sphere_radius < kTouching * kind.shape->radius;
+  const Vec3 arm = body.orientation * kind.shape->hull.vertices[vertex];
+  return plane.height_of(body.position) + arm.dot(plane.normal) < kTouching * kind.shape->radius &&
+         velocity_at(body, kind, arm).dot(plane.normal) > -bounce_velocity;
 }
 
 // The impulses of several vertices that strike at once, an edge's or a face's.
@@ -93,14 +103,26 @@ void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& con
   body.spin += contact.arm.cross(impulse);
 }
 
+// What held a vertex in the contact step before: where the solver begins in the next.
+struct HeldVertices {
+  std::array<std::pair<std::int32_t, Vec3>, 3 * kMaxGroundContacts> impulse;  // by vertex, N s over mass
+  int count = 0;
+  Vec3 find(std::int32_t vertex) const {
+    for (int i = 0; i < count; ++i)
+      if (impulse[i].first == vertex) return impulse[i].second;
+    return Vec3::Zero();
+  }
+};
+
 // One step of sliding, rolling or rocking: gravity, every vertex near the ground held or bounced at once, then motion.
 void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time, const SupportSettings& settings,
-                  ContactTally& tally) {
+                  HeldVertices& held, ContactTally& tally) {
   const Shape& shape = *kind.shape;
   body.velocity += world.gravity * time;
   std::array<SolverBody, 1> bodies{SolverBody{body.velocity, angular_velocity(body.orientation, body.spin, shape), 1.0,
                                               inverse_inertia_world(body.orientation, shape)}};
   std::array<SolverContact, 3 * kMaxGroundContacts> contacts;
+  std::array<std::int32_t, 3 * kMaxGroundContacts> vertices;
   int count = 0;
   double deepest = 0.0;
   for (int i = 0; i < int(world.ground->planes.size()) && count + kMaxGroundContacts <= int(contacts.size()); ++i) {
@@ -116,6 +138,8 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
       c.arm_first = found.contact[k].arm;
       c.gap = found.contact[k].gap;
       c.law = world.law(kind, plane);
+      c.guess = held.find(found.contact[k].vertex);
+      vertices[count - 1] = found.contact[k].vertex;
       deepest = std::min(deepest, c.gap);
       tally.touched_plane = i;
     }
@@ -126,11 +150,13 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
     solve_contacts(bodies, std::span(contacts).first(count), time, solver);
     body.velocity = bodies[0].velocity;
     for (int k = 0; k < count; ++k) {
-      const SolverContact& c = contacts[k];
-      body.spin += c.arm_first.cross(c.impulse[0] * c.normal + c.impulse[1] * c.tangent[0] + c.impulse[2] * c.tangent[1]);
+      const Vec3 impulse = impulse_of(contacts[k]);
+      body.spin += contacts[k].arm_first.cross(impulse);
+      held.impulse[k] = {vertices[k], contacts[k].bounces ? Vec3::Zero() : impulse};
     }
     tally.contacts += count;
   }
+  held.count = count;
   body.position += body.velocity * time;
   if (deepest < 0.0) body.position += push_out_overlap(deepest, shape.radius) * world.ground->planes[tally.touched_plane].normal;
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
@@ -149,6 +175,10 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
       body = end;
       return tally;
     }
+    if (touches_already(body, kind, world.ground->planes[lowest.plane], end.support_hint, world.bounce_velocity)) {
+      body.support_hint = end.support_hint;
+      break;
+    }
     const Impact impact = find_impact(body, end, lowest, kind, world, left);
     const HalfSpace& plane = world.ground->planes[impact.lowest.plane];
     const double approach = velocity_at(impact.body, kind, impact.lowest.contact.arm).dot(plane.normal);
@@ -162,7 +192,8 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
   if (left > 0.0) {
     const double longest = settings.contact_step * std::sqrt(kind.shape->radius / std::max(1e-9, world.gravity_strength()));
     const int steps = std::clamp(int(std::ceil(left / longest)), 1, 32);
-    for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, tally);
+    HeldVertices held;
+    for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, held, tally);
     if (tally.touched_plane >= 0) lift_out(body, *kind.shape, world.ground->planes[tally.touched_plane]);
   }
   return tally;

@@ -9,9 +9,9 @@ namespace lodestone {
 
 struct SupportSettings {
   int max_impacts = 4;               ///< exact impacts a step; what is left of the step is done in contact steps
-  double contact_step = 0.03;        ///< longest contact step over √(R/g)
+  double contact_step = 0.05;        ///< longest contact step over √(R/g)
   double contact_margin = 0.002;     ///< over R: vertices this near the ground can carry
-  ContactSolverSettings solver{.sweeps = 10};
+  ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2};
   double impact_margin = 1e-6;       ///< over R: vertices this near the one that strikes strike with it
   ContactSolverSettings impact_solver{.sweeps = 40};
 };

@@ -53,4 +53,10 @@ class SupportMap {
   std::vector<std::uint16_t> cells_;
 };
 
+/// What looking up the map without the climb would cost: support height missed, m, over directions even on the sphere.
+struct SupportMapError {
+  double mean = 0.0, greatest = 0.0;
+};
+SupportMapError find_lookup_error(const Hull& hull, const SupportMap& map);
+
 }  // namespace lodestone

@@ -1,8 +1,10 @@
 // The support function of a hull: a start from the cube map, then the climb.
+#include <algorithm>
 #include <cmath>
 
 #include "reference/error.h"
 #include "reference/hull/hull.h"
+#include "reference/hull/spiral_directions.h"
 
 namespace lodestone {
 namespace {
@@ -47,6 +49,19 @@ SupportMap::SupportMap(const Hull& hull, int side) : side_(side) {
         // A hull of more than 65,536 vertices (far beyond use) climbs from vertex 0: slower, equally exact.
         cells_.push_back(vertex <= 0xffff ? std::uint16_t(vertex) : 0);
       }
+}
+
+SupportMapError find_lookup_error(const Hull& hull, const SupportMap& map) {
+  constexpr int kDirections = 20'000;
+  SupportMapError error;
+  for (int i = 0; i < kDirections; ++i) {
+    const Vec3 direction = spiral_direction(i, kDirections);
+    const int start = map.find_start(direction), exact = find_support(hull, direction, start);
+    const double missed = (hull.vertices[exact] - hull.vertices[start]).dot(direction);
+    error.mean += missed / kDirections;
+    error.greatest = std::max(error.greatest, missed);
+  }
+  return error;
 }
 
 int SupportMap::find_start(const Vec3& direction) const {

@@ -10,7 +10,7 @@ namespace lodestone {
 
 struct SettlingRecord;
 
-/// Makes clips of the first `count` records that rest, with their entries.
+/// Makes `count` clips of the records that choose_clips picks, with their entries. The signature's rest poses must be there.
 void add_clips(std::span<const SettlingRecord> records, const Shape& shape, int count, Signature& signature);
 
 }  // namespace lodestone

@@ -82,6 +82,10 @@ Signature make_signature(const Shape& shape, const SignatureSettings& settings, 
   add_responses(settings, m, signature);
   signature.rest_poses = find_rest_poses(m.settlings, *measured, settings.rest_pose_frequency_min);
   signature.rest_poses_above_5_percent = int(std::ranges::count_if(signature.rest_poses, [](const RestPose& p) { return p.frequency > 0.05; }));
+  if (!measured->sphere_radius) {
+    signature.support_map_error = find_lookup_error(measured->hull, SupportMap(measured->hull));
+    signature.support_map_error.mean /= measured->radius, signature.support_map_error.greatest /= measured->radius;
+  }
   add_clips(m.settlings, *measured, settings.clips, signature);
   signature.trials = std::uint64_t(settings.height_samples) * std::uint64_t(settings.height_trials) + count_trials(m.bouncing) +
                      count_trials(m.non_bouncing) + count_trials(m.by_speed) + m.settlings.size();

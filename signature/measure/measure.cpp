@@ -1,3 +1,4 @@
+#include "signature/measure/choose_clips.h"
 #include "signature/measure/measure.h"
 
 #include <tbb/blocked_range.h>
@@ -137,7 +138,7 @@ class Measuring {
   void measure_settlings(std::vector<SettlingRecord>& records) const {
     tbb::enumerable_thread_specific<SettlingTrial> trials([&] { return SettlingTrial(shape_, settings_.law); });
     for_each("settling", UnitKind::settling, records, 1,
-             [&](std::int64_t i) { return trials.local().run(settings_.seed, std::uint32_t(i), i < settings_.clips); });
+             [&](std::int64_t i) { return trials.local().run(settings_.seed, std::uint32_t(i), i < kCandidatesPerClip * std::int64_t(settings_.clips)); });
   }
 
   // One world for each thread.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reference/hull/resting_faces.h"
+#include "reference/hull/spiral_directions.h"
 #include "signature/measure/settling_trial.h"
 
 namespace lodestone {
@@ -27,12 +28,6 @@ std::vector<Cluster> cluster_normals(std::span<const SettlingRecord> records) {
   }
   std::stable_sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.count > b.count; });
   return clusters;
-}
-
-// Even over the sphere (Fibonacci's spiral).
-Vec3 spiral_direction(int i, int n) {
-  const double z = 1.0 - (2.0 * i + 1.0) / n, angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0)), r = std::sqrt(1.0 - z * z);
-  return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
 void add_basins(const Shape& shape, std::vector<RestPose>& poses) {

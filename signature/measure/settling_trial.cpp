@@ -56,20 +56,18 @@ SettlingRecord SettlingTrial::run(std::uint64_t seed, std::uint32_t trial, bool 
   SettlingRecord record;
   const double energy_unit = kSettlingGravity * shape_->radius;
   double quiet_since = 0.0;
-  int sample = 0, started = -1;
+  bool started = false;
   simulate_drop(world_, body_, kHorizon, kSubsteps, [&](double time, const RigidState& state) {
     const double energy = kinetic_energy(*shape_, state), gap = gap_over_ground(*shape_, state);
     if (!whole && note_certain_pose(state, gap, energy, record)) return false;
-    const bool starts = started < 0 && energy < kClipEnergy * energy_unit && gap < kEntryGap * shape_->radius;
-    if (starts) started = sample;
-    if (whole && started >= 0 && (sample - started) % kSamplesPerFrame == 0) record.states.push_back(state);
-    ++sample;
+    started = started || (energy < kClipEnergy * energy_unit && gap < kEntryGap * shape_->radius);
+    if (whole && started) record.states.push_back(state);
     if (energy > kRestEnergy * energy_unit) quiet_since = time;
-    record.rests = started >= 0 && time - quiet_since >= kRestTime;
+    record.rests = started && time - quiet_since >= kRestTime;
     if (record.rests) record.normal = state.orientation.conjugate() * Vec3::UnitZ(), record.height = state.position.z();
     return !record.rests;
   });
-  const auto still = std::ptrdiff_t(kRestTime / (kSamplesPerFrame * kObservationStep)) - 3;  // a few frames of stillness are enough to end on
+  const auto still = std::ptrdiff_t(kRestTime / kObservationStep) - 3;  // a few frames of stillness are enough to end on
   if (record.rests && std::ptrdiff_t(record.states.size()) > still) record.states.resize(record.states.size() - std::size_t(still));
   return record;
 }

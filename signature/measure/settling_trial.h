@@ -12,9 +12,8 @@
 namespace lodestone {
 
 inline constexpr double kSettlingGravity = 9.81;  ///< m/s²
-inline constexpr double kClipEnergy = 0.06;       ///< J/kg over g R: kinetic energy at a contact below which a record starts
+inline constexpr double kClipEnergy = 0.2;        ///< J/kg over g R: kinetic energy at a contact below which a record starts
 inline constexpr double kEntryGap = 0.02;         ///< over R: near enough to the plane to be such a contact
-inline constexpr int kSamplesPerFrame = 2;        ///< observations, at 60 Hz, for each frame of a record
 
 /// Of the lowest point over the plane z = 0, m.
 double gap_over_ground(const Shape& shape, const RigidState& state);
@@ -24,7 +23,7 @@ struct SettlingRecord {
   bool rests = false;
   Vec3 normal = Vec3::UnitZ();     ///< of the plane at rest, in body axes
   double height = 0.0;             ///< of the centre of mass at rest, m
-  std::vector<RigidState> states;  ///< from the first low-energy contact to rest, 1/30 s apart; empty where only the pose was asked for
+  std::vector<RigidState> states;  ///< from the first low-energy contact to rest, kObservationStep apart; empty where only the pose was asked for
 };
 
 /// A world with one body and the plane z = 0 under gravity 9.81 m/s², used again for every drop of a thread.

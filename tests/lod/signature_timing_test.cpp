@@ -18,7 +18,7 @@ namespace {
 struct SlowSource {
   std::atomic<bool> done = false;
   std::atomic<int> asked = 0;
-  std::thread::id thread;
+  std::atomic<std::thread::id> thread;
   SignatureFunction function() {
     return [this](const Shape&, const ContactLaw&) -> std::shared_ptr<const Signature> {
       thread = std::this_thread::get_id();
@@ -50,8 +50,9 @@ TEST(SignatureTiming, BodiesAreFullUntilTheThreadIsDone) {
     EXPECT_EQ(manager.level(body), Level::full);
     EXPECT_EQ(manager.why(body), "full: its signature is still being measured");
   }
+  while (source.asked == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the thread may only just have begun
   EXPECT_EQ(source.asked, 1);
-  EXPECT_NE(source.thread, std::this_thread::get_id());
+  EXPECT_NE(source.thread.load(), std::this_thread::get_id());
   source.done = true;
   step_until_loaded(manager);
   run(manager, 0.1);

@@ -31,7 +31,8 @@ inline Ended run_shell(const std::string& command) {
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> buffer;
   while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) ended.out.append(buffer.data(), count);
-  ended.exit_code = WEXITSTATUS(pclose(pipe));
+  const int status = pclose(pipe);
+  ended.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;  // −1: killed by a signal
   return ended;
 }
 

@@ -36,7 +36,7 @@ TEST_F(Inspect, OnePageShowsEverything) {
   const Ended ended = run("inspect " + name("box.sig"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   for (const char* part : {"box:0.2,0.3,0.4", "versions", "valid for", "held-out KS", "std. error", "energy", "rest pose", "collision height over R", "settling clips", "seven spheres",
-                           "mesh of 8 vertices and 12 faces"})
+                           "mesh of 8 vertices and 12 faces", "support map"})
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
 }
 

@@ -177,6 +177,18 @@ TEST(SupportMap, StartsAtOrBesideTheFarthestVertex) {
   EXPECT_GT(exact, 7'000);
 }
 
+// A cube's nearest vertex is wrong only in cells that a plane of symmetry cuts, and these planes run between cells.
+TEST(SupportMap, LookupErrorIsThatOfTheCellsThatSeveralVerticesShare) {
+  const Hull cube = make_hull(make_box({1, 1, 1}).vertices);
+  EXPECT_EQ(find_lookup_error(cube, SupportMap(cube)).greatest, 0.0);
+  const Shape bunny = make_bunny_shape(0.2);
+  const SupportMapError fine = find_lookup_error(bunny.hull, SupportMap(bunny.hull)), coarse = find_lookup_error(bunny.hull, SupportMap(bunny.hull, 4));
+  EXPECT_GT(fine.mean, 0.0);
+  EXPECT_LT(fine.mean, 1e-3 * bunny.radius);
+  EXPECT_GT(coarse.mean, 5.0 * fine.mean);
+  EXPECT_GE(coarse.greatest, coarse.mean);
+}
+
 TEST(SupportMap, SurvivesDirectionsThatPointNowhere) {
   const Hull hull = make_hull(make_box({1, 1, 1}).vertices);
   const SupportMap map(hull);
