@@ -20,7 +20,10 @@ struct ShapeArguments {
   ContactLaw law() const { return {material.restitution, material.friction}; }
 };
 
-/// Adds SHAPE, --size, --faces, --mesh-path, --restitution, --friction and --density to `command`. `arguments` outlives the parsing.
+/// Adds --restitution, --friction and --density to `command`. `material` outlives the parsing.
+void add_material_arguments(CLI::App& command, Material& material);
+
+/// Adds SHAPE, --size, --faces, --mesh-path and those of the material to `command`. `arguments` outlives the parsing.
 void add_shape_arguments(CLI::App& command, ShapeArguments& arguments);
 
 /// Throws InputError for a shape that does not exist.

@@ -201,14 +201,19 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   if (tables_) return tables_->set_state(slot, state);
   wake(slot);
   StatisticalBody& body = impl_->bodies[slot];
-  impl_->travels[slot].gone += (state.position - body.position).norm() + 4.0 * impl_->kind_of(body).shape->radius;
-  body.position = impl_->travels[slot].position = state.position;
+  if (state.position.allFinite()) {
+    impl_->travels[slot].gone += (state.position - body.position).norm() + 4.0 * impl_->kind_of(body).shape->radius;
+    impl_->travels[slot].position = state.position;
+  }
+  body.position = state.position;
   body.orientation = state.orientation;
   body.velocity = state.velocity;
   body.spin = spin_of(state.orientation, state.angular_velocity, *impl_->kind_of(body).shape);
   impl_->angular_velocity_given[slot] = state.angular_velocity;
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
+  // What no level can hold is mended, and counted, before the next step looks at it.
+  if (!impl_->is_sound(body, kinetic_energy(body, *impl_->kind_of(body).shape))) impl_->pushes.push_back({slot, {}});
 }
 
 bool StatisticalLevel::asleep(int slot) const { return tables_ ? tables_->asleep(slot) : impl_->bodies[slot].motion == Motion::asleep; }

@@ -4,8 +4,11 @@
 #include "tools/bench/body_cases.h"
 #include "tools/bench/contact_cases.h"
 #include "tools/bench/engine_cases.h"
+#include "tools/bench/ensemble_cases.h"
 #include "tools/bench/hard_case.h"
+#include "tools/bench/lone_body_cases.h"
 #include "tools/bench/pair_cases.h"
+#include "tools/bench/response_cases.h"
 #include "tools/bench/simbenchmark_cases.h"
 
 namespace lodestone {
@@ -35,6 +38,22 @@ std::span<const HardCase> hard_cases() {
       HardCase{"F17", measure_step_lengths},
       HardCase{"F18", measure_head_on},
       HardCase{"F19", measure_concave},
+      HardCase{"S1", measure_motionless_hits},
+      HardCase{"S2", measure_contact_frames},
+      HardCase{"S3", measure_odd_directions},
+      HardCase{"S4", measure_beyond_tables},
+      HardCase{"S5", measure_random_hits},
+      HardCase{"S6", measure_draws},
+      HardCase{"S7", measure_first_rebounds},
+      HardCase{"S8", measure_fast_hits},
+      HardCase{"S9", measure_rest_on_slopes},
+      HardCase{"S10", measure_great_pile},
+      HardCase{"S11", measure_rest_poses_of_drops},
+      HardCase{"S12", measure_long_flight},
+      HardCase{"S13", measure_square_heights},
+      HardCase{"S14", measure_orders},
+      HardCase{"S15", measure_flat_landings},
+      HardCase{"S16", measure_frozen_in_air},
   };
   return kCases;
 }

@@ -2,24 +2,20 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <numbers>
 
+#include "tools/compare/comparison_arguments.h"
 #include "tools/compare/drop_report.h"
 #include "tools/progress.h"
 #include "tools/shape_arguments.h"
-#include "tools/signature_arguments.h"
-#include "tools/step_argument.h"
 
 namespace lodestone {
 namespace {
 
 struct Arguments {
   ShapeArguments shape;
-  SignatureArguments signature;
-  DropComparisonSettings comparison;
-  std::vector<std::string> steps = {"1/60"};
+  ComparisonArguments comparison;
   double speed_scale = 1.0, slope_deg = 0.0;
   std::filesystem::path out;
   bool json = false;
@@ -34,17 +30,9 @@ DropJob make_job(const Arguments& arguments) {
   return job;
 }
 
-/// Empty where there is none.
-std::string find_method_fault(const std::string& name) {
-  if (is_drop_method(name)) return "";
-  return fmt::format("found '{}', expected some of {}, full_2 to full_64", name, fmt::join(drop_method_names(), ", "));
-}
-
 void compare_drop(const Arguments& arguments) {
   const DropJob job = make_job(arguments);
-  DropComparisonSettings settings = arguments.comparison;
-  settings.measuring = arguments.signature.measuring();
-  settings.dt_s = steps_of(arguments.steps);
+  DropComparisonSettings settings = arguments.comparison.settings();
   DropComparison comparison;
   {
     ProgressLine line;
@@ -61,18 +49,10 @@ void compare_drop(const Arguments& arguments) {
 void add_compare_drop_command(CLI::App& compare, ExitCode& exit_code) {
   CLI::App* drop = compare.add_subcommand("drop", "single bodies dropped on a plane, by each method and by the truth");
   const auto arguments = std::make_shared<Arguments>();
-  DropComparisonSettings& comparison = arguments->comparison;
   add_shape_arguments(*drop, arguments->shape);
-  add_signature_arguments(*drop, arguments->signature);
-  drop->add_option("--dt", arguments->steps, "steps of the methods, s: 0.01 or 1/60, several with commas")
-      ->delimiter(',')->allow_extra_args(false)->check(find_step_fault, "SECONDS")->capture_default_str();
-  drop->add_option("--trials", comparison.trials, "drops of each")->check(CLI::Range(2, 1'000'000))->capture_default_str();
-  drop->add_option("--methods", comparison.methods, fmt::format("some of {}; full_N for the full level at N substeps", fmt::join(drop_method_names(), ",")))
-      ->delimiter(',')->allow_extra_args(false)->check(find_method_fault, "METHODS")->capture_default_str();
-  drop->add_option("--seed", comparison.seed, "of the starts")->capture_default_str();
+  add_comparison_arguments(*drop, arguments->comparison);
   drop->add_option("--speed-scale", arguments->speed_scale, "multiplies the starting speeds")->check(CLI::Range(0.0, 1e3))->capture_default_str();
   drop->add_option("--slope-deg", arguments->slope_deg, "of the plane")->check(CLI::Range(0.0, 80.0))->capture_default_str();
-  drop->add_option("--threads", comparison.threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
   drop->add_option("--out", arguments->out, "folder for drops.csv, one line a drop");
   drop->add_flag("--json", arguments->json, "one JSON object on stdout");
   drop->callback([arguments, &exit_code] {

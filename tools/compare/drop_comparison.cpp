@@ -22,7 +22,8 @@ class Comparison {
     const auto methods = make_drop_methods(settings_.methods, job_, settings_.measuring, settings_.threads, settings_.progress);
     DropComparison result = compare_truth();
     for (const DropMethod& method : methods)
-      for (const double dt_s : settings_.dt_s) result.rows.push_back(compare(method, dt_s, result.truth_a));
+      for (const double dt_s : settings_.dt_s) result.rows.push_back(compare(method, dt_s, result));
+    if (!settings_.costs) return result;
     for (std::size_t i = 0; i < result.rows.size(); ++i)  // in a pass of its own, with nothing else running
       measure_cost(methods[i / settings_.dt_s.size()], result.rows[i]);
     return result;
@@ -39,11 +40,12 @@ class Comparison {
     return result;
   }
 
-  DropRow compare(const DropMethod& method, double dt_s, const std::vector<DropObservation>& truth) {
+  DropRow compare(const DropMethod& method, double dt_s, const DropComparison& truth) {
     DropRow row{.method = method.name, .model = method.model(), .dt_s = dt_s, .substeps = method.substeps(), .reason = method.left_out};
     if (!row.reason.empty()) return row;
     row.drops = observe(method, seed_of_truth_b(settings_.seed), dt_s, fmt::format("{} {} at {:.4g} s", row.method, row.model, dt_s));
-    row.score = score_drops(truth, row.drops, settings_.seed);
+    row.score = score_drops(truth.truth_a, row.drops, settings_.seed);
+    row.first_impacts = measure_impact_errors(truth.truth_b, row.drops);
     return row;
   }
 
@@ -70,6 +72,12 @@ class Comparison {
 };
 
 }  // namespace
+
+std::int64_t DropRow::table_extrapolations() const {
+  std::int64_t sum = 0;
+  for (const DropObservation& drop : drops) sum += drop.table_extrapolations;
+  return sum;
+}
 
 DropComparison compare_drops(const DropJob& job, const DropComparisonSettings& settings) { return Comparison(job, settings).run(); }
 

@@ -10,6 +10,7 @@
 
 #include "tools/compare/drop_trials.h"
 #include "tools/compare/fidelity.h"
+#include "tools/compare/impact_errors.h"
 
 namespace lodestone {
 
@@ -20,6 +21,7 @@ struct DropComparisonSettings {
   SignatureSettings measuring = {};                ///< of the signature of `statistical`; its law is the job's
   std::uint64_t seed = 1;
   int threads = 0;                                 ///< 0: all cores
+  bool costs = true;                               ///< measure them, too
   Progress progress;
 };
 
@@ -32,6 +34,10 @@ struct DropRow {
   std::optional<double> ns_per_body_step = {};
   std::string reason = {};                              ///< why left out
   std::vector<DropObservation> drops = {};
+  std::optional<ImpactErrors> first_impacts = {};       ///< against truth from the same starts
+
+  /// Over all drops: how often the signature was asked for what lies outside of what was measured.
+  std::int64_t table_extrapolations() const;
 };
 
 struct DropComparison {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 #include "reference/error.h"
@@ -109,7 +110,11 @@ std::string DropMethod::model() const {
   return statistical->model == StatisticalModel::tables ? "tables" : "support";
 }
 
-DropMethod make_truth(const DropJob& job) { return make_ode("truth", job, {.substeps = kTruthSubsteps}); }
+// Small bodies move as fast in their own time, which is the shorter by √λ.
+DropMethod make_truth(const DropJob& job) {
+  const double scale = std::min(1.0, drop_scale(*job.shape));
+  return make_ode("truth", job, {.substeps = int(std::lround(kTruthSubsteps / std::sqrt(scale)))});
+}
 
 bool is_drop_method(const std::string& name) { return substeps_named(name) || std::ranges::count(drop_method_names(), name) > 0; }
 

@@ -24,14 +24,16 @@ double kinetic_energy_per_mass(const Shape& shape, const RigidState& state) {
 }
 
 DropObserver::DropObserver(const Shape& shape, const Vec3& plane_normal, double gravity_m_per_s2)
-    : shape_(shape), normal_(plane_normal), gravity_along_normal_(gravity_m_per_s2 * plane_normal.z()),
+    : shape_(shape), normal_(plane_normal), gravity_(gravity_m_per_s2), gravity_along_normal_(gravity_m_per_s2 * plane_normal.z()),
       scale_(std::max(1.0, drop_scale(shape))) {
   kinetic_energy_.reserve(kKineticEnergySamples);
 }
 
 void DropObserver::sample(double time_s, const RigidState& state) {
   if (samples_++ == 0) start_ = last_ = state;
-  if (rise_above_free_flight(time_s, state) > kBounceRise * std::sqrt(scale_)) ++bounces_;
+  if (rise_above_free_flight(time_s, state) > kBounceRise * std::sqrt(scale_)) {
+    if (++bounces_ == 1) first_impact_ = FirstImpact{last_.velocity - gravity_ * (time_s - last_time_) * Vec3::UnitZ(), state.velocity};
+  }
   if (bounces_ == 1) rebound_ = std::max(rebound_, lowest_point(state));
   const double energy = kinetic_energy_per_mass(shape_, state);
   if (energy > kRestEnergy * scale_) rest_time_ = time_s;
@@ -72,6 +74,7 @@ DropObservation DropObserver::result() const {
   drop.rest_time_s = rest_time_;
   drop.distance_m = (way - normal_.dot(way) * normal_).norm();
   drop.first_rebound_m = rebound_;
+  drop.first_impact = first_impact_;
   drop.at_rest = last_time_ - rest_time_ >= kRestDuration * std::sqrt(scale_);
   drop.up_in_body = last_.orientation.conjugate() * normal_;
   drop.kinetic_energy = kinetic_energy_;

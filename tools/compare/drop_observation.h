@@ -4,6 +4,8 @@
 // ones keep them, because a slower bounce would drown in what gravity does between two samples.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "reference/shape.h"
@@ -12,13 +14,22 @@ namespace lodestone {
 
 inline constexpr int kKineticEnergySamples = 361;  ///< every 1/60 s over the first 6 s, both ends included
 
+/// The first bounce, as seen between two samples, m/s.
+struct FirstImpact {
+  Vec3 before = Vec3::Zero();  ///< the velocity that free flight would have at the sample after it
+  Vec3 after = Vec3::Zero();   ///< and the one that was found there
+  Vec3 impulse() const { return after - before; }  ///< per mass
+};
+
 /// What is kept of one drop.
 struct DropObservation {
   int bounces = 0;             ///< pairs of successive samples between which the velocity along the normal rises by more than .3 m/s above free flight
   double rest_time_s = 0;      ///< last time that the kinetic energy per mass is above 2e-3 J/kg
   double distance_m = 0;       ///< from start to end, along the plane
   double first_rebound_m = 0;  ///< greatest height of the lowest point between the first and the second bounce; 0 without a bounce
+  std::optional<FirstImpact> first_impact = {};  ///< none without a bounce
   bool at_rest = false;        ///< below 2e-3 J/kg for the last quarter of a second
+  std::int64_t table_extrapolations = 0;  ///< look-ups of the statistical level outside of what its signature was measured for
   Vec3 up_in_body = Vec3::UnitZ();    ///< the plane's normal in body axes at the end
   std::vector<float> kinetic_energy;  ///< per mass, J/kg, kKineticEnergySamples values; the last state's goes on where a drop ends earlier
 };
@@ -47,11 +58,12 @@ class DropObserver {
 
   const Shape& shape_;
   Vec3 normal_;
-  double gravity_along_normal_;
+  double gravity_, gravity_along_normal_;
   double scale_;  // of lengths, ≥ 1
   RigidState start_, last_;
   double last_time_ = 0, last_stir_time_ = 0, rest_time_ = 0, rebound_ = 0;
   int samples_ = 0, bounces_ = 0;
+  std::optional<FirstImpact> first_impact_;
   std::vector<float> kinetic_energy_;
 };
 

@@ -30,7 +30,9 @@ DropObservation observe_drop(const DropJob& job, DropWorld& world, double dt) {
     for (; double(steps + 1) * dt <= k * kObservationStep + 0.01 * dt; ++steps) world.step(dt);
     if (steps > before) observer.sample(double(steps) * dt, world.state());
   }
-  return observer.result();
+  DropObservation drop = observer.result();
+  drop.table_extrapolations = world.table_extrapolations();
+  return drop;
 }
 
 // Of the calling thread, so that what else the machine does counts little.

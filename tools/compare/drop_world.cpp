@@ -94,6 +94,8 @@ RigidState DropWorld::state() const {
   return ode_ ? ode_->world.state(ode_->body) : statistical_->manager.state(statistical_->body);
 }
 
+std::int64_t DropWorld::table_extrapolations() const { return statistical_ ? statistical_->manager.report().counters.table_extrapolations : 0; }
+
 Manager make_many_drops(const DropJob& job, const StatisticalMethod& method, std::uint64_t seed, int bodies) {
   Manager manager = make_manager(job, method, seed);
   const Vec3 across = Vec3::UnitY(), along = across.cross(drop_plane_normal(job.conditions));

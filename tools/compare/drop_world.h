@@ -20,6 +20,8 @@ class DropWorld {
   void start(std::uint64_t seed, std::uint32_t trial);
   void step(double dt);
   RigidState state() const;
+  /// Since start(): look-ups outside of what the signature was measured for; 0 for other methods than `statistical`.
+  std::int64_t table_extrapolations() const;
 
  private:
   struct Ode {

@@ -58,6 +58,8 @@ TEST(DropObservation, CountsBouncesAndMeasuresTheFirstRebound) {
   const BouncingCube cube;
   const DropObservation drop = observe(3.0, [&](double t) { return cube.height(t); }, [&](double t) { return cube.speed(t); });
   EXPECT_EQ(drop.bounces, 2);
+  ASSERT_TRUE(drop.first_impact);
+  EXPECT_LT((drop.first_impact->impulse() - Vec3(0, 0, 1.5 * cube.impact)).norm(), 1e-9);
   EXPECT_NEAR(drop.first_rebound_m, 0.25, 2e-3);  // e² of the height it fell, less what 60 Hz misses
   EXPECT_NEAR(drop.rest_time_s, cube.second, kStep);
   EXPECT_TRUE(drop.at_rest);

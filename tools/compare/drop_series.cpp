@@ -1,0 +1,69 @@
+#include "tools/compare/drop_series.h"
+
+#include <fmt/format.h>
+
+#include "tools/compare/drop_row_report.h"
+#include "tools/text_table.h"
+
+namespace lodestone {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::optional<double> score_over(const DropRow& row, const DropRow& first) {
+  if (!row.score || !first.score) return {};
+  return row.score->value.score / first.score->value.score;
+}
+
+}  // namespace
+
+std::vector<DropComparison> compare_series(std::span<const DropCase> cases, const DropComparisonSettings& settings) {
+  std::vector<DropComparison> series;
+  for (const DropCase& one : cases) {
+    DropComparisonSettings with_name = settings;
+    if (settings.progress)
+      with_name.progress = [&](const std::string& stage, double fraction) {
+        settings.progress(fmt::format("{} of {}, {}: {}", series.size() + 1, cases.size(), one.name, stage), fraction);
+      };
+    series.push_back(compare_drops(one.job, with_name));
+  }
+  return series;
+}
+
+std::string text_of(const std::string& what, std::span<const DropCase> cases, std::span<const DropComparison> series, bool over_first) {
+  std::vector<std::string> heading = {what};
+  std::ranges::move(drop_row_heading(), std::back_inserter(heading));
+  heading.insert(heading.begin() + 5, "floor");
+  if (over_first) heading.insert(heading.begin() + 7, "x " + cases[0].name);
+  TextTable table(heading);
+  for (std::size_t i = 0; i < series.size(); ++i)
+    for (std::size_t k = 0; k < series[i].rows.size(); ++k) {
+      const DropRow& row = series[i].rows[k];
+      std::vector<std::string> cells = {cases[i].name};
+      std::ranges::move(cells_of(row), std::back_inserter(cells));
+      if (row.score) {
+        cells.insert(cells.begin() + 5, fmt::format("{:.3f}", series[i].floor.value.score));
+        if (over_first) cells.insert(cells.begin() + 7, fmt::format("{:.2f}", score_over(row, series[0].rows[k]).value_or(0.0)));
+      }
+      table.add_row(std::move(cells));
+    }
+  return table.text() + '\n' + drop_row_footer();
+}
+
+ordered_json json_of(const std::string& key, std::span<const DropCase> cases, std::span<const DropComparison> series, bool over_first) {
+  ordered_json json;
+  json["trials"] = series.empty() ? 0 : series[0].trials;
+  json["rows"] = ordered_json::array();
+  for (std::size_t i = 0; i < series.size(); ++i)
+    for (std::size_t k = 0; k < series[i].rows.size(); ++k) {
+      ordered_json row;
+      row[key] = cases[i].name;
+      row.update(json_of(series[i].rows[k], series[i].floor));
+      const auto over = over_first ? score_over(series[i].rows[k], series[0].rows[k]) : std::nullopt;
+      if (over_first) row["score_over_first"] = over ? ordered_json(*over) : ordered_json(nullptr);
+      json["rows"].push_back(std::move(row));
+    }
+  return json;
+}
+
+}  // namespace lodestone
