@@ -90,6 +90,19 @@ void respond_together(StatisticalBody& body, const BodyKind& kind, const HullCon
   for (int i = 0; i < found.count; ++i) body.spin += contacts[i].arm_first.cross(impulse_of(contacts[i]));
 }
 
+// ODE's law itself adds energy in some hits of high restitution: there the impulse, which made `body` of `before`, is scaled down until it adds none.
+// With s of the impulse the energy is E₀ + s (ΔE − C) + s² C, C being that of the change alone.
+void clamp_energy(const StatisticalBody& before, StatisticalBody& body, const Shape& shape, ContactTally& tally) {
+  const double energy = kinetic_energy(before, shape), gain = kinetic_energy(body, shape) - energy;
+  if (gain <= 1e-12 * energy) return;
+  const Vec3 velocity = body.velocity - before.velocity, spin = body.spin - before.spin;
+  const double of_change = 0.5 * (velocity.squaredNorm() + spin.dot(angular_velocity(body.orientation, spin, shape)));
+  const double share = std::clamp(1.0 - gain / of_change, 0.0, 1.0);
+  body.velocity = before.velocity + share * velocity;
+  body.spin = before.spin + share * spin;
+  ++tally.energy_clamps;
+}
+
 void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& contact, const HalfSpace& plane, const ContactLaw& law,
              const SupportSettings& settings) {
   const double height = plane.height_of(body.position);
@@ -148,12 +161,15 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
     ContactSolverSettings solver = settings.solver;
     solver.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
     solve_contacts(bodies, std::span(contacts).first(count), time, solver);
+    const bool bounces = std::ranges::any_of(std::span(contacts).first(count), &SolverContact::bounces);
+    const StatisticalBody before = body;
     body.velocity = bodies[0].velocity;
     for (int k = 0; k < count; ++k) {
       const Vec3 impulse = impulse_of(contacts[k]);
       body.spin += contacts[k].arm_first.cross(impulse);
       held.impulse[k] = {vertices[k], contacts[k].bounces ? Vec3::Zero() : impulse};
     }
+    if (bounces) clamp_energy(before, body, shape, tally);
     tally.contacts += count;
   }
   held.count = count;
@@ -186,6 +202,7 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
     body = impact.body;
     left -= impact.time;
     respond(body, kind, impact.lowest.contact, plane, world.law(kind, plane), settings);
+    clamp_energy(impact.body, body, *kind.shape, tally);
     tally.touched_plane = impact.lowest.plane;
     ++tally.contacts;
   }
