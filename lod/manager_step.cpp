@@ -135,15 +135,21 @@ void Manager::Impl::step_statistical(double dt) {
     hand_over(levels, neighborhood, dt);
   }
   const StageTimes& t = report.times;
-  smooth(statistical_ms, t.flight_ms + t.broad_phase_ms + t.pairs_ms + t.rest_ms + t.cross_level_ms);
+  smooth(statistical_ms, t.flight_ms + t.broad_phase_ms + t.pairs_ms + t.crowd_ms + t.rest_ms + t.cross_level_ms);
 }
 
 // Those that slept through the step have not moved, and cost nothing here.
 void Manager::Impl::follow_moved() {
   const StageTimer timer(report.times.choose_ms);
-  const auto awake = levels.statistical->awake();
-  moved.insert(moved.end(), awake.begin(), awake.end());
-  for (const std::int32_t slot : moved) see(levels.owner_of_slot[slot], levels.statistical->state(slot));
+  const StatisticalLevel& level = *levels.statistical;
+  const auto look = [&](std::int32_t slot) {
+    const std::uint32_t body = levels.owner_of_slot[slot];
+    if (static_bounds.empty()) levels.bodies.candidates()[body].position = level.position(slot);  // all that the policy needs
+    else see(body, level.state(slot));
+  };
+  for (const std::int32_t slot : level.awake()) look(slot);
+  for (const std::int32_t slot : moved)
+    if (level.asleep(slot)) look(slot);
 }
 
 void Manager::Impl::step_full(double dt) {

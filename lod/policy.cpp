@@ -37,6 +37,10 @@ double scaled_distance(const LevelCandidate& candidate, std::span<const Vec3> vi
   return std::max(0.0, std::sqrt(squared_distance(candidate, viewpoints)) - candidate.radius) / candidate.importance;
 }
 
+bool stays_as_told(const LevelCandidate& c) {
+  return c.choice == LevelChoice::statistical && c.level == Level::statistical && !c.on_static_ground && !c.waits_for_signature && !c.newcomer;
+}
+
 // Most bodies of a large scene: told without a root or a division.
 bool stays_far(const LevelCandidate& c, std::span<const Vec3> viewpoints, double full_within) {
   const double reach = full_within * c.importance + c.radius;
@@ -70,6 +74,10 @@ class Chooser {
 
   LevelDecision by(const DistancePolicy& policy) {
     for (std::int32_t i = 0; i < count(); ++i) {
+      if (stays_as_told(candidates_[i])) {
+        decision_.reasons[i] = LevelReason::forced;
+        continue;
+      }
       if (stays_far(candidates_[i], viewpoints_, policy.full_within)) {
         decision_.reasons[i] = LevelReason::far;
         continue;

@@ -10,7 +10,8 @@ struct StageTimes {
   double choose_ms = 0, transfer_ms = 0;
   double flight_ms = 0;       ///< statistical level: flight, contacts with the ground and their responses
   double broad_phase_ms = 0;  ///< statistical level: which bodies are near each other
-  double pairs_ms = 0;        ///< statistical level: contacts between bodies
+  double pairs_ms = 0;        ///< statistical level: finding the contacts between bodies
+  double crowd_ms = 0;        ///< statistical level: the response of bodies that touch others
   double rest_ms = 0;         ///< statistical level: coming to rest, sleeping and waking
   double cross_level_ms = 0;  ///< full bodies handed to the statistical level, and the impulses that come back
   double full_ms = 0;

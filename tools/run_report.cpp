@@ -13,13 +13,14 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array<std::pair<std::string_view, double StageTimes::*>, 8> kStages = {{
+constexpr std::array<std::pair<std::string_view, double StageTimes::*>, 9> kStages = {{
     {"choose", &StageTimes::choose_ms},
     {"transfer", &StageTimes::transfer_ms},
     {"full", &StageTimes::full_ms},
     {"flight", &StageTimes::flight_ms},
     {"broad_phase", &StageTimes::broad_phase_ms},
     {"pairs", &StageTimes::pairs_ms},
+    {"crowd", &StageTimes::crowd_ms},
     {"rest", &StageTimes::rest_ms},
     {"cross_level", &StageTimes::cross_level_ms},
 }};

@@ -57,14 +57,6 @@ void StatisticalLevel::Impl::find_contact(Participant first, Participant second,
   }
   const Vec3 closing = point_velocity(first, a.position, neighbors) - point_velocity(second, b.position, neighbors);
   const double margin = touching + closing.norm() * dt;
-  std::vector<PairContact> met;
-  if (tables()) {
-    if (const auto contact = find_sphere_contact(a, b, margin)) met.push_back(*contact);
-  } else {
-    HullContactSearch search = find_pair_contacts(a, b, known ? Vec3(known->normal.cast<double>()) : Vec3::Zero(), margin);
-    pair.record = {search.normal.cast<float>(), float(search.gap), gone};
-    met = std::move(search.contacts);
-  }
   // A contact counts if it closes within the step.
   const auto closes = [&](const PairContact& contact) {
     return std::ranges::any_of(std::span(contact.manifold.points).first(std::size_t(contact.manifold.count)), [&](const ManifoldPoint& p) {
@@ -72,8 +64,18 @@ void StatisticalLevel::Impl::find_contact(Participant first, Participant second,
       return p.gap + velocity.dot(contact.normal) * dt <= touching;
     });
   };
-  for (const PairContact& contact : met)
-    if (closes(contact)) pair.contacts.push_back({first, second, contact});
+  const auto keep = [&](const PairContact& contact) {
+    if (!closes(contact)) return;
+    if (!pair.contact) pair.contact = CrowdContact{first, second, contact};
+    else pair.more.push_back({first, second, contact});
+  };
+  if (tables()) {
+    if (const auto contact = find_sphere_contact(a, b, margin)) keep(*contact);
+    return;
+  }
+  const HullContactSearch search = find_pair_contacts(a, b, known ? Vec3(known->normal.cast<double>()) : Vec3::Zero(), margin);
+  pair.record = {search.normal.cast<float>(), float(search.gap), gone};
+  for (const PairContact& contact : search.contacts) keep(contact);
 }
 
 void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighbor> neighbors) {
@@ -86,7 +88,7 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
     for (std::int64_t i = begin; i < end; ++i) {
       Participant first = mover(pairs[i].first), second = pairs[i].second >= 0 ? mover(pairs[i].second) : asleep[-1 - pairs[i].second];
       if (owner(second) < owner(first)) std::swap(first, second);
-      found[i] = {contact_key(owner(first), owner(second)), {}, {}};
+      found[i] = {contact_key(owner(first), owner(second)), {}, {}, {}};
       if (first < 0 && second < 0) continue;  // two full bodies are the full level's matter
       if (is_asleep(first, neighbors) && is_asleep(second, neighbors)) continue;
       find_contact(first, second, dt, neighbors, found[i]);
@@ -96,10 +98,11 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   if (!tables()) pair_memory.begin(pairs.size());
   for (const FoundPair& pair : found) {
     if (!tables()) pair_memory.put(pair.key, pair.record);
-    contacts.insert(contacts.end(), pair.contacts.begin(), pair.contacts.end());
-    for (const CrowdContact& contact : pair.contacts)
-      for (const Participant p : {contact.first, contact.second})
-        if (p >= 0) bodies[p].crowded = true;
+    if (!pair.contact) continue;
+    contacts.push_back(*pair.contact);
+    contacts.insert(contacts.end(), pair.more.begin(), pair.more.end());
+    for (const Participant p : {pair.contact->first, pair.contact->second})
+      if (p >= 0) bodies[p].crowded = true;
   }
   if (!tables()) pair_memory.end();
 }

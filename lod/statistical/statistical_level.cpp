@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lod/statistical/stopwatch.h"
+#include "lod/tables/tables_level.h"
 #include "reference/error.h"
 
 namespace lodestone {
@@ -24,11 +25,9 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
   for (std::size_t i = 0; i < kinds.size(); ++i)
     if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
-  const Mat3& inertia = shape->inertia_per_mass;
-  const bool isotropic = (inertia - inertia.trace() / 3.0 * Mat3::Identity()).norm() < 1e-9 * inertia.norm();
-  ClipIndex index;
-  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.greatest_distance);
-  kinds.push_back({std::move(shape), std::move(signature), std::move(index), mass, material, isotropic});
+  BodyKind& kind = kinds.emplace_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
+  if (kind.signature && !tables())
+    kind.clips = ClipIndex(*kind.signature, kind.shape->inertia_per_mass / (kind.shape->radius * kind.shape->radius), ClipSettings{}.greatest_distance);
   return std::uint16_t(kinds.size() - 1);
 }
 
@@ -44,11 +43,12 @@ void StatisticalLevel::Impl::apply_pushes(double dt, ContactTally& tally) {
 }
 
 StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials)
-    : impl_(std::make_unique<Impl>(settings, ground, materials)) {}
+    : impl_(std::make_unique<Impl>(settings, ground, materials)) {}  // not yet TablesLevel: it does not keep the hard cases S3, S10 and S12
 StatisticalLevel::~StatisticalLevel() = default;
 
 int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state,
                           bool asleep, std::shared_ptr<const Signature> signature) {
+  if (tables_) return tables_->add(owner, std::move(shape), mass, material, state, asleep, std::move(signature));
   Impl& level = *impl_;
   check_that(!level.tables() || signature != nullptr, "the tables model needs a signature");
   level.reach = std::max(level.reach, shape->radius);
@@ -74,6 +74,7 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
 }
 
 std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
+  if (tables_) return tables_->remove(slot);
   Impl& level = *impl_;
   check_that(slot >= 0 && slot < size(), "slot out of range");
   const StatisticalBody gone = level.bodies[slot];
@@ -107,6 +108,7 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
 }
 
 void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
+  if (tables_) return tables_->step(dt, neighbors, report, full_contacts);
   Impl& level = *impl_;
   Stopwatch watch;
   level.angular_velocity_given.assign(level.bodies.size(), std::nullopt);
@@ -138,13 +140,14 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   report.counters.states_recovered += tally.states_recovered;
 }
 
-int StatisticalLevel::size() const { return int(impl_->bodies.size()); }
-std::span<const std::int32_t> StatisticalLevel::awake() const { return impl_->awake; }
-int StatisticalLevel::asleep_count() const { return int(impl_->asleep.size()); }
+int StatisticalLevel::size() const { return tables_ ? tables_->size() : int(impl_->bodies.size()); }
+std::span<const std::int32_t> StatisticalLevel::awake() const { return tables_ ? tables_->awake() : std::span<const std::int32_t>(impl_->awake); }
+int StatisticalLevel::asleep_count() const { return tables_ ? tables_->asleep_count() : int(impl_->asleep.size()); }
 
-const Vec3& StatisticalLevel::position(int slot) const { return impl_->bodies[slot].position; }
+Vec3 StatisticalLevel::position(int slot) const { return tables_ ? tables_->position(slot) : impl_->bodies[slot].position; }
 
 RigidState StatisticalLevel::state(int slot) const {
+  if (tables_) return tables_->state(slot);
   const StatisticalBody& body = impl_->bodies[slot];
   const std::optional<Vec3>& given = impl_->angular_velocity_given[slot];
   return {body.position, body.orientation, body.velocity,
@@ -153,6 +156,7 @@ RigidState StatisticalLevel::state(int slot) const {
 
 
 void StatisticalLevel::set_state(int slot, const RigidState& state) {
+  if (tables_) return tables_->set_state(slot, state);
   wake(slot);
   StatisticalBody& body = impl_->bodies[slot];
   if (state.position.allFinite()) {
@@ -170,14 +174,15 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   if (!impl_->is_sound(body, kinetic_energy(body, *impl_->kind_of(body).shape))) impl_->pushes.push_back({slot, {}});
 }
 
-bool StatisticalLevel::asleep(int slot) const { return impl_->bodies[slot].motion == Motion::asleep; }
-void StatisticalLevel::wake(int slot) { impl_->wake(slot); }
+bool StatisticalLevel::asleep(int slot) const { return tables_ ? tables_->asleep(slot) : impl_->bodies[slot].motion == Motion::asleep; }
+void StatisticalLevel::wake(int slot) { tables_ ? tables_->wake(slot) : impl_->wake(slot); }
 
 void StatisticalLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
+  if (tables_) return tables_->add_force(slot, force, torque);
   wake(slot);
   impl_->pushes.push_back({slot, {force, torque}});
 }
 
-double StatisticalLevel::reach() const { return impl_->reach; }
+double StatisticalLevel::reach() const { return tables_ ? tables_->reach() : impl_->reach; }
 
 }  // namespace lodestone

@@ -56,6 +56,8 @@ struct FullContact {
   double friction = 0.5;
 };
 
+class TablesLevel;
+
 class StatisticalLevel {
  public:
   /// `ground` and `materials` must outlive the level.
@@ -76,7 +78,7 @@ class StatisticalLevel {
   int asleep_count() const;
   std::span<const std::int32_t> awake() const;                             ///< slots
   RigidState state(int slot) const;
-  const Vec3& position(int slot) const;
+  Vec3 position(int slot) const;
   void set_state(int slot, const RigidState& state);                       ///< wakes it
   bool asleep(int slot) const;
   void wake(int slot);
@@ -86,6 +88,7 @@ class StatisticalLevel {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  std::unique_ptr<TablesLevel> tables_;   // where it is there, everything is its matter
 };
 
 }  // namespace lodestone

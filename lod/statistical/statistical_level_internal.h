@@ -18,7 +18,8 @@ struct Push { Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); };
 struct FoundPair {
   ContactKey key = 0;
   PairRecord record;
-  std::vector<CrowdContact> contacts;
+  std::optional<CrowdContact> contact;
+  std::vector<CrowdContact> more;  ///< of pieces
 };
 
 /// The way of a body's farthest point, m.

@@ -33,4 +33,7 @@ void respond_from_tables(StatisticalBody& body, const BodyKind& kind, const Vec3
 ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, const BodyKind& kind, const StepWorld& world, double time,
                               const TablesSettings& settings);
 
+/// The resting condition's pose on `plane`, number `plane_index`: the one that needs the smallest rotation (3.4); −1 where the signature has none.
+RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, int plane_index);
+
 }  // namespace lodestone

@@ -36,9 +36,9 @@ dSpaceID make_hidden(dSpaceID space) {
 
 }  // namespace
 
-BroadPhase::BroadPhase(dSpaceID around)
+BroadPhase::BroadPhase(dSpaceID around, bool hash_space)
     : around_(around),
-      bodies_space_(make_hidden(dSweepAndPruneSpaceCreate(around, dSAP_AXES_XYZ))),
+      bodies_space_(make_hidden(hash_space ? dHashSpaceCreate(around) : dSweepAndPruneSpaceCreate(around, dSAP_AXES_XYZ))),
       ground_space_(make_hidden(dSimpleSpaceCreate(around))) {}
 
 BroadPhase::~BroadPhase() {

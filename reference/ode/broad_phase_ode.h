@@ -14,12 +14,12 @@ struct Candidate {
   std::uint32_t first_part, second_part;    ///< of a body of several geoms
 };
 
-/// Sweep and prune (ODE's) over this world's bodies, then those against the ground and against the caller's space.
+/// Sweep and prune (ODE's; or its hash space) over this world's bodies, then those against the ground and against the caller's space.
 class BroadPhase {
  public:
   /// `around`: the caller's space, or null. Ours is put into it, hidden (no category, nothing to collide with), so that the caller's
   /// own dSpaceCollide does not meet it.
-  explicit BroadPhase(dSpaceID around);
+  BroadPhase(dSpaceID around, bool hash_space);
   ~BroadPhase();
   BroadPhase(const BroadPhase&) = delete;
   BroadPhase& operator=(const BroadPhase&) = delete;

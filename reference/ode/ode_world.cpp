@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "reference/ode/collision_ode.h"
@@ -17,6 +18,19 @@ using namespace ode;
 namespace {
 
 constexpr double kUneven = 100.0;  // QuickStep's iterations carry a weight through a body a hundredth of it no more
+
+// Adds the time that it lives to a sum.
+class Timing {
+ public:
+  explicit Timing(double& sum_ms) : sum_ms_(sum_ms) {}
+  ~Timing() { sum_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+  Timing(const Timing&) = delete;
+  Timing& operator=(const Timing&) = delete;
+
+ private:
+  double& sum_ms_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 }  // namespace
 
@@ -62,6 +76,7 @@ struct OdeWorld::Impl {
   TrimeshCache trimeshes;
   Bodies bodies;
   OdeCounters counters;
+  OdeTimes times;
   std::uint64_t steps = 0;
 };
 
@@ -106,6 +121,7 @@ void OdeWorld::step(double dt, int substeps) {
     check_that(false, "a step is positive and finite, in one substep or more:", fmt::format("dt {} s, {} substeps", dt, substeps));
   prepare();
   const std::int64_t messages_before = messages_of_this_thread();
+  impl_->times = {};
   if (impl_->has_work()) for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
   else impl_->joints.begin(dt, 0);  // no contacts
   for (Body& body : impl_->bodies.slots()) body.force = body.torque = Vec3::Zero();
@@ -126,7 +142,10 @@ void OdeWorld::Impl::substep(double h) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     push_bodies();
     joints.begin(h, attempt);
-    collision.collide(bodies, joints, h);
+    {
+      const Timing timing(times.collision_ms);
+      collision.collide(bodies, joints, h);
+    }
     const bool solved = advance(h);
     joints.end();
     if (solved || !own_world || attempt == kAttempts - 1) break;
@@ -151,6 +170,7 @@ void OdeWorld::Impl::push_bodies() {
 
 /// False where ODE had something to complain of.
 bool OdeWorld::Impl::advance(double h) {
+  const Timing timing(times.response_ms);
   const std::int64_t messages_before = messages_of_this_thread();
   const std::span<const OdeContact> contacts = joints.contacts();
   const bool too_many = int(contacts.size()) > settings.direct_contacts_max && largest_island(contacts) > settings.direct_contacts_max;
@@ -237,6 +257,7 @@ const OdeCounters& OdeWorld::counters() const {
   return counters;
 }
 
+const OdeTimes& OdeWorld::times() const { return impl_->times; }
 dxWorld* OdeWorld::ode_world() const { return impl_->world; }
 dxSpace* OdeWorld::ode_space() const { return impl_->collision.broad_phase().bodies_space(); }
 

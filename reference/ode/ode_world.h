@@ -46,6 +46,7 @@ struct OdeSettings {
   /// touches nothing else (timed_contacts.h). Nowhere unless the first is set.
   double timed_contacts_above = 1e9, timed_contacts_up_to = 0.01;
   bool gyroscopic = true;
+  bool hash_space = false;              ///< ODE's hash space as the broad phase instead of sweep and prune
   bool auto_disable = false;            ///< ODE's sleeping: below .05 m/s and .05/R rad/s for .5 s
 };
 
@@ -75,6 +76,12 @@ struct OdeCounters {
   std::int64_t swallowed = 0;  ///< times that a body was wholly inside another in a substep (both meshes, one of them concave)
   std::int64_t passes_prevented = 0;  ///< times that a body would have gone through another, or through ground, within a substep
   std::int64_t uneven_contacts = 0;   ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: it lets the heavy one sink in
+};
+
+/// Wall time of the last step(), all its substeps, ms.
+struct OdeTimes {
+  double collision_ms = 0.0;  ///< finding the contacts
+  double response_ms = 0.0;   ///< ODE's own step
 };
 
 /// Two of this world's bodies that touched in the last substep (`second` null: static ground or a body of the caller's).
@@ -119,6 +126,7 @@ class OdeWorld {
 
   std::span<const OdeContact> contacts() const;              ///< of the last substep
   const OdeCounters& counters() const;
+  const OdeTimes& times() const;
   dxWorld* ode_world() const;                                ///< an own world is stepped only while a body of this OdeWorld's is awake
   dxSpace* ode_space() const;                                ///< dSpaceID that holds this world's bodies
 

@@ -2,6 +2,7 @@
 
 #include "tools/bench/command_bench_full_level.h"
 #include "tools/bench/command_bench_hard_cases.h"
+#include "tools/bench/command_bench_table1.h"
 
 namespace lodestone {
 
@@ -10,6 +11,7 @@ void add_bench_command(CLI::App& program, ExitCode& exit_code) {
   bench->require_subcommand(1);
   add_bench_hard_cases_command(*bench, exit_code);
   add_bench_full_level_command(*bench, exit_code);
+  add_bench_table1_command(*bench, exit_code);
 }
 
 }  // namespace lodestone

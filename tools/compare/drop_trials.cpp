@@ -53,7 +53,7 @@ double measure_one_by_one(const DropJob& job, const DropMethod& method, const Dr
 }
 
 // The part of a step that is not spent on pairs, which one body does not have.
-double single_body_part(const StageTimes& times) { return 1.0 - (times.broad_phase_ms + times.pairs_ms) / times.total_ms; }
+double single_body_part(const StageTimes& times) { return 1.0 - (times.broad_phase_ms + times.pairs_ms + times.crowd_ms) / times.total_ms; }
 
 // While at least a quarter is awake, so that what a step costs whoever is awake is shared by many.
 double measure_statistical(const DropJob& job, const DropMethod& method, const DropBatch& batch) {

@@ -1,0 +1,199 @@
+#include "lod/tables/cell_grid.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace lodestone {
+namespace {
+
+constexpr int kBaseLevel = 16;         // of 32, each with an edge four times that of the one below
+constexpr double kLevelFactor = 4.0;
+constexpr double kFitting = 0.995;     // of all balls are at the base level or below
+constexpr double kColumnMost = 4.0;    // balls in a column of cells, up to which a layer is thin
+constexpr double kCellsMost = 2.0;     // for each ball
+constexpr std::int32_t kWrapLeast = 4; // cells: with fewer, a cell would be its neighbour's neighbour
+constexpr std::int64_t kOneCell = 24;  // balls: so few are tested each with each
+constexpr std::int64_t kPartBalls = 1024;
+
+}  // namespace
+
+int CellGrid::level_of(float reach) const {
+  int level = kBaseLevel;
+  double edge = base_edge_;
+  while (2.0 * double(reach) > edge && level < 31) ++level, edge *= kLevelFactor;
+  while (level > 0 && 2.0 * double(reach) * kLevelFactor <= edge) --level, edge /= kLevelFactor;
+  return level;
+}
+
+// An edge that most balls fit in, from a histogram of reaches with eight bins in an octave.
+void CellGrid::choose_edges(const BallSpan& balls) {
+  constexpr int kBins = 256, kFirstBin = (127 - 20) * 8;
+  std::array<std::uint32_t, kBins> bins{};
+  for (const float reach : balls.reach) ++bins[std::clamp(int(std::bit_cast<std::uint32_t>(reach) >> 20) - kFirstBin, 0, kBins - 1)];
+  const double wanted = kFitting * double(balls.reach.size());
+  std::uint32_t below = 0;
+  int bin = -1;
+  while (double(below) < wanted) below += bins[++bin];
+  base_edge_ = 2.0 * double(std::bit_cast<float>(std::uint32_t(bin + 1 + kFirstBin) << 20));
+}
+
+void CellGrid::fill(const BallSpan& balls) {
+  balls_ = balls;
+  grids_.clear();
+  parts_.clear();
+  index_.clear();
+  const std::int64_t count = std::int64_t(balls.x.size());
+  if (count == 0) return;
+  float most = 0.0f, least = std::numeric_limits<float>::max();
+  for (const float reach : balls.reach) most = std::max(most, reach), least = std::min(least, reach);
+  grid_of_level_.fill(-1);
+  const bool one_cell = count <= kOneCell, one_size = one_cell || most <= 1.2f * least;
+  base_edge_ = 2.02 * double(most);
+  if (!one_size) choose_edges(balls);
+  if (one_size || level_of(most) == level_of(least)) {
+    lay_out(balls, one_cell ? -1 : kBaseLevel);
+  } else {
+    std::uint32_t used = 0;
+    for (const float reach : balls.reach) used |= 1u << level_of(reach);
+    for (int level = 0; level < 32; ++level)
+      if (used >> level & 1) grid_of_level_[level] = std::int32_t(grids_.size()), lay_out(balls, level);
+  }
+  sort(balls);
+  make_parts();
+}
+
+// Level −1: everything in one cell.
+void CellGrid::lay_out(const BallSpan& balls, int level) {
+  Grid grid;
+  const bool all = grid_of_level_[std::max(level, 0)] < 0;
+  std::array<double, 3> low, high;
+  low.fill(std::numeric_limits<double>::max()), high.fill(std::numeric_limits<double>::lowest());
+  const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
+  double count = 0.0;
+  for (std::size_t i = 0; i < balls.x.size(); ++i) {
+    if (!all && level_of(balls.reach[i]) != level) continue;
+    ++count;
+    grid.most_reach = std::max(grid.most_reach, double(balls.reach[i]));
+    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], centers[a][i]), high[a] = std::max(high[a], centers[a][i]);
+  }
+  grid.edge = level < 0 ? 1.0 : std::max(base_edge_ * std::pow(kLevelFactor, level - kBaseLevel), 2.0 * grid.most_reach);
+  grid.inverse = 1.0 / grid.edge;
+  std::array<double, 3> cells;
+  for (int a = 0; a < 3; ++a) cells[a] = std::floor((high[a] - low[a]) * grid.inverse * (1.0 + 1e-12)) + 1.0;
+
+  // The slowest axis is the longest, the middle one the shortest: a thin layer's columns are then one cell.
+  std::array<int, 3> by_length{0, 1, 2};
+  std::ranges::sort(by_length, {}, [&](int a) { return cells[a]; });
+  grid.axis = {by_length[1], by_length[0], by_length[2]};
+  std::array<double, 3> along{cells[grid.axis[0]], cells[grid.axis[1]], cells[grid.axis[2]]};
+  if (count / (along[0] * along[2]) <= kColumnMost) along[1] = 1.0;
+  if (level < 0) along.fill(1.0);
+  const double limit = std::max(64.0, kCellsMost * count);
+  while (along[0] * along[1] * along[2] > limit) {
+    const int longest = int(std::ranges::max_element(along) - along.begin());
+    if (along[longest] < 2.0 * kWrapLeast) break;
+    along[longest] = std::max(double(kWrapLeast), std::ceil(std::min(along[longest] / 2.0, std::max(along[longest] / 4.0, 4.0 * limit))));
+    grid.wraps[longest] = true;
+  }
+  double length = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    grid.cells[a] = std::int32_t(along[a]);
+    grid.origin[a] = low[grid.axis[a]];
+    length = std::max(length, along[a] == 1.0 ? high[grid.axis[a]] - low[grid.axis[a]] : along[a] * grid.edge);
+  }
+  grid.fuzz = float(4e-7 * (length + grid.edge));
+  grid.first_cell = grids_.empty() ? 0 : grids_.back().end_cell;
+  grid.end_cell = grid.first_cell + std::uint32_t(grid.cells[0]) * std::uint32_t(grid.cells[1]) * std::uint32_t(grid.cells[2]);
+  grids_.push_back(grid);
+}
+
+void CellGrid::sort(const BallSpan& balls) {
+  const std::size_t count = balls.x.size();
+  const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
+  const bool many = grids_.size() > 1;
+  start_.assign(grids_.back().end_cell + 2, 0);
+  cell_.resize(count);
+  for (auto* array : {&x_, &y_, &z_, &reach_}) array->resize(count);
+  index_.resize(count);
+  const auto wrapped = [](const Grid& grid, int a, double at, std::int32_t& cell) {
+    double c = std::floor(at * grid.inverse);
+    if (grid.wraps[a]) {
+      const double turns = std::floor(c / grid.cells[a]);
+      c -= turns * grid.cells[a];
+      at -= turns * grid.cells[a] * grid.edge;
+    }
+    cell = std::clamp(std::int32_t(c), 0, grid.cells[a] - 1);
+    return at;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const Grid& grid = many ? grids_[grid_of_level_[level_of(balls.reach[i])]] : grids_.front();
+    std::array<std::int32_t, 3> c;
+    for (int a = 0; a < 3; ++a) wrapped(grid, a, centers[grid.axis[a]][i] - grid.origin[a], c[a]);
+    cell_[i] = grid.first_cell + std::uint32_t((c[2] * grid.cells[1] + c[1]) * grid.cells[0] + c[0]);
+    ++start_[cell_[i] + 2];
+  }
+  for (std::size_t c = 2; c < start_.size(); ++c) start_[c] += start_[c - 1];
+  for (std::size_t i = 0; i < count; ++i) {
+    const Grid& grid = many ? grids_[grid_of_level_[level_of(balls.reach[i])]] : grids_.front();
+    const std::uint32_t at = start_[cell_[i] + 1]++;
+    std::int32_t cell;
+    x_[at] = float(wrapped(grid, 0, centers[grid.axis[0]][i] - grid.origin[0], cell));
+    y_[at] = float(wrapped(grid, 1, centers[grid.axis[1]][i] - grid.origin[1], cell));
+    z_[at] = float(wrapped(grid, 2, centers[grid.axis[2]][i] - grid.origin[2], cell));
+    reach_[at] = balls.reach[i] + grid.fuzz;
+    index_[at] = std::uint32_t(i);
+  }
+  grid_begin_.clear();
+  for (const Grid& grid : grids_) grid_begin_.push_back(start_[grid.first_cell]);
+  grid_begin_.push_back(std::uint32_t(count));
+}
+
+void CellGrid::make_parts() {
+  for (std::size_t g = 0; g < grids_.size(); ++g) {
+    const Grid& grid = grids_[g];
+    const std::uint32_t slice = std::uint32_t(grid.cells[0]) * std::uint32_t(grid.cells[1]);
+    const std::size_t first_part = parts_.size();
+    std::int32_t first_row = 0;
+    for (std::int32_t row = 1; row <= grid.cells[2]; ++row) {
+      const std::int64_t balls = start_[grid.first_cell + std::uint32_t(row) * slice] - start_[grid.first_cell + std::uint32_t(first_row) * slice];
+      if (balls < kPartBalls && row < grid.cells[2]) continue;
+      parts_.push_back({std::int32_t(g), first_row, row, std::int32_t(parts_.size() - first_part) % 2});
+      first_row = row;
+    }
+    // Where the last part meets the first, and both would have one colour.
+    const std::size_t made = parts_.size() - first_part;
+    if (grid.wraps[2] && made > 1 && made % 2 == 1) parts_.back().colour = 2;
+  }
+  if (grids_.size() > 1) parts_.push_back({.grid = -1, .colour = 3});
+}
+
+CellGrid::Neighbour CellGrid::neighbour(const Grid& grid, int axis, std::int32_t at) {
+  const std::int32_t n = grid.cells[axis];
+  if (at >= 0 && at < n) return {at, 0.0f};
+  if (!grid.wraps[axis]) return {};
+  return at < 0 ? Neighbour{at + n, float(-n * grid.edge)} : Neighbour{at - n, float(n * grid.edge)};
+}
+
+void CellGrid::add_runs(const Grid& grid, std::uint32_t row, std::int32_t middle, bool own, const std::array<float, 3>& shift, std::vector<Run>& runs) const {
+  const std::int32_t n = grid.cells[0], first = std::max(own ? middle : middle - 1, 0), last = std::min(middle + 1, n - 1);
+  runs.push_back({start_[row + std::uint32_t(first)], start_[row + std::uint32_t(last) + 1], shift});
+  if (!grid.wraps[0]) return;
+  const float length = float(n * grid.edge);
+  if (middle == 0 && !own) runs.push_back({start_[row + std::uint32_t(n) - 1], start_[row + std::uint32_t(n)], {shift[0] - length, shift[1], shift[2]}});
+  if (middle == n - 1) runs.push_back({start_[row], start_[row + 1], {shift[0] + length, shift[1], shift[2]}});
+}
+
+// The first run is the cell's own and what follows it; then one of each pair of opposite neighbour rows.
+void CellGrid::find_cell_runs(const Grid& grid, std::int32_t slow, std::int32_t mid, std::int32_t fast, std::vector<Run>& runs) const {
+  const auto row_of = [&](std::int32_t s, std::int32_t m) { return grid.first_cell + std::uint32_t(s * grid.cells[1] + m) * std::uint32_t(grid.cells[0]); };
+  add_runs(grid, row_of(slow, mid), fast, true, {}, runs);
+  if (const Neighbour m = neighbour(grid, 1, mid + 1); m.at >= 0) add_runs(grid, row_of(slow, m.at), fast, false, {0.0f, m.shift, 0.0f}, runs);
+  const Neighbour s = neighbour(grid, 2, slow + 1);
+  if (s.at < 0) return;
+  for (std::int32_t step = -1; step <= 1; ++step)
+    if (const Neighbour m = neighbour(grid, 1, mid + step); m.at >= 0) add_runs(grid, row_of(s.at, m.at), fast, false, {0.0f, m.shift, s.shift}, runs);
+}
+
+}  // namespace lodestone

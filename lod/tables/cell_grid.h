@@ -1,0 +1,195 @@
+// Which of many moving balls are near each other: cells filled by one counting sort, balls of a cell together in memory, rows of cells one after
+// the other (Teschner et al., Optimized spatial hashing, 2003; Green, Particle simulation using CUDA, 2010). A thin layer has one cell across. Where balls are
+// few in much space, cells that lie a multiple of the grid's length apart share a place, and distance tells their balls apart. Balls of other sizes have grids of
+// their own, each edge four times the one before.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lod/tables/near_balls.h"
+#include "reference/geometry.h"
+
+namespace lodestone {
+
+struct BallSpan {
+  std::span<const double> x, y, z;  // m, centres
+  std::span<const float> reach;     // m, how far from the centre anything can matter in this step
+};
+
+class CellGrid {
+ public:
+  explicit CellGrid(Simd simd = find_simd()) : simd_(simd) {}
+
+  /// Takes the balls in.
+  void fill(const BallSpan& balls);
+
+  /// Parts of the search for pairs. No two parts of one colour find pairs of the same ball.
+  std::int64_t parts() const { return std::int64_t(parts_.size()); }
+  int colour_of(std::int64_t part) const { return parts_[part].colour; }
+  static constexpr int kColours = 4;
+
+  /// Calls found(a, b) for each pair of `part` whose reaches meet, once, perhaps also where they miss by a rounding. The order depends on the balls alone.
+  template <class Found>
+  void find_pairs(std::int64_t part, const Found& found) const;
+
+  /// Calls found(a) for each ball whose reach may meet a ball elsewhere, and for some a cell beyond.
+  template <class Found>
+  void find_near(const Vec3& center, double reach, const Found& found) const;
+
+  /// Indices of the balls given, in the order of the cells.
+  std::span<const std::uint32_t> order() const { return index_; }
+
+ private:
+  /// Cells of one size. Axes are in the order along which cells follow each other, fastest first.
+  struct Grid {
+    std::array<int, 3> axis{0, 1, 2};  // which coordinate
+    std::array<double, 3> origin{};    // m
+    std::array<std::int32_t, 3> cells{1, 1, 1};
+    std::array<bool, 3> wraps{};
+    double edge = 1.0, inverse = 1.0;  // m, 1/m
+    double most_reach = 0.0;           // m, of its balls
+    std::uint32_t first_cell = 0, end_cell = 0;  // in start_
+    float fuzz = 0.0f;                 // m, rounding of the positions kept here
+  };
+  struct Part {
+    std::int32_t grid = 0, first_row = 0, last_row = 0;  // rows along the slowest axis; grid −1: pairs of different grids
+    std::int32_t colour = 0;
+  };
+  /// Balls [begin, end), seen from elsewhere at where they are kept plus `shift`.
+  struct Run {
+    std::uint32_t begin = 0, end = 0;
+    std::array<float, 3> shift{};
+  };
+  /// The neighbour of a row or cell along one axis, −1: none.
+  struct Neighbour {
+    std::int32_t at = -1;
+    float shift = 0.0f;
+  };
+
+  void choose_edges(const BallSpan& balls);
+  void lay_out(const BallSpan& balls, int level);
+  void sort(const BallSpan& balls);
+  void make_parts();
+  int level_of(float reach) const;
+  static Neighbour neighbour(const Grid& grid, int axis, std::int32_t at);
+  /// The cells middle − 1 … middle + 1 of a row, as one run, or two where the row wraps.
+  void add_runs(const Grid& grid, std::uint32_t row, std::int32_t middle, bool own, const std::array<float, 3>& shift, std::vector<Run>& runs) const;
+  void find_cell_runs(const Grid& grid, std::int32_t slow, std::int32_t mid, std::int32_t fast, std::vector<Run>& runs) const;
+  template <class Found>
+  void test(std::uint32_t ball, const Run& run, const Found& found) const;
+  template <class Found>
+  void find_in(const Grid& grid, const Vec3& center, double reach, const Found& found) const;
+  template <class Found>
+  void find_across(const Found& found) const;
+
+  Simd simd_;
+  std::vector<Grid> grids_;
+  std::array<std::int32_t, 32> grid_of_level_{};
+  double base_edge_ = 1.0;                // m, of level kBaseLevel
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> cell_;       // of each ball
+  std::vector<std::uint32_t> start_;      // of each cell, and the end of the last
+  std::vector<float> x_, y_, z_, reach_;  // in order; positions within the grid, along its axes
+  std::vector<std::uint32_t> index_;
+  std::vector<std::uint32_t> grid_begin_; // of each grid in the order, and the end
+  BallSpan balls_;
+};
+
+template <class Found>
+void CellGrid::test(std::uint32_t ball, const Run& run, const Found& found) const {
+  const float x = x_[ball] - run.shift[0], y = y_[ball] - run.shift[1], z = z_[ball] - run.shift[2], reach = reach_[ball];
+  constexpr std::uint32_t kBlock = 64;
+  std::array<std::uint32_t, kBlock + 16> hits;
+  for (std::uint32_t block = run.begin; block < run.end; block += kBlock) {
+    const std::uint32_t count = find_near_balls({x_.data(), y_.data(), z_.data(), reach_.data()}, {x, y, z, reach}, block, std::min(run.end, block + kBlock), simd_,
+                                                hits.data());
+    for (std::uint32_t i = 0; i < count; ++i) found(index_[ball], index_[hits[i]]);
+  }
+}
+
+template <class Found>
+void CellGrid::find_pairs(std::int64_t number, const Found& found) const {
+  const Part& part = parts_[number];
+  if (part.grid < 0) return find_across(found);
+  const Grid& grid = grids_[part.grid];
+  const bool aliases = grid.wraps[0] || grid.wraps[1] || grid.wraps[2];
+  const auto checked = [&](std::uint32_t a, std::uint32_t b) {
+    const double limit = double(balls_.reach[a]) + double(balls_.reach[b]);
+    const Vec3 between(balls_.x[a] - balls_.x[b], balls_.y[a] - balls_.y[b], balls_.z[a] - balls_.z[b]);
+    if (!aliases || between.squaredNorm() < limit * limit) found(a, b);
+  };
+  std::vector<Run>& runs = *[] {
+    thread_local std::vector<Run> kept;  // so that a warm step allocates nothing
+    return &kept;
+  }();
+  for (std::int32_t slow = part.first_row; slow < part.last_row; ++slow)
+    for (std::int32_t mid = 0; mid < grid.cells[1]; ++mid) {
+      const std::uint32_t row = grid.first_cell + std::uint32_t(slow * grid.cells[1] + mid) * std::uint32_t(grid.cells[0]);
+      if (start_[row] == start_[row + std::uint32_t(grid.cells[0])]) continue;
+      for (std::int32_t fast = 0; fast < grid.cells[0]; ++fast) {
+        const std::uint32_t begin = start_[row + std::uint32_t(fast)], end = start_[row + std::uint32_t(fast) + 1];
+        if (begin == end) continue;
+        runs.clear();
+        find_cell_runs(grid, slow, mid, fast, runs);
+        for (std::uint32_t ball = begin; ball < end; ++ball) {
+          runs.front().begin = ball + 1;  // its own cell: those after it
+          for (const Run& run : runs) test(ball, run, checked);
+        }
+      }
+    }
+}
+
+template <class Found>
+void CellGrid::find_in(const Grid& grid, const Vec3& center, double reach, const Found& found) const {
+  // Along each axis the cells that the ball may meet; where it spans the whole axis, every cell once.
+  std::array<std::int64_t, 3> low{}, high{};
+  for (int a = 0; a < 3; ++a) {
+    const double at = center[grid.axis[a]] - grid.origin[a], span = reach + grid.most_reach;
+    const double first = std::floor((at - span) * grid.inverse), last = std::floor((at + span) * grid.inverse), n = grid.cells[a];
+    if (grid.cells[a] == 1) {
+      low[a] = high[a] = 0;  // however far it reaches
+    } else if (!grid.wraps[a]) {
+      low[a] = std::int64_t(std::clamp(first, 0.0, n)), high[a] = std::int64_t(std::clamp(last, -1.0, n - 1));
+    } else if (last - first >= n - 1) {
+      low[a] = 0, high[a] = std::int64_t(n) - 1;
+    } else {
+      low[a] = std::int64_t(first - n * std::floor(first / n)), high[a] = low[a] + std::int64_t(last - first);
+    }
+  }
+  for (std::int64_t slow = low[2]; slow <= high[2]; ++slow)
+    for (std::int64_t mid = low[1]; mid <= high[1]; ++mid) {
+      const std::int64_t row = grid.first_cell + (slow % grid.cells[2] * grid.cells[1] + mid % grid.cells[1]) * grid.cells[0];
+      const std::int64_t last = std::min<std::int64_t>(high[0], grid.cells[0] - 1);
+      if (low[0] <= last)
+        for (std::uint32_t i = start_[row + low[0]]; i < start_[row + last + 1]; ++i) found(index_[i]);
+      if (high[0] > last)  // round the end of the row
+        for (std::uint32_t i = start_[row]; i < start_[row + high[0] - grid.cells[0] + 1]; ++i) found(index_[i]);
+    }
+}
+
+template <class Found>
+void CellGrid::find_near(const Vec3& center, double reach, const Found& found) const {
+  for (const Grid& grid : grids_) find_in(grid, center, reach, found);
+}
+
+// Pairs of different sizes: those of the coarser grid look into the finer one, whose cells they know to be many but whose balls they would have to be tested with
+// in any case.
+template <class Found>
+void CellGrid::find_across(const Found& found) const {
+  for (std::size_t coarse = 1; coarse < grids_.size(); ++coarse)
+    for (std::size_t fine = 0; fine < coarse; ++fine)
+      for (std::uint32_t i = grid_begin_[coarse]; i < grid_begin_[coarse + 1]; ++i) {
+        const std::uint32_t ball = index_[i];
+        const Vec3 center(balls_.x[ball], balls_.y[ball], balls_.z[ball]);
+        find_in(grids_[fine], center, balls_.reach[ball], [&](std::uint32_t other) {
+          const double limit = double(balls_.reach[ball]) + double(balls_.reach[other]);
+          if ((Vec3(balls_.x[other], balls_.y[other], balls_.z[other]) - center).squaredNorm() < limit * limit) found(ball, other);
+        });
+      }
+}
+
+}  // namespace lodestone

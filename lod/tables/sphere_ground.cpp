@@ -1,0 +1,217 @@
+#include "lod/tables/sphere_ground.h"
+
+#include <algorithm>
+
+namespace lodestone {
+namespace {
+
+using namespace lane;
+
+constexpr auto kNear = std::uint8_t(GroundState::near), kLies = std::uint8_t(GroundState::lies), kSettles = std::uint8_t(GroundState::settles);
+static_assert(kSettles == kLies + 1);
+constexpr float kFootprint = 0.3f;  // lever of pivoting friction over R
+constexpr float kRise = 0.25f;      // of a sphere that has grown into the plane, part a step
+
+struct NearLoop {
+  const Spheres& spheres;
+  F3 n;
+  double wide_x, wide_y, wide_z, offset;
+  std::uint8_t number;
+  StepConstants c;
+  SphereStep& step;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    const double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data();
+    const float *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *radius = spheres.radius.data();
+    std::uint8_t *on_ground = step.on_ground.data(), *plane = step.plane.data();
+    float* gap = step.gap.data();
+    const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz);
+#pragma GCC ivdep
+    for (std::int64_t i = begin; i < end; ++i) {
+      const float above = float(wide_x * x[i] + wide_y * y[i] + wide_z * z[i] - offset) - radius[i];
+      const float way = least(0.0f, n.x * vx[i] + n.y * vy[i] + n.z * vz[i]) * c.time + 0.5f * pull * c.time * c.time;
+      const int state = on_ground[i], other = plane[i];
+      const float known = gap[i];
+      const int near = -int(above + 1.001f * way < 0.002f * radius[i]), nearest = near & -(int(state == 0) | int(above < known));  // masks
+      on_ground[i] = std::uint8_t((int(kNear) & near) | (state & ~near));
+      gap[i] = select(nearest, above, known);
+      plane[i] = std::uint8_t((int(number) & nearest) | (other & ~nearest));
+    }
+  }
+};
+
+template <bool OneKind>
+struct SortLoop {
+  const Spheres& spheres;
+  const SphereKinds& kinds;
+  const SphereGround& ground;
+  StepConstants c;
+  float bounce;  // m/s
+  SphereStep& step;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    const float *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *held = spheres.held.data();
+    const float *size = kinds.radius.data(), *energy = step.energy.data();
+    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *pressure = ground.pressure.data();
+    const std::uint8_t* horizontal = ground.horizontal.data();
+    const std::uint16_t* kind = spheres.kind.data();
+    const auto* motion = reinterpret_cast<const std::uint8_t*>(spheres.motion.data());
+    const std::uint8_t* plane = step.plane.data();
+    float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *given = step.given.data();
+    std::uint8_t *contacts = step.contacts.data(), *on_ground = step.on_ground.data();
+#pragma GCC ivdep
+    for (std::int64_t i = begin; i < end; ++i) {
+      const int k = OneKind ? 0 : int(kind[i]), p = plane[i], moves = int(motion[i]), touching = contacts[i];
+      const int state = on_ground[i];
+      const F3 n{nx[p], ny[p], nz[p]}, v{vx[i], vy[i], vz[i]};
+      const float moving = energy[i], threshold = c.resting_energy * c.gravity * size[k];
+      const float kept = held[i], weight = pressure[p] * c.time;
+      // Masks: 0 or −1.
+      const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce), others = -int(touching > 0);
+      const int settling = -int(moves == int(Motion::settling)) & -int(moving <= 2.0f * threshold);
+      const int settles = -int(moves == int(Motion::dynamic)) & -int(int(horizontal[p]) > 0) & -int(moving < threshold);
+      const int lies = near & presses & (others | settling), among = lies & others;
+      const float known = select(among, kept, 0.0f);
+      px[i] += known * n.x, py[i] += known * n.y, pz[i] += known * n.z;
+      given[i] = select(others, known, weight);
+      contacts[i] = std::uint8_t(touching - among);
+      on_ground[i] = std::uint8_t((lies & (int(kLies) - settles)) | (state & ~lies));
+    }
+  }
+};
+
+struct SweepLoop {
+  const SphereGround& ground;
+  StepConstants c;
+  SphereStep& step;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data();
+    const float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *gap = step.gap.data();
+    const std::uint8_t *plane = step.plane.data(), *contacts = step.contacts.data(), *on_ground = step.on_ground.data();
+    float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *given = step.given.data();
+    const float per_time = 1.0f / c.time;
+#pragma GCC ivdep
+    for (std::int64_t i = begin; i < end; ++i) {
+      const int p = plane[i], state = on_ground[i], touching = contacts[i];
+      const bool lies = (state >= int(kLies)) & (state <= int(kSettles)) & (touching > 0);
+      const float speed = px[i] * nx[p] + py[i] * ny[p] + pz[i] * nz[p], shut = least(0.0f, -gap[i] * per_time), before = given[i];
+      const float raised = most(0.0f, before + (shut - speed) / most(1.0f, float(touching))), after = choose(lies, raised, before), change = after - before;
+      given[i] = after;
+      ax[i] += change * nx[p], ay[i] += change * ny[p], az[i] += change * nz[p];
+    }
+  }
+};
+
+template <bool OneKind>
+struct LieLoop {
+  Spheres& spheres;
+  const SphereKinds& kinds;
+  const SphereGround& ground;
+  StepConstants c;
+  SphereStep& step;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    const float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data(), *radius = spheres.radius.data();
+    const float *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
+    float* held = spheres.held.data();
+    auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
+    const std::uint16_t* kind = spheres.kind.data();
+    const std::int16_t* pose = spheres.pose.data();
+    const float *size = kinds.radius.data(), *blend_time = kinds.blend_time.data();
+    const float *pose_x = kinds.pose_x.data(), *pose_y = kinds.pose_y.data(), *pose_z = kinds.pose_z.data();
+    const std::int32_t* first_pose = kinds.first_pose.data();
+    const Tensors soft{kinds.ixx.data(), kinds.iyy.data(), kinds.izz.data(), kinds.ixy.data(), kinds.ixz.data(), kinds.iyz.data()};
+    const Tensors hard{kinds.jxx.data(), kinds.jyy.data(), kinds.jzz.data(), kinds.jxy.data(), kinds.jxz.data(), kinds.jyz.data()};
+    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *friction = ground.friction.data();
+    const int kind_count = int(ground.kinds);
+    const float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *gap = step.gap.data(), *given = step.given.data(), *energy = step.energy.data();
+    const std::uint8_t *plane = step.plane.data(), *contacts = step.contacts.data(), *on_ground = step.on_ground.data();
+    float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *sx = step.sx.data(), *sy = step.sy.data(), *sz = step.sz.data();
+    float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
+    std::uint8_t* slides = step.slides.data();
+#pragma GCC ivdep
+    for (std::int64_t i = begin; i < end; ++i) {
+      const int k = OneKind ? 0 : int(kind[i]), p = plane[i], number = pose[i], at = first_pose[k] + choose(number > 0, number, 0);
+      const int state = on_ground[i], moves = int(motion[i]);
+      const bool lies = (state >= int(kLies)) & (state <= int(kSettles)), others = int(contacts[i]) > 0;
+      const F3 n{nx[p], ny[p], nz[p]}, start{px[i], py[i], pz[i]}, start_spin{lx[i], ly[i], lz[i]}, old{ax[i], ay[i], az[i]}, old_turn{sx[i], sy[i], sz[i]};
+      const F3 out{dx[i], dy[i], dz[i]};
+      const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
+      const float r = radius[i], above = gap[i], given_speed = given[i], moving = energy[i], big = size[k];
+      const F3 solved = start + old;
+      F3 v = solved - choose(others, 0.0f, dot(solved, n)) * n, spin = start_spin + old_turn;
+
+      // Under the resting conditions the spin is that of the turn into the rest pose; its energy comes from what the body still moves with.
+      const bool rests = (moves == int(Motion::settling)) & (moving <= 2.0f * c.resting_energy * c.gravity * big);
+      const F3 up = turned(q, {pose_x[at], pose_y[at], pose_z[at]}), axis = cross(up, n);
+      const float sine = length(axis), cosine = dot(up, n), steep = arc_tangent(sine, absolute(cosine)), angle = choose(cosine < 0.0f, 3.14159265f - steep, steep);
+      const float blend = most(blend_time[k], c.time);
+      const F3 ask = angle / (most(sine, 1e-9f) * blend) * axis, ask_spin = in_world(hard, k, q, ask);
+      const float cost = 0.5f * dot(ask, ask_spin), budget = most(0.0f, moving - 0.5f * dot(v, v));
+      const float slowest = least(1.0f, 0.25f / (blend * most(length(ask), 1e-12f)));
+      const float scale = choose(cost > budget, most(square_root(budget / most(cost, 1e-30f)), slowest), 1.0f);
+      spin = choose(rests, scale * ask_spin, spin);
+
+      // Friction of the lowest point, and of the footprint against pivoting.
+      const F3 omega = in_world(soft, k, q, spin), arm = -r * n, touching = v + cross(omega, arm), slip = touching - dot(touching, n) * n;
+      const float speed = length(slip), available = friction[p * kind_count + k] * given_speed;
+      const F3 direction = 1.0f / most(speed, 1e-12f) * slip, lever = cross(arm, direction);
+      const float needed = speed / (1.0f + dot(lever, in_world(soft, k, q, lever)));
+      const F3 rub = -least(available, needed) * direction;
+      v = v + rub;
+      spin = spin + cross(arm, rub);
+      const float pivot = dot(spin, n), most_pivot = kFootprint * big * available;
+      spin = spin - most(-most_pivot, least(pivot, most_pivot)) * n;
+
+      const F3 change = choose(lies, v - start, old), turn = choose(lies, spin - start_spin, old_turn);
+      ax[i] = change.x, ay[i] = change.y, az[i] = change.z;
+      sx[i] = turn.x, sy[i] = turn.y, sz[i] = turn.z;
+      held[i] = choose(lies & others, given_speed, 0.0f);
+      motion[i] = std::uint8_t(choose(lies & !rests, int(Motion::dynamic), moves));
+      slides[i] = std::uint8_t(choose(lies, 1, 0));
+      // The ground has the last word: among others no sinking in; alone down onto it, or out of it gradually.
+      const float height = above + dot(v, n) * c.time + dot(out, n), alone = choose(above < 0.0f, -kRise * above, -above);
+      const float raise = choose(lies, choose(others, most(0.0f, -height), alone), 0.0f);
+      dx[i] = out.x + raise * n.x, dy[i] = out.y + raise * n.y, dz[i] = out.z + raise * n.z;
+    }
+  }
+};
+
+}  // namespace
+
+void SphereGround::set(const StaticGround& ground, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity) {
+  for (auto* array : {&nx, &ny, &nz, &pressure, &friction}) array->clear();
+  horizontal.clear();
+  kinds = of.kinds.size();
+  for (const HalfSpace& plane : ground.planes) {
+    nx.push_back(float(plane.normal.x())), ny.push_back(float(plane.normal.y())), nz.push_back(float(plane.normal.z()));
+    pressure.push_back(float(std::max(0.0, -gravity.dot(plane.normal))));
+    horizontal.push_back(-plane.normal.dot(gravity) > 0.9999 * gravity.norm() && gravity.norm() > 0.0);
+    for (const BodyKind& kind : of.kinds) friction.push_back(float(materials.law(kind.material, plane.material).friction));
+  }
+}
+
+void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
+                      std::int64_t end, SphereStep& step) {
+  const Vec3& n = plane.normal;
+  run_wide(simd, NearLoop{spheres, {float(n.x()), float(n.y()), float(n.z())}, n.x(), n.y(), n.z(), plane.offset, number, constants, step}, begin, end);
+}
+
+void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
+                      float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
+  if (constants.one_kind) run_wide(simd, SortLoop<true>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
+  else run_wide(simd, SortLoop<false>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
+}
+
+void sweep_ground(const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
+  run_wide(simd, SweepLoop{ground, constants, step}, begin, end);
+}
+
+void lie_on_ground(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin,
+                   std::int64_t end, SphereStep& step) {
+  if (constants.one_kind) run_wide(simd, LieLoop<true>{spheres, kinds, ground, constants, step}, begin, end);
+  else run_wide(simd, LieLoop<false>{spheres, kinds, ground, constants, step}, begin, end);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,37 @@
+// Bodies at the ground's planes, in loops over dense arrays: which may meet one, what it gives to those that it carries among others, and how those that lie there
+// rub and turn into their rest poses (3.4). Impacts are for the response tables, body by body.
+#pragma once
+
+#include "lod/static_ground.h"
+#include "lod/tables/sphere_motion.h"
+
+namespace lodestone {
+
+/// The planes as floats. Friction is by plane and kind.
+struct SphereGround {
+  std::vector<float> nx, ny, nz;      // normals
+  std::vector<float> pressure;        // m/s²: of gravity onto the plane
+  std::vector<std::uint8_t> horizontal;
+  std::vector<float> friction;        // of kind k with plane p at p · kinds + k
+  std::size_t kinds = 0;
+
+  void set(const StaticGround& ground, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity);
+};
+
+/// Marks as GroundState::near those that may meet a plane in this step, with the nearest plane and the gap to it.
+void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
+                      std::int64_t end, SphereStep& step);
+
+/// Of those near: GroundState::lies where it presses on the ground, with what the ground gave in the last step if it has contacts with others, which the ground
+/// then adds one to; approaches slower than `bounce_velocity` are no impacts; GroundState::settles where it must choose a rest pose first; the rest stays near, for an impact.
+void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
+                      float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
+
+/// A round of the contacts with the ground of those that lie on it among others.
+void sweep_ground(const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
+
+/// Velocities and spins of those that lie on the ground after friction and, under the resting conditions, the turn into the rest pose.
+void lie_on_ground(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin,
+                   std::int64_t end, SphereStep& step);
+
+}  // namespace lodestone

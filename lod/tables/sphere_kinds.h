@@ -1,0 +1,30 @@
+// What bodies of a kind share, as floats in dense arrays for the loops over bodies.
+#pragma once
+
+#include <vector>
+
+#include "lod/statistical/statistical_body.h"
+
+namespace lodestone {
+
+inline constexpr int kHeightSamples = 64;  // of the collision height over α, resampled evenly from 0 to π/2
+
+struct SphereKinds {
+  std::vector<BodyKind> kinds;
+  std::vector<float> radius, inverse_mass;              // m, 1/kg
+  std::vector<float> ixx, iyy, izz, ixy, ixz, iyz;      // inverse inertia over mass, body axes, 1/m²
+  std::vector<float> jxx, jyy, jzz, jxy, jxz, jyz;      // inertia over mass, m²
+  std::vector<float> softest;                           // its greatest eigenvalue, 1/m²
+  std::vector<float> height;                            // kHeightSamples + 1 a kind, m, one more to read beyond the end
+  std::vector<float> blend_time;                        // s, of the approach to a rest pose
+  std::vector<std::int32_t> first_pose;                 // of the kind's rest poses in the next ones
+  std::vector<float> pose_height, pose_x, pose_y, pose_z;  // m; normal in body axes; at least one pose a kind
+
+  /// The number of a kind that is known or new. Its signature must hold the tables.
+  std::uint16_t find(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature, double gravity);
+
+ private:
+  void add(const BodyKind& kind, double gravity);
+};
+
+}  // namespace lodestone

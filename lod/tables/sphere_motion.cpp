@@ -1,0 +1,157 @@
+// Loops without branches that compilers turn into vector instructions. Built without errno and traps of mathematical functions, which would prevent that
+// and change no result.
+#include "lod/tables/sphere_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone {
+namespace {
+
+using namespace lane;
+
+constexpr float kCalming = 4.0f;  // 1/s
+
+Tensors soft_of(const SphereKinds& k) { return {k.ixx.data(), k.iyy.data(), k.izz.data(), k.ixy.data(), k.ixz.data(), k.iyz.data()}; }
+
+template <bool OneKind>
+struct StartLoop {
+  const Spheres& in;
+  const SphereKinds& kinds;
+  StepConstants c;
+  SphereStep& step;
+  Spheres& out;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    const float *vx = in.vx.data(), *vy = in.vy.data(), *vz = in.vz.data(), *lx = in.lx.data(), *ly = in.ly.data(), *lz = in.lz.data();
+    const float *qw = in.qw.data(), *qx = in.qx.data(), *qy = in.qy.data(), *qz = in.qz.data();
+    const std::uint16_t* kind = in.kind.data();
+    const std::int16_t* pose = in.pose.data();
+    const auto* motion = reinterpret_cast<const std::uint8_t*>(in.motion.data());
+    const std::uint8_t* since_crowded = in.since_crowded.data();
+    const float *size = kinds.radius.data(), *height = kinds.height.data(), *pose_height = kinds.pose_height.data(), *blend = kinds.blend_time.data();
+    const std::int32_t* first_pose = kinds.first_pose.data();
+    const Tensors soft = soft_of(kinds);
+    float *radius = out.radius.data(), *reach = step.reach.data(), *wx = step.wx.data(), *wy = step.wy.data(), *wz = step.wz.data();
+    float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data();
+    float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *sx = step.sx.data(), *sy = step.sy.data(), *sz = step.sz.data();
+    float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
+    std::uint8_t *contacts = step.contacts.data(), *on_ground = step.on_ground.data(), *plane = step.plane.data(), *slides = step.slides.data();
+    float* energy = step.energy.data();
+    const bool update = c.update_radius;
+    const float fall = 0.5f * c.gravity * c.time * c.time;
+#pragma GCC ivdep
+    for (std::int64_t i = begin; i < end; ++i) {
+      const int k = OneKind ? 0 : int(kind[i]);
+      const F3 v{vx[i], vy[i], vz[i]}, omega = in_world(soft, k, {qw[i], {qx[i], qy[i], qz[i]}}, {lx[i], ly[i], lz[i]});
+      const float speed = length(v), spin = size[k] * length(omega), was = radius[i];
+      // The sphere's radius: in flight by the tables, at rest by the pose, among others as it was.
+      const float at = arc_tangent(spin, speed) * (float(kHeightSamples - 1) / 1.57079633f);
+      const int sample = int(least(at, float(kHeightSamples - 1))), from = k * (kHeightSamples + 1) + sample;
+      const float low = height[from], high = height[from + 1], flying = low + (at - float(sample)) * (high - low);
+      const int number = pose[i], moves = int(motion[i]), rest = first_pose[k] + choose(number > 0, number, 0);
+      const float resting = was + (pose_height[rest] - was) * least(1.0f, 2.0f * c.time / blend[k]);
+      const bool flies = update & (moves == int(Motion::dynamic)) & (since_crowded[i] > 0);
+      const float r = choose(moves == int(Motion::settling), resting, choose(flies, flying, was));
+      radius[i] = r;
+      reach[i] = r + 0.01f * size[k] + speed * c.time + fall;
+      energy[i] = 0.5f * (dot(v, v) + lx[i] * omega.x + ly[i] * omega.y + lz[i] * omega.z);
+      wx[i] = omega.x, wy[i] = omega.y, wz[i] = omega.z;
+      px[i] = v.x + c.gx * c.time, py[i] = v.y + c.gy * c.time, pz[i] = v.z + c.gz * c.time;
+    }
+    std::fill(ax + begin, ax + end, 0.0f), std::fill(ay + begin, ay + end, 0.0f), std::fill(az + begin, az + end, 0.0f);
+    std::fill(sx + begin, sx + end, 0.0f), std::fill(sy + begin, sy + end, 0.0f), std::fill(sz + begin, sz + end, 0.0f);
+    std::fill(dx + begin, dx + end, 0.0f), std::fill(dy + begin, dy + end, 0.0f), std::fill(dz + begin, dz + end, 0.0f);
+    std::fill(contacts + begin, contacts + end, std::uint8_t(0)), std::fill(on_ground + begin, on_ground + end, std::uint8_t(0));
+    std::fill(plane + begin, plane + end, std::uint8_t(0)), std::fill(slides + begin, slides + end, std::uint8_t(0));
+  }
+};
+
+template <bool OneKind>
+struct EndLoop {
+  Spheres& spheres;
+  const SphereKinds& kinds;
+  StepConstants c;
+  SphereStep& step;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data();
+    float *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
+    float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data();
+    const std::uint16_t* kind = spheres.kind.data();
+    const Tensors soft = soft_of(kinds);
+    const float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data();
+    const float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *sx = step.sx.data(), *sy = step.sy.data(), *sz = step.sz.data();
+    const float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
+    const std::uint8_t *contacts = step.contacts.data(), *on_ground = step.on_ground.data(), *slides = step.slides.data();
+    std::uint8_t* unsound = step.unsound.data();
+    const float *energy = step.energy.data(), *size = kinds.radius.data();
+    const float calm = most(0.0f, 1.0f - kCalming * c.time);
+    constexpr auto kMoved = std::uint8_t(GroundState::moved);
+#pragma GCC ivdep
+    for (std::int64_t i = begin; i < end; ++i) {
+      const int k = OneKind ? 0 : int(kind[i]);
+      const bool here = on_ground[i] != kMoved, flies = (contacts[i] == 0) & (slides[i] == 0);
+      const F3 old{vx[i], vy[i], vz[i]}, old_spin{lx[i], ly[i], lz[i]};
+      // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for ever.
+      const bool calms = (contacts[i] > 0) & (energy[i] < c.resting_energy * c.gravity * size[k]);
+      const F3 v{px[i] + ax[i], py[i] + ay[i], pz[i] + az[i]}, spin = choose(calms, calm, 1.0f) * (old_spin + F3{sx[i], sy[i], sz[i]});
+      // In flight a body follows its parabola; else the velocity that its contacts left it.
+      const float behind = choose(flies, 0.5f * c.time, 0.0f);
+      const F3 way{(v.x - behind * c.gx) * c.time + dx[i], (v.y - behind * c.gy) * c.time + dy[i], (v.z - behind * c.gz) * c.time + dz[i]};
+      const F3 gone = choose(here, way, F3{0.0f, 0.0f, 0.0f});
+      const double to_x = x[i] + double(gone.x), to_y = y[i] + double(gone.y), to_z = z[i] + double(gone.z);
+      x[i] = to_x, y[i] = to_y, z[i] = to_z;
+      const F3 new_v = choose(here, v, old), new_spin = choose(here, spin, old_spin);
+      vx[i] = new_v.x, vy[i] = new_v.y, vz[i] = new_v.z;
+      lx[i] = new_spin.x, ly[i] = new_spin.y, lz[i] = new_spin.z;
+      const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
+      const Turn middle = product(turn_by(in_world(soft, k, q, spin), 0.5f * c.time), q);
+      const Turn to = product(turn_by(in_world(soft, k, middle, spin), c.time), q);
+      // Renormalised without a root: a Newton step.
+      const float scale = 1.5f - 0.5f * (to.w * to.w + dot(to.v, to.v));
+      const F3 new_q = choose(here, scale * to.v, q.v);
+      qw[i] = choose(here, scale * to.w, q.w), qx[i] = new_q.x, qy[i] = new_q.y, qz[i] = new_q.z;
+      constexpr float kFast = 1e6f;  // m/s, m²/s: beyond it someone looks closer
+      const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z);
+      const float far = most(absolute(float(to_x)), most(absolute(float(to_y)), absolute(float(to_z))));
+      const float wrong = choose(sum < kFast, 0.0f, 1.0f) + choose(absolute(scale - 1.0f) < 0.1f, 0.0f, 1.0f) + choose(far + absolute(float(to_x - to_x)) < 0.999e8f, 0.0f, 1.0f);
+      unsound[i] = std::uint8_t(int(wrong));
+    }
+  }
+};
+
+struct TakeLoop {
+  SphereStep& step;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data();
+#pragma GCC ivdep
+    for (std::int64_t i = begin; i < end; ++i) {
+      px[i] += ax[i], py[i] += ay[i], pz[i] += az[i];
+      ax[i] = 0.0f, ay[i] = 0.0f, az[i] = 0.0f;
+    }
+  }
+};
+
+}  // namespace
+
+void SphereStep::resize(std::size_t count) {
+  for (auto* array : {&reach, &wx, &wy, &wz, &px, &py, &pz, &ax, &ay, &az, &sx, &sy, &sz, &dx, &dy, &dz, &gap, &given, &energy}) array->resize(count);
+  for (auto* array : {&contacts, &on_ground, &plane, &slides, &unsound}) array->resize(count);
+}
+
+void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
+                SphereStep& step, Spheres& out) {
+  if (constants.one_kind) run_wide(simd, StartLoop<true>{spheres, kinds, constants, step, out}, begin, end);
+  else run_wide(simd, StartLoop<false>{spheres, kinds, constants, step, out}, begin, end);
+}
+
+void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) { run_wide(simd, TakeLoop{step}, begin, end); }
+
+void end_step(Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
+  if (constants.one_kind) run_wide(simd, EndLoop<true>{spheres, kinds, constants, step}, begin, end);
+  else run_wide(simd, EndLoop<false>{spheres, kinds, constants, step}, begin, end);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,57 @@
+// What every awake body does in a step, in loops over dense arrays: the start, which tells how far it may reach, and the end, which moves it.
+#pragma once
+
+#include "lod/tables/sphere_kinds.h"
+#include "lod/tables/spheres.h"
+#include "lod/tables/lane_math.h"
+
+namespace lodestone {
+
+/// Of a step, one element an awake body.
+struct SphereStep {
+  std::vector<float> reach;          // m
+  std::vector<float> wx, wy, wz;     // rad/s at the start
+  std::vector<float> px, py, pz;     // m/s: the velocity with gravity and the impulses known so far
+  std::vector<float> ax, ay, az;     // m/s: what the contacts of this step add
+  std::vector<float> sx, sy, sz;     // m²/s: what they add to the spin
+  std::vector<float> dx, dy, dz;     // m: how far they move it out of overlaps
+  std::vector<float> gap;              // m, to the nearest plane, where near
+  std::vector<float> given;            // m/s: what the ground gives it against what presses on it
+  std::vector<float> energy;           // J/kg at the start, kinetic
+  std::vector<std::uint8_t> contacts;  // with other bodies, and one with the ground that carries it among them
+  std::vector<std::uint8_t> on_ground; // GroundState
+  std::vector<std::uint8_t> plane;     // the nearest
+  std::vector<std::uint8_t> slides;    // along the ground: no parabola
+  std::vector<std::uint8_t> unsound;   // out: a state that cannot be
+  void resize(std::size_t count);
+};
+
+/// What the ground does to a body in this step.
+enum class GroundState : std::uint8_t {
+  free,     ///< does not meet it
+  near,     ///< meets it at a speed that is an impact, or may meet it
+  lies,     ///< presses on it
+  settles,  ///< so, and comes under the resting conditions
+  moved,    ///< met it by itself and was moved: the end leaves it alone
+};
+
+struct StepConstants {
+  float time = 0.0f;                      // s
+  float gx = 0.0f, gy = 0.0f, gz = 0.0f;  // m/s²
+  float gravity = 0.0f;                   // m/s²
+  float resting_energy = 0.15f;           // J/kg over g R: the first threshold of 3.4
+  bool update_radius = true;              // of those in flight
+  bool one_kind = false;
+};
+
+/// Angular velocities, radii, reaches, and velocities with gravity; clears what contacts add.
+void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
+                SphereStep& step, Spheres& out);
+
+/// The impulses of a round of contacts become part of the velocities that the next one sees.
+void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
+
+/// Moves the bodies that are not GroundState::moved.
+void end_step(Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
+
+}  // namespace lodestone

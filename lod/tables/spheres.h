@@ -1,0 +1,66 @@
+// The bodies of the tables model as dense arrays, one element a body, by place: those awake first, roughly in the order of their cells, then those
+// asleep. A slot is what a body is known by outside; slots are dense too. Positions are doubles (exact far from the origin), the rest floats.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lod/statistical/statistical_body.h"
+
+namespace lodestone {
+
+struct Spheres {
+  std::vector<double> x, y, z;                 // m
+  std::vector<float> vx, vy, vz;               // m/s
+  std::vector<float> lx, ly, lz;               // spin: angular momentum over mass, m²/s, world
+  std::vector<float> qw, qx, qy, qz;
+  std::vector<float> radius;                   // m, of the colliding sphere
+  std::vector<float> quiet;                    // s below the sleeping threshold
+  std::vector<float> held;                     // m/s: what the ground gave in the last step against what presses on it
+  std::vector<std::int32_t> slot;
+  std::vector<std::uint32_t> owner, events;
+  std::vector<std::uint32_t> known_begin;      // of its run of contacts known from the last step
+  std::vector<std::uint8_t> known_count;
+  std::vector<std::uint16_t> kind;
+  std::vector<std::int16_t> pose, plane;       // of the resting record (3.4), −1: none
+  std::vector<Motion> motion;
+  std::vector<std::uint8_t> since_crowded;     // steps since it last touched another body, at most 255
+
+  std::vector<std::uint32_t> place_of_slot;
+  std::int64_t awake = 0;                      // places below it
+
+  std::int64_t size() const { return std::int64_t(x.size()); }
+
+  /// Calls `visit` with each array that goes by place.
+  template <class Visit>
+  void each_array(const Visit& visit) {
+    visit(x), visit(y), visit(z), visit(vx), visit(vy), visit(vz), visit(lx), visit(ly), visit(lz);
+    visit(qw), visit(qx), visit(qy), visit(qz), visit(radius), visit(quiet), visit(held);
+    visit(slot), visit(owner), visit(events), visit(known_begin), visit(known_count);
+    visit(kind), visit(pose), visit(plane), visit(motion), visit(since_crowded);
+  }
+
+  Vec3 position(std::int64_t place) const { return {x[place], y[place], z[place]}; }
+  Vec3 velocity(std::int64_t place) const { return {vx[place], vy[place], vz[place]}; }
+  Vec3 spin(std::int64_t place) const { return {lx[place], ly[place], lz[place]}; }
+  Quat orientation(std::int64_t place) const { return Quat(qw[place], qx[place], qy[place], qz[place]).normalized(); }
+
+  /// The body at `place` as those functions take it that treat one body at a time, and back.
+  StatisticalBody body(std::int64_t place) const;
+  void put(std::int64_t place, const StatisticalBody& body);
+
+  /// A new body, awake; returns its place.
+  std::int64_t add(std::uint32_t owner);
+  /// Frees the body's place and slot. The body of the last slot takes over that slot.
+  void remove(std::uint32_t slot);
+  void wake(std::uint32_t slot);
+  void put_to_sleep(std::int64_t place);
+  void swap(std::int64_t a, std::int64_t b);
+  /// Place i of those awake gets what is at `order[i]` now.
+  void reorder_awake(const std::vector<std::uint32_t>& order);
+
+ private:
+  std::vector<std::uint64_t> scratch_;  // reorder_awake's
+};
+
+}  // namespace lodestone

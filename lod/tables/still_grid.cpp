@@ -1,0 +1,63 @@
+#include "lod/tables/still_grid.h"
+
+#include <algorithm>
+
+#include "reference/error.h"
+
+namespace lodestone {
+
+StillGrid::Key StillGrid::key_of(const Vec3& position, int level) {
+  const double inverse = 1.0 / edge_of(level);
+  return {along(position.x() * inverse), along(position.y() * inverse), along(position.z() * inverse), level};
+}
+
+// Where the key is, or the free place in which it would be.
+std::size_t StillGrid::place_of(const Key& key) const {
+  const std::size_t mask = cells_.size() - 1;
+  std::uint64_t hash = std::uint64_t(std::uint32_t(key.x)) * 0x9e3779b97f4a7c15u;
+  hash = (hash ^ (hash >> 29) ^ std::uint32_t(key.y)) * 0xbf58476d1ce4e5b9u;
+  hash = (hash ^ (hash >> 32) ^ std::uint32_t(key.z)) * 0x94d049bb133111ebu;
+  hash ^= (hash >> 31) ^ (std::uint64_t(std::uint32_t(key.level)) << 7);
+  std::size_t place = std::size_t(hash) & mask;
+  while (cells_[place].used && cells_[place].key != key) place = (place + 1) & mask;
+  return place;
+}
+
+void StillGrid::insert(std::uint32_t body, const Vec3& position, double radius) {
+  if (2 * (used_ + 1) > cells_.size()) grow();
+  const int level = level_of(radius);
+  Cell& cell = cells_[place_of(key_of(position, level))];
+  if (!cell.used) {
+    cell = {key_of(position, level), kNone, true};
+    ++used_;
+  }
+  if (body >= next_.size()) next_.resize(body + 1, kNone);
+  next_[body] = cell.head;
+  cell.head = body;
+  ++bodies_;
+  ++of_level_[level + 64];
+}
+
+void StillGrid::remove(std::uint32_t body, const Vec3& position, double radius) {
+  const int level = level_of(radius);
+  std::uint32_t* link = &cells_[place_of(key_of(position, level))].head;
+  while (*link != body) {
+    check_that(*link != kNone, "the body is where it was inserted");
+    link = &next_[*link];
+  }
+  *link = next_[body];
+  --bodies_;
+  --of_level_[level + 64];
+}
+
+// Cells that nobody lies in any more are left out.
+void StillGrid::grow() {
+  std::vector<Cell> old = std::move(cells_);
+  const auto lived_in = std::size_t(std::ranges::count_if(old, [](const Cell& cell) { return cell.head != kNone; }));
+  cells_.assign(std::bit_ceil(std::max<std::size_t>(64, 4 * (lived_in + 1))), {});
+  used_ = lived_in;
+  for (const Cell& cell : old)
+    if (cell.head != kNone) cells_[place_of(cell.key)] = cell;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,372 @@
+#include "lod/tables/tables_level.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lod/stage_timer.h"
+#include "reference/error.h"
+
+namespace lodestone {
+namespace {
+
+constexpr std::int64_t kBlock = 1024;        // bodies of a job
+constexpr int kOrderInterval = 16;           // steps between looks at how far bodies have moved from their places
+constexpr double kTouchFactor = 1.02;        // of the radii: what rests on a removed body
+
+}  // namespace
+
+TablesLevel::TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, Simd simd)
+    : settings_(settings), ground_(ground), materials_(materials), jobs_(make_job_runner(settings.threads)), simd_(simd), cells_(simd) {
+  tables_.options = settings.tables;
+}
+
+int TablesLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state, bool asleep,
+                     std::shared_ptr<const Signature> signature) {
+  reach_ = std::max(reach_, shape->radius);
+  const std::uint16_t kind = kinds_.find(std::move(shape), mass, material, std::move(signature), settings_.gravity.norm());
+  const std::int64_t place = spheres_.add(owner);
+  const auto slot = int(spheres_.slot[place]);
+  spheres_.kind[place] = kind;
+  given_of_slot_.push_back(-1);
+  set_state(slot, state);
+  spheres_.radius[place] = float(find_sphere_radius(spheres_.body(place), kind_of(place), settings_.tables, settings_.seed));
+  if (asleep) put_to_sleep(place);
+  return slot;
+}
+
+std::optional<std::uint32_t> TablesLevel::remove(int slot) {
+  check_that(slot >= 0 && slot < size(), "slot out of range");
+  const auto gone = std::uint32_t(slot), last = std::uint32_t(size()) - 1;
+  const std::int64_t place = spheres_.place_of_slot[gone];
+  const Vec3 position = spheres_.position(place);
+  const double radius = kind_of(place).shape->radius;
+  if (asleep(slot)) still_.remove(gone, position, radius);
+  // What rests on it, or it on, must find new support.
+  std::vector<std::uint32_t> touching;
+  still_.find_near(position, kTouchFactor * radius, [&](std::uint32_t other) {
+    const std::int64_t at = spheres_.place_of_slot[other];
+    if ((spheres_.position(at) - position).norm() < kTouchFactor * (radius + kind_of(at).shape->radius)) touching.push_back(other);
+  });
+  std::ranges::sort(touching);
+  for (const std::uint32_t other : touching) wake(int(other));
+
+  const std::int64_t last_place = spheres_.place_of_slot[last];
+  const bool renamed = gone != last, last_sleeps = renamed && last_place >= spheres_.awake;
+  const Vec3 last_position = spheres_.position(last_place);
+  const double last_radius = kind_of(last_place).shape->radius;
+  if (last_sleeps) still_.remove(last, last_position, last_radius);
+  spheres_.remove(gone);
+  if (last_sleeps) still_.insert(gone, last_position, last_radius);
+  std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
+  for (Push& push : pushes_)
+    if (push.slot == std::int32_t(last)) push.slot = slot;
+  forget_given(gone);
+  if (renamed && given_of_slot_[last] >= 0) given_[std::size_t(given_of_slot_[last])].first = gone;
+  given_of_slot_[gone] = given_of_slot_[last];
+  given_of_slot_.pop_back();
+  ordered_ = 0;
+  return renamed ? std::optional(spheres_.owner[spheres_.place_of_slot[gone]]) : std::nullopt;
+}
+
+RigidState TablesLevel::state(int slot) const {
+  if (const std::int32_t given = given_of_slot_[std::size_t(slot)]; given >= 0) return given_[std::size_t(given)].second;
+  const std::int64_t place = spheres_.place_of_slot[std::size_t(slot)];
+  const Quat orientation = spheres_.orientation(place);
+  return {spheres_.position(place), orientation, spheres_.velocity(place), angular_velocity(orientation, spheres_.spin(place), *kind_of(place).shape)};
+}
+
+Vec3 TablesLevel::position(int slot) const { return spheres_.position(spheres_.place_of_slot[std::size_t(slot)]); }
+
+void TablesLevel::set_state(int slot, const RigidState& state) {
+  wake(slot);
+  const std::int64_t place = spheres_.place_of_slot[std::size_t(slot)];
+  StatisticalBody body = spheres_.body(place);
+  body.position = state.position;
+  body.orientation = state.orientation;
+  body.velocity = state.velocity;
+  body.spin = spin_of(state.orientation, state.angular_velocity, *kind_of(place).shape);
+  body.motion = Motion::dynamic;
+  body.quiet_time = 0.0f;
+  spheres_.put(place, body);
+  forget_given(std::uint32_t(slot));
+  given_of_slot_[std::size_t(slot)] = std::int32_t(given_.size());
+  given_.emplace_back(std::uint32_t(slot), state);
+}
+
+void TablesLevel::wake(int slot) {
+  if (!asleep(slot)) return;
+  const std::int64_t place = spheres_.place_of_slot[std::size_t(slot)];
+  still_.remove(std::uint32_t(slot), spheres_.position(place), kind_of(place).shape->radius);
+  spheres_.wake(std::uint32_t(slot));
+  ordered_ = 0;
+}
+
+void TablesLevel::put_to_sleep(std::int64_t place) {
+  still_.insert(std::uint32_t(spheres_.slot[place]), spheres_.position(place), kind_of(place).shape->radius);
+  forget_given(std::uint32_t(spheres_.slot[place]));
+  spheres_.put_to_sleep(place);
+  ordered_ = 0;
+}
+
+void TablesLevel::forget_given(std::uint32_t slot) {
+  const std::int32_t given = given_of_slot_[slot];
+  if (given < 0) return;
+  given_of_slot_[slot] = -1;
+  given_[std::size_t(given)] = given_.back();
+  given_.pop_back();
+  if (std::size_t(given) < given_.size()) given_of_slot_[given_[std::size_t(given)].first] = given;
+}
+
+void TablesLevel::forget_all_given() {
+  for (const auto& given : given_) given_of_slot_[given.first] = -1;
+  if (given_.size() > 64) given_ = {};  // of a whole scene that was added
+  given_.clear();
+}
+
+void TablesLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
+  wake(slot);
+  pushes_.push_back({slot, force, torque});
+}
+
+template <class Task>
+void TablesLevel::each_block(const Task& task) const {
+  const std::int64_t count = spheres_.awake;
+  if (count == 0) return;
+  jobs_((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+}
+
+void TablesLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
+  StageTimes& times = report.times;
+  ContactTally tally;
+  forget_all_given();
+  {
+    const StageTimer timer(times.flight_ms);
+    apply_pushes(dt, tally);
+    start(dt);
+  }
+  const bool pair_phase = spheres_.size() + std::int64_t(neighbors.size()) > 1 && spheres_.awake + std::int64_t(neighbors.size()) > 0;
+  report.counters.pair_phases += pair_phase;
+  contacts_.clear();
+  if (pair_phase) {
+    {
+      const StageTimer timer(times.broad_phase_ms);
+      const auto count = std::size_t(spheres_.awake);
+      cells_.fill({std::span(spheres_.x).first(count), std::span(spheres_.y).first(count), std::span(spheres_.z).first(count), step_.reach});
+      ordered_ = spheres_.awake;
+    }
+    const StageTimer timer(times.pairs_ms);
+    find_contacts(neighbors);
+  }
+  {
+    const StageTimer timer(times.crowd_ms);
+    respond(tally);
+    meet_full(neighbors, full_contacts, tally);
+  }
+  {
+    const StageTimer timer(times.flight_ms);
+    finish(tally);
+  }
+  const StageTimer timer(times.rest_ms);
+  rest();
+  ++steps_;
+  report.contacts += int(tally.contacts);
+  report.counters.energy_clamps += tally.energy_clamps;
+  report.counters.table_extrapolations += tally.table_extrapolations;
+  report.counters.states_recovered += tally.states_recovered;
+}
+
+void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
+  for (const Push& push : pushes_) {
+    const std::int64_t place = spheres_.place_of_slot[std::size_t(push.slot)];
+    StatisticalBody body = spheres_.body(place);
+    const double impulse = dt / kind_of(place).mass;
+    body.velocity += impulse * push.force;
+    body.spin += impulse * push.torque;
+    spheres_.put(place, body);
+    if (!is_within_limit(body.velocity) || !is_within_limit(body.spin)) recover(place, tally);
+  }
+  pushes_.clear();
+}
+
+void TablesLevel::start(double dt) {
+  // Bodies near each other should lie near each other in memory, too.
+  if (steps_ % kOrderInterval == 0 && ordered_ == spheres_.awake && !std::ranges::is_sorted(cells_.order())) {
+    order_.assign(cells_.order().begin(), cells_.order().end());
+    spheres_.reorder_awake(order_);
+  }
+  const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height && settings_.tables.radius_update_interval <= 1;
+  const Vec3& g = settings_.gravity;
+  check_that(ground_.planes.size() < 255, "at most 254 planes");
+  constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
+                .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1};
+  step_.resize(std::size_t(spheres_.awake));
+  if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0) update_radii_one_by_one();
+  planes_.set(ground_, materials_, kinds_, settings_.gravity);
+  each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
+}
+
+void TablesLevel::start_block(std::int64_t begin, std::int64_t end, Simd simd) {
+  start_step(spheres_, kinds_, constants_, simd, begin, end, step_, spheres_);
+  for (std::size_t p = 0; p < ground_.planes.size(); ++p)
+    find_near_ground(spheres_, ground_.planes[p], std::uint8_t(p), constants_, simd, begin, end, step_);
+}
+
+void TablesLevel::update_radii_one_by_one() {
+  for (std::int64_t i = 0; i < spheres_.awake; ++i)
+    if (spheres_.motion[i] == Motion::dynamic && spheres_.since_crowded[i] > 0)
+      spheres_.radius[i] = float(find_sphere_radius(spheres_.body(i), kind_of(i), settings_.tables, settings_.seed));
+}
+
+void TablesLevel::find_contacts(std::span<FullNeighbor> neighbors) {
+  const std::int64_t were_awake = spheres_.awake;
+  find_full_touches(neighbors);
+  contacts_.find(spheres_, kinds_, cells_, constants_, jobs_);
+  find_still_contacts();
+  if (spheres_.awake > were_awake) {  // those that were woken start their step now
+    step_.resize(std::size_t(spheres_.awake));
+    start_block(were_awake, spheres_.awake, simd_);
+  }
+  for (const auto& [place, slot] : still_touches_) contacts_.add(spheres_, kinds_, place, spheres_.place_of_slot[slot], constants_);
+}
+
+// Of awake bodies with sleepers; those that are hit hard enough wake.
+void TablesLevel::find_still_contacts() {
+  still_touches_.clear();
+  if (still_.empty()) return;
+  for (std::int64_t i = 0; i < std::int64_t(ordered_); ++i) {
+    const Vec3 position = spheres_.position(i);
+    still_.find_near(position, double(step_.reach[i]), [&](std::uint32_t other) {
+      const std::int64_t at = spheres_.place_of_slot[other];
+      const double limit = double(step_.reach[i]) + 1.01 * double(spheres_.radius[at]);
+      if ((spheres_.position(at) - position).squaredNorm() < limit * limit) still_touches_.emplace_back(std::uint32_t(i), other);
+    });
+  }
+  std::ranges::sort(still_touches_);
+  for (const auto& [place, slot] : still_touches_) {
+    const std::int64_t at = spheres_.place_of_slot[slot];
+    if (at < spheres_.awake) continue;
+    const Vec3 between = spheres_.position(place) - spheres_.position(at);
+    const double gap = between.norm() - double(spheres_.radius[place]) - double(spheres_.radius[at]);
+    const Vec3 velocity = spheres_.velocity(place);
+    const double closing = velocity.dot(between.normalized());
+    const bool touches = gap + closing * double(constants_.time) <= 0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
+    if (touches && velocity.norm() > 2.0 * sleep_speed(at)) wake(int(slot));
+  }
+}
+
+void TablesLevel::respond(ContactTally& tally) {
+  tally.contacts += contacts_.count();
+  if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
+  const bool crowd = contacts_.count() > 0;
+  if (crowd) contacts_.begin(spheres_, kinds_, bounce_velocity(), step_, jobs_);
+  sort_ground();
+  if (!crowd) return;
+  const int sweeps = contacts_.settings().sweeps;
+  for (int sweep = 1; sweep <= sweeps; ++sweep) {
+    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, step_, jobs_);
+    if (sweep < sweeps)
+      each_block([&](std::int64_t begin, std::int64_t end) {
+        if (!ground_.planes.empty()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
+        take_impulses(simd_, begin, end, step_);
+      });
+  }
+  contacts_.remember(spheres_, constants_);
+}
+
+// The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves as if alone.
+void TablesLevel::respond_as_paper(ContactTally& tally) {
+  const auto take = [&](std::int64_t place, const StatisticalBody& body) {
+    spheres_.put(place, body);
+    start_block(place, place + 1, Simd::portable);
+  };
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second >= std::uint32_t(spheres_.awake)) return;
+    StatisticalBody first = spheres_.body(c.first), second = spheres_.body(c.second);
+    const BodyKind &first_kind = kind_of(c.first), &second_kind = kind_of(c.second);
+    const PairContact contact{Vec3(double(c.nx), double(c.ny), double(c.nz)), double(c.gap), {}};
+    respond_pair_as_paper(first, first_kind, second, second_kind, contact, world(), materials_.law(first_kind.material, second_kind.material), settings_.tables,
+                          tally);
+    take(c.first, first);
+    take(c.second, second);
+  });
+  contacts_.clear();
+}
+
+void TablesLevel::sort_ground() {
+  if (ground_.planes.empty()) return;
+  each_block([&](std::int64_t begin, std::int64_t end) {
+    sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
+    for (std::int64_t i = begin; i < end; ++i)
+      if (step_.on_ground[i] == std::uint8_t(GroundState::settles)) choose_rest_pose(i);
+  });
+}
+
+// The rest pose that needs the smallest rotation (3.4).
+void TablesLevel::choose_rest_pose(std::int64_t i) {
+  const RestingRecord resting = find_resting(spheres_.orientation(i), kind_of(i), ground_.planes[step_.plane[i]], step_.plane[i]);
+  if (resting.pose < 0) return;
+  spheres_.pose[i] = std::int16_t(resting.pose);
+  spheres_.plane[i] = std::int16_t(resting.plane);
+  spheres_.motion[i] = Motion::settling;
+}
+
+// Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts, motion.
+void TablesLevel::finish(ContactTally& tally) {
+  const bool ground = !ground_.planes.empty();
+  tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
+  each_block([&](std::int64_t begin, std::int64_t end) {
+    ContactTally& own = tallies_[std::size_t(begin / kBlock)];
+    if (ground) {
+      sweep_ground(planes_, constants_, simd_, begin, end, step_);
+      lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
+      for (std::int64_t i = begin; i < end; ++i)
+        if (step_.on_ground[i] == std::uint8_t(GroundState::near)) move_alone(i, own);
+    }
+    end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
+    for (std::int64_t i = begin; i < end; ++i) {
+      const bool crowded = step_.contacts[i] > 0;
+      spheres_.since_crowded[i] = crowded ? 0 : std::uint8_t(std::min(255, spheres_.since_crowded[i] + 1));
+      if (crowded && spheres_.motion[i] == Motion::settling && step_.on_ground[i] == std::uint8_t(GroundState::free)) spheres_.motion[i] = Motion::dynamic;
+      if (step_.unsound[i]) recover(i, own);
+    }
+  });
+  for (const ContactTally& t : tallies_) tally += t;
+}
+
+// A body that meets the ground by itself, after the impulses of its contacts with others.
+void TablesLevel::move_alone(std::int64_t i, ContactTally& tally) {
+  const float t = constants_.time;
+  StatisticalBody body = spheres_.body(i);
+  body.velocity = Vec3(double(step_.px[i] + step_.ax[i] - constants_.gx * t), double(step_.py[i] + step_.ay[i] - constants_.gy * t),
+                       double(step_.pz[i] + step_.az[i] - constants_.gz * t));
+  if (step_.contacts[i] == 0) body.velocity = spheres_.velocity(i);
+  body.spin += Vec3(double(step_.sx[i]), double(step_.sy[i]), double(step_.sz[i]));
+  body.position += Vec3(double(step_.dx[i]), double(step_.dy[i]), double(step_.dz[i]));
+  RestingRecord resting{spheres_.pose[i], spheres_.plane[i]};
+  ContactTally own = step_tables_body(body, resting, kind_of(i), world(), double(t), tables_);
+  tally += own;
+  spheres_.pose[i] = std::int16_t(resting.pose), spheres_.plane[i] = std::int16_t(resting.plane);
+  spheres_.put(i, body);
+  spheres_.held[i] = 0.0f;
+  step_.on_ground[i] = std::uint8_t(GroundState::moved);
+}
+
+// What is no number must not spread.
+void TablesLevel::recover(std::int64_t place, ContactTally& tally) {
+  StatisticalBody body = spheres_.body(place);
+  const Vec3 omega = angular_velocity(body.orientation, body.spin, *kind_of(place).shape);
+  const bool turned = std::abs(body.orientation.squaredNorm() - 1.0) < 1e-6;
+  if (is_within_limit(body.position) && is_within_limit(body.velocity) && is_within_limit(omega) && turned) {
+    spheres_.put(place, body);
+    return;
+  }
+  for (double& x : body.position) x = std::isfinite(x) ? std::clamp(x, -kStateLimit, kStateLimit) : 0.0;
+  if (!turned) body.orientation = Quat::Identity();
+  body.velocity.setZero();
+  body.spin.setZero();
+  spheres_.put(place, body);
+  spheres_.known_count[place] = 0;
+  ++tally.states_recovered;
+}
+
+}  // namespace lodestone

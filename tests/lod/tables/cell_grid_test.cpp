@@ -1,0 +1,103 @@
+// The cells against every pair tried: the same pairs, each once, for layers, piles, sparse clouds and mixed sizes.
+#include "lod/tables/cell_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "reference/random.h"
+
+namespace lodestone {
+namespace {
+
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+struct Balls {
+  std::vector<double> x, y, z;
+  std::vector<float> reach;
+  void add(const Vec3& p, double r) { x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z()), reach.push_back(float(r)); }
+  BallSpan span() const { return {x, y, z, reach}; }
+  Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  double gap(std::size_t i, std::size_t j) const { return (at(i) - at(j)).norm() - double(reach[i]) - double(reach[j]); }
+};
+
+Balls cloud(int count, const Vec3& sides, double least, double most, const Vec3& from = Vec3::Zero()) {
+  Balls balls;
+  for (int i = 0; i < count; ++i) {
+    RandomStream random(3, std::uint64_t(i), 0);
+    const Vec3 p(random.uniform() * sides.x(), random.uniform() * sides.y(), random.uniform() * sides.z());
+    balls.add(from + p, least * std::pow(most / least, random.uniform()));
+  }
+  return balls;
+}
+
+// Missing none that overlap, none twice, and none beyond the rounding of where balls are kept.
+void expect_all_pairs(const Balls& balls, double rounding = 1e-3) {
+  CellGrid grid;
+  grid.fill(balls.span());
+  std::map<Pair, int> found;
+  std::array<std::map<std::uint32_t, std::int64_t>, CellGrid::kColours> part_of;
+  for (std::int64_t part = 0; part < grid.parts(); ++part)
+    grid.find_pairs(part, [&](std::uint32_t a, std::uint32_t b) {
+      ++found[std::minmax(a, b)];
+      for (const std::uint32_t ball : {a, b}) {
+        const auto [known, fresh] = part_of[std::size_t(grid.colour_of(part))].emplace(ball, part);
+        EXPECT_TRUE(fresh || known->second == part) << "two parts of one colour share ball " << ball;
+      }
+    });
+  for (const auto& [pair, times] : found) {
+    EXPECT_EQ(times, 1) << pair.first << ' ' << pair.second;
+    EXPECT_LT(balls.gap(pair.first, pair.second), rounding) << pair.first << ' ' << pair.second;
+  }
+  std::size_t near = 0;
+  for (std::uint32_t i = 0; i < balls.x.size(); ++i)
+    for (std::uint32_t j = i + 1; j < balls.x.size(); ++j)
+      if (balls.gap(i, j) < 0.0) {
+        ++near;
+        EXPECT_TRUE(found.contains({i, j})) << i << ' ' << j;
+      }
+  EXPECT_GT(near, 0u);
+  std::set<std::uint32_t> every(grid.order().begin(), grid.order().end());
+  EXPECT_EQ(every.size(), balls.x.size());
+}
+
+TEST(CellGrid, FewBalls) { expect_all_pairs(cloud(12, {1, 1, 1}, 0.2, 0.2)); }
+TEST(CellGrid, ThinLayer) { expect_all_pairs(cloud(1500, {12, 12, 0.3}, 0.1, 0.2)); }
+TEST(CellGrid, Pile) { expect_all_pairs(cloud(1500, {3, 3, 4}, 0.1, 0.15)); }
+TEST(CellGrid, LongRow) { expect_all_pairs(cloud(800, {0.2, 150, 0.2}, 0.1, 0.1)); }
+TEST(CellGrid, SparseCloud) { expect_all_pairs(cloud(2000, {60, 50, 40}, 0.5, 1.0)); }
+TEST(CellGrid, FarFromTheOrigin) { expect_all_pairs(cloud(1000, {4, 4, 2}, 0.1, 0.2, {1e4, -1e4, 1e4})); }
+TEST(CellGrid, MixedSizes) { expect_all_pairs(cloud(1200, {10, 10, 10}, 0.01, 2.0)); }
+
+TEST(CellGrid, TwoCloudsFarApart) {
+  Balls balls = cloud(700, {3, 3, 3}, 0.1, 0.1);
+  const Balls other = cloud(700, {3, 3, 3}, 0.1, 0.1, {1e4, 5e3, -8e3});
+  for (std::size_t i = 0; i < other.x.size(); ++i) balls.add(other.at(i), double(other.reach[i]));
+  expect_all_pairs(balls, 0.02);
+}
+
+TEST(CellGrid, PebblesAmongBoulders) {
+  Balls balls = cloud(1500, {30, 30, 0.5}, 0.01, 0.012);
+  for (int i = 0; i < 6; ++i) balls.add({5.0 * i, 20.0 - 3.0 * i, 2.0}, 5.0);
+  expect_all_pairs(balls);
+}
+
+TEST(CellGrid, NearAPlaceAreAllThatReachIt) {
+  for (const Balls& balls : {cloud(1000, {6, 6, 0.4}, 0.1, 0.2), cloud(1000, {80, 80, 80}, 0.3, 3.0)}) {
+    CellGrid grid;
+    grid.fill(balls.span());
+    for (const Vec3& center : {Vec3(2, 3, 0.1), Vec3(-1, 0, 0), Vec3(40, 41, 39), Vec3(500, 0, 0)})
+      for (const double reach : {0.1, 2.0, 30.0}) {
+        std::set<std::uint32_t> found;
+        grid.find_near(center, reach, [&](std::uint32_t ball) { EXPECT_TRUE(found.insert(ball).second); });
+        for (std::uint32_t i = 0; i < balls.x.size(); ++i) {
+          const bool reaches = (balls.at(i) - center).norm() < reach + double(balls.reach[i]);
+          EXPECT_TRUE(!reaches || found.contains(i)) << i;
+        }
+      }
+  }
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,55 @@
+#include "lod/tables/still_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "reference/random.h"
+
+namespace lodestone {
+namespace {
+
+struct Lying {
+  Vec3 position;
+  double radius;
+};
+
+Lying lying(std::uint32_t body) {
+  RandomStream random(8, body, 0);
+  const Vec3 position(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-1, 1));
+  return {position, body % 50 == 0 ? 4.0 : random.uniform(0.05, 0.3)};
+}
+
+std::set<std::uint32_t> near(const StillGrid& grid, const Vec3& center, double reach) {
+  std::set<std::uint32_t> found;
+  grid.find_near(center, reach, [&](std::uint32_t body) { EXPECT_TRUE(found.insert(body).second) << body; });
+  return found;
+}
+
+TEST(StillGrid, FindsWhatLiesNearWhoeverCameAndWent) {
+  StillGrid grid;
+  EXPECT_TRUE(grid.empty());
+  std::set<std::uint32_t> inside;
+  for (std::uint32_t round = 0; round < 6000; ++round) {
+    RandomStream random(9, round, 0);
+    const auto body = std::uint32_t(random.uniform() * 1000);
+    const Lying l = lying(body);
+    if (inside.erase(body)) grid.remove(body, l.position, l.radius);
+    else inside.insert(body), grid.insert(body, l.position, l.radius);
+    if (round % 100) continue;
+    const Vec3 center(random.uniform(-22, 22), random.uniform(-22, 22), 0);
+    const double reach = random.uniform(0.1, 3.0);
+    const auto found = near(grid, center, reach);
+    for (const std::uint32_t other : inside) {
+      const bool reaches = (lying(other).position - center).norm() < reach + lying(other).radius;
+      EXPECT_TRUE(!reaches || found.contains(other)) << other;
+    }
+    for (const std::uint32_t other : found) EXPECT_TRUE(inside.contains(other)) << other;
+  }
+  for (const std::uint32_t body : inside) grid.remove(body, lying(body).position, lying(body).radius);
+  EXPECT_TRUE(grid.empty());
+  EXPECT_TRUE(near(grid, Vec3::Zero(), 100.0).empty());
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,247 @@
+// The tables model in dense arrays: the same result for every instruction set, nothing allocated, momentum kept, piles that stand, sleepers that cost nothing.
+#include "lod/tables/tables_level.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "reference/free_rotation.h"
+#include "reference/random.h"
+#include "signature/measure/measure.h"
+
+namespace {
+std::atomic<std::int64_t> allocations = 0;
+}
+
+// Counted for this program's tests. The sanitizers bring their own.
+#if !defined(__SANITIZE_ADDRESS__)
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // where one is inlined and the other is not
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#endif
+
+namespace lodestone {
+namespace {
+
+constexpr double kFrame = 1.0 / 60;
+
+std::shared_ptr<const Shape> box() {
+  static const auto shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
+  return shape;
+}
+
+std::shared_ptr<const Signature> box_signature() {
+  static const auto signature = [] {
+    SignatureSettings settings;
+    settings.n_theta = 4, settings.n_phi = 4, settings.n_alpha = 6, settings.trials_per_cell = 16;
+    settings.height_trials = 200, settings.settling_trials = 60, settings.clips = 30;
+    return std::make_shared<const Signature>(measure_signature(*box(), settings, 2));
+  }();
+  return signature;
+}
+
+class SphereLevel : public testing::Test {
+ protected:
+  SphereLevel() {
+    ground_.planes.push_back({});
+    settings_.model = StatisticalModel::tables;
+  }
+  TablesLevel make(Simd simd = find_simd()) const { return TablesLevel(settings_, ground_, materials_, simd); }
+  static int add(TablesLevel& level, const RigidState& state, bool asleep = false) {
+    return level.add(std::uint32_t(level.size()), box(), 24.0, 0, state, asleep, box_signature());
+  }
+  // A heap that falls: `side` × `side` columns.
+  static void add_heap(TablesLevel& level, int side, int layers) {
+    for (int i = 0; i < side * side * layers; ++i) {
+      RandomStream random(5, std::uint64_t(i), 0);
+      RigidState s;
+      s.position = {0.5 * (i % side), 0.5 * (i / side % side), 0.5 + 0.6 * (i / (side * side))};
+      s.orientation = random.orientation();
+      s.angular_velocity = random.uniform(0.0, 5.0) * random.direction();
+      add(level, s);
+    }
+  }
+  static StepReport run(TablesLevel& level, int steps) {
+    StepReport report;
+    for (int i = 0; i < steps; ++i) {
+      report = {};
+      level.step(kFrame, {}, report, {});
+    }
+    return report;
+  }
+  static void expect_same(const TablesLevel& a, const TablesLevel& b) {
+    for (int slot = 0; slot < a.size(); ++slot) {
+      const RigidState s = a.state(slot), t = b.state(slot);
+      ASSERT_EQ(s.position, t.position) << slot;
+      ASSERT_EQ(s.orientation.coeffs(), t.orientation.coeffs()) << slot;
+      ASSERT_EQ(s.velocity, t.velocity) << slot;
+      ASSERT_EQ(s.angular_velocity, t.angular_velocity) << slot;
+    }
+  }
+
+  StatisticalSettings settings_;
+  StaticGround ground_;
+  MaterialTable materials_;
+};
+
+TEST_F(SphereLevel, EveryInstructionSetGivesTheSameBits) {
+  TablesLevel portable = make(Simd::portable);
+  add_heap(portable, 9, 5);
+  run(portable, 150);
+  for (const Simd simd : {Simd::avx2, Simd::avx512}) {
+    if (simd > find_simd()) continue;  // this processor lacks it
+    TablesLevel wide = make(simd);
+    add_heap(wide, 9, 5);
+    run(wide, 150);
+    expect_same(portable, wide);
+  }
+}
+
+TEST_F(SphereLevel, AnyNumberOfThreadsGivesTheSameBits) {
+  TablesLevel one = make();
+  add_heap(one, 40, 3);
+  run(one, 90);
+  settings_.threads = 3;
+  TablesLevel three = make();
+  add_heap(three, 40, 3);
+  run(three, 90);
+  expect_same(one, three);
+}
+
+TEST_F(SphereLevel, AWarmStepAllocatesNothing) {
+  settings_.sleeping = false;
+  TablesLevel level = make();
+  add_heap(level, 12, 4);
+  run(level, 400);
+  const std::int64_t before = allocations;
+  run(level, 50);
+  EXPECT_EQ(allocations - before, 0);
+}
+
+TEST_F(SphereLevel, ContactsKeepMomentum) {
+  ground_.planes.clear();
+  settings_.gravity.setZero();
+  TablesLevel level = make();
+  Vec3 before = Vec3::Zero();
+  for (int i = 0; i < 300; ++i) {
+    RandomStream random(6, std::uint64_t(i), 0);
+    RigidState s;
+    s.position = 2.2 * Vec3(random.uniform(), random.uniform(), random.uniform());
+    s.velocity = 3.0 * random.direction();
+    s.orientation = random.orientation();
+    before += s.velocity;
+    add(level, s);
+  }
+  std::int64_t contacts = 0;
+  double energy = 1e30;
+  for (int step = 0; step < 60; ++step) {
+    contacts += run(level, 1).contacts;
+    Vec3 now = Vec3::Zero();
+    double kinetic = 0.0;
+    for (int slot = 0; slot < level.size(); ++slot) {
+      const RigidState s = level.state(slot);
+      now += s.velocity;
+      kinetic += 0.5 * (s.velocity.squaredNorm() + s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, *box())));
+    }
+    ASSERT_LT((now - before).norm(), 3e-4) << step;
+    ASSERT_LE(kinetic, energy * 1.0001) << step;
+    energy = kinetic;
+  }
+  EXPECT_GT(contacts, 500);
+}
+
+TEST_F(SphereLevel, AHeapComesToRestWithoutSinkingIntoItself) {
+  TablesLevel level = make();
+  add_heap(level, 4, 6);
+  run(level, 600);
+  double worst = 0.0;
+  for (int a = 0; a < level.size(); ++a) {
+    EXPECT_GT(level.position(a).z(), 0.05);
+    for (int b = 0; b < a; ++b)
+      worst = std::max(worst, level.sphere_radius(a) + level.sphere_radius(b) - (level.position(a) - level.position(b)).norm());
+  }
+  EXPECT_LT(worst, 0.1 * box()->radius);
+  EXPECT_GT(level.asleep_count(), level.size() * 9 / 10);
+}
+
+TEST_F(SphereLevel, OnlyWhatIsTouchedWakes) {
+  TablesLevel level = make();
+  for (int i = 0; i < 400; ++i) {
+    RigidState s;
+    s.position = {0.8 * (i % 20), 0.8 * (i / 20), 0.15};
+    add(level, s, true);
+  }
+  run(level, 5);
+  EXPECT_EQ(level.asleep_count(), 400);
+  RigidState falling;
+  falling.position = {8.0, 8.0, 1.0};
+  add(level, falling);
+  std::vector<bool> woken(400);
+  for (int step = 0; step < 240; ++step) {
+    run(level, 1);
+    for (const std::int32_t slot : level.awake())
+      if (slot < 400) woken[std::size_t(slot)] = true;
+  }
+  const auto count = std::ranges::count(woken, true);
+  EXPECT_GT(count, 0);
+  EXPECT_LT(count, 40);
+  EXPECT_GT(level.asleep_count(), 395);
+}
+
+TEST_F(SphereLevel, WhatRestedOnARemovedBodyWakesAndSlotsStayDense) {
+  TablesLevel level = make();
+  for (int i = 0; i < 3; ++i) {
+    RigidState s;
+    s.position = {i == 2 ? 5.0 : 0.0, 0.0, 0.2 + (i == 1 ? 0.36 : 0.0)};
+    add(level, s, true);
+  }
+  const auto moved = level.remove(0);
+  ASSERT_TRUE(moved);
+  EXPECT_EQ(*moved, 2u);
+  EXPECT_TRUE(level.asleep(0));
+  EXPECT_EQ(level.position(0).x(), 5.0);
+  EXPECT_FALSE(level.asleep(1));
+  EXPECT_FALSE(level.remove(1));
+  EXPECT_EQ(level.size(), 1);
+  level.wake(0);
+  EXPECT_EQ(level.asleep_count(), 0);
+}
+
+TEST_F(SphereLevel, AStateThatWasSetIsReadBackToTheBit) {
+  TablesLevel level = make();
+  RandomStream random(1, 2, 3);
+  RigidState s;
+  s.position = {1.0 / 3, 1e4 / 7, 2.0 / 3};
+  s.orientation = random.orientation();
+  s.velocity = {0.1, 0.2, 0.3};
+  s.angular_velocity = {1.0 / 3, 1, 2};
+  const int slot = add(level, s);
+  const RigidState t = level.state(slot);
+  EXPECT_EQ(s.position, t.position);
+  EXPECT_EQ(s.orientation.coeffs(), t.orientation.coeffs());
+  EXPECT_EQ(s.velocity, t.velocity);
+  EXPECT_EQ(s.angular_velocity, t.angular_velocity);
+}
+
+// Positions are exact to .1 mm ten kilometres out: a fall there is the fall here.
+TEST_F(SphereLevel, FarFromTheOriginBodiesFallAsHere) {
+  TablesLevel level = make();
+  RigidState s;
+  s.position = {0, 0, 3.0};
+  const int here = add(level, s);
+  s.position += Vec3(1e4, -1e4, 0);
+  const int there = add(level, s);
+  run(level, 30);
+  EXPECT_LT((level.position(there) - level.position(here) - Vec3(1e4, -1e4, 0)).norm(), 1e-9);
+  EXPECT_NEAR(level.position(here).z(), 3.0 - 0.5 * 9.81 * 0.25, 1e-4);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,84 @@
+// Table 1 of few bodies: the layout, what the rows say, and what is left out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "reference/error.h"
+#include "tests/tools/cli_fixture.h"
+#include "tools/bench/table1_report.h"
+
+namespace lodestone {
+namespace {
+
+TEST(Table1Job, NoTwoBodiesTouchAtTheStart) {
+  const double radius = make_table1_job().shape->radius;
+  for (const int bodies : {10, 100, 700}) {
+    std::vector<Vec3> centers;
+    for (int i = 0; i < bodies; ++i) centers.push_back(table1_start(i, bodies, 1).position);
+    for (int i = 0; i < bodies; ++i) {
+      EXPECT_GT(centers[i].z(), 2.0 * radius);
+      for (int j = 0; j < i; ++j) ASSERT_GT((centers[i] - centers[j]).norm(), 2.0 * radius) << i << ' ' << j << " of " << bodies;
+    }
+  }
+}
+
+TEST(Table1Job, ThePapersImprovementOverItsFullSimulation) {
+  EXPECT_NEAR(paper_times("full_plain", 1'000).step_ms / paper_times("statistical", 1'000).step_ms, 134, 1);
+  EXPECT_EQ(paper_times("full_plain", 10'000).step_ms, 0.0);
+  EXPECT_EQ(paper_times("sphere", 10).step_ms, 0.0);
+}
+
+Table1Settings few(std::vector<std::string> methods) {
+  Table1Settings settings;
+  settings.bodies = {12};
+  settings.methods = std::move(methods);
+  return settings;
+}
+
+TEST(Table1, RowsComeWithTheirStagesAndTheSameStatesEveryTime) {
+  const auto settings = few({"sphere", "spheres7"});
+  const auto rows = measure_table1(settings), again = measure_table1(settings);
+  ASSERT_EQ(rows.size(), 2u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_TRUE(rows[i].step_ms && rows[i].collision_ms && rows[i].response_ms);
+    EXPECT_GE(*rows[i].step_ms, *rows[i].collision_ms);
+    EXPECT_EQ(rows[i].awake, (std::array{12, 12, 12}));
+    EXPECT_GT(rows[i].bytes_per_body, 100.0);
+    EXPECT_EQ(rows[i].state_hash, again[i].state_hash);
+  }
+  EXPECT_NE(rows[0].state_hash, rows[1].state_hash);
+  EXPECT_DOUBLE_EQ(*rows[0].times_less_than_spheres7, *rows[1].step_ms / *rows[0].step_ms);
+  EXPECT_FALSE(rows[0].times_less_than_full_plain);
+}
+
+TEST(Table1, RowsThatWouldTakeTooLongAreLeftOut) {
+  auto settings = few({"sphere"});
+  settings.row_seconds = 1e-9;
+  const auto rows = measure_table1(settings);
+  EXPECT_FALSE(rows[0].step_ms);
+  EXPECT_NE(rows[0].left_out.find("would take"), std::string::npos) << rows[0].left_out;
+  settings = few({"full_plain"});
+  settings.bodies = {1'001};
+  EXPECT_NE(measure_table1(settings)[0].left_out.find("1000 bodies"), std::string::npos);
+}
+
+TEST(Table1Report, CsvHasACellForEachKeyOfTheJson) {
+  const std::vector<Table1Row> rows = {{.bodies = 10, .method = "full_plain", .left_out = "too slow"},
+                                       {.bodies = 10, .method = "statistical", .model = "tables", .step_ms = 0.5, .awake = {3, 2, 1}, .state_hash = 255}};
+  const auto file = std::filesystem::temp_directory_path() / ("table1-" + std::to_string(::getpid()) + ".csv");
+  save_csv(rows, file);
+  std::istringstream lines(testing::bytes_of(file));
+  std::filesystem::remove(file);
+  const auto json = json_of(rows);
+  for (std::string line; std::getline(lines, line);) EXPECT_EQ(std::size_t(std::ranges::count(line, ',')) + 1, json["rows"][0].size()) << line;
+  EXPECT_TRUE(json["rows"][0]["step_ms"].is_null());
+  EXPECT_EQ(json["rows"][0]["reason"], "too slow");
+  EXPECT_EQ(json["rows"][1]["state_hash"], "00000000000000ff");
+  EXPECT_EQ(json["rows"][1]["awake"][2], 1);
+  EXPECT_THROW(save_csv(rows, "/no/such/folder/table.csv"), InputError);
+}
+
+}  // namespace
+}  // namespace lodestone

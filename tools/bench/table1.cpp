@@ -1,0 +1,172 @@
+#include "tools/bench/table1.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace lodestone {
+namespace {
+
+constexpr int kMeshBodiesMax = 1'000, kOtherBodiesMax = 10'000;
+constexpr int kLatestSteps = 10;  // whose mean predicts those to come
+constexpr double kPartToJudge = 0.1;  // of the time allowed is spent first: the steps in which all bodies land are the slowest
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+bool is_mesh(const DropMethod& method) {
+  const auto* ode = std::get_if<OdeMethod>(&method.way);
+  return ode && (ode->geometry == OdeGeometry::trimesh || ode->geometry == OdeGeometry::hull);
+}
+
+/// Steps made so far, and when they would all be done.
+class Clock {
+ public:
+  void add(double step_ms) {
+    spent_ms_ += step_ms;
+    steps_ms_.push_back(step_ms);
+  }
+  double predicted_s() const {
+    const std::size_t latest = std::min<std::size_t>(kLatestSteps, steps_ms_.size());
+    double sum = 0.0;
+    for (std::size_t i = steps_ms_.size() - latest; i < steps_ms_.size(); ++i) sum += steps_ms_[i];
+    return 1e-3 * (spent_ms_ + sum / double(latest) * double(kTable1Steps - int(steps_ms_.size())));
+  }
+  double spent_s() const { return 1e-3 * spent_ms_; }
+
+ private:
+  double spent_ms_ = 0.0;
+  std::vector<double> steps_ms_;
+};
+
+/// The medians of what a row shows.
+class Columns {
+ public:
+  void add(const StepMs& ms) {
+    step_.push_back(ms.step);
+    for (const auto& [value, column] : {std::pair{&ms.collision, &collision_}, {&ms.response, &response_}, {&ms.rest, &rest_}})
+      if (*value) column->push_back(**value);
+  }
+  void give_to(Table1Row& row) const {
+    row.step_ms = median_of(step_);
+    for (const auto& [column, value] : {std::pair{&collision_, &row.collision_ms}, {&response_, &row.response_ms}, {&rest_, &row.rest_ms}})
+      if (!column->empty()) *value = median_of(*column);
+  }
+
+ private:
+  std::vector<double> step_, collision_, response_, rest_;
+};
+
+class Table1 {
+ public:
+  explicit Table1(const Table1Settings& settings) : settings_(settings), job_(make_table1_job()) {
+    methods_ = make_drop_methods(settings.methods, job_, settings.measuring, 0, settings.progress);
+  }
+
+  std::vector<Table1Row> rows() {
+    std::vector<int> sizes = settings_.bodies;
+    std::ranges::sort(sizes);
+    std::vector<Table1Row> rows;
+    for (const int bodies : sizes) {
+      const std::size_t first = rows.size();
+      for (const DropMethod& method : methods_) rows.push_back(measure(method, bodies));
+      compare(std::span(rows).subspan(first));
+    }
+    return rows;
+  }
+
+ private:
+  Table1Row measure(const DropMethod& method, int bodies) {
+    Table1Row row{.bodies = bodies, .method = method.name, .model = method.model(), .threads = 1, .left_out = find_reason(method, bodies)};
+    if (std::holds_alternative<StatisticalMethod>(method.way)) row.threads = settings_.threads;
+    if (!row.left_out.empty()) return row;
+    double seconds = run(method, row, settings_.row_seconds);
+    if (std::holds_alternative<OdeMethod>(method.way)) try_hash_space(method, row, seconds);
+    if (row.step_ms) last_[key_of(row)] = {bodies, seconds};
+    return row;
+  }
+
+  // Why not even to try; empty where there is no reason.
+  std::string find_reason(const DropMethod& method, int bodies) const {
+    if (!method.left_out.empty()) return method.left_out;
+    if (is_mesh(method) && bodies > kMeshBodiesMax) return fmt::format("trimeshes: {} bodies at most", kMeshBodiesMax);
+    if (!std::holds_alternative<StatisticalMethod>(method.way) && bodies > kOtherBodiesMax) return fmt::format("{} bodies at most", kOtherBodiesMax);
+    const auto smaller = last_.find(method.name + method.model());
+    if (smaller == last_.end()) return "";
+    const double seconds = smaller->second.seconds * bodies / smaller->second.bodies;  // at least: no method's time grows less
+    if (seconds <= settings_.row_seconds) return "";
+    return fmt::format("would take {:.0f} s or more by the row of {} bodies", seconds, smaller->second.bodies);
+  }
+
+  // Returns the seconds that all steps took; where they would be more than `limit_s`, `row` says so instead.
+  double run(const DropMethod& method, Table1Row& row, double limit_s) const {
+    Table1World world(job_, method,
+                      {.bodies = row.bodies, .threads = row.threads, .sleeping = settings_.sleeping, .hash_space = row.hash_space, .seed = settings_.seed});
+    Clock clock;
+    Columns columns;
+    for (int step = 0; step < kTable1Steps; ++step) {
+      show(row, step);
+      const StepMs ms = world.step(kTable1Step);
+      clock.add(ms.step);
+      if (step >= kTable1FirstTimed) columns.add(ms);
+      if (step == 60) row.awake[0] = world.awake();
+      if (step == 120) row.awake[1] = world.awake();
+      if (clock.predicted_s() > limit_s && clock.spent_s() > kPartToJudge * limit_s) {
+        row.left_out = fmt::format("would take {:.0f} s, as predicted after {} steps", clock.predicted_s(), step + 1);
+        return clock.predicted_s();
+      }
+    }
+    row.awake[2] = world.awake();
+    row.state_hash = world.state_hash();
+    row.bytes_per_body = world.bytes_per_body();
+    columns.give_to(row);
+    return clock.spent_s();
+  }
+
+  // The same again with ODE's other space: the row shows the faster.
+  void try_hash_space(const DropMethod& method, Table1Row& row, double& seconds) const {
+    Table1Row other{.bodies = row.bodies, .method = row.method, .model = row.model, .threads = row.threads, .hash_space = true};
+    const double other_seconds = run(method, other, std::min(settings_.row_seconds, 1.5 * seconds));
+    if (!other.step_ms || (row.step_ms && *row.step_ms <= *other.step_ms)) return;
+    row = std::move(other);
+    seconds = other_seconds;
+  }
+
+  void compare(std::span<Table1Row> rows) const {
+    const auto step_of = [&](std::string_view method) {
+      const auto found = std::ranges::find(rows, method, &Table1Row::method);
+      return found == rows.end() ? std::nullopt : found->step_ms;
+    };
+    const auto plain = step_of("full_plain"), spheres = step_of("spheres7");
+    for (Table1Row& row : rows) {
+      if (row.step_ms && plain) row.times_less_than_full_plain = *plain / *row.step_ms;
+      if (row.step_ms && spheres) row.times_less_than_spheres7 = *spheres / *row.step_ms;
+    }
+  }
+
+  void show(const Table1Row& row, int step) const {
+    if (settings_.progress) settings_.progress(fmt::format("{} bodies, {} {}", row.bodies, row.method, row.model), double(step) / kTable1Steps);
+  }
+
+  static std::string key_of(const Table1Row& row) { return row.method + row.model; }
+
+  struct Last {
+    int bodies = 0;
+    double seconds = 0.0;
+  };
+  const Table1Settings& settings_;
+  DropJob job_;
+  std::vector<DropMethod> methods_;
+  std::map<std::string, Last> last_;  // the greatest row measured of each method
+};
+
+}  // namespace
+
+std::vector<Table1Row> measure_table1(const Table1Settings& settings) { return Table1(settings).rows(); }
+
+}  // namespace lodestone

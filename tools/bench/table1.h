@@ -1,0 +1,42 @@
+// Table 1 of Hsu and Keyser, measured here: what a step of n fallen bodies costs by each method, in one run.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/bench/table1_job.h"
+#include "tools/bench/table1_world.h"
+
+namespace lodestone {
+
+struct Table1Settings {
+  std::vector<int> bodies = {10, 100, 1'000, 10'000};
+  std::vector<std::string> methods = {"full_plain", "full", "low", "spheres7", "sphere", "bullet_hull", "bullet_sphere", "statistical"};
+  int threads = 1;              ///< of the statistical level; the others run on one
+  bool sleeping = false;
+  double row_seconds = 120.0;   ///< rows that would take longer are left out
+  SignatureSettings measuring = {};
+  std::uint64_t seed = 1;
+  Progress progress = {};
+};
+
+/// Medians of steps 60 to 179. Numbers are absent where they were not measured.
+struct Table1Row {
+  int bodies = 0;
+  std::string method = {}, model = {};
+  int threads = 1;
+  std::optional<double> step_ms = {}, collision_ms = {}, response_ms = {}, rest_ms = {};
+  std::array<int, 3> awake{};                        ///< after steps 60, 120 and 179
+  std::uint64_t state_hash = 0;                      ///< after the last step
+  double bytes_per_body = 0.0;
+  bool hash_space = false;                           ///< ODE's: whether this space, not sweep and prune, was the faster
+  std::optional<double> times_less_than_full_plain = {}, times_less_than_spheres7 = {};  ///< of a step, with as many bodies
+  std::string left_out = {};
+};
+
+/// A row for each number of bodies and method, numbers in rising order.
+std::vector<Table1Row> measure_table1(const Table1Settings& settings);
+
+}  // namespace lodestone

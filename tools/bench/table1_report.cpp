@@ -1,0 +1,102 @@
+#include "tools/bench/table1_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+
+#include "reference/error.h"
+#include "tools/text_table.h"
+
+namespace lodestone {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json or_null(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(nullptr); }
+ordered_json or_null(double value) { return value > 0.0 ? ordered_json(value) : ordered_json(nullptr); }
+ordered_json or_null(const std::string& text) { return text.empty() ? ordered_json(nullptr) : ordered_json(text); }
+
+ordered_json json_of(const Table1Row& row) {
+  const bool measured = row.step_ms.has_value();
+  const PaperTimes paper = paper_times(row.method, row.bodies);
+  return {{"bodies", row.bodies},
+          {"method", row.method},
+          {"model", or_null(row.model)},
+          {"threads", row.threads},
+          {"step_ms", or_null(row.step_ms)},
+          {"collision_ms", or_null(row.collision_ms)},
+          {"response_ms", or_null(row.response_ms)},
+          {"rest_ms", or_null(row.rest_ms)},
+          {"awake", measured ? ordered_json(row.awake) : ordered_json(nullptr)},
+          {"state_hash", measured ? ordered_json(fmt::format("{:016x}", row.state_hash)) : ordered_json(nullptr)},
+          {"bytes_per_body", measured ? or_null(row.bytes_per_body) : ordered_json(nullptr)},
+          {"broad_phase", row.hash_space ? ordered_json("hash") : ordered_json(nullptr)},
+          {"times_less_than_full_plain", or_null(row.times_less_than_full_plain)},
+          {"times_less_than_spheres7", or_null(row.times_less_than_spheres7)},
+          {"paper_step_ms", or_null(paper.step_ms)},
+          {"paper_collision_ms", or_null(paper.collision_ms)},
+          {"paper_response_ms", or_null(paper.response_ms)},
+          {"reason", or_null(row.left_out)}};
+}
+
+std::string ms_or_blank(const std::optional<double>& ms) { return ms ? fmt::format("{:.4f}", *ms) : ""; }
+std::string times_or_blank(const std::optional<double>& times) { return times ? fmt::format("{:.3g}", *times) : ""; }
+
+// Of a step, over the first column of as many bodies: the paper's percentages.
+std::string paper_percent(const PaperTimes& paper, int bodies) {
+  const PaperTimes whole = paper_times(bodies == 10'000 ? "spheres7" : "full_plain", bodies);
+  return paper.step_ms > 0.0 && whole.step_ms > 0.0 ? fmt::format("{:.2f}", 100.0 * paper.step_ms / whole.step_ms) : "";
+}
+
+std::string percent_of(const Table1Row& row) {
+  const auto& times = row.times_less_than_full_plain ? row.times_less_than_full_plain : row.times_less_than_spheres7;
+  return times ? fmt::format("{:.3g}", 100.0 / *times) : "";
+}
+
+std::string csv_cell(const ordered_json& value) {
+  if (value.is_null()) return "";
+  if (value.is_array()) return fmt::format("{} {} {}", value[0].get<int>(), value[1].get<int>(), value[2].get<int>());
+  if (!value.is_string()) return value.dump();
+  return fmt::format("\"{}\"", value.get<std::string>());
+}
+
+}  // namespace
+
+std::string text_of(std::span<const Table1Row> rows) {
+  TextTable table({"bodies", "method", "step ms", "collision", "response", "rest", "%", "x full_plain", "x spheres7", "paper ms", "paper %",
+                   "awake 60 120 179", "bytes/body", "state hash"});
+  std::string reasons;
+  for (const Table1Row& row : rows) {
+    const std::string name = row.model.empty() ? row.method : fmt::format("{} {}", row.method, row.model);
+    const PaperTimes paper = paper_times(row.model == "support" ? "" : row.method, row.bodies);
+    if (!row.step_ms) reasons += fmt::format("left out: {} bodies, {}: {}\n", row.bodies, name, row.left_out);
+    const bool measured = row.step_ms.has_value();
+    table.add_row({fmt::format("{}", row.bodies), name, ms_or_blank(row.step_ms), ms_or_blank(row.collision_ms), ms_or_blank(row.response_ms),
+                   ms_or_blank(row.rest_ms), percent_of(row), times_or_blank(row.times_less_than_full_plain),
+                   times_or_blank(row.times_less_than_spheres7), paper.step_ms > 0.0 ? fmt::format("{:.5f}", paper.step_ms) : "",
+                   paper_percent(paper, row.bodies), measured ? fmt::format("{} {} {}", row.awake[0], row.awake[1], row.awake[2]) : "",
+                   measured ? fmt::format("{:.0f}", row.bytes_per_body) : "", measured ? fmt::format("{:016x}", row.state_hash) : ""});
+  }
+  return table.text() + (reasons.empty() ? "" : '\n' + reasons);
+}
+
+ordered_json json_of(std::span<const Table1Row> rows) {
+  ordered_json json = {{"rows", ordered_json::array()}};
+  for (const Table1Row& row : rows) json["rows"].push_back(json_of(row));
+  return json;
+}
+
+void save_csv(std::span<const Table1Row> rows, const std::filesystem::path& file) {
+  std::ofstream out(file);
+  const auto write_line = [&](const ordered_json& row, const auto& cell_of) {
+    std::vector<std::string> cells;
+    for (const auto& [key, value] : row.items()) cells.push_back(cell_of(key, value));
+    out << fmt::format("{}\n", fmt::join(cells, ","));
+  };
+  write_line(json_of(Table1Row{}), [](const std::string& key, const ordered_json&) { return key; });
+  for (const Table1Row& row : rows) write_line(json_of(row), [](const std::string&, const ordered_json& value) { return csv_cell(value); });
+  if (!out.flush()) throw InputError(fmt::format("{}: found a place that cannot be written to, expected a file for the table", file.string()));
+}
+
+}  // namespace lodestone

@@ -1,0 +1,20 @@
+// Table 1 as text for people, JSON for programs, and a CSV file.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "tools/bench/table1.h"
+
+namespace lodestone {
+
+/// Ours beside the paper's; under it, why rows were left out.
+std::string text_of(std::span<const Table1Row> rows);
+nlohmann::ordered_json json_of(std::span<const Table1Row> rows);
+
+/// One line a row, with the keys of the JSON. Throws InputError where the file cannot be written.
+void save_csv(std::span<const Table1Row> rows, const std::filesystem::path& file);
+
+}  // namespace lodestone
