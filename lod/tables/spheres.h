@@ -1,5 +1,5 @@
 // The bodies of the tables model as dense arrays, one element a body, by place: those awake first, roughly in the order of their cells, then those
-// asleep. A slot is what a body is known by outside; slots are dense too. Positions are doubles (exact far from the origin), the rest floats.
+// asleep. A slot is what a body is known by outside; slots are dense too. What flight conserves or adds up for long is double, the rest float.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace lodestone {
 
 struct Spheres {
   std::vector<double> x, y, z;                 // m
-  std::vector<float> vx, vy, vz;               // m/s
-  std::vector<float> lx, ly, lz;               // spin: angular momentum over mass, m²/s, world
+  std::vector<double> vx, vy, vz;              // m/s
+  std::vector<double> lx, ly, lz;              // spin: angular momentum over mass, m²/s, world
   std::vector<float> qw, qx, qy, qz;
   std::vector<float> radius;                   // m, of the colliding sphere
   std::vector<float> quiet;                    // s below the sleeping threshold
