@@ -2,6 +2,7 @@
 
 #include "tools/commands.h"
 #include "tools/compare/command_compare_drop.h"
+#include "tools/compare/command_compare_pile.h"
 #include "tools/compare/command_compare_series.h"
 
 namespace lodestone {
@@ -10,6 +11,7 @@ void add_compare_command(CLI::App& program, ExitCode& exit_code) {
   CLI::App* compare = program.add_subcommand("compare", "error against the truth, beside cost");
   compare->require_subcommand(1);
   add_compare_drop_command(*compare, exit_code);
+  add_compare_pile_command(*compare, exit_code);
   add_compare_shapes_command(*compare, exit_code);
   add_compare_conditions_command(*compare, exit_code);
 }

@@ -3,12 +3,11 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include <time.h>
-
 #include <algorithm>
 #include <mutex>
 
 #include "tools/compare/drop_world.h"
+#include "tools/compare/processor_time.h"
 
 namespace lodestone {
 namespace {
@@ -35,20 +34,6 @@ DropObservation observe_drop(const DropJob& job, DropWorld& world, double dt) {
   return drop;
 }
 
-// Of the calling thread, so that what else the machine does counts little.
-double processor_ns() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * double(now.tv_sec) + double(now.tv_nsec);
-}
-
-template <typename Work>
-double measure_ns(Work work) {
-  const double start = processor_ns();
-  work();
-  return processor_ns() - start;
-}
-
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::ranges::nth_element(values, middle);
@@ -62,7 +47,7 @@ double measure_one_by_one(const DropJob& job, const DropMethod& method, const Dr
   for (int trial = 0; trial < std::min(kTimedOdeDrops, int(observed.size())); ++trial) {
     const auto steps = std::int64_t(std::max(observed[trial].rest_time_s, kLeastTimedSeconds) / batch.dt_s);
     world.start(batch.seed, trial);
-    ns.push_back(measure_ns([&] { for (std::int64_t i = 0; i < steps; ++i) world.step(batch.dt_s); }) / double(steps));
+    ns.push_back(measure_processor_ns([&] { for (std::int64_t i = 0; i < steps; ++i) world.step(batch.dt_s); }) / double(steps));
   }
   return median_of(std::move(ns));
 }
@@ -79,7 +64,7 @@ double measure_statistical(const DropJob& job, const DropMethod& method, const D
     int awake = kTimedStatisticalBodies;
     for (double t = 0; t < kTimedSeconds && awake > kTimedStatisticalBodies / 4; t += batch.dt_s) {
       body_steps += awake;
-      const double ns = measure_ns([&] { manager.step(batch.dt_s); });
+      const double ns = measure_processor_ns([&] { manager.step(batch.dt_s); });
       spent += ns * single_body_part(manager.report().times);
       awake = kTimedStatisticalBodies - manager.report().asleep;
     }

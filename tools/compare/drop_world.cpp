@@ -3,33 +3,18 @@
 #include <cmath>
 
 #include "reference/random.h"
+#include "tools/compare/method_bodies.h"
 
 namespace lodestone {
 namespace {
 
 constexpr double kFarApart = 60.0;  // sizes of a body: farther than any drop goes
 
-ManagerSettings manager_settings(const StatisticalMethod& method, std::uint64_t seed) {
-  ManagerSettings settings;
-  settings.seed = seed;
-  settings.model = method.model;
-  settings.signatures = [signature = method.signature](const Shape&, const ContactLaw&) { return signature; };
-  return settings;
-}
-
 Manager make_manager(const DropJob& job, const StatisticalMethod& method, std::uint64_t seed) {
-  Manager manager(manager_settings(method, seed));
+  Manager manager(manager_settings_of(method, seed));
   manager.materials().replace(0, job.material);
   manager.add_plane(drop_plane_normal(job.conditions), 0.0);
   return manager;
-}
-
-BodyDefinition statistical_body(const DropJob& job, const RigidState& state) {
-  BodyDefinition body;
-  body.shape = job.shape;
-  body.state = state;
-  body.level = LevelChoice::statistical;
-  return body;
 }
 
 // Draws are keyed by (seed, body, event), and the body is the first of its manager: each drop needs a seed of its own.
@@ -60,26 +45,18 @@ void DropWorld::start_ode(const RigidState& state) {
     ode_.emplace(OdeWorld(way.settings, *materials_), OdeBodyId{});
     ode_->world.add_plane(drop_plane_normal(job_.conditions), 0.0, 0);
   }
-  ode_->body = ode_->world.add_body({.shape = way.collision_shape,
-                                     .mass = job_.material.density * job_.shape->volume,
-                                     .state = state,
-                                     .geometry = way.geometry,
-                                     .spheres = way.spheres});
+  ode_->body = ode_->world.add_body(ode_body_of(job_, way, state));
 }
 
 void DropWorld::start_bullet(const RigidState& state) {
   bullet_.emplace(BulletWorld({}), -1);  // anew, so that nothing of the last drop's contacts is left
   bullet_->world.add_plane(drop_plane_normal(job_.conditions), 0.0, job_.material);
-  bullet_->body = bullet_->world.add_body({.shape = job_.shape,
-                                           .mass = job_.material.density * job_.shape->volume,
-                                           .material = job_.material,
-                                           .state = state,
-                                           .geometry = std::get<BulletMethod>(method_.way).geometry});
+  bullet_->body = bullet_->world.add_body(bullet_body_of(job_, std::get<BulletMethod>(method_.way), state));
 }
 
 void DropWorld::start_statistical(const RigidState& state, std::uint64_t seed, std::uint32_t trial) {
   Manager manager = make_manager(job_, std::get<StatisticalMethod>(method_.way), seed_of_drop(seed, trial));
-  const BodyId body = manager.add_body(statistical_body(job_, state));
+  const BodyId body = manager.add_body(statistical_body_of(job_, state));
   statistical_.emplace(std::move(manager), body);
 }
 
@@ -103,7 +80,7 @@ Manager make_many_drops(const DropJob& job, const StatisticalMethod& method, std
   for (int i = 0; i < bodies; ++i) {
     RigidState state = drop_state(*job.shape, job.conditions, seed, i);
     state.position += kFarApart * job.shape->size * ((i % side - side / 2) * across + (i / side - side / 2) * along);
-    manager.add_body(statistical_body(job, state));
+    manager.add_body(statistical_body_of(job, state));
   }
   return manager;
 }

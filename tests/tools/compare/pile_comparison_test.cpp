@@ -1,0 +1,110 @@
+#include "tools/compare/pile_comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "reference/error.h"
+#include "tools/compare/pile_report.h"
+
+namespace lodestone {
+namespace {
+
+DropJob box_job() {
+  DropJob job;
+  job.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
+  return job;
+}
+
+PileObservation pile(std::vector<double> kinetic_energy, double sleep_time_s, double height_m) {
+  PileObservation observed;
+  observed.kinetic_energy = std::move(kinetic_energy);
+  observed.sleep_time_s = sleep_time_s;
+  observed.mean_height_m = height_m;
+  return observed;
+}
+
+TEST(PileFigures, AreOfMeansOverPiles) {
+  const std::vector truth = {pile({1.0, 2.0}, 2.0, 0.4), pile({3.0, 2.0}, 4.0, 0.6)};
+  std::vector piles = {pile({2.0, 3.0}, 3.3, 0.25), pile({2.0, 1.8}, 3.3, 0.25)};
+  piles[1].hovering = piles[0].hovering = 1;
+  piles[1].max_penetration_m = 0.02;
+  const PileFigures figures = compare_with_truth(truth, piles, *box_job().shape);
+  EXPECT_NEAR(figures.ke_l1, 0.4 / 4.0, 1e-12);
+  EXPECT_NEAR(figures.sleep_time_error, 0.1, 1e-12);
+  EXPECT_NEAR(figures.mean_height_error, -0.5, 1e-12);
+  EXPECT_NEAR(figures.penetration_over_size, 0.05, 1e-12);
+  EXPECT_EQ(figures.hovering, 2);
+}
+
+TEST(PileComparison, MethodsStandBesideTheTruthAndTheFloor) {
+  PileComparisonSettings settings;
+  settings.conditions = {.bodies = 3, .side = 1.6};
+  settings.piles = 1;
+  settings.methods = {"full_2", "low"};
+  const PileComparison comparison = compare_piles(box_job(), settings);
+  ASSERT_EQ(comparison.rows.size(), 2U);
+  EXPECT_EQ(comparison.truth.ke_l1, 0.0);
+  EXPECT_GT(comparison.floor.ke_l1, 0.0);
+  const PileFigures& full = comparison.rows[0].figures.value();
+  EXPECT_GT(full.ke_l1, 0.0);
+  EXPECT_NEAR(full.mean_height_m, comparison.truth.mean_height_m, 0.15);
+  EXPECT_EQ(full.hovering + full.escaped, 0);
+  EXPECT_LT(comparison.rows[0].momentum_residual, 1e-9);
+  EXPECT_GT(comparison.rows[0].ns_per_body_step, 0.0);
+  EXPECT_FALSE(comparison.rows[1].figures.has_value());
+  EXPECT_NE(comparison.rows[1].reason.find("194"), std::string::npos);
+}
+
+// What is under `support` in piles: equal and opposite impulses, without a signature too.
+TEST(PileTrials, SupportKeepsMomentum) {
+  const DropJob job = box_job();
+  const DropMethod support{"statistical", StatisticalMethod{StatisticalModel::support, nullptr}};
+  EXPECT_LT(measure_momentum_residual(job, support, {.conditions = {.bodies = 27, .side = 1.6}}), 1e-12);
+}
+
+TEST(PileComparison, UnknownMethodsAndNarrowBinsAreBadInput) {
+  PileComparisonSettings settings;
+  settings.methods = {"fulll"};
+  EXPECT_THROW(compare_piles(box_job(), settings), InputError);
+  settings.methods = {"full"};
+  settings.conditions.side = 0.3;
+  EXPECT_THROW(compare_piles(box_job(), settings), InputError);
+}
+
+PileComparison two_rows() {
+  PileComparison comparison{.shape = "box", .pile_count = 1, .truth_substeps = 34, .truth_iterations = 60};
+  comparison.truth_a = comparison.truth_b = {pile({1.0, 0.5}, 1.0, 0.1)};
+  comparison.rows.push_back({.method = "full", .model = "", .figures = PileFigures{}, .piles = {pile({1.0, 0.5}, 1.0, 0.1)}});
+  comparison.rows.push_back({.method = "low", .model = "", .reason = "has too few faces"});
+  return comparison;
+}
+
+TEST(PileReport, JsonHasTheKeysThatScriptsReadAndNullsForWhatIsLeftOut) {
+  const auto json = json_of(two_rows());
+  for (const auto& row : json["rows"])
+    for (const char* key : {"method", "model", "ke_l1", "sleep_time_s", "mean_height_m", "max_penetration_m", "momentum_residual", "floor_ke_l1",
+                            "sleep_time_error", "mean_height_error", "penetration_over_size", "hovering", "escaped", "energy_rise", "ns_per_body_step"})
+      EXPECT_TRUE(row.contains(key)) << key;
+  EXPECT_EQ(json["rows"][0]["ke_l1"], 0.0);
+  EXPECT_TRUE(json["rows"][1]["ke_l1"].is_null());
+  EXPECT_TRUE(json["rows"][1]["hovering"].is_null());
+}
+
+TEST(PileReport, CsvHasALineForEachPileAndForEachSample) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "lodestone_pile_report";
+  save_piles(two_rows(), folder);
+  const auto lines = [&](const char* name) {
+    std::ifstream in(folder / name);
+    int count = 0;
+    for (std::string line; std::getline(in, line);) ++count;
+    return count;
+  };
+  EXPECT_EQ(lines("piles.csv"), 1 + 3);
+  EXPECT_EQ(lines("pile_energy.csv"), 1 + 3 * 2);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,94 @@
+#include "tools/compare/pile_observation.h"
+
+#include <gtest/gtest.h>
+
+#include "tools/compare/pile_start.h"
+#include "tools/compare/pile_world.h"
+
+#include "reference/error.h"
+
+namespace lodestone {
+namespace {
+
+RigidState at(const Vec3& position, const Vec3& velocity = Vec3::Zero()) { return {.position = position, .velocity = velocity}; }
+
+class Boxes : public ::testing::Test {
+ protected:
+  Shape shape_ = make_shape("box", make_box({0.2, 0.2, 0.2}));
+  PileOverlap overlap_{shape_, make_bin(2.0).planes};
+
+  PileObservation observe(std::vector<std::vector<RigidState>> samples) {
+    PileObserver observer(shape_, overlap_);
+    for (std::size_t i = 0; i < samples.size(); ++i) observer.sample(double(i) / 60.0, samples[i]);
+    return observer.result();
+  }
+};
+
+TEST_F(Boxes, DepthIsThatOfPairsAndOfPlanes) {
+  EXPECT_NEAR(overlap_.depth_of_pair(at({0, 0, 1}), at({0.19, 0, 1})), 0.01, 1e-9);
+  EXPECT_EQ(overlap_.depth_of_pair(at({0, 0, 1}), at({0.21, 0, 1})), 0.0);
+  EXPECT_NEAR(overlap_.depth_in_planes(at({0, 0, 0.08})), 0.02, 1e-12);
+  EXPECT_NEAR(overlap_.depth_in_planes(at({0, -0.95, 0.5})), 0.05, 1e-12);
+  EXPECT_NEAR(observe({{at({0, 0, 0.08}), at({0.19, 0, 0.1})}}).max_penetration_m, 0.02, 1e-9);
+}
+
+TEST_F(Boxes, WhatRestsOnNothingHovers) {
+  const std::vector<RigidState> states = {at({0, 0, 0.1}), at({0, 0, 0.301}), at({0.5, 0, 0.15})};
+  EXPECT_EQ(observe(std::vector(31, states)).hovering, 1);
+}
+
+TEST_F(Boxes, WhatFallsDoesNotHover) {
+  EXPECT_EQ(observe(std::vector(31, std::vector{at({0, 0, 1}, {0, 0, -1})})).hovering, 0);
+}
+
+TEST_F(Boxes, WhoseCentreIsBehindAPlaneHasEscaped) {
+  EXPECT_EQ(observe({{at({1.1, 0, 0.1}), at({0.9, 0, 0.1}), at({0, 0, -0.1})}}).escaped, 2);
+}
+
+TEST_F(Boxes, ARiseOfEnergyIsOverTheLeastBefore) {
+  const double g = 9.81;
+  const auto high = [](double z) { return std::vector{at({0, 0, z})}; };
+  EXPECT_NEAR(observe({high(2.0), high(1.0), high(1.5), high(1.2)}).energy_rise, 0.5 * g / (2.0 * g), 1e-12);
+  EXPECT_EQ(observe({high(2.0), {at({0, 0, 1.0}, {0, 0, -1})}, high(1.0)}).energy_rise, 0.0);
+}
+
+TEST_F(Boxes, TheTimeToSleepIsTheMeanOfTheLastStirs) {
+  const auto moving = at({0, 0, 0.1}, {0.1, 0, 0}), still = at({0.5, 0, 0.1});
+  EXPECT_NEAR(observe({{still, still}, {moving, still}, {moving, moving}, {still, moving}}).sleep_time_s, 2.5 / 60.0, 1e-12);
+}
+
+TEST(PileOverlap, OfConcaveBodiesIsThatOfTheBodiesNotOfTheirHulls) {
+  const Shape l = make_shape("l", make_l(0.3, 0.2, 0.08, 0.1));
+  ASSERT_FALSE(l.pieces.empty());
+  const PileOverlap by_pieces(l, {});
+  Shape whole = l;
+  whole.pieces.clear();
+  const PileOverlap by_grid(whole, {});
+  // The same way up, shifted diagonally: corner in the other's notch, .02 m off both of its inner sides.
+  const RigidState in_notch = at({0.1, 0.1, 0});
+  EXPECT_EQ(by_pieces.depth_of_pair(in_notch, at({0, 0, 0})), 0.0);
+  EXPECT_EQ(by_grid.depth_of_pair(in_notch, at({0, 0, 0})), 0.0);
+  const RigidState too_low = at({0.1, 0.07, 0});
+  EXPECT_NEAR(by_pieces.depth_of_pair(too_low, at({0, 0, 0})), 0.01, 1e-6);
+  EXPECT_GT(by_grid.depth_of_pair(at({0.1, 0.05, 0.03}), at({0, 0, 0})), 0.015);
+}
+
+TEST(PileStart, IsWithinTheBinWithoutOverlap) {
+  const Shape shape = make_shape("box", make_box({0.2, 0.3, 0.4}));
+  const PileConditions conditions{.bodies = 40, .side = 1.6};
+  const auto starts = make_pile_start(shape, conditions, 3);
+  const PileOverlap overlap(shape, make_bin(1.6).planes);
+  ASSERT_EQ(starts.size(), 40U);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    EXPECT_LT(overlap.depth_in_planes(starts[i]), 0.0);
+    for (std::size_t k = 0; k < i; ++k) EXPECT_GE((starts[i].position - starts[k].position).norm(), 2.0 * shape.radius);
+  }
+}
+
+TEST(PileStart, ABinTooNarrowIsBadInput) {
+  const Shape shape = make_shape("box", make_box({0.2, 0.3, 0.4}));
+  EXPECT_THROW(make_pile_start(shape, {.bodies = 2, .side = 0.5}, 1), InputError);
+}
+
+}  // namespace
+}  // namespace lodestone

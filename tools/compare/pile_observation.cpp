@@ -1,0 +1,68 @@
+#include "tools/compare/pile_observation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "reference/error.h"
+#include "reference/trial.h"
+#include "tools/compare/drop_observation.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kHorizon = 8.0;        // s
+constexpr double kRestEnergy = 2e-3;    // J/kg, as in drops
+constexpr double kRestDuration = 0.25;  // s
+constexpr double kHoverDrop = 0.05;     // over the size
+constexpr int kOverlapInterval = 6;     // samples: a look at every pair costs more than a step
+
+}  // namespace
+
+PileObserver::PileObserver(const Shape& shape, const PileOverlap& overlap, double gravity_m_per_s2)
+    : shape_(shape), overlap_(overlap), gravity_(gravity_m_per_s2), scale_(std::max(1.0, drop_scale(shape))) {}
+
+void PileObserver::sample(double time_s, std::span<const RigidState> states) {
+  observe_energy(time_s, states);
+  if (samples_ % kOverlapInterval == 0) observe_overlap(states);
+  ++samples_;
+  last_time_s_ = time_s;
+  last_.assign(states.begin(), states.end());
+}
+
+void PileObserver::observe_energy(double time_s, std::span<const RigidState> states) {
+  last_stir_s_.resize(states.size(), 0.0);
+  double kinetic = 0.0, potential = 0.0;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const double energy = kinetic_energy_per_mass(shape_, states[i]);
+    if (energy > kRestEnergy * scale_) last_stir_s_[i] = time_s;
+    kinetic += energy / double(states.size());
+    potential += gravity_ * states[i].position.z() / double(states.size());
+  }
+  pile_.kinetic_energy.push_back(kinetic);
+  const double total = kinetic + potential;
+  if (samples_ == 0) first_energy_ = least_energy_ = total;
+  pile_.energy_rise = std::max(pile_.energy_rise, (total - least_energy_) / first_energy_);
+  least_energy_ = std::min(least_energy_, total);
+}
+
+void PileObserver::observe_overlap(std::span<const RigidState> states) {
+  pile_.max_penetration_m = std::max(pile_.max_penetration_m, overlap_.deepest(states));
+  pile_.escaped = std::max(pile_.escaped, overlap_.count_escaped(states));
+}
+
+double PileObserver::horizon_s() const { return kHorizon * std::sqrt(scale_); }
+
+PileObservation PileObserver::result() const {
+  check_that(samples_ > 0, "a pile was sampled");
+  PileObservation pile = pile_;
+  const double bodies = double(last_.size());
+  pile.sleep_time_s = std::accumulate(last_stir_s_.begin(), last_stir_s_.end(), 0.0) / bodies;
+  for (const RigidState& state : last_) pile.mean_height_m += state.position.z() / bodies;
+  std::vector<char> at_rest;
+  for (const double stir : last_stir_s_) at_rest.push_back(last_time_s_ - stir >= kRestDuration * std::sqrt(scale_));
+  pile.hovering = overlap_.count_hovering(last_, at_rest, kHoverDrop * shape_.size);
+  return pile;
+}
+
+}  // namespace lodestone

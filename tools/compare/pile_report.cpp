@@ -1,0 +1,170 @@
+#include "tools/compare/pile_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "reference/error.h"
+#include "reference/trial.h"
+#include "tools/text_table.h"
+
+namespace lodestone {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string percent(double fraction) { return fmt::format("{:+.1f}", 100.0 * fraction); }
+
+std::vector<std::string> cells_of(const PileFigures& f) {
+  return {fmt::format("{:.3f}", f.ke_l1),
+          fmt::format("{:.2f}", f.sleep_time_s),
+          percent(f.sleep_time_error),
+          fmt::format("{:.3f}", f.mean_height_m),
+          percent(f.mean_height_error),
+          fmt::format("{:.1f}", 100.0 * f.penetration_over_size),
+          fmt::format("{}", f.hovering),
+          fmt::format("{}", f.escaped),
+          fmt::format("{:.1e}", f.energy_rise)};
+}
+
+std::vector<std::string> row_of(std::vector<std::string> head, const PileFigures& figures) {
+  const std::vector<std::string> numbers = cells_of(figures);
+  head.insert(head.end(), numbers.begin(), numbers.end());
+  return head;
+}
+
+std::vector<std::string> row_of(const PileRow& row) {
+  std::vector<std::string> cells = {row.method, row.model, fmt::format("1/{:.0f}", 1.0 / row.dt_s), fmt::format("{}", row.substeps)};
+  if (!row.figures) return cells;
+  cells = row_of(std::move(cells), *row.figures);
+  cells.push_back(fmt::format("{:.1e}", row.momentum_residual));
+  cells.push_back(fmt::format("{:.0f}", row.ns_per_body_step));
+  return cells;
+}
+
+std::string table_of(const PileComparison& comparison) {
+  TextTable table({"method", "model", "step s", "substeps", "KE-L1", "sleep s", "error %", "height m", "error %", "overlap %", "hover", "escaped",
+                   "energy rise", "momentum", "ns/body-step"});
+  table.add_row(row_of({"truth", "", "", ""}, comparison.truth));
+  table.add_row(row_of({"noise floor", "", "", ""}, comparison.floor));
+  std::string left_out;
+  for (const PileRow& row : comparison.rows) {
+    table.add_row(row_of(row));
+    const std::string line = fmt::format("{} left out: {} {}\n", row.method, comparison.shape, row.reason);
+    if (!row.reason.empty() && left_out.find(line) == std::string::npos) left_out += line;  // once for all steps
+  }
+  return table.text() + left_out;
+}
+
+void add_figures(ordered_json& json, const PileFigures& f) {
+  json["sleep_time_s"] = f.sleep_time_s;
+  json["sleep_time_error"] = f.sleep_time_error;
+  json["mean_height_m"] = f.mean_height_m;
+  json["mean_height_error"] = f.mean_height_error;
+  json["max_penetration_m"] = f.max_penetration_m;
+  json["penetration_over_size"] = f.penetration_over_size;
+  json["energy_rise"] = f.energy_rise;
+  json["hovering"] = f.hovering;
+  json["escaped"] = f.escaped;
+}
+
+// Every key in every row, null where the method was left out.
+void add_nulls(ordered_json& json) {
+  ordered_json keys;
+  add_figures(keys, {});
+  for (const auto& [key, value] : keys.items()) json[key] = nullptr;
+  for (const char* key : {"ke_l1", "momentum_residual", "ns_per_body_step"}) json[key] = nullptr;
+}
+
+ordered_json json_of(const PileRow& row, const PileFigures& floor) {
+  ordered_json json;
+  json["method"] = row.method;
+  json["model"] = row.model.empty() ? ordered_json(nullptr) : ordered_json(row.model);
+  json["dt_s"] = row.dt_s;
+  json["substeps"] = row.substeps;
+  if (row.figures) {
+    json["ke_l1"] = row.figures->ke_l1;
+    add_figures(json, *row.figures);
+    json["momentum_residual"] = row.momentum_residual;
+    json["ns_per_body_step"] = row.ns_per_body_step;
+  } else {
+    add_nulls(json);
+  }
+  json["floor_ke_l1"] = floor.ke_l1;
+  json["reason"] = row.reason.empty() ? ordered_json(nullptr) : ordered_json(row.reason);
+  return json;
+}
+
+void write_piles(std::ostream& out, const std::string& head, const std::vector<PileObservation>& piles) {
+  for (std::size_t i = 0; i < piles.size(); ++i)
+    fmt::print(out, "{},{},{},{},{},{},{},{}\n", head, i, piles[i].sleep_time_s, piles[i].mean_height_m, piles[i].max_penetration_m,
+               piles[i].energy_rise, piles[i].hovering, piles[i].escaped);
+}
+
+void write_energy(std::ostream& out, const std::string& head, const std::vector<PileObservation>& piles, double interval) {
+  for (std::size_t i = 0; i < piles.size(); ++i)
+    for (std::size_t k = 0; k < piles[i].kinetic_energy.size(); ++k)
+      fmt::print(out, "{},{},{:.6g},{:.6g}\n", head, i, double(k) * interval, piles[i].kinetic_energy[k]);
+}
+
+std::string head_of(const PileRow& row) { return fmt::format("{},{},{}", row.method, row.model, row.dt_s); }
+
+// Calls `visit(head, piles, seconds between samples)` for both batches of truth and for every row.
+template <class Visit>
+void each_batch(const PileComparison& comparison, Visit visit) {
+  const double truth_step = kObservationStep / comparison.truth_substeps;
+  visit(fmt::format("truth_a,,{}", truth_step), comparison.truth_a, kObservationStep);
+  visit(fmt::format("truth_b,,{}", truth_step), comparison.truth_b, kObservationStep);
+  for (const PileRow& row : comparison.rows) visit(head_of(row), row.piles, std::max(kObservationStep, row.dt_s));
+}
+
+template <class Write>
+void save(const std::filesystem::path& file, Write write) {
+  std::ofstream out(file);
+  write(out);
+  if (!out.flush()) throw InputError(fmt::format("{}: cannot be written", file.string()));
+}
+
+}  // namespace
+
+std::string text_of(const DropJob& job, const PileComparison& comparison) {
+  return fmt::format("{}: {} piles of {} bodies in a bin of {:.4g} m, restitution {}, friction {}; truth: ODE at {:.3g} ms\n\n", comparison.shape,
+                     comparison.pile_count, comparison.conditions.bodies, comparison.conditions.side, job.material.restitution, job.material.friction,
+                     1e3 * kObservationStep / comparison.truth_substeps) +
+         table_of(comparison) +
+         "\nKE-L1: sum over time of |mean kinetic energy - truth's| over the sum of the truth's; the noise floor is truth against truth with other starts\n"
+         "sleep: mean of the bodies' last time above 2 mJ/kg; height: mean of the centres at the end; overlap: greatest, over the size; hover: at rest on nothing\n"
+         "energy rise: greatest above an earlier sample, over that at the start; momentum: greatest change without ground and gravity, over the bodies' own\n";
+}
+
+ordered_json json_of(const PileComparison& comparison) {
+  ordered_json json;
+  json["shape"] = comparison.shape;
+  json["bodies"] = comparison.conditions.bodies;
+  json["side_m"] = comparison.conditions.side;
+  json["piles"] = comparison.pile_count;
+  json["truth"] = {{"step_s", kObservationStep / comparison.truth_substeps}, {"quick_step_iterations", comparison.truth_iterations}};
+  add_figures(json["truth"], comparison.truth);
+  json["floor"] = {{"ke_l1", comparison.floor.ke_l1}};
+  add_figures(json["floor"], comparison.floor);
+  json["rows"] = ordered_json::array();
+  for (const PileRow& row : comparison.rows) json["rows"].push_back(json_of(row, comparison.floor));
+  return json;
+}
+
+void save_piles(const PileComparison& comparison, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  save(folder / "piles.csv", [&](std::ostream& out) {
+    out << "method,model,dt_s,pile,sleep_time_s,mean_height_m,max_penetration_m,energy_rise,hovering,escaped\n";
+    each_batch(comparison, [&](const std::string& head, const auto& piles, double) { write_piles(out, head, piles); });
+  });
+  save(folder / "pile_energy.csv", [&](std::ostream& out) {
+    out << "method,model,dt_s,pile,time_s,kinetic_energy_j_per_kg\n";
+    each_batch(comparison, [&](const std::string& head, const auto& piles, double interval) { write_energy(out, head, piles, interval); });
+  });
+}
+
+}  // namespace lodestone
