@@ -19,7 +19,12 @@ struct BodyKind {
   double mass = 1.0;                           ///< kg
   MaterialId material = 0;
   bool isotropic = false;                      ///< a sphere or a cube: rotates steadily
+  Quat principal_axes = Quat::Identity();      ///< take principal axes of inertia to body axes
+  Vec3 inverse_moments = Vec3::Ones();         ///< along them, over mass, 1/m²: ascending
 };
+
+/// With what follows from the shape's inertia.
+BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature = nullptr, double mass = 1.0, MaterialId material = 0);
 
 enum class Motion : std::uint8_t {
   dynamic,   ///< flies and collides

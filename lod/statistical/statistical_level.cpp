@@ -38,11 +38,9 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
   for (std::size_t i = 0; i < kinds.size(); ++i)
     if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
-  const Mat3& inertia = shape->inertia_per_mass;
-  const bool isotropic = (inertia - inertia.trace() / 3.0 * Mat3::Identity()).norm() < 1e-9 * inertia.norm();
-  ClipIndex index;
-  if (signature && !tables()) index = ClipIndex(*signature, inertia / (shape->radius * shape->radius), ClipSettings{}.greatest_distance);
-  kinds.push_back({std::move(shape), std::move(signature), std::move(index), mass, material, isotropic});
+  BodyKind& kind = kinds.emplace_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
+  if (kind.signature && !tables())
+    kind.clips = ClipIndex(*kind.signature, kind.shape->inertia_per_mass / (kind.shape->radius * kind.shape->radius), ClipSettings{}.greatest_distance);
   return std::uint16_t(kinds.size() - 1);
 }
 

@@ -17,9 +17,7 @@ std::uint16_t SphereKinds::find(std::shared_ptr<const Shape> shape, double mass,
     if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
   check_that(signature != nullptr, "the tables model needs a signature");
-  const Mat3& inertia = shape->inertia_per_mass;
-  const bool isotropic = (inertia - inertia.trace() / 3.0 * Mat3::Identity()).norm() < 1e-9 * inertia.norm();
-  kinds.push_back({std::move(shape), std::move(signature), {}, mass, material, isotropic});
+  kinds.push_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
   add(kinds.back(), gravity);
   return std::uint16_t(kinds.size() - 1);
 }

@@ -18,8 +18,8 @@ namespace {
 struct HitWorld {
   explicit HitWorld(const ContactLaw& law) : law_(law), materials_(materials_of(law.restitution, law.friction)) {
     ground_.planes.push_back({});
-    kind_.shape = box_of({0.2, 0.3, 0.4});
-    kind_.signature = find_case_signature(*kind_.shape);
+    const auto box = box_of({0.2, 0.3, 0.4});
+    kind_ = make_body_kind(box, find_case_signature(*box));
   }
 
   StepWorld world() const { return {.gravity = Vec3::Zero(), .ground = &ground_, .materials = &materials_, .seed = 1}; }

@@ -214,9 +214,7 @@ TEST(Tables, ResponsesAddNoEnergyAndLeaveThePlane) {
   MaterialTable materials;
   StaticGround ground;
   ground.planes.push_back({});
-  BodyKind kind;
-  kind.shape = box();
-  kind.signature = box_signature();
+  const BodyKind kind = make_body_kind(box(), box_signature());
   const StepWorld world{.gravity = Vec3(0, 0, -9.81), .ground = &ground, .materials = &materials, .seed = 1};
   for (std::uint32_t trial = 0; trial < 100'000; ++trial) {
     RandomStream random(6, trial, 0);

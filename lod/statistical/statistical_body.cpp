@@ -1,0 +1,22 @@
+#include "lod/statistical/statistical_body.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace lodestone {
+
+BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature, double mass, MaterialId material) {
+  BodyKind kind;
+  const Eigen::SelfAdjointEigenSolver<Mat3> principal(shape->inverse_inertia_per_mass);
+  Mat3 axes = principal.eigenvectors();
+  if (axes.determinant() < 0.0) axes.col(0) = -axes.col(0);
+  kind.principal_axes = Quat(axes).normalized();
+  kind.inverse_moments = principal.eigenvalues();
+  kind.isotropic = kind.inverse_moments[2] - kind.inverse_moments[0] < 1e-9 * kind.inverse_moments[2];
+  kind.shape = std::move(shape);
+  kind.signature = std::move(signature);
+  kind.mass = mass;
+  kind.material = material;
+  return kind;
+}
+
+}  // namespace lodestone
