@@ -153,12 +153,12 @@ void SphereContacts::sweep(const Spheres& spheres, const SphereKinds& kinds, con
 }
 
 // A counting sort by the first body: its contacts may come from several parts.
-void SphereContacts::remember(Spheres& spheres, const StepConstants& constants) {
+void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants) {
   std::fill(spheres.known_count.begin(), spheres.known_count.begin() + spheres.awake, std::uint8_t(0));
   const auto each_kept = [&](const auto& visit) {
     for (std::size_t p = 0; p < used_parts_; ++p)
       for (const SphereContact& c : parts_[p].contacts)
-        if (c.impulse > 0.0f) visit(c);
+        if (c.impulse > 0.0f && c.closing >= -bounce_velocity) visit(c);  // a blow is no support
   };
   each_kept([&](const SphereContact& c) { spheres.known_count[c.first] += spheres.known_count[c.first] < 255; });
   std::uint32_t begin = 0;

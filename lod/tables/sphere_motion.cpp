@@ -11,6 +11,7 @@ namespace {
 using namespace lane;
 
 constexpr float kCalming = 4.0f;  // 1/s
+constexpr int kLying = 6;         // steps in a row on others: no passing blow in the air
 
 Tensors soft_of(const SphereKinds& k) { return {k.ixx.data(), k.iyy.data(), k.izz.data(), k.ixy.data(), k.ixz.data(), k.iyz.data()}; }
 
@@ -86,6 +87,7 @@ struct EndLoop {
     const float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
     const std::uint8_t *contacts = step.contacts.data(), *on_ground = step.on_ground.data(), *slides = step.slides.data();
     std::uint8_t* unsound = step.unsound.data();
+    const std::uint8_t* crowded_for = spheres.crowded_for.data();
     const float *energy = step.energy.data(), *size = kinds.radius.data();
     const double calm = double(most(0.0f, 1.0f - kCalming * c.time));
     constexpr auto kMoved = std::uint8_t(GroundState::moved);
@@ -95,7 +97,7 @@ struct EndLoop {
       const bool here = on_ground[i] != kMoved, flies = (contacts[i] == 0) & (slides[i] == 0);
       const double old_x = vx[i], old_y = vy[i], old_z = vz[i], spun_x = lx[i], spun_y = ly[i], spun_z = lz[i];
       // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for ever.
-      const bool calms = (contacts[i] > 0) & (energy[i] < c.resting_energy * c.gravity * size[k]);
+      const bool calms = (contacts[i] > 0) & (int(crowded_for[i]) >= kLying) & (energy[i] < c.resting_energy * c.gravity * size[k]);
       const double kept = select(-std::int64_t(calms), calm, 1.0);
       const double by_x = kept * (spun_x + double(sx[i])), by_y = kept * (spun_y + double(sy[i])), by_z = kept * (spun_z + double(sz[i]));
       // In flight a body follows its parabola; else the velocity that its contacts left it.

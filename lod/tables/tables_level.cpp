@@ -270,7 +270,7 @@ void TablesLevel::respond(ContactTally& tally) {
         take_impulses(simd_, begin, end, step_);
       });
   }
-  contacts_.remember(spheres_, constants_);
+  contacts_.remember(spheres_, bounce_velocity(), constants_);
 }
 
 // The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves as if alone.
@@ -326,6 +326,7 @@ void TablesLevel::finish(ContactTally& tally) {
     for (std::int64_t i = begin; i < end; ++i) {
       const bool crowded = step_.contacts[i] > 0;
       spheres_.since_crowded[i] = crowded ? 0 : std::uint8_t(std::min(255, spheres_.since_crowded[i] + 1));
+      spheres_.crowded_for[i] = crowded ? std::uint8_t(std::min(255, spheres_.crowded_for[i] + 1)) : 0;
       if (crowded && spheres_.motion[i] == Motion::settling && step_.on_ground[i] == std::uint8_t(GroundState::free)) spheres_.motion[i] = Motion::dynamic;
       if (step_.unsound[i]) recover(i, own);
     }
