@@ -13,7 +13,7 @@ using namespace lodestone;
 void draw(const RigidState& state, Level level);
 
 void play(dWorldID world, dSpaceID space) {
-  Manager manager(world, space, {.policy = {.policy = DistancePolicy{.full_within = 3.0}}});
+  Manager manager(world, space, {.policy = {.policy = DistancePolicy{.full_within = 3.0}}, .signature_timing = SignatureTiming::in_step});
   const auto crate = std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4})));
   std::vector<BodyId> bodies;
   for (int i = 0; i < 100; ++i)
