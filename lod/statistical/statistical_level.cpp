@@ -43,7 +43,8 @@ void StatisticalLevel::Impl::apply_pushes(double dt, ContactTally& tally) {
 }
 
 StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials)
-    : impl_(std::make_unique<Impl>(settings, ground, materials)) {}  // not yet TablesLevel: it does not keep the hard cases S3, S10 and S12
+    : impl_(settings.model == StatisticalModel::support ? std::make_unique<Impl>(settings, ground, materials) : nullptr),
+      tables_(settings.model == StatisticalModel::tables ? std::make_unique<TablesLevel>(settings, ground, materials) : nullptr) {}
 StatisticalLevel::~StatisticalLevel() = default;
 
 int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state,

@@ -87,8 +87,8 @@ class StatisticalLevel {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
-  std::unique_ptr<TablesLevel> tables_;   // where it is there, everything is its matter
+  std::unique_ptr<Impl> impl_;            // the support model's
+  std::unique_ptr<TablesLevel> tables_;   // the tables model's; one of the two is there
 };
 
 }  // namespace lodestone

@@ -15,6 +15,10 @@ LODESTONE_INLINE float select(int mask, float a, float b) {
   return __builtin_bit_cast(float, (__builtin_bit_cast(int, a) & mask) | (__builtin_bit_cast(int, b) & ~mask));
 }
 
+LODESTONE_INLINE double select(std::int64_t mask, double a, double b) {
+  return __builtin_bit_cast(double, (__builtin_bit_cast(std::int64_t, a) & mask) | (__builtin_bit_cast(std::int64_t, b) & ~mask));
+}
+
 /// `which` ? a : b, by masks: compilers make branches of nested conditionals, and no vectors of branches.
 LODESTONE_INLINE int choose(bool which, int a, int b) {
   const int mask = -int(which);

@@ -29,13 +29,13 @@ float SphereContacts::known_impulse(const Spheres& spheres, std::uint32_t first,
     return 0.0f;
   };
   const float impulse = look(first, second);
-  return impulse != 0.0f ? impulse : look(second, first);
+  return impulse != 0.0f || std::int64_t(second) >= spheres.awake ? impulse : look(second, first);
 }
 
 void SphereContacts::add_to(Part& part, const Spheres& s, const SphereKinds& kinds, std::uint32_t first, std::uint32_t second,
                             const StepConstants& constants) const {
   const V3 between{float(s.x[first] - s.x[second]), float(s.y[first] - s.y[second]), float(s.z[first] - s.z[second])};
-  const V3 velocity{s.vx[first] - s.vx[second], s.vy[first] - s.vy[second], s.vz[first] - s.vz[second]};
+  const V3 velocity{float(s.vx[first] - s.vx[second]), float(s.vy[first] - s.vy[second]), float(s.vz[first] - s.vz[second])};
   const float square = dot(between, between), sum = s.radius[first] + s.radius[second];
   const float touching = settings_.touching * std::min(kinds.radius[s.kind[first]], kinds.radius[s.kind[second]]);
   const float distance = std::sqrt(square), gap = distance - sum;
@@ -152,22 +152,27 @@ void SphereContacts::sweep(const Spheres& spheres, const SphereKinds& kinds, con
   });
 }
 
-void SphereContacts::remember(Spheres& spheres, const StepConstants& constants) {
+// A counting sort by the first body: its contacts may come from several parts.
+void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants) {
   std::fill(spheres.known_count.begin(), spheres.known_count.begin() + spheres.awake, std::uint8_t(0));
-  known_.clear();
-  std::uint32_t group = ~0u;
-  bool kept = false;
-  for (std::size_t p = 0; p < used_parts_; ++p)
-    for (const SphereContact& c : parts_[p].contacts) {
-      if (c.first != group) {
-        group = c.first;
-        kept = spheres.known_count[group] == 0;  // a body's contacts in another part are not next to these
-        if (kept) spheres.known_begin[group] = std::uint32_t(known_.size());
-      }
-      if (!kept || c.second >= std::uint32_t(spheres.awake) || c.impulse == 0.0f || spheres.known_count[group] == 255) continue;
-      ++spheres.known_count[group];
-      known_.push_back({spheres.owner[c.second], c.impulse / constants.time});
-    }
+  const auto each_kept = [&](const auto& visit) {
+    for (std::size_t p = 0; p < used_parts_; ++p)
+      for (const SphereContact& c : parts_[p].contacts)
+        if (c.impulse > 0.0f && c.closing >= -bounce_velocity) visit(c);  // a blow is no support
+  };
+  each_kept([&](const SphereContact& c) { spheres.known_count[c.first] += spheres.known_count[c.first] < 255; });
+  std::uint32_t begin = 0;
+  for (std::int64_t i = 0; i < spheres.awake; ++i) {
+    spheres.known_begin[i] = begin;
+    begin += spheres.known_count[i];
+    spheres.known_count[i] = 0;
+  }
+  known_.resize(begin);
+  const float per_time = 1.0f / constants.time;
+  each_kept([&](const SphereContact& c) {
+    if (spheres.known_count[c.first] == 255) return;
+    known_[spheres.known_begin[c.first] + spheres.known_count[c.first]++] = {spheres.owner[c.second], c.impulse * per_time};
+  });
 }
 
 }  // namespace lodestone

@@ -29,7 +29,7 @@ struct KnownContact {
 struct SphereContactSettings {
   int sweeps = 2;
   float touching = 0.01f;                // m over R: gaps up to it are contacts
-  float slop = 0.002f, push_out = 0.8f;  // overlap that stays, over R; part of the rest that is undone in a step
+  float slop = 0.002f, push_out = 0.5f;  // overlap that stays, over R; part of the rest that is undone in a step
 };
 
 class SphereContacts {
@@ -45,7 +45,7 @@ class SphereContacts {
   void sweep(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants, bool last,
              SphereStep& step, const JobRunner& jobs);
   /// For the next step.
-  void remember(Spheres& spheres, const StepConstants& constants);
+  void remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants);
   void forget() { known_.clear(); }
 
   const SphereContactSettings& settings() const { return settings_; }

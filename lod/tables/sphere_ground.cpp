@@ -22,14 +22,15 @@ struct NearLoop {
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     const double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data();
-    const float *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *radius = spheres.radius.data();
+    const double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data();
+    const float* radius = spheres.radius.data();
     std::uint8_t *on_ground = step.on_ground.data(), *plane = step.plane.data();
     float* gap = step.gap.data();
     const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz);
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const float above = float(wide_x * x[i] + wide_y * y[i] + wide_z * z[i] - offset) - radius[i];
-      const float way = least(0.0f, n.x * vx[i] + n.y * vy[i] + n.z * vz[i]) * c.time + 0.5f * pull * c.time * c.time;
+      const float way = least(0.0f, n.x * float(vx[i]) + n.y * float(vy[i]) + n.z * float(vz[i])) * c.time + 0.5f * pull * c.time * c.time;
       const int state = on_ground[i], other = plane[i];
       const float known = gap[i];
       const int near = -int(above + 1.001f * way < 0.002f * radius[i]), nearest = near & -(int(state == 0) | int(above < known));  // masks
@@ -50,7 +51,8 @@ struct SortLoop {
   SphereStep& step;
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
-    const float *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *held = spheres.held.data();
+    const double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data();
+    const float* held = spheres.held.data();
     const float *size = kinds.radius.data(), *energy = step.energy.data();
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *pressure = ground.pressure.data();
     const std::uint8_t* horizontal = ground.horizontal.data();
@@ -63,7 +65,7 @@ struct SortLoop {
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]), p = plane[i], moves = int(motion[i]), touching = contacts[i];
       const int state = on_ground[i];
-      const F3 n{nx[p], ny[p], nz[p]}, v{vx[i], vy[i], vz[i]};
+      const F3 n{nx[p], ny[p], nz[p]}, v{float(vx[i]), float(vy[i]), float(vz[i])};
       const float moving = energy[i], threshold = c.resting_energy * c.gravity * size[k];
       const float kept = held[i], weight = pressure[p] * c.time;
       // Masks: 0 or −1.
@@ -113,7 +115,7 @@ struct LieLoop {
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     const float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data(), *radius = spheres.radius.data();
-    const float *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
+    const double *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
     float* held = spheres.held.data();
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
     const std::uint16_t* kind = spheres.kind.data();
@@ -135,7 +137,7 @@ struct LieLoop {
       const int k = OneKind ? 0 : int(kind[i]), p = plane[i], number = pose[i], at = first_pose[k] + choose(number > 0, number, 0);
       const int state = on_ground[i], moves = int(motion[i]);
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)), others = int(contacts[i]) > 0;
-      const F3 n{nx[p], ny[p], nz[p]}, start{px[i], py[i], pz[i]}, start_spin{lx[i], ly[i], lz[i]}, old{ax[i], ay[i], az[i]}, old_turn{sx[i], sy[i], sz[i]};
+      const F3 n{nx[p], ny[p], nz[p]}, start{px[i], py[i], pz[i]}, start_spin{float(lx[i]), float(ly[i]), float(lz[i])}, old{ax[i], ay[i], az[i]}, old_turn{sx[i], sy[i], sz[i]};
       const F3 out{dx[i], dy[i], dz[i]};
       const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
       const float r = radius[i], above = gap[i], given_speed = given[i], moving = energy[i], big = size[k];

@@ -11,6 +11,7 @@ namespace {
 using namespace lane;
 
 constexpr float kCalming = 4.0f;  // 1/s
+constexpr int kLying = 6;         // steps in a row on others: no passing blow in the air
 
 Tensors soft_of(const SphereKinds& k) { return {k.ixx.data(), k.iyy.data(), k.izz.data(), k.ixy.data(), k.ixz.data(), k.iyz.data()}; }
 
@@ -23,7 +24,7 @@ struct StartLoop {
   Spheres& out;
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
-    const float *vx = in.vx.data(), *vy = in.vy.data(), *vz = in.vz.data(), *lx = in.lx.data(), *ly = in.ly.data(), *lz = in.lz.data();
+    const double *vx = in.vx.data(), *vy = in.vy.data(), *vz = in.vz.data(), *lx = in.lx.data(), *ly = in.ly.data(), *lz = in.lz.data();
     const float *qw = in.qw.data(), *qx = in.qx.data(), *qy = in.qy.data(), *qz = in.qz.data();
     const std::uint16_t* kind = in.kind.data();
     const std::int16_t* pose = in.pose.data();
@@ -43,7 +44,8 @@ struct StartLoop {
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]);
-      const F3 v{vx[i], vy[i], vz[i]}, omega = in_world(soft, k, {qw[i], {qx[i], qy[i], qz[i]}}, {lx[i], ly[i], lz[i]});
+      const F3 v{float(vx[i]), float(vy[i]), float(vz[i])}, spun{float(lx[i]), float(ly[i]), float(lz[i])};
+      const F3 omega = in_world(soft, k, {qw[i], {qx[i], qy[i], qz[i]}}, spun);
       const float speed = length(v), spin = size[k] * length(omega), was = radius[i];
       // The sphere's radius: in flight by the tables, at rest by the pose, among others as it was.
       const float at = arc_tangent(spin, speed) * (float(kHeightSamples - 1) / 1.57079633f);
@@ -55,7 +57,7 @@ struct StartLoop {
       const float r = choose(moves == int(Motion::settling), resting, choose(flies, flying, was));
       radius[i] = r;
       reach[i] = r + 0.01f * size[k] + speed * c.time + fall;
-      energy[i] = 0.5f * (dot(v, v) + lx[i] * omega.x + ly[i] * omega.y + lz[i] * omega.z);
+      energy[i] = 0.5f * (dot(v, v) + dot(spun, omega));
       wx[i] = omega.x, wy[i] = omega.y, wz[i] = omega.z;
       px[i] = v.x + c.gx * c.time, py[i] = v.y + c.gy * c.time, pz[i] = v.z + c.gz * c.time;
     }
@@ -76,7 +78,7 @@ struct EndLoop {
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data();
-    float *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
+    double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
     float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data();
     const std::uint16_t* kind = spheres.kind.data();
     const Tensors soft = soft_of(kinds);
@@ -85,26 +87,40 @@ struct EndLoop {
     const float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
     const std::uint8_t *contacts = step.contacts.data(), *on_ground = step.on_ground.data(), *slides = step.slides.data();
     std::uint8_t* unsound = step.unsound.data();
+    const std::uint8_t* crowded_for = spheres.crowded_for.data();
     const float *energy = step.energy.data(), *size = kinds.radius.data();
-    const float calm = most(0.0f, 1.0f - kCalming * c.time);
+    const double calm = double(most(0.0f, 1.0f - kCalming * c.time));
     constexpr auto kMoved = std::uint8_t(GroundState::moved);
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]);
       const bool here = on_ground[i] != kMoved, flies = (contacts[i] == 0) & (slides[i] == 0);
-      const F3 old{vx[i], vy[i], vz[i]}, old_spin{lx[i], ly[i], lz[i]};
+      const double old_x = vx[i], old_y = vy[i], old_z = vz[i], spun_x = lx[i], spun_y = ly[i], spun_z = lz[i];
       // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for ever.
-      const bool calms = (contacts[i] > 0) & (energy[i] < c.resting_energy * c.gravity * size[k]);
-      const F3 v{px[i] + ax[i], py[i] + ay[i], pz[i] + az[i]}, spin = choose(calms, calm, 1.0f) * (old_spin + F3{sx[i], sy[i], sz[i]});
+      const bool calms = (contacts[i] > 0) & (int(crowded_for[i]) >= kLying) & (energy[i] < c.resting_energy * c.gravity * size[k]);
+      const double kept = select(-std::int64_t(calms), calm, 1.0);
+      const double by_x = kept * (spun_x + double(sx[i])), by_y = kept * (spun_y + double(sy[i])), by_z = kept * (spun_z + double(sz[i]));
       // In flight a body follows its parabola; else the velocity that its contacts left it.
-      const float behind = choose(flies, 0.5f * c.time, 0.0f);
-      const F3 way{(v.x - behind * c.gx) * c.time + dx[i], (v.y - behind * c.gy) * c.time + dy[i], (v.z - behind * c.gz) * c.time + dz[i]};
-      const F3 gone = choose(here, way, F3{0.0f, 0.0f, 0.0f});
-      const double to_x = x[i] + double(gone.x), to_y = y[i] + double(gone.y), to_z = z[i] + double(gone.z);
+      const std::int64_t flight = -std::int64_t(flies), stays = -std::int64_t(!here);
+      const F3 given{px[i] + ax[i] - (float(old_x) + c.gx * c.time), py[i] + ay[i] - (float(old_y) + c.gy * c.time), pz[i] + az[i] - (float(old_z) + c.gz * c.time)};
+      const double fallen_x = old_x + c.wide_gx * c.wide_time, fallen_y = old_y + c.wide_gy * c.wide_time, fallen_z = old_z + c.wide_gz * c.wide_time;
+      const double solved_x = fallen_x + double(given.x), solved_y = fallen_y + double(given.y), solved_z = fallen_z + double(given.z), half = 0.5 * c.wide_time;
+      // What only takes a near-still body out of an overlap is no motion.
+      const F3 out{dx[i], dy[i], dz[i]};
+      const float against = -dot(F3{float(solved_x), float(solved_y), float(solved_z)}, out) / most(dot(out, out), 1e-20f);
+      const float undone = choose(calms, least(most(against, 0.0f), 1.0f / c.time), 0.0f);
+      const double to_vx = select(flight, fallen_x, solved_x + double(undone * out.x)), to_vy = select(flight, fallen_y, solved_y + double(undone * out.y));
+      const double to_vz = select(flight, fallen_z, solved_z + double(undone * out.z));
+      const double way_x = select(flight, old_x + c.wide_gx * half, solved_x), way_y = select(flight, old_y + c.wide_gy * half, solved_y);
+      const double way_z = select(flight, old_z + c.wide_gz * half, solved_z);
+      const double to_x = x[i] + select(stays, 0.0, way_x * c.wide_time + double(dx[i])), to_y = y[i] + select(stays, 0.0, way_y * c.wide_time + double(dy[i]));
+      const double to_z = z[i] + select(stays, 0.0, way_z * c.wide_time + double(dz[i]));
+      const double new_vx = select(stays, old_x, to_vx), new_vy = select(stays, old_y, to_vy), new_vz = select(stays, old_z, to_vz);
+      const double new_lx = select(stays, spun_x, by_x), new_ly = select(stays, spun_y, by_y), new_lz = select(stays, spun_z, by_z);
       x[i] = to_x, y[i] = to_y, z[i] = to_z;
-      const F3 new_v = choose(here, v, old), new_spin = choose(here, spin, old_spin);
-      vx[i] = new_v.x, vy[i] = new_v.y, vz[i] = new_v.z;
-      lx[i] = new_spin.x, ly[i] = new_spin.y, lz[i] = new_spin.z;
+      vx[i] = new_vx, vy[i] = new_vy, vz[i] = new_vz;
+      lx[i] = new_lx, ly[i] = new_ly, lz[i] = new_lz;
+      const F3 spin{float(by_x), float(by_y), float(by_z)}, new_v{float(new_vx), float(new_vy), float(new_vz)}, new_spin{float(new_lx), float(new_ly), float(new_lz)};
       const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
       const Turn middle = product(turn_by(in_world(soft, k, q, spin), 0.5f * c.time), q);
       const Turn to = product(turn_by(in_world(soft, k, middle, spin), c.time), q);

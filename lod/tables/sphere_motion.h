@@ -38,6 +38,7 @@ enum class GroundState : std::uint8_t {
 struct StepConstants {
   float time = 0.0f;                      // s
   float gx = 0.0f, gy = 0.0f, gz = 0.0f;  // m/s²
+  double wide_time = 0.0, wide_gx = 0.0, wide_gy = 0.0, wide_gz = 0.0;  // for flight
   float gravity = 0.0f;                   // m/s²
   float resting_energy = 0.15f;           // J/kg over g R: the first threshold of 3.4
   bool update_radius = true;              // of those in flight

@@ -23,8 +23,8 @@ StatisticalBody Spheres::body(std::int64_t place) const {
 
 void Spheres::put(std::int64_t place, const StatisticalBody& body) {
   x[place] = body.position.x(), y[place] = body.position.y(), z[place] = body.position.z();
-  vx[place] = float(body.velocity.x()), vy[place] = float(body.velocity.y()), vz[place] = float(body.velocity.z());
-  lx[place] = float(body.spin.x()), ly[place] = float(body.spin.y()), lz[place] = float(body.spin.z());
+  vx[place] = body.velocity.x(), vy[place] = body.velocity.y(), vz[place] = body.velocity.z();
+  lx[place] = body.spin.x(), ly[place] = body.spin.y(), lz[place] = body.spin.z();
   qw[place] = float(body.orientation.w()), qx[place] = float(body.orientation.x());
   qy[place] = float(body.orientation.y()), qz[place] = float(body.orientation.z());
   radius[place] = body.sphere_radius;
@@ -84,7 +84,7 @@ void Spheres::wake(std::uint32_t woken) {
 
 void Spheres::put_to_sleep(std::int64_t place) {
   motion[place] = Motion::asleep;
-  vx[place] = vy[place] = vz[place] = lx[place] = ly[place] = lz[place] = 0.0f;
+  vx[place] = vy[place] = vz[place] = lx[place] = ly[place] = lz[place] = 0.0;
   known_count[place] = 0;
   swap(place, --awake);
 }

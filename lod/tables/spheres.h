@@ -1,5 +1,5 @@
 // The bodies of the tables model as dense arrays, one element a body, by place: those awake first, roughly in the order of their cells, then those
-// asleep. A slot is what a body is known by outside; slots are dense too. Positions are doubles (exact far from the origin), the rest floats.
+// asleep. A slot is what a body is known by outside; slots are dense too. What flight conserves or adds up for long is double, the rest float.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace lodestone {
 
 struct Spheres {
   std::vector<double> x, y, z;                 // m
-  std::vector<float> vx, vy, vz;               // m/s
-  std::vector<float> lx, ly, lz;               // spin: angular momentum over mass, m²/s, world
+  std::vector<double> vx, vy, vz;              // m/s
+  std::vector<double> lx, ly, lz;              // spin: angular momentum over mass, m²/s, world
   std::vector<float> qw, qx, qy, qz;
   std::vector<float> radius;                   // m, of the colliding sphere
   std::vector<float> quiet;                    // s below the sleeping threshold
@@ -25,6 +25,7 @@ struct Spheres {
   std::vector<std::int16_t> pose, plane;       // of the resting record (3.4), −1: none
   std::vector<Motion> motion;
   std::vector<std::uint8_t> since_crowded;     // steps since it last touched another body, at most 255
+  std::vector<std::uint8_t> crowded_for;       // steps in a row in which it did, at most 255
 
   std::vector<std::uint32_t> place_of_slot;
   std::int64_t awake = 0;                      // places below it
@@ -37,7 +38,7 @@ struct Spheres {
     visit(x), visit(y), visit(z), visit(vx), visit(vy), visit(vz), visit(lx), visit(ly), visit(lz);
     visit(qw), visit(qx), visit(qy), visit(qz), visit(radius), visit(quiet), visit(held);
     visit(slot), visit(owner), visit(events), visit(known_begin), visit(known_count);
-    visit(kind), visit(pose), visit(plane), visit(motion), visit(since_crowded);
+    visit(kind), visit(pose), visit(plane), visit(motion), visit(since_crowded), visit(crowded_for);
   }
 
   Vec3 position(std::int64_t place) const { return {x[place], y[place], z[place]}; }

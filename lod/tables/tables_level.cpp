@@ -197,7 +197,7 @@ void TablesLevel::start(double dt) {
   const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height && settings_.tables.radius_update_interval <= 1;
   const Vec3& g = settings_.gravity;
   check_that(ground_.planes.size() < 255, "at most 254 planes");
-  constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
+  constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .wide_time = dt, .wide_gx = g.x(), .wide_gy = g.y(), .wide_gz = g.z(), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
                 .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1};
   step_.resize(std::size_t(spheres_.awake));
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0) update_radii_one_by_one();
@@ -270,7 +270,7 @@ void TablesLevel::respond(ContactTally& tally) {
         take_impulses(simd_, begin, end, step_);
       });
   }
-  contacts_.remember(spheres_, constants_);
+  contacts_.remember(spheres_, bounce_velocity(), constants_);
 }
 
 // The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves as if alone.
@@ -326,6 +326,7 @@ void TablesLevel::finish(ContactTally& tally) {
     for (std::int64_t i = begin; i < end; ++i) {
       const bool crowded = step_.contacts[i] > 0;
       spheres_.since_crowded[i] = crowded ? 0 : std::uint8_t(std::min(255, spheres_.since_crowded[i] + 1));
+      spheres_.crowded_for[i] = crowded ? std::uint8_t(std::min(255, spheres_.crowded_for[i] + 1)) : 0;
       if (crowded && spheres_.motion[i] == Motion::settling && step_.on_ground[i] == std::uint8_t(GroundState::free)) spheres_.motion[i] = Motion::dynamic;
       if (step_.unsound[i]) recover(i, own);
     }
@@ -343,7 +344,7 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally) {
   body.spin += Vec3(double(step_.sx[i]), double(step_.sy[i]), double(step_.sz[i]));
   body.position += Vec3(double(step_.dx[i]), double(step_.dy[i]), double(step_.dz[i]));
   RestingRecord resting{spheres_.pose[i], spheres_.plane[i]};
-  ContactTally own = step_tables_body(body, resting, kind_of(i), world(), double(t), tables_);
+  ContactTally own = step_tables_body(body, resting, kind_of(i), world(), constants_.wide_time, tables_);
   tally += own;
   spheres_.pose[i] = std::int16_t(resting.pose), spheres_.plane[i] = std::int16_t(resting.plane);
   spheres_.put(i, body);
