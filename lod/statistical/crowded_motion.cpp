@@ -13,9 +13,10 @@ namespace {
 constexpr int kLeastSubsteps = 3, kMostSubsteps = 12;
 constexpr double kStride = 0.1;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
 
-// Where a full neighbour is after a substep: the crowd has given it its velocity where it took part.
-void advance(FullNeighbor& body, double time) {
+// Where a full neighbour is after a substep that it began with velocity `before`: what took part in the crowd has its velocity from there, gravity included.
+void advance(FullNeighbor& body, const Vec3& before, const Vec3& gravity, double time) {
   if (body.asleep) return;
+  if (body.state.velocity == before) body.state.velocity += (gravity + body.force / body.mass) * time;
   body.state.position += body.state.velocity * time;
   body.state.orientation = (rotation_from_vector(body.state.angular_velocity * time) * body.state.orientation).normalized();
 }
@@ -34,7 +35,6 @@ void StatisticalLevel::Impl::mark_near() {
 
 int StatisticalLevel::Impl::count_substeps(double dt, std::span<const FullNeighbor> neighbors) const {
   if (pairs.empty()) return solid_contacts.empty() ? 0 : 1;
-  if (tables()) return 1;  // its responses are whole impacts already
   struct Mover {
     Vec3 velocity;
     double radius;
@@ -69,11 +69,14 @@ ContactTally StatisticalLevel::Impl::move_those(double time, Select select) {
   return sum;
 }
 
-void StatisticalLevel::Impl::move_crowded(double time, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, ContactTally& tally) {
+void StatisticalLevel::Impl::move_crowded(double dt, double time, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, ContactTally& tally) {
   if (contacts.empty() && solid_contacts.empty()) return;
   for (const std::int32_t slot : awake)
     if (bodies[slot].crowded && bodies[slot].motion == Motion::settling) bodies[slot].motion = Motion::dynamic;
-  tally += crowd.step(bodies, kinds, neighbors, full_contacts, contacts, solid_contacts, world(), settings.model, time);
+  StepWorld crowd_world = world();
+  // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
+  if (!neighbors.empty()) crowd_world.bounce_velocity += settings.gravity.norm() * (dt - time);
+  tally += crowd.step(bodies, kinds, neighbors, full_contacts, contacts, solid_contacts, faces_below, crowd_world, StatisticalModel::support, time);
   for (const std::int32_t slot : awake)
     if (bodies[slot].crowded && bodies[slot].motion != Motion::asleep) update_quiet(bodies[slot], time, tally);
 }
@@ -98,14 +101,18 @@ void StatisticalLevel::Impl::move(double dt, std::span<FullNeighbor> neighbors, 
     wake_touched(full);
     if (substeps > 1) find_ground_solids(time, true);
     for (const SolidContact& contact : solid_contacts) bodies[contact.slot].crowded = true;
-    if (tables() && settings.tables.paper_pair_rule) tally += respond_pairs_as_paper();
     times.pairs_ms += watch.lap_ms();
 
     tally += move_those(time, [&](std::int32_t slot) { return near_another[slot] && !bodies[slot].crowded; });
     times.flight_ms += watch.lap_ms();
 
-    move_crowded(time, full, full_contacts, tally);
-    for (FullNeighbor& n : full) advance(n, time);
+    full_before.assign(full.begin(), full.end());
+    move_crowded(dt, time, full, full_contacts, tally);
+    for (std::size_t k = 0; k < full.size(); ++k) {
+      advance(full[k], full_before[k].state.velocity, settings.gravity, time);
+      // The full level takes every hit at the step's beginning: too early by i substeps, in which it must not carry the body along.
+      full[k].shift -= (i * time / full[k].mass) * (full[k].hit.linear - full_before[k].hit.linear);
+    }
     if (pair_phase) add_travel();
     times.crowd_ms += watch.lap_ms();
   }

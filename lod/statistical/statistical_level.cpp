@@ -26,7 +26,7 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
     if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
   BodyKind& kind = kinds.emplace_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
-  if (kind.signature && !tables())
+  if (kind.signature)
     kind.clips = ClipIndex(*kind.signature, kind.shape->inertia_per_mass / (kind.shape->radius * kind.shape->radius), ClipSettings{}.greatest_distance);
   return std::uint16_t(kinds.size() - 1);
 }
@@ -51,7 +51,6 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
                           bool asleep, std::shared_ptr<const Signature> signature) {
   if (tables_) return tables_->add(owner, std::move(shape), mass, material, state, asleep, std::move(signature));
   Impl& level = *impl_;
-  check_that(!level.tables() || signature != nullptr, "the tables model needs a signature");
   level.reach = std::max(level.reach, shape->radius);
   StatisticalBody body;
   body.kind = level.find_kind(std::move(shape), mass, material, std::move(signature));
@@ -59,13 +58,11 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
   const int slot = size();
   level.bodies.push_back(body);
   level.clips.emplace_back();
-  level.resting.emplace_back();
   level.travels.emplace_back();
   level.travels.back().gone = level.longest_travel + 10.0 * level.reach;
   level.angular_velocity_given.emplace_back();
   level.awake.push_back(slot);
   set_state(slot, state);
-  if (level.tables()) level.bodies[slot].sphere_radius = float(find_sphere_radius(level.bodies[slot], level.kind_of(level.bodies[slot]), level.settings.tables, level.settings.seed));
   if (asleep) {
     level.put_to_sleep(level.bodies[slot]);
     level.angular_velocity_given[slot].reset();
@@ -95,13 +92,11 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
     if (push.first == last) push.first = slot;
   level.bodies[slot] = level.bodies[last];
   level.clips[slot] = level.clips[last];
-  level.resting[slot] = level.resting[last];
   level.longest_travel = std::max(level.longest_travel, level.travels[slot].gone);
   level.travels[slot] = level.travels[last];
   level.travels.pop_back();
   level.bodies.pop_back();
   level.clips.pop_back();
-  level.resting.pop_back();
   level.angular_velocity_given[slot] = level.angular_velocity_given[last];
   level.angular_velocity_given.pop_back();
   level.sleepers_changed = true;
