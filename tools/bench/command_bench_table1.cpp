@@ -46,6 +46,7 @@ void add_bench_table1_command(CLI::App& bench, ExitCode& exit_code) {
       ->delimiter(',')->allow_extra_args(false)->check(CLI::Range(1, 2'000'000))->capture_default_str();
   command->add_option("--methods", table.methods, "of compare drop; the statistical level with both of its models")
       ->delimiter(',')->allow_extra_args(false)->check(find_method_fault, "METHODS")->capture_default_str();
+  command->add_option("--model", table.model, "of the statistical level: this one only")->check(CLI::IsMember({"tables", "support"}));
   command->add_option("--threads", table.threads, "of the statistical level")->check(CLI::Range(1, 4096))->capture_default_str();
   command->add_flag("--sleep", table.sleeping, "bodies at rest may sleep, by every method");
   command->add_option("--row-seconds", table.row_seconds, "leave out rows that would take longer, s")->check(CLI::Range(0.0, 1e9))->capture_default_str();

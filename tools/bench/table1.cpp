@@ -66,6 +66,7 @@ class Table1 {
  public:
   explicit Table1(const Table1Settings& settings) : settings_(settings), job_(make_table1_job()) {
     methods_ = make_drop_methods(settings.methods, job_, settings.measuring, 0, settings.progress);
+    if (!settings.model.empty()) std::erase_if(methods_, [&](const DropMethod& method) { return !method.model().empty() && method.model() != settings.model; });
   }
 
   std::vector<Table1Row> rows() {

@@ -14,6 +14,7 @@ namespace lodestone {
 struct Table1Settings {
   std::vector<int> bodies = {10, 100, 1'000, 10'000};
   std::vector<std::string> methods = {"full_plain", "full", "low", "spheres7", "sphere", "bullet_hull", "bullet_sphere", "statistical"};
+  std::string model = {};       ///< of the statistical level: "tables" or "support"; empty: both
   int threads = 1;              ///< of the statistical level; the others run on one
   bool sleeping = false;
   double row_seconds = 120.0;   ///< rows that would take longer are left out
