@@ -169,31 +169,4 @@ void CellGrid::make_parts() {
   if (grids_.size() > 1) parts_.push_back({.grid = -1, .colour = 3});
 }
 
-CellGrid::Neighbour CellGrid::neighbour(const Grid& grid, int axis, std::int32_t at) {
-  const std::int32_t n = grid.cells[axis];
-  if (at >= 0 && at < n) return {at, 0.0f};
-  if (!grid.wraps[axis]) return {};
-  return at < 0 ? Neighbour{at + n, float(-n * grid.edge)} : Neighbour{at - n, float(n * grid.edge)};
-}
-
-void CellGrid::add_runs(const Grid& grid, std::uint32_t row, std::int32_t middle, bool own, const std::array<float, 3>& shift, std::vector<Run>& runs) const {
-  const std::int32_t n = grid.cells[0], first = std::max(own ? middle : middle - 1, 0), last = std::min(middle + 1, n - 1);
-  runs.push_back({start_[row + std::uint32_t(first)], start_[row + std::uint32_t(last) + 1], shift});
-  if (!grid.wraps[0]) return;
-  const float length = float(n * grid.edge);
-  if (middle == 0 && !own) runs.push_back({start_[row + std::uint32_t(n) - 1], start_[row + std::uint32_t(n)], {shift[0] - length, shift[1], shift[2]}});
-  if (middle == n - 1) runs.push_back({start_[row], start_[row + 1], {shift[0] + length, shift[1], shift[2]}});
-}
-
-// The first run is the cell's own and what follows it; then one of each pair of opposite neighbour rows.
-void CellGrid::find_cell_runs(const Grid& grid, std::int32_t slow, std::int32_t mid, std::int32_t fast, std::vector<Run>& runs) const {
-  const auto row_of = [&](std::int32_t s, std::int32_t m) { return grid.first_cell + std::uint32_t(s * grid.cells[1] + m) * std::uint32_t(grid.cells[0]); };
-  add_runs(grid, row_of(slow, mid), fast, true, {}, runs);
-  if (const Neighbour m = neighbour(grid, 1, mid + 1); m.at >= 0) add_runs(grid, row_of(slow, m.at), fast, false, {0.0f, m.shift, 0.0f}, runs);
-  const Neighbour s = neighbour(grid, 2, slow + 1);
-  if (s.at < 0) return;
-  for (std::int32_t step = -1; step <= 1; ++step)
-    if (const Neighbour m = neighbour(grid, 1, mid + step); m.at >= 0) add_runs(grid, row_of(s.at, m.at), fast, false, {0.0f, m.shift, s.shift}, runs);
-}
-
 }  // namespace lodestone
