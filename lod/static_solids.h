@@ -37,6 +37,7 @@ class StaticSolids {
   void prepare();
 
   bool empty() const { return solids_.empty(); }
+  std::size_t size() const { return solids_.size(); }
   const StaticSolid& operator[](int i) const { return solids_[std::size_t(i)]; }
   /// Appends the indices of the solids whose bounding boxes come within `reach` of `center`.
   void find_near(const Vec3& center, double reach, std::vector<int>& found) const;

@@ -163,4 +163,23 @@ Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, con
   return manifold;
 }
 
+Manifold join_manifolds(const Manifold& first, const Manifold& second, const Vec3& normal) {
+  const Plane plane(normal);
+  std::array<ManifoldPoint, 8> all;
+  Feature corners;
+  for (const Manifold* part : {&first, &second})
+    for (int i = 0; i < part->count; ++i) {
+      all[std::size_t(corners.count)] = part->points[std::size_t(i)];
+      Point corner = plane.to_plane(part->points[std::size_t(i)].point);
+      corner.height = corners.count;  // which it is
+      corners.add(corner);
+    }
+  // keep_four spans its area from the first, which must lie outermost: no other has so small an x.
+  std::iter_swap(corners.at.begin(), std::min_element(corners.at.begin(), corners.at.begin() + corners.count, [](const Point& a, const Point& b) { return a.x < b.x; }));
+  keep_four(corners);
+  Manifold joined;
+  for (int i = 0; i < corners.count; ++i) joined.points[std::size_t(joined.count++)] = all[std::size_t(corners.at[std::size_t(i)].height)];
+  return joined;
+}
+
 }  // namespace lodestone

@@ -22,4 +22,7 @@ struct Manifold {
 /// as arms from a common origin; at most four each. No point has a gap below `least_gap`. Empty where the features do not overlap.
 Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, const Vec3& normal, double least_gap);
 
+/// Of two patches of one contact, which may overlap: four points of the widest support.
+Manifold join_manifolds(const Manifold& first, const Manifold& second, const Vec3& normal);
+
 }  // namespace lodestone

@@ -10,9 +10,9 @@ namespace {
 
 const SolverBody kGround;
 
-const SolverBody& second_of(std::span<SolverBody> bodies, const SolverContact& c) { return c.second < 0 ? kGround : bodies[c.second]; }
+const SolverBody& second_of(std::span<const SolverBody> bodies, const SolverContact& c) { return c.second < 0 ? kGround : bodies[c.second]; }
 
-Vec3 contact_velocity(std::span<SolverBody> bodies, const SolverContact& c) {
+Vec3 contact_velocity(std::span<const SolverBody> bodies, const SolverContact& c) {
   const SolverBody &a = bodies[c.first], &b = second_of(bodies, c);
   return a.velocity + a.angular_velocity.cross(c.arm_first) - b.velocity - b.angular_velocity.cross(c.arm_second);
 }
@@ -82,6 +82,8 @@ void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
 }
 
 }  // namespace
+
+double separating_velocity(std::span<const SolverBody> bodies, const SolverContact& c) { return contact_velocity(bodies, c).dot(c.normal); }
 
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings) {
   for (SolverContact& c : contacts) prepare(bodies, c, step, settings);

@@ -49,6 +49,9 @@ struct ContactSolverSettings {
 /// An overlap is kept from growing, not undone: that is a matter of positions (see push_out_overlap).
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings);
 
+/// Along the normal, at the contact's point, m/s: positive where the bodies part.
+double separating_velocity(std::span<const SolverBody> bodies, const SolverContact& contact);
+
 /// How far to move apart two bodies that overlap by −`gap`, m: a fraction a step, leaving a sliver so that resting contacts persist. Moving positions
 /// rather than adding velocity keeps the correction out of the kinetic energy.
 inline double push_out_overlap(double gap, double radius) { return gap < -0.002 * radius ? 0.25 * (-gap - 0.002 * radius) : 0.0; }

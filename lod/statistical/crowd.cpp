@@ -58,34 +58,32 @@ int Crowd::solver_index(Participant p, std::span<const StatisticalBody> bodies, 
   return index;
 }
 
-void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+// `number`: of the plane, for what is remembered of its contacts.
+void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, std::size_t number, const StepWorld& world,
                                 StatisticalModel model, double time) {
   const double reach = model == StatisticalModel::support ? kind.shape->radius : double(body.sphere_radius);
   const double spin_speed = model == StatisticalModel::support ? solver_bodies_[index].angular_velocity.norm() * reach : 0.0;
-  for (std::size_t number = 0; number < world.ground->planes.size(); ++number) {
-    const HalfSpace& plane = world.ground->planes[number];
-    const double height = plane.height_of(body.position);
-    const double falling = std::max(0.0, -solver_bodies_[index].velocity.dot(plane.normal));
-    const double margin = settings_.contact_margin * kind.shape->radius + (falling + 0.5 * spin_speed) * time;
-    if (height > reach + margin) continue;
-    HullContacts found;
-    if (model == StatisticalModel::support) {
-      found = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, margin, body.support_hint);
-    } else {
-      found.contact[0] = {-reach * plane.normal, height - reach};
-      found.count = 1;
-    }
-    for (int i = 0; i < found.count; ++i) {
-      if (found.contact[i].gap > margin) continue;
-      SolverContact c;
-      c.first = index;
-      c.normal = plane.normal;
-      c.arm_first = found.contact[i].arm;
-      c.gap = found.contact[i].gap;
-      c.law = world.law(kind, plane);
-      solver_contacts_.push_back(c);
-      keys_.push_back(ground_key(body.owner, number));
-    }
+  const double height = plane.height_of(body.position);
+  const double falling = std::max(0.0, -solver_bodies_[index].velocity.dot(plane.normal));
+  const double margin = settings_.contact_margin * kind.shape->radius + (falling + 0.5 * spin_speed) * time;
+  if (height > reach + margin) return;
+  HullContacts found;
+  if (model == StatisticalModel::support) {
+    found = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, margin, body.support_hint);
+  } else {
+    found.contact[0] = {-reach * plane.normal, height - reach};
+    found.count = 1;
+  }
+  for (int i = 0; i < found.count; ++i) {
+    if (found.contact[i].gap > margin) continue;
+    SolverContact c;
+    c.first = index;
+    c.normal = plane.normal;
+    c.arm_first = found.contact[i].arm;
+    c.gap = found.contact[i].gap;
+    c.law = world.law(kind, plane);
+    solver_contacts_.push_back(c);
+    keys_.push_back(ground_key(body.owner, number));
   }
 }
 
@@ -149,7 +147,7 @@ void Crowd::add_full_contacts(int index, std::span<const StatisticalBody> bodies
 
 ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
                          std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts,
-                         std::span<const SolidContact> solid_contacts, const StepWorld& world, StatisticalModel model, double time) {
+                         std::span<const SolidContact> solid_contacts, const FacesBelow& faces, const StepWorld& world, StatisticalModel model, double time) {
   participants_.clear();
   solver_bodies_.clear();
   angular_before_.clear();
@@ -181,7 +179,12 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     const Participant p = participants_[i];
     if (p < 0 && !neighbors[-1 - p].asleep) add_full_contacts(int(i), bodies, kinds, neighbors, full_contacts, world, time);
-    if (p >= 0 && bodies[p].motion != Motion::asleep) add_ground_contacts(int(i), bodies[p], kinds[bodies[p].kind], world, model, time);
+    if (p < 0 || bodies[p].motion == Motion::asleep) continue;
+    const auto& planes = world.ground->planes;
+    for (std::size_t number = 0; number < planes.size(); ++number)
+      add_ground_contacts(int(i), bodies[p], kinds[bodies[p].kind], planes[number], number, world, model, time);
+    std::size_t number = planes.size() + world.ground->solids.size();
+    for (const HalfSpace& face : faces.of(p)) add_ground_contacts(int(i), bodies[p], kinds[bodies[p].kind], face, number++, world, model, time);
   }
   ContactSolverSettings settings = settings_.solver;
   settings.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
@@ -195,6 +198,9 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     const Participant p = participants_[i];
     const SolverBody& solved = solver_bodies_[i];
     if (p < 0) {
+      RigidState& state = neighbors[-1 - p].state;
+      state.velocity = solved.velocity;
+      state.angular_velocity = solved.angular_velocity;
       continue;
     }
     index_of_slot_[p] = -1;
@@ -223,12 +229,14 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   const auto move = [&](std::int32_t index, const Vec3& by) {
     if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
     const Participant p = participants_[index];
-    (p >= 0 ? bodies[p].position : neighbors[-1 - p].shift) += by;
+    (p >= 0 ? bodies[p].position : neighbors[-1 - p].state.position) += by;
+    if (p < 0) neighbors[-1 - p].shift += by;
   };
   for (const SolverContact& c : solver_contacts_) {
     const Participant p = std::max(participants_[c.first], c.second < 0 ? -1 : participants_[c.second]);
     if (p < 0) continue;
-    const double distance = c.share * push_out_overlap(c.gap, kinds[bodies[p].kind].shape->radius);
+    const double overlap = c.gap + std::max(0.0, separating_velocity(solver_bodies_, c)) * time;  // the rest is undone by the motion itself
+    const double distance = c.share * push_out_overlap(overlap, kinds[bodies[p].kind].shape->radius);
     if (distance == 0.0) continue;
     const double first = solver_bodies_[c.first].inverse_mass, second = c.second < 0 ? 0.0 : solver_bodies_[c.second].inverse_mass;
     if (first + second == 0.0) continue;
@@ -236,12 +244,15 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     move(c.second, -distance * second / (first + second) * c.normal);
   }
   // The ground has the last word.
-  for (const Participant p : participants_)
-    if (p >= 0 && bodies[p].motion != Motion::asleep)
-      for (const HalfSpace& plane : world.ground->planes) {
-        if (model == StatisticalModel::support) lift_out(bodies[p], *kinds[bodies[p].kind].shape, plane);
-        else lift_sphere_out(bodies[p], plane);
-      }
+  const auto lift = [&](StatisticalBody& body, const HalfSpace& plane) {
+    if (model == StatisticalModel::support) lift_out(body, *kinds[body.kind].shape, plane);
+    else lift_sphere_out(body, plane);
+  };
+  for (const Participant p : participants_) {
+    if (p < 0 || bodies[p].motion == Motion::asleep) continue;
+    for (const HalfSpace& plane : world.ground->planes) lift(bodies[p], plane);
+    for (const HalfSpace& face : faces.of(p)) lift(bodies[p], face);
+  }
   ContactTally tally;
   tally.contacts = std::int64_t(solver_contacts_.size());
   return tally;

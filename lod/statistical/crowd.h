@@ -32,18 +32,18 @@ class Crowd {
  public:
   explicit Crowd(const CrowdSettings& settings = {}) : settings_(settings) {}
 
-  /// Solves `contacts`, those with static solids, the ground contacts of every crowded body and those of `full_contacts` that hold up a full one, then moves the crowded
-  /// bodies by `time`. Bodies asleep hold still; full neighbours receive impulses and are not moved.
+  /// Solves `contacts`, those with static solids, the ground contacts of every crowded body (`faces` among them) and those of `full_contacts` that hold up a full one, then moves the crowded
+  /// bodies by `time`. Bodies asleep hold still; full neighbours receive impulses, the velocities that these give them, and shifts, but do not move on.
   ContactTally step(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors,
                     std::span<const FullContact> full_contacts, std::span<const CrowdContact> contacts,
-                    std::span<const SolidContact> solid_contacts, const StepWorld& world, StatisticalModel model, double time);
+                    std::span<const SolidContact> solid_contacts, const FacesBelow& faces, const StepWorld& world, StatisticalModel model, double time);
 
  private:
   void add_solid_contact(const SolidContact& on_solid, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
                          std::span<const FullNeighbor> neighbors, const StepWorld& world, double time);
   int solver_index(Participant participant, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
                    std::span<const FullNeighbor> neighbors, const StepWorld& world, double time);
-  void add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+  void add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, std::size_t number, const StepWorld& world,
                            StatisticalModel model, double time);
   void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
   void add_full_contacts(int index, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,

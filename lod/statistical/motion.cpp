@@ -35,35 +35,19 @@ void StatisticalLevel::Impl::move_support(StatisticalBody& body, int slot, const
   update_quiet(body, dt, tally);
 }
 
-void StatisticalLevel::Impl::move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally) {
-  const BodyKind& kind = kind_of(body);
-  static const TablesSettings defaults;
-  TablesSettings tables_settings = defaults;
-  tables_settings.options = settings.tables;
-  if (body.motion == Motion::settling) {
-    const double rest = kind.signature->rest_poses[resting[slot].pose].height * kind.shape->radius;
-    const double blend = defaults.blend_time * std::sqrt(kind.shape->radius / std::max(1e-9, settings.gravity.norm()));
-    body.sphere_radius += float((rest - body.sphere_radius) * std::min(1.0, 2.0 * dt / blend));
-  } else if (steps % std::max(1, settings.tables.radius_update_interval) == 0) {
-    body.sphere_radius = float(find_sphere_radius(body, kind, settings.tables, settings.seed));
-  }
-  tally = step_tables_body(body, resting[slot], kind, world(), dt, tables_settings);
-  update_quiet(body, dt, tally);
-}
-
 // The planes, and the faces of static solids that the body lies over.
-const StaticGround& StatisticalLevel::Impl::ground_below(std::size_t place) const {
-  if (faces_of.empty() || faces_of[place].first == faces_of[place].second) return ground;
+const StaticGround& StatisticalLevel::Impl::ground_below(std::int32_t slot) const {
+  const std::span<const HalfSpace> faces = faces_below.of(slot);
+  if (faces.empty()) return ground;
   thread_local StaticGround with_faces;
   with_faces.planes = ground.planes;
-  with_faces.planes.insert(with_faces.planes.end(), faces_below.begin() + faces_of[place].first, faces_below.begin() + faces_of[place].second);
+  with_faces.planes.insert(with_faces.planes.end(), faces.begin(), faces.end());
   return with_faces;
 }
 
 void StatisticalLevel::Impl::move_alone(std::size_t place, double dt, ContactTally& tally) {
   const std::int32_t slot = awake[place];
-  if (tables()) move_tables(bodies[slot], slot, dt, tally);
-  else move_support(bodies[slot], slot, ground_below(place), dt, tally);
+  move_support(bodies[slot], slot, ground_below(slot), dt, tally);
 }
 
 }  // namespace lodestone

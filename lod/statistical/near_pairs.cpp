@@ -5,6 +5,11 @@
 #include <cmath>
 
 namespace lodestone {
+namespace {
+
+constexpr double kTouching = 0.01;  // over R: a gap that is as good as none
+
+}  // namespace
 
 void StatisticalLevel::Impl::find_near_pairs(double dt, std::span<const FullNeighbor> neighbors) {
   const double fall = 0.5 * settings.gravity.norm() * dt * dt;
@@ -22,17 +27,44 @@ void StatisticalLevel::Impl::find_near_pairs(double dt, std::span<const FullNeig
   for (const FullNeighbor& n : neighbors) bounds.push_back(bound(n.state.position, n.state.velocity, n.shape->radius));
   pairs.clear();
   broad_phase.find_pairs(bounds, pairs);
+  take_over_found(neighbors);
 }
 
+// A slot, or −1 − index of a full neighbour.
+Participant StatisticalLevel::Impl::participant(std::int32_t of_pair) const {
+  if (of_pair < 0) return asleep[std::size_t(-1 - of_pair)];
+  const auto movers = std::int32_t(awake.size());
+  return of_pair < movers ? awake[std::size_t(of_pair)] : -1 - (of_pair - movers);
+}
+
+// What is known of the pairs that were near before.
+void StatisticalLevel::Impl::take_over_found(std::span<const FullNeighbor> neighbors) {
+  const auto owner = [&](Participant p) { return p < 0 ? neighbors[std::size_t(-1 - p)].owner : bodies[std::size_t(p)].owner; };
+  std::swap(found, found_before);
+  pair_memory.begin(found_before.size());
+  for (std::size_t i = 0; i < found_before.size(); ++i) pair_memory.put(found_before[i].key, std::int32_t(i));
+  found.resize(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    // The lower owner first, so that a contact is the same whichever of its bodies is full.
+    Participant first = participant(pairs[i].first), second = participant(pairs[i].second);
+    if (owner(second) < owner(first)) std::swap(first, second);
+    const ContactKey key = contact_key(owner(first), owner(second));
+    const std::int32_t before = pair_memory.find(key);
+    if (before < 0) found[i] = {};
+    else std::swap(found[i], found_before[std::size_t(before)]);
+    found[i].key = key;
+    found[i].first = first;
+    found[i].second = second;
+  }
+}
 
 PairBody StatisticalLevel::Impl::pair_body(Participant p, std::span<const FullNeighbor> neighbors) const {
   if (p < 0) {
     const FullNeighbor& n = neighbors[-1 - p];
-    return {n.shape, n.signature, n.state.position, n.state.orientation, 0.8 * n.shape->radius};
+    return {n.shape, n.state.position, n.state.orientation};
   }
   const StatisticalBody& body = bodies[p];
-  const BodyKind& kind = kind_of(body);
-  return {kind.shape.get(), kind.signature.get(), body.position, body.orientation, body.sphere_radius};
+  return {kind_of(body).shape.get(), body.position, body.orientation};
 }
 
 Vec3 StatisticalLevel::Impl::point_velocity(Participant p, const Vec3& point, std::span<const FullNeighbor> neighbors) const {
@@ -45,74 +77,75 @@ Vec3 StatisticalLevel::Impl::point_velocity(Participant p, const Vec3& point, st
   return body.velocity + angular_velocity(body.orientation, body.spin, *kind_of(body).shape).cross(point - body.position);
 }
 
-void StatisticalLevel::Impl::find_contact(Participant first, Participant second, double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const {
-  const PairBody a = pair_body(first, neighbors), b = pair_body(second, neighbors);
-  const double touching = 0.01 * std::min(a.shape->radius, b.shape->radius);
-  const bool statistical = first >= 0 && second >= 0;
-  const double gone = statistical ? travels[first].gone + travels[second].gone : 0.0;
-  const PairRecord* known = pair_memory.find(pair.key);
-  if (statistical && known && known->gap - (gone - known->travel) > touching + travels[first].ahead + travels[second].ahead) {
-    pair.record = *known;
-    return;
+void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const {
+  constexpr double kHeld = 0.01;  // over R: so far bodies take a contact along
+  const PairBody a = pair_body(pair.first, neighbors), b = pair_body(pair.second, neighbors);
+  const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
+  const bool statistical = pair.first >= 0 && pair.second >= 0;
+  double gone = 0.0;
+  if (statistical) {
+    const Travel &first = travels[pair.first], &second = travels[pair.second];
+    gone = first.gone + second.gone;
+    if (pair.travel >= 0.0) {
+      if (pair.gap - (gone - pair.travel) > touching + first.ahead + second.ahead) return pair.contacts.clear();
+      if (!pair.contacts.empty() && gone - pair.travel < kHeld * least_radius) {
+        for (HeldContact& held : pair.contacts) follow(held, a, b);
+        return;
+      }
+    }
   }
-  const Vec3 closing = point_velocity(first, a.position, neighbors) - point_velocity(second, b.position, neighbors);
-  const double margin = touching + closing.norm() * dt;
-  std::optional<PairContact> contact;
-  if (tables()) {
-    contact = find_sphere_contact(a, b, margin);
-  } else {
-    HullContactSearch search = find_hull_contact(a, b, known ? Vec3(known->normal.cast<double>()) : Vec3::Zero(), margin);
-    pair.record = {search.normal.cast<float>(), float(search.gap), gone};
-    contact = std::move(search.contact);
-  }
-  if (!contact) return;
-  // It counts if it closes within the step.
-  const auto closes = [&](const ManifoldPoint& p) {
-    const Vec3 velocity = point_velocity(first, p.point, neighbors) - point_velocity(second, p.point, neighbors);
-    return p.gap + velocity.dot(contact->normal) * dt <= touching;
-  };
-  const auto points = std::span(contact->manifold.points).first(std::size_t(contact->manifold.count));
-  if (std::ranges::any_of(points, closes)) pair.contact = CrowdContact{first, second, *contact};
+  const Vec3 closing = point_velocity(pair.first, a.position, neighbors) - point_velocity(pair.second, b.position, neighbors);
+  const HullContactSearch search = find_pair_contacts(a, b, pair.axis, touching + closing.norm() * dt);
+  pair.axis = search.axis;
+  pair.gap = search.gap;
+  pair.travel = gone;
+  pair.contacts.clear();
+  for (const PairContact& contact : search.contacts) pair.contacts.push_back(hold(contact, a, b));
+}
+
+// Within the step, or nearly so.
+bool StatisticalLevel::Impl::closes(const FoundPair& pair, const PairContact& contact, double dt, std::span<const FullNeighbor> neighbors) const {
+  const double touching = kTouching * std::min(pair_body(pair.first, neighbors).shape->radius, pair_body(pair.second, neighbors).shape->radius);
+  return std::ranges::any_of(std::span(contact.manifold.points).first(std::size_t(contact.manifold.count)), [&](const ManifoldPoint& p) {
+    const Vec3 velocity = point_velocity(pair.first, p.point, neighbors) - point_velocity(pair.second, p.point, neighbors);
+    return p.gap + velocity.dot(contact.normal) * dt <= touching;
+  });
 }
 
 void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighbor> neighbors) {
-  const auto mover = [&](std::int32_t i) { return i < std::int32_t(awake.size()) ? awake[i] : -1 - (i - std::int32_t(awake.size())); };
-  // The lower owner first, so that a contact is the same whichever of its bodies is full.
-  const auto owner = [&](Participant p) { return p < 0 ? neighbors[-1 - p].owner : bodies[p].owner; };
   for (const std::int32_t slot : awake) bodies[slot].crowded = false;
-  found.resize(pairs.size());
-  parallel(std::int64_t(pairs.size()), 64, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      Participant first = mover(pairs[i].first), second = pairs[i].second >= 0 ? mover(pairs[i].second) : asleep[-1 - pairs[i].second];
-      if (owner(second) < owner(first)) std::swap(first, second);
-      found[i] = {contact_key(owner(first), owner(second)), {}, {}};
-      if (first < 0 && second < 0) continue;  // two full bodies are the full level's matter
-      if (is_asleep(first, neighbors) && is_asleep(second, neighbors)) continue;
-      find_contact(first, second, dt, neighbors, found[i]);
-    }
+  const auto looked_at = [&](const FoundPair& pair) {
+    if (pair.first < 0 && pair.second < 0) return false;  // two full bodies are the full level's matter
+    return !(is_asleep(pair.first, neighbors) && is_asleep(pair.second, neighbors));
+  };
+  parallel(std::int64_t(found.size()), 64, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i)
+      if (looked_at(found[i])) find_contact(dt, neighbors, found[i]);
   });
   contacts.clear();
-  if (!tables()) pair_memory.begin(pairs.size());
   for (const FoundPair& pair : found) {
-    if (!tables()) pair_memory.put(pair.key, pair.record);
-    if (!pair.contact) continue;
-    contacts.push_back(*pair.contact);
-    for (const Participant p : {pair.contact->first, pair.contact->second})
-      if (p >= 0) bodies[p].crowded = true;
+    if (pair.contacts.empty() || !looked_at(pair)) continue;
+    for (const HeldContact& held : pair.contacts) {
+      if (!closes(pair, held.contact, dt, neighbors)) continue;
+      contacts.push_back({pair.first, pair.second, held.contact});
+      for (const Participant p : {pair.first, pair.second})
+        if (p >= 0) bodies[p].crowded = true;
+    }
   }
-  if (!tables()) pair_memory.end();
 }
 
 // Static boxes and meshes: what nears one is solved with all that it touches.
-void StatisticalLevel::Impl::find_ground_solids(double dt) {
+void StatisticalLevel::Impl::find_ground_solids(double dt, bool of_near_only) {
   solid_contacts.clear();
-  faces_below.clear();
-  faces_of.clear();
-  if (ground.solids.empty() || tables()) return;
+  faces_below.faces.clear();
+  faces_below.run.clear();
+  if (ground.solids.empty()) return;
+  faces_below.run.assign(bodies.size(), {0, 0});
   for (const std::int32_t slot : awake) {
-    const std::size_t before = solid_contacts.size(), faces = faces_below.size();
-    find_solid_contacts(bodies[slot], kind_of(bodies[slot]), slot, ground.solids, dt, solid_contacts, faces_below);
-    faces_of.emplace_back(faces, faces_below.size());
+    const std::size_t before = solid_contacts.size(), faces = faces_below.faces.size();
+    if (!of_near_only || near_another[std::size_t(slot)])
+      find_solid_contacts(bodies[slot], kind_of(bodies[slot]), slot, ground.solids, dt, solid_contacts, faces_below.faces);
+    faces_below.run[std::size_t(slot)] = {std::int32_t(faces), std::int32_t(faces_below.faces.size())};
     if (solid_contacts.size() > before) bodies[slot].crowded = true;
   }
 }
@@ -138,21 +171,6 @@ void StatisticalLevel::Impl::add_travel() {
     t.gone += (body.position - t.position).norm() + 2.2 * std::sqrt(std::min(same, opposite)) * kind_of(body).shape->radius;
     t.ahead = 0.0;
   }
-}
-
-// Both bodies of a pair respond by themselves and then move as if alone; pairs with full bodies keep the impulse that both share.
-ContactTally StatisticalLevel::Impl::respond_pairs_as_paper() {
-  ContactTally tally;
-  std::erase_if(contacts, [&](const CrowdContact& c) {
-    if (c.first < 0 || c.second < 0) return false;
-    StatisticalBody &first = bodies[c.first], &second = bodies[c.second];
-    const BodyKind &first_kind = kind_of(first), &second_kind = kind_of(second);
-    respond_pair_as_paper(first, first_kind, second, second_kind, c.contact, world(), materials.law(first_kind.material, second_kind.material),
-                          settings.tables, tally);
-    first.crowded = second.crowded = false;
-    return true;
-  });
-  return tally;
 }
 
 }  // namespace lodestone

@@ -1,73 +1,23 @@
 #include "lod/statistical/pair_contacts.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace lodestone {
 namespace {
 
 // Vertices this near the touching plane, over R, belong to the touching feature.
 constexpr double kFeatureMargin = 0.01;
 
-struct Separation {
-  Vec3 normal = Vec3::UnitZ();  // from second to first
-  double gap = -1e300;
-  std::int32_t vertex_first = 0, vertex_second = 0;
-  Vec3 point_first, point_second;  // world, relative to the second body's centre
-};
+// The search begins at the line of centres.
+HullGap no_axis() { return {.normal = Vec3::Zero()}; }
 
-// The gap between the hulls along `normal`, and the two vertices that bound it.
-Separation separation_along(const PairBody& first, const PairBody& second, const Vec3& normal, std::int32_t hint_first, std::int32_t hint_second) {
-  Separation s{normal, 0.0, hint_first, hint_second, {}, {}};
-  const Vec3 between = first.position - second.position;
-  const HullContact low = find_lowest_point(*first.shape, first.orientation, normal, 0.0, s.vertex_first);
-  const HullContact high = find_lowest_point(*second.shape, second.orientation, -normal, 0.0, s.vertex_second);
-  s.point_first = between + low.arm;
-  s.point_second = high.arm;
-  s.gap = normal.dot(s.point_first - s.point_second);
-  return s;
-}
-
-// A hull vertex near the one farthest along `direction` in the world.
-std::int32_t find_start(const PairBody& body, const Vec3& direction) {
-  return body.shape->sphere_radius ? 0 : body.shape->support_map.find_start(body.orientation.conjugate() * direction);
-}
-
-void try_axis(const PairBody& first, const PairBody& second, const Vec3& normal, Separation& best) {
-  const Separation s = separation_along(first, second, normal, best.vertex_first, best.vertex_second);
-  if (s.gap > best.gap) best = s;
-}
-
-void try_rest_normals(const PairBody& owner, const PairBody& first, const PairBody& second, Separation& best) {
-  if (!owner.signature) return;
-  const Vec3 towards = first.position - second.position;
-  for (const RestPose& pose : owner.signature->rest_poses) {
-    const Vec3 axis = owner.orientation * pose.normal;
-    const double side = axis.dot(towards);
-    // An axis across the line of centres cannot separate two bodies that nearly touch.
-    if (std::abs(side) > 0.3 * towards.norm()) try_axis(first, second, side > 0.0 ? axis : Vec3(-axis), best);
-  }
-}
-
-void try_face_normals(const PairBody& first, const PairBody& second, Separation& best) {
-  for (const Vec3& normal : second.face_normals) try_axis(first, second, second.orientation * normal, best);
-}
-
-// Up the gradient until the gap is above `enough`.
-void climb(const PairBody& first, const PairBody& second, double enough, Separation& best) {
-  const double size = first.shape->radius + second.shape->radius;
-  double stride = 0.5;
-  for (int i = 0; i < 6 && best.gap <= enough; ++i) {
-    const Vec3 between = best.point_first - best.point_second;
-    const Vec3 uphill = between - best.normal.dot(between) * best.normal;
-    if (uphill.squaredNorm() < 1e-8 * size * size) return;
-    const double before = best.gap;
-    try_axis(first, second, (best.normal + stride / size * uphill).normalized(), best);
-    if (best.gap <= before) stride *= 0.4;
-  }
-}
+PlacedHull place(const PairBody& body) { return {*body.shape, body.position, body.orientation}; }
 
 // The vertices that lie within a hair of the touching plane, as arms from `origin`.
 HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin) {
-  const HullContact lowest = find_lowest_point(*body.shape, body.orientation, normal, 0.0, vertex);
-  const double margin = lowest.gap + kFeatureMargin * body.shape->radius;
+  const double lowest = vertex < 0 ? 0.0 : normal.dot(body.orientation * body.shape->hull.vertices[std::size_t(vertex)]);
+  const double margin = lowest + kFeatureMargin * body.shape->radius;
   HullContacts feature = find_hull_contacts(*body.shape, body.orientation, normal, 0.0, margin, vertex);
   for (int i = 0; i < feature.count; ++i) feature.contact[i].arm += body.position - origin;
   return feature;
@@ -79,13 +29,13 @@ Vec3 middle_of(const HullContacts& feature) {
   return sum / feature.count;
 }
 
-Manifold clip_features(const PairBody& first, const PairBody& second, const Separation& best, HullContacts& upper, HullContacts& lower) {
+Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, HullContacts& upper, HullContacts& lower) {
   upper = find_feature(first, best.normal, best.vertex_first, second.position);
   lower = find_feature(second, -best.normal, best.vertex_second, second.position);
   return find_manifold(upper, lower, best.normal, best.gap);
 }
 
-Manifold find_points(const PairBody& first, const PairBody& second, const Separation& best) {
+Manifold find_points(const PairBody& first, const PairBody& second, const HullGap& best) {
   HullContacts upper, lower;
   Manifold manifold = clip_features(first, second, best, upper, lower);
   if (manifold.count == 0) {  // the axis is not quite that of the nearest features
@@ -96,25 +46,88 @@ Manifold find_points(const PairBody& first, const PairBody& second, const Separa
   return manifold;
 }
 
-// Most near pairs do not touch, and the last step's axis or a few steps uphill show it. A contact itself is found without memory, so that it is
-// a function of the two poses alone.
-HullContactSearch search_relative(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
-  const auto from = [&](const Vec3& axis) {
-    Separation best = separation_along(first, second, axis, find_start(first, -axis), find_start(second, axis));
-    climb(first, second, margin, best);
-    return best;
-  };
-  if (!start.isZero(0.0))
-    if (const Separation apart = from(start); apart.gap > margin) return {apart.normal, apart.gap, {}};
-  const Vec3& line = first.position;
-  Separation best = from(line.norm() > 1e-12 ? Vec3(line.normalized()) : Vec3::UnitZ());
-  const double before = best.gap;
-  if (best.gap <= margin) try_rest_normals(first, first, second, best);
-  if (best.gap <= margin) try_rest_normals(second, first, second, best);
-  if (best.gap <= margin) try_face_normals(first, second, best);
-  if (best.gap > before) climb(first, second, margin, best);
-  HullContactSearch search{best.normal, best.gap, {}};
-  if (best.gap <= margin) search.contact = PairContact{best.normal, best.gap, find_points(first, second, best)};
+PairContact contact_along(const PairBody& first, const PairBody& second, const HullGap& best) {
+  return {best.normal, best.gap, find_points(first, second, best)};
+}
+
+int count_pieces(const PairBody& body) { return std::max<int>(1, int(body.shape->pieces.size())); }
+
+// The body itself where it has none.
+PairBody piece_of(const PairBody& body, int piece) {
+  if (body.shape->pieces.empty()) return body;
+  PairBody part = body;
+  part.shape = &body.shape->pieces[std::size_t(piece)];
+  part.position += body.orientation * part.shape->center_of_mass_in_mesh;
+  return part;
+}
+
+// Deeper than this in a piece, over its R, is inside it.
+constexpr double kWithin = 1e-3;
+
+bool is_within(const PairBody& piece, const Vec3& point) {
+  const Hull& hull = piece.shape->hull;
+  const Vec3 local = piece.orientation.conjugate() * (point - piece.position);
+  const double margin = kWithin * piece.shape->radius;
+  if (local.squaredNorm() > piece.shape->radius * piece.shape->radius) return false;
+  for (int i = 0; i < int(hull.faces.size()); ++i) {
+    const Vec3 normal = hull.face_normal(i);
+    if (normal.dot(local - hull.vertices[std::size_t(hull.faces[std::size_t(i)][0])]) > -margin * normal.norm()) return false;
+  }
+  return true;
+}
+
+// Whether a point on the surface of piece `own` lies inside another piece of the body: nothing can touch it there.
+bool is_internal(const PairBody& body, int own, const Vec3& point) {
+  for (int i = 0; i < int(body.shape->pieces.size()); ++i)
+    if (i != own && is_within(piece_of(body, i), point)) return true;
+  return false;
+}
+
+void drop_internal_points(const PairBody& first, int i, const PairBody& second, int k, PairContact& contact) {
+  Manifold kept;
+  for (int m = 0; m < contact.manifold.count; ++m) {
+    const ManifoldPoint& p = contact.manifold.points[std::size_t(m)];
+    const Vec3 half = 0.5 * p.gap * contact.normal;
+    if (!is_internal(first, i, p.point + half) && !is_internal(second, k, p.point - half)) kept.points[std::size_t(kept.count++)] = p;
+  }
+  contact.manifold = kept;
+}
+
+// Pieces overlap, so that one contact of the bodies may be several of theirs.
+void add_contact(const PairContact& contact, double grain, std::vector<PairContact>& contacts) {
+  for (PairContact& other : contacts)
+    if (other.normal.dot(contact.normal) > 0.999 && std::abs(other.gap - contact.gap) < grain) {
+      other.manifold = join_manifolds(other.manifold, contact.manifold, other.normal);
+      other.gap = std::min(other.gap, contact.gap);
+      return;
+    }
+  contacts.push_back(contact);
+}
+
+void find_contacts_of_pieces(const PairBody& first, const PairBody& second, double margin, HullContactSearch& search) {
+  double nearest = 1e300;
+  for (int i = 0; i < count_pieces(first); ++i)
+    for (int k = 0; k < count_pieces(second); ++k) {
+      const PairBody a = piece_of(first, i), b = piece_of(second, k);
+      const double apart = (a.position - b.position).norm() - a.shape->radius - b.shape->radius;
+      const HullGap best = apart > margin ? HullGap{.gap = apart} : find_hull_gap(place(a), place(b), no_axis(), margin);
+      nearest = std::min(nearest, best.gap);
+      if (best.gap > margin) continue;
+      PairContact contact = contact_along(a, b, best);
+      drop_internal_points(first, i, second, k, contact);
+      if (contact.manifold.count > 0) add_contact(contact, kWithin * std::min(a.shape->radius, b.shape->radius), search.contacts);
+    }
+  search.gap = std::max(search.gap, nearest);
+}
+
+HullContactSearch search_relative(const PairBody& first, const PairBody& second, const HullGap& start, double margin) {
+  const bool concave = !first.shape->pieces.empty() || !second.shape->pieces.empty();
+  HullContactSearch search;
+  search.axis = find_hull_gap(place(first), place(second), start, margin);
+  search.gap = search.axis.gap;
+  if (search.gap > margin) return search;
+  if (concave) find_contacts_of_pieces(first, second, margin, search);
+  else search.contacts.push_back(contact_along(first, second, search.axis));
   return search;
 }
 
@@ -124,6 +137,19 @@ template <class Numbers>
 Numbers without_last_bits(const Numbers& values) {
   constexpr double kGrain = 0x1p-36;
   return ((values / kGrain).array().round() * kGrain).matrix();
+}
+
+std::pair<PairBody, PairBody> relative_to_second(const PairBody& first, const PairBody& second) {
+  PairBody a = first, b = second;
+  a.position = without_last_bits(Vec3(first.position - second.position));
+  b.position.setZero();
+  a.orientation.coeffs() = without_last_bits(Eigen::Vector4d(first.orientation.coeffs()));
+  b.orientation.coeffs() = without_last_bits(Eigen::Vector4d(second.orientation.coeffs()));
+  return {a, b};
+}
+
+void shift(PairContact& contact, const Vec3& by) {
+  for (ManifoldPoint& p : contact.manifold.points) p.point += by;
 }
 
 }  // namespace
@@ -139,23 +165,51 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
-HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin) {
-  PairBody a = first, b = second;
-  a.position = without_last_bits(Vec3(first.position - second.position));
-  b.position.setZero();
-  a.orientation.coeffs() = without_last_bits(Eigen::Vector4d(first.orientation.coeffs()));
-  b.orientation.coeffs() = without_last_bits(Eigen::Vector4d(second.orientation.coeffs()));
+HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second) {
+  HeldContact held{contact, {}, {}};
+  for (int i = 0; i < contact.manifold.count; ++i) {
+    const ManifoldPoint& p = contact.manifold.points[std::size_t(i)];
+    const Vec3 half = 0.5 * p.gap * contact.normal;
+    held.on_first[std::size_t(i)] = first.orientation.conjugate() * (p.point + half - first.position);
+    held.on_second[std::size_t(i)] = second.orientation.conjugate() * (p.point - half - second.position);
+  }
+  return held;
+}
+
+void follow(HeldContact& held, const PairBody& first, const PairBody& second) {
+  const Mat3 turn_first = first.orientation.toRotationMatrix(), turn_second = second.orientation.toRotationMatrix();
+  PairContact& contact = held.contact;
+  contact.gap = 1e300;
+  for (int i = 0; i < contact.manifold.count; ++i) {
+    ManifoldPoint& p = contact.manifold.points[std::size_t(i)];
+    const Vec3 on_first = first.position + turn_first * held.on_first[std::size_t(i)];
+    const Vec3 on_second = second.position + turn_second * held.on_second[std::size_t(i)];
+    p = {0.5 * (on_first + on_second), (on_first - on_second).dot(contact.normal)};
+    contact.gap = std::min(contact.gap, p.gap);
+  }
+}
+
+HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, const HullGap& start, double margin) {
+  const auto [a, b] = relative_to_second(first, second);
   HullContactSearch search = search_relative(a, b, start, margin);
-  if (search.contact)
-    for (ManifoldPoint& p : search.contact->manifold.points) p.point += second.position;
+  for (PairContact& contact : search.contacts) shift(contact, second.position);
   return search;
 }
 
+std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
+  const auto [a, b] = relative_to_second(first, second);
+  const HullGap best = find_hull_gap(place(a), place(b), no_axis(), margin);
+  if (best.gap > margin) return {};
+  PairContact contact = contact_along(a, b, best);
+  shift(contact, second.position);
+  return contact;
+}
+
 std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin) {
-  const Separation s = separation_along(first, second, normal, find_start(first, -normal), find_start(second, normal));
-  if (s.gap > margin) return {};
+  const HullGap along = measure_hull_gap(place(first), place(second), normal);
+  if (along.gap > margin) return {};
   HullContacts upper, lower;
-  PairContact contact{normal, s.gap, clip_features(first, second, s, upper, lower)};
+  PairContact contact{normal, along.gap, clip_features(first, second, along, upper, lower)};
   if (contact.manifold.count == 0) return {};
   for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
   return contact;

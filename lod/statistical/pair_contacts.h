@@ -3,21 +3,20 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "lod/body.h"
 #include "lod/statistical/contact_manifold.h"
-#include "signature/signature.h"
+#include "lod/statistical/hull_gap.h"
 
 namespace lodestone {
 
 /// A body as pair contacts see it, of either level.
 struct PairBody {
   const Shape* shape = nullptr;
-  const Signature* signature = nullptr;  ///< its rest normals are tried as separating axes; may be null
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
-  double sphere_radius = 0.0;            ///< m, `tables`: of the colliding sphere
-  std::span<const Vec3> face_normals = {};  ///< outward, body axes: tried as separating axes, too
+  double sphere_radius = 0.0;  ///< m, `tables`: of the colliding sphere
 };
 
 struct PairContact {
@@ -29,16 +28,27 @@ struct PairContact {
 /// `tables`: the two spheres. None where the gap is above `margin`.
 std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin);
 
-/// Two hulls along the axis of greatest separation that was found.
+/// A contact that its bodies take along, until they have moved so far that it must be looked for anew.
+struct HeldContact {
+  PairContact contact;
+  std::array<Vec3, 4> on_first, on_second;  ///< m, its points on each body's surface, body axes
+};
+HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second);
+/// Where its points are now, and their gaps along the normal that it was found with.
+void follow(HeldContact& held, const PairBody& first, const PairBody& second);
+
 struct HullContactSearch {
-  Vec3 normal = Vec3::UnitZ();         ///< from the second body to the first
-  double gap = 0.0;                    ///< m along it: the true distance is at least this
-  std::optional<PairContact> contact;  ///< where the gap is at most the margin
+  HullGap axis;                        ///< of the two hulls: the true distance of the bodies is at least its gap
+  double gap = 0.0;                    ///< m: the true distance is at least this
+  std::vector<PairContact> contacts;   ///< those with a gap of at most the margin: one for hulls, one for each two convex pieces that meet
 };
 
-/// `support`: searches from the centre line and both bodies' rest normals; `start`, where not zero, is an axis that may still separate them, and refines by steps up the
-/// separation's gradient (as in Gilbert, An iterative procedure for computing the minimum of a quadratic form, 1966).
-HullContactSearch find_hull_contact(const PairBody& first, const PairBody& second, const Vec3& start, double margin);
+/// `support`. `start` is an axis that may still separate them (see find_hull_gap). Concave bodies that have convex pieces (Shape::pieces) meet in these, so that
+/// they may reach into each other; others as their hulls.
+HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, const HullGap& start, double margin);
+
+/// The two hulls, whatever pieces they have; none where the gap is above `margin`.
+std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);
 
 /// Contact of the two hulls along a given axis (unit, from `second` into `first`); none where the gap along it is above `margin` or the touching features do not
 /// overlap across it.

@@ -13,7 +13,7 @@ constexpr double kSleepSpeed = 0.05, kSleepSpeedRadius = 0.2;
 constexpr float kSleepTime = 0.1f;
 constexpr double kAloneSleepEnergy = 2.5e-4;
 constexpr float kAloneSleepTime = 0.5f;
-constexpr int kLeaningSteps = 12;    // a body that touched another so lately still leans on it, though a hair apart
+constexpr double kLeaningTime = 0.2, kLeaningUnit = 0.004;  // s: a body that touched another so lately still leans on it, though a hair apart
 constexpr double kWakeFactor = 2.0;  // a sleeper wakes when touched faster than this times the sleeping speed
 
 // J/kg: with less kinetic energy no body moves or spins too fast for a level to hold it.
@@ -28,7 +28,9 @@ void StatisticalLevel::Impl::wake(int slot) {
   if (body.motion != Motion::asleep) return;
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
-  asleep.erase(std::lower_bound(asleep.begin(), asleep.end(), slot));
+  const auto place = std::lower_bound(asleep.begin(), asleep.end(), slot);
+  if (place == asleep.end() || *place != slot) return;  // put to sleep in this very step, and still among the awake
+  asleep.erase(place);
   awake.push_back(slot);
   sleepers_changed = true;
 }
@@ -73,9 +75,9 @@ void StatisticalLevel::Impl::recover(StatisticalBody& body, ContactTally& tally)
 void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, double dt, ContactTally& tally) {
   const BodyKind& kind = kind_of(body);
   const double speed = sleep_speed(kind.shape->radius);
-  const bool among_others = body.crowded || body.since_crowded < kLeaningSteps;
+  const bool among_others = body.crowded || body.since_crowded * kLeaningUnit < kLeaningTime;
   const double limit = among_others ? 0.5 * speed * speed : kAloneSleepEnergy * settings.gravity.norm() * kind.shape->radius;
-  body.since_crowded = body.crowded ? 0 : std::uint8_t(std::min(255, body.since_crowded + 1));
+  body.since_crowded = body.crowded ? 0 : std::uint8_t(std::min(255.0, body.since_crowded + std::max(1.0, std::round(dt / kLeaningUnit))));
   const double energy = kinetic_energy(body, *kind.shape);
   if (!is_sound(body, energy)) recover(body, tally);
   body.quiet_time = energy < limit ? body.quiet_time + float(dt) : 0.0f;

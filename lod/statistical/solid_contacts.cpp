@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kTouching = 0.01;  // over R: near enough to carry, as between bodies
 
-PairBody pair_body(const StaticSolid& solid) { return {solid.shape.get(), nullptr, solid.position, solid.orientation, 0.0, solid.face_normals}; }
+PairBody pair_body(const StaticSolid& solid) { return {solid.shape.get(), solid.position, solid.orientation}; }
 
 Vec3 middle_of(const Manifold& manifold) {
   Vec3 sum = Vec3::Zero();
@@ -30,7 +30,7 @@ std::size_t nearest_edge(const SurfaceTriangle& t, const Vec3& point) {
 
 std::optional<PairContact> meet(const PairBody& body, const StaticSolid& solid, double margin) {
   const PairBody ground = pair_body(solid);
-  std::optional<PairContact> contact = find_hull_contact(body, ground, Vec3::Zero(), margin).contact;
+  std::optional<PairContact> contact = find_hull_contact(body, ground, margin);
   if (!contact || !solid.surface) return contact;
   const SurfaceTriangle& t = *solid.surface;
   const double along = contact->normal.dot(t.normal);
@@ -77,7 +77,7 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
     for (const int i : near) planes.push_back(*face_below(i));
     return;
   }
-  const PairBody self{&shape, kind.signature.get(), body.position, body.orientation, 0.0};
+  const PairBody self{&shape, body.position, body.orientation};
   for (const int i : near)
     if (const auto contact = meet(self, solids[i], touching + way); contact && closes(*contact, body, omega, touching, time)) found.push_back({slot, i, *contact});
 }

@@ -25,4 +25,15 @@ std::optional<HalfSpace> find_face_below(const StaticSolid& solid, const Vec3& c
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot, const StaticSolids& solids, double time,
                          std::vector<SolidContact>& found, std::vector<HalfSpace>& planes);
 
+/// The faces of static solids that bodies lie over: planes, as far as these bodies are concerned.
+struct FacesBelow {
+  std::vector<HalfSpace> faces;
+  std::vector<std::pair<std::int32_t, std::int32_t>> run;  ///< of each slot, in `faces`; empty where there are no solids
+  std::span<const HalfSpace> of(std::int32_t slot) const {
+    if (run.empty()) return {};
+    const auto& [begin, end] = run[std::size_t(slot)];
+    return std::span(faces).subspan(std::size_t(begin), std::size_t(end - begin));
+  }
+};
+
 }  // namespace lodestone

@@ -46,7 +46,7 @@ struct StatisticalBody {
   std::uint16_t kind = 0;
   Motion motion = Motion::dynamic;
   bool crowded = false;                 ///< touches another body in this step
-  std::uint8_t since_crowded = 255;     ///< steps since it last did, at most 255
+  std::uint8_t since_crowded = 255;     ///< 4 ms since it last did, at most 255
 };
 
 /// Kinetic energy over mass, J/kg, with the true inertia.

@@ -1,26 +1,13 @@
 #include "lod/statistical/statistical_level_internal.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "lod/statistical/stopwatch.h"
 #include "lod/tables/tables_level.h"
 #include "reference/error.h"
 
 namespace lodestone {
 namespace {
-
-class Stopwatch {
- public:
-  double lap_ms() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
-    start_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Drops `gone` from a list in order, and where `last`, the greatest of all, is in it, puts `gone` there instead.
 void rename_in_order(std::vector<std::int32_t>& list, std::int32_t last, std::int32_t gone) {
@@ -39,7 +26,7 @@ std::uint16_t StatisticalLevel::Impl::find_kind(std::shared_ptr<const Shape> sha
     if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
   BodyKind& kind = kinds.emplace_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
-  if (kind.signature && !tables())
+  if (kind.signature)
     kind.clips = ClipIndex(*kind.signature, kind.shape->inertia_per_mass / (kind.shape->radius * kind.shape->radius), ClipSettings{}.greatest_distance);
   return std::uint16_t(kinds.size() - 1);
 }
@@ -64,7 +51,6 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
                           bool asleep, std::shared_ptr<const Signature> signature) {
   if (tables_) return tables_->add(owner, std::move(shape), mass, material, state, asleep, std::move(signature));
   Impl& level = *impl_;
-  check_that(!level.tables() || signature != nullptr, "the tables model needs a signature");
   level.reach = std::max(level.reach, shape->radius);
   StatisticalBody body;
   body.kind = level.find_kind(std::move(shape), mass, material, std::move(signature));
@@ -72,13 +58,11 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
   const int slot = size();
   level.bodies.push_back(body);
   level.clips.emplace_back();
-  level.resting.emplace_back();
   level.travels.emplace_back();
   level.travels.back().gone = level.longest_travel + 10.0 * level.reach;
   level.angular_velocity_given.emplace_back();
   level.awake.push_back(slot);
   set_state(slot, state);
-  if (level.tables()) level.bodies[slot].sphere_radius = float(find_sphere_radius(level.bodies[slot], level.kind_of(level.bodies[slot]), level.settings.tables, level.settings.seed));
   if (asleep) {
     level.put_to_sleep(level.bodies[slot]);
     level.angular_velocity_given[slot].reset();
@@ -108,13 +92,11 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
     if (push.first == last) push.first = slot;
   level.bodies[slot] = level.bodies[last];
   level.clips[slot] = level.clips[last];
-  level.resting[slot] = level.resting[last];
   level.longest_travel = std::max(level.longest_travel, level.travels[slot].gone);
   level.travels[slot] = level.travels[last];
   level.travels.pop_back();
   level.bodies.pop_back();
   level.clips.pop_back();
-  level.resting.pop_back();
   level.angular_velocity_given[slot] = level.angular_velocity_given[last];
   level.angular_velocity_given.pop_back();
   level.sleepers_changed = true;
@@ -131,43 +113,17 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
 
   // 1 Near pairs: none to look for with a single body.
   level.contacts.clear();
-  const bool pair_phase = level.bodies.size() + neighbors.size() > 1 && !level.awake.empty() + !neighbors.empty() > 0;
-  if (pair_phase) {
+  level.pairs.clear();
+  level.pair_phase = level.bodies.size() + neighbors.size() > 1 && !level.awake.empty() + !neighbors.empty() > 0;
+  if (level.pair_phase) {
     level.find_near_pairs(dt, neighbors);
     ++report.counters.pair_phases;
-    report.times.broad_phase_ms += watch.lap_ms();
-    // 2 Contacts of those pairs.
-    level.plan_travel(dt);
-    level.find_contacts(dt, neighbors);
-    level.wake_touched(neighbors);
-    if (level.tables() && level.settings.tables.paper_pair_rule) tally += level.respond_pairs_as_paper();
-    report.times.pairs_ms += watch.lap_ms();
-  } else {
-    for (const std::int32_t slot : level.awake) level.bodies[slot].crowded = false;
   }
-  level.find_ground_solids(dt);
+  report.times.broad_phase_ms += watch.lap_ms();
 
-  // 3 Bodies that touch no other.
-  const std::int64_t awake = std::int64_t(level.awake.size());
-  level.tallies.assign(std::size_t(awake), {});
-  level.parallel(awake, 256, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i)
-      if (!level.bodies[level.awake[i]].crowded) level.move_alone(std::size_t(i), dt, level.tallies[i]);
-  });
-  for (const ContactTally& t : level.tallies) tally += t;
-  report.times.flight_ms += watch.lap_ms();
-
-  // 4 Bodies that do.
-  if (!level.contacts.empty() || !level.solid_contacts.empty()) {
-    for (const std::int32_t slot : level.awake)
-      if (level.bodies[slot].crowded && level.bodies[slot].motion == Motion::settling) level.bodies[slot].motion = Motion::dynamic;
-    tally += level.crowd.step(level.bodies, level.kinds, neighbors, full_contacts, level.contacts, level.solid_contacts, level.world(), level.settings.model, dt);
-    for (const std::int32_t slot : level.awake)
-      if (level.bodies[slot].crowded) level.update_quiet(level.bodies[slot], dt, tally);
-    report.times.crowd_ms += watch.lap_ms();
-  }
-
-  if (pair_phase) level.add_travel();
+  // 2 to 4 Contacts, flight and the contact solver.
+  level.move(dt, neighbors, full_contacts, report.times, tally);
+  watch.lap_ms();
 
   ++level.steps;
 

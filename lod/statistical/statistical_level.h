@@ -1,5 +1,6 @@
 // The statistical level: bodies as dense arrays, stepped without ODE (sections 3.3 and 3.4). One step: 1 near pairs (broad phase),
-// 2 contacts of those pairs, 3 flight and ground contact of bodies that touch no other, 4 the contact solver for bodies that do, 5 rest.
+// 2 contacts of those pairs, 3 flight and ground contact of bodies that touch no other, 4 the contact solver for bodies that do, 5 rest. `support` takes
+// stages 2 to 4 in substeps for bodies that are near others.
 #pragma once
 
 #include <cstdint>

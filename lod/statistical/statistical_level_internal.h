@@ -1,5 +1,5 @@
 // The inside of the statistical level. Its stages are in near_pairs.cpp (1, 2), motion.cpp (3) and rest.cpp (5);
-// stage 4, the contact solver, is crowd.h.
+// crowded_motion.cpp takes stages 2 to 4 in substeps; stage 4, the contact solver, is crowd.h.
 #pragma once
 
 #include "lod/statistical/broad_phase.h"
@@ -8,16 +8,20 @@
 #include "lod/statistical/pair_memory.h"
 #include "lod/statistical/parallel.h"
 #include "lod/statistical/statistical_level.h"
-#include "lod/statistical/tables_model.h"
 
 namespace lodestone {
 
 struct Push { Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); };
 
+/// What is known of a near pair. A gap lasts until its bodies have travelled it, so most near pairs need no look at their hulls (conservative advancement;
+/// Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996); a contact lasts while they move little.
 struct FoundPair {
   ContactKey key = 0;
-  PairRecord record;
-  std::optional<CrowdContact> contact;
+  Participant first = 0, second = 0;
+  HullGap axis = {.normal = Vec3::Zero()};  ///< where the next search begins
+  double gap = 0.0;                         ///< m, at least, when it was found
+  double travel = -1.0;                     ///< m, of both bodies together, when it was found; negative: never
+  std::vector<HeldContact> contacts;
 };
 
 /// The way of a body's farthest point, m.
@@ -37,7 +41,6 @@ struct StatisticalLevel::Impl {
   // One of each per body, by slot.
   std::vector<StatisticalBody> bodies;
   std::vector<ClipPlayback> clips;
-  std::vector<RestingRecord> resting;
   std::vector<std::optional<Vec3>> angular_velocity_given;  // until the next step: a state that was set is read back to the bit
   std::vector<Travel> travels;
   std::vector<std::pair<int, Push>> pushes;  // of the next step
@@ -45,20 +48,22 @@ struct StatisticalLevel::Impl {
   std::vector<std::int32_t> awake, asleep;   // slots
   bool sleepers_changed = true;
   BroadPhase broad_phase;
-  PairMemory pair_memory;
+  PairMemory pair_memory;                    // places in found_before
   double longest_travel = 0.0;               // m, of any body so far: one that is added begins beyond it, so that its pairs are looked at anew
   Crowd crowd;
   double reach = 0.0;
   std::int64_t steps = 0;
+  bool pair_phase = false;                   // in this step
 
   // Work arrays of a step.
   std::vector<Bound> bounds;
   std::vector<NearPair> pairs;
-  std::vector<FoundPair> found;
+  std::vector<char> near_another;            // by slot
+  std::vector<FullNeighbor> full, full_before;  // the neighbours, moved on between substeps
+  std::vector<FoundPair> found, found_before;  // of the pairs of this step and of the last one
   std::vector<CrowdContact> contacts;
   std::vector<SolidContact> solid_contacts;
-  std::vector<HalfSpace> faces_below;        // of static solids, under bodies
-  std::vector<std::pair<std::int32_t, std::int32_t>> faces_of;  // of each awake body: its run of `faces_below`; empty where there are no solids
+  FacesBelow faces_below;
   std::vector<ContactTally> tallies;
 
   Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m) : settings(s), ground(g), materials(m), parallel(s.threads) {}
@@ -66,7 +71,6 @@ struct StatisticalLevel::Impl {
   const BodyKind& kind_of(const StatisticalBody& body) const { return kinds[body.kind]; }
   std::uint16_t find_kind(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature);
   StepWorld world() const { return {settings.gravity, &ground, &materials, settings.seed}; }
-  bool tables() const { return settings.model == StatisticalModel::tables; }
 
   void wake(int slot);
   void put_to_sleep(StatisticalBody& body);
@@ -78,18 +82,25 @@ struct StatisticalLevel::Impl {
   void plan_travel(double dt);
   void add_travel();
   PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;
-  void find_contact(Participant first, Participant second, double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const;
+  Participant participant(std::int32_t of_pair) const;
+  void take_over_found(std::span<const FullNeighbor> neighbors);
+  void find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const;
+  bool closes(const FoundPair& pair, const PairContact& contact, double dt, std::span<const FullNeighbor> neighbors) const;
   Vec3 point_velocity(Participant p, const Vec3& point, std::span<const FullNeighbor> neighbors) const;
   bool is_asleep(Participant p, std::span<const FullNeighbor> neighbors) const {
     return p < 0 ? neighbors[-1 - p].asleep : bodies[p].motion == Motion::asleep;
   }
-  void find_ground_solids(double dt);
+  void find_ground_solids(double dt, bool of_near_only);  ///< near: as mark_near has it
   void wake_touched(std::span<FullNeighbor> neighbors);
-  ContactTally respond_pairs_as_paper();
+  void move(double dt, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, StageTimes& times, ContactTally& tally);
+  void move_crowded(double dt, double time, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, ContactTally& tally);
+  template <class Select>
+  ContactTally move_those(double time, Select select);
+  void mark_near();
+  int count_substeps(double dt, std::span<const FullNeighbor> neighbors) const;
   void move_alone(std::size_t place, double dt, ContactTally& tally);  ///< place in `awake`
-  const StaticGround& ground_below(std::size_t place) const;
+  const StaticGround& ground_below(std::int32_t slot) const;
   void move_support(StatisticalBody& body, int slot, const StaticGround& over, double dt, ContactTally& tally);
-  void move_tables(StatisticalBody& body, int slot, double dt, ContactTally& tally);
   void update_quiet(StatisticalBody& body, double dt, ContactTally& tally);
   bool is_sound(const StatisticalBody& body, double energy) const;
   void recover(StatisticalBody& body, ContactTally& tally);

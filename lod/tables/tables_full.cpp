@@ -10,7 +10,7 @@ constexpr double kFullSphere = 0.8;  // radius over R of the sphere that stands 
 constexpr double kTouching = 0.01;   // m over R
 constexpr double kWakeFactor = 2.0;  // of the sleeping speed
 
-PairBody pair_body(const FullNeighbor& n) { return {n.shape, n.signature, n.state.position, n.state.orientation, kFullSphere * n.shape->radius}; }
+PairBody pair_body(const FullNeighbor& n) { return {n.shape, n.state.position, n.state.orientation, kFullSphere * n.shape->radius}; }
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void TablesLevel::find_full_touches(std::span<FullNeighbor> neighbors) {
       if (sleeps && n.asleep) continue;
       const BodyKind& kind = kind_of(place);
       const StatisticalBody body = spheres_.body(place);
-      const PairBody own{kind.shape.get(), kind.signature.get(), body.position, body.orientation, double(body.sphere_radius)};
+      const PairBody own{kind.shape.get(), body.position, body.orientation, double(body.sphere_radius)};
       const bool first = body.owner < n.owner;  // the lower owner first, so that a contact is the same whichever of its bodies is full
       const Vec3 closing = body.velocity - n.state.velocity;
       const double touching = kTouching * std::min(kind.shape->radius, n.shape->radius);
@@ -70,7 +70,7 @@ void TablesLevel::meet_full(std::span<FullNeighbor> neighbors, std::span<const F
     }
     near_full_.push_back(body);
   }
-  tally += crowd_.step(near_full_, kinds_.kinds, neighbors, full_contacts, full_touches_, {}, world(), StatisticalModel::tables, time);
+  tally += crowd_.step(near_full_, kinds_.kinds, neighbors, full_contacts, full_touches_, {}, {}, world(), StatisticalModel::tables, time);
   for (std::size_t k = 0; k < near_full_.size(); ++k) {
     const StatisticalBody& body = near_full_[k];
     if (body.motion == Motion::asleep) continue;

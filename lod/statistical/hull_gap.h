@@ -1,0 +1,35 @@
+// How far apart two convex hulls are, and along which axis (Gilbert, Johnson and Keerthi, A fast procedure for computing the distance between complex objects in
+// three-dimensional space, 1988). Hulls that overlap are first taken apart along an axis that served before.
+#pragma once
+
+#include "reference/shape.h"
+
+namespace lodestone {
+
+/// A hull where it stands, as a search sees it.
+struct PlacedHull {
+  const Shape* shape = nullptr;
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Mat3 rotation = Mat3::Identity();  ///< of `orientation`
+
+  PlacedHull(const Shape& placed, const Vec3& at, const Quat& turned)
+      : shape(&placed), position(at), orientation(turned), rotation(turned.toRotationMatrix()) {}
+  /// From the centre of mass to the point farthest along `direction` (unit). The climb starts at `vertex` and leaves what it found there; −1: none known.
+  Vec3 find_farthest(const Vec3& direction, std::int32_t& vertex) const;
+};
+
+struct HullGap {
+  Vec3 normal = Vec3::UnitZ();                             ///< from the second to the first
+  double gap = -1e300;                                     ///< m, of the hulls along it: their distance where they are apart; negative: how deep
+  std::int32_t vertex_first = -1, vertex_second = -1;      ///< that bound it
+};
+
+/// The axis of the greatest gap, from `start` (its normal, zero: the line of centres; its vertices, −1: unknown). Ends early, with a gap above `enough`, once
+/// an axis shows one.
+HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough);
+
+/// The gap along one axis (unit).
+HullGap measure_hull_gap(const PlacedHull& first, const PlacedHull& second, const Vec3& normal, const HullGap& hints = {});
+
+}  // namespace lodestone
