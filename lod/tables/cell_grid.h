@@ -85,6 +85,10 @@ class CellGrid {
   void choose_edges(const BallSpan& balls);
   void lay_out(const BallSpan& balls, int level);
   void sort(const BallSpan& balls);
+  void sort_plain(const BallSpan& balls);
+  void sort_one_by_one(const BallSpan& balls);
+  void add_up_cells();
+  static double find_cell(const Grid& grid, int axis, double at, std::int32_t& cell);
   void make_parts();
   int level_of(float reach) const;
   static Neighbour neighbour(const Grid& grid, int axis, std::int32_t at);

@@ -47,27 +47,32 @@ template <Simd kSimd>
 LODESTONE_INLINE void CellGrid::search(const Part& part, BallPairs& pairs) const {
   const Grid& grid = grids_[std::size_t(part.grid)];
   const BallArrays balls{x_.data(), y_.data(), z_.data(), reach_.data(), index_.data()};
+  const std::uint32_t* start = start_.data();
+  const std::int32_t row_length = grid.cells[0];
   Runs near;
   for (std::int32_t slow = part.first_row; slow < part.last_row; ++slow)
     for (std::int32_t mid = 0; mid < grid.cells[1]; ++mid) {
       const Rows rows = find_rows(grid, slow, mid);
-      const std::uint32_t row = rows.rows[0].first_cell;
-      if (start_[row] == start_[row + std::uint32_t(grid.cells[0])]) continue;
-      for (std::int32_t fast = 0; fast < grid.cells[0]; ++fast) {
-        const std::uint32_t begin = start_[row + std::uint32_t(fast)], end = start_[row + std::uint32_t(fast) + 1];
+      const std::uint32_t* row = start + rows.rows[0].first_cell;
+      if (row[0] == row[row_length]) continue;
+      for (std::int32_t fast = 0; fast < row_length; ++fast) {
+        const std::uint32_t begin = row[fast], end = row[fast + 1];
         if (begin == end) continue;
         find_runs(grid, rows, fast, near);
         std::int64_t most = 0;
         for (int i = 0; i < near.count; ++i) most += near.runs[std::size_t(i)].end - near.runs[std::size_t(i)].begin;
+        pairs.make_room(most * (end - begin));
+        std::uint32_t *first = pairs.end_first(), *second = pairs.end_second(), count = 0;
         for (std::uint32_t ball = begin; ball < end; ++ball) {
           near.runs[0].begin = ball + 1;  // its own cell: those after it
-          pairs.make_room(most);
+          const NearBall here{balls.x[ball], balls.y[ball], balls.z[ball], balls.reach[ball], balls.index[ball]};
           for (int i = 0; i < near.count; ++i) {
             const Run& run = near.runs[std::size_t(i)];
-            pairs.grow(find_near_balls<kSimd>(balls, {x_[ball] - run.shift[0], y_[ball] - run.shift[1], z_[ball] - run.shift[2], reach_[ball], index_[ball]},
-                                              run.begin, run.end, pairs.end_first(), pairs.end_second()));
+            const NearBall seen{here.x - run.shift[0], here.y - run.shift[1], here.z - run.shift[2], here.reach, here.index};
+            count += find_near_balls<kSimd>(balls, seen, run.begin, run.end, first + count, second + count);
           }
         }
+        pairs.grow(count);
       }
     }
 }

@@ -41,7 +41,7 @@ struct NearLoop {
   }
 };
 
-template <bool OneKind>
+template <bool OneKind, bool OnePlane>
 struct SortLoop {
   const Spheres& spheres;
   const SphereKinds& kinds;
@@ -64,7 +64,7 @@ struct SortLoop {
     std::uint8_t* on_ground = step.on_ground.data();
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
-      const int k = OneKind ? 0 : int(kind[i]), p = plane[i], moves = int(motion[i]);
+      const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), moves = int(motion[i]);
       const int state = on_ground[i];
       const F3 n{nx[p], ny[p], nz[p]}, v{float(vx[i]), float(vy[i]), float(vz[i])};
       const float touching = start[i].w, moving = s[i].w, threshold = c.resting_energy * c.gravity * size[k];
@@ -82,6 +82,7 @@ struct SortLoop {
   }
 };
 
+template <bool OnePlane>
 struct SweepLoop {
   const SphereGround& ground;
   StepConstants c;
@@ -96,7 +97,7 @@ struct SweepLoop {
     const float per_time = 1.0f / c.time;
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
-      const int p = plane[i], state = on_ground[i];
+      const int p = OnePlane ? 0 : int(plane[i]), state = on_ground[i];
       const float touching = start[i].w;
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)) & (touching > 0.0f);
       const float speed = start[i].x * nx[p] + start[i].y * ny[p] + start[i].z * nz[p], shut = least(0.0f, -gap[i] * per_time), before = added[i].w;
@@ -106,7 +107,7 @@ struct SweepLoop {
   }
 };
 
-template <bool OneKind>
+template <bool OneKind, bool OnePlane>
 struct LieLoop {
   Spheres& spheres;
   const SphereKinds& kinds;
@@ -135,7 +136,7 @@ struct LieLoop {
     std::uint8_t* slides = step.slides.data();
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
-      const int k = OneKind ? 0 : int(kind[i]), p = plane[i], number = pose[i], at = first_pose[k] + choose(number > 0, number, 0);
+      const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), number = pose[i], at = first_pose[k] + choose(number > 0, number, 0);
       const int state = on_ground[i], moves = int(motion[i]);
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)), others = begun[i].w > 0.0f;
       const F3 n{nx[p], ny[p], nz[p]}, start{begun[i].x, begun[i].y, begun[i].z}, start_spin{float(lx[i]), float(ly[i]), float(lz[i])}, old{a[i].x, a[i].y, a[i].z}, old_turn{s[i].x, s[i].y, s[i].z};
@@ -181,6 +182,16 @@ struct LieLoop {
   }
 };
 
+// Calls that of the four which needs the least looking up.
+template <class Run>
+void choose_loop(const StepConstants& constants, const SphereGround& ground, const Run& run) {
+  const bool one_plane = ground.nx.size() == 1;
+  if (constants.one_kind && one_plane) run.template operator()<true, true>();
+  else if (constants.one_kind) run.template operator()<true, false>();
+  else if (one_plane) run.template operator()<false, true>();
+  else run.template operator()<false, false>();
+}
+
 }  // namespace
 
 void SphereGround::set(const StaticGround& ground, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity) {
@@ -203,18 +214,21 @@ void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8
 
 void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
                       float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
-  if (constants.one_kind) run_wide(simd, SortLoop<true>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
-  else run_wide(simd, SortLoop<false>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
+  choose_loop(constants, ground, [&]<bool OneKind, bool OnePlane>() {
+    run_wide(simd, SortLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
+  });
 }
 
 void sweep_ground(const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
-  run_wide(simd, SweepLoop{ground, constants, step}, begin, end);
+  if (ground.nx.size() == 1) run_wide(simd, SweepLoop<true>{ground, constants, step}, begin, end);
+  else run_wide(simd, SweepLoop<false>{ground, constants, step}, begin, end);
 }
 
 void lie_on_ground(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin,
                    std::int64_t end, SphereStep& step) {
-  if (constants.one_kind) run_wide(simd, LieLoop<true>{spheres, kinds, ground, constants, step}, begin, end);
-  else run_wide(simd, LieLoop<false>{spheres, kinds, ground, constants, step}, begin, end);
+  choose_loop(constants, ground, [&]<bool OneKind, bool OnePlane>() {
+    run_wide(simd, LieLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, step}, begin, end);
+  });
 }
 
 }  // namespace lodestone

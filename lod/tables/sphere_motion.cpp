@@ -81,17 +81,23 @@ struct EndLoop {
     const Row *p = step.p.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
     const std::uint8_t *on_ground = step.on_ground.data(), *slides = step.slides.data();
     std::uint8_t* unsound = step.unsound.data();
-    const std::uint8_t* crowded_for = spheres.crowded_for.data();
+    std::uint8_t *crowded_for = spheres.crowded_for.data(), *since_crowded = spheres.since_crowded.data();
+    auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
     const float* size = kinds.radius.data();
     const double calm = double(most(0.0f, 1.0f - kCalming * c.time));
-    constexpr auto kMoved = std::uint8_t(GroundState::moved);
+    constexpr auto kMoved = std::uint8_t(GroundState::moved), kFree = std::uint8_t(GroundState::free);
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]);
       const bool here = on_ground[i] != kMoved, touches = p[i].w > 0.0f, flies = !touches & (slides[i] == 0);
       const double old_x = vx[i], old_y = vy[i], old_z = vz[i], spun_x = lx[i], spun_y = ly[i], spun_z = lz[i];
+      const int lonely = int(since_crowded[i]) + 1, crowded = int(crowded_for[i]) + 1, moves = int(motion[i]);
+      since_crowded[i] = std::uint8_t(choose(touches, 0, choose(lonely > 255, 255, lonely)));
+      // Among others and off the ground it settles no more.
+      motion[i] = std::uint8_t(choose(touches & (moves == int(Motion::settling)) & (on_ground[i] == kFree), int(Motion::dynamic), moves));
       // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for ever.
-      const bool calms = touches & (int(crowded_for[i]) >= kLying) & (s[i].w < c.resting_energy * c.gravity * size[k]);
+      const bool calms = touches & (crowded > kLying) & (s[i].w < c.resting_energy * c.gravity * size[k]);
+      crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
       const double kept = select(-std::int64_t(calms), calm, 1.0);
       const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)), by_z = kept * (spun_z + double(s[i].z));
       // In flight a body follows its parabola; else the velocity that its contacts left it.
@@ -126,7 +132,7 @@ struct EndLoop {
       const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z);
       const float far = most(absolute(float(to_x)), most(absolute(float(to_y)), absolute(float(to_z))));
       const float wrong = choose(sum < kFast, 0.0f, 1.0f) + choose(absolute(scale - 1.0f) < 0.1f, 0.0f, 1.0f) + choose(far + absolute(float(to_x - to_x)) < 0.999e8f, 0.0f, 1.0f);
-      unsound[i] = std::uint8_t(int(wrong));
+      unsound[i] = std::uint8_t(choose(wrong > 0.0f, 1, 0));
     }
   }
 };

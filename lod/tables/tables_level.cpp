@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "lod/stage_timer.h"
 #include "reference/error.h"
@@ -12,6 +13,13 @@ namespace {
 constexpr std::int64_t kBlock = 1024;        // bodies of a job
 constexpr int kOrderInterval = 16;           // steps between looks at how far bodies have moved from their places
 constexpr double kTouchFactor = 1.02;        // of the radii: what rests on a removed body
+
+// Calls visit(i) for the elements of [begin, end) that hold `mark`: mostly few or none.
+template <class Visit>
+void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std::int64_t begin, std::int64_t end, const Visit& visit) {
+  const std::uint8_t *at = marks.data() + begin, *last = marks.data() + end;
+  while (at < last && (at = static_cast<const std::uint8_t*>(std::memchr(at, mark, std::size_t(last - at))))) visit(at++ - marks.data());
+}
 
 }  // namespace
 
@@ -298,8 +306,7 @@ void TablesLevel::sort_ground() {
   if (ground_.planes.empty()) return;
   each_block([&](std::int64_t begin, std::int64_t end) {
     sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
-    for (std::int64_t i = begin; i < end; ++i)
-      if (step_.on_ground[i] == std::uint8_t(GroundState::settles)) choose_rest_pose(i);
+    each_marked(step_.on_ground, std::uint8_t(GroundState::settles), begin, end, [&](std::int64_t i) { choose_rest_pose(i); });
   });
 }
 
@@ -321,17 +328,10 @@ void TablesLevel::finish(ContactTally& tally) {
     if (ground) {
       sweep_ground(planes_, constants_, simd_, begin, end, step_);
       lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
-      for (std::int64_t i = begin; i < end; ++i)
-        if (step_.on_ground[i] == std::uint8_t(GroundState::near)) move_alone(i, own);
+      each_marked(step_.on_ground, std::uint8_t(GroundState::near), begin, end, [&](std::int64_t i) { move_alone(i, own); });
     }
     end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
-    for (std::int64_t i = begin; i < end; ++i) {
-      const bool crowded = step_.touches(i);
-      spheres_.since_crowded[i] = crowded ? 0 : std::uint8_t(std::min(255, spheres_.since_crowded[i] + 1));
-      spheres_.crowded_for[i] = crowded ? std::uint8_t(std::min(255, spheres_.crowded_for[i] + 1)) : 0;
-      if (crowded && spheres_.motion[i] == Motion::settling && step_.on_ground[i] == std::uint8_t(GroundState::free)) spheres_.motion[i] = Motion::dynamic;
-      if (step_.unsound[i]) recover(i, own);
-    }
+    each_marked(step_.unsound, 1, begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
 }
