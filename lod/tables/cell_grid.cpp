@@ -109,45 +109,105 @@ void CellGrid::lay_out(const BallSpan& balls, int level) {
   grids_.push_back(grid);
 }
 
+namespace {
+
+/// Of balls in one grid that does not wrap.
+struct CellLoop {
+  std::array<const double*, 3> at;
+  std::array<double, 3> origin;
+  std::array<std::int32_t, 3> cells;
+  double inverse;
+  std::uint32_t* cell;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    const double *x = at[0], *y = at[1], *z = at[2];
+    const double ox = origin[0], oy = origin[1], oz = origin[2];
+    const std::int32_t nx = cells[0], ny = cells[1], nz = cells[2];
+    std::uint32_t* out = cell;
+#pragma GCC ivdep
+    for (std::int64_t i = begin; i < end; ++i) {  // none is below the origin
+      const auto cx = std::int32_t((x[i] - ox) * inverse), cy = std::int32_t((y[i] - oy) * inverse), cz = std::int32_t((z[i] - oz) * inverse);
+      const auto within = [](std::int32_t c, std::int32_t count) { return std::max(0, std::min(c, count - 1)); };
+      out[i] = std::uint32_t((within(cz, nz) * ny + within(cy, ny)) * nx + within(cx, nx));
+    }
+  }
+};
+
+}  // namespace
+
+// Where a ball is along axis `a`, in the cell and from the grid's origin, within its length where it wraps.
+double CellGrid::find_cell(const Grid& grid, int a, double at, std::int32_t& cell) {
+  double c = std::floor(at * grid.inverse);
+  if (grid.wraps[a]) {
+    const double turns = std::floor(c / grid.cells[a]);
+    c -= turns * grid.cells[a];
+    at -= turns * grid.cells[a] * grid.edge;
+  }
+  cell = std::clamp(std::int32_t(c), 0, grid.cells[a] - 1);
+  return at;
+}
+
 void CellGrid::sort(const BallSpan& balls) {
   const std::size_t count = balls.x.size();
-  const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
-  const bool many = grids_.size() > 1;
   start_.assign(grids_.back().end_cell + 2, 0);
   cell_.resize(count);
   for (auto* array : {&x_, &y_, &z_, &reach_}) array->resize(count);
   index_.resize(count);
-  const auto wrapped = [](const Grid& grid, int a, double at, std::int32_t& cell) {
-    double c = std::floor(at * grid.inverse);
-    if (grid.wraps[a]) {
-      const double turns = std::floor(c / grid.cells[a]);
-      c -= turns * grid.cells[a];
-      at -= turns * grid.cells[a] * grid.edge;
-    }
-    cell = std::clamp(std::int32_t(c), 0, grid.cells[a] - 1);
-    return at;
-  };
+  const Grid& only = grids_.front();
+  if (grids_.size() > 1 || only.wraps[0] || only.wraps[1] || only.wraps[2]) sort_one_by_one(balls);
+  else sort_plain(balls);
+  grid_begin_.clear();
+  for (const Grid& grid : grids_) grid_begin_.push_back(start_[grid.first_cell]);
+  grid_begin_.push_back(std::uint32_t(count));
+}
+
+void CellGrid::add_up_cells() {
+  for (std::size_t c = 2; c < start_.size(); ++c) start_[c] += start_[c - 1];
+}
+
+void CellGrid::sort_plain(const BallSpan& balls) {
+  const std::size_t count = balls.x.size();
+  const Grid& grid = grids_.front();
+  const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
+  const double *x = centers[grid.axis[0]].data(), *y = centers[grid.axis[1]].data(), *z = centers[grid.axis[2]].data();
+  run_wide(simd_, CellLoop{{x, y, z}, grid.origin, grid.cells, grid.inverse, cell_.data()}, 0, std::int64_t(count));
+  const std::uint32_t* cell = cell_.data();
+  std::uint32_t *start = start_.data(), *index = index_.data();
+  for (std::size_t i = 0; i < count; ++i) ++start[cell[i] + 2];
+  add_up_cells();
+  float *to_x = x_.data(), *to_y = y_.data(), *to_z = z_.data(), *to_reach = reach_.data();
+  const float* reach = balls.reach.data();
+  const double ox = grid.origin[0], oy = grid.origin[1], oz = grid.origin[2];
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t at = start[cell[i] + 1]++;
+    to_x[at] = float(x[i] - ox), to_y[at] = float(y[i] - oy), to_z[at] = float(z[i] - oz);
+    to_reach[at] = reach[i] + grid.fuzz;
+    index[at] = std::uint32_t(i);
+  }
+}
+
+void CellGrid::sort_one_by_one(const BallSpan& balls) {
+  const std::size_t count = balls.x.size();
+  const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
+  const bool many = grids_.size() > 1;
   for (std::size_t i = 0; i < count; ++i) {
     const Grid& grid = many ? grids_[grid_of_level_[level_of(balls.reach[i])]] : grids_.front();
     std::array<std::int32_t, 3> c;
-    for (int a = 0; a < 3; ++a) wrapped(grid, a, centers[grid.axis[a]][i] - grid.origin[a], c[a]);
+    for (int a = 0; a < 3; ++a) find_cell(grid, a, centers[grid.axis[a]][i] - grid.origin[a], c[a]);
     cell_[i] = grid.first_cell + std::uint32_t((c[2] * grid.cells[1] + c[1]) * grid.cells[0] + c[0]);
     ++start_[cell_[i] + 2];
   }
-  for (std::size_t c = 2; c < start_.size(); ++c) start_[c] += start_[c - 1];
+  add_up_cells();
   for (std::size_t i = 0; i < count; ++i) {
     const Grid& grid = many ? grids_[grid_of_level_[level_of(balls.reach[i])]] : grids_.front();
     const std::uint32_t at = start_[cell_[i] + 1]++;
     std::int32_t cell;
-    x_[at] = float(wrapped(grid, 0, centers[grid.axis[0]][i] - grid.origin[0], cell));
-    y_[at] = float(wrapped(grid, 1, centers[grid.axis[1]][i] - grid.origin[1], cell));
-    z_[at] = float(wrapped(grid, 2, centers[grid.axis[2]][i] - grid.origin[2], cell));
+    x_[at] = float(find_cell(grid, 0, centers[grid.axis[0]][i] - grid.origin[0], cell));
+    y_[at] = float(find_cell(grid, 1, centers[grid.axis[1]][i] - grid.origin[1], cell));
+    z_[at] = float(find_cell(grid, 2, centers[grid.axis[2]][i] - grid.origin[2], cell));
     reach_[at] = balls.reach[i] + grid.fuzz;
     index_[at] = std::uint32_t(i);
   }
-  grid_begin_.clear();
-  for (const Grid& grid : grids_) grid_begin_.push_back(start_[grid.first_cell]);
-  grid_begin_.push_back(std::uint32_t(count));
 }
 
 void CellGrid::make_parts() {
@@ -167,33 +227,6 @@ void CellGrid::make_parts() {
     if (grid.wraps[2] && made > 1 && made % 2 == 1) parts_.back().colour = 2;
   }
   if (grids_.size() > 1) parts_.push_back({.grid = -1, .colour = 3});
-}
-
-CellGrid::Neighbour CellGrid::neighbour(const Grid& grid, int axis, std::int32_t at) {
-  const std::int32_t n = grid.cells[axis];
-  if (at >= 0 && at < n) return {at, 0.0f};
-  if (!grid.wraps[axis]) return {};
-  return at < 0 ? Neighbour{at + n, float(-n * grid.edge)} : Neighbour{at - n, float(n * grid.edge)};
-}
-
-void CellGrid::add_runs(const Grid& grid, std::uint32_t row, std::int32_t middle, bool own, const std::array<float, 3>& shift, std::vector<Run>& runs) const {
-  const std::int32_t n = grid.cells[0], first = std::max(own ? middle : middle - 1, 0), last = std::min(middle + 1, n - 1);
-  runs.push_back({start_[row + std::uint32_t(first)], start_[row + std::uint32_t(last) + 1], shift});
-  if (!grid.wraps[0]) return;
-  const float length = float(n * grid.edge);
-  if (middle == 0 && !own) runs.push_back({start_[row + std::uint32_t(n) - 1], start_[row + std::uint32_t(n)], {shift[0] - length, shift[1], shift[2]}});
-  if (middle == n - 1) runs.push_back({start_[row], start_[row + 1], {shift[0] + length, shift[1], shift[2]}});
-}
-
-// The first run is the cell's own and what follows it; then one of each pair of opposite neighbour rows.
-void CellGrid::find_cell_runs(const Grid& grid, std::int32_t slow, std::int32_t mid, std::int32_t fast, std::vector<Run>& runs) const {
-  const auto row_of = [&](std::int32_t s, std::int32_t m) { return grid.first_cell + std::uint32_t(s * grid.cells[1] + m) * std::uint32_t(grid.cells[0]); };
-  add_runs(grid, row_of(slow, mid), fast, true, {}, runs);
-  if (const Neighbour m = neighbour(grid, 1, mid + 1); m.at >= 0) add_runs(grid, row_of(slow, m.at), fast, false, {0.0f, m.shift, 0.0f}, runs);
-  const Neighbour s = neighbour(grid, 2, slow + 1);
-  if (s.at < 0) return;
-  for (std::int32_t step = -1; step <= 1; ++step)
-    if (const Neighbour m = neighbour(grid, 1, mid + step); m.at >= 0) add_runs(grid, row_of(s.at, m.at), fast, false, {0.0f, m.shift, s.shift}, runs);
 }
 
 }  // namespace lodestone

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "lod/tables/near_balls.h"
+#include "lod/tables/ball_pairs.h"
 #include "reference/geometry.h"
 
 namespace lodestone {
@@ -32,9 +32,8 @@ class CellGrid {
   int colour_of(std::int64_t part) const { return parts_[part].colour; }
   static constexpr int kColours = 4;
 
-  /// Calls found(a, b) for each pair of `part` whose reaches meet, once, perhaps also where they miss by a rounding. The order depends on the balls alone.
-  template <class Found>
-  void find_pairs(std::int64_t part, const Found& found) const;
+  /// Adds each pair of `part` whose reaches meet, once, perhaps also where they miss by a rounding. The order depends on the balls alone.
+  void find_pairs(std::int64_t part, BallPairs& pairs) const;
 
   /// Calls found(a) for each ball whose reach may meet a ball elsewhere, and for some a cell beyond.
   template <class Found>
@@ -64,6 +63,19 @@ class CellGrid {
     std::uint32_t begin = 0, end = 0;
     std::array<float, 3> shift{};
   };
+  /// A row of cells whose balls may meet those of another row.
+  struct Row {
+    std::uint32_t first_cell = 0;
+    std::array<float, 3> shift{};
+  };
+  struct Rows {
+    std::array<Row, 5> rows{};
+    int count = 0;
+  };
+  struct Runs {
+    std::array<Run, 15> runs{};
+    int count = 0;
+  };
   /// The neighbour of a row or cell along one axis, −1: none.
   struct Neighbour {
     std::int32_t at = -1;
@@ -73,18 +85,24 @@ class CellGrid {
   void choose_edges(const BallSpan& balls);
   void lay_out(const BallSpan& balls, int level);
   void sort(const BallSpan& balls);
+  void sort_plain(const BallSpan& balls);
+  void sort_one_by_one(const BallSpan& balls);
+  void add_up_cells();
+  static double find_cell(const Grid& grid, int axis, double at, std::int32_t& cell);
   void make_parts();
   int level_of(float reach) const;
   static Neighbour neighbour(const Grid& grid, int axis, std::int32_t at);
-  /// The cells middle − 1 … middle + 1 of a row, as one run, or two where the row wraps.
-  void add_runs(const Grid& grid, std::uint32_t row, std::int32_t middle, bool own, const std::array<float, 3>& shift, std::vector<Run>& runs) const;
-  void find_cell_runs(const Grid& grid, std::int32_t slow, std::int32_t mid, std::int32_t fast, std::vector<Run>& runs) const;
-  template <class Found>
-  void test(std::uint32_t ball, const Run& run, const Found& found) const;
+  /// Itself, and one of each pair of opposite neighbours.
+  Rows find_rows(const Grid& grid, std::int32_t slow, std::int32_t mid) const;
+  /// The cells fast − 1 … fast + 1 of each row, of the first one only those from `fast` on: one run, or two where the row wraps.
+  void find_runs(const Grid& grid, const Rows& rows, std::int32_t fast, Runs& found) const;
+  template <Simd kSimd>
+  void search(const Part& part, BallPairs& pairs) const;
+  template <Simd kSimd>
+  struct Search;
   template <class Found>
   void find_in(const Grid& grid, const Vec3& center, double reach, const Found& found) const;
-  template <class Found>
-  void find_across(const Found& found) const;
+  void find_across(BallPairs& pairs) const;
 
   Simd simd_;
   std::vector<Grid> grids_;
@@ -98,50 +116,6 @@ class CellGrid {
   std::vector<std::uint32_t> grid_begin_; // of each grid in the order, and the end
   BallSpan balls_;
 };
-
-template <class Found>
-void CellGrid::test(std::uint32_t ball, const Run& run, const Found& found) const {
-  const float x = x_[ball] - run.shift[0], y = y_[ball] - run.shift[1], z = z_[ball] - run.shift[2], reach = reach_[ball];
-  constexpr std::uint32_t kBlock = 64;
-  std::array<std::uint32_t, kBlock + 16> hits;
-  for (std::uint32_t block = run.begin; block < run.end; block += kBlock) {
-    const std::uint32_t count = find_near_balls({x_.data(), y_.data(), z_.data(), reach_.data()}, {x, y, z, reach}, block, std::min(run.end, block + kBlock), simd_,
-                                                hits.data());
-    for (std::uint32_t i = 0; i < count; ++i) found(index_[ball], index_[hits[i]]);
-  }
-}
-
-template <class Found>
-void CellGrid::find_pairs(std::int64_t number, const Found& found) const {
-  const Part& part = parts_[number];
-  if (part.grid < 0) return find_across(found);
-  const Grid& grid = grids_[part.grid];
-  const bool aliases = grid.wraps[0] || grid.wraps[1] || grid.wraps[2];
-  const auto checked = [&](std::uint32_t a, std::uint32_t b) {
-    const double limit = double(balls_.reach[a]) + double(balls_.reach[b]);
-    const Vec3 between(balls_.x[a] - balls_.x[b], balls_.y[a] - balls_.y[b], balls_.z[a] - balls_.z[b]);
-    if (!aliases || between.squaredNorm() < limit * limit) found(a, b);
-  };
-  std::vector<Run>& runs = *[] {
-    thread_local std::vector<Run> kept;  // so that a warm step allocates nothing
-    return &kept;
-  }();
-  for (std::int32_t slow = part.first_row; slow < part.last_row; ++slow)
-    for (std::int32_t mid = 0; mid < grid.cells[1]; ++mid) {
-      const std::uint32_t row = grid.first_cell + std::uint32_t(slow * grid.cells[1] + mid) * std::uint32_t(grid.cells[0]);
-      if (start_[row] == start_[row + std::uint32_t(grid.cells[0])]) continue;
-      for (std::int32_t fast = 0; fast < grid.cells[0]; ++fast) {
-        const std::uint32_t begin = start_[row + std::uint32_t(fast)], end = start_[row + std::uint32_t(fast) + 1];
-        if (begin == end) continue;
-        runs.clear();
-        find_cell_runs(grid, slow, mid, fast, runs);
-        for (std::uint32_t ball = begin; ball < end; ++ball) {
-          runs.front().begin = ball + 1;  // its own cell: those after it
-          for (const Run& run : runs) test(ball, run, checked);
-        }
-      }
-    }
-}
 
 template <class Found>
 void CellGrid::find_in(const Grid& grid, const Vec3& center, double reach, const Found& found) const {
@@ -174,22 +148,6 @@ void CellGrid::find_in(const Grid& grid, const Vec3& center, double reach, const
 template <class Found>
 void CellGrid::find_near(const Vec3& center, double reach, const Found& found) const {
   for (const Grid& grid : grids_) find_in(grid, center, reach, found);
-}
-
-// Pairs of different sizes: those of the coarser grid look into the finer one, whose cells they know to be many but whose balls they would have to be tested with
-// in any case.
-template <class Found>
-void CellGrid::find_across(const Found& found) const {
-  for (std::size_t coarse = 1; coarse < grids_.size(); ++coarse)
-    for (std::size_t fine = 0; fine < coarse; ++fine)
-      for (std::uint32_t i = grid_begin_[coarse]; i < grid_begin_[coarse + 1]; ++i) {
-        const std::uint32_t ball = index_[i];
-        const Vec3 center(balls_.x[ball], balls_.y[ball], balls_.z[ball]);
-        find_in(grids_[fine], center, balls_.reach[ball], [&](std::uint32_t other) {
-          const double limit = double(balls_.reach[ball]) + double(balls_.reach[other]);
-          if ((Vec3(balls_.x[other], balls_.y[other], balls_.z[other]) - center).squaredNorm() < limit * limit) found(ball, other);
-        });
-      }
 }
 
 }  // namespace lodestone

@@ -1,52 +1,34 @@
 #include "lod/tables/sphere_contacts.h"
 
-#include <cmath>
+#include <algorithm>
+
+#include "lod/tables/contact_loops.h"
 
 namespace lodestone {
-namespace {
 
-struct V3 { float x, y, z; };
-float dot(V3 a, V3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-V3 cross(V3 a, V3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+using namespace lane;
 
-}  // namespace
+void ContactArrays::make_room(std::size_t elements, bool one_kind) {
+  if (elements + kContactChunk > first.size()) {
+    const std::size_t size = elements + elements / 4 + 2 * kContactChunk;
+    first.resize(size), second.resize(size);
+    for (auto* array : {&nx, &ny, &nz, &gap, &closing, &impulse}) array->resize(size);
+  }
+  if (!one_kind) restitution.resize(first.size()), friction.resize(first.size());
+}
 
 void SphereContacts::clear() {
-  for (Part& part : parts_) part.contacts.clear();
+  for (Part& part : parts_) part.contacts.count = 0, part.pairs.clear();
 }
 
 std::int64_t SphereContacts::count() const {
-  std::int64_t count = 0;
-  for (const Part& part : parts_) count += std::int64_t(part.contacts.size());
-  return count;
+  std::size_t count = 0;
+  for (const Part& part : parts_) count += part.contacts.count;
+  return std::int64_t(count);
 }
 
-float SphereContacts::known_impulse(const Spheres& spheres, std::uint32_t first, std::uint32_t second, float time) const {
-  const auto look = [&](std::uint32_t at, std::uint32_t other) {
-    const std::uint32_t begin = spheres.known_begin[at], end = begin + spheres.known_count[at];
-    for (std::uint32_t i = begin; i < end; ++i)
-      if (known_[i].owner == spheres.owner[other]) return known_[i].force * time;
-    return 0.0f;
-  };
-  const float impulse = look(first, second);
-  return impulse != 0.0f || std::int64_t(second) >= spheres.awake ? impulse : look(second, first);
-}
-
-void SphereContacts::add_to(Part& part, const Spheres& s, const SphereKinds& kinds, std::uint32_t first, std::uint32_t second,
-                            const StepConstants& constants) const {
-  const V3 between{float(s.x[first] - s.x[second]), float(s.y[first] - s.y[second]), float(s.z[first] - s.z[second])};
-  const V3 velocity{float(s.vx[first] - s.vx[second]), float(s.vy[first] - s.vy[second]), float(s.vz[first] - s.vz[second])};
-  const float square = dot(between, between), sum = s.radius[first] + s.radius[second];
-  const float touching = settings_.touching * std::min(kinds.radius[s.kind[first]], kinds.radius[s.kind[second]]);
-  const float distance = std::sqrt(square), gap = distance - sum;
-  const float inverse = 1.0f / std::max(distance, 1e-12f);
-  const V3 normal = distance > 1e-12f ? V3{between.x * inverse, between.y * inverse, between.z * inverse} : V3{0.0f, 0.0f, 1.0f};
-  const float closing = dot(velocity, normal);
-  if (gap + closing * constants.time > touching) return;
-  part.contacts.push_back({first, second, normal.x, normal.y, normal.z, gap, closing, known_.empty() ? 0.0f : known_impulse(s, first, second, constants.time)});
-}
-
-void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, const StepConstants& constants, const JobRunner& jobs) {
+void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, const StepConstants& constants, Simd simd,
+                          const JobRunner& jobs) {
   used_parts_ = std::size_t(grid.parts()) + 1;
   if (parts_.size() < used_parts_) parts_.resize(used_parts_);
   clear();
@@ -57,12 +39,16 @@ void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, cons
   }
   jobs(grid.parts(), TaskRef([&](std::int64_t i) {
     Part& part = parts_[std::size_t(i)];
-    grid.find_pairs(i, [&](std::uint32_t first, std::uint32_t second) { add_to(part, spheres, kinds, first, second, constants); });
+    grid.find_pairs(i, part.pairs);
+    find_touching(part.pairs, spheres, kinds, constants, settings_.touching, simd, part.contacts);
   }));
 }
 
-void SphereContacts::add(const Spheres& spheres, const SphereKinds& kinds, std::uint32_t first, std::uint32_t second, const StepConstants& constants) {
-  add_to(parts_[used_parts_ - 1], spheres, kinds, first, second, constants);
+void SphereContacts::add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs,
+                         const StepConstants& constants, Simd simd) {
+  Part& part = parts_[used_parts_ - 1];
+  for (const auto& [first, second] : pairs) part.pairs.add(first, second);
+  find_touching(part.pairs, spheres, kinds, constants, settings_.touching, simd, part.contacts);
 }
 
 template <class Task>
@@ -71,107 +57,107 @@ void SphereContacts::run_by_colour(const JobRunner& jobs, const Task& task) {
     if (!colour.empty()) jobs(std::int64_t(colour.size()), TaskRef([&](std::int64_t i) { task(parts_[colour[std::size_t(i)]]); }));
 }
 
-void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, float bounce_velocity, SphereStep& step, const JobRunner& jobs) {
-  const auto awake = std::uint32_t(spheres.awake);
-  const auto give = [&](std::uint32_t body, const SphereContact& c, float impulse) {
-    if (body >= awake) return;
-    if (step.contacts[body] < 200) ++step.contacts[body];
-    const float change = impulse * kinds.inverse_mass[spheres.kind[body]];
-    step.px[body] += change * c.nx, step.py[body] += change * c.ny, step.pz[body] += change * c.nz;
-  };
-  run_by_colour(jobs, [&](Part& part) {
-    for (SphereContact& c : part.contacts) {
-      if (c.closing < -bounce_velocity) c.impulse = 0.0f;  // an impact is no support
-      give(c.first, c, c.impulse);
-      give(c.second, c, -c.impulse);
-    }
-  });
+float SphereContacts::find_known_force(const Spheres& spheres, std::uint32_t at, std::uint32_t other) const {
+  const std::uint32_t begin = spheres.known_begin[at], end = begin + spheres.known_count[at];
+  for (std::uint32_t i = begin; i < end; ++i)
+    if (known_[i].owner == spheres.owner[other]) return known_[i].force;
+  return 0.0f;
 }
 
-template <bool OneKind, bool Last>
-void SphereContacts::sweep_part(Part& part, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity,
-                                const StepConstants& constants, SphereStep& step) const {
-  const auto awake = std::uint32_t(spheres.awake);
-  const ContactLaw only = materials.law(kinds.kinds[0].material, kinds.kinds[0].material);
-  const float per_time = 1.0f / constants.time, only_w = kinds.inverse_mass[0], only_soft = kinds.softest[0];
-  const float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *wx = step.wx.data(), *wy = step.wy.data(), *wz = step.wz.data();
-  const float* radius = spheres.radius.data();
-  float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *sx = step.sx.data(), *sy = step.sy.data(), *sz = step.sz.data();
-  float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
-  const std::uint8_t* contacts = step.contacts.data();
-  for (SphereContact& c : part.contacts) {
-    const std::uint32_t a = c.first, b = c.second;
-    const std::size_t ka = OneKind ? 0 : spheres.kind[a], kb = OneKind ? 0 : spheres.kind[b];
-    const bool moves = b < awake;
-    const V3 n{c.nx, c.ny, c.nz};
-    const float wa = OneKind ? only_w : kinds.inverse_mass[ka], wb = moves ? OneKind ? only_w : kinds.inverse_mass[kb] : 0.0f;
-    const float share_a = float(contacts[a]) * wa, share_b = moves ? float(contacts[b]) * wb : 0.0f;
-    V3 relative{px[a], py[a], pz[a]};
-    if (moves) relative = {relative.x - px[b], relative.y - py[b], relative.z - pz[b]};
-    const float speed = dot(relative, n), split = 1.0f / (share_a + share_b);
-    const ContactLaw law = OneKind ? only : materials.law(kinds.kinds[ka].material, kinds.kinds[kb].material);
-    const float shut = std::min(0.0f, -c.gap * per_time);
-    const float target = c.closing < -bounce_velocity ? std::max(-float(law.restitution) * c.closing, shut) : shut;
-    const float before = c.impulse, after = std::max(0.0f, before + split * (target - speed)), change = after - before;
-    c.impulse = after;
-    V3 impulse{change * n.x, change * n.y, change * n.z};
-    if constexpr (Last) {
-      // Friction on the slip of the touching points, with the inertia under which it changes most.
-      const float ra = radius[a], rb = moves ? radius[b] : 0.0f, soft_a = OneKind ? only_soft : kinds.softest[ka], soft_b = OneKind ? only_soft : kinds.softest[kb];
-      V3 turning{ra * wx[a], ra * wy[a], ra * wz[a]};
-      if (moves) turning = {turning.x + rb * wx[b], turning.y + rb * wy[b], turning.z + rb * wz[b]};
-      const V3 rolling = cross(turning, n);
-      const V3 slip{relative.x - speed * n.x - rolling.x, relative.y - speed * n.y - rolling.y, relative.z - speed * n.z - rolling.z};
-      const float slipping = std::sqrt(dot(slip, slip)) + 1e-12f;
-      const float ease = share_a * (1.0f + ra * ra * soft_a) + share_b * (1.0f + rb * rb * soft_b);
-      const float rub = std::min(float(law.friction) * after / slipping, 1.0f / ease);
-      const V3 friction{-rub * slip.x, -rub * slip.y, -rub * slip.z};
-      impulse = {impulse.x + friction.x, impulse.y + friction.y, impulse.z + friction.z};
-      const V3 torque = cross(friction, n);  // over the radius
-      const float size = OneKind ? kinds.radius[0] : std::min(kinds.radius[ka], kinds.radius[kb]);
-      const float out = std::max(0.0f, -c.gap - settings_.slop * size) * settings_.push_out * split;
-      dx[a] += out * wa * n.x, dy[a] += out * wa * n.y, dz[a] += out * wa * n.z;
-      sx[a] += ra * wa * torque.x, sy[a] += ra * wa * torque.y, sz[a] += ra * wa * torque.z;
-      if (moves) {
-        dx[b] -= out * wb * n.x, dy[b] -= out * wb * n.y, dz[b] -= out * wb * n.z;
-        sx[b] += rb * wb * torque.x, sy[b] += rb * wb * torque.y, sz[b] += rb * wb * torque.z;
-      }
-    }
-    ax[a] += wa * impulse.x, ay[a] += wa * impulse.y, az[a] += wa * impulse.z;
-    if (moves) ax[b] -= wb * impulse.x, ay[b] -= wb * impulse.y, az[b] -= wb * impulse.z;
+// Contacts mostly come in the order of the last step: `nth`, of those of the first body, is where it should be.
+float SphereContacts::known_force(const Spheres& spheres, std::uint32_t first, std::uint32_t second, std::uint32_t nth) const {
+  if (nth < spheres.known_count[first]) {
+    const KnownContact& expected = known_[spheres.known_begin[first] + nth];
+    if (expected.owner == spheres.owner[second]) return expected.force;
+  }
+  const float force = find_known_force(spheres, first, second);
+  return force != 0.0f || std::int64_t(second) >= spheres.awake ? force : find_known_force(spheres, second, first);
+}
+
+void SphereContacts::set_laws(ContactArrays& c, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials) const {
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const ContactLaw law = materials.law(kinds.kinds[spheres.kind[c.first[i]]].material, kinds.kinds[spheres.kind[c.second[i]]].material);
+    c.restitution[i] = float(law.restitution), c.friction[i] = float(law.friction);
   }
 }
 
-void SphereContacts::sweep(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity,
-                           const StepConstants& constants, bool last, SphereStep& step, const JobRunner& jobs) {
+void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity,
+                           const StepConstants& constants, SphereStep& step, const JobRunner& jobs) {
+  const auto awake = std::uint32_t(spheres.awake);
+  step.clear_still(awake);
   run_by_colour(jobs, [&](Part& part) {
-    if (constants.one_kind && last) sweep_part<true, true>(part, spheres, kinds, materials, bounce_velocity, constants, step);
-    else if (constants.one_kind) sweep_part<true, false>(part, spheres, kinds, materials, bounce_velocity, constants, step);
-    else if (last) sweep_part<false, true>(part, spheres, kinds, materials, bounce_velocity, constants, step);
-    else sweep_part<false, false>(part, spheres, kinds, materials, bounce_velocity, constants, step);
+    ContactArrays& c = part.contacts;
+    if (!constants.one_kind) set_laws(c, spheres, kinds, materials);
+    std::uint32_t last = ~0u, nth = 0;
+    for (std::size_t i = 0; i < c.count; ++i) {
+      const std::uint32_t a = c.first[i], b = c.second[i];
+      nth = a == last ? nth + 1 : 0;
+      last = a;
+      const bool impact = c.closing[i] < -bounce_velocity;  // is no support
+      const float impulse = impact || known_.empty() ? 0.0f : known_force(spheres, a, b, nth) * constants.time;
+      c.impulse[i] = impulse;
+      const RowLanes normal{c.nx[i], c.ny[i], c.nz[i], 0.0f}, one{0.0f, 0.0f, 0.0f, 1.0f};
+      add_to(step.p[a], impulse * kinds.inverse_mass[spheres.kind[a]] * normal + one);
+      if (b < awake) add_to(step.p[b], -impulse * kinds.inverse_mass[spheres.kind[b]] * normal + one);
+    }
   });
 }
 
-// A counting sort by the first body: its contacts may come from several parts.
-void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants) {
+void SphereContacts::sweep(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity,
+                           const StepConstants& constants, bool last, Simd simd, SphereStep& step, const JobRunner& jobs) {
+  const SweepSettings settings{settings_, materials.law(kinds.kinds[0].material, kinds.kinds[0].material), bounce_velocity, last};
+  run_by_colour(jobs, [&](Part& part) { sweep_contacts(settings, spheres, kinds, constants, simd, part.contacts, step); });
+}
+
+void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const JobRunner& jobs) {
   std::fill(spheres.known_count.begin(), spheres.known_count.begin() + spheres.awake, std::uint8_t(0));
+  known_.resize(std::size_t(count()));
+  const bool together = std::ranges::all_of(std::span(of_colour_).last(2), [&](const auto& colour) {
+    return std::ranges::all_of(colour, [&](std::uint32_t part) { return parts_[part].contacts.count == 0; });
+  });
+  if (together) remember_parts(spheres, bounce_velocity, constants, jobs);
+  else remember_sorted(spheres, bounce_velocity, constants);
+}
+
+// All contacts of a first body are in one part, one after the other.
+void SphereContacts::remember_parts(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const JobRunner& jobs) {
+  std::uint32_t begin = 0;
+  for (std::size_t p = 0; p < used_parts_; ++p) parts_[p].known_begin = begin, begin += std::uint32_t(parts_[p].contacts.count);
+  const float per_time = 1.0f / constants.time;
+  jobs(std::int64_t(used_parts_), TaskRef([&](std::int64_t p) {
+    const ContactArrays& c = parts_[std::size_t(p)].contacts;
+    std::uint32_t at = parts_[std::size_t(p)].known_begin, last = ~0u;
+    for (std::size_t i = 0; i < c.count; ++i) {
+      const std::uint32_t a = c.first[i];
+      if (a != last) spheres.known_begin[a] = at;
+      last = a;
+      known_[at] = {spheres.owner[c.second[i]], c.impulse[i] * per_time};
+      const bool kept = is_support(c, i, bounce_velocity) & (spheres.known_count[a] < 255);
+      spheres.known_count[a] += kept;
+      at += kept;
+    }
+  }));
+}
+
+// A counting sort by the first body: its contacts come from several parts.
+void SphereContacts::remember_sorted(Spheres& spheres, float bounce_velocity, const StepConstants& constants) {
   const auto each_kept = [&](const auto& visit) {
     for (std::size_t p = 0; p < used_parts_; ++p)
-      for (const SphereContact& c : parts_[p].contacts)
-        if (c.impulse > 0.0f && c.closing >= -bounce_velocity) visit(c);  // a blow is no support
+      for (std::size_t i = 0; i < parts_[p].contacts.count; ++i)
+        if (is_support(parts_[p].contacts, i, bounce_velocity)) visit(parts_[p].contacts, i);
   };
-  each_kept([&](const SphereContact& c) { spheres.known_count[c.first] += spheres.known_count[c.first] < 255; });
+  each_kept([&](const ContactArrays& c, std::size_t i) { spheres.known_count[c.first[i]] += spheres.known_count[c.first[i]] < 255; });
   std::uint32_t begin = 0;
   for (std::int64_t i = 0; i < spheres.awake; ++i) {
     spheres.known_begin[i] = begin;
     begin += spheres.known_count[i];
     spheres.known_count[i] = 0;
   }
-  known_.resize(begin);
   const float per_time = 1.0f / constants.time;
-  each_kept([&](const SphereContact& c) {
-    if (spheres.known_count[c.first] == 255) return;
-    known_[spheres.known_begin[c.first] + spheres.known_count[c.first]++] = {spheres.owner[c.second], c.impulse * per_time};
+  each_kept([&](const ContactArrays& c, std::size_t i) {
+    const std::uint32_t a = c.first[i];
+    if (spheres.known_count[a] == 255) return;
+    known_[spheres.known_begin[a] + spheres.known_count[a]++] = {spheres.owner[c.second[i]], c.impulse[i] * per_time};
   });
 }
 

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "lod/jobs.h"
@@ -12,12 +14,24 @@
 
 namespace lodestone {
 
+/// Contacts as dense arrays, of which the first `count` elements count.
+struct ContactArrays {
+  std::vector<std::uint32_t> first, second;  // places; beyond those awake: asleep, does not move
+  std::vector<float> nx, ny, nz;             // from the second to the first
+  std::vector<float> gap;                    // m, negative: overlap
+  std::vector<float> closing;                // m/s at the start of the step, negative: nearing
+  std::vector<float> impulse;                // N s
+  std::vector<float> restitution, friction;  // of the two materials; empty where all bodies are of one kind
+  std::size_t count = 0;
+
+  /// Of all arrays at least; they only grow.
+  void make_room(std::size_t elements, bool one_kind);
+};
+
+/// What a contact is.
 struct SphereContact {
-  std::uint32_t first = 0, second = 0;   // places; beyond those awake: asleep, does not move
-  float nx = 0.0f, ny = 0.0f, nz = 0.0f; // from the second to the first
-  float gap = 0.0f;                      // m, negative: overlap
-  float closing = 0.0f;                  // m/s at the start of the step, negative: nearing
-  float impulse = 0.0f;                  // N s
+  std::uint32_t first, second;
+  float nx, ny, nz, gap, closing;
 };
 
 /// One of a body's contacts of the last step.
@@ -35,17 +49,19 @@ struct SphereContactSettings {
 class SphereContacts {
  public:
   /// Between awake bodies.
-  void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, const StepConstants& constants, const JobRunner& jobs);
-  /// One more, if the two touch: of an awake body with any other.
-  void add(const Spheres& spheres, const SphereKinds& kinds, std::uint32_t first, std::uint32_t second, const StepConstants& constants);
+  void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, const StepConstants& constants, Simd simd, const JobRunner& jobs);
+  /// More, where the two touch: of an awake body with any other.
+  void add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, const StepConstants& constants,
+           Simd simd);
 
   /// Counts each body's contacts and gives the impulses known from the last step.
-  void begin(const Spheres& spheres, const SphereKinds& kinds, float bounce_velocity, SphereStep& step, const JobRunner& jobs);
+  void begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants,
+             SphereStep& step, const JobRunner& jobs);
   /// One round of all contacts; the last one has friction and moves bodies out of overlaps.
   void sweep(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants, bool last,
-             SphereStep& step, const JobRunner& jobs);
+             Simd simd, SphereStep& step, const JobRunner& jobs);
   /// For the next step.
-  void remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants);
+  void remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const JobRunner& jobs);
   void forget() { known_.clear(); }
 
   const SphereContactSettings& settings() const { return settings_; }
@@ -53,22 +69,29 @@ class SphereContacts {
   template <class Visit>
   void each(const Visit& visit) const {
     for (const auto& part : parts_)
-      for (const SphereContact& contact : part.contacts) visit(contact);
+      for (std::size_t i = 0; i < part.contacts.count; ++i) visit(contact_of(part.contacts, i));
   }
   void clear();
 
  private:
   struct Part {
     int colour = 0;
-    std::vector<SphereContact> contacts;
+    BallPairs pairs;
+    ContactArrays contacts;
+    std::uint32_t known_begin = 0;  // of its contacts in known_
   };
-  template <bool OneKind, bool Last>
-  void sweep_part(Part& part, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity,
-                  const StepConstants& constants, SphereStep& step) const;
+  static SphereContact contact_of(const ContactArrays& c, std::size_t i) {
+    return {c.first[i], c.second[i], c.nx[i], c.ny[i], c.nz[i], c.gap[i], c.closing[i]};
+  }
+  // A blow is none.
+  static bool is_support(const ContactArrays& c, std::size_t i, float bounce_velocity) { return (c.impulse[i] > 0.0f) & (c.closing[i] >= -bounce_velocity); }
   template <class Task>
   void run_by_colour(const JobRunner& jobs, const Task& task);
-  void add_to(Part& part, const Spheres& spheres, const SphereKinds& kinds, std::uint32_t first, std::uint32_t second, const StepConstants& constants) const;
-  float known_impulse(const Spheres& spheres, std::uint32_t first, std::uint32_t second, float time) const;
+  void set_laws(ContactArrays& contacts, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials) const;
+  float known_force(const Spheres& spheres, std::uint32_t first, std::uint32_t second, std::uint32_t nth) const;
+  float find_known_force(const Spheres& spheres, std::uint32_t at, std::uint32_t other) const;
+  void remember_parts(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const JobRunner& jobs);
+  void remember_sorted(Spheres& spheres, float bounce_velocity, const StepConstants& constants);
 
   SphereContactSettings settings_;
   std::vector<Part> parts_;       // the grid's, and one for contacts that were added

@@ -41,7 +41,7 @@ struct NearLoop {
   }
 };
 
-template <bool OneKind>
+template <bool OneKind, bool OnePlane>
 struct SortLoop {
   const Spheres& spheres;
   const SphereKinds& kinds;
@@ -53,35 +53,36 @@ struct SortLoop {
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     const double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data();
     const float* held = spheres.held.data();
-    const float *size = kinds.radius.data(), *energy = step.energy.data();
+    const float* size = kinds.radius.data();
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *pressure = ground.pressure.data();
     const std::uint8_t* horizontal = ground.horizontal.data();
     const std::uint16_t* kind = spheres.kind.data();
     const auto* motion = reinterpret_cast<const std::uint8_t*>(spheres.motion.data());
     const std::uint8_t* plane = step.plane.data();
-    float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *given = step.given.data();
-    std::uint8_t *contacts = step.contacts.data(), *on_ground = step.on_ground.data();
+    const Row* s = step.s.data();
+    Row *given = step.a.data(), *start = step.p.data();
+    std::uint8_t* on_ground = step.on_ground.data();
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
-      const int k = OneKind ? 0 : int(kind[i]), p = plane[i], moves = int(motion[i]), touching = contacts[i];
+      const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), moves = int(motion[i]);
       const int state = on_ground[i];
       const F3 n{nx[p], ny[p], nz[p]}, v{float(vx[i]), float(vy[i]), float(vz[i])};
-      const float moving = energy[i], threshold = c.resting_energy * c.gravity * size[k];
+      const float touching = start[i].w, moving = s[i].w, threshold = c.resting_energy * c.gravity * size[k];
       const float kept = held[i], weight = pressure[p] * c.time;
       // Masks: 0 or −1.
-      const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce), others = -int(touching > 0);
+      const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce), others = -int(touching > 0.0f);
       const int settling = -int(moves == int(Motion::settling)) & -int(moving <= 2.0f * threshold);
       const int settles = -int(moves == int(Motion::dynamic)) & -int(int(horizontal[p]) > 0) & -int(moving < threshold);
       const int lies = near & presses & (others | settling), among = lies & others;
       const float known = select(among, kept, 0.0f);
-      px[i] += known * n.x, py[i] += known * n.y, pz[i] += known * n.z;
-      given[i] = select(others, known, weight);
-      contacts[i] = std::uint8_t(touching - among);
+      start[i].x += known * n.x, start[i].y += known * n.y, start[i].z += known * n.z, start[i].w = touching + select(among, 1.0f, 0.0f);
+      given[i].x = 0.0f, given[i].y = 0.0f, given[i].z = 0.0f, given[i].w = select(others, known, weight);
       on_ground[i] = std::uint8_t((lies & (int(kLies) - settles)) | (state & ~lies));
     }
   }
 };
 
+template <bool OnePlane>
 struct SweepLoop {
   const SphereGround& ground;
   StepConstants c;
@@ -89,23 +90,24 @@ struct SweepLoop {
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data();
-    const float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *gap = step.gap.data();
-    const std::uint8_t *plane = step.plane.data(), *contacts = step.contacts.data(), *on_ground = step.on_ground.data();
-    float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *given = step.given.data();
+    const Row* start = step.p.data();
+    const float* gap = step.gap.data();
+    const std::uint8_t *plane = step.plane.data(), *on_ground = step.on_ground.data();
+    Row* added = step.a.data();
     const float per_time = 1.0f / c.time;
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
-      const int p = plane[i], state = on_ground[i], touching = contacts[i];
-      const bool lies = (state >= int(kLies)) & (state <= int(kSettles)) & (touching > 0);
-      const float speed = px[i] * nx[p] + py[i] * ny[p] + pz[i] * nz[p], shut = least(0.0f, -gap[i] * per_time), before = given[i];
-      const float raised = most(0.0f, before + (shut - speed) / most(1.0f, float(touching))), after = choose(lies, raised, before), change = after - before;
-      given[i] = after;
-      ax[i] += change * nx[p], ay[i] += change * ny[p], az[i] += change * nz[p];
+      const int p = OnePlane ? 0 : int(plane[i]), state = on_ground[i];
+      const float touching = start[i].w;
+      const bool lies = (state >= int(kLies)) & (state <= int(kSettles)) & (touching > 0.0f);
+      const float speed = start[i].x * nx[p] + start[i].y * ny[p] + start[i].z * nz[p], shut = least(0.0f, -gap[i] * per_time), before = added[i].w;
+      const float raised = most(0.0f, before + (shut - speed) / most(1.0f, touching)), after = choose(lies, raised, before), change = after - before;
+      added[i].x += change * nx[p], added[i].y += change * ny[p], added[i].z += change * nz[p], added[i].w = after;
     }
   }
 };
 
-template <bool OneKind>
+template <bool OneKind, bool OnePlane>
 struct LieLoop {
   Spheres& spheres;
   const SphereKinds& kinds;
@@ -127,20 +129,20 @@ struct LieLoop {
     const Tensors hard{kinds.jxx.data(), kinds.jyy.data(), kinds.jzz.data(), kinds.jxy.data(), kinds.jxz.data(), kinds.jyz.data()};
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *friction = ground.friction.data();
     const int kind_count = int(ground.kinds);
-    const float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *gap = step.gap.data(), *given = step.given.data(), *energy = step.energy.data();
-    const std::uint8_t *plane = step.plane.data(), *contacts = step.contacts.data(), *on_ground = step.on_ground.data();
-    float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *sx = step.sx.data(), *sy = step.sy.data(), *sz = step.sz.data();
-    float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
+    const Row* begun = step.p.data();
+    const float* gap = step.gap.data();
+    const std::uint8_t *plane = step.plane.data(), *on_ground = step.on_ground.data();
+    Row *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
     std::uint8_t* slides = step.slides.data();
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
-      const int k = OneKind ? 0 : int(kind[i]), p = plane[i], number = pose[i], at = first_pose[k] + choose(number > 0, number, 0);
+      const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), number = pose[i], at = first_pose[k] + choose(number > 0, number, 0);
       const int state = on_ground[i], moves = int(motion[i]);
-      const bool lies = (state >= int(kLies)) & (state <= int(kSettles)), others = int(contacts[i]) > 0;
-      const F3 n{nx[p], ny[p], nz[p]}, start{px[i], py[i], pz[i]}, start_spin{float(lx[i]), float(ly[i]), float(lz[i])}, old{ax[i], ay[i], az[i]}, old_turn{sx[i], sy[i], sz[i]};
-      const F3 out{dx[i], dy[i], dz[i]};
+      const bool lies = (state >= int(kLies)) & (state <= int(kSettles)), others = begun[i].w > 0.0f;
+      const F3 n{nx[p], ny[p], nz[p]}, start{begun[i].x, begun[i].y, begun[i].z}, start_spin{float(lx[i]), float(ly[i]), float(lz[i])}, old{a[i].x, a[i].y, a[i].z}, old_turn{s[i].x, s[i].y, s[i].z};
+      const F3 out{d[i].x, d[i].y, d[i].z};
       const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
-      const float r = radius[i], above = gap[i], given_speed = given[i], moving = energy[i], big = size[k];
+      const float r = radius[i], above = gap[i], given_speed = a[i].w, moving = s[i].w, big = size[k];
       const F3 solved = start + old;
       F3 v = solved - choose(others, 0.0f, dot(solved, n)) * n, spin = start_spin + old_turn;
 
@@ -167,18 +169,28 @@ struct LieLoop {
       spin = spin - most(-most_pivot, least(pivot, most_pivot)) * n;
 
       const F3 change = choose(lies, v - start, old), turn = choose(lies, spin - start_spin, old_turn);
-      ax[i] = change.x, ay[i] = change.y, az[i] = change.z;
-      sx[i] = turn.x, sy[i] = turn.y, sz[i] = turn.z;
+      a[i].x = change.x, a[i].y = change.y, a[i].z = change.z, a[i].w = given_speed;
+      s[i].x = turn.x, s[i].y = turn.y, s[i].z = turn.z, s[i].w = moving;
       held[i] = choose(lies & others, given_speed, 0.0f);
       motion[i] = std::uint8_t(choose(lies & !rests, int(Motion::dynamic), moves));
       slides[i] = std::uint8_t(choose(lies, 1, 0));
       // The ground has the last word: among others no sinking in; alone down onto it, or out of it gradually.
       const float height = above + dot(v, n) * c.time + dot(out, n), alone = choose(above < 0.0f, -kRise * above, -above);
       const float raise = choose(lies, choose(others, most(0.0f, -height), alone), 0.0f);
-      dx[i] = out.x + raise * n.x, dy[i] = out.y + raise * n.y, dz[i] = out.z + raise * n.z;
+      d[i].x = out.x + raise * n.x, d[i].y = out.y + raise * n.y, d[i].z = out.z + raise * n.z, d[i].w = 0.0f;
     }
   }
 };
+
+// Calls that of the four which needs the least looking up.
+template <class Run>
+void choose_loop(const StepConstants& constants, const SphereGround& ground, const Run& run) {
+  const bool one_plane = ground.nx.size() == 1;
+  if (constants.one_kind && one_plane) run.template operator()<true, true>();
+  else if (constants.one_kind) run.template operator()<true, false>();
+  else if (one_plane) run.template operator()<false, true>();
+  else run.template operator()<false, false>();
+}
 
 }  // namespace
 
@@ -202,18 +214,21 @@ void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8
 
 void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
                       float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
-  if (constants.one_kind) run_wide(simd, SortLoop<true>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
-  else run_wide(simd, SortLoop<false>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
+  choose_loop(constants, ground, [&]<bool OneKind, bool OnePlane>() {
+    run_wide(simd, SortLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
+  });
 }
 
 void sweep_ground(const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
-  run_wide(simd, SweepLoop{ground, constants, step}, begin, end);
+  if (ground.nx.size() == 1) run_wide(simd, SweepLoop<true>{ground, constants, step}, begin, end);
+  else run_wide(simd, SweepLoop<false>{ground, constants, step}, begin, end);
 }
 
 void lie_on_ground(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin,
                    std::int64_t end, SphereStep& step) {
-  if (constants.one_kind) run_wide(simd, LieLoop<true>{spheres, kinds, ground, constants, step}, begin, end);
-  else run_wide(simd, LieLoop<false>{spheres, kinds, ground, constants, step}, begin, end);
+  choose_loop(constants, ground, [&]<bool OneKind, bool OnePlane>() {
+    run_wide(simd, LieLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, step}, begin, end);
+  });
 }
 
 }  // namespace lodestone

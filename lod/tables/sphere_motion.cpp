@@ -33,12 +33,10 @@ struct StartLoop {
     const float *size = kinds.radius.data(), *height = kinds.height.data(), *pose_height = kinds.pose_height.data(), *blend = kinds.blend_time.data();
     const std::int32_t* first_pose = kinds.first_pose.data();
     const Tensors soft = soft_of(kinds);
-    float *radius = out.radius.data(), *reach = step.reach.data(), *wx = step.wx.data(), *wy = step.wy.data(), *wz = step.wz.data();
-    float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data();
-    float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *sx = step.sx.data(), *sy = step.sy.data(), *sz = step.sz.data();
-    float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
-    std::uint8_t *contacts = step.contacts.data(), *on_ground = step.on_ground.data(), *plane = step.plane.data(), *slides = step.slides.data();
-    float* energy = step.energy.data();
+    float *radius = out.radius.data(), *reach = step.reach.data();
+    const float* softest = kinds.softest.data();
+    Row *p = step.p.data(), *u = step.u.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
+    std::uint8_t *on_ground = step.on_ground.data(), *plane = step.plane.data(), *slides = step.slides.data();
     const bool update = c.update_radius;
     const float fall = 0.5f * c.gravity * c.time * c.time;
 #pragma GCC ivdep
@@ -57,14 +55,12 @@ struct StartLoop {
       const float r = choose(moves == int(Motion::settling), resting, choose(flies, flying, was));
       radius[i] = r;
       reach[i] = r + 0.01f * size[k] + speed * c.time + fall;
-      energy[i] = 0.5f * (dot(v, v) + dot(spun, omega));
-      wx[i] = omega.x, wy[i] = omega.y, wz[i] = omega.z;
-      px[i] = v.x + c.gx * c.time, py[i] = v.y + c.gy * c.time, pz[i] = v.z + c.gz * c.time;
+      p[i].x = v.x + c.gx * c.time, p[i].y = v.y + c.gy * c.time, p[i].z = v.z + c.gz * c.time, p[i].w = 0.0f;
+      u[i].x = r * omega.x, u[i].y = r * omega.y, u[i].z = r * omega.z, u[i].w = 1.0f + r * r * softest[k];
+      s[i].x = 0.0f, s[i].y = 0.0f, s[i].z = 0.0f, s[i].w = 0.5f * (dot(v, v) + dot(spun, omega));
     }
-    std::fill(ax + begin, ax + end, 0.0f), std::fill(ay + begin, ay + end, 0.0f), std::fill(az + begin, az + end, 0.0f);
-    std::fill(sx + begin, sx + end, 0.0f), std::fill(sy + begin, sy + end, 0.0f), std::fill(sz + begin, sz + end, 0.0f);
-    std::fill(dx + begin, dx + end, 0.0f), std::fill(dy + begin, dy + end, 0.0f), std::fill(dz + begin, dz + end, 0.0f);
-    std::fill(contacts + begin, contacts + end, std::uint8_t(0)), std::fill(on_ground + begin, on_ground + end, std::uint8_t(0));
+    std::fill(a + begin, a + end, Row{}), std::fill(d + begin, d + end, Row{});
+    std::fill(on_ground + begin, on_ground + end, std::uint8_t(0));
     std::fill(plane + begin, plane + end, std::uint8_t(0)), std::fill(slides + begin, slides + end, std::uint8_t(0));
   }
 };
@@ -82,39 +78,43 @@ struct EndLoop {
     float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data();
     const std::uint16_t* kind = spheres.kind.data();
     const Tensors soft = soft_of(kinds);
-    const float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data();
-    const float *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data(), *sx = step.sx.data(), *sy = step.sy.data(), *sz = step.sz.data();
-    const float *dx = step.dx.data(), *dy = step.dy.data(), *dz = step.dz.data();
-    const std::uint8_t *contacts = step.contacts.data(), *on_ground = step.on_ground.data(), *slides = step.slides.data();
+    const Row *p = step.p.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
+    const std::uint8_t *on_ground = step.on_ground.data(), *slides = step.slides.data();
     std::uint8_t* unsound = step.unsound.data();
-    const std::uint8_t* crowded_for = spheres.crowded_for.data();
-    const float *energy = step.energy.data(), *size = kinds.radius.data();
+    std::uint8_t *crowded_for = spheres.crowded_for.data(), *since_crowded = spheres.since_crowded.data();
+    auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
+    const float* size = kinds.radius.data();
     const double calm = double(most(0.0f, 1.0f - kCalming * c.time));
-    constexpr auto kMoved = std::uint8_t(GroundState::moved);
+    constexpr auto kMoved = std::uint8_t(GroundState::moved), kFree = std::uint8_t(GroundState::free);
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]);
-      const bool here = on_ground[i] != kMoved, flies = (contacts[i] == 0) & (slides[i] == 0);
+      const bool here = on_ground[i] != kMoved, touches = p[i].w > 0.0f, flies = !touches & (slides[i] == 0);
       const double old_x = vx[i], old_y = vy[i], old_z = vz[i], spun_x = lx[i], spun_y = ly[i], spun_z = lz[i];
+      const int lonely = int(since_crowded[i]) + 1, crowded = int(crowded_for[i]) + 1, moves = int(motion[i]);
+      since_crowded[i] = std::uint8_t(choose(touches, 0, choose(lonely > 255, 255, lonely)));
+      // Among others and off the ground it settles no more.
+      motion[i] = std::uint8_t(choose(touches & (moves == int(Motion::settling)) & (on_ground[i] == kFree), int(Motion::dynamic), moves));
       // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for ever.
-      const bool calms = (contacts[i] > 0) & (int(crowded_for[i]) >= kLying) & (energy[i] < c.resting_energy * c.gravity * size[k]);
+      const bool calms = touches & (crowded > kLying) & (s[i].w < c.resting_energy * c.gravity * size[k]);
+      crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
       const double kept = select(-std::int64_t(calms), calm, 1.0);
-      const double by_x = kept * (spun_x + double(sx[i])), by_y = kept * (spun_y + double(sy[i])), by_z = kept * (spun_z + double(sz[i]));
+      const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)), by_z = kept * (spun_z + double(s[i].z));
       // In flight a body follows its parabola; else the velocity that its contacts left it.
       const std::int64_t flight = -std::int64_t(flies), stays = -std::int64_t(!here);
-      const F3 given{px[i] + ax[i] - (float(old_x) + c.gx * c.time), py[i] + ay[i] - (float(old_y) + c.gy * c.time), pz[i] + az[i] - (float(old_z) + c.gz * c.time)};
+      const F3 given{p[i].x + a[i].x - (float(old_x) + c.gx * c.time), p[i].y + a[i].y - (float(old_y) + c.gy * c.time), p[i].z + a[i].z - (float(old_z) + c.gz * c.time)};
       const double fallen_x = old_x + c.wide_gx * c.wide_time, fallen_y = old_y + c.wide_gy * c.wide_time, fallen_z = old_z + c.wide_gz * c.wide_time;
       const double solved_x = fallen_x + double(given.x), solved_y = fallen_y + double(given.y), solved_z = fallen_z + double(given.z), half = 0.5 * c.wide_time;
       // What only takes a near-still body out of an overlap is no motion.
-      const F3 out{dx[i], dy[i], dz[i]};
+      const F3 out{d[i].x, d[i].y, d[i].z};
       const float against = -dot(F3{float(solved_x), float(solved_y), float(solved_z)}, out) / most(dot(out, out), 1e-20f);
       const float undone = choose(calms, least(most(against, 0.0f), 1.0f / c.time), 0.0f);
       const double to_vx = select(flight, fallen_x, solved_x + double(undone * out.x)), to_vy = select(flight, fallen_y, solved_y + double(undone * out.y));
       const double to_vz = select(flight, fallen_z, solved_z + double(undone * out.z));
       const double way_x = select(flight, old_x + c.wide_gx * half, solved_x), way_y = select(flight, old_y + c.wide_gy * half, solved_y);
       const double way_z = select(flight, old_z + c.wide_gz * half, solved_z);
-      const double to_x = x[i] + select(stays, 0.0, way_x * c.wide_time + double(dx[i])), to_y = y[i] + select(stays, 0.0, way_y * c.wide_time + double(dy[i]));
-      const double to_z = z[i] + select(stays, 0.0, way_z * c.wide_time + double(dz[i]));
+      const double to_x = x[i] + select(stays, 0.0, way_x * c.wide_time + double(d[i].x)), to_y = y[i] + select(stays, 0.0, way_y * c.wide_time + double(d[i].y));
+      const double to_z = z[i] + select(stays, 0.0, way_z * c.wide_time + double(d[i].z));
       const double new_vx = select(stays, old_x, to_vx), new_vy = select(stays, old_y, to_vy), new_vz = select(stays, old_z, to_vz);
       const double new_lx = select(stays, spun_x, by_x), new_ly = select(stays, spun_y, by_y), new_lz = select(stays, spun_z, by_z);
       x[i] = to_x, y[i] = to_y, z[i] = to_z;
@@ -132,7 +132,7 @@ struct EndLoop {
       const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z);
       const float far = most(absolute(float(to_x)), most(absolute(float(to_y)), absolute(float(to_z))));
       const float wrong = choose(sum < kFast, 0.0f, 1.0f) + choose(absolute(scale - 1.0f) < 0.1f, 0.0f, 1.0f) + choose(far + absolute(float(to_x - to_x)) < 0.999e8f, 0.0f, 1.0f);
-      unsound[i] = std::uint8_t(int(wrong));
+      unsound[i] = std::uint8_t(choose(wrong > 0.0f, 1, 0));
     }
   }
 };
@@ -141,11 +141,10 @@ struct TakeLoop {
   SphereStep& step;
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
-    float *px = step.px.data(), *py = step.py.data(), *pz = step.pz.data(), *ax = step.ax.data(), *ay = step.ay.data(), *az = step.az.data();
-#pragma GCC ivdep
+    Row *p = step.p.data(), *a = step.a.data();
     for (std::int64_t i = begin; i < end; ++i) {
-      px[i] += ax[i], py[i] += ay[i], pz[i] += az[i];
-      ax[i] = 0.0f, ay[i] = 0.0f, az[i] = 0.0f;
+      add_to(p[i], RowLanes{1.0f, 1.0f, 1.0f, 0.0f} * lanes_of(a[i]));
+      a[i] = row_of(RowLanes{0.0f, 0.0f, 0.0f, 1.0f} * lanes_of(a[i]));
     }
   }
 };
@@ -153,8 +152,9 @@ struct TakeLoop {
 }  // namespace
 
 void SphereStep::resize(std::size_t count) {
-  for (auto* array : {&reach, &wx, &wy, &wz, &px, &py, &pz, &ax, &ay, &az, &sx, &sy, &sz, &dx, &dy, &dz, &gap, &given, &energy}) array->resize(count);
-  for (auto* array : {&contacts, &on_ground, &plane, &slides, &unsound}) array->resize(count);
+  for (auto* rows : {&p, &u, &a, &s, &d}) rows->resize(count + 1);
+  for (auto* array : {&reach, &gap}) array->resize(count);
+  for (auto* array : {&on_ground, &plane, &slides, &unsound}) array->resize(count);
 }
 
 void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,

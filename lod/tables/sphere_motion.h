@@ -4,26 +4,37 @@
 #include "lod/tables/sphere_kinds.h"
 #include "lod/tables/spheres.h"
 #include "lod/tables/lane_math.h"
+#include "lod/tables/row.h"
 
 namespace lodestone {
 
-/// Of a step, one element an awake body.
+/// Of a step, one element an awake body. What contacts read and add are rows, and one more stands for all that sleep.
 struct SphereStep {
-  std::vector<float> reach;          // m
-  std::vector<float> wx, wy, wz;     // rad/s at the start
-  std::vector<float> px, py, pz;     // m/s: the velocity with gravity and the impulses known so far
-  std::vector<float> ax, ay, az;     // m/s: what the contacts of this step add
-  std::vector<float> sx, sy, sz;     // m²/s: what they add to the spin
-  std::vector<float> dx, dy, dz;     // m: how far they move it out of overlaps
+  std::vector<float> reach;            // m
+  std::vector<lane::Row> p;            // m/s: the velocity with gravity and the impulses known so far; contacts with other bodies, and one with the ground that carries it among them
+  std::vector<lane::Row> u;            // m/s at the start: radius times angular velocity; 1 + radius² over the softest inertia
+  std::vector<lane::Row> a;            // m/s: what the contacts of this step add; what the ground gives it against what presses on it
+  std::vector<lane::Row> s;            // m²/s: what they add to the spin; J/kg: kinetic energy at the start
+  std::vector<lane::Row> d;            // m: how far they move it out of overlaps; w holds nothing
   std::vector<float> gap;              // m, to the nearest plane, where near
-  std::vector<float> given;            // m/s: what the ground gives it against what presses on it
-  std::vector<float> energy;           // J/kg at the start, kinetic
-  std::vector<std::uint8_t> contacts;  // with other bodies, and one with the ground that carries it among them
   std::vector<std::uint8_t> on_ground; // GroundState
   std::vector<std::uint8_t> plane;     // the nearest
   std::vector<std::uint8_t> slides;    // along the ground: no parabola
   std::vector<std::uint8_t> unsound;   // out: a state that cannot be
   void resize(std::size_t count);
+  /// Sets the row of those that sleep.
+  void clear_still(std::size_t row) { p[row] = u[row] = a[row] = s[row] = d[row] = {}; }
+
+  bool touches(std::int64_t i) const { return p[std::size_t(i)].w > 0.0f; }
+  /// m/s, with gravity but for `without`.
+  Vec3 velocity(std::int64_t i, lane::Row without = {}) const {
+    return vector_of(lane::row_of(lane::lanes_of(p[std::size_t(i)]) + lane::lanes_of(a[std::size_t(i)]) - lane::lanes_of(without)));
+  }
+  Vec3 added_spin(std::int64_t i) const { return vector_of(s[std::size_t(i)]); }
+  Vec3 push_out(std::int64_t i) const { return vector_of(d[std::size_t(i)]); }
+
+ private:
+  static Vec3 vector_of(lane::Row row) { return {double(row.x), double(row.y), double(row.z)}; }
 };
 
 /// What the ground does to a body in this step.

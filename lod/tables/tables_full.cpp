@@ -63,10 +63,10 @@ void TablesLevel::meet_full(std::span<FullNeighbor> neighbors, std::span<const F
     StatisticalBody body = spheres_.body(i);
     body.crowded = true;
     if (body.motion == Motion::settling) body.motion = Motion::dynamic;
-    if (body.motion != Motion::asleep && step_.contacts[std::size_t(i)] > 0) {
-      body.velocity = Vec3(double(step_.px[i] + step_.ax[i]), double(step_.py[i] + step_.ay[i]), double(step_.pz[i] + step_.az[i])) - settings_.gravity * time;
-      body.spin += Vec3(double(step_.sx[i]), double(step_.sy[i]), double(step_.sz[i]));
-      body.position += Vec3(double(step_.dx[i]), double(step_.dy[i]), double(step_.dz[i]));
+    if (body.motion != Motion::asleep && step_.touches(i)) {
+      body.velocity = step_.velocity(i) - settings_.gravity * time;
+      body.spin += step_.added_spin(i);
+      body.position += step_.push_out(i);
     }
     near_full_.push_back(body);
   }
@@ -76,7 +76,7 @@ void TablesLevel::meet_full(std::span<FullNeighbor> neighbors, std::span<const F
     if (body.motion == Motion::asleep) continue;
     const std::int64_t i = spheres_.place_of_slot[near_full_slot_[k]];
     spheres_.put(i, body);
-    step_.contacts[std::size_t(i)] = std::max<std::uint8_t>(1, step_.contacts[std::size_t(i)]);
+    step_.p[std::size_t(i)].w = std::max(1.0f, step_.p[std::size_t(i)].w);
     step_.on_ground[std::size_t(i)] = std::uint8_t(GroundState::moved);
     // What is lost in rounding to floats goes to the full body, so that momentum is exact.
     const Vec3 lost = kind_of(i).mass * (body.velocity - spheres_.velocity(i));

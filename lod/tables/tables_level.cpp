@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "lod/stage_timer.h"
 #include "reference/error.h"
@@ -12,6 +13,13 @@ namespace {
 constexpr std::int64_t kBlock = 1024;        // bodies of a job
 constexpr int kOrderInterval = 16;           // steps between looks at how far bodies have moved from their places
 constexpr double kTouchFactor = 1.02;        // of the radii: what rests on a removed body
+
+// Calls visit(i) for the elements of [begin, end) that hold `mark`: mostly few or none.
+template <class Visit>
+void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std::int64_t begin, std::int64_t end, const Visit& visit) {
+  const std::uint8_t *at = marks.data() + begin, *last = marks.data() + end;
+  while (at < last && (at = static_cast<const std::uint8_t*>(std::memchr(at, mark, std::size_t(last - at))))) visit(at++ - marks.data());
+}
 
 }  // namespace
 
@@ -220,13 +228,15 @@ void TablesLevel::update_radii_one_by_one() {
 void TablesLevel::find_contacts(std::span<FullNeighbor> neighbors) {
   const std::int64_t were_awake = spheres_.awake;
   find_full_touches(neighbors);
-  contacts_.find(spheres_, kinds_, cells_, constants_, jobs_);
+  contacts_.find(spheres_, kinds_, cells_, constants_, simd_, jobs_);
   find_still_contacts();
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
     step_.resize(std::size_t(spheres_.awake));
     start_block(were_awake, spheres_.awake, simd_);
   }
-  for (const auto& [place, slot] : still_touches_) contacts_.add(spheres_, kinds_, place, spheres_.place_of_slot[slot], constants_);
+  if (still_touches_.empty()) return;
+  for (auto& touch : still_touches_) touch.second = spheres_.place_of_slot[touch.second];
+  contacts_.add(spheres_, kinds_, still_touches_, constants_, simd_);
 }
 
 // Of awake bodies with sleepers; those that are hit hard enough wake.
@@ -258,19 +268,19 @@ void TablesLevel::respond(ContactTally& tally) {
   tally.contacts += contacts_.count();
   if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
   const bool crowd = contacts_.count() > 0;
-  if (crowd) contacts_.begin(spheres_, kinds_, bounce_velocity(), step_, jobs_);
+  if (crowd) contacts_.begin(spheres_, kinds_, materials_, bounce_velocity(), constants_, step_, jobs_);
   sort_ground();
   if (!crowd) return;
   const int sweeps = contacts_.settings().sweeps;
   for (int sweep = 1; sweep <= sweeps; ++sweep) {
-    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, step_, jobs_);
+    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, simd_, step_, jobs_);
     if (sweep < sweeps)
       each_block([&](std::int64_t begin, std::int64_t end) {
         if (!ground_.planes.empty()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
         take_impulses(simd_, begin, end, step_);
       });
   }
-  contacts_.remember(spheres_, bounce_velocity(), constants_);
+  contacts_.remember(spheres_, bounce_velocity(), constants_, jobs_);
 }
 
 // The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves as if alone.
@@ -296,8 +306,7 @@ void TablesLevel::sort_ground() {
   if (ground_.planes.empty()) return;
   each_block([&](std::int64_t begin, std::int64_t end) {
     sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
-    for (std::int64_t i = begin; i < end; ++i)
-      if (step_.on_ground[i] == std::uint8_t(GroundState::settles)) choose_rest_pose(i);
+    each_marked(step_.on_ground, std::uint8_t(GroundState::settles), begin, end, [&](std::int64_t i) { choose_rest_pose(i); });
   });
 }
 
@@ -319,17 +328,10 @@ void TablesLevel::finish(ContactTally& tally) {
     if (ground) {
       sweep_ground(planes_, constants_, simd_, begin, end, step_);
       lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
-      for (std::int64_t i = begin; i < end; ++i)
-        if (step_.on_ground[i] == std::uint8_t(GroundState::near)) move_alone(i, own);
+      each_marked(step_.on_ground, std::uint8_t(GroundState::near), begin, end, [&](std::int64_t i) { move_alone(i, own); });
     }
     end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
-    for (std::int64_t i = begin; i < end; ++i) {
-      const bool crowded = step_.contacts[i] > 0;
-      spheres_.since_crowded[i] = crowded ? 0 : std::uint8_t(std::min(255, spheres_.since_crowded[i] + 1));
-      spheres_.crowded_for[i] = crowded ? std::uint8_t(std::min(255, spheres_.crowded_for[i] + 1)) : 0;
-      if (crowded && spheres_.motion[i] == Motion::settling && step_.on_ground[i] == std::uint8_t(GroundState::free)) spheres_.motion[i] = Motion::dynamic;
-      if (step_.unsound[i]) recover(i, own);
-    }
+    each_marked(step_.unsound, 1, begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
 }
@@ -338,11 +340,9 @@ void TablesLevel::finish(ContactTally& tally) {
 void TablesLevel::move_alone(std::int64_t i, ContactTally& tally) {
   const float t = constants_.time;
   StatisticalBody body = spheres_.body(i);
-  body.velocity = Vec3(double(step_.px[i] + step_.ax[i] - constants_.gx * t), double(step_.py[i] + step_.ay[i] - constants_.gy * t),
-                       double(step_.pz[i] + step_.az[i] - constants_.gz * t));
-  if (step_.contacts[i] == 0) body.velocity = spheres_.velocity(i);
-  body.spin += Vec3(double(step_.sx[i]), double(step_.sy[i]), double(step_.sz[i]));
-  body.position += Vec3(double(step_.dx[i]), double(step_.dy[i]), double(step_.dz[i]));
+  body.velocity = step_.touches(i) ? step_.velocity(i, {constants_.gx * t, constants_.gy * t, constants_.gz * t, 0.0f}) : spheres_.velocity(i);
+  body.spin += step_.added_spin(i);
+  body.position += step_.push_out(i);
   RestingRecord resting{spheres_.pose[i], spheres_.plane[i]};
   ContactTally own = step_tables_body(body, resting, kind_of(i), world(), constants_.wide_time, tables_);
   tally += own;

@@ -27,8 +27,8 @@ void TablesLevel::rest() {
     const double limit = among_others ? 0.5 * speed * speed : kAloneSleepEnergy * gravity * kind_of(i).shape->radius;
     const StatisticalBody body = spheres_.body(i);
     // Nor while it is still being taken out of an overlap.
-    const double out = Vec3(double(step_.dx[i]), double(step_.dy[i]), double(step_.dz[i])).norm() / constants_.wide_time;
-    const bool still = kinetic_energy(body, *kind_of(i).shape) < limit && (step_.contacts[i] == 0 || out < speed);
+    const double out = step_.push_out(i).norm() / constants_.wide_time;
+    const bool still = kinetic_energy(body, *kind_of(i).shape) < limit && (!step_.touches(i) || out < speed);
     spheres_.quiet[i] = still ? spheres_.quiet[i] + constants_.time : 0.0f;
     if (spheres_.quiet[i] >= (among_others ? kSleepTime : kAloneSleepTime)) put_to_sleep(i);
   }

@@ -33,19 +33,22 @@ Balls cloud(int count, const Vec3& sides, double least, double most, const Vec3&
 }
 
 // Missing none that overlap, none twice, and none beyond the rounding of where balls are kept.
-void expect_all_pairs(const Balls& balls, double rounding = 1e-3) {
-  CellGrid grid;
+void expect_all_pairs(const Balls& balls, double rounding, Simd simd) {
+  CellGrid grid(simd);
   grid.fill(balls.span());
   std::map<Pair, int> found;
   std::array<std::map<std::uint32_t, std::int64_t>, CellGrid::kColours> part_of;
-  for (std::int64_t part = 0; part < grid.parts(); ++part)
-    grid.find_pairs(part, [&](std::uint32_t a, std::uint32_t b) {
-      ++found[std::minmax(a, b)];
-      for (const std::uint32_t ball : {a, b}) {
+  for (std::int64_t part = 0; part < grid.parts(); ++part) {
+    BallPairs pairs;
+    grid.find_pairs(part, pairs);
+    for (std::int64_t i = 0; i < pairs.size(); ++i) {
+      ++found[std::minmax(pairs.first(i), pairs.second(i))];
+      for (const std::uint32_t ball : {pairs.first(i), pairs.second(i)}) {
         const auto [known, fresh] = part_of[std::size_t(grid.colour_of(part))].emplace(ball, part);
         EXPECT_TRUE(fresh || known->second == part) << "two parts of one colour share ball " << ball;
       }
-    });
+    }
+  }
   for (const auto& [pair, times] : found) {
     EXPECT_EQ(times, 1) << pair.first << ' ' << pair.second;
     EXPECT_LT(balls.gap(pair.first, pair.second), rounding) << pair.first << ' ' << pair.second;
@@ -60,6 +63,11 @@ void expect_all_pairs(const Balls& balls, double rounding = 1e-3) {
   EXPECT_GT(near, 0u);
   std::set<std::uint32_t> every(grid.order().begin(), grid.order().end());
   EXPECT_EQ(every.size(), balls.x.size());
+}
+
+void expect_all_pairs(const Balls& balls, double rounding = 1e-3) {
+  for (const Simd simd : {Simd::portable, Simd::avx2, Simd::avx512})
+    if (simd <= find_simd()) expect_all_pairs(balls, rounding, simd);  // others this processor lacks
 }
 
 TEST(CellGrid, FewBalls) { expect_all_pairs(cloud(12, {1, 1, 1}, 0.2, 0.2)); }

@@ -1,0 +1,26 @@
+// The arithmetic of contacts between spheres, many at a time: what each reads of its bodies is brought together first, and what it gives them is added after.
+#pragma once
+
+#include "lod/tables/sphere_contacts.h"
+
+namespace lodestone {
+
+/// Elements that the loops may read and write beyond the last contact.
+inline constexpr std::size_t kContactChunk = 32;
+
+/// Appends those of the pairs that touch, or will within the step, without impulses.
+void find_touching(const BallPairs& pairs, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, float touching, Simd simd,
+                   ContactArrays& contacts);
+
+struct SweepSettings {
+  const SphereContactSettings& contact;
+  ContactLaw only_law;            // where all bodies are of one kind
+  float bounce_velocity = 0.0f;   // m/s
+  bool last = false;
+};
+
+/// A round of the contacts given.
+void sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
+                    ContactArrays& contacts, SphereStep& step);
+
+}  // namespace lodestone
