@@ -17,7 +17,8 @@ std::uint16_t SphereKinds::find(std::shared_ptr<const Shape> shape, double mass,
     if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
   check_that(signature != nullptr, "the tables model needs a signature");
-  kinds.push_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
+  BodyKind& kind = kinds.emplace_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
+  if (!kind.shape->sphere_radius) kind.faces = std::make_shared<const RestingFaces>(kind.shape->hull);
   add(kinds.back(), gravity);
   return std::uint16_t(kinds.size() - 1);
 }

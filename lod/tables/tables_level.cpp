@@ -312,7 +312,7 @@ void TablesLevel::sort_ground() {
 
 // The rest pose that needs the smallest rotation (3.4).
 void TablesLevel::choose_rest_pose(std::int64_t i) {
-  const RestingRecord resting = find_resting(spheres_.orientation(i), kind_of(i), ground_.planes[step_.plane[i]], step_.plane[i]);
+  const RestingRecord resting = find_resting(spheres_.orientation(i), kind_of(i), ground_.planes[step_.plane[i]], step_.plane[i], settings_.tables);
   if (resting.pose < 0) return;
   spheres_.pose[i] = std::int16_t(resting.pose);
   spheres_.plane[i] = std::int16_t(resting.plane);
