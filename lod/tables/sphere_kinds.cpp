@@ -26,6 +26,7 @@ std::uint16_t SphereKinds::find(std::shared_ptr<const Shape> shape, double mass,
 void SphereKinds::add(const BodyKind& kind, double gravity) {
   const Shape& shape = *kind.shape;
   const Mat3& inverse = shape.inverse_inertia_per_mass;
+  any_slender |= is_slender(kind);
   radius.push_back(float(shape.radius));
   inverse_mass.push_back(float(1.0 / kind.mass));
   ixx.push_back(float(inverse(0, 0))), iyy.push_back(float(inverse(1, 1))), izz.push_back(float(inverse(2, 2)));
