@@ -11,7 +11,7 @@ namespace lodestone {
 namespace {
 
 constexpr int kLeastSubsteps = 3, kMostSubsteps = 12;
-constexpr double kStride = 0.1;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
+constexpr double kStride = 0.07;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
 
 // Where a full neighbour is after a substep that it began with velocity `before`: what took part in the crowd has its velocity from there, gravity included.
 void advance(FullNeighbor& body, const Vec3& before, const Vec3& gravity, double time) {
@@ -23,36 +23,21 @@ void advance(FullNeighbor& body, const Vec3& before, const Vec3& gravity, double
 
 }  // namespace
 
-void StatisticalLevel::Impl::mark_near() {
+// Returns how many substeps those take that may touch another.
+int StatisticalLevel::Impl::plan_substeps(double dt) {
   near_another.assign(bodies.size(), 0);
-  const auto mark = [&](std::int32_t i) {
-    if (i < 0) near_another[std::size_t(asleep[std::size_t(-1 - i)])] = 1;
-    else if (i < std::int32_t(awake.size())) near_another[std::size_t(awake[std::size_t(i)])] = 1;
-  };
-  for (const NearPair& pair : pairs) mark(pair.first), mark(pair.second);
-  for (const SolidContact& contact : solid_contacts) near_another[std::size_t(contact.slot)] = 1;
-}
-
-int StatisticalLevel::Impl::count_substeps(double dt, std::span<const FullNeighbor> neighbors) const {
-  if (pairs.empty()) return solid_contacts.empty() ? 0 : 1;
-  struct Mover {
-    Vec3 velocity;
-    double radius;
-  };
-  const auto mover = [&](std::int32_t i) -> Mover {
-    if (i < 0) return {Vec3::Zero(), kind_of(bodies[std::size_t(asleep[std::size_t(-1 - i)])]).shape->radius};
-    if (i >= std::int32_t(awake.size())) {
-      const FullNeighbor& n = neighbors[std::size_t(i) - awake.size()];
-      return {n.state.velocity, n.shape->radius};
-    }
-    const StatisticalBody& body = bodies[std::size_t(awake[std::size_t(i)])];
-    return {body.velocity, kind_of(body).shape->radius};
-  };
+  bool any = false;
   double longest = 0.0;  // way over R
-  for (const NearPair& pair : pairs) {
-    const Mover a = mover(pair.first), b = mover(pair.second);
-    longest = std::max(longest, (a.velocity - b.velocity).norm() * dt / std::min(a.radius, b.radius));
+  for (const FoundPair& pair : found) {
+    if (!may_meet(pair, dt, full)) continue;
+    any = true;
+    for (const Participant p : {pair.first, pair.second})
+      if (p >= 0) near_another[std::size_t(p)] = 1;
+    const double radius = std::min(pair_body(pair.first, full).shape->radius, pair_body(pair.second, full).shape->radius);
+    longest = std::max(longest, (center_velocity(pair.first, full) - center_velocity(pair.second, full)).norm() * dt / radius);
   }
+  for (const SolidContact& contact : solid_contacts) near_another[std::size_t(contact.slot)] = 1;
+  if (!any) return solid_contacts.empty() ? 0 : 1;
   return int(std::ceil(std::clamp(longest / kStride, double(kLeastSubsteps), double(kMostSubsteps))));
 }
 
@@ -86,17 +71,17 @@ void StatisticalLevel::Impl::move(double dt, std::span<FullNeighbor> neighbors, 
   Stopwatch watch;
   for (const std::int32_t slot : awake) bodies[slot].crowded = false;
   find_ground_solids(dt, false);
-  mark_near();
   full.assign(neighbors.begin(), neighbors.end());
-  if (pair_phase) plan_travel(dt);
+  if (pair_phase) find_turning();
+  const int substeps = plan_substeps(dt);
+  remember_places();
   tally += move_those(dt, [&](std::int32_t slot) { return !near_another[slot]; });
   times.flight_ms += watch.lap_ms();
 
-  const int substeps = count_substeps(dt, full);
   for (int i = 0; i < substeps; ++i) {
     const double time = dt / substeps;
     if (sleepers_changed) find_near_pairs(dt, full);  // it names bodies by their place among the sleepers
-    if (i > 0) plan_travel(time);
+    if (i > 0) find_turning();
     find_contacts(time, full);  // who is crowded is decided anew
     wake_touched(full);
     if (substeps > 1) find_ground_solids(time, true);
@@ -113,10 +98,8 @@ void StatisticalLevel::Impl::move(double dt, std::span<FullNeighbor> neighbors, 
       // The full level takes every hit at the step's beginning: too early by i substeps, in which it must not carry the body along.
       full[k].shift -= (i * time / full[k].mass) * (full[k].hit.linear - full_before[k].hit.linear);
     }
-    if (pair_phase) add_travel();
     times.crowd_ms += watch.lap_ms();
   }
-  if (pair_phase && substeps == 0) add_travel();
   for (std::size_t i = 0; i < neighbors.size(); ++i) {
     neighbors[i].asleep = full[i].asleep;
     neighbors[i].hit = full[i].hit;

@@ -10,6 +10,7 @@ namespace lodestone {
 namespace {
 
 constexpr double kApart = 0.02;  // over R: so far overlapping hulls are taken apart to look for their axis
+constexpr double kShallow = 0.02;  // over R: so little that no other way out is shorter than the one known before
 constexpr double kDeep = 0.25;   // over the lesser inner radius: an overlap whose least way out may lie elsewhere
 constexpr int kMostRounds = 32;
 constexpr double kConverged = 1e-7;        // of the squared distance
@@ -122,6 +123,11 @@ bool find_axis(const PlacedHull& first, const PlacedHull& second, const Vec3& sh
   return gap = best, true;
 }
 
+Vec3 from_line_of_centers(const PlacedHull& first, const PlacedHull& second) {
+  const Vec3 line = first.position - second.position;
+  return line.norm() > 1e-12 ? Vec3(line.normalized()) : Vec3::UnitZ();
+}
+
 // Taken apart along an axis that is nearly right, they show a better one.
 HullGap find_axis_of_overlap(const PlacedHull& first, const PlacedHull& second, HullGap best, double enough) {
   constexpr int kMostTries = 4;
@@ -153,15 +159,27 @@ HullGap measure_hull_gap(const PlacedHull& first, const PlacedHull& second, cons
 }
 
 HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough) {
-  const Vec3 line = first.position - second.position;
-  HullGap gap = start;
-  if (gap.normal.isZero(0.0)) gap.normal = line.norm() > 1e-12 ? Vec3(line.normalized()) : Vec3::UnitZ();
-  if (find_axis(first, second, Vec3::Zero(), enough, gap)) return gap;
-  gap = find_axis_of_overlap(first, second, gap, enough);
+  const bool known = !start.normal.isZero(0.0);
+  HullGap gap = measure_hull_gap(first, second, known ? start.normal : from_line_of_centers(first, second), start);
+  if (gap.gap > enough) return gap;
+  // What overlapped a little a moment ago probably does so still.
+  if (known && gap.gap < 0.0) {
+    gap = find_axis_of_overlap(first, second, gap, enough);
+    if (gap.gap < 0.0 && -gap.gap < kShallow * std::min(first.shape->radius, second.shape->radius)) return gap;
+  }
+  HullGap other = gap;
+  if (find_axis(first, second, Vec3::Zero(), enough, other)) return other;
+  other = find_axis_of_overlap(first, second, other, enough);
+  if (other.gap > gap.gap) gap = other;
   const auto inner = [](const Shape& shape) { return shape.sphere_radius ? *shape.sphere_radius : shape.inner_radius; };
   if (-gap.gap < kDeep * std::min(inner(*first.shape), inner(*second.shape))) return gap;
   const auto overlap = find_hull_overlap(*first.shape, {first.position, first.orientation}, *second.shape, {second.position, second.orientation});
   return overlap && -overlap->depth > gap.gap ? measure_hull_gap(first, second, overlap->direction, gap) : gap;
+}
+
+bool are_apart(const PlacedHull& first, const PlacedHull& second, double enough, HullGap& gap) {
+  if (gap.normal.isZero(0.0)) gap.normal = from_line_of_centers(first, second);
+  return find_axis(first, second, Vec3::Zero(), enough, gap);
 }
 
 }  // namespace lodestone

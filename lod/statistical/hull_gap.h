@@ -29,6 +29,9 @@ struct HullGap {
 /// an axis shows one.
 HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough);
 
+/// Whether they do not overlap; `gap` is where the search begins and what it finds: their distance, or a gap above `enough`.
+bool are_apart(const PlacedHull& first, const PlacedHull& second, double enough, HullGap& gap);
+
 /// The gap along one axis (unit).
 HullGap measure_hull_gap(const PlacedHull& first, const PlacedHull& second, const Vec3& normal, const HullGap& hints = {});
 

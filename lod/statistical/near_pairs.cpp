@@ -67,6 +67,11 @@ PairBody StatisticalLevel::Impl::pair_body(Participant p, std::span<const FullNe
   return {kind_of(body).shape.get(), body.position, body.orientation};
 }
 
+Vec3 StatisticalLevel::Impl::center_velocity(Participant p, std::span<const FullNeighbor> neighbors) const {
+  if (is_asleep(p, neighbors)) return Vec3::Zero();
+  return p < 0 ? neighbors[std::size_t(-1 - p)].state.velocity : bodies[std::size_t(p)].velocity;
+}
+
 Vec3 StatisticalLevel::Impl::point_velocity(Participant p, const Vec3& point, std::span<const FullNeighbor> neighbors) const {
   if (p < 0) {
     const RigidState& s = neighbors[-1 - p].state;
@@ -81,24 +86,16 @@ void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbo
   constexpr double kHeld = 0.01;  // over R: so far bodies take a contact along
   const PairBody a = pair_body(pair.first, neighbors), b = pair_body(pair.second, neighbors);
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
-  const bool statistical = pair.first >= 0 && pair.second >= 0;
-  double gone = 0.0;
-  if (statistical) {
-    const Travel &first = travels[pair.first], &second = travels[pair.second];
-    gone = first.gone + second.gone;
-    if (pair.travel >= 0.0) {
-      if (pair.gap - (gone - pair.travel) > touching + first.ahead + second.ahead) return pair.contacts.clear();
-      if (!pair.contacts.empty() && gone - pair.travel < kHeld * least_radius) {
-        for (HeldContact& held : pair.contacts) follow(held, a, b);
-        return;
-      }
-    }
+  const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;
+  if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(pair, dt, neighbors)) return;
+  if (!pair.contacts.empty() && moved < kHeld * least_radius) {
+    for (HeldContact& held : pair.contacts) follow(held, a, b);
+    return;
   }
-  const Vec3 closing = point_velocity(pair.first, a.position, neighbors) - point_velocity(pair.second, b.position, neighbors);
-  const HullContactSearch search = find_pair_contacts(a, b, pair.axis, touching + closing.norm() * dt);
-  pair.axis = search.axis;
+  const Vec3 closing = center_velocity(pair.first, neighbors) - center_velocity(pair.second, neighbors);
+  const HullContactSearch search = find_pair_contacts(a, b, pair.known, touching + closing.norm() * dt);
   pair.gap = search.gap;
-  pair.travel = gone;
+  pair.when = pose_of(a, b);
   pair.contacts.clear();
   for (const PairContact& contact : search.contacts) pair.contacts.push_back(hold(contact, a, b));
 }
@@ -116,6 +113,8 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
   for (const std::int32_t slot : awake) bodies[slot].crowded = false;
   const auto looked_at = [&](const FoundPair& pair) {
     if (pair.first < 0 && pair.second < 0) return false;  // two full bodies are the full level's matter
+    for (const Participant p : {pair.first, pair.second})
+      if (p >= 0 && !near_another[std::size_t(p)] && bodies[std::size_t(p)].motion != Motion::asleep) return false;  // it has moved on
     return !(is_asleep(pair.first, neighbors) && is_asleep(pair.second, neighbors));
   };
   parallel(std::int64_t(found.size()), 64, [&](std::int64_t begin, std::int64_t end) {
@@ -129,7 +128,7 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
       if (!closes(pair, held.contact, dt, neighbors)) continue;
       contacts.push_back({pair.first, pair.second, held.contact});
       for (const Participant p : {pair.first, pair.second})
-        if (p >= 0) bodies[p].crowded = true;
+        if (p >= 0) bodies[p].crowded = true, near_another[std::size_t(p)] = 1;
     }
   }
 }
@@ -150,27 +149,36 @@ void StatisticalLevel::Impl::find_ground_solids(double dt, bool of_near_only) {
   }
 }
 
-// No point of a body goes farther than its centre does plus R times the angle turned.
-void StatisticalLevel::Impl::plan_travel(double dt) {
-  const double fall = 0.5 * settings.gravity.norm() * dt * dt;
+void StatisticalLevel::Impl::remember_places() {
+  for (const std::int32_t slot : awake) last_places[std::size_t(slot)] = bodies[std::size_t(slot)].position;
+}
+
+void StatisticalLevel::Impl::find_turning() {
+  turning.assign(bodies.size(), 0.0);
   for (const std::int32_t slot : awake) {
-    const StatisticalBody& body = bodies[slot];
+    const StatisticalBody& body = bodies[std::size_t(slot)];
     const Shape& shape = *kind_of(body).shape;
-    travels[slot].ahead = body.velocity.norm() * dt + fall + angular_velocity(body.orientation, body.spin, shape).norm() * shape.radius * dt;
-    travels[slot].position = body.position;
-    travels[slot].orientation = body.orientation;
+    turning[std::size_t(slot)] = angular_velocity(body.orientation, body.spin, shape).norm() * shape.radius;
   }
 }
 
-void StatisticalLevel::Impl::add_travel() {
-  for (const std::int32_t slot : awake) {
-    const StatisticalBody& body = bodies[slot];
-    Travel& t = travels[slot];
-    const double same = (body.orientation.coeffs() - t.orientation.coeffs()).squaredNorm();
-    const double opposite = (body.orientation.coeffs() + t.orientation.coeffs()).squaredNorm();
-    t.gone += (body.position - t.position).norm() + 2.2 * std::sqrt(std::min(same, opposite)) * kind_of(body).shape->radius;
-    t.ahead = 0.0;
-  }
+// m: by how much their gap can shrink in `dt`, at most, if nothing strikes them.
+double StatisticalLevel::Impl::find_approach(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const {
+  const auto turning_of = [&](Participant p) {
+    if (p >= 0) return turning[std::size_t(p)];
+    const FullNeighbor& n = neighbors[std::size_t(-1 - p)];
+    return n.state.angular_velocity.norm() * n.shape->radius;
+  };
+  const double fall = 0.5 * settings.gravity.norm() * dt * dt;
+  return ((center_velocity(pair.first, neighbors) - center_velocity(pair.second, neighbors)).norm() + turning_of(pair.first) + turning_of(pair.second)) * dt + fall;
+}
+
+// Whether they can touch within `dt`, as far as is known; twice what they approach, since others may strike them meanwhile.
+bool StatisticalLevel::Impl::may_meet(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const {
+  if (!pair.when || !pair.contacts.empty()) return true;
+  const PairBody a = pair_body(pair.first, neighbors), b = pair_body(pair.second, neighbors);
+  const double touching = kTouching * std::min(a.shape->radius, b.shape->radius);
+  return pair.gap - find_motion_since(*pair.when, a, b) <= touching + 2.0 * find_approach(pair, dt, neighbors);
 }
 
 }  // namespace lodestone

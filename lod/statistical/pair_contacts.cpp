@@ -104,30 +104,46 @@ void add_contact(const PairContact& contact, double grain, std::vector<PairConta
   contacts.push_back(contact);
 }
 
-void find_contacts_of_pieces(const PairBody& first, const PairBody& second, double margin, HullContactSearch& search) {
-  double nearest = 1e300;
+// At least; above the margin where that is known without a search or two spheres show it.
+double gap_of_pieces(const PairBody& a, const PairBody& b, KnownGap& known, double margin) {
+  if (known.when)
+    if (const double left = known.axis.gap - find_motion_since(*known.when, a, b); left > margin) return left;
+  const double apart = (a.position - b.position).norm() - a.shape->radius - b.shape->radius;
+  if (apart > margin) return apart;
+  known.axis = find_hull_gap(place(a), place(b), known.axis, margin);
+  known.when = pose_of(a, b);
+  return known.axis.gap;
+}
+
+void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std::span<KnownGap> known, double margin, HullContactSearch& search) {
+  search.gap = 1e300;
   for (int i = 0; i < count_pieces(first); ++i)
     for (int k = 0; k < count_pieces(second); ++k) {
       const PairBody a = piece_of(first, i), b = piece_of(second, k);
-      const double apart = (a.position - b.position).norm() - a.shape->radius - b.shape->radius;
-      const HullGap best = apart > margin ? HullGap{.gap = apart} : find_hull_gap(place(a), place(b), no_axis(), margin);
-      nearest = std::min(nearest, best.gap);
-      if (best.gap > margin) continue;
-      PairContact contact = contact_along(a, b, best);
+      KnownGap& of_pieces = known[std::size_t(i * count_pieces(second) + k)];
+      const double gap = gap_of_pieces(a, b, of_pieces, margin);
+      search.gap = std::min(search.gap, gap);
+      if (gap > margin) continue;
+      PairContact contact = contact_along(a, b, of_pieces.axis);
       drop_internal_points(first, i, second, k, contact);
       if (contact.manifold.count > 0) add_contact(contact, kWithin * std::min(a.shape->radius, b.shape->radius), search.contacts);
     }
-  search.gap = std::max(search.gap, nearest);
 }
 
-HullContactSearch search_relative(const PairBody& first, const PairBody& second, const HullGap& start, double margin) {
-  const bool concave = !first.shape->pieces.empty() || !second.shape->pieces.empty();
+HullContactSearch search_relative(const PairBody& first, const PairBody& second, std::vector<KnownGap>& known, double margin) {
+  const int pieces = first.shape->pieces.empty() && second.shape->pieces.empty() ? 0 : count_pieces(first) * count_pieces(second);
+  known.resize(std::size_t(1 + pieces));
+  KnownGap& whole = known[0];
   HullContactSearch search;
-  search.axis = find_hull_gap(place(first), place(second), start, margin);
-  search.gap = search.axis.gap;
-  if (search.gap > margin) return search;
-  if (concave) find_contacts_of_pieces(first, second, margin, search);
-  else search.contacts.push_back(contact_along(first, second, search.axis));
+  if (pieces == 0) {
+    whole.axis = find_hull_gap(place(first), place(second), whole.axis, margin);
+    search.gap = whole.axis.gap;
+    if (search.gap <= margin) search.contacts.push_back(contact_along(first, second, whole.axis));
+    return search;
+  }
+  const bool apart = are_apart(place(first), place(second), margin, whole.axis);
+  search.gap = whole.axis.gap;
+  if (!apart || search.gap <= margin) find_contacts_of_pieces(first, second, std::span(known).subspan(1), margin, search);
   return search;
 }
 
@@ -165,6 +181,17 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
+PairPose pose_of(const PairBody& first, const PairBody& second) { return {first.position - second.position, first.orientation, second.orientation}; }
+
+double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second) {
+  // An angle is at most 2.2 times the chord of two quaternions, up to half a turn.
+  const auto turned = [](const Quat& from, const Quat& to) {
+    return 2.2 * std::sqrt(std::min((from.coeffs() - to.coeffs()).squaredNorm(), (from.coeffs() + to.coeffs()).squaredNorm()));
+  };
+  return (first.position - second.position - then.apart).norm() + turned(then.first, first.orientation) * first.shape->radius +
+         turned(then.second, second.orientation) * second.shape->radius;
+}
+
 HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second) {
   HeldContact held{contact, {}, {}};
   for (int i = 0; i < contact.manifold.count; ++i) {
@@ -189,9 +216,9 @@ void follow(HeldContact& held, const PairBody& first, const PairBody& second) {
   }
 }
 
-HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, const HullGap& start, double margin) {
+HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, std::vector<KnownGap>& known, double margin) {
   const auto [a, b] = relative_to_second(first, second);
-  HullContactSearch search = search_relative(a, b, start, margin);
+  HullContactSearch search = search_relative(a, b, known, margin);
   for (PairContact& contact : search.contacts) shift(contact, second.position);
   return search;
 }

@@ -37,15 +37,29 @@ HeldContact hold(const PairContact& contact, const PairBody& first, const PairBo
 /// Where its points are now, and their gaps along the normal that it was found with.
 void follow(HeldContact& held, const PairBody& first, const PairBody& second);
 
+/// How two bodies lie to each other.
+struct PairPose {
+  Vec3 apart = Vec3::Zero();  ///< m, of the first from the second
+  Quat first = Quat::Identity(), second = Quat::Identity();
+};
+PairPose pose_of(const PairBody& first, const PairBody& second);
+/// m: no gap between them has changed by more since they lay so.
+double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second);
+
+/// A gap of two bodies or two of their pieces as it was found.
+struct KnownGap {
+  HullGap axis = {.normal = Vec3::Zero()};  ///< where the next search begins; zero: anywhere
+  std::optional<PairPose> when;             ///< how they lay then; none: never looked for
+};
+
 struct HullContactSearch {
-  HullGap axis;                        ///< of the two hulls: the true distance of the bodies is at least its gap
   double gap = 0.0;                    ///< m: the true distance is at least this
   std::vector<PairContact> contacts;   ///< those with a gap of at most the margin: one for hulls, one for each two convex pieces that meet
 };
 
-/// `support`. `start` is an axis that may still separate them (see find_hull_gap). Concave bodies that have convex pieces (Shape::pieces) meet in these, so that
-/// they may reach into each other; others as their hulls.
-HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, const HullGap& start, double margin);
+/// `support`. Concave bodies that have convex pieces (Shape::pieces) meet in these, so that they may reach into each other; others as their hulls. `known`, of the
+/// hulls and then of every two pieces, is what earlier searches found, at first empty.
+HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, std::vector<KnownGap>& known, double margin);
 
 /// The two hulls, whatever pieces they have; none where the gap is above `margin`.
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);

@@ -64,7 +64,7 @@ bool StatisticalLevel::Impl::is_sound(const StatisticalBody& body, double energy
 // Put to rest at the nearest place that can be held, or, where the place is no number, the last one known: what is not sound must neither spread nor
 // reach ODE, which would end the process.
 void StatisticalLevel::Impl::recover(StatisticalBody& body, ContactTally& tally) {
-  if (!body.position.allFinite()) body.position = travels[&body - bodies.data()].position;
+  if (!body.position.allFinite()) body.position = last_places[std::size_t(&body - bodies.data())];
   body.position = body.position.cwiseMax(-kStateLimit).cwiseMin(kStateLimit);
   if (!(std::abs(body.orientation.squaredNorm() - 1.0) < 1e-6)) body.orientation = Quat::Identity();
   body.velocity.setZero();

@@ -58,8 +58,7 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
   const int slot = size();
   level.bodies.push_back(body);
   level.clips.emplace_back();
-  level.travels.emplace_back();
-  level.travels.back().gone = level.longest_travel + 10.0 * level.reach;
+  level.last_places.push_back(state.position.allFinite() ? state.position : Vec3(Vec3::Zero()));
   level.angular_velocity_given.emplace_back();
   level.awake.push_back(slot);
   set_state(slot, state);
@@ -92,9 +91,8 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
     if (push.first == last) push.first = slot;
   level.bodies[slot] = level.bodies[last];
   level.clips[slot] = level.clips[last];
-  level.longest_travel = std::max(level.longest_travel, level.travels[slot].gone);
-  level.travels[slot] = level.travels[last];
-  level.travels.pop_back();
+  level.last_places[slot] = level.last_places[last];
+  level.last_places.pop_back();
   level.bodies.pop_back();
   level.clips.pop_back();
   level.angular_velocity_given[slot] = level.angular_velocity_given[last];
@@ -155,10 +153,7 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   if (tables_) return tables_->set_state(slot, state);
   wake(slot);
   StatisticalBody& body = impl_->bodies[slot];
-  if (state.position.allFinite()) {
-    impl_->travels[slot].gone += (state.position - body.position).norm() + 4.0 * impl_->kind_of(body).shape->radius;
-    impl_->travels[slot].position = state.position;
-  }
+  if (state.position.allFinite()) impl_->last_places[slot] = state.position;
   body.position = state.position;
   body.orientation = state.orientation;
   body.velocity = state.velocity;

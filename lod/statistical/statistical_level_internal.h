@@ -13,22 +13,15 @@ namespace lodestone {
 
 struct Push { Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); };
 
-/// What is known of a near pair. A gap lasts until its bodies have travelled it, so most near pairs need no look at their hulls (conservative advancement;
+/// What is known of a near pair. A gap lasts until its bodies have moved by it, so most near pairs need no look at their hulls (conservative advancement;
 /// Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996); a contact lasts while they move little.
 struct FoundPair {
   ContactKey key = 0;
   Participant first = 0, second = 0;
-  HullGap axis = {.normal = Vec3::Zero()};  ///< where the next search begins
-  double gap = 0.0;                         ///< m, at least, when it was found
-  double travel = -1.0;                     ///< m, of both bodies together, when it was found; negative: never
+  double gap = 0.0;                ///< m, at least, when it was found
+  std::optional<PairPose> when;    ///< how the bodies lay then; none: never
+  std::vector<KnownGap> known;     ///< see find_pair_contacts
   std::vector<HeldContact> contacts;
-};
-
-/// The way of a body's farthest point, m.
-struct Travel {
-  double gone = 0.0, ahead = 0.0;     ///< since it was added; at most in this step
-  Vec3 position = Vec3::Zero();       ///< at the step's start
-  Quat orientation = Quat::Identity();
 };
 
 struct StatisticalLevel::Impl {
@@ -42,14 +35,13 @@ struct StatisticalLevel::Impl {
   std::vector<StatisticalBody> bodies;
   std::vector<ClipPlayback> clips;
   std::vector<std::optional<Vec3>> angular_velocity_given;  // until the next step: a state that was set is read back to the bit
-  std::vector<Travel> travels;
+  std::vector<Vec3> last_places;  // at the step's start
   std::vector<std::pair<int, Push>> pushes;  // of the next step
 
   std::vector<std::int32_t> awake, asleep;   // slots
   bool sleepers_changed = true;
   BroadPhase broad_phase;
   PairMemory pair_memory;                    // places in found_before
-  double longest_travel = 0.0;               // m, of any body so far: one that is added begins beyond it, so that its pairs are looked at anew
   Crowd crowd;
   double reach = 0.0;
   std::int64_t steps = 0;
@@ -58,7 +50,8 @@ struct StatisticalLevel::Impl {
   // Work arrays of a step.
   std::vector<Bound> bounds;
   std::vector<NearPair> pairs;
-  std::vector<char> near_another;            // by slot
+  std::vector<char> near_another;            // by slot: of those that may touch another in this step
+  std::vector<double> turning;               // m/s, by slot: of the point farthest from the centre about it
   std::vector<FullNeighbor> full, full_before;  // the neighbours, moved on between substeps
   std::vector<FoundPair> found, found_before;  // of the pairs of this step and of the last one
   std::vector<CrowdContact> contacts;
@@ -79,13 +72,16 @@ struct StatisticalLevel::Impl {
   void apply_pushes(double dt, ContactTally& tally);
   void find_near_pairs(double dt, std::span<const FullNeighbor> neighbors);
   void find_contacts(double dt, std::span<const FullNeighbor> neighbors);
-  void plan_travel(double dt);
-  void add_travel();
+  void remember_places();
+  void find_turning();
+  double find_approach(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
+  bool may_meet(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
   PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;
   Participant participant(std::int32_t of_pair) const;
   void take_over_found(std::span<const FullNeighbor> neighbors);
   void find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const;
   bool closes(const FoundPair& pair, const PairContact& contact, double dt, std::span<const FullNeighbor> neighbors) const;
+  Vec3 center_velocity(Participant p, std::span<const FullNeighbor> neighbors) const;
   Vec3 point_velocity(Participant p, const Vec3& point, std::span<const FullNeighbor> neighbors) const;
   bool is_asleep(Participant p, std::span<const FullNeighbor> neighbors) const {
     return p < 0 ? neighbors[-1 - p].asleep : bodies[p].motion == Motion::asleep;
@@ -96,8 +92,7 @@ struct StatisticalLevel::Impl {
   void move_crowded(double dt, double time, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, ContactTally& tally);
   template <class Select>
   ContactTally move_those(double time, Select select);
-  void mark_near();
-  int count_substeps(double dt, std::span<const FullNeighbor> neighbors) const;
+  int plan_substeps(double dt);
   void move_alone(std::size_t place, double dt, ContactTally& tally);  ///< place in `awake`
   const StaticGround& ground_below(std::int32_t slot) const;
   void move_support(StatisticalBody& body, int slot, const StaticGround& over, double dt, ContactTally& tally);

@@ -9,14 +9,16 @@ constexpr double kMargin = 0.003;
 
 PairBody at(const Shape& shape, const Vec3& position, const Quat& orientation = Quat::Identity()) { return {&shape, position, orientation}; }
 
-// No axis known.
-HullGap no_axis() { return {.normal = Vec3::Zero()}; }
+HullContactSearch search_afresh(const PairBody& first, const PairBody& second) {
+  std::vector<KnownGap> nothing;
+  return find_pair_contacts(first, second, nothing, kMargin);
+}
 
 class LInL : public ::testing::Test {
  protected:
   // Legs .3 and .2 m, bars .08 m wide, .1 m thick: the same way up, one's corner reaches into the other's notch.
   Shape l_ = make_shape("l", make_l(0.3, 0.2, 0.08, 0.1));
-  HullContactSearch search(const Vec3& shift) { return find_pair_contacts(at(l_, shift), at(l_, Vec3::Zero()), no_axis(), kMargin); }
+  HullContactSearch search(const Vec3& shift) { return search_afresh(at(l_, shift), at(l_, Vec3::Zero())); }
 };
 
 TEST_F(LInL, BodiesClearOfEachOtherDoNotTouchThoughTheirHullsOverlap) {
@@ -42,7 +44,7 @@ TEST_F(LInL, TheyTouchWhereTheirLegsDo) {
 TEST_F(LInL, BothBodiesMeetAlikeWhicheverIsFirst) {
   const Quat turned(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()));
   const PairBody a = at(l_, {0.12, 0.05, 0.04}, turned), b = at(l_, Vec3::Zero());
-  const auto there = find_pair_contacts(a, b, no_axis(), kMargin).contacts, back = find_pair_contacts(b, a, no_axis(), kMargin).contacts;
+  const auto there = search_afresh(a, b).contacts, back = search_afresh(b, a).contacts;
   ASSERT_FALSE(there.empty());
   ASSERT_EQ(there.size(), back.size());
 }
