@@ -160,7 +160,8 @@ void TablesLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport&
     {
       const StageTimer timer(times.broad_phase_ms);
       const auto count = std::size_t(spheres_.awake);
-      cells_.fill({std::span(spheres_.x).first(count), std::span(spheres_.y).first(count), std::span(spheres_.z).first(count), step_.reach}, jobs_, std::min(settings_.threads, kSharesMost));
+      cells_.fill({std::span(spheres_.x).first(count), std::span(spheres_.y).first(count), std::span(spheres_.z).first(count), step_.reach}, jobs_,
+                  std::min(settings_.threads, kSharesMost));
       ordered_ = spheres_.awake;
     }
     const StageTimer timer(times.pairs_ms);
