@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 namespace lodestone {
 
@@ -29,12 +30,26 @@ inline bool is_within_limit(const Vec3& v) {
   return std::abs(v.x()) <= kStateLimit && std::abs(v.y()) <= kStateLimit && std::abs(v.z()) <= kStateLimit;
 }
 
+/// Below it (rad) Taylor series serve, exact to rounding and without a division.
+inline constexpr double kSmallAngle = 0.25;
+/// sin x / x and cos x for x² = `square`, |x| below kSmallAngle.
+inline double small_sine_over_angle(double square) {
+  return 1.0 - square * (1.0 / 6.0) * (1.0 - square * (1.0 / 20.0) * (1.0 - square * (1.0 / 42.0) * (1.0 - square * (1.0 / 72.0) * (1.0 - square * (1.0 / 110.0)))));
+}
+inline double small_cosine(double square) {
+  return 1.0 - square * 0.5 * (1.0 - square * (1.0 / 12.0) * (1.0 - square * (1.0 / 30.0) * (1.0 - square * (1.0 / 56.0) * (1.0 - square * (1.0 / 90.0)))));
+}
+inline std::pair<double, double> sine_and_cosine(double angle) {
+  if (std::abs(angle) < kSmallAngle) return {angle * small_sine_over_angle(angle * angle), small_cosine(angle * angle)};
+  return {std::sin(angle), std::cos(angle)};
+}
+
+
 /// The rotation by `v` radians about v's own direction (exponential map). Below half a radian, as in most steps, by Taylor series, exact to rounding.
 inline Quat rotation_from_vector(const Vec3& v) {
   const double h2 = 0.25 * v.squaredNorm();  // of half the angle
-  if (h2 < 0.0625) {
-    const double sinc = 1.0 - h2 / 6.0 * (1.0 - h2 / 20.0 * (1.0 - h2 / 42.0 * (1.0 - h2 / 72.0 * (1.0 - h2 / 110.0))));
-    const double cosine = 1.0 - h2 / 2.0 * (1.0 - h2 / 12.0 * (1.0 - h2 / 30.0 * (1.0 - h2 / 56.0 * (1.0 - h2 / 90.0))));
+  if (h2 < kSmallAngle * kSmallAngle) {
+    const double sinc = small_sine_over_angle(h2), cosine = small_cosine(h2);
     return Quat(cosine, 0.5 * sinc * v.x(), 0.5 * sinc * v.y(), 0.5 * sinc * v.z());
   }
   const double half = std::sqrt(h2), sinc = std::sin(half) / half;

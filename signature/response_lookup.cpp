@@ -136,6 +136,7 @@ FoundResponse find_scale_free(const Signature& signature, const CollisionConfigu
 struct Draw {
   Response response;
   double restitution_part;
+  bool trial = false;  // one that was measured
 };
 
 Draw draw_independent(const FoundResponse& found, RandomStream& random) {
@@ -187,14 +188,23 @@ Draw draw_empirical(const FoundResponse& found, RandomStream& random) {
   const ResponseSample* sample = trial_of(*found.bouncing, cell, number);
   if (!sample) return {found.mean, found.bouncing_part};
   if (found.slow && sample->approach * (2.0 / 65535.0) < found.least_bouncing_approach)
-    if (const ResponseSample* slow = trial_of(*found.slow, cell, number)) return {decode(*slow, found.slow->sample_range), 0.0};
-  return {decode(*sample, found.bouncing->sample_range), 1.0};
+    if (const ResponseSample* slow = trial_of(*found.slow, cell, number)) return {decode(*slow, found.slow->sample_range), 0.0, true};
+  return {decode(*sample, found.bouncing->sample_range), 1.0, true};
 }
 
 Draw draw_once(const FoundResponse& found, ResponseDraw draw, RandomStream& random) {
   if (draw == ResponseDraw::empirical && !found.bouncing->sample.empty()) return draw_empirical(found, random);
   if (draw == ResponseDraw::correlated && !found.bouncing->factor.empty()) return draw_correlated(found, random);
   return draw_independent(found, random);
+}
+
+// A Gaussian number made lognormal, mean and deviation kept, where it might be negative.
+double keep_out(double drawn, double mean, double deviation) {
+  constexpr double kSafe = 3.0;  // deviations
+  if (deviation <= 0.0 || mean >= kSafe * deviation) return drawn;
+  if (mean <= 0.0) return 0.0;
+  const double square = std::log1p((deviation / mean) * (deviation / mean));
+  return mean * std::exp(std::sqrt(square) * (drawn - mean) / deviation - 0.5 * square);
 }
 
 }  // namespace
@@ -206,15 +216,11 @@ FoundResponse find_response(const Signature& signature, const CollisionConfigura
 
 DrawnVelocities draw_response(const FoundResponse& found, const CollisionConfiguration& c, double restitution, ResponseDraw draw, RandomStream& random) {
   const double s = c.speed_unit(), speed = s > 0.0 ? c.speed / s : 0.0;
-  DrawnVelocities drawn;
-  for (int attempt = 0; attempt < 5; ++attempt) {
-    const Draw d = draw_once(found, draw, random);
-    const Vec3 particle(d.restitution_part * restitution * speed * std::cos(c.theta), speed * std::sin(c.theta), 0.0);
-    drawn.linear = particle + d.response.head<3>().cast<double>();
-    drawn.angular = d.response.tail<3>().cast<double>();
-    if (drawn.linear.x() >= 0.0) return drawn;
-  }
-  drawn.linear.x() = 0.0;
+  const Draw d = draw_once(found, draw, random);
+  const Vec3 particle(d.restitution_part * restitution * speed * std::cos(c.theta), speed * std::sin(c.theta), 0.0);
+  DrawnVelocities drawn{particle + d.response.head<3>().cast<double>(), d.response.tail<3>().cast<double>()};
+  if (!d.trial) drawn.linear.x() = keep_out(drawn.linear.x(), particle.x() + double(found.mean[0]), double(found.deviation[0]));
+  drawn.linear.x() = std::max(0.0, drawn.linear.x());
   return drawn;
 }
 

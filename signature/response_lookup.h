@@ -35,8 +35,8 @@ struct DrawnVelocities {
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
 };
 
-/// One draw, as `draw` says as far as the signature holds what that needs (else independent). A draw that moves into the plane is drawn again, four times at
-/// most, and then loses that motion. `restitution` as the signature was measured for.
+/// One draw, as `draw` says as far as the signature holds what that needs (else independent). Where a Gaussian would reach into the plane, the velocity out of it is lognormal, with
+/// the trials' mean and deviation: cutting the Gaussian off would shift both. What still moves into the plane, a trial of the empirical kind, loses that motion. `restitution` as the signature was measured for.
 DrawnVelocities draw_response(const FoundResponse& found, const CollisionConfiguration& c, double restitution, ResponseDraw draw, RandomStream& random);
 
 }  // namespace lodestone

@@ -8,18 +8,24 @@
 namespace lodestone {
 namespace {
 
-const SolverBody kGround;
-
-const SolverBody& second_of(std::span<const SolverBody> bodies, const SolverContact& c) { return c.second < 0 ? kGround : bodies[c.second]; }
-
+// What stands on the ground (second below zero) meets nothing that moves.
 Vec3 contact_velocity(std::span<const SolverBody> bodies, const SolverContact& c) {
-  const SolverBody &a = bodies[c.first], &b = second_of(bodies, c);
-  return a.velocity + a.angular_velocity.cross(c.arm_first) - b.velocity - b.angular_velocity.cross(c.arm_second);
+  const SolverBody& a = bodies[c.first];
+  const Vec3 of_first = a.velocity + a.angular_velocity.cross(c.arm_first);
+  if (c.second < 0) return of_first;
+  const SolverBody& b = bodies[c.second];
+  return of_first - b.velocity - b.angular_velocity.cross(c.arm_second);
 }
 
-double effective_mass_along(const SolverBody& a, const SolverBody& b, const SolverContact& c, const Vec3& axis) {
-  const Vec3 ra = c.arm_first.cross(axis), rb = c.arm_second.cross(axis);
-  return 1.0 / (a.inverse_mass + b.inverse_mass + ra.dot(a.inverse_inertia * ra) + rb.dot(b.inverse_inertia * rb));
+double inverse_mass_along(const SolverBody& body, const Vec3& arm, const Vec3& axis) {
+  const Vec3 turning = arm.cross(axis);
+  return body.inverse_mass + turning.dot(body.inverse_inertia * turning);
+}
+
+double effective_mass_along(std::span<const SolverBody> bodies, const SolverContact& c, const Vec3& axis) {
+  double inverse = inverse_mass_along(bodies[c.first], c.arm_first, axis);
+  if (c.second >= 0) inverse += inverse_mass_along(bodies[c.second], c.arm_second, axis);
+  return 1.0 / inverse;
 }
 
 void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& impulse) {
@@ -52,9 +58,9 @@ void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const 
   const Mat3 frame = contact_frame(c.normal, velocity);
   c.tangent[0] = frame.col(1);
   c.tangent[1] = frame.col(2);
-  const SolverBody &a = bodies[c.first], &b = second_of(bodies, c);
-  for (int i = 0; i < 3; ++i) c.effective_mass[i] = effective_mass_along(a, b, c, frame.col(i));
-  c.target = target_velocity(c, b.inverse_mass == 0.0, velocity.dot(c.normal), step, s);
+  for (int i = 0; i < 3; ++i) c.effective_mass[i] = effective_mass_along(bodies, c, frame.col(i));
+  const bool on_still = c.second < 0 || bodies[c.second].inverse_mass == 0.0;
+  c.target = target_velocity(c, on_still, velocity.dot(c.normal), step, s);
 }
 
 // Returns the size of the change, N s.

@@ -72,7 +72,7 @@ void StatisticalLevel::Impl::move(double dt, std::span<FullNeighbor> neighbors, 
   for (const std::int32_t slot : awake) bodies[slot].crowded = false;
   find_ground_solids(dt, false);
   full.assign(neighbors.begin(), neighbors.end());
-  if (pair_phase) find_turning();
+  if (!found.empty()) find_turning();
   const int substeps = plan_substeps(dt);
   remember_places();
   tally += move_those(dt, [&](std::int32_t slot) { return !near_another[slot]; });

@@ -5,11 +5,20 @@
 
 namespace lodestone {
 
-/// Turns `axes` (principal axes to world) about its own axis `axis` by `angle` rad; `spin` is the angular momentum in these axes.
-inline void turn_about_own(int axis, double angle, Quat& axes, Vec3& spin) {
-  const Quat turn = rotation_from_vector(angle * Vec3::Unit(axis));
-  axes = axes * turn;
-  spin = turn.conjugate() * spin;
+/// Turns `axes` (principal axes to world) about its own axis `Axis` by `angle` rad; `spin` is the angular momentum in these axes.
+template <int Axis>
+inline void turn_about_own(double angle, Quat& axes, Vec3& spin) {
+  constexpr int kNext = (Axis + 1) % 3, kLast = (Axis + 2) % 3;
+  const double half = 0.5 * angle;
+  const auto [sine, cosine] = sine_and_cosine(half);
+  const double w = axes.w(), own = axes.vec()[Axis], next = axes.vec()[kNext], last = axes.vec()[kLast];
+  axes.w() = w * cosine - own * sine;
+  axes.vec()[Axis] = own * cosine + w * sine;
+  axes.vec()[kNext] = next * cosine + last * sine;
+  axes.vec()[kLast] = last * cosine - next * sine;
+  const double whole_sine = 2.0 * sine * cosine, whole_cosine = 1.0 - 2.0 * sine * sine, at_next = spin[kNext], at_last = spin[kLast];
+  spin[kNext] = at_next * whole_cosine + at_last * whole_sine;
+  spin[kLast] = at_last * whole_cosine - at_next * whole_sine;
 }
 
 /// The orientation `time` seconds later in free rotation, by splitting the kinetic energy into that of a ball with the middle moment and those of the other two
@@ -19,12 +28,12 @@ inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const
   const Vec3& inverse = kind.inverse_moments;
   const Quat of_ball = rotation_from_vector(spin * (inverse[1] * time));
   if (kind.isotropic) return of_ball * orientation;
-  Quat axes = orientation * kind.principal_axes;
+  Quat axes = kind.along_principal_axes ? orientation : Quat(orientation * kind.principal_axes);
   Vec3 own = axes.conjugate() * spin;
-  turn_about_own(0, (inverse[0] - inverse[1]) * own[0] * (0.5 * time), axes, own);
-  turn_about_own(2, (inverse[2] - inverse[1]) * own[2] * time, axes, own);
-  turn_about_own(0, (inverse[0] - inverse[1]) * own[0] * (0.5 * time), axes, own);
-  return of_ball * (axes * kind.principal_axes.conjugate());
+  turn_about_own<0>((inverse[0] - inverse[1]) * own[0] * (0.5 * time), axes, own);
+  turn_about_own<2>((inverse[2] - inverse[1]) * own[2] * time, axes, own);
+  turn_about_own<0>((inverse[0] - inverse[1]) * own[0] * (0.5 * time), axes, own);
+  return of_ball * (kind.along_principal_axes ? axes : Quat(axes * kind.principal_axes.conjugate()));
 }
 
 /// Moves `body` along its free flight for `time` seconds. Exact for the centre of mass.

@@ -9,7 +9,7 @@ namespace {
 struct Submerged {
   static constexpr int kCapacity = 64;
   std::array<std::int32_t, kCapacity> vertex;
-  std::array<HullContact, kCapacity> contact;
+  std::array<double, kCapacity> gap;
   int count = 0;
 
   // Marks by the vertex's low bits tell most newcomers at once; where two share a mark, the list decides.
@@ -17,31 +17,31 @@ struct Submerged {
   bool holds(std::int32_t v) const {
     return (marks[v / 64 % 8] >> v % 64 & 1) && std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
   }
-  void add(std::int32_t v, const HullContact& c) {
+  void add(std::int32_t v, double height) {
     marks[v / 64 % 8] |= std::uint64_t(1) << v % 64;
     vertex[count] = v;
-    contact[count++] = c;
+    gap[count++] = height;
   }
 };
 
-void walk_below(const Shape& shape, const Mat3& rotation, const Vec3& normal_in_body, double height, double margin, Submerged& found) {
+void walk_below(const Shape& shape, const Vec3& normal_in_body, double height, double margin, Submerged& found) {
   for (int visited = 0; visited < found.count; ++visited) {
     for (const std::int32_t next : shape.hull.neighbors(found.vertex[visited])) {
       if (found.count == Submerged::kCapacity) return;
       const double gap = height + shape.hull.vertices[next].dot(normal_in_body);
       if (gap >= margin || found.holds(next)) continue;
-      found.add(next, {rotation * shape.hull.vertices[next], gap, next});
+      found.add(next, gap);
     }
   }
 }
 
-// Greatest of `measure` over the submerged vertices.
+// Greatest of `measure` over the submerged vertices, body axes.
 template <class Measure>
-int find_greatest(const Submerged& found, Measure measure) {
+int find_greatest(const Shape& shape, const Submerged& found, Measure measure) {
   int best = 0;
   double best_value = -1.0;
   for (int i = 0; i < found.count; ++i) {
-    const double value = measure(found.contact[i].arm);
+    const double value = measure(shape.hull.vertices[std::size_t(found.vertex[i])]);
     if (value > best_value) best_value = value, best = i;
   }
   return best;
@@ -57,21 +57,27 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   if (shape.sphere_radius) return result;
 
   Submerged found;
-  found.add(hint, result.contact[0]);
-  walk_below(shape, orientation.toRotationMatrix(), orientation.conjugate() * normal, height, margin, found);
+  const Vec3 normal_in_body = orientation.conjugate() * normal;
+  found.add(hint, result.contact[0].gap);
+  walk_below(shape, normal_in_body, height, margin, found);
+  if (found.count == 1) return result;
+  const Mat3 rotation = orientation.toRotationMatrix();
+  const auto keep = [&](int i) {
+    const std::int32_t vertex = found.vertex[i];
+    result.contact[result.count++] = {rotation * shape.hull.vertices[std::size_t(vertex)], found.gap[i], vertex};
+  };
   if (found.count <= kMaxGroundContacts) {
-    std::copy_n(found.contact.begin(), found.count, result.contact.begin());
-    result.count = found.count;
+    for (int i = 1; i < found.count; ++i) keep(i);
     return result;
   }
   // The widest support: farthest from the lowest, then farthest to either side of the line between those two.
-  const Vec3 first = result.contact[0].arm;
-  const int second = find_greatest(found, [&](const Vec3& a) { return (a - first).squaredNorm(); });
-  const Vec3 side = normal.cross(found.contact[second].arm - first);
-  const int left = find_greatest(found, [&](const Vec3& a) { return (a - first).dot(side); });
-  const int right = find_greatest(found, [&](const Vec3& a) { return (first - a).dot(side); });
+  const Vec3& first = shape.hull.vertices[std::size_t(hint)];
+  const int second = find_greatest(shape, found, [&](const Vec3& v) { return (v - first).squaredNorm(); });
+  const Vec3 side = normal_in_body.cross(shape.hull.vertices[std::size_t(found.vertex[second])] - first);
+  const int left = find_greatest(shape, found, [&](const Vec3& v) { return (v - first).dot(side); });
+  const int right = find_greatest(shape, found, [&](const Vec3& v) { return (first - v).dot(side); });
   for (const int i : {second, left, right})
-    if (i != 0 && (result.count < 2 || i != second)) result.contact[result.count++] = found.contact[i];
+    if (i != 0 && (result.count < 2 || i != second)) keep(i);
   return result;
 }
 

@@ -2,28 +2,59 @@
 #include "lod/statistical/statistical_level_internal.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lodestone {
 namespace {
 
 constexpr double kTouching = 0.01;  // over R: a gap that is as good as none
+constexpr double kFar = 0.25;       // over R: across so wide a gap fast bodies may well miss each other
+
+// Whether two that close in at `closing` (m/s, of the first) do touch within `time`: conservative advancement of their hulls as they are turned now.
+bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3& closing, const PairContact& contact, double touching, double time) {
+  constexpr int kMostSteps = 12;
+  HullGap gap{contact.normal, contact.gap, -1, -1};
+  double gone = 0.0;
+  for (int i = 0; i < kMostSteps && gap.gap > touching; ++i) {
+    const double speed = -closing.dot(gap.normal);
+    if (speed <= 0.0) return false;
+    gone += gap.gap / speed;
+    if (gone > time) return false;
+    gap = find_hull_gap(PlacedHull(*first.shape, first.position + gone * closing, first.orientation),
+                        PlacedHull(*second.shape, second.position, second.orientation), gap, 1e300);
+  }
+  return true;
+}
 
 }  // namespace
+
+// By place, so that nothing hangs on the order in which bodies were added.
+void StatisticalLevel::Impl::sort_by_place(std::span<const std::int32_t> slots, std::vector<std::int32_t>& sorted) const {
+  sorted.assign(slots.begin(), slots.end());
+  const auto place = [&](std::int32_t slot) {
+    const Vec3& p = bodies[std::size_t(slot)].position;
+    return std::array{p.x(), p.y(), p.z()};
+  };
+  std::ranges::sort(sorted, {}, place);
+}
 
 void StatisticalLevel::Impl::find_near_pairs(double dt, std::span<const FullNeighbor> neighbors) {
   const double fall = 0.5 * settings.gravity.norm() * dt * dt;
   const auto bound = [&](const Vec3& position, const Vec3& velocity, double radius) {
-    return Bound{position, 1.02 * radius + 0.5 * velocity.norm() * dt + fall};
+    const Vec3 half_way = (0.5 * dt) * velocity;
+    return Bound{position + half_way, 1.02 * radius + half_way.norm() + fall};
   };
   if (sleepers_changed) {
+    sort_by_place(asleep, stills);
     bounds.clear();
-    for (const std::int32_t slot : asleep) bounds.push_back({bodies[slot].position, 1.02 * kind_of(bodies[slot]).shape->radius});
+    for (const std::int32_t slot : stills) bounds.push_back({bodies[slot].position, 1.02 * kind_of(bodies[slot]).shape->radius});
     broad_phase.set_still(bounds);
     sleepers_changed = false;
   }
+  sort_by_place(awake, movers);
   bounds.clear();
-  for (const std::int32_t slot : awake) bounds.push_back(bound(bodies[slot].position, bodies[slot].velocity, kind_of(bodies[slot]).shape->radius));
+  for (const std::int32_t slot : movers) bounds.push_back(bound(bodies[slot].position, bodies[slot].velocity, kind_of(bodies[slot]).shape->radius));
   for (const FullNeighbor& n : neighbors) bounds.push_back(bound(n.state.position, n.state.velocity, n.shape->radius));
   pairs.clear();
   broad_phase.find_pairs(bounds, pairs);
@@ -32,24 +63,28 @@ void StatisticalLevel::Impl::find_near_pairs(double dt, std::span<const FullNeig
 
 // A slot, or −1 − index of a full neighbour.
 Participant StatisticalLevel::Impl::participant(std::int32_t of_pair) const {
-  if (of_pair < 0) return asleep[std::size_t(-1 - of_pair)];
-  const auto movers = std::int32_t(awake.size());
-  return of_pair < movers ? awake[std::size_t(of_pair)] : -1 - (of_pair - movers);
+  if (of_pair < 0) return stills[std::size_t(-1 - of_pair)];
+  const auto count = std::int32_t(movers.size());
+  return of_pair < count ? movers[std::size_t(of_pair)] : -1 - (of_pair - count);
 }
 
 // What is known of the pairs that were near before.
 void StatisticalLevel::Impl::take_over_found(std::span<const FullNeighbor> neighbors) {
   const auto owner = [&](Participant p) { return p < 0 ? neighbors[std::size_t(-1 - p)].owner : bodies[std::size_t(p)].owner; };
+  const auto comes_before = [&](Participant a, Participant b) {
+    const Vec3 p = pair_body(a, neighbors).position, q = pair_body(b, neighbors).position;
+    return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+  };
   std::swap(found, found_before);
   pair_memory.begin(found_before.size());
   for (std::size_t i = 0; i < found_before.size(); ++i) pair_memory.put(found_before[i].key, std::int32_t(i));
   found.resize(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    // The lower owner first, so that a contact is the same whichever of its bodies is full.
+    // By place, so that a contact is the same whichever of its bodies is full and whichever was added first.
     Participant first = participant(pairs[i].first), second = participant(pairs[i].second);
-    if (owner(second) < owner(first)) std::swap(first, second);
+    if (comes_before(second, first)) std::swap(first, second);
     const ContactKey key = contact_key(owner(first), owner(second));
-    const std::int32_t before = pair_memory.find(key);
+    const std::int32_t before = pair_memory.find(key);  // none, too, where they have changed places: what is known holds for their old order
     if (before < 0) found[i] = {};
     else std::swap(found[i], found_before[std::size_t(before)]);
     found[i].key = key;
@@ -97,7 +132,9 @@ void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbo
   pair.gap = search.gap;
   pair.when = pose_of(a, b);
   pair.contacts.clear();
-  for (const PairContact& contact : search.contacts) pair.contacts.push_back(hold(contact, a, b));
+  const auto meet = [&](const PairContact& contact) { return contact.gap < kFar * least_radius || meet_on_their_way(a, b, closing, contact, touching, dt); };
+  for (const PairContact& contact : search.contacts)
+    if (meet(contact)) pair.contacts.push_back(hold(contact, a, b));
 }
 
 // Within the step, or nearly so.

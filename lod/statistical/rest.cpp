@@ -81,7 +81,26 @@ void StatisticalLevel::Impl::update_quiet(StatisticalBody& body, double dt, Cont
   const double energy = kinetic_energy(body, *kind.shape);
   if (!is_sound(body, energy)) recover(body, tally);
   body.quiet_time = energy < limit ? body.quiet_time + float(dt) : 0.0f;
-  if (settings.sleeping && body.quiet_time >= (among_others ? kSleepTime : kAloneSleepTime)) put_to_sleep(body);
+  if (!settings.sleeping || body.quiet_time < (among_others ? kSleepTime : kAloneSleepTime)) return;
+  if (among_others || stands_firmly(body)) put_to_sleep(body);
+}
+
+// On three vertices at least: on an edge a body may balance for a while, but not for good.
+bool StatisticalLevel::Impl::stands_firmly(const StatisticalBody& body) const {
+  constexpr double kFlat = 0.02;  // over R
+  const Shape& shape = *kind_of(body).shape;
+  if (shape.sphere_radius) return true;
+  int vertices = 0;
+  const auto count_on = [&](const HalfSpace& plane) {
+    const double height = plane.height_of(body.position), margin = kFlat * shape.radius;
+    if (height > shape.radius + margin) return;
+    std::int32_t hint = body.support_hint;
+    const HullContacts low = find_hull_contacts(shape, body.orientation, plane.normal, height, margin, hint);
+    for (int i = 0; i < low.count; ++i) vertices += low.contact[std::size_t(i)].gap < margin;
+  };
+  for (const HalfSpace& plane : ground.planes) count_on(plane);
+  for (const HalfSpace& face : faces_below.of(std::int32_t(&body - bodies.data()))) count_on(face);
+  return vertices >= 3;
 }
 
 void StatisticalLevel::Impl::wake_touched(std::span<FullNeighbor> neighbors) {

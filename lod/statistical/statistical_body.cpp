@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <cmath>
+
 namespace lodestone {
 
 BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature, double mass, MaterialId material) {
@@ -10,6 +12,7 @@ BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<cons
   Mat3 axes = principal.eigenvectors();
   if (axes.determinant() < 0.0) axes.col(0) = -axes.col(0);
   kind.principal_axes = Quat(axes).normalized();
+  kind.along_principal_axes = std::abs(kind.principal_axes.w()) > 1.0 - 1e-15;
   kind.inverse_moments = principal.eigenvalues();
   kind.isotropic = kind.inverse_moments[2] - kind.inverse_moments[0] < 1e-9 * kind.inverse_moments[2];
   kind.shape = std::move(shape);

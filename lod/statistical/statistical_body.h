@@ -20,6 +20,7 @@ struct BodyKind {
   MaterialId material = 0;
   bool isotropic = false;                      ///< a sphere or a cube: rotates steadily
   Quat principal_axes = Quat::Identity();      ///< take principal axes of inertia to body axes
+  bool along_principal_axes = true;            ///< body axes are these very axes
   Vec3 inverse_moments = Vec3::Ones();         ///< along them, over mass, 1/m²: ascending
 };
 

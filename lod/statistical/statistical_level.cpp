@@ -116,6 +116,8 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   if (level.pair_phase) {
     level.find_near_pairs(dt, neighbors);
     ++report.counters.pair_phases;
+  } else {
+    level.found.clear();
   }
   report.times.broad_phase_ms += watch.lap_ms();
 

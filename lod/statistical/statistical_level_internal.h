@@ -49,6 +49,7 @@ struct StatisticalLevel::Impl {
 
   // Work arrays of a step.
   std::vector<Bound> bounds;
+  std::vector<std::int32_t> movers, stills;  // awake and asleep slots, by place
   std::vector<NearPair> pairs;
   std::vector<char> near_another;            // by slot: of those that may touch another in this step
   std::vector<double> turning;               // m/s, by slot: of the point farthest from the centre about it
@@ -77,6 +78,7 @@ struct StatisticalLevel::Impl {
   double find_approach(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
   bool may_meet(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
   PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;
+  void sort_by_place(std::span<const std::int32_t> slots, std::vector<std::int32_t>& sorted) const;
   Participant participant(std::int32_t of_pair) const;
   void take_over_found(std::span<const FullNeighbor> neighbors);
   void find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const;
@@ -97,6 +99,7 @@ struct StatisticalLevel::Impl {
   const StaticGround& ground_below(std::int32_t slot) const;
   void move_support(StatisticalBody& body, int slot, const StaticGround& over, double dt, ContactTally& tally);
   void update_quiet(StatisticalBody& body, double dt, ContactTally& tally);
+  bool stands_firmly(const StatisticalBody& body) const;
   bool is_sound(const StatisticalBody& body, double energy) const;
   void recover(StatisticalBody& body, ContactTally& tally);
 };
