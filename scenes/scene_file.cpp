@@ -75,10 +75,11 @@ bool truth_of(const YamlCursor& key) {
 
 TablesOptions load_tables_options(const YamlCursor& section) {
   TablesOptions options;
-  section.expect_keys({"interpolate", "draw_height", "radius_update_interval", "paper_pair_rule"});
+  section.expect_keys({"interpolate", "draw_height", "radius_update_interval", "nearest_rest_pose", "paper_pair_rule"});
   if (auto key = section.find("interpolate")) options.interpolate = truth_of(*key);
   if (auto key = section.find("draw_height")) options.draw_height = truth_of(*key);
   if (auto key = section.find("radius_update_interval")) options.radius_update_interval = int(key->integer(1, 1000));
+  if (auto key = section.find("nearest_rest_pose")) options.nearest_rest_pose = truth_of(*key);
   if (auto key = section.find("paper_pair_rule")) options.paper_pair_rule = truth_of(*key);
   return options;
 }

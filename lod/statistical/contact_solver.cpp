@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "lod/statistical/contact_impulse.h"
 
@@ -69,7 +70,7 @@ double relax(std::span<SolverBody> bodies, SolverContact& c) {
   const double before = c.impulse[0];
   c.impulse[0] = std::max(0.0, before + c.effective_mass[0] * (c.target - velocity.dot(c.normal)));
   Vec3 change = (c.impulse[0] - before) * c.normal;
-  const double bound = c.law.friction * c.impulse[0];
+  const double bound = c.friction_bound >= 0.0 ? c.friction_bound : c.law.friction * c.impulse[0];
   for (int t = 0; t < 2; ++t) {
     const double held = c.impulse[t + 1];
     c.impulse[t + 1] = std::clamp(held - c.effective_mass[t + 1] * velocity.dot(c.tangent[t]), -bound, bound);
@@ -82,9 +83,34 @@ double relax(std::span<SolverBody> bodies, SolverContact& c) {
 void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
   if (c.bounces || c.guess.isZero(0.0)) return;
   c.impulse[0] = std::max(0.0, c.guess.dot(c.normal));
-  const double bound = c.law.friction * c.impulse[0];
+  const double bound = c.friction_bound >= 0.0 ? c.friction_bound : c.law.friction * c.impulse[0];
   for (int t = 0; t < 2; ++t) c.impulse[t + 1] = std::clamp(c.guess.dot(c.tangent[t]), -bound, bound);
   apply(bodies, c, impulse_of(c));
+}
+
+void sweep(std::span<SolverBody> bodies, std::span<SolverContact> contacts, const ContactSolverSettings& settings) {
+  for (int i = 0; i < settings.sweeps; ++i) {
+    double changed = 0.0, greatest = 0.0;
+    for (SolverContact& c : contacts) {
+      changed = std::max(changed, relax(bodies, c));
+      greatest = std::max(greatest, c.impulse[0]);
+    }
+    if (changed <= settings.tolerance * greatest) return;
+  }
+}
+
+// What the normal impulses are without friction bounds it.
+void bound_friction(std::span<SolverBody> bodies, std::span<SolverContact> contacts, const ContactSolverSettings& settings) {
+  thread_local std::vector<SolverBody> before;
+  before.assign(bodies.begin(), bodies.end());
+  for (SolverContact& c : contacts) c.friction_bound = 0.0;
+  for (SolverContact& c : contacts) start_from_guess(bodies, c);
+  sweep(bodies, contacts, settings);
+  std::ranges::copy(before, bodies.begin());
+  for (SolverContact& c : contacts) {
+    c.friction_bound = c.law.friction * c.impulse[0];
+    c.impulse[0] = 0.0;
+  }
 }
 
 }  // namespace
@@ -93,15 +119,9 @@ double separating_velocity(std::span<const SolverBody> bodies, const SolverConta
 
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings) {
   for (SolverContact& c : contacts) prepare(bodies, c, step, settings);
+  if (settings.frictionless_bound) bound_friction(bodies, contacts, settings);
   for (SolverContact& c : contacts) start_from_guess(bodies, c);
-  for (int sweep = 0; sweep < settings.sweeps; ++sweep) {
-    double changed = 0.0, greatest = 0.0;
-    for (SolverContact& c : contacts) {
-      changed = std::max(changed, relax(bodies, c));
-      greatest = std::max(greatest, c.impulse[0]);
-    }
-    if (changed <= settings.tolerance * greatest) return;
-  }
+  sweep(bodies, contacts, settings);
 }
 
 }  // namespace lodestone

@@ -30,6 +30,7 @@ struct SolverContact {
   Vec3 tangent[2] = {Vec3::Zero(), Vec3::Zero()};
   double effective_mass[3] = {0.0, 0.0, 0.0};
   double target = 0.0;                  ///< m/s, normal velocity asked for
+  double friction_bound = -1.0;         ///< N s; negative: μ times the normal impulse as it is
   bool bounces = false;                 ///< an impact, fast enough for restitution
   double impulse[3] = {0, 0, 0};        ///< N s, along the normal and both tangents
 };
@@ -40,6 +41,7 @@ inline Vec3 impulse_of(const SolverContact& c) { return c.impulse[0] * c.normal 
 struct ContactSolverSettings {
   int sweeps = 10;                       ///< at most; fewer once no impulse changes by more than `tolerance` of the greatest
   double tolerance = 1e-4;
+  bool frictionless_bound = false;       ///< friction is bounded by μ times the normal impulses without friction, as dWorldStep with Approx1 has it
   double bounce_velocity = 0.05;         ///< m/s, slower approaches do not bounce (as in ODE)
   Vec3 fall = Vec3::Zero();              ///< m/s, what gravity has given the velocities for this step: an impact on what stands still is answered as fast
                                          ///< as it is when it happens, within the step

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "reference/free_rotation.h"
+#include "reference/hull/resting_faces.h"
 #include "reference/material.h"
 #include "reference/shape.h"
 #include "signature/settling_clips.h"
@@ -16,6 +17,7 @@ struct BodyKind {
   std::shared_ptr<const Shape> shape;
   std::shared_ptr<const Signature> signature;  ///< may be null (support model)
   ClipIndex clips;                             ///< of the signature's settling clips (support model)
+  std::shared_ptr<const RestingFaces> faces;   ///< on which it can stand (tables model); none for a sphere
   double mass = 1.0;                           ///< kg
   MaterialId material = 0;
   bool isotropic = false;                      ///< a sphere or a cube: rotates steadily

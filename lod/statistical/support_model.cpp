@@ -103,11 +103,13 @@ void clamp_energy(const StatisticalBody& before, StatisticalBody& body, const Sh
   ++tally.energy_clamps;
 }
 
-void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& contact, const HalfSpace& plane, const ContactLaw& law,
+void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& contact, const HalfSpace& plane, const ContactLaw& law, double gravity,
              const SupportSettings& settings) {
-  const double height = plane.height_of(body.position);
-  const HullContacts together = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height,
-                                                   contact.gap + settings.impact_margin * kind.shape->radius, body.support_hint);
+  const double height = plane.height_of(body.position), radius = kind.shape->radius;
+  const double approach = std::max(0.0, -velocity_at(body, kind, contact.arm).dot(plane.normal));
+  const double sunk = settings.impact_lag * std::sqrt(radius / std::max(1e-9, gravity)) * approach;
+  const double margin = std::clamp(sunk, settings.impact_margin * radius, settings.greatest_impact_margin * radius);
+  const HullContacts together = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, contact.gap + margin, body.support_hint);
   ++body.events;
   if (together.count > 1) return respond_together(body, kind, together, plane.normal, law, settings);
   const Mat3 response = contact_response_matrix(1.0, inverse_inertia_world(body.orientation, *kind.shape), contact.arm);
@@ -201,7 +203,7 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
     if (approach > -world.bounce_velocity) break;  // not a bounce: it stays in contact
     body = impact.body;
     left -= impact.time;
-    respond(body, kind, impact.lowest.contact, plane, world.law(kind, plane), settings);
+    respond(body, kind, impact.lowest.contact, plane, world.law(kind, plane), world.gravity_strength(), settings);
     clamp_energy(impact.body, body, *kind.shape, tally);
     tally.touched_plane = impact.lowest.plane;
     ++tally.contacts;

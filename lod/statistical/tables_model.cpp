@@ -152,8 +152,10 @@ void respond_from_tables(StatisticalBody& body, const BodyKind& kind, const Vec3
   ++tally.contacts;
 }
 
-RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, int plane_index) {
-  return {find_nearest_rest_pose(*kind.signature, orientation.conjugate() * plane.normal), plane_index};
+RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, int plane_index, const TablesOptions& options) {
+  Vec3 up = orientation.conjugate() * plane.normal;
+  if (kind.faces && !options.nearest_rest_pose) up = kind.faces->faces()[std::size_t(kind.faces->find_quasistatic(up))].normal;
+  return {find_nearest_rest_pose(*kind.signature, up), plane_index};
 }
 
 ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, const BodyKind& kind, const StepWorld& world, double time,
@@ -180,7 +182,7 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
     const bool presses = approach < world.bounce_velocity + world.gravity_strength() * time;  // no impact: what gravity adds in a step
     if (body.motion != Motion::settling || !presses) respond_from_tables(body, kind, plane.normal, world, law, settings.options, tally);
     if (body.motion == Motion::dynamic && world.is_horizontal(plane) && energy_before < settings.resting_energy * energy_unit) {
-      resting = find_resting(body.orientation, kind, plane, touched);
+      resting = find_resting(body.orientation, kind, plane, touched, settings.options);
       if (resting.pose >= 0) body.motion = Motion::settling;
     }
     if (body.motion == Motion::settling && energy_before > 2.0 * settings.resting_energy * energy_unit) body.motion = Motion::dynamic;

@@ -17,7 +17,7 @@ struct RestingRecord {
 struct TablesSettings {
   TablesOptions options;
   int max_impacts = 4;              ///< a step; then the body slides on for the rest of the step
-  double resting_energy = 0.15;     ///< J/kg over g R: the first threshold of 3.4
+  double resting_energy = 0.25;     ///< J/kg over g R: the first threshold of 3.4
   double sleeping_energy = 5e-4;    ///< J/kg over g R: the second
   double blend_time = 1.2;          ///< over √(R/g): in which height and orientation approach the rest pose
 };
@@ -34,6 +34,6 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
                               const TablesSettings& settings);
 
 /// The resting condition's pose on `plane`, number `plane_index`: the one that needs the smallest rotation (3.4); −1 where the signature has none.
-RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, int plane_index);
+RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, int plane_index, const TablesOptions& options);
 
 }  // namespace lodestone

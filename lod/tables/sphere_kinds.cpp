@@ -17,7 +17,8 @@ std::uint16_t SphereKinds::find(std::shared_ptr<const Shape> shape, double mass,
     if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
   check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
   check_that(signature != nullptr, "the tables model needs a signature");
-  kinds.push_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
+  BodyKind& kind = kinds.emplace_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
+  if (!kind.shape->sphere_radius) kind.faces = std::make_shared<const RestingFaces>(kind.shape->hull);
   add(kinds.back(), gravity);
   return std::uint16_t(kinds.size() - 1);
 }
@@ -25,6 +26,7 @@ std::uint16_t SphereKinds::find(std::shared_ptr<const Shape> shape, double mass,
 void SphereKinds::add(const BodyKind& kind, double gravity) {
   const Shape& shape = *kind.shape;
   const Mat3& inverse = shape.inverse_inertia_per_mass;
+  any_slender |= is_slender(kind);
   radius.push_back(float(shape.radius));
   inverse_mass.push_back(float(1.0 / kind.mass));
   ixx.push_back(float(inverse(0, 0))), iyy.push_back(float(inverse(1, 1))), izz.push_back(float(inverse(2, 2)));

@@ -18,8 +18,11 @@ struct SphereKinds {
   std::vector<float> height;                            // kHeightSamples + 1 a kind, m, one more to read beyond the end
   std::vector<float> blend_time;                        // s, of the approach to a rest pose
   std::vector<std::int32_t> first_pose;                 // of the kind's rest poses in the next ones
+  bool any_slender = false;                             // kinds whose free rotation takes more than the loops' midpoint rule
   std::vector<float> pose_height, pose_x, pose_y, pose_z;  // m; normal in body axes; at least one pose a kind
 
+  /// Whether the midpoint rule would feed energy into its spin.
+  static bool is_slender(const BodyKind& kind) { return kind.inverse_moments[2] > 20.0 * kind.inverse_moments[0]; }
   /// The number of a kind that is known or new. Its signature must hold the tables.
   std::uint16_t find(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature, double gravity);
 

@@ -47,6 +47,10 @@ struct Spheres {
   Vec3 spin(std::int64_t place) const { return {lx[place], ly[place], lz[place]}; }
   Quat orientation(std::int64_t place) const { return Quat(qw[place], qx[place], qy[place], qz[place]).normalized(); }
 
+  void set_orientation(std::int64_t place, const Quat& q) {
+    qw[place] = float(q.w()), qx[place] = float(q.x()), qy[place] = float(q.y()), qz[place] = float(q.z());
+  }
+
   /// The body at `place` as those functions take it that treat one body at a time, and back.
   StatisticalBody body(std::int64_t place) const;
   void put(std::int64_t place, const StatisticalBody& body);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "lod/stage_timer.h"
+#include "lod/statistical/flight.h"
 #include "reference/error.h"
 
 namespace lodestone {
@@ -314,7 +315,7 @@ void TablesLevel::sort_ground() {
 
 // The rest pose that needs the smallest rotation (3.4).
 void TablesLevel::choose_rest_pose(std::int64_t i) {
-  const RestingRecord resting = find_resting(spheres_.orientation(i), kind_of(i), ground_.planes[step_.plane[i]], step_.plane[i]);
+  const RestingRecord resting = find_resting(spheres_.orientation(i), kind_of(i), ground_.planes[step_.plane[i]], step_.plane[i], settings_.tables);
   if (resting.pose < 0) return;
   spheres_.pose[i] = std::int16_t(resting.pose);
   spheres_.plane[i] = std::int16_t(resting.plane);
@@ -332,10 +333,22 @@ void TablesLevel::finish(ContactTally& tally) {
       lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
       each_marked(step_.on_ground, std::uint8_t(GroundState::near), begin, end, [&](std::int64_t i) { move_alone(i, own); });
     }
-    end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
+    if (kinds_.any_slender) end_step_with_slender(begin, end);
+    else end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
     each_marked(step_.unsound, 1, begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
+}
+
+// The orientations of slender bodies follow by splitting, one by one.
+void TablesLevel::end_step_with_slender(std::int64_t begin, std::int64_t end) {
+  thread_local std::vector<std::pair<std::int64_t, Quat>> before;
+  before.clear();
+  for (std::int64_t i = begin; i < end; ++i)
+    if (SphereKinds::is_slender(kind_of(i)) && step_.on_ground[i] != std::uint8_t(GroundState::moved)) before.emplace_back(i, spheres_.orientation(i));
+  end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
+  for (const auto& [i, orientation] : before)
+    spheres_.set_orientation(i, advance_orientation(orientation, spheres_.spin(i), kind_of(i), constants_.wide_time).normalized());
 }
 
 // A body that meets the ground by itself, after the impulses of its contacts with others.

@@ -56,6 +56,7 @@ class TablesLevel {
   void start_block(std::int64_t begin, std::int64_t end, Simd simd);
   void sort_ground();
   void choose_rest_pose(std::int64_t place);
+  void end_step_with_slender(std::int64_t begin, std::int64_t end);
   void move_alone(std::int64_t place, ContactTally& tally);
   void meet_full(std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, ContactTally& tally);
   void find_full_touches(std::span<FullNeighbor> neighbors);

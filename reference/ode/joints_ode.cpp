@@ -12,6 +12,13 @@ void copy(const Vec3& from, dReal* to) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
 
+double mass_of(dBodyID body) {
+  if (!body) return dInfinity;
+  dMass mass;
+  dBodyGetMass(body, &mass);
+  return mass.mass;
+}
+
 Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - v.dot(normal) * normal; }
 
 }  // namespace
@@ -38,7 +45,7 @@ void ContactJoints::begin(double h, int attempt) {
   gravity_ = to_vec3(gravity);
   contacts_.clear();
   h_ = h;
-  joint_.surface.soft_cfm = cfm_ + kAddedCfm[attempt];
+  attempt_cfm_ = cfm_ + kAddedCfm[attempt];
   unevenness_ = kUnevenness[attempt] * gravity_.norm() * h * h;
   // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone, whosever the world is.
   deepest_ = erp_ > 0.0 ? max_correcting_velocity_ * h / erp_ : dInfinity;
@@ -48,6 +55,7 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second, std
   const ContactLaw pair = law(first.material, second.material);
   joint_.surface.mu = pair.friction;
   joint_.surface.bounce = pair.restitution;
+  joint_.surface.soft_cfm = attempt_cfm_ * cfm_share(std::min(mass_of(first.body), mass_of(second.body)));
   for (const ContactPoint& point : points) {
     add_joint(first, second, point);
     const double side = first.id ? 1.0 : -1.0;  // contacts() names this world's body first

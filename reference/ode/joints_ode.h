@@ -9,6 +9,9 @@
 
 namespace lodestone::ode {
 
+/// Part of the constraint force mixing that a body of `mass` (kg) is given: of much more than the inverse of its mass over the step, its contacts would be soft.
+inline double cfm_share(double mass) { return std::min(1.0, 100.0 / mass); }
+
 /// One of the two bodies at a contact; `body` null for static ground.
 struct ContactSide {
   dBodyID body = nullptr;
@@ -47,7 +50,7 @@ class ContactJoints {
   dJointGroupID group_;
   const MaterialTable* materials_;
   dContact joint_{};  // what every contact has in common is filled in once
-  double erp_, cfm_, max_correcting_velocity_;
+  double erp_, cfm_, max_correcting_velocity_, attempt_cfm_ = 0.0;
   double h_ = 0.0, deepest_ = 0.0, unevenness_ = 0.0;
   Vec3 gravity_ = Vec3::Zero();
   std::vector<OdeContact> contacts_;

@@ -107,6 +107,8 @@ void OdeWorld::add_static_mesh(const Mesh& mesh, MaterialId material) { impl_->c
 
 OdeBodyId OdeWorld::add_body(const OdeBodyDefinition& definition) {
   prepare();
+  if (const double cfm = impl_->settings.cfm * ode::cfm_share(definition.mass); impl_->own_world && cfm > 0.0 && cfm < dWorldGetCFM(impl_->world))
+    dWorldSetCFM(impl_->world, cfm);
   return impl_->bodies.add(impl_->world, impl_->collision.broad_phase().bodies_space(), definition, impl_->settings,
                            impl_->trimeshes);
 }

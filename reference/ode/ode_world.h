@@ -34,7 +34,8 @@ struct OdeSettings {
   bool quick_step = false;              ///< dWorldQuickStep instead of dWorldStep (another friction law)
   int quick_step_iterations = 20;
   int direct_contacts_max = 1 << 30;    ///< contacts of one island above which a substep is QuickStep's: dWorldStep's time grows with their cube
-  double erp = 0.2, cfm = 1e-10;        ///< ODE's error reduction and constraint force mixing at contacts
+  double erp = 0.2, cfm = 1e-10;        ///< ODE's error reduction and constraint force mixing (s/kg) at contacts; less, in proportion, for bodies above 100 kg, whose
+                                        ///< impacts it would soften
   double bounce_velocity = 0.05;        ///< m/s, slower contacts do not bounce
   double max_correcting_velocity = 1e9; ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
   bool friction_along_slip = true;      ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
