@@ -119,6 +119,7 @@ BodyId Manager::add_body(const BodyDefinition& definition) {
 }
 
 void Manager::remove_body(BodyId body) {
+  impl_->see_statistical();
   take_out(impl_->levels, impl_->levels.bodies.index_of(body));
   impl_->levels.bodies.remove(body);
   std::erase(impl_->newcomers, body.index);
@@ -129,16 +130,20 @@ void Manager::remove_body(BodyId body) {
 void Manager::set_level(BodyId body, LevelChoice choice) {
   BodyTable& bodies = impl_->levels.bodies;
   bodies.candidates()[bodies.index_of(body)].choice = choice;
+  impl_->settled = false;
 }
 
 void Manager::set_viewpoints(std::span<const Vec3> positions) {
   for (const Vec3& position : positions) check_that(position.allFinite(), "a viewpoint is finite");
+  impl_->settled &= std::ranges::equal(positions, impl_->viewpoints);
   impl_->viewpoints.assign(positions.begin(), positions.end());
 }
 
 void Manager::set_state(BodyId body, const RigidState& state) {
   const std::uint32_t index = impl_->levels.bodies.index_of(body);
   const RigidState sound = checked(state);
+  impl_->settled = false;
+  impl_->see_statistical();
   impl_->levels.set_state(index, sound);
   impl_->see(index, sound);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lod/cross_level.h"
@@ -24,6 +25,11 @@ struct Manager::Impl {
   std::vector<std::uint32_t> put_off;           // waiting to be tried again
   std::vector<std::uint32_t> pushed;            // with a force for the next step
   std::vector<std::int32_t> moved;              // slots that may have moved in the last step
+  // Where nothing changed that the policy looks at, it is not asked.
+  bool settled = false, positions_matter = true;  // its last answer
+  bool all_still = false;                         // no body moved in the last step
+  int frames_unasked = 0;
+  bool positions_old = false;                     // those of statistical bodies that the policy looks at
   Neighborhood neighborhood;
   StepReport report;
   // Smoothed measurements; the first is a guess until a body was full.
@@ -31,8 +37,9 @@ struct Manager::Impl {
 
   const StepReport& step(double dt);
   void begin_report();
-  LevelDecision choose();
-  void move_bodies(LevelDecision decision);
+  std::optional<LevelDecision> choose();  ///< nothing: all bodies stay as they are
+  bool may_leave_unasked() const;
+  void move_bodies(std::optional<LevelDecision> decision);
   void step_statistical(double dt);
   void step_full(double dt);
   void finish_report();
@@ -42,6 +49,7 @@ struct Manager::Impl {
   bool near_static_ground(const RigidState& state, double radius) const;
   void add_static_bounds(const Eigen::AlignedBox3d& bounds);
   void follow_moved();
+  void see_statistical();  ///< where they are now, if the policy was not told
   void note_waiting(std::uint32_t body);  ///< whether its signature is there yet
   void promote(std::uint32_t body);
   void put_promotion_off(std::uint32_t body);

@@ -1,5 +1,6 @@
 // The stages of a step, in order.
 #include <algorithm>
+#include <utility>
 
 #include "lod/manager_impl.h"
 #include "lod/stage_timer.h"
@@ -23,7 +24,7 @@ const StepReport& Manager::Impl::step(double dt) {
   {
     const StageTimer timer(report.times.total_ms);
     // 1 choose levels
-    LevelDecision decision = choose();
+    std::optional<LevelDecision> decision = choose();
     // 2 transfer
     move_bodies(std::move(decision));
     // 3 statistical level and its contacts with full bodies
@@ -38,15 +39,29 @@ const StepReport& Manager::Impl::step(double dt) {
 
 void Manager::Impl::begin_report() { report = {.step = report.step + 1, .times = {}, .counters = report.counters}; }
 
-LevelDecision Manager::Impl::choose() {
+// Nothing may have changed that the policy looks at: full bodies move, newcomers and those put off wait for a level.
+bool Manager::Impl::may_leave_unasked() const {
+  return settled && (all_still || !positions_matter) && newcomers.empty() && put_off.empty() && levels.full.members().empty() && static_bounds.empty();
+}
+
+std::optional<LevelDecision> Manager::Impl::choose() {
   const StageTimer timer(report.times.choose_ms);
+  if (may_leave_unasked()) {
+    ++frames_unasked;
+    return {};
+  }
   count_down_retries();
+  if (!viewpoints.empty()) see_statistical();
   std::vector<LevelCandidate>& candidates = levels.bodies.candidates();
   for (const FullLevel::Member& member : levels.full.members()) see(member.owner, levels.full.world()->state(member.id)), note_waiting(member.owner);
   for (const std::uint32_t body : newcomers) see(body, levels.bodies[body].definition.state), note_waiting(body);
+  const int frames = 1 + std::exchange(frames_unasked, 0);
   for (LevelCandidate& candidate : candidates)
-    candidate.frames_since_change += candidate.frames_since_change < LevelCandidate{}.frames_since_change;
-  return choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
+    candidate.frames_since_change = std::min(candidate.frames_since_change + frames, LevelCandidate{}.frames_since_change);
+  LevelDecision decision = choose_levels(candidates, viewpoints, policy, full_body_step_ms, statistical_ms);
+  settled = decision.settled;
+  positions_matter = decision.positions_matter;
+  return decision;
 }
 
 void Manager::Impl::see(std::uint32_t body, const RigidState& state) {
@@ -69,16 +84,18 @@ bool Manager::Impl::near_static_ground(const RigidState& state, double radius) c
   return std::ranges::any_of(static_bounds, [&](const Eigen::AlignedBox3d& box) { return box.exteriorDistance(state.position) < reach; });
 }
 
-void Manager::Impl::move_bodies(LevelDecision decision) {
+void Manager::Impl::move_bodies(std::optional<LevelDecision> decision) {
   const StageTimer timer(report.times.transfer_ms);
   read_callers_planes();
   levels.ground.solids.prepare();
-  reasons = std::move(decision.reasons);
-  for (const std::int32_t body : decision.demote) {
+  if (!decision) return;
+  reasons = std::move(decision->reasons);
+  if (!decision->demote.empty() || !decision->promote.empty()) see_statistical();
+  for (const std::int32_t body : decision->demote) {
     transfer(levels, body);
     ++report.demotions;
   }
-  for (const std::int32_t body : decision.promote) promote(body);
+  for (const std::int32_t body : decision->promote) promote(body);
   for (const std::uint32_t body : newcomers)
     if (levels.bodies.candidates()[body].newcomer) place(levels, body, Level::statistical);
   newcomers.clear();
@@ -116,6 +133,7 @@ void Manager::Impl::count_down_retries() {
 }
 
 void Manager::Impl::step_statistical(double dt) {
+  all_still = true;
   if (levels.owner_of_slot.empty()) {
     give_forces();
     statistical_ms = 0.0;
@@ -126,10 +144,14 @@ void Manager::Impl::step_statistical(double dt) {
     gather(levels, neighborhood);
     give_forces();
   }
+  const bool follow = positions_matter || !static_bounds.empty();
   const auto was_awake = levels.statistical->awake();
-  moved.assign(was_awake.begin(), was_awake.end());
+  all_still = was_awake.empty();
+  if (follow) moved.assign(was_awake.begin(), was_awake.end());
   levels.statistical->step(dt, neighborhood.bodies, report, neighborhood.contacts);
-  follow_moved();
+  all_still &= levels.statistical->awake().empty();
+  if (follow) follow_moved();
+  else positions_old |= !all_still;
   {
     const StageTimer timer(report.times.cross_level_ms);
     hand_over(levels, neighborhood, dt);
@@ -150,6 +172,12 @@ void Manager::Impl::follow_moved() {
   for (const std::int32_t slot : level.awake()) look(slot);
   for (const std::int32_t slot : moved)
     if (level.asleep(slot)) look(slot);
+}
+
+void Manager::Impl::see_statistical() {
+  if (!std::exchange(positions_old, false)) return;
+  for (std::size_t slot = 0; slot < levels.owner_of_slot.size(); ++slot)
+    levels.bodies.candidates()[levels.owner_of_slot[slot]].position = levels.statistical->position(int(slot));
 }
 
 void Manager::Impl::step_full(double dt) {

@@ -73,11 +73,14 @@ class Chooser {
   }
 
   LevelDecision by(const DistancePolicy& policy) {
+    decision_.settled = true;
+    decision_.positions_matter = false;
     for (std::int32_t i = 0; i < count(); ++i) {
       if (stays_as_told(candidates_[i])) {
         decision_.reasons[i] = LevelReason::forced;
         continue;
       }
+      decision_.positions_matter |= !viewpoints_.empty();
       if (stays_far(candidates_[i], viewpoints_, policy.full_within)) {
         decision_.reasons[i] = LevelReason::far;
         continue;
@@ -142,6 +145,7 @@ class Chooser {
     reason = target.reason;
     if (target.level == c.level) return;
 
+    decision_.settled = false;
     const bool up = target.level == Level::full;
     if (up && c.put_off && !c.newcomer) {
       reason = LevelReason::overlap_put_off;

@@ -56,6 +56,8 @@ struct LevelDecision {
   /// of the rest at most max_transitions_per_frame, promotions (nearest first) and demotions (farthest first) by turns.
   std::vector<std::int32_t> promote, demote;
   std::vector<LevelReason> reasons;  ///< one per candidate
+  bool settled = false;         ///< every body has the level that is wanted for it: asked again of the same bodies, the answer would be the same
+  bool positions_matter = true; ///< false: nor would other positions change it
 };
 
 /// The distance of a body is its distance from the nearest viewpoint, less its radius, over its importance; without viewpoints it is infinite.

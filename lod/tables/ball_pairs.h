@@ -1,4 +1,5 @@
-// Which balls of a run in memory are near one ball: as many at a time as the processor has lanes for, and written without a branch, as which are near is hard to foresee.
+// Which balls of a run in memory are near one ball: as many at a time as the processor has lanes for, and written without a branch, as which are near
+// is hard to foresee.
 #pragma once
 
 #include <bit>
@@ -58,11 +59,12 @@ struct NearBall {
 
 /// Writes the pairs of `ball` with those in [begin, end) whose reach meets its own, in order, and returns how many. Room for kOverrun more must follow.
 template <Simd>
-std::uint32_t find_near_balls(const BallArrays& balls, const NearBall& ball, std::uint32_t begin, std::uint32_t end, std::uint32_t* first, std::uint32_t* second);
+std::uint32_t find_near_balls(const BallArrays& balls, const NearBall& ball, std::uint32_t begin, std::uint32_t end, std::uint32_t* first,
+                              std::uint32_t* second);
 
 template <>
-inline std::uint32_t find_near_balls<Simd::portable>(const BallArrays& balls, const NearBall& ball, std::uint32_t begin, std::uint32_t end, std::uint32_t* first,
-                                                     std::uint32_t* second) {
+inline std::uint32_t find_near_balls<Simd::portable>(const BallArrays& balls, const NearBall& ball, std::uint32_t begin, std::uint32_t end,
+                                                     std::uint32_t* first, std::uint32_t* second) {
   std::uint32_t count = 0;
   for (std::uint32_t other = begin; other < end; ++other) {
     const float dx = balls.x[other] - ball.x, dy = balls.y[other] - ball.y, dz = balls.z[other] - ball.z, limit = balls.reach[other] + ball.reach;

@@ -2,8 +2,6 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 namespace lodestone {
 namespace {
@@ -16,6 +14,7 @@ constexpr double kCellsMost = 2.0;     // for each ball
 constexpr std::int32_t kWrapLeast = 4; // cells: with fewer, a cell would be its neighbour's neighbour
 constexpr std::int64_t kOneCell = 24;  // balls: so few are tested each with each
 constexpr std::int64_t kPartBalls = 1024;
+constexpr std::int64_t kBlock = 8192;  // balls of a job
 
 }  // namespace
 
@@ -39,45 +38,67 @@ void CellGrid::choose_edges(const BallSpan& balls) {
   base_edge_ = 2.0 * double(std::bit_cast<float>(std::uint32_t(bin + 1 + kFirstBin) << 20));
 }
 
-void CellGrid::fill(const BallSpan& balls) {
+void CellGrid::Bounds::add(const BallSpan& balls, std::size_t i) {
+  ++count;
+  most_reach = std::max(most_reach, balls.reach[i]), least_reach = std::min(least_reach, balls.reach[i]);
+  low[0] = std::min(low[0], balls.x[i]), high[0] = std::max(high[0], balls.x[i]);
+  low[1] = std::min(low[1], balls.y[i]), high[1] = std::max(high[1], balls.y[i]);
+  low[2] = std::min(low[2], balls.z[i]), high[2] = std::max(high[2], balls.z[i]);
+}
+
+void CellGrid::Bounds::add(const Bounds& other) {
+  count += other.count;
+  most_reach = std::max(most_reach, other.most_reach), least_reach = std::min(least_reach, other.least_reach);
+  for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], other.low[a]), high[a] = std::max(high[a], other.high[a]);
+}
+
+CellGrid::Bounds CellGrid::find_bounds(const BallSpan& balls, const JobRunner& jobs) {
+  const auto count = std::int64_t(balls.x.size());
+  bounds_.assign(std::size_t((count + kBlock - 1) / kBlock), {});
+  jobs(std::int64_t(bounds_.size()), TaskRef([&](std::int64_t block) {
+    Bounds bounds;
+    for (std::int64_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) bounds.add(balls, std::size_t(i));
+    bounds_[std::size_t(block)] = bounds;
+  }));
+  Bounds all;
+  for (const Bounds& bounds : bounds_) all.add(bounds);
+  return all;
+}
+
+void CellGrid::fill(const BallSpan& balls, const JobRunner& jobs, int shares) {
   balls_ = balls;
   grids_.clear();
   parts_.clear();
   index_.clear();
   const std::int64_t count = std::int64_t(balls.x.size());
   if (count == 0) return;
-  float most = 0.0f, least = std::numeric_limits<float>::max();
-  for (const float reach : balls.reach) most = std::max(most, reach), least = std::min(least, reach);
-  grid_of_level_.fill(-1);
-  const bool one_cell = count <= kOneCell, one_size = one_cell || most <= 1.2f * least;
-  base_edge_ = 2.02 * double(most);
+  const Bounds all = find_bounds(balls, jobs);
+  const bool one_cell = count <= kOneCell, one_size = one_cell || all.most_reach <= 1.2f * all.least_reach;
+  base_edge_ = 2.02 * double(all.most_reach);
   if (!one_size) choose_edges(balls);
-  if (one_size || level_of(most) == level_of(least)) {
-    lay_out(balls, one_cell ? -1 : kBaseLevel);
-  } else {
-    std::uint32_t used = 0;
-    for (const float reach : balls.reach) used |= 1u << level_of(reach);
-    for (int level = 0; level < 32; ++level)
-      if (used >> level & 1) grid_of_level_[level] = std::int32_t(grids_.size()), lay_out(balls, level);
-  }
-  sort(balls);
+  if (one_size || level_of(all.most_reach) == level_of(all.least_reach)) lay_out(all, one_cell ? -1 : kBaseLevel);
+  else lay_out_levels(balls);
+  sort(balls, jobs, shares);
   make_parts();
 }
 
-// Level −1: everything in one cell.
-void CellGrid::lay_out(const BallSpan& balls, int level) {
-  Grid grid;
-  const bool all = grid_of_level_[std::max(level, 0)] < 0;
-  std::array<double, 3> low, high;
-  low.fill(std::numeric_limits<double>::max()), high.fill(std::numeric_limits<double>::lowest());
-  const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
-  double count = 0.0;
-  for (std::size_t i = 0; i < balls.x.size(); ++i) {
-    if (!all && level_of(balls.reach[i]) != level) continue;
-    ++count;
-    grid.most_reach = std::max(grid.most_reach, double(balls.reach[i]));
-    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], centers[a][i]), high[a] = std::max(high[a], centers[a][i]);
+void CellGrid::lay_out_levels(const BallSpan& balls) {
+  std::array<Bounds, 32> bounds;
+  level_.resize(balls.x.size());
+  for (std::size_t i = 0; i < level_.size(); ++i) {
+    level_[i] = std::uint8_t(level_of(balls.reach[i]));
+    bounds[level_[i]].add(balls, i);
   }
+  for (int level = 0; level < 32; ++level)
+    if (bounds[std::size_t(level)].count > 0) grid_of_level_[std::size_t(level)] = std::int32_t(grids_.size()), lay_out(bounds[std::size_t(level)], level);
+}
+
+// Level −1: everything in one cell.
+void CellGrid::lay_out(const Bounds& bounds, int level) {
+  Grid grid;
+  const std::array<double, 3>& low = bounds.low, &high = bounds.high;
+  const auto count = double(bounds.count);
+  grid.most_reach = double(bounds.most_reach);
   grid.edge = level < 0 ? 1.0 : std::max(base_edge_ * std::pow(kLevelFactor, level - kBaseLevel), 2.0 * grid.most_reach);
   grid.inverse = 1.0 / grid.edge;
   std::array<double, 3> cells;
@@ -147,7 +168,7 @@ double CellGrid::find_cell(const Grid& grid, int a, double at, std::int32_t& cel
   return at;
 }
 
-void CellGrid::sort(const BallSpan& balls) {
+void CellGrid::sort(const BallSpan& balls, const JobRunner& jobs, int shares) {
   const std::size_t count = balls.x.size();
   start_.assign(grids_.back().end_cell + 2, 0);
   cell_.resize(count);
@@ -155,7 +176,7 @@ void CellGrid::sort(const BallSpan& balls) {
   index_.resize(count);
   const Grid& only = grids_.front();
   if (grids_.size() > 1 || only.wraps[0] || only.wraps[1] || only.wraps[2]) sort_one_by_one(balls);
-  else sort_plain(balls);
+  else sort_plain(balls, jobs, shares);
   grid_begin_.clear();
   for (const Grid& grid : grids_) grid_begin_.push_back(start_[grid.first_cell]);
   grid_begin_.push_back(std::uint32_t(count));
@@ -165,25 +186,36 @@ void CellGrid::add_up_cells() {
   for (std::size_t c = 2; c < start_.size(); ++c) start_[c] += start_[c - 1];
 }
 
-void CellGrid::sort_plain(const BallSpan& balls) {
-  const std::size_t count = balls.x.size();
+// Each share of the work has cells of its own, and looks at all balls for those that lie there: mostly they follow each other already.
+void CellGrid::sort_plain(const BallSpan& balls, const JobRunner& jobs, int shares) {
+  const auto count = std::int64_t(balls.x.size());
   const Grid& grid = grids_.front();
   const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
-  const double *x = centers[grid.axis[0]].data(), *y = centers[grid.axis[1]].data(), *z = centers[grid.axis[2]].data();
-  run_wide(simd_, CellLoop{{x, y, z}, grid.origin, grid.cells, grid.inverse, cell_.data()}, 0, std::int64_t(count));
+  const double *x = centers[std::size_t(grid.axis[0])].data(), *y = centers[std::size_t(grid.axis[1])].data(), *z = centers[std::size_t(grid.axis[2])].data();
+  const CellLoop loop{{x, y, z}, grid.origin, grid.cells, grid.inverse, cell_.data()};
+  jobs((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) { run_wide(simd_, loop, block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+
   const std::uint32_t* cell = cell_.data();
   std::uint32_t *start = start_.data(), *index = index_.data();
-  for (std::size_t i = 0; i < count; ++i) ++start[cell[i] + 2];
+  const std::int64_t all = count < kBlock ? 1 : shares;
+  const auto each_share = [&](const auto& visit) {
+    jobs(all, TaskRef([&](std::int64_t share) {
+      const auto first = std::uint32_t(grid.end_cell * share / all), last = std::uint32_t(grid.end_cell * (share + 1) / all);
+      for (std::int64_t i = 0; i < count; ++i)
+        if (cell[i] - first < last - first) visit(i);
+    }));
+  };
+  each_share([&](std::int64_t i) { ++start[cell[i] + 2]; });
   add_up_cells();
   float *to_x = x_.data(), *to_y = y_.data(), *to_z = z_.data(), *to_reach = reach_.data();
   const float* reach = balls.reach.data();
   const double ox = grid.origin[0], oy = grid.origin[1], oz = grid.origin[2];
-  for (std::size_t i = 0; i < count; ++i) {
+  each_share([&](std::int64_t i) {
     const std::uint32_t at = start[cell[i] + 1]++;
     to_x[at] = float(x[i] - ox), to_y[at] = float(y[i] - oy), to_z[at] = float(z[i] - oz);
     to_reach[at] = reach[i] + grid.fuzz;
     index[at] = std::uint32_t(i);
-  }
+  });
 }
 
 void CellGrid::sort_one_by_one(const BallSpan& balls) {
@@ -191,7 +223,7 @@ void CellGrid::sort_one_by_one(const BallSpan& balls) {
   const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
   const bool many = grids_.size() > 1;
   for (std::size_t i = 0; i < count; ++i) {
-    const Grid& grid = many ? grids_[grid_of_level_[level_of(balls.reach[i])]] : grids_.front();
+    const Grid& grid = many ? grids_[std::size_t(grid_of_level_[level_[i]])] : grids_.front();
     std::array<std::int32_t, 3> c;
     for (int a = 0; a < 3; ++a) find_cell(grid, a, centers[grid.axis[a]][i] - grid.origin[a], c[a]);
     cell_[i] = grid.first_cell + std::uint32_t((c[2] * grid.cells[1] + c[1]) * grid.cells[0] + c[0]);
@@ -199,7 +231,7 @@ void CellGrid::sort_one_by_one(const BallSpan& balls) {
   }
   add_up_cells();
   for (std::size_t i = 0; i < count; ++i) {
-    const Grid& grid = many ? grids_[grid_of_level_[level_of(balls.reach[i])]] : grids_.front();
+    const Grid& grid = many ? grids_[std::size_t(grid_of_level_[level_[i]])] : grids_.front();
     const std::uint32_t at = start_[cell_[i] + 1]++;
     std::int32_t cell;
     x_[at] = float(find_cell(grid, 0, centers[grid.axis[0]][i] - grid.origin[0], cell));

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "lod/jobs.h"
 #include "lod/tables/ball_pairs.h"
 #include "reference/geometry.h"
 
@@ -24,8 +26,8 @@ class CellGrid {
  public:
   explicit CellGrid(Simd simd = find_simd()) : simd_(simd) {}
 
-  /// Takes the balls in.
-  void fill(const BallSpan& balls);
+  /// Takes the balls in. The result does not depend on `shares`, into how many the work is divided: as many as `jobs` has threads are enough.
+  void fill(const BallSpan& balls, const JobRunner& jobs = make_job_runner(1), int shares = 1);
 
   /// Parts of the search for pairs. No two parts of one colour find pairs of the same ball.
   std::int64_t parts() const { return std::int64_t(parts_.size()); }
@@ -82,10 +84,21 @@ class CellGrid {
     float shift = 0.0f;
   };
 
+  /// Of the balls of one level.
+  struct Bounds {
+    std::array<double, 3> low, high;  // m
+    float most_reach = 0.0f, least_reach = std::numeric_limits<float>::max();  // m
+    std::int64_t count = 0;
+    Bounds() { low.fill(std::numeric_limits<double>::max()), high.fill(std::numeric_limits<double>::lowest()); }
+    void add(const BallSpan& balls, std::size_t i);
+    void add(const Bounds& other);
+  };
+  Bounds find_bounds(const BallSpan& balls, const JobRunner& jobs);
   void choose_edges(const BallSpan& balls);
-  void lay_out(const BallSpan& balls, int level);
-  void sort(const BallSpan& balls);
-  void sort_plain(const BallSpan& balls);
+  void lay_out_levels(const BallSpan& balls);
+  void lay_out(const Bounds& bounds, int level);
+  void sort(const BallSpan& balls, const JobRunner& jobs, int shares);
+  void sort_plain(const BallSpan& balls, const JobRunner& jobs, int shares);
   void sort_one_by_one(const BallSpan& balls);
   void add_up_cells();
   static double find_cell(const Grid& grid, int axis, double at, std::int32_t& cell);
@@ -109,6 +122,8 @@ class CellGrid {
   std::array<std::int32_t, 32> grid_of_level_{};
   double base_edge_ = 1.0;                // m, of level kBaseLevel
   std::vector<Part> parts_;
+  std::vector<Bounds> bounds_;            // of blocks of balls
+  std::vector<std::uint8_t> level_;       // of each ball, where they are of several
   std::vector<std::uint32_t> cell_;       // of each ball
   std::vector<std::uint32_t> start_;      // of each cell, and the end of the last
   std::vector<float> x_, y_, z_, reach_;  // in order; positions within the grid, along its axes

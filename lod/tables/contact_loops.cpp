@@ -85,7 +85,8 @@ struct SweepContacts {
       for (std::int64_t i = 0; i < n; ++i) {
         const std::uint32_t a = first[chunk + i], other = second[chunk + i], b = std::min(other, awake);
         const std::size_t ka = OneKind ? 0 : kind[a], kb = OneKind ? 0 : kind[other];
-        const RowLanes of_a = RowLanes{1.0f, 1.0f, 1.0f, inverse_mass[ka]} * lanes_of(p[a]), of_b = RowLanes{-1.0f, -1.0f, -1.0f, inverse_mass[kb]} * lanes_of(p[b]);
+        const RowLanes of_a = RowLanes{1.0f, 1.0f, 1.0f, inverse_mass[ka]} * lanes_of(p[a]);
+        const RowLanes of_b = RowLanes{-1.0f, -1.0f, -1.0f, inverse_mass[kb]} * lanes_of(p[b]);
         relative[i] = row_of(of_a + of_b);
         if constexpr (Last) turning[i] = row_of(only_w(of_a) * lanes_of(u[a]) + only_w(of_b) * lanes_of(u[b]));
         if constexpr (Last && !OneKind) size[i] = least(size_of[ka], size_of[kb]);

@@ -8,47 +8,61 @@ namespace lodestone {
 
 using namespace lane;
 
+namespace {
+
+// Kept by each thread, so that a warm step allocates nothing.
+BallPairs& empty_pairs() {
+  thread_local BallPairs pairs;
+  pairs.clear();
+  return pairs;
+}
+
+}  // namespace
+
 void ContactArrays::make_room(std::size_t elements, bool one_kind) {
   if (elements + kContactChunk > first.size()) {
-    const std::size_t size = elements + elements / 4 + 2 * kContactChunk;
-    first.resize(size), second.resize(size);
-    for (auto* array : {&nx, &ny, &nz, &gap, &closing, &impulse}) array->resize(size);
+    const std::size_t size = elements + elements / 8 + 2 * kContactChunk;
+    const auto grow = [&](auto& array) { array.reserve(size), array.resize(size); };  // not twice as long, as a resize by itself would
+    grow(first), grow(second);
+    for (auto* array : {&nx, &ny, &nz, &gap, &closing, &impulse}) grow(*array);
   }
   if (!one_kind) restitution.resize(first.size()), friction.resize(first.size());
 }
 
 void SphereContacts::clear() {
-  for (Part& part : parts_) part.contacts.count = 0, part.pairs.clear();
+  for (std::size_t i = 0; i < used_parts_; ++i) parts_[i].contacts.count = 0;
+  used_parts_ = 0;
+  for (auto& colour : of_colour_) colour.clear();
 }
 
 std::int64_t SphereContacts::count() const {
   std::size_t count = 0;
-  for (const Part& part : parts_) count += part.contacts.count;
+  for (std::size_t i = 0; i < used_parts_; ++i) count += parts_[i].contacts.count;
   return std::int64_t(count);
 }
 
 void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, const StepConstants& constants, Simd simd,
                           const JobRunner& jobs) {
+  clear();
   used_parts_ = std::size_t(grid.parts()) + 1;
   if (parts_.size() < used_parts_) parts_.resize(used_parts_);
-  clear();
-  for (auto& colour : of_colour_) colour.clear();
   for (std::size_t i = 0; i < used_parts_; ++i) {
     parts_[i].colour = i + 1 < used_parts_ ? grid.colour_of(std::int64_t(i)) : CellGrid::kColours;
     of_colour_[std::size_t(parts_[i].colour)].push_back(std::uint32_t(i));
   }
   jobs(grid.parts(), TaskRef([&](std::int64_t i) {
     Part& part = parts_[std::size_t(i)];
-    grid.find_pairs(i, part.pairs);
-    find_touching(part.pairs, spheres, kinds, constants, settings_.touching, simd, part.contacts);
+    BallPairs& pairs = empty_pairs();
+    grid.find_pairs(i, pairs);
+    find_touching(pairs, spheres, kinds, constants, settings_.touching, simd, part.contacts);
   }));
 }
 
 void SphereContacts::add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs,
                          const StepConstants& constants, Simd simd) {
-  Part& part = parts_[used_parts_ - 1];
-  for (const auto& [first, second] : pairs) part.pairs.add(first, second);
-  find_touching(part.pairs, spheres, kinds, constants, settings_.touching, simd, part.contacts);
+  BallPairs& near = empty_pairs();
+  for (const auto& [first, second] : pairs) near.add(first, second);
+  find_touching(near, spheres, kinds, constants, settings_.touching, simd, parts_[used_parts_ - 1].contacts);
 }
 
 template <class Task>

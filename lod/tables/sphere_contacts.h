@@ -68,15 +68,14 @@ class SphereContacts {
   std::int64_t count() const;
   template <class Visit>
   void each(const Visit& visit) const {
-    for (const auto& part : parts_)
-      for (std::size_t i = 0; i < part.contacts.count; ++i) visit(contact_of(part.contacts, i));
+    for (std::size_t p = 0; p < used_parts_; ++p)
+      for (std::size_t i = 0; i < parts_[p].contacts.count; ++i) visit(contact_of(parts_[p].contacts, i));
   }
   void clear();
 
  private:
   struct Part {
     int colour = 0;
-    BallPairs pairs;
     ContactArrays contacts;
     std::uint32_t known_begin = 0;  // of its contacts in known_
   };

@@ -11,7 +11,8 @@ namespace lodestone {
 /// Of a step, one element an awake body. What contacts read and add are rows, and one more stands for all that sleep.
 struct SphereStep {
   std::vector<float> reach;            // m
-  std::vector<lane::Row> p;            // m/s: the velocity with gravity and the impulses known so far; contacts with other bodies, and one with the ground that carries it among them
+  std::vector<lane::Row> p;            // m/s: the velocity with gravity and the impulses known so far; contacts with other bodies, and one with the ground that
+                                       // carries it among them
   std::vector<lane::Row> u;            // m/s at the start: radius times angular velocity; 1 + radius² over the softest inertia
   std::vector<lane::Row> a;            // m/s: what the contacts of this step add; what the ground gives it against what presses on it
   std::vector<lane::Row> s;            // m²/s: what they add to the spin; J/kg: kinetic energy at the start

@@ -89,12 +89,11 @@ void Spheres::put_to_sleep(std::int64_t place) {
   swap(place, --awake);
 }
 
-void Spheres::reorder_awake(const std::vector<std::uint32_t>& order) {
-  scratch_.resize(order.size());
+void Spheres::reorder_awake(std::span<const std::uint32_t> order, void* scratch) {
   each_array([&](auto& array) {
     using Value = typename std::decay_t<decltype(array)>::value_type;
-    static_assert(sizeof(Value) <= sizeof(std::uint64_t));
-    auto* moved = reinterpret_cast<Value*>(scratch_.data());
+    static_assert(sizeof(Value) <= sizeof(double));
+    auto* moved = static_cast<Value*>(scratch);
     for (std::size_t i = 0; i < order.size(); ++i) moved[i] = array[order[i]];
     std::copy(moved, moved + order.size(), array.begin());
   });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lod/statistical/statistical_body.h"
@@ -61,11 +62,8 @@ struct Spheres {
   void wake(std::uint32_t slot);
   void put_to_sleep(std::int64_t place);
   void swap(std::int64_t a, std::int64_t b);
-  /// Place i of those awake gets what is at `order[i]` now.
-  void reorder_awake(const std::vector<std::uint32_t>& order);
-
- private:
-  std::vector<std::uint64_t> scratch_;  // reorder_awake's
+  /// Place i of those awake gets what is at `order[i]` now. `scratch` has eight bytes a body, aligned as doubles are.
+  void reorder_awake(std::span<const std::uint32_t> order, void* scratch);
 };
 
 }  // namespace lodestone

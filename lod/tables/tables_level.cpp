@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kBlock = 1024;        // bodies of a job
 constexpr int kOrderInterval = 16;           // steps between looks at how far bodies have moved from their places
+constexpr int kSharesMost = 16;              // of the work of filling the cells
 constexpr double kTouchFactor = 1.02;        // of the radii: what rests on a removed body
 
 // Calls visit(i) for the elements of [begin, end) that hold `mark`: mostly few or none.
@@ -160,7 +161,8 @@ void TablesLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport&
     {
       const StageTimer timer(times.broad_phase_ms);
       const auto count = std::size_t(spheres_.awake);
-      cells_.fill({std::span(spheres_.x).first(count), std::span(spheres_.y).first(count), std::span(spheres_.z).first(count), step_.reach});
+      cells_.fill({std::span(spheres_.x).first(count), std::span(spheres_.y).first(count), std::span(spheres_.z).first(count), step_.reach}, jobs_,
+                  std::min(settings_.threads, kSharesMost));
       ordered_ = spheres_.awake;
     }
     const StageTimer timer(times.pairs_ms);
@@ -200,8 +202,8 @@ void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
 void TablesLevel::start(double dt) {
   // Bodies near each other should lie near each other in memory, too.
   if (steps_ % kOrderInterval == 0 && ordered_ == spheres_.awake && !std::ranges::is_sorted(cells_.order())) {
-    order_.assign(cells_.order().begin(), cells_.order().end());
-    spheres_.reorder_awake(order_);
+    step_.resize(std::size_t(spheres_.awake));
+    spheres_.reorder_awake(cells_.order(), step_.s.data());  // the rows of the last step serve no more
   }
   const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height && settings_.tables.radius_update_interval <= 1;
   const Vec3& g = settings_.gravity;

@@ -91,7 +91,6 @@ class TablesLevel {
   std::vector<std::int32_t> given_of_slot_;                  // index of the former, −1: none
   std::vector<Push> pushes_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> still_touches_;  // place awake, slot asleep; then both places
-  std::vector<std::uint32_t> order_;
   std::vector<ContactTally> tallies_;
   // Bodies that touch full ones.
   std::vector<StatisticalBody> near_full_;

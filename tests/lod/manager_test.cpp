@@ -203,6 +203,39 @@ TEST(Manager, SetStateOfASupportWakesWhatRestsOnIt) {
   }
 }
 
+// Without viewpoints nobody looks where bodies are; once there is one, it counts where they are now.
+TEST(Manager, ABodyThatNobodyFollowedIsPromotedWhereItIs) {
+  ManagerSettings settings = unmeasured();
+  Manager manager = on_floor(settings);
+  RigidState thrown = at({0, 0, 3});
+  thrown.velocity = {20, 0, 3};
+  const BodyId body = add(manager, box_shape(kSides), thrown);
+  run(manager, 1.0);
+  const Vec3 now = manager.state(body).position;
+  ASSERT_GT(now.x(), 15.0);
+  manager.set_viewpoints(std::array{Vec3(0, 0, 3)});
+  manager.step(1.0 / 60);
+  EXPECT_EQ(manager.level(body), Level::statistical);
+  manager.set_viewpoints(std::array{now});
+  manager.step(1.0 / 60);
+  EXPECT_EQ(manager.level(body), Level::full);
+}
+
+TEST(Manager, TheDwellGoesOnWhileNothingChanges) {
+  Manager manager = on_floor();
+  const BodyId body = add(manager, box_shape(kSides), at({0, 0, 0.2}));
+  const auto look = [&](std::vector<Vec3> from, int steps) {
+    manager.set_viewpoints(from);
+    for (int i = 0; i < steps; ++i) manager.step(1.0 / 60);
+    return manager.level(body);
+  };
+  ASSERT_EQ(look({Vec3(0, 0, 1)}, 40), Level::full);
+  ASSERT_EQ(look({}, 10), Level::statistical);
+  EXPECT_EQ(look({Vec3(0, 0, 1)}, 1), Level::statistical);  // it changed too recently
+  EXPECT_EQ(look({}, 30), Level::statistical);
+  EXPECT_EQ(look({Vec3(0, 0, 1)}, 1), Level::full);
+}
+
 TEST(Manager, OrientationIsNormalized) {
   Manager manager = on_floor();
   RigidState state = at({0, 0, 1});

@@ -2,6 +2,7 @@
 #include "lod/tables/tables_level.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -12,7 +13,7 @@
 #include "signature/measure/measure.h"
 
 namespace {
-std::atomic<std::int64_t> allocations = 0;
+std::atomic<std::int64_t> allocations = 0, bytes_held = 0;
 }
 
 // Counted for this program's tests. The sanitizers bring their own.
@@ -20,11 +21,17 @@ std::atomic<std::int64_t> allocations = 0;
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // where one is inlined and the other is not
 void* operator new(std::size_t size) {
   ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
+  if (void* memory = std::malloc(size ? size : 1)) {
+    bytes_held += std::int64_t(malloc_usable_size(memory));
+    return memory;
+  }
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept {
+  bytes_held -= std::int64_t(malloc_usable_size(memory));
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept { operator delete(memory); }
 #endif
 
 namespace lodestone {
@@ -123,6 +130,20 @@ TEST_F(SphereLevel, AWarmStepAllocatesNothing) {
   const std::int64_t before = allocations;
   run(level, 50);
   EXPECT_EQ(allocations - before, 0);
+}
+
+// Of the level alone, with about a contact a body.
+TEST_F(SphereLevel, HoldsLittleForABody) {
+  settings_.sleeping = false;
+  const std::int64_t before = bytes_held;
+  TablesLevel level = make();
+  add_heap(level, 64, 2);
+  run(level, 90);
+  const auto contacts = double(run(level, 1).contacts);
+  const double per_body = double(bytes_held - before) / level.size();
+  std::printf("%.0f bytes a body, %.2f contacts\n", per_body, contacts / level.size());
+  EXPECT_GT(per_body, 200.0);
+  EXPECT_LT(per_body, 550.0);
 }
 
 TEST_F(SphereLevel, ContactsKeepMomentum) {
