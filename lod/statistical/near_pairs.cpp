@@ -118,7 +118,7 @@ Vec3 StatisticalLevel::Impl::point_velocity(Participant p, const Vec3& point, st
 }
 
 void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const {
-  constexpr double kHeld = 0.01;  // over R: so far bodies take a contact along
+  constexpr double kHeld = 0.02;  // over R: so far bodies take a contact along
   const PairBody a = pair_body(pair.first, neighbors), b = pair_body(pair.second, neighbors);
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
   const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;

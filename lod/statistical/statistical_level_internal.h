@@ -60,7 +60,8 @@ struct StatisticalLevel::Impl {
   FacesBelow faces_below;
   std::vector<ContactTally> tallies;
 
-  Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m) : settings(s), ground(g), materials(m), parallel(s.threads) {}
+  Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m)
+      : settings(s), ground(g), materials(m), parallel(s.threads), crowd(make_job_runner(s.threads)) {}
 
   const BodyKind& kind_of(const StatisticalBody& body) const { return kinds[body.kind]; }
   std::uint16_t find_kind(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature);
