@@ -8,6 +8,7 @@
 #include <map>
 #include <thread>
 
+#include "signature/measure/measure.h"
 #include "tests/lod/manager_fixture.h"
 
 namespace lodestone {
@@ -296,6 +297,11 @@ TEST(Manager, SameRunGivesTheSameHash) { EXPECT_EQ(hash_of_a_mixed_run(), hash_o
 std::uint64_t hash_of_a_heap(StatisticalModel model, const JobRunner& jobs) {
   ManagerSettings settings = unmeasured();
   settings.model = model;
+  settings.signatures = [](const Shape& shape, const ContactLaw&) {
+    SignatureSettings coarse;
+    coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8, coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
+    return std::make_shared<const Signature>(measure_signature(shape, coarse, 1));
+  };
   settings.threads = 2;
   settings.jobs = jobs;
   Manager manager = on_floor(settings);
