@@ -129,7 +129,7 @@ struct EndLoop {
       const F3 new_q = choose(here, scale * to.v, q.v);
       qw[i] = choose(here, scale * to.w, q.w), qx[i] = new_q.x, qy[i] = new_q.y, qz[i] = new_q.z;
       constexpr float kFast = 1e6f;  // m/s, m²/s: beyond it someone looks closer
-      const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z);
+      const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z) + absolute(a[i].w) + absolute(d[i].w);
       const float far = most(absolute(float(to_x)), most(absolute(float(to_y)), absolute(float(to_z))));
       const float wrong = choose(sum < kFast, 0.0f, 1.0f) + choose(absolute(scale - 1.0f) < 0.1f, 0.0f, 1.0f) + choose(far + absolute(float(to_x - to_x)) < 0.999e8f, 0.0f, 1.0f);
       unsound[i] = std::uint8_t(choose(wrong > 0.0f, 1, 0));
