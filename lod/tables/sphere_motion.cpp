@@ -59,7 +59,8 @@ struct StartLoop {
       u[i].x = r * omega.x, u[i].y = r * omega.y, u[i].z = r * omega.z, u[i].w = 1.0f + r * r * softest[k];
       s[i].x = 0.0f, s[i].y = 0.0f, s[i].z = 0.0f, s[i].w = 0.5f * (dot(v, v) + dot(spun, omega));
     }
-    std::fill(a + begin, a + end, Row{}), std::fill(d + begin, d + end, Row{});
+    if (c.clear_added) std::fill(a + begin, a + end, Row{});
+    std::fill(d + begin, d + end, Row{});
     std::fill(on_ground + begin, on_ground + end, std::uint8_t(0));
     std::fill(plane + begin, plane + end, std::uint8_t(0)), std::fill(slides + begin, slides + end, std::uint8_t(0));
   }

@@ -210,7 +210,7 @@ void TablesLevel::start(double dt) {
   const Vec3& g = settings_.gravity;
   check_that(ground_.planes.size() < 255, "at most 254 planes");
   constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .wide_time = dt, .wide_gx = g.x(), .wide_gy = g.y(), .wide_gz = g.z(), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
-                .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1};
+                .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1, .clear_added = ground_.planes.empty()};
   step_.resize(std::size_t(spheres_.awake));
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0) update_radii_one_by_one();
   planes_.set(ground_, materials_, kinds_, settings_.gravity);
