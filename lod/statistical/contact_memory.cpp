@@ -1,44 +1,45 @@
 #include "lod/statistical/contact_memory.h"
 
-#include <algorithm>
-
 namespace lodestone {
 namespace {
 
-// Calls `visit(begin, end)` for each run of equal keys.
+// Calls `visit(key, begin, end)` for each run of equal keys, with its points.
 template <class Visit>
-void each_run(std::span<const ContactKey> keys, Visit visit) {
+void each_run(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, Visit visit) {
   for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
     while (end < keys.size() && keys[end] == keys[begin]) ++end;
-    visit(begin, end);
+    visit(keys[begin], manifolds[begin].begin, manifolds[end - 1].begin + manifolds[end - 1].count);
   }
 }
 
 }  // namespace
 
-void ContactMemory::recall(std::span<const ContactKey> keys, std::span<SolverContact> contacts, double step) const {
-  each_run(keys, [&](std::size_t begin, std::size_t end) {
-    const auto run = std::ranges::lower_bound(runs_, keys[begin], {}, &Run::key);
-    if (run == runs_.end() || run->key != keys[begin]) return;
-    const auto before = std::span(forces_).subspan(run->begin, run->count);
-    if (run->count == end - begin) {
-      for (std::size_t i = begin; i < end; ++i) contacts[i].guess = step * before[i - begin];
+void ContactMemory::recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points, double step) const {
+  each_run(keys, manifolds, [&](ContactKey key, std::uint32_t begin, std::uint32_t end) {
+    const std::int32_t place = place_.find(key);
+    if (place < 0) return;
+    const Run& run = runs_[std::size_t(place)];
+    const auto before = std::span(forces_).subspan(run.begin, run.count);
+    if (run.count == end - begin) {
+      for (std::uint32_t i = begin; i < end; ++i) points[i].guess = step * before[i - begin];
       return;
     }
     Vec3 sum = Vec3::Zero();
     for (const Vec3& force : before) sum += force;
-    for (std::size_t i = begin; i < end; ++i) contacts[i].guess = step / double(end - begin) * sum;
+    for (std::uint32_t i = begin; i < end; ++i) points[i].guess = step / double(end - begin) * sum;
   });
 }
 
-void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const SolverContact> contacts, double step) {
+void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> points, double step) {
   runs_.clear();
   forces_.clear();
-  for (const SolverContact& contact : contacts) forces_.push_back(impulse_of(contact) / step);
-  each_run(keys, [&](std::size_t begin, std::size_t end) {
-    runs_.push_back({keys[begin], std::uint32_t(begin), std::uint32_t(end - begin)});
+  for (const CrowdPoint& point : points) forces_.push_back(point.impulse / step);
+  place_.begin(keys.size());
+  each_run(keys, manifolds, [&](ContactKey key, std::uint32_t begin, std::uint32_t end) {
+    if (place_.find(key) >= 0) return;  // of a pair whose contacts are not in a row, the first
+    place_.put(key, std::int32_t(runs_.size()));
+    runs_.push_back({begin, end - begin});
   });
-  std::ranges::sort(runs_, {}, &Run::key);
 }
 
 }  // namespace lodestone

@@ -39,19 +39,11 @@ void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& imp
   b.angular_velocity -= b.inverse_inertia * c.arm_second.cross(impulse);
 }
 
-// Along the normal at the step's end, of a body that falls through the gap, bounces off what stands still and falls on.
-double bounce_in_fall(const SolverContact& c, double approach, double fall, double step) {
-  const double before = approach - fall, acceleration = fall / step, gap = std::max(0.0, c.gap);
-  const double impact = -std::sqrt(std::max(0.0, before * before - 2.0 * acceleration * gap));
-  const double time = before + impact < 0.0 ? std::clamp(-2.0 * gap / (before + impact), 0.0, step) : 0.0;
-  return -c.law.restitution * impact + acceleration * (step - time);
-}
-
 // The normal velocity to reach: a bounce, or closing the gap just within the step.
 double target_velocity(SolverContact& c, bool on_still, double approach, double step, const ContactSolverSettings& s) {
   const double closing = std::min(0.0, -c.gap / step), fall = on_still ? std::min(0.0, s.fall.dot(c.normal)) : 0.0;
   c.bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
-  return c.bounces ? std::max(bounce_in_fall(c, approach, fall, step), closing) : closing;
+  return c.bounces ? std::max(bounce_in_fall(c.law.restitution, c.gap, approach, fall, step), closing) : closing;
 }
 
 void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const ContactSolverSettings& s) {
@@ -115,7 +107,12 @@ void bound_friction(std::span<SolverBody> bodies, std::span<SolverContact> conta
 
 }  // namespace
 
-double separating_velocity(std::span<const SolverBody> bodies, const SolverContact& c) { return contact_velocity(bodies, c).dot(c.normal); }
+double bounce_in_fall(double restitution, double gap, double approach, double fall, double step) {
+  const double before = approach - fall, acceleration = fall / step, way = std::max(0.0, gap);
+  const double impact = -std::sqrt(std::max(0.0, before * before - 2.0 * acceleration * way));
+  const double time = before + impact < 0.0 ? std::clamp(-2.0 * way / (before + impact), 0.0, step) : 0.0;
+  return -restitution * impact + acceleration * (step - time);
+}
 
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings) {
   for (SolverContact& c : contacts) prepare(bodies, c, step, settings);

@@ -23,7 +23,6 @@ struct SolverContact {
   Vec3 normal = Vec3::UnitZ();          ///< points into `first`
   Vec3 arm_first = Vec3::Zero(), arm_second = Vec3::Zero();  ///< from each centre of mass to the shared point
   double gap = 0.0;                     ///< m, negative where they overlap
-  double share = 1.0;                   ///< of undoing the overlap: contacts of one pair share it
   ContactLaw law;
   Vec3 guess = Vec3::Zero();            ///< N s, on `first`: what a resting contact starts from
   // Filled by the solver:
@@ -51,8 +50,9 @@ struct ContactSolverSettings {
 /// An overlap is kept from growing, not undone: that is a matter of positions (see push_out_overlap).
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings);
 
-/// Along the normal, at the contact's point, m/s: positive where the bodies part.
-double separating_velocity(std::span<const SolverBody> bodies, const SolverContact& contact);
+/// m/s along the normal at the end of a `step` that a body began with `approach` (negative, with the step's `fall` of gravity in it): it falls through the gap,
+/// bounces off what stands still and falls on.
+double bounce_in_fall(double restitution, double gap, double approach, double fall, double step);
 
 /// How far to move apart two bodies that overlap by −`gap`, m: a fraction a step, leaving a sliver so that resting contacts persist. Moving positions
 /// rather than adding velocity keeps the correction out of the kinetic energy.

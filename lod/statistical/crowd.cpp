@@ -58,6 +58,20 @@ int Crowd::solver_index(Participant p, std::span<const StatisticalBody> bodies, 
   return index;
 }
 
+CrowdManifold& Crowd::add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal, const ContactLaw& law) {
+  keys_.push_back(key);
+  return manifolds_.emplace_back(CrowdManifold{first, second, normal, law, std::uint32_t(points_.size()), 0});
+}
+
+// Of the last manifold.
+void Crowd::add_point(const Vec3& arm_first, const Vec3& arm_second, double gap) {
+  CrowdPoint& point = points_.emplace_back();
+  point.arm_first = arm_first;
+  point.arm_second = arm_second;
+  point.gap = gap;
+  ++manifolds_.back().count;
+}
+
 // `number`: of the plane, for what is remembered of its contacts.
 void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, std::size_t number, const StepWorld& world,
                                 StatisticalModel model, double time) {
@@ -74,34 +88,22 @@ void Crowd::add_ground_contacts(int index, StatisticalBody& body, const BodyKind
     found.contact[0] = {-reach * plane.normal, height - reach};
     found.count = 1;
   }
-  for (int i = 0; i < found.count; ++i) {
-    if (found.contact[i].gap > margin) continue;
-    SolverContact c;
-    c.first = index;
-    c.normal = plane.normal;
-    c.arm_first = found.contact[i].arm;
-    c.gap = found.contact[i].gap;
-    c.law = world.law(kind, plane);
-    solver_contacts_.push_back(c);
-    keys_.push_back(ground_key(body.owner, number));
-  }
+  const auto reaches = [&](const HullContact& contact) { return contact.gap <= margin; };
+  const auto contacts = std::span(found.contact).first(std::size_t(found.count));
+  if (std::ranges::none_of(contacts, reaches)) return;
+  add_manifold(ground_key(body.owner, number), index, -1, plane.normal, world.law(kind, plane));
+  for (const HullContact& contact : contacts)
+    if (reaches(contact)) add_point(contact.arm, Vec3::Zero(), contact.gap);
 }
 
 void Crowd::add_solid_contact(const SolidContact& on_solid, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
                               std::span<const FullNeighbor> neighbors, const StepWorld& world, double time) {
   const StatisticalBody& body = bodies[on_solid.slot];
-  SolverContact c;
-  c.first = solver_index(on_solid.slot, bodies, kinds, neighbors, world, time);
-  c.normal = on_solid.contact.normal;
-  c.law = world.materials->law(kinds[body.kind].material, world.ground->solids[on_solid.solid].material);
+  add_manifold(ground_key(body.owner, world.ground->planes.size() + std::size_t(on_solid.solid)),
+               solver_index(on_solid.slot, bodies, kinds, neighbors, world, time), -1, on_solid.contact.normal,
+               world.materials->law(kinds[body.kind].material, world.ground->solids[on_solid.solid].material));
   const Manifold& manifold = on_solid.contact.manifold;
-  c.share = 1.0 / manifold.count;
-  for (int i = 0; i < manifold.count; ++i) {
-    c.arm_first = manifold.points[i].point - body.position;
-    c.gap = manifold.points[i].gap;
-    solver_contacts_.push_back(c);
-    keys_.push_back(ground_key(body.owner, world.ground->planes.size() + std::size_t(on_solid.solid)));
-  }
+  for (int i = 0; i < manifold.count; ++i) add_point(manifold.points[i].point - body.position, Vec3::Zero(), manifold.points[i].gap);
 }
 
 // A counting sort of the contacts by neighbour; a contact of two is in both runs.
@@ -128,20 +130,55 @@ void Crowd::add_full_contacts(int index, std::span<const StatisticalBody> bodies
     const FullContact& contact = full_contacts[full_order_[i]];
     const bool is_first = contact.first == self;
     const std::int32_t other = is_first ? contact.second : contact.first;
-    SolverContact c;
-    c.first = index;
-    if (other >= 0) {
-      c.second = solver_index(-1 - other, bodies, kinds, neighbors, world, time);
-      const bool added_by_the_other = c.second < index && !neighbors[other].asleep;
-      if (added_by_the_other) continue;
-      c.arm_second = contact.point - neighbors[other].state.position;
+    const std::int32_t second = other >= 0 ? solver_index(-1 - other, bodies, kinds, neighbors, world, time) : -1;
+    const bool added_by_the_other = other >= 0 && second < index && !neighbors[other].asleep;
+    if (added_by_the_other) continue;
+    add_manifold(contact_key(neighbors[self].owner, other < 0 ? 0xffffffff : neighbors[other].owner), index, second,
+                 is_first ? contact.normal : Vec3(-contact.normal), {.restitution = 0.0, .friction = contact.friction});
+    add_point(contact.point - neighbors[self].state.position, other < 0 ? Vec3(Vec3::Zero()) : Vec3(contact.point - neighbors[other].state.position), contact.gap);
+  }
+}
+
+void Crowd::give_to_full(std::span<FullNeighbor> neighbors, std::size_t pair_manifolds) const {
+  if (neighbors.empty()) return;
+  for (const CrowdManifold& m : std::span(manifolds_).first(pair_manifolds))
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
+      const auto give = [&](Participant to, const Vec3& impulse, const Vec3& arm) {
+        if (to >= 0 || neighbors[-1 - to].asleep) return;
+        Impulse& share = point.bounces ? neighbors[-1 - to].hit : neighbors[-1 - to].push;
+        share.linear += impulse;
+        share.angular += arm.cross(impulse);
+      };
+      give(participants_[m.first], point.impulse, point.arm_first);
+      give(participants_[m.second], -point.impulse, point.arm_second);
     }
-    c.normal = is_first ? contact.normal : Vec3(-contact.normal);
-    c.arm_first = contact.point - neighbors[self].state.position;
-    c.gap = contact.gap;
-    c.law = {.restitution = 0.0, .friction = contact.friction};
-    solver_contacts_.push_back(c);
-    keys_.push_back(contact_key(neighbors[self].owner, other < 0 ? 0xffffffff : neighbors[other].owner));
+}
+
+// Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's matter.
+void Crowd::move_apart(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors, double time) const {
+  const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
+    return index < 0 ? Vec3(Vec3::Zero()) : Vec3(solver_bodies_[index].velocity + solver_bodies_[index].angular_velocity.cross(arm));
+  };
+  const auto move = [&](std::int32_t index, const Vec3& by) {
+    if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
+    const Participant p = participants_[index];
+    (p >= 0 ? bodies[p].position : neighbors[-1 - p].state.position) += by;
+    if (p < 0) neighbors[-1 - p].shift += by;
+  };
+  for (const CrowdManifold& m : manifolds_) {
+    const Participant p = std::max(participants_[m.first], m.second < 0 ? -1 : participants_[m.second]);
+    if (p < 0) continue;
+    const double radius = kinds[bodies[p].kind].shape->radius;
+    const double first = solver_bodies_[m.first].inverse_mass, second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
+    if (first + second == 0.0) continue;
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
+      if (push_out_overlap(point.gap, radius) == 0.0) continue;
+      const double parting = (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
+      const double overlap = point.gap + std::max(0.0, parting) * time;  // the rest is undone by the motion itself
+      const double distance = push_out_overlap(overlap, radius) / double(m.count);
+      move(m.first, distance * first / (first + second) * m.normal);
+      move(m.second, -distance * second / (first + second) * m.normal);
+    }
   }
 }
 
@@ -151,29 +188,22 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   participants_.clear();
   solver_bodies_.clear();
   angular_before_.clear();
-  solver_contacts_.clear();
+  manifolds_.clear();
   keys_.clear();
+  points_.clear();
   index_of_slot_.resize(bodies.size(), -1);
   index_of_neighbor_.assign(neighbors.size(), -1);
 
   // Pair contacts, then what is under every moving participant.
   for (const CrowdContact& pair : contacts) {
-    SolverContact c;
-    c.first = solver_index(pair.first, bodies, kinds, neighbors, world, time);
-    c.second = solver_index(pair.second, bodies, kinds, neighbors, world, time);
-    c.normal = pair.contact.normal;
-    c.law = world.materials->law(material_of(pair.first, bodies, kinds, neighbors), material_of(pair.second, bodies, kinds, neighbors));
+    const std::int32_t first = solver_index(pair.first, bodies, kinds, neighbors, world, time), second = solver_index(pair.second, bodies, kinds, neighbors, world, time);
+    add_manifold(contact_key(owner_of(pair.first, bodies, neighbors), owner_of(pair.second, bodies, neighbors)), first, second, pair.contact.normal,
+                 world.materials->law(material_of(pair.first, bodies, kinds, neighbors), material_of(pair.second, bodies, kinds, neighbors)));
     const Manifold& manifold = pair.contact.manifold;
-    c.share = 1.0 / manifold.count;
-    for (int i = 0; i < manifold.count; ++i) {
-      c.arm_first = manifold.points[i].point - position_of(pair.first, bodies, neighbors);
-      c.arm_second = manifold.points[i].point - position_of(pair.second, bodies, neighbors);
-      c.gap = manifold.points[i].gap;
-      solver_contacts_.push_back(c);
-      keys_.push_back(contact_key(owner_of(pair.first, bodies, neighbors), owner_of(pair.second, bodies, neighbors)));
-    }
+    const Vec3 &at_first = position_of(pair.first, bodies, neighbors), &at_second = position_of(pair.second, bodies, neighbors);
+    for (int i = 0; i < manifold.count; ++i) add_point(manifold.points[i].point - at_first, manifold.points[i].point - at_second, manifold.points[i].gap);
   }
-  const std::size_t pair_contacts = solver_contacts_.size();
+  const std::size_t pair_manifolds = manifolds_.size();
   for (const SolidContact& on_solid : solid_contacts) add_solid_contact(on_solid, bodies, kinds, neighbors, world, time);
   sort_full_contacts(full_contacts, neighbors.size());
   for (std::size_t i = 0; i < participants_.size(); ++i) {
@@ -189,9 +219,9 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
   ContactSolverSettings settings = settings_.solver;
   settings.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
   settings.fall = world.gravity * time;
-  memory_.recall(keys_, solver_contacts_, time);
-  solve_contacts(solver_bodies_, solver_contacts_, time, settings);
-  memory_.remember(keys_, solver_contacts_, time);
+  memory_.recall(keys_, manifolds_, points_, time);
+  solver_.solve(solver_bodies_, manifolds_, points_, time, settings, jobs_);
+  memory_.remember(keys_, manifolds_, points_, time);
 
   // Velocities back, and motion; full neighbours take theirs as impulses.
   for (std::size_t i = 0; i < participants_.size(); ++i) {
@@ -213,36 +243,8 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
     ++body.events;
   }
-  for (std::size_t i = 0; i < pair_contacts; ++i) {
-    const SolverContact& c = solver_contacts_[i];
-    const Vec3 impulse = impulse_of(c);
-    const auto give = [&](Participant to, const Vec3& j, const Vec3& arm) {
-      if (to >= 0 || neighbors[-1 - to].asleep) return;
-      Impulse& share = c.bounces ? neighbors[-1 - to].hit : neighbors[-1 - to].push;
-      share.linear += j;
-      share.angular += arm.cross(j);
-    };
-    give(participants_[c.first], impulse, c.arm_first);
-    give(participants_[c.second], -impulse, c.arm_second);
-  }
-  // Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's matter.
-  const auto move = [&](std::int32_t index, const Vec3& by) {
-    if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
-    const Participant p = participants_[index];
-    (p >= 0 ? bodies[p].position : neighbors[-1 - p].state.position) += by;
-    if (p < 0) neighbors[-1 - p].shift += by;
-  };
-  for (const SolverContact& c : solver_contacts_) {
-    const Participant p = std::max(participants_[c.first], c.second < 0 ? -1 : participants_[c.second]);
-    if (p < 0) continue;
-    const double overlap = c.gap + std::max(0.0, separating_velocity(solver_bodies_, c)) * time;  // the rest is undone by the motion itself
-    const double distance = c.share * push_out_overlap(overlap, kinds[bodies[p].kind].shape->radius);
-    if (distance == 0.0) continue;
-    const double first = solver_bodies_[c.first].inverse_mass, second = c.second < 0 ? 0.0 : solver_bodies_[c.second].inverse_mass;
-    if (first + second == 0.0) continue;
-    move(c.first, distance * first / (first + second) * c.normal);
-    move(c.second, -distance * second / (first + second) * c.normal);
-  }
+  give_to_full(neighbors, pair_manifolds);
+  move_apart(bodies, kinds, neighbors, time);
   // The ground has the last word.
   const auto lift = [&](StatisticalBody& body, const HalfSpace& plane) {
     if (model == StatisticalModel::support) lift_out(body, *kinds[body.kind].shape, plane);
@@ -254,7 +256,7 @@ ContactTally Crowd::step(std::span<StatisticalBody> bodies, std::span<const Body
     for (const HalfSpace& face : faces.of(p)) lift(bodies[p], face);
   }
   ContactTally tally;
-  tally.contacts = std::int64_t(solver_contacts_.size());
+  tally.contacts = std::int64_t(points_.size());
   return tally;
 }
 

@@ -30,7 +30,7 @@ struct CrowdSettings {
 /// The contact solver's work arrays, kept between steps so that a warm step allocates nothing.
 class Crowd {
  public:
-  explicit Crowd(const CrowdSettings& settings = {}) : settings_(settings) {}
+  explicit Crowd(JobRunner jobs = make_job_runner(1), const CrowdSettings& settings = {}) : settings_(settings), jobs_(std::move(jobs)) {}
 
   /// Solves `contacts`, those with static solids, the ground contacts of every crowded body (`faces` among them) and those of `full_contacts` that hold up a full one, then moves the crowded
   /// bodies by `time`. Bodies asleep hold still; full neighbours receive impulses, the velocities that these give them, and shifts, but do not move on.
@@ -49,14 +49,22 @@ class Crowd {
   void add_full_contacts(int index, std::span<const StatisticalBody> bodies, std::span<const BodyKind> kinds,
                          std::span<const FullNeighbor> neighbors, std::span<const FullContact> full_contacts, const StepWorld& world, double time);
 
+  CrowdManifold& add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal, const ContactLaw& law);
+  void add_point(const Vec3& arm_first, const Vec3& arm_second, double gap);
+  void give_to_full(std::span<FullNeighbor> neighbors, std::size_t pair_manifolds) const;
+  void move_apart(std::span<StatisticalBody> bodies, std::span<const BodyKind> kinds, std::span<FullNeighbor> neighbors, double time) const;
+
   CrowdSettings settings_;
+  JobRunner jobs_;
   std::vector<Participant> participants_;     // of each solver body
   std::vector<std::int32_t> index_of_slot_, index_of_neighbor_;
   std::vector<std::int32_t> full_start_, full_order_;  // of each neighbour: its run of full contacts
   std::vector<SolverBody> solver_bodies_;
   std::vector<Vec3> angular_before_;
-  std::vector<SolverContact> solver_contacts_;
-  std::vector<ContactKey> keys_;  // of each solver contact
+  std::vector<CrowdManifold> manifolds_;
+  std::vector<ContactKey> keys_;  // of each manifold
+  std::vector<CrowdPoint> points_;
+  CrowdSolver solver_;
   ContactMemory memory_;
 };
 

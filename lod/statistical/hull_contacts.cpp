@@ -11,14 +11,17 @@ struct Submerged {
   std::array<std::int32_t, kCapacity> vertex;
   std::array<double, kCapacity> gap;
   int count = 0;
+  std::size_t vertices = 0;  // of the hull
 
-  // Marks by the vertex's low bits tell most newcomers at once; where two share a mark, the list decides.
-  std::array<std::uint64_t, 8> marks{};
+  // Marks by the vertex's low bits tell newcomers at once; where so many vertices share marks, the list decides.
+  static constexpr std::uint32_t kMarks = 2048;
+  std::array<std::uint64_t, kMarks / 64> marks{};
   bool holds(std::int32_t v) const {
-    return (marks[v / 64 % 8] >> v % 64 & 1) && std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
+    if (!(marks[std::uint32_t(v) % kMarks / 64] >> std::uint32_t(v) % 64 & 1)) return false;
+    return vertices <= kMarks || std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
   }
   void add(std::int32_t v, double height) {
-    marks[v / 64 % 8] |= std::uint64_t(1) << v % 64;
+    marks[std::uint32_t(v) % kMarks / 64] |= std::uint64_t(1) << std::uint32_t(v) % 64;
     vertex[count] = v;
     gap[count++] = height;
   }
@@ -57,6 +60,7 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   if (shape.sphere_radius) return result;
 
   Submerged found;
+  found.vertices = shape.hull.vertices.size();
   const Vec3 normal_in_body = orientation.conjugate() * normal;
   found.add(hint, result.contact[0].gap);
   walk_below(shape, normal_in_body, height, margin, found);

@@ -2,6 +2,8 @@
 // three-dimensional space, 1988). Hulls that overlap are first taken apart along an axis that served before.
 #pragma once
 
+#include <array>
+
 #include "reference/shape.h"
 
 namespace lodestone {
@@ -17,12 +19,21 @@ struct PlacedHull {
       : shape(&placed), position(at), orientation(turned), rotation(turned.toRotationMatrix()) {}
   /// From the centre of mass to the point farthest along `direction` (unit). The climb starts at `vertex` and leaves what it found there; −1: none known.
   Vec3 find_farthest(const Vec3& direction, std::int32_t& vertex) const;
+  /// m, from the centre of mass.
+  Vec3 arm_of(std::int32_t vertex) const { return shape->sphere_radius ? Vec3(Vec3::Zero()) : Vec3(rotation * shape->hull.vertices[std::size_t(vertex)]); }
+};
+
+/// A corner of the difference of two hulls: a vertex of each. Those between which the nearest point of the difference lies tell where the next search begins.
+struct HullCorner {
+  std::int32_t first = -1, second = -1;
 };
 
 struct HullGap {
   Vec3 normal = Vec3::UnitZ();                             ///< from the second to the first
   double gap = -1e300;                                     ///< m, of the hulls along it: their distance where they are apart; negative: how deep
   std::int32_t vertex_first = -1, vertex_second = -1;      ///< that bound it
+  std::array<HullCorner, 3> corners{};                     ///< of the last search
+  std::int32_t corner_count = 0;
 };
 
 /// The axis of the greatest gap, from `start` (its normal, zero: the line of centres; its vertices, −1: unknown). Ends early, with a gap above `enough`, once

@@ -30,40 +30,60 @@ bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3
 }  // namespace
 
 // By place, so that nothing hangs on the order in which bodies were added.
-void StatisticalLevel::Impl::sort_by_place(std::span<const std::int32_t> slots, std::vector<std::int32_t>& sorted) const {
-  sorted.assign(slots.begin(), slots.end());
+void StatisticalLevel::Impl::sort_by_place(std::vector<std::int32_t>& slots) const {
   const auto place = [&](std::int32_t slot) {
     const Vec3& p = bodies[std::size_t(slot)].position;
     return std::array{p.x(), p.y(), p.z()};
   };
-  std::ranges::sort(sorted, {}, place);
+  std::ranges::sort(slots, {}, place);
+}
+
+void StatisticalLevel::Impl::add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt) {
+  const Vec3 half_way = (0.5 * dt) * velocity, center = position + half_way;
+  ball_x.push_back(center.x()), ball_y.push_back(center.y()), ball_z.push_back(center.z());
+  ball_reach.push_back(float(1.02 * radius + half_way.norm() + 0.5 * settings.gravity.norm() * dt * dt));
 }
 
 void StatisticalLevel::Impl::find_near_pairs(double dt, std::span<const FullNeighbor> neighbors) {
-  const double fall = 0.5 * settings.gravity.norm() * dt * dt;
-  const auto bound = [&](const Vec3& position, const Vec3& velocity, double radius) {
-    const Vec3 half_way = (0.5 * dt) * velocity;
-    return Bound{position + half_way, 1.02 * radius + half_way.norm() + fall};
-  };
-  if (sleepers_changed) {
-    sort_by_place(asleep, stills);
-    bounds.clear();
-    for (const std::int32_t slot : stills) bounds.push_back({bodies[slot].position, 1.02 * kind_of(bodies[slot]).shape->radius});
-    broad_phase.set_still(bounds);
-    sleepers_changed = false;
-  }
-  sort_by_place(awake, movers);
-  bounds.clear();
-  for (const std::int32_t slot : movers) bounds.push_back(bound(bodies[slot].position, bodies[slot].velocity, kind_of(bodies[slot]).shape->radius));
-  for (const FullNeighbor& n : neighbors) bounds.push_back(bound(n.state.position, n.state.velocity, n.shape->radius));
+  movers = awake;
+  sort_by_place(movers);
+  ball_x.clear(), ball_y.clear(), ball_z.clear(), ball_reach.clear();
+  for (const std::int32_t slot : movers) add_ball(bodies[slot].position, bodies[slot].velocity, kind_of(bodies[slot]).shape->radius, dt);
+  for (const FullNeighbor& n : neighbors) add_ball(n.state.position, n.state.velocity, n.shape->radius, dt);
+  cells.fill({ball_x, ball_y, ball_z, ball_reach});
+  ball_pairs.clear();
+  for (std::int64_t part = 0; part < cells.parts(); ++part) cells.find_pairs(part, ball_pairs);
   pairs.clear();
-  broad_phase.find_pairs(bounds, pairs);
+  for (std::int64_t i = 0; i < ball_pairs.size(); ++i) {
+    const auto first = std::int32_t(ball_pairs.first(i)), second = std::int32_t(ball_pairs.second(i));
+    pairs.push_back({std::min(first, second), std::max(first, second)});
+  }
+  find_still_pairs();
+  woken = false;
   take_over_found(neighbors);
+}
+
+// Of those that move with those that sleep.
+void StatisticalLevel::Impl::find_still_pairs() {
+  if (still.empty()) return;
+  std::vector<std::int32_t>& near = still_near;
+  for (std::size_t i = 0; i < ball_x.size(); ++i) {
+    const Vec3 center(ball_x[i], ball_y[i], ball_z[i]);
+    const auto own_reach = double(ball_reach[i]);
+    near.clear();
+    still.find_near(center, own_reach, [&](std::uint32_t slot) {
+      const StatisticalBody& body = bodies[slot];
+      const double limit = own_reach + 1.02 * kind_of(body).shape->radius;
+      if ((body.position - center).squaredNorm() < limit * limit) near.push_back(std::int32_t(slot));
+    });
+    sort_by_place(near);
+    for (const std::int32_t slot : near) pairs.push_back({std::int32_t(i), -1 - slot});
+  }
 }
 
 // A slot, or −1 − index of a full neighbour.
 Participant StatisticalLevel::Impl::participant(std::int32_t of_pair) const {
-  if (of_pair < 0) return stills[std::size_t(-1 - of_pair)];
+  if (of_pair < 0) return -1 - of_pair;
   const auto count = std::int32_t(movers.size());
   return of_pair < count ? movers[std::size_t(of_pair)] : -1 - (of_pair - count);
 }
@@ -114,11 +134,11 @@ Vec3 StatisticalLevel::Impl::point_velocity(Participant p, const Vec3& point, st
   }
   const StatisticalBody& body = bodies[p];
   if (body.motion == Motion::asleep) return Vec3::Zero();
-  return body.velocity + angular_velocity(body.orientation, body.spin, *kind_of(body).shape).cross(point - body.position);
+  return body.velocity + turning[std::size_t(p)].angular_velocity.cross(point - body.position);
 }
 
 void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const {
-  constexpr double kHeld = 0.01;  // over R: so far bodies take a contact along
+  constexpr double kHeld = 0.02;  // over R: so far bodies take a contact along
   const PairBody a = pair_body(pair.first, neighbors), b = pair_body(pair.second, neighbors);
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
   const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;
@@ -174,9 +194,8 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
 void StatisticalLevel::Impl::find_ground_solids(double dt, bool of_near_only) {
   solid_contacts.clear();
   faces_below.faces.clear();
-  faces_below.run.clear();
-  if (ground.solids.empty()) return;
-  faces_below.run.assign(bodies.size(), {0, 0});
+  if (ground.solids.empty()) return faces_below.run.clear();
+  faces_below.run.resize(bodies.size());  // of those awake; nobody asks about others
   for (const std::int32_t slot : awake) {
     const std::size_t before = solid_contacts.size(), faces = faces_below.faces.size();
     if (!of_near_only || near_another[std::size_t(slot)])
@@ -191,18 +210,18 @@ void StatisticalLevel::Impl::remember_places() {
 }
 
 void StatisticalLevel::Impl::find_turning() {
-  turning.assign(bodies.size(), 0.0);
   for (const std::int32_t slot : awake) {
     const StatisticalBody& body = bodies[std::size_t(slot)];
     const Shape& shape = *kind_of(body).shape;
-    turning[std::size_t(slot)] = angular_velocity(body.orientation, body.spin, shape).norm() * shape.radius;
+    const Vec3 omega = body.motion == Motion::asleep ? Vec3(Vec3::Zero()) : angular_velocity(body.orientation, body.spin, shape);
+    turning[std::size_t(slot)] = {omega, omega.norm() * shape.radius};
   }
 }
 
 // m: by how much their gap can shrink in `dt`, at most, if nothing strikes them.
 double StatisticalLevel::Impl::find_approach(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const {
   const auto turning_of = [&](Participant p) {
-    if (p >= 0) return turning[std::size_t(p)];
+    if (p >= 0) return turning[std::size_t(p)].rim_speed;
     const FullNeighbor& n = neighbors[std::size_t(-1 - p)];
     return n.state.angular_velocity.norm() * n.shape->radius;
   };

@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "lod/statistical/contact_memory.h"
-
 namespace lodestone {
+
+/// Which two bodies touch, by their owners, who stay the same while they do; a plane of the ground counts down from the greatest number.
+using ContactKey = std::uint64_t;
+inline ContactKey contact_key(std::uint32_t first, std::uint32_t second) { return ContactKey(first) << 32 | second; }
+inline ContactKey ground_key(std::uint32_t body, std::size_t plane) { return contact_key(body, std::uint32_t(0xffffffff - plane)); }
 
 /// A hash table of keys, each once.
 class PairMemory {

@@ -14,6 +14,9 @@ constexpr double kFitting = 0.995;     // of all balls are at the base level or 
 constexpr double kColumnMost = 4.0;    // balls in a column of cells, up to which a layer is thin
 constexpr double kCellsMost = 2.0;     // for each ball
 constexpr std::int32_t kWrapLeast = 4; // cells: with fewer, a cell would be its neighbour's neighbour
+constexpr double kStrayFactor = 16.0;  // an axis is so many times as long as all but a few balls need: those have strayed
+constexpr double kRounding = 4e-7;     // of a position kept as a float, over how far from the origin
+constexpr std::size_t kSample = 1000;  // balls that tell where most are
 constexpr std::int64_t kOneCell = 24;  // balls: so few are tested each with each
 constexpr std::int64_t kPartBalls = 1024;
 constexpr std::int64_t kBlock = 8192;  // balls of a job
@@ -66,6 +69,7 @@ void CellGrid::fill(const BallSpan& balls, const JobRunner& jobs, int shares) {
   grids_.clear();
   parts_.clear();
   index_.clear();
+  level_.clear();
   const std::int64_t count = std::int64_t(balls.x.size());
   if (count == 0) return;
   const BallBounds all = find_bounds(balls, jobs);
@@ -115,16 +119,50 @@ void CellGrid::lay_out_levels(const BallSpan& balls, const JobRunner& jobs) {
   }
 }
 
+// From a sample, each end without a fiftieth of it.
+CellGrid::Range CellGrid::find_usual_range(int level) const {
+  const std::array<std::span<const double>, 3> centers = {balls_.x, balls_.y, balls_.z};
+  const std::size_t count = balls_.x.size(), stride = std::max<std::size_t>(1, count / kSample);
+  const bool many = !level_.empty();
+  Range range;
+  range.low.fill(-1e300), range.high.fill(1e300);
+  std::array<double, 2 * kSample> sample;
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < count; i += stride)
+      if (!many || level_[i] == level) sample[size++] = centers[a][i];
+    if (size == 0) break;
+    const auto low = sample.begin() + std::ptrdiff_t(size / 50), high = sample.begin() + std::ptrdiff_t(size - 1 - size / 50), end = sample.begin() + std::ptrdiff_t(size);
+    std::nth_element(sample.begin(), low, end);
+    range.low[a] = *low;
+    std::nth_element(low, high, end);
+    range.high[a] = *high;
+  }
+  return range;
+}
+
 // Level −1: everything in one cell.
 void CellGrid::lay_out(const BallBounds& bounds, int level) {
   Grid grid;
-  const std::array<double, 3>& low = bounds.low, &high = bounds.high;
+  std::array<double, 3> low = bounds.low, high = bounds.high;
   const auto count = double(bounds.count);
   grid.most_reach = double(bounds.most_reach);
   grid.edge = level < 0 ? 1.0 : std::max(base_edge_ * std::pow(kLevelFactor, level - kBaseLevel), 2.0 * grid.most_reach);
   grid.inverse = 1.0 / grid.edge;
   std::array<double, 3> cells;
   for (int a = 0; a < 3; ++a) cells[a] = std::floor((high[a] - low[a]) * grid.inverse * (1.0 + 1e-12)) + 1.0;
+
+  // A ball that has flown off makes no axis longer: it lies in the outermost cell, as do those near it.
+  const double limit = std::max(64.0, kCellsMost * count);
+  if (level >= 0 && cells[0] * cells[1] * cells[2] > limit) {
+    const Range usual = find_usual_range(level);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double enough = std::floor((usual.high[a] - usual.low[a]) * grid.inverse) + 3.0;
+      if (cells[a] <= kStrayFactor * enough) continue;
+      cells[a] = enough, low[a] = usual.low[a] - grid.edge, high[a] = low[a] + enough * grid.edge;
+      grid.stray_fuzz = float(kRounding);
+    }
+  }
 
   // The slowest axis is the longest, the middle one the shortest: a thin layer's columns are then one cell.
   std::array<int, 3> by_length{0, 1, 2};
@@ -133,7 +171,6 @@ void CellGrid::lay_out(const BallBounds& bounds, int level) {
   std::array<double, 3> along{cells[grid.axis[0]], cells[grid.axis[1]], cells[grid.axis[2]]};
   if (count / (along[0] * along[2]) <= kColumnMost) along[1] = 1.0;
   if (level < 0) along.fill(1.0);
-  const double limit = std::max(64.0, kCellsMost * count);
   while (along[0] * along[1] * along[2] > limit) {
     const int longest = int(std::ranges::max_element(along) - along.begin());
     if (along[longest] < 2.0 * kWrapLeast) break;
@@ -146,7 +183,7 @@ void CellGrid::lay_out(const BallBounds& bounds, int level) {
     grid.origin[a] = low[grid.axis[a]];
     length = std::max(length, along[a] == 1.0 ? high[grid.axis[a]] - low[grid.axis[a]] : along[a] * grid.edge);
   }
-  grid.fuzz = float(4e-7 * (length + grid.edge));
+  grid.fuzz = float(kRounding * (length + grid.edge));
   grid.first_cell = grids_.empty() ? 0 : grids_.back().end_cell;
   grid.end_cell = grid.first_cell + std::uint32_t(grid.cells[0]) * std::uint32_t(grid.cells[1]) * std::uint32_t(grid.cells[2]);
   grids_.push_back(grid);
@@ -169,6 +206,18 @@ void CellGrid::make_parts() {
     if (grid.wraps[2] && made > 1 && made % 2 == 1) parts_.back().colour = 2;
   }
   if (grids_.size() > 1) parts_.push_back({.grid = -1, .colour = 3});
+}
+
+std::int64_t CellGrid::used_cells() const {
+  std::int64_t used = 0;
+  for (std::int64_t cell = 0; cell < cells(); ++cell) used += start_[std::size_t(cell)] < start_[std::size_t(cell) + 1];
+  return used;
+}
+
+std::size_t CellGrid::bytes() const {
+  const auto held = [](const auto& array) { return array.capacity() * sizeof array[0]; };
+  return held(grids_) + held(parts_) + held(bounds_) + held(level_) + held(others_) + held(cell_) + held(start_) + held(x_) + held(y_) + held(z_) + held(reach_) + held(index_) +
+         held(grid_begin_);
 }
 
 }  // namespace lodestone

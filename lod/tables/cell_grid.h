@@ -41,6 +41,14 @@ class CellGrid {
   /// Indices of the balls given, in the order of the cells.
   std::span<const std::uint32_t> order() const { return index_; }
 
+  // How the balls were laid out, for reports.
+  int grids() const { return int(grids_.size()); }
+  std::int64_t cells() const { return grids_.empty() ? 0 : grids_.back().end_cell; }
+  std::int64_t used_cells() const;  ///< in which there are balls
+  /// Whether the finest grid has one layer of cells.
+  bool flat() const { return !grids_.empty() && grids_.front().cells[1] == 1; }
+  std::size_t bytes() const;
+
  private:
   /// Cells of one size. Axes are in the order along which cells follow each other, fastest first.
   struct Grid {
@@ -52,6 +60,7 @@ class CellGrid {
     double most_reach = 0.0;           // m, of its balls
     std::uint32_t first_cell = 0, end_cell = 0;  // in start_
     float fuzz = 0.0f;                 // m, rounding of the positions kept here
+    float stray_fuzz = 0.0f;           // over how far from the origin a ball is: where some have strayed beyond the cells, and lie in the outermost
   };
   struct Part {
     std::int32_t grid = 0, first_row = 0, last_row = 0;  // rows along the slowest axis; grid −1: pairs of different grids
@@ -86,6 +95,11 @@ class CellGrid {
   std::pair<float, float> base_reaches() const;
   void lay_out_levels(const BallSpan& balls, const JobRunner& jobs);
   void lay_out(const BallBounds& bounds, int level);
+  /// Where all but a few balls of a level are, along each axis.
+  struct Range {
+    std::array<double, 3> low{}, high{};  // m
+  };
+  Range find_usual_range(int level) const;
   void sort(const BallSpan& balls, const JobRunner& jobs, int shares);
   void find_usual_cells(const BallSpan& balls, const JobRunner& jobs);
   template <class Visit>
@@ -139,7 +153,8 @@ void CellGrid::find_in(const Grid& grid, const Vec3& center, double reach, const
     if (grid.cells[a] == 1) {
       low[a] = high[a] = 0;  // however far it reaches
     } else if (!grid.wraps[a]) {
-      low[a] = std::int64_t(std::clamp(first, 0.0, n)), high[a] = std::int64_t(std::clamp(last, -1.0, n - 1));
+      const double beyond = grid.stray_fuzz > 0.0f ? 0.0 : 1.0;  // where nothing lies, or strays
+      low[a] = std::int64_t(std::clamp(first, 0.0, n - 1 + beyond)), high[a] = std::int64_t(std::clamp(last, -beyond, n - 1));
     } else if (last - first >= n - 1) {
       low[a] = 0, high[a] = std::int64_t(n) - 1;
     } else {

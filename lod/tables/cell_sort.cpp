@@ -48,7 +48,7 @@ double CellGrid::find_cell(const Grid& grid, int a, double at, std::int32_t& cel
     c -= turns * grid.cells[a];
     at -= turns * grid.cells[a] * grid.edge;
   }
-  cell = std::clamp(std::int32_t(c), 0, grid.cells[a] - 1);
+  cell = std::int32_t(std::clamp(c, 0.0, double(grid.cells[a] - 1)));
   return at;
 }
 
@@ -114,11 +114,12 @@ void CellGrid::place_usual(const BallSpan& balls, const JobRunner& jobs, std::in
   const std::uint32_t* cell = cell_.data();
   std::uint32_t *start = start_.data(), *index = index_.data();
   float *to_x = x_.data(), *to_y = y_.data(), *to_z = z_.data(), *to_reach = reach_.data();
-  const float *reach = balls.reach.data(), fuzz = grid.fuzz;
+  const float *reach = balls.reach.data(), fuzz = grid.fuzz, stray_fuzz = grid.stray_fuzz;
   each_usual(jobs, shares, [=](std::int64_t i) {
     const std::uint32_t at = start[cell[i] + 1]++;
-    to_x[at] = float(at_x[i] - ox), to_y[at] = float(at_y[i] - oy), to_z[at] = float(at_z[i] - oz);
-    to_reach[at] = reach[i] + fuzz;
+    const auto within_x = float(at_x[i] - ox), within_y = float(at_y[i] - oy), within_z = float(at_z[i] - oz);
+    to_x[at] = within_x, to_y[at] = within_y, to_z[at] = within_z;
+    to_reach[at] = reach[i] + (fuzz + stray_fuzz * (std::abs(within_x) + std::abs(within_y) + std::abs(within_z)));
     index[at] = std::uint32_t(i);
   });
 }
@@ -147,7 +148,7 @@ void CellGrid::place_others(const BallSpan& balls) {
     x_[at] = float(find_cell(grid, 0, x[i] - grid.origin[0], cell));
     y_[at] = float(find_cell(grid, 1, y[i] - grid.origin[1], cell));
     z_[at] = float(find_cell(grid, 2, z[i] - grid.origin[2], cell));
-    reach_[at] = balls.reach[i] + grid.fuzz;
+    reach_[at] = balls.reach[i] + (grid.fuzz + grid.stray_fuzz * (std::abs(x_[at]) + std::abs(y_[at]) + std::abs(z_[at])));
     index_[at] = i;
   }
 }

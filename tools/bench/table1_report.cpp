@@ -1,11 +1,8 @@
 #include "tools/bench/table1_report.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <fstream>
-
-#include "reference/error.h"
+#include "tools/csv_file.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -54,13 +51,6 @@ std::string percent_of(const Table1Row& row) {
   return times ? fmt::format("{:.3g}", 100.0 / *times) : "";
 }
 
-std::string csv_cell(const ordered_json& value) {
-  if (value.is_null()) return "";
-  if (value.is_array()) return fmt::format("{} {} {}", value[0].get<int>(), value[1].get<int>(), value[2].get<int>());
-  if (!value.is_string()) return value.dump();
-  return fmt::format("\"{}\"", value.get<std::string>());
-}
-
 }  // namespace
 
 std::string text_of(std::span<const Table1Row> rows) {
@@ -87,16 +77,6 @@ ordered_json json_of(std::span<const Table1Row> rows) {
   return json;
 }
 
-void save_csv(std::span<const Table1Row> rows, const std::filesystem::path& file) {
-  std::ofstream out(file);
-  const auto write_line = [&](const ordered_json& row, const auto& cell_of) {
-    std::vector<std::string> cells;
-    for (const auto& [key, value] : row.items()) cells.push_back(cell_of(key, value));
-    out << fmt::format("{}\n", fmt::join(cells, ","));
-  };
-  write_line(json_of(Table1Row{}), [](const std::string& key, const ordered_json&) { return key; });
-  for (const Table1Row& row : rows) write_line(json_of(row), [](const std::string&, const ordered_json& value) { return csv_cell(value); });
-  if (!out.flush()) throw InputError(fmt::format("{}: found a place that cannot be written to, expected a file for the table", file.string()));
-}
+void save_csv(std::span<const Table1Row> rows, const std::filesystem::path& file) { save_csv(json_of(rows)["rows"], json_of(Table1Row{}), file); }
 
 }  // namespace lodestone

@@ -91,6 +91,30 @@ TEST(CellGrid, PebblesAmongBoulders) {
   expect_all_pairs(balls);
 }
 
+Balls layer_with_strays(int side) {
+  Balls balls = cloud(side * side, {0.2 * side, 0.2 * side, 0.1}, 0.1, 0.1);
+  for (const Vec3& far : {Vec3(3e5, -1e5, 2e4), Vec3(-2e4, 1e3, 4e5), Vec3(10, 2e5, -1e5), Vec3(5, 5, -1e3)}) balls.add(far, 0.1);
+  return balls;
+}
+
+TEST(CellGrid, StraysFarFromALayer) {
+  expect_all_pairs(layer_with_strays(40));
+  Balls mixed = layer_with_strays(30);
+  for (std::size_t i = 0; i < mixed.x.size(); i += 90) mixed.reach[i] = 2.0f;
+  expect_all_pairs(mixed);
+}
+
+// Balls that flew off make no cells so coarse that the layer's share them.
+TEST(CellGrid, StraysCostTheLayerNothing) {
+  const auto find_fill = [](const Balls& balls) {
+    CellGrid grid;
+    grid.fill(balls.span());
+    return double(balls.x.size()) / double(grid.used_cells());
+  };
+  const Balls strays = layer_with_strays(100), alone = cloud(10'000, {20, 20, 0.1}, 0.1, 0.1);
+  EXPECT_LT(find_fill(strays), 1.2 * find_fill(alone));
+}
+
 TEST(CellGrid, NearAPlaceAreAllThatReachIt) {
   for (const Balls& balls : {cloud(1000, {6, 6, 0.4}, 0.1, 0.2), cloud(1000, {80, 80, 80}, 0.3, 3.0)}) {
     CellGrid grid;
