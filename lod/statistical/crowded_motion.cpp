@@ -45,7 +45,7 @@ template <class Select>
 ContactTally StatisticalLevel::Impl::move_those(double time, Select select) {
   const auto count = std::int64_t(awake.size());
   tallies.assign(std::size_t(count), {});
-  parallel(count, 256, [&](std::int64_t begin, std::int64_t end) {
+  run_in_pieces(jobs, count, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
       if (bodies[awake[i]].motion != Motion::asleep && select(awake[i])) move_alone(std::size_t(i), time, tallies[i]);
   });

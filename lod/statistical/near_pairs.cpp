@@ -143,12 +143,9 @@ void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbo
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
   const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;
   if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(pair, dt, neighbors)) return;
-  if (!pair.contacts.empty() && moved < kHeld * least_radius) {
-    for (HeldContact& held : pair.contacts) follow(held, a, b);
-    return;
-  }
+  if (!pair.contacts.empty() && moved < kHeld * least_radius) return;
   const Vec3 closing = center_velocity(pair.first, neighbors) - center_velocity(pair.second, neighbors);
-  const HullContactSearch search = find_pair_contacts(a, b, pair.known, touching + closing.norm() * dt);
+  const HullContactSearch search = find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + closing.norm() * dt);
   pair.gap = search.gap;
   pair.when = pose_of(a, b);
   pair.contacts.clear();
@@ -174,20 +171,35 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
       if (p >= 0 && !near_another[std::size_t(p)] && bodies[std::size_t(p)].motion != Motion::asleep) return false;  // it has moved on
     return !(is_asleep(pair.first, neighbors) && is_asleep(pair.second, neighbors));
   };
-  parallel(std::int64_t(found.size()), 64, [&](std::int64_t begin, std::int64_t end) {
+  constexpr std::int64_t kGrain = 64;
+  const auto count = std::int64_t(found.size());
+  run_in_pieces(jobs, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
-      if (looked_at(found[i])) find_contact(dt, neighbors, found[i]);
+      if (looked_at(found[std::size_t(i)])) find_contact(dt, neighbors, found[std::size_t(i)]);
   });
-  contacts.clear();
-  for (const FoundPair& pair : found) {
-    if (pair.contacts.empty() || !looked_at(pair)) continue;
-    for (const HeldContact& held : pair.contacts) {
-      if (!closes(pair, held.contact, dt, neighbors)) continue;
-      contacts.push_back({pair.first, pair.second, held.contact});
-      for (const Participant p : {pair.first, pair.second})
-        if (p >= 0) bodies[p].crowded = true, near_another[std::size_t(p)] = 1;
+  first_contact.assign(1, 0);
+  for (const FoundPair& pair : found) first_contact.push_back(first_contact.back() + (pair.contacts.empty() || !looked_at(pair) ? 0 : std::uint32_t(pair.contacts.size())));
+  contacts.resize(first_contact.back());
+  may_close.resize(first_contact.back());
+  run_in_pieces(jobs, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      const FoundPair& pair = found[std::size_t(i)];
+      for (std::uint32_t at = first_contact[std::size_t(i)]; at < first_contact[std::size_t(i) + 1]; ++at) {
+        const HeldContact& held = pair.contacts[at - first_contact[std::size_t(i)]];
+        contacts[at] = {pair.first, pair.second, follow(held, pair_body(pair.first, neighbors), pair_body(pair.second, neighbors))};
+        may_close[at] = closes(pair, contacts[at].contact, dt, neighbors);
+      }
     }
+  });
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < contacts.size(); ++at) {
+    if (!may_close[at]) continue;
+    if (kept != at) contacts[kept] = contacts[at];
+    for (const Participant p : {contacts[at].first, contacts[at].second})
+      if (p >= 0) bodies[p].crowded = true, near_another[std::size_t(p)] = 1;
+    ++kept;
   }
+  contacts.resize(kept);
 }
 
 // Static boxes and meshes: what nears one is solved with all that it touches.

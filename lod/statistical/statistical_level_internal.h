@@ -5,7 +5,6 @@
 #include "lod/statistical/clip_player.h"
 #include "lod/statistical/crowd.h"
 #include "lod/statistical/pair_memory.h"
-#include "lod/statistical/parallel.h"
 #include "lod/statistical/statistical_level.h"
 #include "lod/tables/cell_grid.h"
 #include "lod/tables/still_grid.h"
@@ -32,7 +31,8 @@ struct FoundPair {
   Participant first = 0, second = 0;
   double gap = 0.0;                ///< m, at least, when it was found
   std::optional<PairPose> when;    ///< how the bodies lay then; none: never
-  std::vector<KnownGap> known;     ///< see find_pair_contacts
+  HullGap whole = {.normal = Vec3::Zero()};  ///< as the two after it, see find_pair_contacts
+  std::vector<KnownGap> of_pieces;
   std::vector<HeldContact> contacts;
 };
 
@@ -40,7 +40,7 @@ struct StatisticalLevel::Impl {
   StatisticalSettings settings;
   const StaticGround& ground;
   const MaterialTable& materials;
-  ParallelFor parallel;
+  JobRunner jobs;
   std::vector<BodyKind> kinds;
 
   // One of each per body, by slot.
@@ -75,12 +75,14 @@ struct StatisticalLevel::Impl {
   std::vector<FullNeighbor> full, full_before;  // the neighbours, moved on between substeps
   std::vector<FoundPair> found, found_before;  // of the pairs of this step and of the last one
   std::vector<CrowdContact> contacts;
+  std::vector<std::uint32_t> first_contact;  // of each found pair, among those that are looked at
+  std::vector<char> may_close;                // of each of these
   std::vector<SolidContact> solid_contacts;
   FacesBelow faces_below;
   std::vector<ContactTally> tallies;
 
   Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m)
-      : settings(s), ground(g), materials(m), parallel(s.threads), crowd(make_job_runner(s.threads)) {}
+      : settings(s), ground(g), materials(m), jobs(s.jobs ? s.jobs : make_job_runner(s.threads)), crowd(jobs) {}
 
   const BodyKind& kind_of(const StatisticalBody& body) const { return kinds[body.kind]; }
   std::uint16_t find_kind(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature);

@@ -27,7 +27,7 @@ void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std:
 }  // namespace
 
 TablesLevel::TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, Simd simd)
-    : settings_(settings), ground_(ground), materials_(materials), jobs_(make_job_runner(settings.threads)), simd_(simd), cells_(simd) {
+    : settings_(settings), ground_(ground), materials_(materials), jobs_(settings.jobs ? settings.jobs : make_job_runner(settings.threads)), simd_(simd), cells_(simd) {
   tables_.options = settings.tables;
 }
 
