@@ -88,6 +88,22 @@ Participant StatisticalLevel::Impl::participant(std::int32_t of_pair) const {
   return of_pair < count ? movers[std::size_t(of_pair)] : -1 - (of_pair - count);
 }
 
+// Pairs too many are set aside, not freed: what they have allocated serves others.
+void StatisticalLevel::Impl::resize_found(std::size_t count) {
+  while (found.size() > count) {
+    spare_found.push_back(std::move(found.back()));
+    found.pop_back();
+  }
+  while (found.size() < count) {
+    if (spare_found.empty()) {
+      found.emplace_back();
+      continue;
+    }
+    found.push_back(std::move(spare_found.back()));
+    spare_found.pop_back();
+  }
+}
+
 // What is known of the pairs that were near before.
 void StatisticalLevel::Impl::take_over_found(std::span<const FullNeighbor> neighbors) {
   const auto owner = [&](Participant p) { return p < 0 ? neighbors[std::size_t(-1 - p)].owner : bodies[std::size_t(p)].owner; };
@@ -96,17 +112,18 @@ void StatisticalLevel::Impl::take_over_found(std::span<const FullNeighbor> neigh
     return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
   };
   std::swap(found, found_before);
-  pair_memory.begin(found_before.size());
-  for (std::size_t i = 0; i < found_before.size(); ++i) pair_memory.put(found_before[i].key, std::int32_t(i));
-  found.resize(pairs.size());
+  pair_memory.clear();
+  for (const FoundPair& pair : found_before) pair_memory.add(pair.key);
+  resize_found(pairs.size());
+  std::size_t expected = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     // By place, so that a contact is the same whichever of its bodies is full and whichever was added first.
     Participant first = participant(pairs[i].first), second = participant(pairs[i].second);
     if (comes_before(second, first)) std::swap(first, second);
     const ContactKey key = contact_key(owner(first), owner(second));
-    const std::int32_t before = pair_memory.find(key);  // none, too, where they have changed places: what is known holds for their old order
-    if (before < 0) found[i] = {};
-    else std::swap(found[i], found_before[std::size_t(before)]);
+    const std::int32_t before = pair_memory.find(key, expected);  // none, too, where they have changed places: what is known holds for their old order
+    if (before < 0) found[i].forget();
+    else std::swap(found[i], found_before[std::size_t(before)]), expected = std::size_t(before) + 1;
     found[i].key = key;
     found[i].first = first;
     found[i].second = second;
@@ -145,7 +162,8 @@ void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbo
   if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(pair, dt, neighbors)) return;
   if (!pair.contacts.empty() && moved < kHeld * least_radius) return;
   const Vec3 closing = center_velocity(pair.first, neighbors) - center_velocity(pair.second, neighbors);
-  const HullContactSearch search = find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + closing.norm() * dt);
+  thread_local HullContactSearch search;
+  find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + closing.norm() * dt, search);
   pair.gap = search.gap;
   pair.when = pose_of(a, b);
   pair.contacts.clear();

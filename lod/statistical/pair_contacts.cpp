@@ -130,20 +130,19 @@ void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std:
     }
 }
 
-HullContactSearch search_relative(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin) {
-  HullContactSearch search;
+void search_relative(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
+  search.contacts.clear();
   if (first.shape->pieces.empty() && second.shape->pieces.empty()) {
     whole = find_hull_gap(place(first), place(second), whole, margin);
     search.gap = whole.gap;
     if (search.gap <= margin) search.contacts.push_back(contact_along(first, second, whole));
-    return search;
+    return;
   }
   const bool apart = are_apart(place(first), place(second), margin, whole);
   search.gap = whole.gap;
-  if (apart && search.gap > margin) return search;
+  if (apart && search.gap > margin) return;
   of_pieces.resize(std::size_t(count_pieces(first) * count_pieces(second)));
   find_contacts_of_pieces(first, second, of_pieces, margin, search);
-  return search;
 }
 
 // Rounded well above what the last bits of a state hold (and far below what shows), so that the path of the search does not hang on them: the same
@@ -219,11 +218,10 @@ PairContact follow(const HeldContact& held, const PairBody& first, const PairBod
   return contact;
 }
 
-HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin) {
+void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
   const auto [a, b] = relative_to_second(first, second);
-  HullContactSearch search = search_relative(a, b, whole, of_pieces, margin);
+  search_relative(a, b, whole, of_pieces, margin, search);
   for (PairContact& contact : search.contacts) shift(contact, second.position);
-  return search;
 }
 
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {

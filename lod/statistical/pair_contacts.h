@@ -60,8 +60,8 @@ struct HullContactSearch {
 };
 
 /// `support`. Concave bodies that have convex pieces (Shape::pieces) meet in these, so that they may reach into each other; others as their hulls. `whole`, of the
-/// hulls (at first with a normal of zero), and `of_pieces`, of every two pieces (at first empty), are what earlier searches found.
-HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin);
+/// hulls (at first with a normal of zero), and `of_pieces`, of every two pieces (at first empty), are what earlier searches found. What `search` held before is gone.
+void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search);
 
 /// The two hulls, whatever pieces they have; none where the gap is above `margin`.
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);

@@ -34,6 +34,13 @@ struct FoundPair {
   HullGap whole = {.normal = Vec3::Zero()};  ///< as the two after it, see find_pair_contacts
   std::vector<KnownGap> of_pieces;
   std::vector<HeldContact> contacts;
+
+  void forget() {
+    when.reset();
+    whole = {.normal = Vec3::Zero()};
+    of_pieces.clear();
+    contacts.clear();
+  }
 };
 
 struct StatisticalLevel::Impl {
@@ -73,6 +80,7 @@ struct StatisticalLevel::Impl {
   std::vector<char> near_another;            // by slot: of those that may touch another in this step
   std::vector<Turning> turning;              // by slot; none of those that sleep
   std::vector<FullNeighbor> full, full_before;  // the neighbours, moved on between substeps
+  std::vector<FoundPair> spare_found;
   std::vector<FoundPair> found, found_before;  // of the pairs of this step and of the last one
   std::vector<CrowdContact> contacts;
   std::vector<std::uint32_t> first_contact;  // of each found pair, among those that are looked at
@@ -106,6 +114,7 @@ struct StatisticalLevel::Impl {
   void add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt);
   void find_still_pairs();
   Participant participant(std::int32_t of_pair) const;
+  void resize_found(std::size_t count);
   void take_over_found(std::span<const FullNeighbor> neighbors);
   void find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const;
   bool closes(const FoundPair& pair, const PairContact& contact, double dt, std::span<const FullNeighbor> neighbors) const;

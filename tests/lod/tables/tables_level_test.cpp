@@ -2,37 +2,11 @@
 #include "lod/tables/tables_level.h"
 
 #include <gtest/gtest.h>
-#include <malloc.h>
-
-#include <atomic>
-#include <cstdlib>
-#include <new>
 
 #include "reference/free_rotation.h"
 #include "reference/random.h"
 #include "signature/measure/measure.h"
-
-namespace {
-std::atomic<std::int64_t> allocations = 0, bytes_held = 0;
-}
-
-// Counted for this program's tests. The sanitizers bring their own.
-#if !defined(__SANITIZE_ADDRESS__)
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // where one is inlined and the other is not
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) {
-    bytes_held += std::int64_t(malloc_usable_size(memory));
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  bytes_held -= std::int64_t(malloc_usable_size(memory));
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept { operator delete(memory); }
-#endif
+#include "tests/allocations.h"
 
 namespace lodestone {
 namespace {
@@ -127,20 +101,20 @@ TEST_F(SphereLevel, AWarmStepAllocatesNothing) {
   TablesLevel level = make();
   add_heap(level, 12, 4);
   run(level, 400);
-  const std::int64_t before = allocations;
+  const std::int64_t before = allocations();
   run(level, 50);
-  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(allocations() - before, 0);
 }
 
 // Of the level alone, with about a contact a body.
 TEST_F(SphereLevel, HoldsLittleForABody) {
   settings_.sleeping = false;
-  const std::int64_t before = bytes_held;
+  const std::int64_t before = bytes_held();
   TablesLevel level = make();
   add_heap(level, 64, 2);
   run(level, 90);
   const auto contacts = double(run(level, 1).contacts);
-  const double per_body = double(bytes_held - before) / level.size();
+  const double per_body = double(bytes_held() - before) / level.size();
   std::printf("%.0f bytes a body, %.2f contacts\n", per_body, contacts / level.size());
   EXPECT_GT(per_body, 200.0);
   EXPECT_LT(per_body, 365.0);
