@@ -106,8 +106,10 @@ class CellGrid {
   void each_usual(const JobRunner& jobs, std::int64_t shares, const Visit& visit) const;
   void count_usual(const JobRunner& jobs, std::int64_t shares);
   void place_usual(const BallSpan& balls, const JobRunner& jobs, std::int64_t shares);
-  void count_others(const BallSpan& balls);
-  void place_others(const BallSpan& balls);
+  template <class Visit>
+  void each_other(bool all, const Visit& visit) const;
+  void count_others(const BallSpan& balls, bool all);
+  void place_others(const BallSpan& balls, bool all);
   const Grid& grid_of(std::uint32_t ball) const;
   static std::array<std::span<const double>, 3> along_axes(const Grid& grid, const BallSpan& balls);
   static double find_cell(const Grid& grid, int axis, double at, std::int32_t& cell);

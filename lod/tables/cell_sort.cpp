@@ -2,8 +2,8 @@
 // usual size; one by one for the few balls of other sizes, and for grids that wrap.
 #include "lod/tables/cell_grid.h"
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace lodestone {
 namespace {
@@ -59,17 +59,14 @@ void CellGrid::sort(const BallSpan& balls, const JobRunner& jobs, int shares) {
   for (auto* array : {&x_, &y_, &z_, &reach_}) array->resize(count);
   index_.resize(count);
   const std::array<bool, 3>& wraps = grids_[usual_].wraps;
-  if (wraps[0] || wraps[1] || wraps[2]) {
-    others_.resize(count);
-    std::iota(others_.begin(), others_.end(), 0u);
-  }
-  const std::int64_t at_once = others_.size() == count ? 0 : std::int64_t(count) < kBlock ? 1 : shares;
-  if (at_once > 0) find_usual_cells(balls, jobs);
-  count_others(balls);
+  const bool any_usual = !(wraps[0] || wraps[1] || wraps[2]) && others_.size() < count;
+  const std::int64_t at_once = !any_usual ? 0 : std::int64_t(count) < kBlock ? 1 : shares;
+  if (any_usual) find_usual_cells(balls, jobs);
+  count_others(balls, !any_usual);
   count_usual(jobs, at_once);
   for (std::size_t c = 2; c < start_.size(); ++c) start_[c] += start_[c - 1];
   place_usual(balls, jobs, at_once);
-  place_others(balls);
+  place_others(balls, !any_usual);
   grid_begin_.clear();
   for (const Grid& grid : grids_) grid_begin_.push_back(start_[grid.first_cell]);
   grid_begin_.push_back(std::uint32_t(count));
@@ -128,19 +125,29 @@ const CellGrid::Grid& CellGrid::grid_of(std::uint32_t ball) const {
   return grids_.size() > 1 ? grids_[std::size_t(grid_of_level_[level_[ball]])] : grids_.front();
 }
 
-void CellGrid::count_others(const BallSpan& balls) {
-  for (const std::uint32_t i : others_) {
+// Calls visit(i) for those that are not sorted many at a time, in order.
+template <class Visit>
+void CellGrid::each_other(bool all, const Visit& visit) const {
+  if (!all) {
+    for (const std::uint32_t i : others_) visit(i);
+    return;
+  }
+  for (std::uint32_t i = 0; i < std::uint32_t(cell_.size()); ++i) visit(i);
+}
+
+void CellGrid::count_others(const BallSpan& balls, bool all) {
+  each_other(all, [&](std::uint32_t i) {
     const Grid& grid = grid_of(i);
     const auto centers = along_axes(grid, balls);
     std::array<std::int32_t, 3> c;
     for (int a = 0; a < 3; ++a) find_cell(grid, a, centers[std::size_t(a)][i] - grid.origin[a], c[a]);
     cell_[i] = grid.first_cell + std::uint32_t((c[2] * grid.cells[1] + c[1]) * grid.cells[0] + c[0]);
     ++start_[cell_[i] + 2];
-  }
+  });
 }
 
-void CellGrid::place_others(const BallSpan& balls) {
-  for (const std::uint32_t i : others_) {
+void CellGrid::place_others(const BallSpan& balls, bool all) {
+  each_other(all, [&](std::uint32_t i) {
     const Grid& grid = grid_of(i);
     const auto [x, y, z] = along_axes(grid, balls);
     const std::uint32_t at = start_[cell_[i] + 1]++;
@@ -150,7 +157,7 @@ void CellGrid::place_others(const BallSpan& balls) {
     z_[at] = float(find_cell(grid, 2, z[i] - grid.origin[2], cell));
     reach_[at] = balls.reach[i] + (grid.fuzz + grid.stray_fuzz * (std::abs(x_[at]) + std::abs(y_[at]) + std::abs(z_[at])));
     index_[at] = i;
-  }
+  });
 }
 
 }  // namespace lodestone

@@ -29,12 +29,22 @@ void ContactArrays::make_room(std::size_t elements, bool one_kind) {
   if (!one_kind) restitution.resize(first.size()), friction.resize(first.size());
 }
 
+void ContactArrays::clear() {
+  lately = std::max(count, lately - lately / 64);
+  count = 0;
+  if (first.size() < lately + lately / 2 + 8192) return;
+  const std::size_t kept = lately;
+  *this = {};
+  lately = kept;
+  make_room(kept + kept / 8, true);
+}
+
 void SphereContacts::clear() {
   for (std::size_t i = 0; i < used_parts_; ++i) parts_[i].run = {};
   used_parts_ = 0;
   for (auto& colour : of_colour_) colour.clear();
   free_arrays_.clear();
-  for (ContactArrays& arrays : arrays_) arrays.count = 0, free_arrays_.push_back(&arrays);
+  for (ContactArrays& arrays : arrays_) arrays.clear(), free_arrays_.push_back(&arrays);
 }
 
 std::int64_t SphereContacts::count() const {

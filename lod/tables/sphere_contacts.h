@@ -24,10 +24,12 @@ struct ContactArrays {
   std::vector<float> closing;                // m/s at the start of the step, negative: nearing
   std::vector<float> impulse;                // N s
   std::vector<float> restitution, friction;  // of the two materials; empty where all bodies are of one kind
-  std::size_t count = 0;
+  std::size_t count = 0, lately = 0;         // taken; at most, of late
 
-  /// Of all arrays at least; they only grow.
+  /// Of all arrays at least.
   void make_room(std::size_t elements, bool one_kind);
+  /// Takes none; where far fewer were taken lately than there is room for, the room is given back.
+  void clear();
 };
 
 /// Some of them, one after the other.
