@@ -46,12 +46,20 @@ void StatisticalLevel::Impl::sort_by_motion() {
   const auto sleeps = [&](std::int32_t slot) { return bodies[slot].motion == Motion::asleep; };
   const auto first_asleep = std::stable_partition(awake.begin(), awake.end(), std::not_fn(sleeps));
   if (first_asleep != awake.end()) {
+    const auto before = std::ptrdiff_t(asleep.size());
     asleep.insert(asleep.end(), first_asleep, awake.end());
-    std::sort(asleep.begin(), asleep.end());
+    std::sort(asleep.begin() + before, asleep.end());
+    std::inplace_merge(asleep.begin(), asleep.begin() + before, asleep.end());  // most of a large scene is in order already
     awake.erase(first_asleep, awake.end());
     sleepers_changed = true;
   }
   if (!std::is_sorted(awake.begin(), awake.end())) std::sort(awake.begin(), awake.end());
+}
+
+void StatisticalLevel::Impl::stay_asleep() {
+  contacts.clear(), solid_contacts.clear(), pairs.clear(), found.clear();
+  pair_phase = false;
+  ++steps;
 }
 
 /// `energy`: kinetic over mass, J/kg.

@@ -97,6 +97,8 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
   level.clips.pop_back();
   level.angular_velocity_given[slot] = level.angular_velocity_given[last];
   level.angular_velocity_given.pop_back();
+  std::erase_if(level.given, [&](int given) { return given == slot || given == last; });
+  if (slot != last && level.angular_velocity_given[slot]) level.given.push_back(slot);
   level.sleepers_changed = true;
   return slot == last ? std::nullopt : std::optional(level.bodies[slot].owner);
 }
@@ -105,7 +107,10 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   if (tables_) return tables_->step(dt, neighbors, report, full_contacts);
   Impl& level = *impl_;
   Stopwatch watch;
-  level.angular_velocity_given.assign(level.bodies.size(), std::nullopt);
+  for (const int slot : level.given) level.angular_velocity_given[std::size_t(slot)].reset();
+  if (level.given.size() > 64) level.given = {};  // of a whole scene that was added
+  level.given.clear();
+  if (level.awake.empty() && neighbors.empty() && level.pushes.empty()) return level.stay_asleep();
   ContactTally tally;
   level.apply_pushes(dt, tally);
 
@@ -160,6 +165,7 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   body.orientation = state.orientation;
   body.velocity = state.velocity;
   body.spin = spin_of(state.orientation, state.angular_velocity, *impl_->kind_of(body).shape);
+  if (!impl_->angular_velocity_given[slot]) impl_->given.push_back(slot);
   impl_->angular_velocity_given[slot] = state.angular_velocity;
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;

@@ -35,6 +35,7 @@ struct StatisticalLevel::Impl {
   std::vector<StatisticalBody> bodies;
   std::vector<ClipPlayback> clips;
   std::vector<std::optional<Vec3>> angular_velocity_given;  // until the next step: a state that was set is read back to the bit
+  std::vector<std::int32_t> given;  // their slots
   std::vector<Vec3> last_places;  // at the step's start
   std::vector<std::pair<int, Push>> pushes;  // of the next step
 
@@ -70,6 +71,7 @@ struct StatisticalLevel::Impl {
   void wake(int slot);
   void put_to_sleep(StatisticalBody& body);
   void sort_by_motion();
+  void stay_asleep();  ///< the whole of a step in which nothing can happen
 
   void apply_pushes(double dt, ContactTally& tally);
   void find_near_pairs(double dt, std::span<const FullNeighbor> neighbors);
