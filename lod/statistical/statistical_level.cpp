@@ -141,6 +141,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   report.counters.states_recovered += tally.states_recovered;
 }
 
+std::size_t StatisticalLevel::bytes() const { return tables_ ? tables_->bytes() : 0; }
 int StatisticalLevel::size() const { return tables_ ? tables_->size() : int(impl_->bodies.size()); }
 std::span<const std::int32_t> StatisticalLevel::awake() const { return tables_ ? tables_->awake() : std::span<const std::int32_t>(impl_->awake); }
 int StatisticalLevel::asleep_count() const { return tables_ ? tables_->asleep_count() : int(impl_->asleep.size()); }
@@ -180,6 +181,14 @@ void StatisticalLevel::add_force(int slot, const Vec3& force, const Vec3& torque
   if (tables_) return tables_->add_force(slot, force, torque);
   wake(slot);
   impl_->pushes.push_back({slot, {force, torque}});
+}
+
+void StatisticalLevel::find_sleepers(const Vec3& center, double reach, std::vector<std::int32_t>& slots) const {
+  if (tables_) return tables_->find_sleepers(center, reach, slots);
+  for (const std::int32_t slot : impl_->asleep) {
+    const StatisticalBody& body = impl_->bodies[std::size_t(slot)];
+    if ((body.position - center).norm() <= reach + impl_->kind_of(body).shape->radius) slots.push_back(slot);
+  }
 }
 
 double StatisticalLevel::reach() const { return tables_ ? tables_->reach() : impl_->reach; }

@@ -175,4 +175,16 @@ void SphereContacts::remember_sorted(Spheres& spheres, float bounce_velocity, co
   });
 }
 
+std::size_t SphereContacts::bytes() const {
+  std::size_t bytes = known_.capacity() * sizeof(KnownContact) + parts_.capacity() * sizeof(Part);
+  for (const Part& part : parts_) part.contacts.each_array([&](const auto& array) { bytes += array.capacity() * sizeof array[0]; });
+  return bytes;
+}
+
+std::size_t SphereContacts::bytes_each() const {
+  std::size_t bytes = 0;
+  if (!parts_.empty()) parts_.front().contacts.each_array([&](const auto& array) { bytes += array.empty() ? 0 : sizeof array[0]; });
+  return bytes;
+}
+
 }  // namespace lodestone
