@@ -22,6 +22,13 @@ class TaskRef {
 /// Calls task(0) … task(count − 1), each once, in any order and on any threads, and returns when all are done.
 using JobRunner = std::function<void(std::int64_t count, TaskRef task)>;
 
+/// Calls body(begin, end) for pieces of [0, count), `grain` indices each; at once where there is one only.
+template <class Body>
+void run_in_pieces(const JobRunner& jobs, std::int64_t count, std::int64_t grain, const Body& body) {
+  if (count <= grain) return count > 0 ? body(std::int64_t(0), count) : void();
+  jobs((count + grain - 1) / grain, TaskRef([&](std::int64_t piece) { body(piece * grain, piece * grain + grain < count ? piece * grain + grain : count); }));
+}
+
 /// oneTBB's, on at most `threads` threads; one: the caller's own.
 JobRunner make_job_runner(int threads);
 

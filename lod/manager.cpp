@@ -19,6 +19,7 @@ StatisticalSettings statistical_settings(const ManagerSettings& settings, const 
   return {.gravity = gravity,
           .seed = settings.seed,
           .threads = settings.threads,
+          .jobs = settings.jobs,
           .model = settings.model,
           .tables = settings.tables,
           .sleeping = settings.sleeping};

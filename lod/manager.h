@@ -8,6 +8,7 @@
 #include <string>
 
 #include "lod/body.h"
+#include "lod/jobs.h"
 #include "lod/policy.h"
 #include "lod/tables_options.h"
 #include "lod/signature_store.h"
@@ -24,6 +25,7 @@ struct ManagerSettings {
   Vec3 gravity{0, 0, -9.81};  ///< m/s²
   std::uint64_t seed = 1;
   int threads = 1;            ///< for the statistical level; the results do not depend on it
+  JobRunner jobs = {};        ///< an engine's own, for so many threads; empty: oneTBB's
   int full_substeps = 4;      ///< ODE steps per step
   bool sleeping = true;       ///< bodies at rest cost nothing until something wakes them
   StatisticalModel model = StatisticalModel::support;

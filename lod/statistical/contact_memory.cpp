@@ -14,10 +14,12 @@ void each_run(std::span<const ContactKey> keys, std::span<const CrowdManifold> m
 
 }  // namespace
 
-void ContactMemory::recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points, double step) const {
+void ContactMemory::recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points, double step) {
+  std::size_t expected = 0;
   each_run(keys, manifolds, [&](ContactKey key, std::uint32_t begin, std::uint32_t end) {
-    const std::int32_t place = place_.find(key);
+    const std::int32_t place = place_.find(key, expected);
     if (place < 0) return;
+    expected = std::size_t(place) + 1;
     const Run& run = runs_[std::size_t(place)];
     const auto before = std::span(forces_).subspan(run.begin, run.count);
     if (run.count == end - begin) {
@@ -33,11 +35,10 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<const Cro
 void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> points, double step) {
   runs_.clear();
   forces_.clear();
+  place_.clear();
   for (const CrowdPoint& point : points) forces_.push_back(point.impulse / step);
-  place_.begin(keys.size());
   each_run(keys, manifolds, [&](ContactKey key, std::uint32_t begin, std::uint32_t end) {
-    if (place_.find(key) >= 0) return;  // of a pair whose contacts are not in a row, the first
-    place_.put(key, std::int32_t(runs_.size()));
+    place_.add(key);
     runs_.push_back({begin, end - begin});
   });
 }

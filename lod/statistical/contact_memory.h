@@ -15,7 +15,7 @@ class ContactMemory {
  public:
   /// Sets `guess` of the points of a pair to what they had: point by point, or where their number changed, in equal parts. `keys` holds one
   /// key per manifold, equal ones in a row; `step` is the length of this step, s.
-  void recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points, double step) const;
+  void recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points, double step);
   /// Forgets what was before.
   void remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> points, double step);
 

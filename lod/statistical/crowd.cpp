@@ -117,8 +117,8 @@ void Crowd::sort_full_contacts(std::span<const FullContact> full_contacts, std::
   each_end([&](std::int32_t end, std::int32_t) { ++full_start_[end + 1]; });
   for (std::size_t i = 0; i < neighbors; ++i) full_start_[i + 1] += full_start_[i];
   full_order_.resize(std::size_t(full_start_[neighbors]));
-  std::vector<std::int32_t> next(full_start_.begin(), full_start_.end() - 1);
-  each_end([&](std::int32_t end, std::int32_t contact) { full_order_[next[end]++] = contact; });
+  full_next_.assign(full_start_.begin(), full_start_.end() - 1);
+  each_end([&](std::int32_t end, std::int32_t contact) { full_order_[full_next_[end]++] = contact; });
 }
 
 // What holds up a full body, and what holds that up in turn: bodies met here take their place among the participants.

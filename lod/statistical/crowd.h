@@ -58,7 +58,7 @@ class Crowd {
   JobRunner jobs_;
   std::vector<Participant> participants_;     // of each solver body
   std::vector<std::int32_t> index_of_slot_, index_of_neighbor_;
-  std::vector<std::int32_t> full_start_, full_order_;  // of each neighbour: its run of full contacts
+  std::vector<std::int32_t> full_start_, full_next_, full_order_;  // of each neighbour: its run of full contacts
   std::vector<SolverBody> solver_bodies_;
   std::vector<Vec3> angular_before_;
   std::vector<CrowdManifold> manifolds_;

@@ -295,10 +295,9 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
   work.motions.back() = {};
   work.colour(bodies, manifolds);
   work.make_batches(bodies, manifolds, points);
-  const auto count = std::int64_t(work.batches.size());
-  jobs((count + kGrain - 1) / kGrain, TaskRef([&](std::int64_t block) {
-    run_wide(work.simd, PrepareLoop{work, manifolds, points, step, settings}, block * kGrain, std::min(count, (block + 1) * kGrain));
-  }));
+  run_in_pieces(jobs, std::int64_t(work.batches.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    run_wide(work.simd, PrepareLoop{work, manifolds, points, step, settings}, begin, end);
+  });
   work.sweep(true, jobs);
   for (int i = 0; i < settings.sweeps; ++i)
     if (const Change change = work.sweep(false, jobs); change.greatest_change <= settings.tolerance * change.greatest_impulse) break;

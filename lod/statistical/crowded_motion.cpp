@@ -25,7 +25,7 @@ void advance(FullNeighbor& body, const Vec3& before, const Vec3& gravity, double
 
 // Returns how many substeps those take that may touch another.
 int StatisticalLevel::Impl::plan_substeps(double dt) {
-  near_another.assign(bodies.size(), 0);
+  for (const std::int32_t slot : awake) near_another[std::size_t(slot)] = 0;
   bool any = false;
   double longest = 0.0;  // way over R
   for (const FoundPair& pair : found) {
@@ -45,7 +45,7 @@ template <class Select>
 ContactTally StatisticalLevel::Impl::move_those(double time, Select select) {
   const auto count = std::int64_t(awake.size());
   tallies.assign(std::size_t(count), {});
-  parallel(count, 256, [&](std::int64_t begin, std::int64_t end) {
+  run_in_pieces(jobs, count, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
       if (bodies[awake[i]].motion != Motion::asleep && select(awake[i])) move_alone(std::size_t(i), time, tallies[i]);
   });
@@ -80,7 +80,7 @@ void StatisticalLevel::Impl::move(double dt, std::span<FullNeighbor> neighbors, 
 
   for (int i = 0; i < substeps; ++i) {
     const double time = dt / substeps;
-    if (sleepers_changed) find_near_pairs(dt, full);  // it names bodies by their place among the sleepers
+    if (woken) find_near_pairs(dt, full);  // it may touch other sleepers
     if (i > 0) find_turning();
     find_contacts(time, full);  // who is crowded is decided anew
     wake_touched(full);

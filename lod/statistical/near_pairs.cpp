@@ -30,42 +30,78 @@ bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3
 }  // namespace
 
 // By place, so that nothing hangs on the order in which bodies were added.
-void StatisticalLevel::Impl::sort_by_place(std::span<const std::int32_t> slots, std::vector<std::int32_t>& sorted) const {
-  sorted.assign(slots.begin(), slots.end());
+void StatisticalLevel::Impl::sort_by_place(std::vector<std::int32_t>& slots) const {
   const auto place = [&](std::int32_t slot) {
     const Vec3& p = bodies[std::size_t(slot)].position;
     return std::array{p.x(), p.y(), p.z()};
   };
-  std::ranges::sort(sorted, {}, place);
+  std::ranges::sort(slots, {}, place);
+}
+
+void StatisticalLevel::Impl::add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt) {
+  const Vec3 half_way = (0.5 * dt) * velocity, center = position + half_way;
+  ball_x.push_back(center.x()), ball_y.push_back(center.y()), ball_z.push_back(center.z());
+  ball_reach.push_back(float(1.02 * radius + half_way.norm() + 0.5 * settings.gravity.norm() * dt * dt));
 }
 
 void StatisticalLevel::Impl::find_near_pairs(double dt, std::span<const FullNeighbor> neighbors) {
-  const double fall = 0.5 * settings.gravity.norm() * dt * dt;
-  const auto bound = [&](const Vec3& position, const Vec3& velocity, double radius) {
-    const Vec3 half_way = (0.5 * dt) * velocity;
-    return Bound{position + half_way, 1.02 * radius + half_way.norm() + fall};
-  };
-  if (sleepers_changed) {
-    sort_by_place(asleep, stills);
-    bounds.clear();
-    for (const std::int32_t slot : stills) bounds.push_back({bodies[slot].position, 1.02 * kind_of(bodies[slot]).shape->radius});
-    broad_phase.set_still(bounds);
-    sleepers_changed = false;
-  }
-  sort_by_place(awake, movers);
-  bounds.clear();
-  for (const std::int32_t slot : movers) bounds.push_back(bound(bodies[slot].position, bodies[slot].velocity, kind_of(bodies[slot]).shape->radius));
-  for (const FullNeighbor& n : neighbors) bounds.push_back(bound(n.state.position, n.state.velocity, n.shape->radius));
+  movers = awake;
+  sort_by_place(movers);
+  ball_x.clear(), ball_y.clear(), ball_z.clear(), ball_reach.clear();
+  for (const std::int32_t slot : movers) add_ball(bodies[slot].position, bodies[slot].velocity, kind_of(bodies[slot]).shape->radius, dt);
+  for (const FullNeighbor& n : neighbors) add_ball(n.state.position, n.state.velocity, n.shape->radius, dt);
+  cells.fill({ball_x, ball_y, ball_z, ball_reach});
+  ball_pairs.clear();
+  for (std::int64_t part = 0; part < cells.parts(); ++part) cells.find_pairs(part, ball_pairs);
   pairs.clear();
-  broad_phase.find_pairs(bounds, pairs);
+  for (std::int64_t i = 0; i < ball_pairs.size(); ++i) {
+    const auto first = std::int32_t(ball_pairs.first(i)), second = std::int32_t(ball_pairs.second(i));
+    pairs.push_back({std::min(first, second), std::max(first, second)});
+  }
+  find_still_pairs();
+  woken = false;
   take_over_found(neighbors);
+}
+
+// Of those that move with those that sleep.
+void StatisticalLevel::Impl::find_still_pairs() {
+  if (still.empty()) return;
+  std::vector<std::int32_t>& near = still_near;
+  for (std::size_t i = 0; i < ball_x.size(); ++i) {
+    const Vec3 center(ball_x[i], ball_y[i], ball_z[i]);
+    const auto own_reach = double(ball_reach[i]);
+    near.clear();
+    still.find_near(center, own_reach, [&](std::uint32_t slot) {
+      const StatisticalBody& body = bodies[slot];
+      const double limit = own_reach + 1.02 * kind_of(body).shape->radius;
+      if ((body.position - center).squaredNorm() < limit * limit) near.push_back(std::int32_t(slot));
+    });
+    sort_by_place(near);
+    for (const std::int32_t slot : near) pairs.push_back({std::int32_t(i), -1 - slot});
+  }
 }
 
 // A slot, or −1 − index of a full neighbour.
 Participant StatisticalLevel::Impl::participant(std::int32_t of_pair) const {
-  if (of_pair < 0) return stills[std::size_t(-1 - of_pair)];
+  if (of_pair < 0) return -1 - of_pair;
   const auto count = std::int32_t(movers.size());
   return of_pair < count ? movers[std::size_t(of_pair)] : -1 - (of_pair - count);
+}
+
+// Pairs too many are set aside, not freed: what they have allocated serves others.
+void StatisticalLevel::Impl::resize_found(std::size_t count) {
+  while (found.size() > count) {
+    spare_found.push_back(std::move(found.back()));
+    found.pop_back();
+  }
+  while (found.size() < count) {
+    if (spare_found.empty()) {
+      found.emplace_back();
+      continue;
+    }
+    found.push_back(std::move(spare_found.back()));
+    spare_found.pop_back();
+  }
 }
 
 // What is known of the pairs that were near before.
@@ -76,17 +112,18 @@ void StatisticalLevel::Impl::take_over_found(std::span<const FullNeighbor> neigh
     return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
   };
   std::swap(found, found_before);
-  pair_memory.begin(found_before.size());
-  for (std::size_t i = 0; i < found_before.size(); ++i) pair_memory.put(found_before[i].key, std::int32_t(i));
-  found.resize(pairs.size());
+  pair_memory.clear();
+  for (const FoundPair& pair : found_before) pair_memory.add(pair.key);
+  resize_found(pairs.size());
+  std::size_t expected = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     // By place, so that a contact is the same whichever of its bodies is full and whichever was added first.
     Participant first = participant(pairs[i].first), second = participant(pairs[i].second);
     if (comes_before(second, first)) std::swap(first, second);
     const ContactKey key = contact_key(owner(first), owner(second));
-    const std::int32_t before = pair_memory.find(key);  // none, too, where they have changed places: what is known holds for their old order
-    if (before < 0) found[i] = {};
-    else std::swap(found[i], found_before[std::size_t(before)]);
+    const std::int32_t before = pair_memory.find(key, expected);  // none, too, where they have changed places: what is known holds for their old order
+    if (before < 0) found[i].forget();
+    else std::swap(found[i], found_before[std::size_t(before)]), expected = std::size_t(before) + 1;
     found[i].key = key;
     found[i].first = first;
     found[i].second = second;
@@ -114,7 +151,7 @@ Vec3 StatisticalLevel::Impl::point_velocity(Participant p, const Vec3& point, st
   }
   const StatisticalBody& body = bodies[p];
   if (body.motion == Motion::asleep) return Vec3::Zero();
-  return body.velocity + angular_velocity(body.orientation, body.spin, *kind_of(body).shape).cross(point - body.position);
+  return body.velocity + turning[std::size_t(p)].angular_velocity.cross(point - body.position);
 }
 
 void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const {
@@ -123,12 +160,10 @@ void StatisticalLevel::Impl::find_contact(double dt, std::span<const FullNeighbo
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
   const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;
   if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(pair, dt, neighbors)) return;
-  if (!pair.contacts.empty() && moved < kHeld * least_radius) {
-    for (HeldContact& held : pair.contacts) follow(held, a, b);
-    return;
-  }
+  if (!pair.contacts.empty() && moved < kHeld * least_radius) return;
   const Vec3 closing = center_velocity(pair.first, neighbors) - center_velocity(pair.second, neighbors);
-  const HullContactSearch search = find_pair_contacts(a, b, pair.known, touching + closing.norm() * dt);
+  thread_local HullContactSearch search;
+  find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + closing.norm() * dt, search);
   pair.gap = search.gap;
   pair.when = pose_of(a, b);
   pair.contacts.clear();
@@ -154,29 +189,43 @@ void StatisticalLevel::Impl::find_contacts(double dt, std::span<const FullNeighb
       if (p >= 0 && !near_another[std::size_t(p)] && bodies[std::size_t(p)].motion != Motion::asleep) return false;  // it has moved on
     return !(is_asleep(pair.first, neighbors) && is_asleep(pair.second, neighbors));
   };
-  parallel(std::int64_t(found.size()), 64, [&](std::int64_t begin, std::int64_t end) {
+  constexpr std::int64_t kGrain = 64;
+  const auto count = std::int64_t(found.size());
+  run_in_pieces(jobs, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
-      if (looked_at(found[i])) find_contact(dt, neighbors, found[i]);
+      if (looked_at(found[std::size_t(i)])) find_contact(dt, neighbors, found[std::size_t(i)]);
   });
-  contacts.clear();
-  for (const FoundPair& pair : found) {
-    if (pair.contacts.empty() || !looked_at(pair)) continue;
-    for (const HeldContact& held : pair.contacts) {
-      if (!closes(pair, held.contact, dt, neighbors)) continue;
-      contacts.push_back({pair.first, pair.second, held.contact});
-      for (const Participant p : {pair.first, pair.second})
-        if (p >= 0) bodies[p].crowded = true, near_another[std::size_t(p)] = 1;
+  first_contact.assign(1, 0);
+  for (const FoundPair& pair : found) first_contact.push_back(first_contact.back() + (pair.contacts.empty() || !looked_at(pair) ? 0 : std::uint32_t(pair.contacts.size())));
+  contacts.resize(first_contact.back());
+  may_close.resize(first_contact.back());
+  run_in_pieces(jobs, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      const FoundPair& pair = found[std::size_t(i)];
+      for (std::uint32_t at = first_contact[std::size_t(i)]; at < first_contact[std::size_t(i) + 1]; ++at) {
+        const HeldContact& held = pair.contacts[at - first_contact[std::size_t(i)]];
+        contacts[at] = {pair.first, pair.second, follow(held, pair_body(pair.first, neighbors), pair_body(pair.second, neighbors))};
+        may_close[at] = closes(pair, contacts[at].contact, dt, neighbors);
+      }
     }
+  });
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < contacts.size(); ++at) {
+    if (!may_close[at]) continue;
+    if (kept != at) contacts[kept] = contacts[at];
+    for (const Participant p : {contacts[at].first, contacts[at].second})
+      if (p >= 0) bodies[p].crowded = true, near_another[std::size_t(p)] = 1;
+    ++kept;
   }
+  contacts.resize(kept);
 }
 
 // Static boxes and meshes: what nears one is solved with all that it touches.
 void StatisticalLevel::Impl::find_ground_solids(double dt, bool of_near_only) {
   solid_contacts.clear();
   faces_below.faces.clear();
-  faces_below.run.clear();
-  if (ground.solids.empty()) return;
-  faces_below.run.assign(bodies.size(), {0, 0});
+  if (ground.solids.empty()) return faces_below.run.clear();
+  faces_below.run.resize(bodies.size());  // of those awake; nobody asks about others
   for (const std::int32_t slot : awake) {
     const std::size_t before = solid_contacts.size(), faces = faces_below.faces.size();
     if (!of_near_only || near_another[std::size_t(slot)])
@@ -191,18 +240,18 @@ void StatisticalLevel::Impl::remember_places() {
 }
 
 void StatisticalLevel::Impl::find_turning() {
-  turning.assign(bodies.size(), 0.0);
   for (const std::int32_t slot : awake) {
     const StatisticalBody& body = bodies[std::size_t(slot)];
     const Shape& shape = *kind_of(body).shape;
-    turning[std::size_t(slot)] = angular_velocity(body.orientation, body.spin, shape).norm() * shape.radius;
+    const Vec3 omega = body.motion == Motion::asleep ? Vec3(Vec3::Zero()) : angular_velocity(body.orientation, body.spin, shape);
+    turning[std::size_t(slot)] = {omega, omega.norm() * shape.radius};
   }
 }
 
 // m: by how much their gap can shrink in `dt`, at most, if nothing strikes them.
 double StatisticalLevel::Impl::find_approach(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const {
   const auto turning_of = [&](Participant p) {
-    if (p >= 0) return turning[std::size_t(p)];
+    if (p >= 0) return turning[std::size_t(p)].rim_speed;
     const FullNeighbor& n = neighbors[std::size_t(-1 - p)];
     return n.state.angular_velocity.norm() * n.shape->radius;
   };

@@ -130,21 +130,19 @@ void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std:
     }
 }
 
-HullContactSearch search_relative(const PairBody& first, const PairBody& second, std::vector<KnownGap>& known, double margin) {
-  const int pieces = first.shape->pieces.empty() && second.shape->pieces.empty() ? 0 : count_pieces(first) * count_pieces(second);
-  known.resize(std::size_t(1 + pieces));
-  KnownGap& whole = known[0];
-  HullContactSearch search;
-  if (pieces == 0) {
-    whole.axis = find_hull_gap(place(first), place(second), whole.axis, margin);
-    search.gap = whole.axis.gap;
-    if (search.gap <= margin) search.contacts.push_back(contact_along(first, second, whole.axis));
-    return search;
+void search_relative(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
+  search.contacts.clear();
+  if (first.shape->pieces.empty() && second.shape->pieces.empty()) {
+    whole = find_hull_gap(place(first), place(second), whole, margin);
+    search.gap = whole.gap;
+    if (search.gap <= margin) search.contacts.push_back(contact_along(first, second, whole));
+    return;
   }
-  const bool apart = are_apart(place(first), place(second), margin, whole.axis);
-  search.gap = whole.axis.gap;
-  if (!apart || search.gap <= margin) find_contacts_of_pieces(first, second, std::span(known).subspan(1), margin, search);
-  return search;
+  const bool apart = are_apart(place(first), place(second), margin, whole);
+  search.gap = whole.gap;
+  if (apart && search.gap > margin) return;
+  of_pieces.resize(std::size_t(count_pieces(first) * count_pieces(second)));
+  find_contacts_of_pieces(first, second, of_pieces, margin, search);
 }
 
 // Rounded well above what the last bits of a state hold (and far below what shows), so that the path of the search does not hang on them: the same
@@ -181,46 +179,49 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
   return contact;
 }
 
-PairPose pose_of(const PairBody& first, const PairBody& second) { return {first.position - second.position, first.orientation, second.orientation}; }
+PairPose pose_of(const PairBody& first, const PairBody& second) {
+  return {(first.position - second.position).cast<float>(), first.orientation.coeffs().cast<float>(), second.orientation.coeffs().cast<float>()};
+}
 
 double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second) {
   // An angle is at most 2.2 times the chord of two quaternions, up to half a turn.
-  const auto turned = [](const Quat& from, const Quat& to) {
-    return 2.2 * std::sqrt(std::min((from.coeffs() - to.coeffs()).squaredNorm(), (from.coeffs() + to.coeffs()).squaredNorm()));
+  const auto turned = [](const Eigen::Vector4f& from, const Quat& to) {
+    const Eigen::Vector4d was = from.cast<double>();
+    return 2.2 * std::sqrt(std::min((was - to.coeffs()).squaredNorm(), (was + to.coeffs()).squaredNorm()));
   };
-  return (first.position - second.position - then.apart).norm() + turned(then.first, first.orientation) * first.shape->radius +
+  return (first.position - second.position - then.apart.cast<double>()).norm() + turned(then.first, first.orientation) * first.shape->radius +
          turned(then.second, second.orientation) * second.shape->radius;
 }
 
 HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second) {
-  HeldContact held{contact, {}, {}};
+  HeldContact held{contact.normal, contact.manifold.count, {}, {}};
   for (int i = 0; i < contact.manifold.count; ++i) {
     const ManifoldPoint& p = contact.manifold.points[std::size_t(i)];
     const Vec3 half = 0.5 * p.gap * contact.normal;
-    held.on_first[std::size_t(i)] = first.orientation.conjugate() * (p.point + half - first.position);
-    held.on_second[std::size_t(i)] = second.orientation.conjugate() * (p.point - half - second.position);
+    held.on_first[std::size_t(i)] = (first.orientation.conjugate() * (p.point + half - first.position)).cast<float>();
+    held.on_second[std::size_t(i)] = (second.orientation.conjugate() * (p.point - half - second.position)).cast<float>();
   }
   return held;
 }
 
-void follow(HeldContact& held, const PairBody& first, const PairBody& second) {
+PairContact follow(const HeldContact& held, const PairBody& first, const PairBody& second) {
   const Mat3 turn_first = first.orientation.toRotationMatrix(), turn_second = second.orientation.toRotationMatrix();
-  PairContact& contact = held.contact;
-  contact.gap = 1e300;
-  for (int i = 0; i < contact.manifold.count; ++i) {
-    ManifoldPoint& p = contact.manifold.points[std::size_t(i)];
-    const Vec3 on_first = first.position + turn_first * held.on_first[std::size_t(i)];
-    const Vec3 on_second = second.position + turn_second * held.on_second[std::size_t(i)];
-    p = {0.5 * (on_first + on_second), (on_first - on_second).dot(contact.normal)};
-    contact.gap = std::min(contact.gap, p.gap);
+  PairContact contact{held.normal, 1e300, {}};
+  contact.manifold.count = held.count;
+  for (int i = 0; i < held.count; ++i) {
+    const Vec3 on_first = first.position + turn_first * held.on_first[std::size_t(i)].cast<double>();
+    const Vec3 on_second = second.position + turn_second * held.on_second[std::size_t(i)].cast<double>();
+    const double gap = (on_first - on_second).dot(held.normal);
+    contact.manifold.points[std::size_t(i)] = {0.5 * (on_first + on_second), gap};
+    contact.gap = std::min(contact.gap, gap);
   }
+  return contact;
 }
 
-HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, std::vector<KnownGap>& known, double margin) {
+void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
   const auto [a, b] = relative_to_second(first, second);
-  HullContactSearch search = search_relative(a, b, known, margin);
+  search_relative(a, b, whole, of_pieces, margin, search);
   for (PairContact& contact : search.contacts) shift(contact, second.position);
-  return search;
 }
 
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {

@@ -28,25 +28,27 @@ struct PairContact {
 /// `tables`: the two spheres. None where the gap is above `margin`.
 std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin);
 
-/// A contact that its bodies take along, until they have moved so far that it must be looked for anew.
+/// A contact that its bodies take along, until they have moved so far that it must be looked for anew. Kept for every pair that touches: floats, which are fine
+/// enough for arms.
 struct HeldContact {
-  PairContact contact;
-  std::array<Vec3, 4> on_first, on_second;  ///< m, its points on each body's surface, body axes
+  Vec3 normal = Vec3::UnitZ();
+  std::int32_t count = 0;
+  std::array<Eigen::Vector3f, 4> on_first, on_second;  ///< m, its points on each body's surface, body axes
 };
 HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second);
 /// Where its points are now, and their gaps along the normal that it was found with.
-void follow(HeldContact& held, const PairBody& first, const PairBody& second);
+PairContact follow(const HeldContact& held, const PairBody& first, const PairBody& second);
 
 /// How two bodies lie to each other.
 struct PairPose {
-  Vec3 apart = Vec3::Zero();  ///< m, of the first from the second
-  Quat first = Quat::Identity(), second = Quat::Identity();
+  Eigen::Vector3f apart = Eigen::Vector3f::Zero();  ///< m, of the first from the second
+  Eigen::Vector4f first{0, 0, 0, 1}, second{0, 0, 0, 1};  ///< orientations
 };
 PairPose pose_of(const PairBody& first, const PairBody& second);
 /// m: no gap between them has changed by more since they lay so.
 double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second);
 
-/// A gap of two bodies or two of their pieces as it was found.
+/// The gap of two pieces of bodies as it was found.
 struct KnownGap {
   HullGap axis = {.normal = Vec3::Zero()};  ///< where the next search begins; zero: anywhere
   std::optional<PairPose> when;             ///< how they lay then; none: never looked for
@@ -57,9 +59,9 @@ struct HullContactSearch {
   std::vector<PairContact> contacts;   ///< those with a gap of at most the margin: one for hulls, one for each two convex pieces that meet
 };
 
-/// `support`. Concave bodies that have convex pieces (Shape::pieces) meet in these, so that they may reach into each other; others as their hulls. `known`, of the
-/// hulls and then of every two pieces, is what earlier searches found, at first empty.
-HullContactSearch find_pair_contacts(const PairBody& first, const PairBody& second, std::vector<KnownGap>& known, double margin);
+/// `support`. Concave bodies that have convex pieces (Shape::pieces) meet in these, so that they may reach into each other; others as their hulls. `whole`, of the
+/// hulls (at first with a normal of zero), and `of_pieces`, of every two pieces (at first empty), are what earlier searches found. What `search` held before is gone.
+void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search);
 
 /// The two hulls, whatever pieces they have; none where the gap is above `margin`.
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);

@@ -1,4 +1,4 @@
-// Where each near pair of the last step is found again, by its two bodies.
+// Where each pair of bodies was in a list of the last step.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,12 @@ using ContactKey = std::uint64_t;
 inline ContactKey contact_key(std::uint32_t first, std::uint32_t second) { return ContactKey(first) << 32 | second; }
 inline ContactKey ground_key(std::uint32_t body, std::size_t plane) { return contact_key(body, std::uint32_t(0xffffffff - plane)); }
 
-/// A hash table of keys, each once.
 class PairMemory {
  public:
-  /// −1 where the pair was not put.
-  std::int32_t find(ContactKey key) const;
-  void begin(std::size_t pairs);  ///< forgets all, for so many
-  void put(ContactKey key, std::int32_t place);
+  void clear();
+  void add(ContactKey key) { keys_.push_back(key); }
+  /// The place at which `key` was added, the first one; −1: never. Quick where that is about `expected`: lists mostly keep their order from step to step.
+  std::int32_t find(ContactKey key, std::size_t expected);
 
  private:
   struct Entry {
@@ -25,8 +24,12 @@ class PairMemory {
     std::int32_t place = -1;
   };
   static constexpr ContactKey kEmpty = ~ContactKey(0);
-  std::size_t place_of(ContactKey key) const { return std::size_t((key * 0x9e3779b97f4a7c15u) >> 20) & (known_.size() - 1); }
-  std::vector<Entry> known_;  // a power of two of them
+  std::size_t entry_of(ContactKey key) const;
+  void make_table();
+
+  std::vector<ContactKey> keys_;
+  std::vector<Entry> table_;  // a power of two of them, made when first needed
+  bool made_ = false;
 };
 
 }  // namespace lodestone

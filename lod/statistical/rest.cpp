@@ -28,11 +28,24 @@ void StatisticalLevel::Impl::wake(int slot) {
   if (body.motion != Motion::asleep) return;
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
-  const auto place = std::lower_bound(asleep.begin(), asleep.end(), slot);
-  if (place == asleep.end() || *place != slot) return;  // put to sleep in this very step, and still among the awake
-  asleep.erase(place);
+  if (!lies_still[std::size_t(slot)]) return;  // put to sleep in this very step, and still among the awake
+  take_from_still(slot);
   awake.push_back(slot);
-  sleepers_changed = true;
+  woken = true;
+}
+
+void StatisticalLevel::Impl::lay_still(std::int32_t slot) {
+  still.insert(std::uint32_t(slot), bodies[std::size_t(slot)].position, kind_of(bodies[std::size_t(slot)]).shape->radius);
+  lies_still[std::size_t(slot)] = 1;
+  near_another[std::size_t(slot)] = 0;
+  turning[std::size_t(slot)] = {};
+  ++asleep_count;
+}
+
+void StatisticalLevel::Impl::take_from_still(std::int32_t slot) {
+  still.remove(std::uint32_t(slot), bodies[std::size_t(slot)].position, kind_of(bodies[std::size_t(slot)]).shape->radius);
+  lies_still[std::size_t(slot)] = 0;
+  --asleep_count;
 }
 
 void StatisticalLevel::Impl::put_to_sleep(StatisticalBody& body) {
@@ -45,21 +58,9 @@ void StatisticalLevel::Impl::put_to_sleep(StatisticalBody& body) {
 void StatisticalLevel::Impl::sort_by_motion() {
   const auto sleeps = [&](std::int32_t slot) { return bodies[slot].motion == Motion::asleep; };
   const auto first_asleep = std::stable_partition(awake.begin(), awake.end(), std::not_fn(sleeps));
-  if (first_asleep != awake.end()) {
-    const auto before = std::ptrdiff_t(asleep.size());
-    asleep.insert(asleep.end(), first_asleep, awake.end());
-    std::sort(asleep.begin() + before, asleep.end());
-    std::inplace_merge(asleep.begin(), asleep.begin() + before, asleep.end());  // most of a large scene is in order already
-    awake.erase(first_asleep, awake.end());
-    sleepers_changed = true;
-  }
+  std::for_each(first_asleep, awake.end(), [&](std::int32_t slot) { lay_still(slot); });
+  awake.erase(first_asleep, awake.end());
   if (!std::is_sorted(awake.begin(), awake.end())) std::sort(awake.begin(), awake.end());
-}
-
-void StatisticalLevel::Impl::stay_asleep() {
-  contacts.clear(), solid_contacts.clear(), pairs.clear(), found.clear();
-  pair_phase = false;
-  ++steps;
 }
 
 /// `energy`: kinetic over mass, J/kg.

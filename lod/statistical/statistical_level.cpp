@@ -1,6 +1,7 @@
 #include "lod/statistical/statistical_level_internal.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "lod/statistical/stopwatch.h"
 #include "lod/tables/tables_level.h"
@@ -60,6 +61,9 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
   level.clips.emplace_back();
   level.last_places.push_back(state.position.allFinite() ? state.position : Vec3(Vec3::Zero()));
   level.angular_velocity_given.emplace_back();
+  level.lies_still.push_back(0);
+  level.near_another.push_back(0);
+  level.turning.emplace_back();
   level.awake.push_back(slot);
   set_state(slot, state);
   if (asleep) {
@@ -76,30 +80,31 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
   check_that(slot >= 0 && slot < size(), "slot out of range");
   const StatisticalBody gone = level.bodies[slot];
   const double radius = level.kind_of(gone).shape->radius;
+  if (level.lies_still[slot]) level.take_from_still(slot);
   // What rests on it, or it on, must find new support.
-  std::vector<int> touching;
-  for (const std::int32_t other : level.asleep)
-    if (other != slot && (level.bodies[other].position - gone.position).norm() < 1.02 * (radius + level.kind_of(level.bodies[other]).shape->radius))
-      touching.push_back(other);
-  for (const int other : touching) level.wake(other);
+  std::vector<std::int32_t> touching;
+  level.still.find_near(gone.position, 1.02 * radius, [&](std::uint32_t other) {
+    const StatisticalBody& body = level.bodies[other];
+    if ((body.position - gone.position).norm() < 1.02 * (radius + level.kind_of(body).shape->radius)) touching.push_back(std::int32_t(other));
+  });
+  for (const std::int32_t other : touching) level.wake(other);
+  std::ranges::sort(level.awake);
 
   const int last = size() - 1;
-  if (!std::ranges::is_sorted(level.awake)) std::ranges::sort(level.awake);
-  for (auto* list : {&level.awake, &level.asleep}) rename_in_order(*list, last, slot);
+  const bool last_lies = slot != last && level.lies_still[last];
+  if (last_lies) level.take_from_still(last);
+  rename_in_order(level.awake, last, slot);
   std::erase_if(level.pushes, [&](const auto& push) { return push.first == slot; });
   for (auto& push : level.pushes)
     if (push.first == last) push.first = slot;
-  level.bodies[slot] = level.bodies[last];
-  level.clips[slot] = level.clips[last];
-  level.last_places[slot] = level.last_places[last];
-  level.last_places.pop_back();
-  level.bodies.pop_back();
-  level.clips.pop_back();
-  level.angular_velocity_given[slot] = level.angular_velocity_given[last];
-  level.angular_velocity_given.pop_back();
-  std::erase_if(level.given, [&](int given) { return given == slot || given == last; });
-  if (slot != last && level.angular_velocity_given[slot]) level.given.push_back(slot);
-  level.sleepers_changed = true;
+  if (level.angular_velocity_given[last]) level.given.push_back(slot);
+  const auto fill_gap = [&](auto& array) {
+    array[slot] = array[last];
+    array.pop_back();
+  };
+  fill_gap(level.bodies), fill_gap(level.clips), fill_gap(level.last_places), fill_gap(level.angular_velocity_given);
+  fill_gap(level.lies_still), fill_gap(level.near_another), fill_gap(level.turning);
+  if (last_lies) level.lay_still(slot);
   return slot == last ? std::nullopt : std::optional(level.bodies[slot].owner);
 }
 
@@ -107,10 +112,10 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   if (tables_) return tables_->step(dt, neighbors, report, full_contacts);
   Impl& level = *impl_;
   Stopwatch watch;
-  for (const int slot : level.given) level.angular_velocity_given[std::size_t(slot)].reset();
-  if (level.given.size() > 64) level.given = {};  // of a whole scene that was added
+  for (const std::int32_t slot : level.given)
+    if (slot < size()) level.angular_velocity_given[slot].reset();
+  if (level.given.size() > 64) std::exchange(level.given, {});  // of a whole scene that was added
   level.given.clear();
-  if (level.awake.empty() && neighbors.empty() && level.pushes.empty()) return level.stay_asleep();
   ContactTally tally;
   level.apply_pushes(dt, tally);
 
@@ -144,7 +149,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
 std::size_t StatisticalLevel::bytes() const { return tables_ ? tables_->bytes() : 0; }
 int StatisticalLevel::size() const { return tables_ ? tables_->size() : int(impl_->bodies.size()); }
 std::span<const std::int32_t> StatisticalLevel::awake() const { return tables_ ? tables_->awake() : std::span<const std::int32_t>(impl_->awake); }
-int StatisticalLevel::asleep_count() const { return tables_ ? tables_->asleep_count() : int(impl_->asleep.size()); }
+int StatisticalLevel::asleep_count() const { return tables_ ? tables_->asleep_count() : int(impl_->asleep_count); }
 
 Vec3 StatisticalLevel::position(int slot) const { return tables_ ? tables_->position(slot) : impl_->bodies[slot].position; }
 
@@ -166,8 +171,8 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   body.orientation = state.orientation;
   body.velocity = state.velocity;
   body.spin = spin_of(state.orientation, state.angular_velocity, *impl_->kind_of(body).shape);
-  if (!impl_->angular_velocity_given[slot]) impl_->given.push_back(slot);
   impl_->angular_velocity_given[slot] = state.angular_velocity;
+  impl_->given.push_back(slot);
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
   // What no level can hold is mended, and counted, before the next step looks at it.
@@ -185,10 +190,7 @@ void StatisticalLevel::add_force(int slot, const Vec3& force, const Vec3& torque
 
 void StatisticalLevel::find_sleepers(const Vec3& center, double reach, std::vector<std::int32_t>& slots) const {
   if (tables_) return tables_->find_sleepers(center, reach, slots);
-  for (const std::int32_t slot : impl_->asleep) {
-    const StatisticalBody& body = impl_->bodies[std::size_t(slot)];
-    if ((body.position - center).norm() <= reach + impl_->kind_of(body).shape->radius) slots.push_back(slot);
-  }
+  impl_->still.find_near(center, reach, [&](std::uint32_t slot) { slots.push_back(std::int32_t(slot)); });
 }
 
 double StatisticalLevel::reach() const { return tables_ ? tables_->reach() : impl_->reach; }

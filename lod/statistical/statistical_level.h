@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lod/body.h"
+#include "lod/jobs.h"
 #include "lod/static_ground.h"
 #include "lod/step_report.h"
 #include "lod/tables_options.h"
@@ -21,6 +22,7 @@ struct StatisticalSettings {
   Vec3 gravity{0, 0, -9.81};
   std::uint64_t seed = 1;
   int threads = 1;
+  JobRunner jobs = {};  ///< empty: oneTBB's on so many threads
   StatisticalModel model = StatisticalModel::support;
   TablesOptions tables;
   bool sleeping = true;

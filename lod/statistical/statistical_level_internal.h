@@ -2,16 +2,27 @@
 // crowded_motion.cpp takes stages 2 to 4 in substeps; stage 4, the contact solver, is crowd.h.
 #pragma once
 
-#include "lod/statistical/broad_phase.h"
 #include "lod/statistical/clip_player.h"
 #include "lod/statistical/crowd.h"
 #include "lod/statistical/pair_memory.h"
-#include "lod/statistical/parallel.h"
 #include "lod/statistical/statistical_level.h"
+#include "lod/tables/cell_grid.h"
+#include "lod/tables/still_grid.h"
 
 namespace lodestone {
 
 struct Push { Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); };
+
+/// Two bodies whose bounding balls meet in this step: places among those that move (the awake by place, then full neighbours), or −1 − the slot of a sleeper.
+struct NearPair {
+  std::int32_t first = 0, second = 0;
+};
+
+/// How fast a body turns.
+struct Turning {
+  Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, world
+  double rim_speed = 0.0;                ///< m/s: of the point farthest from the centre about it
+};
 
 /// What is known of a near pair. A gap lasts until its bodies have moved by it, so most near pairs need no look at their hulls (conservative advancement;
 /// Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996); a contact lasts while they move little.
@@ -20,28 +31,39 @@ struct FoundPair {
   Participant first = 0, second = 0;
   double gap = 0.0;                ///< m, at least, when it was found
   std::optional<PairPose> when;    ///< how the bodies lay then; none: never
-  std::vector<KnownGap> known;     ///< see find_pair_contacts
+  HullGap whole = {.normal = Vec3::Zero()};  ///< as the two after it, see find_pair_contacts
+  std::vector<KnownGap> of_pieces;
   std::vector<HeldContact> contacts;
+
+  void forget() {
+    when.reset();
+    whole = {.normal = Vec3::Zero()};
+    of_pieces.clear();
+    contacts.clear();
+  }
 };
 
 struct StatisticalLevel::Impl {
   StatisticalSettings settings;
   const StaticGround& ground;
   const MaterialTable& materials;
-  ParallelFor parallel;
+  JobRunner jobs;
   std::vector<BodyKind> kinds;
 
   // One of each per body, by slot.
   std::vector<StatisticalBody> bodies;
   std::vector<ClipPlayback> clips;
   std::vector<std::optional<Vec3>> angular_velocity_given;  // until the next step: a state that was set is read back to the bit
-  std::vector<std::int32_t> given;  // their slots
+  std::vector<std::int32_t> given;           // slots of these
   std::vector<Vec3> last_places;  // at the step's start
   std::vector<std::pair<int, Push>> pushes;  // of the next step
 
-  std::vector<std::int32_t> awake, asleep;   // slots
-  bool sleepers_changed = true;
-  BroadPhase broad_phase;
+  std::vector<std::int32_t> awake;           // slots
+  std::vector<char> lies_still;              // by slot: sleeps since an earlier step, and is in `still`; in no loop
+  std::int64_t asleep_count = 0;
+  StillGrid still;
+  bool woken = false;                        // one of them, since near pairs were found
+  CellGrid cells;                            // of those that move
   PairMemory pair_memory;                    // places in found_before
   Crowd crowd;
   double reach = 0.0;
@@ -49,20 +71,26 @@ struct StatisticalLevel::Impl {
   bool pair_phase = false;                   // in this step
 
   // Work arrays of a step.
-  std::vector<Bound> bounds;
-  std::vector<std::int32_t> movers, stills;  // awake and asleep slots, by place
+  std::vector<double> ball_x, ball_y, ball_z;  // m: bounding balls of those that move, grown by how far they may in this step
+  std::vector<float> ball_reach;             // m
+  BallPairs ball_pairs;
+  std::vector<std::int32_t> still_near;      // sleepers near one that moves
+  std::vector<std::int32_t> movers;          // awake slots, by place
   std::vector<NearPair> pairs;
   std::vector<char> near_another;            // by slot: of those that may touch another in this step
-  std::vector<double> turning;               // m/s, by slot: of the point farthest from the centre about it
+  std::vector<Turning> turning;              // by slot; none of those that sleep
   std::vector<FullNeighbor> full, full_before;  // the neighbours, moved on between substeps
+  std::vector<FoundPair> spare_found;
   std::vector<FoundPair> found, found_before;  // of the pairs of this step and of the last one
   std::vector<CrowdContact> contacts;
+  std::vector<std::uint32_t> first_contact;  // of each found pair, among those that are looked at
+  std::vector<char> may_close;                // of each of these
   std::vector<SolidContact> solid_contacts;
   FacesBelow faces_below;
   std::vector<ContactTally> tallies;
 
   Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m)
-      : settings(s), ground(g), materials(m), parallel(s.threads), crowd(make_job_runner(s.threads)) {}
+      : settings(s), ground(g), materials(m), jobs(s.jobs ? s.jobs : make_job_runner(s.threads)), crowd(jobs) {}
 
   const BodyKind& kind_of(const StatisticalBody& body) const { return kinds[body.kind]; }
   std::uint16_t find_kind(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature);
@@ -70,8 +98,9 @@ struct StatisticalLevel::Impl {
 
   void wake(int slot);
   void put_to_sleep(StatisticalBody& body);
+  void lay_still(std::int32_t slot);    ///< a sleeper leaves all loops
+  void take_from_still(std::int32_t slot);
   void sort_by_motion();
-  void stay_asleep();  ///< the whole of a step in which nothing can happen
 
   void apply_pushes(double dt, ContactTally& tally);
   void find_near_pairs(double dt, std::span<const FullNeighbor> neighbors);
@@ -81,8 +110,11 @@ struct StatisticalLevel::Impl {
   double find_approach(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
   bool may_meet(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
   PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;
-  void sort_by_place(std::span<const std::int32_t> slots, std::vector<std::int32_t>& sorted) const;
+  void sort_by_place(std::vector<std::int32_t>& slots) const;
+  void add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt);
+  void find_still_pairs();
   Participant participant(std::int32_t of_pair) const;
+  void resize_found(std::size_t count);
   void take_over_found(std::span<const FullNeighbor> neighbors);
   void find_contact(double dt, std::span<const FullNeighbor> neighbors, FoundPair& pair) const;
   bool closes(const FoundPair& pair, const PairContact& contact, double dt, std::span<const FullNeighbor> neighbors) const;

@@ -1,7 +1,9 @@
 #include "lod/tables/cell_grid.h"
 
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 namespace lodestone {
 namespace {
@@ -19,6 +21,12 @@ constexpr std::int64_t kOneCell = 24;  // balls: so few are tested each with eac
 constexpr std::int64_t kPartBalls = 1024;
 constexpr std::int64_t kBlock = 8192;  // balls of a job
 
+template <class Task>
+void each_block(const BallSpan& balls, const JobRunner& jobs, const Task& task) {
+  const auto count = std::int64_t(balls.x.size());
+  jobs((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+}
+
 }  // namespace
 
 int CellGrid::level_of(float reach) const {
@@ -30,41 +38,29 @@ int CellGrid::level_of(float reach) const {
 }
 
 // An edge that most balls fit in, from a histogram of reaches with eight bins in an octave.
-void CellGrid::choose_edges(const BallSpan& balls) {
+void CellGrid::choose_edges(const BallSpan& balls, const JobRunner& jobs) {
   constexpr int kBins = 256, kFirstBin = (127 - 20) * 8;
-  std::array<std::uint32_t, kBins> bins{};
-  for (const float reach : balls.reach) ++bins[std::clamp(int(std::bit_cast<std::uint32_t>(reach) >> 20) - kFirstBin, 0, kBins - 1)];
+  constexpr std::size_t kSets = 4;  // of bins, taken in turn: most reaches fall into one, and would wait for each other there
+  std::array<std::atomic<std::uint32_t>, kBins> bins{};
+  each_block(balls, jobs, [&](std::int64_t begin, std::int64_t end) {
+    std::array<std::array<std::uint32_t, kBins>, kSets> own{};
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i)
+      ++own[i % kSets][std::size_t(std::clamp(int(std::bit_cast<std::uint32_t>(balls.reach[i]) >> 20) - kFirstBin, 0, kBins - 1))];
+    for (std::size_t bin = 0; bin < kBins; ++bin)
+      if (const std::uint32_t sum = own[0][bin] + own[1][bin] + own[2][bin] + own[3][bin]) bins[bin] += sum;
+  });
   const double wanted = kFitting * double(balls.reach.size());
   std::uint32_t below = 0;
   int bin = -1;
-  while (double(below) < wanted) below += bins[++bin];
+  while (double(below) < wanted) below += bins[std::size_t(++bin)];
   base_edge_ = 2.0 * double(std::bit_cast<float>(std::uint32_t(bin + 1 + kFirstBin) << 20));
 }
 
-void CellGrid::Bounds::add(const BallSpan& balls, std::size_t i) {
-  ++count;
-  most_reach = std::max(most_reach, balls.reach[i]), least_reach = std::min(least_reach, balls.reach[i]);
-  low[0] = std::min(low[0], balls.x[i]), high[0] = std::max(high[0], balls.x[i]);
-  low[1] = std::min(low[1], balls.y[i]), high[1] = std::max(high[1], balls.y[i]);
-  low[2] = std::min(low[2], balls.z[i]), high[2] = std::max(high[2], balls.z[i]);
-}
-
-void CellGrid::Bounds::add(const Bounds& other) {
-  count += other.count;
-  most_reach = std::max(most_reach, other.most_reach), least_reach = std::min(least_reach, other.least_reach);
-  for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], other.low[a]), high[a] = std::max(high[a], other.high[a]);
-}
-
-CellGrid::Bounds CellGrid::find_bounds(const BallSpan& balls, const JobRunner& jobs) {
-  const auto count = std::int64_t(balls.x.size());
-  bounds_.assign(std::size_t((count + kBlock - 1) / kBlock), {});
-  jobs(std::int64_t(bounds_.size()), TaskRef([&](std::int64_t block) {
-    Bounds bounds;
-    for (std::int64_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) bounds.add(balls, std::size_t(i));
-    bounds_[std::size_t(block)] = bounds;
-  }));
-  Bounds all;
-  for (const Bounds& bounds : bounds_) all.add(bounds);
+BallBounds CellGrid::find_bounds(const BallSpan& balls, const JobRunner& jobs) {
+  bounds_.assign(balls.x.size() / kBlock + 1, {});
+  each_block(balls, jobs, [&](std::int64_t begin, std::int64_t end) { bounds_[std::size_t(begin / kBlock)] = find_ball_bounds(balls, simd_, begin, end); });
+  BallBounds all;
+  for (const BallBounds& bounds : bounds_) all.add(bounds);
   return all;
 }
 
@@ -76,25 +72,51 @@ void CellGrid::fill(const BallSpan& balls, const JobRunner& jobs, int shares) {
   level_.clear();
   const std::int64_t count = std::int64_t(balls.x.size());
   if (count == 0) return;
-  const Bounds all = find_bounds(balls, jobs);
+  const BallBounds all = find_bounds(balls, jobs);
   const bool one_cell = count <= kOneCell, one_size = one_cell || all.most_reach <= 1.2f * all.least_reach;
   base_edge_ = 2.02 * double(all.most_reach);
-  if (!one_size) choose_edges(balls);
+  if (!one_size) choose_edges(balls, jobs);
+  others_.clear();
+  usual_ = 0;
   if (one_size || level_of(all.most_reach) == level_of(all.least_reach)) lay_out(all, one_cell ? -1 : kBaseLevel);
-  else lay_out_levels(balls);
+  else lay_out_levels(balls, jobs);
   sort(balls, jobs, shares);
   make_parts();
 }
 
-void CellGrid::lay_out_levels(const BallSpan& balls) {
-  std::array<Bounds, 32> bounds;
-  level_.resize(balls.x.size());
-  for (std::size_t i = 0; i < level_.size(); ++i) {
-    level_[i] = std::uint8_t(level_of(balls.reach[i]));
-    bounds[level_[i]].add(balls, i);
+// The least and greatest reaches of the base level.
+std::pair<float, float> CellGrid::base_reaches() const {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  auto least = float(0.5 * base_edge_ / kLevelFactor), most = float(0.5 * base_edge_);
+  while (level_of(least) < kBaseLevel) least = std::nextafter(least, kMost);
+  while (level_of(most) > kBaseLevel) most = std::nextafter(most, 0.0f);
+  return {least, most};
+}
+
+// Most balls are of the base level: the others are looked at one by one.
+void CellGrid::lay_out_levels(const BallSpan& balls, const JobRunner& jobs) {
+  const std::size_t count = balls.x.size();
+  level_.resize(count);
+  const auto [least, most] = base_reaches();
+  constexpr std::uint8_t kOther = 0;
+  each_block(balls, jobs, [&, least = least, most = most](std::int64_t begin, std::int64_t end) {
+    bounds_[std::size_t(begin / kBlock)] = find_bounds_within(balls, least, most, kBaseLevel, level_.data(), simd_, begin, end);
+  });
+  std::array<BallBounds, 32> bounds;
+  for (const BallBounds& block : bounds_) bounds[kBaseLevel].add(block);
+  std::uint8_t *at = level_.data(), *const last = at + count;
+  for (; at < last && (at = static_cast<std::uint8_t*>(std::memchr(at, kOther, std::size_t(last - at)))); ++at) {
+    const auto i = std::size_t(at - level_.data());
+    others_.push_back(std::uint32_t(i));
+    *at = std::uint8_t(level_of(balls.reach[i]));
+    bounds[*at].add(balls, i);
   }
-  for (int level = 0; level < 32; ++level)
-    if (bounds[std::size_t(level)].count > 0) grid_of_level_[std::size_t(level)] = std::int32_t(grids_.size()), lay_out(bounds[std::size_t(level)], level);
+  for (int level = 0; level < 32; ++level) {
+    if (bounds[std::size_t(level)].count == 0) continue;
+    grid_of_level_[std::size_t(level)] = std::int32_t(grids_.size());
+    if (level == kBaseLevel) usual_ = grids_.size();
+    lay_out(bounds[std::size_t(level)], level);
+  }
 }
 
 // From a sample, each end without a fiftieth of it.
@@ -120,7 +142,7 @@ CellGrid::Range CellGrid::find_usual_range(int level) const {
 }
 
 // Level −1: everything in one cell.
-void CellGrid::lay_out(const Bounds& bounds, int level) {
+void CellGrid::lay_out(const BallBounds& bounds, int level) {
   Grid grid;
   std::array<double, 3> low = bounds.low, high = bounds.high;
   const auto count = double(bounds.count);
@@ -167,118 +189,6 @@ void CellGrid::lay_out(const Bounds& bounds, int level) {
   grids_.push_back(grid);
 }
 
-namespace {
-
-/// Of balls in one grid that does not wrap.
-struct CellLoop {
-  std::array<const double*, 3> at;
-  std::array<double, 3> origin;
-  std::array<std::int32_t, 3> cells;
-  double inverse;
-  std::uint32_t* cell;
-
-  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
-    const double *x = at[0], *y = at[1], *z = at[2];
-    const double ox = origin[0], oy = origin[1], oz = origin[2];
-    const std::int32_t nx = cells[0], ny = cells[1], nz = cells[2];
-    std::uint32_t* out = cell;
-#pragma GCC ivdep
-    for (std::int64_t i = begin; i < end; ++i) {
-      const auto within = [](double c, std::int32_t count) { return std::int32_t(c < 0.0 ? 0.0 : c < double(count - 1) ? c : double(count - 1)); };
-      const std::int32_t cx = within((x[i] - ox) * inverse, nx), cy = within((y[i] - oy) * inverse, ny), cz = within((z[i] - oz) * inverse, nz);
-      out[i] = std::uint32_t((cz * ny + cy) * nx + cx);
-    }
-  }
-};
-
-}  // namespace
-
-// Where a ball is along axis `a`, in the cell and from the grid's origin, within its length where it wraps.
-double CellGrid::find_cell(const Grid& grid, int a, double at, std::int32_t& cell) {
-  double c = std::floor(at * grid.inverse);
-  if (grid.wraps[a]) {
-    const double turns = std::floor(c / grid.cells[a]);
-    c -= turns * grid.cells[a];
-    at -= turns * grid.cells[a] * grid.edge;
-  }
-  cell = std::int32_t(std::clamp(c, 0.0, double(grid.cells[a] - 1)));
-  return at;
-}
-
-void CellGrid::sort(const BallSpan& balls, const JobRunner& jobs, int shares) {
-  const std::size_t count = balls.x.size();
-  start_.assign(grids_.back().end_cell + 2, 0);
-  cell_.resize(count);
-  for (auto* array : {&x_, &y_, &z_, &reach_}) array->resize(count);
-  index_.resize(count);
-  const Grid& only = grids_.front();
-  if (grids_.size() > 1 || only.wraps[0] || only.wraps[1] || only.wraps[2]) sort_one_by_one(balls);
-  else sort_plain(balls, jobs, shares);
-  grid_begin_.clear();
-  for (const Grid& grid : grids_) grid_begin_.push_back(start_[grid.first_cell]);
-  grid_begin_.push_back(std::uint32_t(count));
-}
-
-void CellGrid::add_up_cells() {
-  for (std::size_t c = 2; c < start_.size(); ++c) start_[c] += start_[c - 1];
-}
-
-// Each share of the work has cells of its own, and looks at all balls for those that lie there: mostly they follow each other already.
-void CellGrid::sort_plain(const BallSpan& balls, const JobRunner& jobs, int shares) {
-  const auto count = std::int64_t(balls.x.size());
-  const Grid& grid = grids_.front();
-  const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
-  const double *x = centers[std::size_t(grid.axis[0])].data(), *y = centers[std::size_t(grid.axis[1])].data(), *z = centers[std::size_t(grid.axis[2])].data();
-  const CellLoop loop{{x, y, z}, grid.origin, grid.cells, grid.inverse, cell_.data()};
-  jobs((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) { run_wide(simd_, loop, block * kBlock, std::min(count, (block + 1) * kBlock)); }));
-
-  const std::uint32_t* cell = cell_.data();
-  std::uint32_t *start = start_.data(), *index = index_.data();
-  const std::int64_t all = count < kBlock ? 1 : shares;
-  const auto each_share = [&](const auto& visit) {
-    jobs(all, TaskRef([&](std::int64_t share) {
-      const auto first = std::uint32_t(grid.end_cell * share / all), last = std::uint32_t(grid.end_cell * (share + 1) / all);
-      for (std::int64_t i = 0; i < count; ++i)
-        if (cell[i] - first < last - first) visit(i);
-    }));
-  };
-  each_share([&](std::int64_t i) { ++start[cell[i] + 2]; });
-  add_up_cells();
-  float *to_x = x_.data(), *to_y = y_.data(), *to_z = z_.data(), *to_reach = reach_.data();
-  const float* reach = balls.reach.data();
-  const double ox = grid.origin[0], oy = grid.origin[1], oz = grid.origin[2];
-  each_share([&](std::int64_t i) {
-    const std::uint32_t at = start[cell[i] + 1]++;
-    to_x[at] = float(x[i] - ox), to_y[at] = float(y[i] - oy), to_z[at] = float(z[i] - oz);
-    to_reach[at] = reach[i] + (grid.fuzz + grid.stray_fuzz * (std::abs(to_x[at]) + std::abs(to_y[at]) + std::abs(to_z[at])));
-    index[at] = std::uint32_t(i);
-  });
-}
-
-void CellGrid::sort_one_by_one(const BallSpan& balls) {
-  const std::size_t count = balls.x.size();
-  const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
-  const bool many = grids_.size() > 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Grid& grid = many ? grids_[std::size_t(grid_of_level_[level_[i]])] : grids_.front();
-    std::array<std::int32_t, 3> c;
-    for (int a = 0; a < 3; ++a) find_cell(grid, a, centers[grid.axis[a]][i] - grid.origin[a], c[a]);
-    cell_[i] = grid.first_cell + std::uint32_t((c[2] * grid.cells[1] + c[1]) * grid.cells[0] + c[0]);
-    ++start_[cell_[i] + 2];
-  }
-  add_up_cells();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Grid& grid = many ? grids_[std::size_t(grid_of_level_[level_[i]])] : grids_.front();
-    const std::uint32_t at = start_[cell_[i] + 1]++;
-    std::int32_t cell;
-    x_[at] = float(find_cell(grid, 0, centers[grid.axis[0]][i] - grid.origin[0], cell));
-    y_[at] = float(find_cell(grid, 1, centers[grid.axis[1]][i] - grid.origin[1], cell));
-    z_[at] = float(find_cell(grid, 2, centers[grid.axis[2]][i] - grid.origin[2], cell));
-    reach_[at] = balls.reach[i] + (grid.fuzz + grid.stray_fuzz * (std::abs(x_[at]) + std::abs(y_[at]) + std::abs(z_[at])));
-    index_[at] = std::uint32_t(i);
-  }
-}
-
 void CellGrid::make_parts() {
   for (std::size_t g = 0; g < grids_.size(); ++g) {
     const Grid& grid = grids_[g];
@@ -306,7 +216,7 @@ std::int64_t CellGrid::used_cells() const {
 
 std::size_t CellGrid::bytes() const {
   const auto held = [](const auto& array) { return array.capacity() * sizeof array[0]; };
-  return held(grids_) + held(parts_) + held(bounds_) + held(level_) + held(cell_) + held(start_) + held(x_) + held(y_) + held(z_) + held(reach_) + held(index_) +
+  return held(grids_) + held(parts_) + held(bounds_) + held(level_) + held(others_) + held(cell_) + held(start_) + held(x_) + held(y_) + held(z_) + held(reach_) + held(index_) +
          held(grid_begin_);
 }
 

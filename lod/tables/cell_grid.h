@@ -9,18 +9,15 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lod/jobs.h"
+#include "lod/tables/ball_bounds.h"
 #include "lod/tables/ball_pairs.h"
 #include "reference/geometry.h"
 
 namespace lodestone {
-
-struct BallSpan {
-  std::span<const double> x, y, z;  // m, centres
-  std::span<const float> reach;     // m, how far from the centre anything can matter in this step
-};
 
 class CellGrid {
  public:
@@ -93,28 +90,28 @@ class CellGrid {
     float shift = 0.0f;
   };
 
-  /// Of the balls of one level.
-  struct Bounds {
-    std::array<double, 3> low, high;  // m
-    float most_reach = 0.0f, least_reach = std::numeric_limits<float>::max();  // m
-    std::int64_t count = 0;
-    Bounds() { low.fill(std::numeric_limits<double>::max()), high.fill(std::numeric_limits<double>::lowest()); }
-    void add(const BallSpan& balls, std::size_t i);
-    void add(const Bounds& other);
-  };
-  Bounds find_bounds(const BallSpan& balls, const JobRunner& jobs);
-  void choose_edges(const BallSpan& balls);
-  void lay_out_levels(const BallSpan& balls);
-  void lay_out(const Bounds& bounds, int level);
+  BallBounds find_bounds(const BallSpan& balls, const JobRunner& jobs);
+  void choose_edges(const BallSpan& balls, const JobRunner& jobs);
+  std::pair<float, float> base_reaches() const;
+  void lay_out_levels(const BallSpan& balls, const JobRunner& jobs);
+  void lay_out(const BallBounds& bounds, int level);
   /// Where all but a few balls of a level are, along each axis.
   struct Range {
     std::array<double, 3> low{}, high{};  // m
   };
   Range find_usual_range(int level) const;
   void sort(const BallSpan& balls, const JobRunner& jobs, int shares);
-  void sort_plain(const BallSpan& balls, const JobRunner& jobs, int shares);
-  void sort_one_by_one(const BallSpan& balls);
-  void add_up_cells();
+  void find_usual_cells(const BallSpan& balls, const JobRunner& jobs);
+  template <class Visit>
+  void each_usual(const JobRunner& jobs, std::int64_t shares, const Visit& visit) const;
+  void count_usual(const JobRunner& jobs, std::int64_t shares);
+  void place_usual(const BallSpan& balls, const JobRunner& jobs, std::int64_t shares);
+  template <class Visit>
+  void each_other(bool all, const Visit& visit) const;
+  void count_others(const BallSpan& balls, bool all);
+  void place_others(const BallSpan& balls, bool all);
+  const Grid& grid_of(std::uint32_t ball) const;
+  static std::array<std::span<const double>, 3> along_axes(const Grid& grid, const BallSpan& balls);
   static double find_cell(const Grid& grid, int axis, double at, std::int32_t& cell);
   void make_parts();
   int level_of(float reach) const;
@@ -136,8 +133,10 @@ class CellGrid {
   std::array<std::int32_t, 32> grid_of_level_{};
   double base_edge_ = 1.0;                // m, of level kBaseLevel
   std::vector<Part> parts_;
-  std::vector<Bounds> bounds_;            // of blocks of balls
+  std::size_t usual_ = 0;                 // grid of the base level
+  std::vector<BallBounds> bounds_;        // of blocks of balls
   std::vector<std::uint8_t> level_;       // of each ball, where they are of several
+  std::vector<std::uint32_t> others_;     // balls that are not sorted many at a time
   std::vector<std::uint32_t> cell_;       // of each ball
   std::vector<std::uint32_t> start_;      // of each cell, and the end of the last
   std::vector<float> x_, y_, z_, reach_;  // in order; positions within the grid, along its axes

@@ -25,7 +25,7 @@ CellGrid::Rows CellGrid::find_rows(const Grid& grid, std::int32_t slow, std::int
   return found;
 }
 
-void CellGrid::find_runs(const Grid& grid, const Rows& rows, std::int32_t fast, Runs& found) const {
+LODESTONE_INLINE void CellGrid::find_runs(const Grid& grid, const Rows& rows, std::int32_t fast, Runs& found) const {
   found.count = 0;
   const std::int32_t n = grid.cells[0];
   const float length = float(n * grid.edge);

@@ -63,7 +63,8 @@ struct SweepContacts {
   const Spheres& spheres;
   const SphereKinds& kinds;
   StepConstants c;
-  ContactArrays& contacts;
+  const ContactArrays& contacts;
+  float* impulse;
   SphereStep& step;
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
@@ -71,7 +72,7 @@ struct SweepContacts {
     const std::uint32_t *first = contacts.first.data(), *second = contacts.second.data();
     const float *nx = contacts.nx.data(), *ny = contacts.ny.data(), *nz = contacts.nz.data(), *gap = contacts.gap.data(), *closing = contacts.closing.data();
     const float *restitution = contacts.restitution.data(), *friction = contacts.friction.data();
-    float* impulse = contacts.impulse.data();
+    float* gives = impulse;
     const Row *p = step.p.data(), *u = step.u.data();
     Row *added = step.a.data(), *turned_by = step.s.data(), *pushed = step.d.data();
     const float *inverse_mass = kinds.inverse_mass.data(), *size_of = kinds.radius.data(), *radius = spheres.radius.data();
@@ -96,12 +97,12 @@ struct SweepContacts {
         const std::int64_t at = chunk + i;
         // By components: GCC keeps these vectors in memory, and then makes no loop of vector instructions.
         const float x = nx[at], y = ny[at], z = nz[at], vx = relative[i].x, vy = relative[i].y, vz = relative[i].z;
-        const float speed = vx * x + vy * y + vz * z, split = 1.0f / relative[i].w, apart = gap[at], nearing = closing[at], before = impulse[at];
+        const float speed = vx * x + vy * y + vz * z, split = 1.0f / relative[i].w, apart = gap[at], nearing = closing[at], before = gives[at];
         const float e = OneKind ? only_restitution : restitution[at];
         const float shut = least(0.0f, -apart * per_time), bounced = most(-e * nearing, shut);
         const float target = choose(nearing < -bounce, bounced, shut);
         const float after = most(0.0f, before + split * (target - speed)), change = after - before;
-        impulse[at] = after;
+        gives[at] = after;
         float ix = change * x, iy = change * y, iz = change * z;
         if constexpr (Last) {
           // Friction on the slip of the touching points, with the inertia under which it changes most.
@@ -120,9 +121,9 @@ struct SweepContacts {
       for (std::int64_t i = 0; i < n; ++i) {
         const std::uint32_t a = first[chunk + i], other = second[chunk + i], b = std::min(other, awake);
         const float wa = inverse_mass[OneKind ? 0 : kind[a]], wb = inverse_mass[OneKind ? 0 : kind[other]];
-        const RowLanes gives = lanes_of(given[i]);
-        add_to(added[a], wa * gives);
-        add_to(added[b], -wb * gives);
+        const RowLanes sum = lanes_of(given[i]);
+        add_to(added[a], wa * sum);
+        add_to(added[b], -wb * sum);
         if constexpr (Last) {
           const RowLanes turns = lanes_of(torque[i]), pushes = lanes_of(out[i]);
           add_to(turned_by[a], (radius[a] * wa) * turns);
@@ -137,17 +138,21 @@ struct SweepContacts {
 
 }  // namespace
 
-void find_touching(const BallPairs& pairs, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, float touching, Simd simd,
-                   ContactArrays& contacts) {
-  contacts.make_room(contacts.count + std::size_t(pairs.size()), constants.one_kind);
+ContactRun find_touching(const BallPairs& pairs, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, float touching, Simd simd,
+                         ContactArrays& contacts) {
+  const std::size_t begin = (contacts.count + kContactChunk - 1) / kContactChunk * kContactChunk;
+  contacts.count = begin;
+  contacts.make_room(begin + std::size_t(pairs.size()), constants.one_kind);
   if (constants.one_kind) run_wide(simd, TouchLoop<true>{pairs, spheres, kinds, constants, touching, contacts}, 0, pairs.size());
   else run_wide(simd, TouchLoop<false>{pairs, spheres, kinds, constants, touching, contacts}, 0, pairs.size());
+  return {&contacts, begin, contacts.count};
 }
 
 void sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
-                    ContactArrays& contacts, SphereStep& step) {
+                    const ContactRun& contacts, SphereStep& step) {
   const auto run = [&]<bool OneKind, bool Last>() {
-    run_wide(simd, SweepContacts<OneKind, Last>{settings, spheres, kinds, constants, contacts, step}, 0, std::int64_t(contacts.count));
+    run_wide(simd, SweepContacts<OneKind, Last>{settings, spheres, kinds, constants, *contacts.arrays, contacts.arrays->impulse.data(), step},
+             std::int64_t(contacts.begin), std::int64_t(contacts.end));
   };
   if (constants.one_kind && settings.last) run.template operator()<true, true>();
   else if (constants.one_kind) run.template operator()<true, false>();

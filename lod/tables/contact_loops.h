@@ -5,11 +5,11 @@
 
 namespace lodestone {
 
-/// Elements that the loops may read and write beyond the last contact.
+/// Contacts that the loops take at a time: a run begins at a multiple, and they may read and write up to the next one beyond its end.
 inline constexpr std::size_t kContactChunk = 32;
 
-/// Appends those of the pairs that touch, or will within the step, without impulses.
-void find_touching(const BallPairs& pairs, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, float touching, Simd simd,
+/// Appends a run of those of the pairs that touch, or will within the step, without impulses.
+ContactRun find_touching(const BallPairs& pairs, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, float touching, Simd simd,
                    ContactArrays& contacts);
 
 struct SweepSettings {
@@ -21,6 +21,6 @@ struct SweepSettings {
 
 /// A round of the contacts given.
 void sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
-                    ContactArrays& contacts, SphereStep& step);
+                    const ContactRun& contacts, SphereStep& step);
 
 }  // namespace lodestone

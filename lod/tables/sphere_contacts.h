@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,7 +16,7 @@
 
 namespace lodestone {
 
-/// Contacts as dense arrays, of which the first `count` elements count.
+/// Contacts as dense arrays, of which the first `count` elements are taken.
 struct ContactArrays {
   std::vector<std::uint32_t> first, second;  // places; beyond those awake: asleep, does not move
   std::vector<float> nx, ny, nz;             // from the second to the first
@@ -22,15 +24,24 @@ struct ContactArrays {
   std::vector<float> closing;                // m/s at the start of the step, negative: nearing
   std::vector<float> impulse;                // N s
   std::vector<float> restitution, friction;  // of the two materials; empty where all bodies are of one kind
-  std::size_t count = 0;
+  std::size_t count = 0, lately = 0;         // taken; at most, of late
 
   /// Calls `visit` with each array.
   template <class Visit>
   void each_array(const Visit& visit) const {
     visit(first), visit(second), visit(nx), visit(ny), visit(nz), visit(gap), visit(closing), visit(impulse), visit(restitution), visit(friction);
   }
-  /// Of all arrays at least; they only grow.
+  /// Of all arrays at least.
   void make_room(std::size_t elements, bool one_kind);
+  /// Takes none; where far fewer were taken lately than there is room for, the room is given back.
+  void clear();
+};
+
+/// Some of them, one after the other.
+struct ContactRun {
+  ContactArrays* arrays = nullptr;
+  std::size_t begin = 0, end = 0;
+  std::size_t size() const { return end - begin; }
 };
 
 /// What a contact is.
@@ -45,6 +56,12 @@ struct KnownContact {
   float force = 0.0f;                    // N
 };
 
+/// One of those few that are not in the part that holds all other contacts of their first body.
+struct KnownApart {
+  std::array<std::uint32_t, 2> owners{};
+  float force = 0.0f;                    // N
+};
+
 struct SphereContactSettings {
   int sweeps = 2;
   float touching = 0.01f;                // m over R: gaps up to it are contacts
@@ -53,21 +70,19 @@ struct SphereContactSettings {
 
 class SphereContacts {
  public:
-  /// Between awake bodies.
-  void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, const StepConstants& constants, Simd simd, const JobRunner& jobs);
+  /// Between awake bodies, with the impulses known from the last step; approaches faster than `bounce_velocity`, m/s, are impacts.
+  void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity, const StepConstants& constants, Simd simd,
+            const JobRunner& jobs);
   /// More, where the two touch: of an awake body with any other.
-  void add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, const StepConstants& constants,
-           Simd simd);
+  void add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, float bounce_velocity,
+           const StepConstants& constants, Simd simd);
 
-  /// Counts each body's contacts and gives the impulses known from the last step.
-  void begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants,
-             SphereStep& step, const JobRunner& jobs);
-  /// One round of all contacts; the last one has friction and moves bodies out of overlaps.
-  void sweep(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants, bool last,
+  /// Counts each body's contacts and gives the impulses known.
+  void begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, const StepConstants& constants, SphereStep& step,
+             const JobRunner& jobs);
+  /// One round of all contacts; the last one has friction, moves bodies out of overlaps, and is remembered for the next step.
+  void sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants, bool last,
              Simd simd, SphereStep& step, const JobRunner& jobs);
-  /// For the next step.
-  void remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const JobRunner& jobs);
-  void forget() { known_.clear(); }
 
   const SphereContactSettings& settings() const { return settings_; }
   std::int64_t count() const;
@@ -77,14 +92,14 @@ class SphereContacts {
   template <class Visit>
   void each(const Visit& visit) const {
     for (std::size_t p = 0; p < used_parts_; ++p)
-      for (std::size_t i = 0; i < parts_[p].contacts.count; ++i) visit(contact_of(parts_[p].contacts, i));
+      for (std::size_t i = parts_[p].run.begin; i < parts_[p].run.end; ++i) visit(contact_of(*parts_[p].run.arrays, i));
   }
   void clear();
 
  private:
   struct Part {
     int colour = 0;
-    ContactArrays contacts;
+    ContactRun run;
     std::uint32_t known_begin = 0;  // of its contacts in known_
   };
   static SphereContact contact_of(const ContactArrays& c, std::size_t i) {
@@ -94,17 +109,29 @@ class SphereContacts {
   static bool is_support(const ContactArrays& c, std::size_t i, float bounce_velocity) { return (c.impulse[i] > 0.0f) & (c.closing[i] >= -bounce_velocity); }
   template <class Task>
   void run_by_colour(const JobRunner& jobs, const Task& task);
-  void set_laws(ContactArrays& contacts, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials) const;
+  ContactArrays& take_arrays();
+  void put_back(ContactArrays& arrays);
+  void set_laws(const ContactRun& run, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials) const;
   float known_force(const Spheres& spheres, std::uint32_t first, std::uint32_t second, std::uint32_t nth) const;
   float find_known_force(const Spheres& spheres, std::uint32_t at, std::uint32_t other) const;
-  void remember_parts(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const JobRunner& jobs);
-  void remember_sorted(Spheres& spheres, float bounce_velocity, const StepConstants& constants);
+  float find_known_apart(std::uint32_t owner, std::uint32_t other) const;
+  void recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants, const ContactRun& run) const;
+  void make_room_to_remember(Spheres& spheres);
+  void remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const Part& part);
+  void remember_apart(const Spheres& spheres, float bounce_velocity, const StepConstants& constants);
+  // Its contacts may be of first bodies that another part has contacts of, too.
+  static bool is_apart(int colour) { return colour >= CellGrid::kColours - 1; }
 
   SphereContactSettings settings_;
   std::vector<Part> parts_;       // the grid's, and one for contacts that were added
+  // As many arrays as parts were searched at once: room for the contacts of all parts together, not for as many as each of them ever had.
+  std::deque<ContactArrays> arrays_;
+  std::vector<ContactArrays*> free_arrays_;
+  std::mutex free_arrays_access_;
   std::size_t used_parts_ = 0;
   std::array<std::vector<std::uint32_t>, CellGrid::kColours + 1> of_colour_;
   std::vector<KnownContact> known_;
+  std::vector<KnownApart> known_apart_;  // by owners
 };
 
 }  // namespace lodestone

@@ -67,7 +67,7 @@ struct SortLoop {
       const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), moves = int(motion[i]);
       const int state = on_ground[i];
       const F3 n{nx[p], ny[p], nz[p]}, v{float(vx[i]), float(vy[i]), float(vz[i])};
-      const float touching = start[i].w, moving = s[i].w, threshold = c.resting_energy * c.gravity * size[k];
+      const float touching = start[i].w, moving = s[i].x + s[i].y + s[i].z + s[i].w, threshold = c.resting_energy * c.gravity * size[k];
       const float kept = held[i], weight = pressure[p] * c.time;
       // Masks: 0 or −1.
       const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce), others = -int(touching > 0.0f);
@@ -142,7 +142,7 @@ struct LieLoop {
       const F3 n{nx[p], ny[p], nz[p]}, start{begun[i].x, begun[i].y, begun[i].z}, start_spin{float(lx[i]), float(ly[i]), float(lz[i])}, old{a[i].x, a[i].y, a[i].z}, old_turn{s[i].x, s[i].y, s[i].z};
       const F3 out{d[i].x, d[i].y, d[i].z};
       const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
-      const float r = radius[i], above = gap[i], given_speed = a[i].w, moving = s[i].w, big = size[k];
+      const float r = radius[i], above = gap[i], given_speed = a[i].w, moving = s[i].w, lifted = d[i].w, big = size[k];
       const F3 solved = start + old;
       F3 v = solved - choose(others, 0.0f, dot(solved, n)) * n, spin = start_spin + old_turn;
 
@@ -177,7 +177,7 @@ struct LieLoop {
       // The ground has the last word: among others no sinking in; alone down onto it, or out of it gradually.
       const float height = above + dot(v, n) * c.time + dot(out, n), alone = choose(above < 0.0f, -kRise * above, -above);
       const float raise = choose(lies, choose(others, most(0.0f, -height), alone), 0.0f);
-      d[i].x = out.x + raise * n.x, d[i].y = out.y + raise * n.y, d[i].z = out.z + raise * n.z, d[i].w = 0.0f;
+      d[i].x = out.x + raise * n.x, d[i].y = out.y + raise * n.y, d[i].z = out.z + raise * n.z, d[i].w = lifted + raise;
     }
   }
 };

@@ -59,7 +59,8 @@ struct StartLoop {
       u[i].x = r * omega.x, u[i].y = r * omega.y, u[i].z = r * omega.z, u[i].w = 1.0f + r * r * softest[k];
       s[i].x = 0.0f, s[i].y = 0.0f, s[i].z = 0.0f, s[i].w = 0.5f * (dot(v, v) + dot(spun, omega));
     }
-    std::fill(a + begin, a + end, Row{}), std::fill(d + begin, d + end, Row{});
+    if (c.clear_added) std::fill(a + begin, a + end, Row{});
+    std::fill(d + begin, d + end, Row{});
     std::fill(on_ground + begin, on_ground + end, std::uint8_t(0));
     std::fill(plane + begin, plane + end, std::uint8_t(0)), std::fill(slides + begin, slides + end, std::uint8_t(0));
   }
@@ -129,7 +130,7 @@ struct EndLoop {
       const F3 new_q = choose(here, scale * to.v, q.v);
       qw[i] = choose(here, scale * to.w, q.w), qx[i] = new_q.x, qy[i] = new_q.y, qz[i] = new_q.z;
       constexpr float kFast = 1e6f;  // m/s, m²/s: beyond it someone looks closer
-      const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z);
+      const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z) + absolute(a[i].w) + absolute(d[i].w);
       const float far = most(absolute(float(to_x)), most(absolute(float(to_y)), absolute(float(to_z))));
       const float wrong = choose(sum < kFast, 0.0f, 1.0f) + choose(absolute(scale - 1.0f) < 0.1f, 0.0f, 1.0f) + choose(far + absolute(float(to_x - to_x)) < 0.999e8f, 0.0f, 1.0f);
       unsound[i] = std::uint8_t(choose(wrong > 0.0f, 1, 0));

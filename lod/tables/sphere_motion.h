@@ -56,6 +56,7 @@ struct StepConstants {
   float resting_energy = 0.15f;           // J/kg over g R: the first threshold of 3.4
   bool update_radius = true;              // of those in flight
   bool one_kind = false;
+  bool clear_added = true;                // what contacts add; where there is ground, sort_near_ground does
 };
 
 /// Angular velocities, radii, reaches, and velocities with gravity; clears what contacts add.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "lod/stage_timer.h"
 #include "lod/statistical/flight.h"
@@ -27,7 +28,7 @@ void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std:
 }  // namespace
 
 TablesLevel::TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, Simd simd)
-    : settings_(settings), ground_(ground), materials_(materials), jobs_(make_job_runner(settings.threads)), simd_(simd), cells_(simd) {
+    : settings_(settings), ground_(ground), materials_(materials), jobs_(settings.jobs ? settings.jobs : make_job_runner(settings.threads)), simd_(simd), cells_(simd) {
   tables_.options = settings.tables;
 }
 
@@ -130,7 +131,7 @@ void TablesLevel::forget_given(std::uint32_t slot) {
 
 void TablesLevel::forget_all_given() {
   for (const auto& given : given_) given_of_slot_[given.first] = -1;
-  if (given_.size() > 64) given_ = {};  // of a whole scene that was added
+  if (given_.size() > 64) std::exchange(given_, {});  // of a whole scene that was added
   given_.clear();
 }
 
@@ -218,7 +219,7 @@ void TablesLevel::start(double dt) {
   const Vec3& g = settings_.gravity;
   check_that(ground_.planes.size() < 255, "at most 254 planes");
   constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .wide_time = dt, .wide_gx = g.x(), .wide_gy = g.y(), .wide_gz = g.z(), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
-                .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1};
+                .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1, .clear_added = ground_.planes.empty()};
   step_.resize(std::size_t(spheres_.awake));
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0) update_radii_one_by_one();
   planes_.set(ground_, materials_, kinds_, settings_.gravity);
@@ -240,7 +241,7 @@ void TablesLevel::update_radii_one_by_one() {
 void TablesLevel::find_contacts(std::span<FullNeighbor> neighbors) {
   const std::int64_t were_awake = spheres_.awake;
   find_full_touches(neighbors);
-  contacts_.find(spheres_, kinds_, cells_, constants_, simd_, jobs_);
+  contacts_.find(spheres_, kinds_, cells_, bounce_velocity(), constants_, simd_, jobs_);
   find_still_contacts();
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
     step_.resize(std::size_t(spheres_.awake));
@@ -248,7 +249,7 @@ void TablesLevel::find_contacts(std::span<FullNeighbor> neighbors) {
   }
   if (still_touches_.empty()) return;
   for (auto& touch : still_touches_) touch.second = spheres_.place_of_slot[touch.second];
-  contacts_.add(spheres_, kinds_, still_touches_, constants_, simd_);
+  contacts_.add(spheres_, kinds_, still_touches_, bounce_velocity(), constants_, simd_);
 }
 
 // Of awake bodies with sleepers; those that are hit hard enough wake.
@@ -280,7 +281,7 @@ void TablesLevel::respond(ContactTally& tally) {
   tally.contacts += contacts_.count();
   if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
   const bool crowd = contacts_.count() > 0;
-  if (crowd) contacts_.begin(spheres_, kinds_, materials_, bounce_velocity(), constants_, step_, jobs_);
+  if (crowd) contacts_.begin(spheres_, kinds_, materials_, constants_, step_, jobs_);
   sort_ground();
   if (!crowd) return;
   const int sweeps = contacts_.settings().sweeps;
@@ -292,7 +293,6 @@ void TablesLevel::respond(ContactTally& tally) {
         take_impulses(simd_, begin, end, step_);
       });
   }
-  contacts_.remember(spheres_, bounce_velocity(), constants_, jobs_);
 }
 
 // The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves as if alone.

@@ -12,7 +12,7 @@ double of_start(const TablesTraffic& t) {
   const Spheres& b = t.spheres;
   const SphereStep& s = t.step;
   const double read = row(b.x, b.y, b.z, b.vx, b.vy, b.vz, b.lx, b.ly, b.lz, b.qw, b.qx, b.qy, b.qz, b.radius, b.kind, b.pose, b.motion, b.since_crowded);
-  return read + row(b.radius, s.reach, s.p, s.u, s.a, s.s, s.d, s.gap, s.on_ground, s.plane, s.slides);
+  return read + row(b.radius, s.reach, s.p, s.u, s.s, s.d, s.gap, s.on_ground, s.plane, s.slides) + (t.ground ? 0.0 : row(s.a));
 }
 
 // The bounds; the cells; how many lie in each; and into them.
@@ -33,7 +33,7 @@ double of_begin(const TablesTraffic& t) { return row(t.spheres.kind, t.spheres.o
 double of_sort_ground(const TablesTraffic& t) {
   const Spheres& b = t.spheres;
   const SphereStep& s = t.step;
-  return row(b.vx, b.vy, b.vz, b.held, b.kind, b.motion, s.plane, s.s) + 2.0 * row(s.p, s.a, s.on_ground);
+  return row(b.vx, b.vy, b.vz, b.held, b.kind, b.motion, s.plane, s.s, s.a) + 2.0 * row(s.p, s.on_ground);
 }
 
 // A round of contacts, and then of the ground's.
@@ -71,8 +71,8 @@ double count_bytes_moved(const TablesTraffic& t) {
   if (t.contacts.count() > 0) {
     const int sweeps = t.contacts.settings().sweeps;
     of_body += of_begin(t) + (sweeps - 1) * of_sweep(t) + of_last_sweep(t) + of_remember(t);
-    // Found, begun, swept and remembered.
-    of_contacts = double(t.contacts.count()) * ((3.0 + sweeps) * double(t.contacts.bytes_each()) + 2.0 * sizeof(KnownContact));
+    // Found, begun and swept; known contacts are read, and written anew.
+    of_contacts = double(t.contacts.count()) * ((2.0 + sweeps) * double(t.contacts.bytes_each()) + 2.0 * sizeof(KnownContact));
   }
   return of_body * double(t.spheres.awake) + of_contacts;
 }

@@ -6,7 +6,9 @@
 
 #include <limits>
 #include <map>
+#include <thread>
 
+#include "signature/measure/measure.h"
 #include "tests/lod/manager_fixture.h"
 
 namespace lodestone {
@@ -290,6 +292,38 @@ std::uint64_t hash_of_a_mixed_run() {
 }
 
 TEST(Manager, SameRunGivesTheSameHash) { EXPECT_EQ(hash_of_a_mixed_run(), hash_of_a_mixed_run()); }
+
+// A heap under either model, with an engine's own jobs: last task first, on a thread of its own.
+std::uint64_t hash_of_a_heap(StatisticalModel model, const JobRunner& jobs) {
+  ManagerSettings settings = unmeasured();
+  settings.model = model;
+  settings.signatures = [](const Shape& shape, const ContactLaw&) {
+    SignatureSettings coarse;
+    coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8, coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
+    return std::make_shared<const Signature>(measure_signature(shape, coarse, 1));
+  };
+  settings.threads = 2;
+  settings.jobs = jobs;
+  Manager manager = on_floor(settings);
+  const auto shape = box_shape(kSides);
+  for (int i = 0; i < 1'200; ++i) add(manager, shape, at({0.5 * (i % 20), 0.5 * (i / 20 % 20), 0.4 + 0.5 * (i / 400)}), LevelChoice::statistical);
+  run(manager, 0.5);
+  return manager.state_hash();
+}
+
+TEST(Manager, AnEnginesOwnJobsGiveTheSameHash) {
+  for (const StatisticalModel model : {StatisticalModel::tables, StatisticalModel::support}) {
+    std::int64_t tasks = 0;
+    const JobRunner jobs = [&](std::int64_t count, TaskRef task) {
+      tasks += count;
+      std::thread([&] {
+        for (std::int64_t i = count; i-- > 0;) task(i);
+      }).join();
+    };
+    EXPECT_EQ(hash_of_a_heap(model, jobs), hash_of_a_heap(model, {})) << int(model);
+    EXPECT_GT(tasks, 100) << int(model);
+  }
+}
 
 TEST(Manager, HashSeesStateAndLevel) {
   Manager manager = on_floor();

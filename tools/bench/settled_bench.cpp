@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60, kApart = 0.5;  // s, m
 constexpr int kSettlingMost = 600;                 // steps
-constexpr double kHeight = 60.0, kSearched = 30.0; // m: of the viewpoint; about where a body falls, in which those woken are looked for
+constexpr double kHeight = 5.0, kSearched = 30.0;  // m: of the viewpoint, a little farther than anyone becomes full; about where a body falls, in which those woken are looked for
 const Vec3 kSides(0.2, 0.3, 0.24);                 // m, of a crate
 
 double median_of(std::vector<double> values) {

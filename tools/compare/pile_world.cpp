@@ -11,7 +11,7 @@ PileSurroundings make_bin(double side) {
   return bin;
 }
 
-PileSurroundings make_empty_space() { return {.gravity = Vec3::Zero()}; }
+PileSurroundings make_empty_space() { return {.gravity = Vec3::Zero(), .sleeping = false}; }
 
 PileWorld::PileWorld(const DropJob& job, const DropMethod& method, const PileSurroundings& surroundings, std::span<const RigidState> starts,
                      std::uint64_t seed)
@@ -36,6 +36,7 @@ void PileWorld::fill_statistical(const DropJob& job, const StatisticalMethod& wa
                                  std::span<const RigidState> starts, std::uint64_t seed) {
   ManagerSettings settings = manager_settings_of(way, seed);
   settings.gravity = surroundings.gravity;
+  settings.sleeping = surroundings.sleeping;
   statistical_.emplace(Manager(settings), std::vector<BodyId>{});
   statistical_->manager.materials().replace(0, job.material);
   for (const HalfSpace& plane : surroundings.planes) statistical_->manager.add_plane(plane.normal, plane.offset);

@@ -16,6 +16,7 @@ namespace lodestone {
 struct PileSurroundings {
   std::vector<HalfSpace> planes = {};
   Vec3 gravity{0, 0, -9.81};  ///< m/s²
+  bool sleeping = true;       ///< of the statistical level: what falls asleep stops, and its momentum is gone
 };
 
 /// A floor at z = 0 and four walls without end, `side` m apart about the origin.

@@ -10,8 +10,11 @@ constexpr double kMargin = 0.003;
 PairBody at(const Shape& shape, const Vec3& position, const Quat& orientation = Quat::Identity()) { return {&shape, position, orientation}; }
 
 HullContactSearch search_afresh(const PairBody& first, const PairBody& second) {
+  HullGap nowhere{.normal = Vec3::Zero()};
   std::vector<KnownGap> nothing;
-  return find_pair_contacts(first, second, nothing, kMargin);
+  HullContactSearch search;
+  find_pair_contacts(first, second, nowhere, nothing, kMargin, search);
+  return search;
 }
 
 class LInL : public ::testing::Test {

@@ -6,6 +6,7 @@
 #include "reference/free_rotation.h"
 #include "reference/random.h"
 #include "signature/measure/measure.h"
+#include "tests/allocations.h"
 
 namespace lodestone {
 namespace {
@@ -150,6 +151,32 @@ TEST_P(Statistical, OneBodyRunsNoPairPhase) {
   add(level, start);
   level.step(1.0 / 60.0, {}, report);
   EXPECT_EQ(report.counters.pair_phases, 1);
+}
+
+// A heap that has come to rest, with sleep off.
+TEST_P(Statistical, AWarmStepAllocatesNothing) {
+  StatisticalSettings settings;
+  settings.model = GetParam();
+  settings.sleeping = false;
+  StatisticalLevel level(settings, ground_, materials_);
+  for (RigidState s : crowd(80, 2.4)) {
+    s.position.head<2>() *= 0.6;
+    add(level, s);
+  }
+  const auto run = [&](int steps) {
+    int contacts = 0;
+    for (int i = 0; i < steps; ++i) {
+      StepReport report;
+      level.step(1.0 / 60.0, {}, report);
+      contacts = report.contacts;
+    }
+    return contacts;
+  };
+  run(600);
+  const std::int64_t before = allocations();
+  const int contacts = run(30);
+  EXPECT_EQ(allocations() - before, 0);
+  EXPECT_GT(contacts, 40);
 }
 
 // S1
