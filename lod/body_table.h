@@ -1,7 +1,9 @@
-// The bodies of a manager: stable ids, and for each body what the policy reads every step apart from what only a change of level needs.
+// The bodies of a manager: stable ids, and for each body what the policy reads apart from what only a change of level needs. What few bodies have at a time is
+// kept for those alone.
 #pragma once
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "lod/body.h"
@@ -12,16 +14,27 @@ namespace lodestone {
 
 /// What is kept of a body besides its state, which its level holds.
 struct BodyRecord {
-  BodyDefinition definition;         ///< `state` is current only while the body is at no level yet
   double mass = 0.0;                 ///< kg
-  std::uint32_t generation = 0;      ///< of the id; a free index keeps that of its last body
   std::uint64_t birth = 0;           ///< bodies added before it; 0 in a free index
-  int slot = -1;                     ///< in the statistical level, else −1
+  std::uint32_t generation = 0;      ///< of the id; a free index keeps that of its last body
+  std::uint32_t shape = 0;           ///< number of its shape
+  MaterialId material = 0;
+  int slot = -1;                     ///< in the statistical level; −1: not there; below: −2 − its place among the newcomers
   OdeBodyId ode = {};                ///< at the full level, else null
-  Vec3 force = Vec3::Zero();         ///< N, over the next step; held here so that a change of level carries it
-  Vec3 torque = Vec3::Zero();        ///< N m
-  double still_s = 0.0;              ///< how long it has been still at the full level, held up by statistical bodies
-  int frames_to_retry = 0, retry_after = 0;  ///< of a promotion that was put off: left to wait, and the whole wait
+};
+
+/// What the policy goes by, besides where the body is.
+struct BodyLevel {
+  static constexpr std::int64_t kLongAgo = -(std::int64_t(1) << 30);
+  double importance = 1.0;
+  std::int64_t changed_at = kLongAgo;  ///< step
+  std::int64_t looked_at = -1;         ///< step in which the policy last thought of it
+  LevelChoice choice = LevelChoice::statistical;
+  Level level = Level::statistical;
+  LevelReason reason = LevelReason::forced;
+  bool newcomer = false;    ///< at no level yet
+  bool put_off = false;     ///< its promotion was put off lately
+  bool waits_for_signature = false;
 };
 
 class BodyTable {
@@ -36,19 +49,81 @@ class BodyTable {
 
   BodyRecord& operator[](std::uint32_t index) { return records_[index]; }
   const BodyRecord& operator[](std::uint32_t index) const { return records_[index]; }
-  /// One per index; that of a free index asks for nothing.
-  std::vector<LevelCandidate>& candidates() { return candidates_; }
-  const std::vector<LevelCandidate>& candidates() const { return candidates_; }
+  /// That of a free index asks for nothing.
+  BodyLevel& level(std::uint32_t index) { return levels_[index]; }
+  const BodyLevel& level(std::uint32_t index) const { return levels_[index]; }
+  const std::shared_ptr<const Shape>& shape(std::uint32_t index) const { return shapes_[records_[index].shape].shape; }
+
+  void set_choice(std::uint32_t index, LevelChoice choice);
+  /// Bodies about which the policy is asked.
+  int automatic() const { return automatic_; }
+  /// The greatest that any body had.
+  double greatest_importance() const { return greatest_importance_; }
+
+  /// Bodies at no level yet, in order of creation, as they were given.
+  struct Newcomer {
+    std::uint32_t index = 0;
+    RigidState state;
+  };
+  const std::vector<Newcomer>& newcomers() const { return newcomers_; }
+  bool is_newcomer(std::uint32_t index) const { return records_[index].slot < -1; }
+  RigidState& given_state(std::uint32_t newcomer) { return newcomers_[std::size_t(-2 - records_[newcomer].slot)].state; }
+  const RigidState& given_state(std::uint32_t newcomer) const { return newcomers_[std::size_t(-2 - records_[newcomer].slot)].state; }
+  bool is_newcomer_at(std::size_t place) const { return records_[newcomers_[place].index].slot == -2 - int(place); }  ///< not if it was placed since
+  void remove_newcomer(std::uint32_t index);
+  void forget_last_newcomer() { newcomers_.pop_back(); }  ///< once it is at a level
+  void forget_newcomers();  ///< once all are at a level
+
+  /// Over the next step; held here so that a change of level carries it.
+  struct Force {
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // N, N m
+  };
+  void add_force(std::uint32_t index, const Force& force);
+  Force force(std::uint32_t index) const;
+  /// Bodies with a force, in the order in which they got the first.
+  const std::vector<std::uint32_t>& pushed() const { return pushed_; }
+  void clear_forces();
+
+  /// What few bodies need at a time.
+  struct Rare {
+    double still_s = 0.0;              // how long it has been still at the full level, held up by statistical bodies
+    int frames_to_retry = 0, retry_after = 0;  // of a promotion that was put off: left to wait, and the whole wait
+  };
+  Rare& rare(std::uint32_t index) { return rare_[index]; }
+  void forget_rare(std::uint32_t index) { rare_.erase(index); }
+  void forget_retries(std::uint32_t index) {
+    if (const auto rare = rare_.find(index); rare != rare_.end()) rare->second.frames_to_retry = rare->second.retry_after = 0;
+  }
+  /// It is not still.
+  void stir(std::uint32_t index) {
+    if (const auto rare = rare_.find(index); rare != rare_.end()) rare->second.still_s = 0.0;
+  }
 
   int size() const { return int(records_.size() - free_.size()); }
   std::uint32_t indices() const { return std::uint32_t(records_.size()); }
   std::vector<std::uint32_t> in_order_of_creation() const;
 
  private:
+  struct SharedShape {
+    std::shared_ptr<const Shape> shape;
+    std::uint32_t bodies = 0;
+  };
+  std::uint32_t share(const std::shared_ptr<const Shape>& shape);
+  void give_back(std::uint32_t shape);
+
   std::vector<BodyRecord> records_;
-  std::vector<LevelCandidate> candidates_;
+  std::vector<BodyLevel> levels_;
   std::vector<std::uint32_t> free_;
+  std::vector<SharedShape> shapes_;
+  std::vector<std::uint32_t> free_shapes_;
+  std::unordered_map<const Shape*, std::uint32_t> number_of_shape_;
+  std::vector<Newcomer> newcomers_;
+  std::unordered_map<std::uint32_t, Force> forces_;
+  std::vector<std::uint32_t> pushed_;
+  std::unordered_map<std::uint32_t, Rare> rare_;
   std::uint64_t births_ = 0;
+  int automatic_ = 0;
+  double greatest_importance_ = 1.0;
 };
 
 }  // namespace lodestone

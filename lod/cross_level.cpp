@@ -9,12 +9,12 @@ FullNeighbor neighbor_of(const Levels& levels, const FullLevel::Member& member) 
   const BodyRecord& record = levels.bodies[member.owner];
   FullNeighbor neighbor;
   neighbor.owner = member.owner;
-  neighbor.shape = record.definition.shape.get();
-  neighbor.signature = levels.signatures.find_known(*neighbor.shape, levels.ground_law(record.definition.material));
+  neighbor.shape = levels.bodies.shape(member.owner).get();
+  neighbor.signature = levels.signatures.find_known(*neighbor.shape, levels.ground_law(record.material));
   neighbor.mass = record.mass;
-  neighbor.material = record.definition.material;
+  neighbor.material = record.material;
   neighbor.state = levels.full.world()->state(member.id);
-  neighbor.force = record.force;
+  neighbor.force = levels.bodies.force(member.owner).force;
   neighbor.asleep = levels.full.world()->asleep(member.id);
   return neighbor;
 }
@@ -60,12 +60,14 @@ Vec3 angular_velocity_change(const FullNeighbor& body, const Vec3& angular_impul
 bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impulse.angular.isZero(0.0); }
 
 // ODE lets no body sleep that none of its own contacts holds up: by the same measure, one that statistical bodies hold up sleeps here.
-bool falls_asleep(BodyRecord& record, const FullNeighbor& neighbor, double dt) {
+bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, double dt) {
   constexpr double kStillSpeed = 0.05, kStillTime = 0.5;  // m/s and s
   const double turning = neighbor.state.angular_velocity.norm() * neighbor.shape->radius;
   const bool still = !is_zero(neighbor.push) && neighbor.state.velocity.norm() < kStillSpeed && turning < kStillSpeed;
-  record.still_s = still ? record.still_s + dt : 0.0;
-  return record.still_s >= kStillTime;
+  if (!still) return bodies.stir(neighbor.owner), false;
+  double& still_s = bodies.rare(neighbor.owner).still_s;
+  still_s += dt;
+  return still_s >= kStillTime;
 }
 
 void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
@@ -101,7 +103,7 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
   for (std::size_t i = 0; i < neighborhood.bodies.size(); ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
-    const bool sleeps = falls_asleep(levels.bodies[owner], neighbor, dt) && levels.statistical_settings.sleeping;
+    const bool sleeps = falls_asleep(levels.bodies, neighbor, dt) && levels.statistical_settings.sleeping;
     if (sleeps) put_to_sleep(*levels.full.world(), id, neighbor.state);
     else hand_over(*levels.full.world(), id, neighbor, dt);
   }

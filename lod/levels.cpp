@@ -1,5 +1,7 @@
 #include "lod/levels.h"
 
+#include <algorithm>
+
 namespace lodestone {
 namespace {
 
@@ -16,7 +18,7 @@ RigidState Levels::state(std::uint32_t body) const {
   const BodyRecord& record = bodies[body];
   if (record.ode) return full.world()->state(record.ode);
   if (record.slot >= 0) return statistical->state(record.slot);
-  return record.definition.state;
+  return bodies.given_state(body);
 }
 
 bool Levels::asleep(std::uint32_t body) const {
@@ -31,8 +33,7 @@ void Levels::set_state(std::uint32_t body, const RigidState& state) {
   wake_near(body, Level::statistical);
   if (record.ode) full.world()->set_state(record.ode, state);
   else if (record.slot >= 0) statistical->set_state(record.slot, state);
-  else record.definition.state = state;
-  bodies.candidates()[body].position = state.position;
+  else bodies.given_state(body) = state;
   wake(body);
 }
 
@@ -44,21 +45,38 @@ void Levels::wake(std::uint32_t body) {
 }
 
 void Levels::wake_near(std::uint32_t body, Level level) {
-  const auto& candidates = bodies.candidates();
-  const Vec3 position = state(body).position;
-  for (std::uint32_t other = 0; other < bodies.indices(); ++other) {
-    const LevelCandidate& candidate = candidates[other];
-    const double reach = (1.0 + kTouchMargin) * (candidates[body].radius + candidate.radius);
-    const bool near = (candidate.position - position).squaredNorm() <= reach * reach;
-    if (near && candidate.level == level && other != body) wake(other);
-  }
+  std::vector<std::uint32_t> near;
+  find_near(body, 1.0 + kTouchMargin, level, near, true);
+  std::ranges::sort(near);
+  for (const std::uint32_t other : near) wake(other);
 }
 
-void Levels::give_force(std::uint32_t body) {
-  BodyRecord& record = bodies[body];
-  if (record.ode) full.world()->add_force(record.ode, record.force, record.torque);
-  else if (record.slot >= 0) statistical->add_force(record.slot, record.force, record.torque);
-  record.force = record.torque = Vec3::Zero();
+void Levels::find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near, bool asleep_only) const {
+  const Vec3 position = state(body).position;
+  const double radius = bodies.shape(body)->radius;
+  const auto add = [&](std::uint32_t other, const Vec3& place) {
+    const double reach = factor * (radius + bodies.shape(other)->radius);
+    if (other != body && (place - position).squaredNorm() <= reach * reach) near.push_back(other);
+  };
+  if (level == Level::full) {
+    for (const FullLevel::Member& member : full.members()) add(member.owner, full.world()->state(member.id).position);
+    return;
+  }
+  if (!statistical) return;
+  std::vector<std::int32_t> slots;
+  statistical->find_sleepers(position, factor * (radius + statistical->reach()) - statistical->reach(), slots);
+  if (!asleep_only) slots.insert(slots.end(), statistical->awake().begin(), statistical->awake().end());
+  for (const std::int32_t slot : slots) add(owner_of_slot[std::size_t(slot)], statistical->position(slot));
+}
+
+void Levels::give_forces() {
+  for (const std::uint32_t body : bodies.pushed()) {
+    const BodyRecord& record = bodies[body];
+    const auto [force, torque] = bodies.force(body);
+    if (record.ode) full.world()->add_force(record.ode, force, torque);
+    else if (record.slot >= 0) statistical->add_force(record.slot, force, torque);
+  }
+  bodies.clear_forces();
 }
 
 }  // namespace lodestone

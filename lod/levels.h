@@ -28,6 +28,7 @@ struct Levels {
   std::vector<std::uint32_t> owner_of_slot;       ///< the body in each slot of `statistical`
   StatisticalSettings statistical_settings;
   SignatureStore signatures;
+  std::int64_t now = 0;                           ///< steps so far
 
   /// The law between a body and the ground that it most likely meets: the first plane, else ground of the default material.
   ContactLaw ground_law(MaterialId material) const;
@@ -39,8 +40,10 @@ struct Levels {
   void wake(std::uint32_t body);
   /// Wakes every other body of `level` whose bounding sphere meets that of `body`.
   void wake_near(std::uint32_t body, Level level);
-  /// Gives a body the force that is held for it, over the next step of its level.
-  void give_force(std::uint32_t body);
+  /// Adds the other bodies of `level`, or those of them that sleep, whose bounding sphere meets that of `body`, both `factor` times as large.
+  void find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near, bool asleep_only) const;
+  /// Gives bodies the forces that are held for them, over the next step of their level.
+  void give_forces();
 };
 
 }  // namespace lodestone

@@ -51,6 +51,13 @@ double checked_mass(const BodyDefinition& definition, const MaterialTable& mater
   return mass;
 }
 
+/// m, of the one that came farthest; as many now as before.
+double find_travel(std::span<const Vec3> before, std::span<const Vec3> now) {
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < now.size(); ++i) farthest = std::max(farthest, (now[i] - before[i]).norm());
+  return farthest;
+}
+
 }  // namespace
 
 Manager::Impl::Impl(const ManagerSettings& s)
@@ -64,10 +71,9 @@ void Manager::Impl::add_static_bounds(const Eigen::AlignedBox3d& bounds) {
   static_bounds.push_back(bounds);
   for (std::uint32_t body = 0; body < levels.bodies.indices(); ++body)
     if (levels.bodies.alive(body)) {
-      const RigidState state = levels.state(body);
-      see(body, state);
-      if (bounds.exteriorDistance(state.position) < levels.bodies[body].definition.shape->radius) levels.wake(body);
+      if (bounds.exteriorDistance(levels.state(body).position) < levels.bodies.shape(body)->radius) levels.wake(body);
     }
+  look_at_all = true;
 }
 
 Manager::Manager(const ManagerSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -109,53 +115,44 @@ BodyId Manager::add_body(const BodyDefinition& definition) {
   BodyDefinition normalized = definition;
   normalized.state = checked(definition.state);
   const BodyId body = levels.bodies.add(normalized, mass);
-  impl_->reasons.resize(levels.bodies.indices());
   if (definition.level == LevelChoice::full) {
     place(levels, body.index, Level::full);
-    impl_->reasons[body.index] = LevelReason::forced;
-  } else {
-    impl_->newcomers.push_back(body.index);
+    levels.bodies.forget_last_newcomer();
   }
   return body;
 }
 
 void Manager::remove_body(BodyId body) {
-  impl_->see_statistical();
   take_out(impl_->levels, impl_->levels.bodies.index_of(body));
   impl_->levels.bodies.remove(body);
-  std::erase(impl_->newcomers, body.index);
   std::erase(impl_->put_off, body.index);
-  std::erase(impl_->pushed, body.index);
+  impl_->far.forget(body.index);
 }
 
 void Manager::set_level(BodyId body, LevelChoice choice) {
   BodyTable& bodies = impl_->levels.bodies;
-  bodies.candidates()[bodies.index_of(body)].choice = choice;
-  impl_->settled = false;
+  bodies.set_choice(bodies.index_of(body), choice);
+  impl_->changed.push_back(body.index);
 }
 
 void Manager::set_viewpoints(std::span<const Vec3> positions) {
   for (const Vec3& position : positions) check_that(position.allFinite(), "a viewpoint is finite");
-  impl_->settled &= std::ranges::equal(positions, impl_->viewpoints);
+  impl_->look_at_all |= positions.size() != impl_->viewpoints.size();
+  if (!impl_->look_at_all) impl_->traveled += find_travel(impl_->viewpoints, positions);
   impl_->viewpoints.assign(positions.begin(), positions.end());
 }
 
 void Manager::set_state(BodyId body, const RigidState& state) {
   const std::uint32_t index = impl_->levels.bodies.index_of(body);
   const RigidState sound = checked(state);
-  impl_->settled = false;
-  impl_->see_statistical();
   impl_->levels.set_state(index, sound);
-  impl_->see(index, sound);
+  impl_->changed.push_back(index);
 }
 
 void Manager::add_force(BodyId body, const Vec3& force, const Vec3& torque) {
   check_that(force.allFinite() && torque.allFinite(), "force and torque are finite");
   const std::uint32_t index = impl_->levels.bodies.index_of(body);
-  BodyRecord& record = impl_->levels.bodies[index];
-  record.force += force;
-  record.torque += torque;
-  if (std::ranges::find(impl_->pushed, index) == impl_->pushed.end()) impl_->pushed.push_back(index);
+  impl_->levels.bodies.add_force(index, {force, torque});
   impl_->levels.wake(index);
 }
 
@@ -169,7 +166,7 @@ bool Manager::valid(BodyId body) const { return impl_->levels.bodies.valid(body)
 RigidState Manager::state(BodyId body) const { return impl_->levels.state(impl_->levels.bodies.index_of(body)); }
 double Manager::mass(BodyId body) const { return impl_->levels.bodies[impl_->levels.bodies.index_of(body)].mass; }
 const Shape& Manager::shape(BodyId body) const {
-  return *impl_->levels.bodies[impl_->levels.bodies.index_of(body)].definition.shape;
+  return *impl_->levels.bodies.shape(impl_->levels.bodies.index_of(body));
 }
 Level Manager::level(BodyId body) const {
   return impl_->levels.bodies[impl_->levels.bodies.index_of(body)].ode ? Level::full : Level::statistical;
@@ -180,12 +177,13 @@ dxBody* Manager::ode_body(BodyId body) const {
   return record.ode ? impl_->levels.full.world()->ode_body(record.ode) : nullptr;
 }
 const StepReport& Manager::report() const { return impl_->report; }
+std::size_t Manager::statistical_bytes() const { return impl_->levels.statistical ? impl_->levels.statistical->bytes() : 0; }
 
 std::string Manager::why(BodyId body) const {
   const std::uint32_t index = impl_->levels.bodies.index_of(body);
-  const LevelCandidate& candidate = impl_->levels.bodies.candidates()[index];
-  if (candidate.newcomer) return "at no level yet: the next step chooses one";
-  return fmt::format("{}: {}", candidate.level == Level::full ? "full" : "statistical", text_of(impl_->reasons[index]));
+  const BodyLevel& level = impl_->levels.bodies.level(index);
+  if (level.newcomer) return "at no level yet: the next step chooses one";
+  return fmt::format("{}: {}", level.level == Level::full ? "full" : "statistical", text_of(level.reason));
 }
 
 std::uint64_t Manager::state_hash() const {

@@ -80,6 +80,7 @@ class Manager {
   std::string why(BodyId body) const;                           ///< the rule that decided the level, in words
   dxBody* ode_body(BodyId body) const;                          ///< dBodyID while full, else null
   const StepReport& report() const;                             ///< of the last step
+  std::size_t statistical_bytes() const;                        ///< held by the statistical level's arrays; 0 where that is not counted: under `support`
   std::uint64_t state_hash() const;                             ///< of every body's state and level, in order of creation
 
  private:

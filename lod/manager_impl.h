@@ -1,4 +1,4 @@
-// What a Manager is made of. manager.cpp is its public face, manager_step.cpp the stages of a step.
+// What a Manager is made of. manager.cpp is its public face, manager_choose.cpp the first stage of a step, manager_step.cpp the others.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lod/cross_level.h"
+#include "lod/far_bodies.h"
 #include "lod/manager.h"
 
 namespace lodestone {
@@ -20,16 +21,17 @@ struct Manager::Impl {
   std::size_t own_planes = 0;  // those of the caller's space follow in levels.ground
   std::vector<Vec3> viewpoints;
   std::vector<Eigen::AlignedBox3d> static_bounds;  // of the static boxes and meshes
-  std::vector<LevelReason> reasons;             // of the last step's decisions
-  std::vector<std::uint32_t> newcomers;         // at no level yet
   std::vector<std::uint32_t> put_off;           // waiting to be tried again
-  std::vector<std::uint32_t> pushed;            // with a force for the next step
-  std::vector<std::int32_t> moved;              // slots that may have moved in the last step
-  // Where nothing changed that the policy looks at, it is not asked.
-  bool settled = false, positions_matter = true;  // its last answer
-  bool all_still = false;                         // no body moved in the last step
-  int frames_unasked = 0;
-  bool positions_old = false;                     // those of statistical bodies that the policy looks at
+  // Whom the policy is asked about: manager_choose.cpp.
+  bool look_at_all = true;
+  std::vector<std::uint32_t> wishing;           // that did not get the level that is wanted for them
+  std::vector<std::uint32_t> changed;           // by the caller, or by a demotion
+  std::vector<std::int32_t> were_awake;         // slots, at the step's start
+  std::vector<std::uint32_t> fell_asleep;       // in the last step
+  FarBodies far;
+  double traveled = 0.0;                        // m: how far viewpoints came, at most
+  std::vector<std::uint32_t> asked;             // bodies of the candidates
+  std::vector<LevelCandidate> candidates;
   Neighborhood neighborhood;
   StepReport report;
   // Smoothed measurements; the first is a guess until a body was full.
@@ -37,24 +39,27 @@ struct Manager::Impl {
 
   const StepReport& step(double dt);
   void begin_report();
-  std::optional<LevelDecision> choose();  ///< nothing: all bodies stay as they are
-  bool may_leave_unasked() const;
+  std::optional<LevelDecision> choose();  ///< with bodies for candidates; nothing: all stay as they are
   void move_bodies(std::optional<LevelDecision> decision);
   void step_statistical(double dt);
   void step_full(double dt);
   void finish_report();
 
   void read_callers_planes();
-  void see(std::uint32_t body, const RigidState& state);  ///< what the policy is to know of where a body is
+  bool policy_sees_places() const { return !static_bounds.empty() || (levels.bodies.automatic() > 0 && !viewpoints.empty()); }
+  void look_at_those_concerned();
+  void look_at(std::uint32_t body);
+  void look_at_nearest(const BudgetPolicy& budget);
+  LevelCandidate make_candidate(std::uint32_t body) const;
+  void put_far(std::uint32_t body, const LevelCandidate& candidate);
+  void put_in_order();
+  void take_answers(LevelDecision& decision);
   bool near_static_ground(const RigidState& state, double radius) const;
   void add_static_bounds(const Eigen::AlignedBox3d& bounds);
-  void follow_moved();
-  void see_statistical();  ///< where they are now, if the policy was not told
   void note_waiting(std::uint32_t body);  ///< whether its signature is there yet
   void promote(std::uint32_t body);
   void put_promotion_off(std::uint32_t body);
   void count_down_retries();
-  void give_forces();
 };
 
 }  // namespace lodestone

@@ -37,16 +37,6 @@ double scaled_distance(const LevelCandidate& candidate, std::span<const Vec3> vi
   return std::max(0.0, std::sqrt(squared_distance(candidate, viewpoints)) - candidate.radius) / candidate.importance;
 }
 
-bool stays_as_told(const LevelCandidate& c) {
-  return c.choice == LevelChoice::statistical && c.level == Level::statistical && !c.on_static_ground && !c.waits_for_signature && !c.newcomer;
-}
-
-// Most bodies of a large scene: told without a root or a division.
-bool stays_far(const LevelCandidate& c, std::span<const Vec3> viewpoints, double full_within) {
-  const double reach = full_within * c.importance + c.radius;
-  return c.level == Level::statistical && !c.decided() && squared_distance(c, viewpoints) > 1.001 * reach * reach;
-}
-
 Target target_by_distance(const LevelCandidate& candidate, double distance, double full_within, double hysteresis) {
   if (distance <= full_within) return {Level::full, LevelReason::near};
   if (candidate.level == Level::full && distance <= full_within * (1.0 + hysteresis))
@@ -65,6 +55,28 @@ std::int64_t count_that_fit(double milliseconds, double full_body_step_ms) {
   return std::int64_t(std::clamp(milliseconds / std::max(full_body_step_ms, 1e-9), 0.0, 1e9));
 }
 
+/// Automatic bodies that a budget has room for.
+struct BudgetRoom {
+  std::int64_t full = 0;    // that are full
+  std::int64_t most = 0;
+  std::int64_t wanted = 0;
+};
+
+// The number of full bodies grows while part of the budget is free, and shrinks when all of it is used up.
+BudgetRoom find_room(std::span<const LevelCandidate> candidates, const BudgetPolicy& policy, double hysteresis, double full_body_step_ms, double statistical_ms) {
+  BudgetRoom room;
+  std::int64_t forced = 0;
+  for (const LevelCandidate& c : candidates) {
+    if (c.must_be_full()) ++forced;
+    else if (!c.decided() && c.level == Level::full) ++room.full;
+  }
+  const double left_ms = policy.budget_ms - statistical_ms;
+  room.most = std::max<std::int64_t>(0, count_that_fit(left_ms, full_body_step_ms) - forced);
+  const std::int64_t grow_to = count_that_fit(left_ms / (1.0 + hysteresis), full_body_step_ms) - forced;
+  room.wanted = std::min(room.most, std::max(room.full, grow_to));
+  return room;
+}
+
 class Chooser {
  public:
   Chooser(std::span<const LevelCandidate> candidates, std::span<const Vec3> viewpoints, const PolicySettings& settings)
@@ -73,14 +85,7 @@ class Chooser {
   }
 
   LevelDecision by(const DistancePolicy& policy) {
-    decision_.settled = true;
-    decision_.positions_matter = false;
     for (std::int32_t i = 0; i < count(); ++i) {
-      if (stays_as_told(candidates_[i])) {
-        decision_.reasons[i] = LevelReason::forced;
-        continue;
-      }
-      decision_.positions_matter |= !viewpoints_.empty();
       if (stays_far(candidates_[i], viewpoints_, policy.full_within)) {
         decision_.reasons[i] = LevelReason::far;
         continue;
@@ -93,23 +98,13 @@ class Chooser {
   }
 
   LevelDecision by(const BudgetPolicy& policy, double full_body_step_ms, double statistical_ms) {
-    std::int64_t forced = 0, full = 0;
-    for (const LevelCandidate& c : candidates_) {
-      if (c.must_be_full()) ++forced;
-      else if (!c.decided() && c.level == Level::full) ++full;
-    }
-    // The number of full bodies grows while part of the budget is free, and shrinks when all of it is used up.
-    const double left_ms = policy.budget_ms - statistical_ms;
-    const std::int64_t most = std::max<std::int64_t>(0, count_that_fit(left_ms, full_body_step_ms) - forced);
-    const std::int64_t grow_to = count_that_fit(left_ms / (1.0 + settings_.hysteresis), full_body_step_ms) - forced;
-    const std::int64_t wanted = std::min(most, std::max(full, grow_to));
-
-    const std::vector<Ranked> ranked = rank(wanted);
+    const BudgetRoom room = find_room(candidates_, policy, settings_.hysteresis, full_body_step_ms, statistical_ms);
+    const std::vector<Ranked> ranked = rank(room.wanted);
     for (std::int64_t place = 0; place < std::int64_t(ranked.size()); ++place)
-      consider(ranked[place], target_by_rank(place < wanted, full > most));
+      consider(ranked[place], target_by_rank(place < room.wanted, room.full > room.most));
     for (std::int32_t i = 0; i < count(); ++i)
       if (candidates_[i].decided()) consider({0.0, i}, {});
-    grant(wanted - full);
+    grant(room.wanted - room.full);
     return std::move(decision_);
   }
 
@@ -122,8 +117,7 @@ class Chooser {
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[i];
       if (c.decided()) continue;
-      const double distance = scaled_distance(c, viewpoints_);
-      ranked.push_back({c.level == Level::full ? distance / (1.0 + settings_.hysteresis) : distance, i});
+      ranked.push_back({rank_distance(c, viewpoints_, settings_.hysteresis), i});
     }
     std::ranges::nth_element(ranked, ranked.begin() + std::min(wanted, std::int64_t(ranked.size())), nearer);
     return ranked;
@@ -145,7 +139,6 @@ class Chooser {
     reason = target.reason;
     if (target.level == c.level) return;
 
-    decision_.settled = false;
     const bool up = target.level == Level::full;
     if (up && c.put_off && !c.newcomer) {
       reason = LevelReason::overlap_put_off;
@@ -216,6 +209,22 @@ std::string_view text_of(LevelReason reason) {
     case LevelReason::contact_group: return "it goes with the bodies that it touches";
   }
   return "";
+}
+
+// Told without a division.
+bool stays_far(const LevelCandidate& c, std::span<const Vec3> viewpoints, double full_within) {
+  const double reach = full_within * c.importance + c.radius;
+  return c.level == Level::statistical && !c.decided() && squared_distance(c, viewpoints) > 1.001 * reach * reach;
+}
+
+double rank_distance(const LevelCandidate& c, std::span<const Vec3> viewpoints, double hysteresis) {
+  const double distance = scaled_distance(c, viewpoints);
+  return c.level == Level::full ? distance / (1.0 + hysteresis) : distance;
+}
+
+std::int64_t count_wanted(std::span<const LevelCandidate> candidates, const BudgetPolicy& policy, double hysteresis, double full_body_step_ms,
+                          double statistical_ms) {
+  return find_room(candidates, policy, hysteresis, full_body_step_ms, statistical_ms).wanted;
 }
 
 LevelDecision choose_levels(std::span<const LevelCandidate> candidates, std::span<const Vec3> viewpoints,

@@ -56,8 +56,6 @@ struct LevelDecision {
   /// of the rest at most max_transitions_per_frame, promotions (nearest first) and demotions (farthest first) by turns.
   std::vector<std::int32_t> promote, demote;
   std::vector<LevelReason> reasons;  ///< one per candidate
-  bool settled = false;         ///< every body has the level that is wanted for it: asked again of the same bodies, the answer would be the same
-  bool positions_matter = true; ///< false: nor would other positions change it
 };
 
 /// The distance of a body is its distance from the nearest viewpoint, less its radius, over its importance; without viewpoints it is infinite.
@@ -65,5 +63,16 @@ struct LevelDecision {
 /// level's step. Measured times differ from run to run and so do the levels that a BudgetPolicy chooses.
 LevelDecision choose_levels(std::span<const LevelCandidate> candidates, std::span<const Vec3> viewpoints, const PolicySettings& settings,
                             double full_body_step_ms, double statistical_ms);
+
+// Which bodies may be left out of the candidates without any change to the decision. Under a DistancePolicy: statistical ones that stays_far, and those that
+// were told to be what they are. Under a BudgetPolicy: statistical ones at a greater rank_distance than as many others as count_wanted.
+
+/// Whether a statistical body is surely farther than it would have to be to become full.
+bool stays_far(const LevelCandidate& candidate, std::span<const Vec3> viewpoints, double full_within);
+/// m: full bodies count as nearer by the hysteresis.
+double rank_distance(const LevelCandidate& candidate, std::span<const Vec3> viewpoints, double hysteresis);
+/// How many automatic bodies a budget wants full. Every body that is full or must be is among the candidates.
+std::int64_t count_wanted(std::span<const LevelCandidate> candidates, const BudgetPolicy& policy, double hysteresis, double full_body_step_ms,
+                          double statistical_ms);
 
 }  // namespace lodestone

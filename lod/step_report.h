@@ -28,6 +28,7 @@ struct Counters {
   std::int64_t full_uneven_contacts = 0; ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: the heavy one sinks in
   std::int64_t energy_clamps = 0;        ///< responses scaled so as not to add energy
   std::int64_t table_extrapolations = 0; ///< look-ups outside the measured range
+  std::int64_t levels_considered = 0;    ///< bodies whose level was thought about, step by step: most that sleep are in no step
   std::int64_t promotions_put_off = 0;   ///< for overlap with another body
 };
 
@@ -36,6 +37,7 @@ struct StepReport {
   StageTimes times;
   int full = 0, statistical = 0, asleep = 0;  ///< bodies at the end of the step; asleep counts within both
   int promotions = 0, demotions = 0;          ///< in this step
+  double bytes_moved = 0;                     ///< by the tables model, counted from its arrays; 0 where it is not counted
   int contacts = 0;                           ///< of statistical bodies, with ground and each other, in this step
   Counters counters;
 };

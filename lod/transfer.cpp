@@ -13,27 +13,28 @@ constexpr double kOverlapAllowed = 0.02;
 void enter_full(Levels& levels, std::uint32_t body, const RigidState& state, bool asleep) {
   BodyRecord& record = levels.bodies[body];
   const OdeBodyDefinition definition{
-      .shape = record.definition.shape, .mass = record.mass, .material = record.definition.material, .state = state};
+      .shape = levels.bodies.shape(body), .mass = record.mass, .material = record.material, .state = state};
   record.ode = levels.full.add(body, definition, asleep);
-  levels.bodies.candidates()[body].level = Level::full;
+  record.slot = -1;
+  levels.bodies.level(body).level = Level::full;
 }
 
 void enter_statistical(Levels& levels, std::uint32_t body, const RigidState& state, bool asleep) {
   BodyRecord& record = levels.bodies[body];
-  const BodyDefinition& definition = record.definition;
+  const std::shared_ptr<const Shape>& shape = levels.bodies.shape(body);
   if (!levels.statistical)
     levels.statistical = std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
-  record.slot = levels.statistical->add(body, definition.shape, record.mass, definition.material, state, asleep,
-                                        levels.signatures.find(*definition.shape, levels.ground_law(definition.material)));
+  record.slot = levels.statistical->add(body, shape, record.mass, record.material, state, asleep,
+                                        levels.signatures.find(*shape, levels.ground_law(record.material)));
   levels.owner_of_slot.resize(std::max<std::size_t>(levels.owner_of_slot.size(), record.slot + 1));
   levels.owner_of_slot[record.slot] = body;
-  levels.bodies.candidates()[body].level = Level::statistical;
+  levels.bodies.level(body).level = Level::statistical;
 }
 
 void enter(Levels& levels, std::uint32_t body, Level level, const RigidState& state, bool asleep) {
   if (level == Level::full) enter_full(levels, body, state, asleep);
   else enter_statistical(levels, body, state, asleep);
-  levels.bodies.candidates()[body].frames_since_change = 0;
+  levels.bodies.level(body).changed_at = levels.now;
 }
 
 /// The level that is left wakes what the body touched there.
@@ -61,9 +62,10 @@ bool overlaps_ground(const Levels& levels, const Shape& shape, const RigidState&
 }  // namespace
 
 void place(Levels& levels, std::uint32_t body, Level level) {
-  enter(levels, body, level, levels.bodies[body].definition.state, false);
-  levels.bodies.candidates()[body].newcomer = false;
-  levels.bodies.candidates()[body].frames_since_change = LevelCandidate{}.frames_since_change;
+  const RigidState given = levels.bodies.given_state(body);
+  enter(levels, body, level, given, false);
+  levels.bodies.level(body).newcomer = false;
+  levels.bodies.level(body).changed_at = BodyLevel::kLongAgo;
 }
 
 void transfer(Levels& levels, std::uint32_t body) {
@@ -81,18 +83,21 @@ void take_out(Levels& levels, std::uint32_t body) {
 }
 
 bool overlaps(const Levels& levels, std::uint32_t body) {
-  const auto& candidates = levels.bodies.candidates();
   const RigidState state = levels.state(body);
-  const Shape& shape = *levels.bodies[body].definition.shape;
+  const Shape& shape = *levels.bodies.shape(body);
   if (overlaps_ground(levels, shape, state)) return true;
-  for (std::uint32_t other = 0; other < levels.bodies.indices(); ++other) {
-    const double reach = shape.radius + candidates[other].radius;
-    if (other == body || !levels.bodies.alive(other)) continue;
-    if ((candidates[other].position - state.position).squaredNorm() > reach * reach) continue;
-    const Shape& other_shape = *levels.bodies[other].definition.shape;
-    const double allowed = kOverlapAllowed * std::min(shape.radius, other_shape.radius);
-    if (measure_hull_overlap(shape, state, other_shape, levels.state(other)) > allowed) return true;
-  }
+  const auto overlaps_body = [&](std::uint32_t other, const RigidState& there) {
+    const Shape& other_shape = *levels.bodies.shape(other);
+    const double reach = shape.radius + other_shape.radius, allowed = kOverlapAllowed * std::min(shape.radius, other_shape.radius);
+    return other != body && (there.position - state.position).squaredNorm() <= reach * reach && measure_hull_overlap(shape, state, other_shape, there) > allowed;
+  };
+  std::vector<std::uint32_t> near;
+  levels.find_near(body, 1.0, Level::full, near, false);
+  levels.find_near(body, 1.0, Level::statistical, near, false);
+  if (std::ranges::any_of(near, [&](std::uint32_t other) { return overlaps_body(other, levels.state(other)); })) return true;
+  const auto& newcomers = levels.bodies.newcomers();
+  for (std::size_t i = 0; i < newcomers.size(); ++i)
+    if (levels.bodies.is_newcomer_at(i) && overlaps_body(newcomers[i].index, newcomers[i].state)) return true;
   return false;
 }
 

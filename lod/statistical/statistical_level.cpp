@@ -1,6 +1,7 @@
 #include "lod/statistical/statistical_level_internal.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "lod/statistical/stopwatch.h"
 #include "lod/tables/tables_level.h"
@@ -113,6 +114,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   Stopwatch watch;
   for (const std::int32_t slot : level.given)
     if (slot < size()) level.angular_velocity_given[slot].reset();
+  if (level.given.size() > 64) std::exchange(level.given, {});  // of a whole scene that was added
   level.given.clear();
   ContactTally tally;
   level.apply_pushes(dt, tally);
@@ -144,6 +146,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   report.counters.states_recovered += tally.states_recovered;
 }
 
+std::size_t StatisticalLevel::bytes() const { return tables_ ? tables_->bytes() : 0; }
 int StatisticalLevel::size() const { return tables_ ? tables_->size() : int(impl_->bodies.size()); }
 std::span<const std::int32_t> StatisticalLevel::awake() const { return tables_ ? tables_->awake() : std::span<const std::int32_t>(impl_->awake); }
 int StatisticalLevel::asleep_count() const { return tables_ ? tables_->asleep_count() : int(impl_->asleep_count); }
@@ -183,6 +186,11 @@ void StatisticalLevel::add_force(int slot, const Vec3& force, const Vec3& torque
   if (tables_) return tables_->add_force(slot, force, torque);
   wake(slot);
   impl_->pushes.push_back({slot, {force, torque}});
+}
+
+void StatisticalLevel::find_sleepers(const Vec3& center, double reach, std::vector<std::int32_t>& slots) const {
+  if (tables_) return tables_->find_sleepers(center, reach, slots);
+  impl_->still.find_near(center, reach, [&](std::uint32_t slot) { slots.push_back(std::int32_t(slot)); });
 }
 
 double StatisticalLevel::reach() const { return tables_ ? tables_->reach() : impl_->reach; }

@@ -76,6 +76,8 @@ class StatisticalLevel {
   /// `neighbors` receive their share of the contacts; `full_contacts` are among them. Times and counts are added to `report`.
   void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts = {});
 
+  /// That its arrays hold; 0 under `support`, where nobody counts them.
+  std::size_t bytes() const;
   int size() const;
   int asleep_count() const;
   std::span<const std::int32_t> awake() const;                             ///< slots
@@ -86,6 +88,8 @@ class StatisticalLevel {
   void wake(int slot);
   void add_force(int slot, const Vec3& force, const Vec3& torque);         ///< over the next step; wakes it
   double reach() const;                                                    ///< m, greatest bounding radius
+  /// Adds the slots that sleep and whose bounding sphere meets this one, and perhaps others; `reach` in m.
+  void find_sleepers(const Vec3& center, double reach, std::vector<std::int32_t>& slots) const;
 
  private:
   struct Impl;

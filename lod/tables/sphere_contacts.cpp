@@ -217,4 +217,16 @@ void SphereContacts::remember_apart(const Spheres& spheres, float bounce_velocit
   std::ranges::sort(known_apart_, {}, &KnownApart::owners);
 }
 
+std::size_t SphereContacts::bytes() const {
+  std::size_t bytes = known_.capacity() * sizeof(KnownContact) + known_apart_.capacity() * sizeof(KnownApart) + parts_.capacity() * sizeof(Part);
+  for (const ContactArrays& arrays : arrays_) arrays.each_array([&](const auto& array) { bytes += array.capacity() * sizeof array[0]; });
+  return bytes;
+}
+
+std::size_t SphereContacts::bytes_each() const {
+  std::size_t bytes = 0;
+  if (!arrays_.empty()) arrays_.front().each_array([&](const auto& array) { bytes += array.empty() ? 0 : sizeof array[0]; });
+  return bytes;
+}
+
 }  // namespace lodestone

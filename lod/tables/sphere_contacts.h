@@ -26,6 +26,11 @@ struct ContactArrays {
   std::vector<float> restitution, friction;  // of the two materials; empty where all bodies are of one kind
   std::size_t count = 0, lately = 0;         // taken; at most, of late
 
+  /// Calls `visit` with each array.
+  template <class Visit>
+  void each_array(const Visit& visit) const {
+    visit(first), visit(second), visit(nx), visit(ny), visit(nz), visit(gap), visit(closing), visit(impulse), visit(restitution), visit(friction);
+  }
   /// Of all arrays at least.
   void make_room(std::size_t elements, bool one_kind);
   /// Takes none; where far fewer were taken lately than there is room for, the room is given back.
@@ -81,6 +86,9 @@ class SphereContacts {
 
   const SphereContactSettings& settings() const { return settings_; }
   std::int64_t count() const;
+  std::size_t bytes() const;
+  /// Of a contact, in all its arrays.
+  std::size_t bytes_each() const;
   template <class Visit>
   void each(const Visit& visit) const {
     for (std::size_t p = 0; p < used_parts_; ++p)

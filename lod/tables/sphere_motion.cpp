@@ -158,6 +158,14 @@ void SphereStep::resize(std::size_t count) {
   for (auto* array : {&on_ground, &plane, &slides, &unsound}) array->resize(count);
 }
 
+std::size_t SphereStep::bytes() const {
+  std::size_t bytes = 0;
+  for (const auto* rows : {&p, &u, &a, &s, &d}) bytes += rows->capacity() * sizeof(Row);
+  for (const auto* array : {&reach, &gap}) bytes += array->capacity() * sizeof(float);
+  for (const auto* array : {&on_ground, &plane, &slides, &unsound}) bytes += array->capacity();
+  return bytes;
+}
+
 void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
                 SphereStep& step, Spheres& out) {
   if (constants.one_kind) run_wide(simd, StartLoop<true>{spheres, kinds, constants, step, out}, begin, end);

@@ -23,6 +23,7 @@ struct SphereStep {
   std::vector<std::uint8_t> slides;    // along the ground: no parabola
   std::vector<std::uint8_t> unsound;   // out: a state that cannot be
   void resize(std::size_t count);
+  std::size_t bytes() const;
   /// Sets the row of those that sleep.
   void clear_still(std::size_t row) { p[row] = u[row] = a[row] = s[row] = d[row] = {}; }
 

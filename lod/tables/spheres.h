@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lod/statistical/statistical_body.h"
@@ -40,6 +41,11 @@ struct Spheres {
     visit(qw), visit(qx), visit(qy), visit(qz), visit(radius), visit(quiet), visit(held);
     visit(slot), visit(owner), visit(events), visit(known_begin), visit(known_count);
     visit(kind), visit(pose), visit(plane), visit(motion), visit(since_crowded), visit(crowded_for);
+  }
+
+  template <class Visit>
+  void each_array(const Visit& visit) const {
+    const_cast<Spheres*>(this)->each_array([&](auto& array) { visit(std::as_const(array)); });
   }
 
   Vec3 position(std::int64_t place) const { return {x[place], y[place], z[place]}; }

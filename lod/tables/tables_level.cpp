@@ -7,6 +7,7 @@
 
 #include "lod/stage_timer.h"
 #include "lod/statistical/flight.h"
+#include "lod/tables/tables_traffic.h"
 #include "reference/error.h"
 
 namespace lodestone {
@@ -181,10 +182,18 @@ void TablesLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport&
   const StageTimer timer(times.rest_ms);
   rest();
   ++steps_;
+  report.bytes_moved += count_bytes_moved({spheres_, step_, contacts_, pair_phase, !ground_.planes.empty(), settings_.sleeping});
   report.contacts += int(tally.contacts);
   report.counters.energy_clamps += tally.energy_clamps;
   report.counters.table_extrapolations += tally.table_extrapolations;
   report.counters.states_recovered += tally.states_recovered;
+}
+
+std::size_t TablesLevel::bytes() const {
+  const auto held = [](const auto& array) { return array.capacity() * sizeof array[0]; };
+  std::size_t bytes = held(spheres_.place_of_slot) + held(given_) + held(given_of_slot_) + held(pushes_) + held(still_touches_) + held(tallies_);
+  spheres_.each_array([&](const auto& array) { bytes += held(array); });
+  return bytes + step_.bytes() + contacts_.bytes() + cells_.bytes() + still_.bytes();
 }
 
 void TablesLevel::apply_pushes(double dt, ContactTally& tally) {

@@ -19,6 +19,8 @@ class TablesLevel {
   std::optional<std::uint32_t> remove(int slot);
   void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts);
 
+  /// That its arrays hold.
+  std::size_t bytes() const;
   int size() const { return int(spheres_.size()); }
   int asleep_count() const { return int(spheres_.size() - spheres_.awake); }
   /// Slots.
@@ -30,6 +32,9 @@ class TablesLevel {
   void wake(int slot);
   void add_force(int slot, const Vec3& force, const Vec3& torque);
   double reach() const { return reach_; }
+  void find_sleepers(const Vec3& center, double reach, std::vector<std::int32_t>& slots) const {
+    still_.find_near(center, reach, [&](std::uint32_t slot) { slots.push_back(std::int32_t(slot)); });
+  }
   double sphere_radius(int slot) const { return double(spheres_.radius[spheres_.place_of_slot[std::size_t(slot)]]); }
 
  private:

@@ -3,6 +3,7 @@
 #include "tools/bench/command_bench_broad_phase.h"
 #include "tools/bench/command_bench_full_level.h"
 #include "tools/bench/command_bench_hard_cases.h"
+#include "tools/bench/command_bench_settled.h"
 #include "tools/bench/command_bench_table1.h"
 
 namespace lodestone {
@@ -14,6 +15,7 @@ void add_bench_command(CLI::App& program, ExitCode& exit_code) {
   add_bench_full_level_command(*bench, exit_code);
   add_bench_table1_command(*bench, exit_code);
   add_bench_broad_phase_command(*bench, exit_code);
+  add_bench_settled_command(*bench, exit_code);
 }
 
 }  // namespace lodestone

@@ -13,7 +13,7 @@ namespace {
 struct Arguments {
   Table1Settings table;
   std::filesystem::path csv;
-  bool json = false;
+  bool roofline = false, json = false;
 };
 
 /// Empty where there is none.
@@ -29,11 +29,18 @@ void bench_table1(Arguments arguments) {
     arguments.table.progress = line.function();
     rows = measure_table1(arguments.table);
   }
+  std::optional<Bandwidth> bandwidth;
+  if (arguments.roofline) compare_with(bandwidth.emplace(measure_bandwidth(arguments.table.threads)), rows);
   if (!arguments.csv.empty()) save_csv(rows, arguments.csv);
-  if (arguments.json) fmt::print("{}\n", json_of(rows).dump(2));
-  else
+  if (arguments.json) {
+    auto json = json_of(rows);
+    if (bandwidth) json["bandwidth"] = json_of(*bandwidth);
+    fmt::print("{}\n", json.dump(2));
+  } else {
     fmt::print("bunnies of .2 m and 4,698 faces, restitution .3, friction .5, {} steps of 1/60 s, sleep {}: medians of a step from the {}th on, ms\n\n{}",
                kTable1Steps, arguments.table.sleeping ? "on" : "off", kTable1FirstTimed, text_of(rows));
+    if (bandwidth) fmt::print("\n{}", roofline_text_of(*bandwidth, rows));
+  }
 }
 
 }  // namespace
@@ -52,6 +59,7 @@ void add_bench_table1_command(CLI::App& bench, ExitCode& exit_code) {
   command->add_option("--row-seconds", table.row_seconds, "leave out rows that would take longer, s")->check(CLI::Range(0.0, 1e9))->capture_default_str();
   command->add_option("--seed", table.seed, "of the starts")->capture_default_str();
   command->add_option("--csv", arguments->csv, "file for the table, one line a row");
+  command->add_flag("--roofline", arguments->roofline, "what rows of `tables` move in memory, beside what the machine can");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->callback([arguments, &exit_code] {
     bench_table1(*arguments);

@@ -49,17 +49,19 @@ class Columns {
  public:
   void add(const StepMs& ms) {
     step_.push_back(ms.step);
+    bytes_moved_.push_back(ms.bytes_moved);
     for (const auto& [value, column] : {std::pair{&ms.collision, &collision_}, {&ms.response, &response_}, {&ms.rest, &rest_}})
       if (*value) column->push_back(**value);
   }
   void give_to(Table1Row& row) const {
     row.step_ms = median_of(step_);
+    row.bytes_moved_per_body = median_of(bytes_moved_) / row.bodies;
     for (const auto& [column, value] : {std::pair{&collision_, &row.collision_ms}, {&response_, &row.response_ms}, {&rest_, &row.rest_ms}})
       if (!column->empty()) *value = median_of(*column);
   }
 
  private:
-  std::vector<double> step_, collision_, response_, rest_;
+  std::vector<double> step_, collision_, response_, rest_, bytes_moved_;
 };
 
 class Table1 {
@@ -125,6 +127,7 @@ class Table1 {
     row.awake[2] = world.awake();
     row.state_hash = world.state_hash();
     row.bytes_per_body = world.bytes_per_body();
+    row.level_bytes_per_body = world.level_bytes_per_body();
     columns.give_to(row);
     return clock.spent_s();
   }
@@ -143,10 +146,11 @@ class Table1 {
       const auto found = std::ranges::find(rows, method, &Table1Row::method);
       return found == rows.end() ? std::nullopt : found->step_ms;
     };
-    const auto plain = step_of("full_plain"), spheres = step_of("spheres7");
+    const auto plain = step_of("full_plain"), spheres = step_of("spheres7"), sphere = step_of("sphere");
     for (Table1Row& row : rows) {
       if (row.step_ms && plain) row.times_less_than_full_plain = *plain / *row.step_ms;
       if (row.step_ms && spheres) row.times_less_than_spheres7 = *spheres / *row.step_ms;
+      if (row.step_ms && sphere) row.times_less_than_sphere = *sphere / *row.step_ms;
     }
   }
 
@@ -169,5 +173,14 @@ class Table1 {
 }  // namespace
 
 std::vector<Table1Row> measure_table1(const Table1Settings& settings) { return Table1(settings).rows(); }
+
+void compare_with(const Bandwidth& bandwidth, std::span<Table1Row> rows) {
+  for (Table1Row& row : rows) {
+    if (!row.step_ms || row.bytes_moved_per_body == 0.0) continue;
+    row.moved_gb_per_s = 1e-6 * row.bytes_moved_per_body * row.bodies / *row.step_ms;
+    row.share_of_memory = *row.moved_gb_per_s / (row.threads == 1 ? bandwidth.memory_one : bandwidth.memory);
+    row.share_of_cache = *row.moved_gb_per_s / (row.threads == 1 ? bandwidth.cache_one : bandwidth.cache);
+  }
+}
 
 }  // namespace lodestone

@@ -28,9 +28,15 @@ ordered_json json_of(const Table1Row& row) {
           {"awake", measured ? ordered_json(row.awake) : ordered_json(nullptr)},
           {"state_hash", measured ? ordered_json(fmt::format("{:016x}", row.state_hash)) : ordered_json(nullptr)},
           {"bytes_per_body", measured ? or_null(row.bytes_per_body) : ordered_json(nullptr)},
+          {"level_bytes_per_body", measured ? or_null(row.level_bytes_per_body) : ordered_json(nullptr)},
+          {"bytes_moved_per_body", measured ? or_null(row.bytes_moved_per_body) : ordered_json(nullptr)},
+          {"moved_gb_per_s", or_null(row.moved_gb_per_s)},
+          {"share_of_memory_bandwidth", or_null(row.share_of_memory)},
+          {"share_of_cache_bandwidth", or_null(row.share_of_cache)},
           {"broad_phase", row.hash_space ? ordered_json("hash") : ordered_json(nullptr)},
           {"times_less_than_full_plain", or_null(row.times_less_than_full_plain)},
           {"times_less_than_spheres7", or_null(row.times_less_than_spheres7)},
+          {"times_less_than_sphere", or_null(row.times_less_than_sphere)},
           {"paper_step_ms", or_null(paper.step_ms)},
           {"paper_collision_ms", or_null(paper.collision_ms)},
           {"paper_response_ms", or_null(paper.response_ms)},
@@ -54,8 +60,8 @@ std::string percent_of(const Table1Row& row) {
 }  // namespace
 
 std::string text_of(std::span<const Table1Row> rows) {
-  TextTable table({"bodies", "method", "step ms", "collision", "response", "rest", "%", "x full_plain", "x spheres7", "paper ms", "paper %",
-                   "awake 60 120 179", "bytes/body", "state hash"});
+  TextTable table({"bodies", "method", "step ms", "collision", "response", "rest", "%", "x plain", "x 7", "x 1", "paper ms", "paper %",
+                   "awake 60 120 179", "B/body", "in level", "state hash"});
   std::string reasons;
   for (const Table1Row& row : rows) {
     const std::string name = row.model.empty() ? row.method : fmt::format("{} {}", row.method, row.model);
@@ -64,11 +70,32 @@ std::string text_of(std::span<const Table1Row> rows) {
     const bool measured = row.step_ms.has_value();
     table.add_row({fmt::format("{}", row.bodies), name, ms_or_blank(row.step_ms), ms_or_blank(row.collision_ms), ms_or_blank(row.response_ms),
                    ms_or_blank(row.rest_ms), percent_of(row), times_or_blank(row.times_less_than_full_plain),
-                   times_or_blank(row.times_less_than_spheres7), paper.step_ms > 0.0 ? fmt::format("{:.5f}", paper.step_ms) : "",
+                   times_or_blank(row.times_less_than_spheres7), times_or_blank(row.times_less_than_sphere), paper.step_ms > 0.0 ? fmt::format("{:.5f}", paper.step_ms) : "",
                    paper_percent(paper, row.bodies), measured ? fmt::format("{} {} {}", row.awake[0], row.awake[1], row.awake[2]) : "",
-                   measured ? fmt::format("{:.0f}", row.bytes_per_body) : "", measured ? fmt::format("{:016x}", row.state_hash) : ""});
+                   measured ? fmt::format("{:.0f}", row.bytes_per_body) : "",
+                   measured && row.level_bytes_per_body > 0.0 ? fmt::format("{:.0f}", row.level_bytes_per_body) : "", measured ? fmt::format("{:016x}", row.state_hash) : ""});
   }
   return table.text() + (reasons.empty() ? "" : '\n' + reasons);
+}
+
+std::string roofline_text_of(const Bandwidth& bandwidth, std::span<const Table1Row> rows) {
+  TextTable table({"bodies", "method", "threads", "MB in level", "bytes moved/body", "GB/s", "% of memory", "% of cache"});
+  for (const Table1Row& row : rows)
+    if (row.moved_gb_per_s)
+      table.add_row({fmt::format("{}", row.bodies), fmt::format("{} {}", row.method, row.model), fmt::format("{}", row.threads),
+                     fmt::format("{:.1f}", 1e-6 * row.level_bytes_per_body * row.bodies), fmt::format("{:.0f}", row.bytes_moved_per_body),
+                     fmt::format("{:.2f}", *row.moved_gb_per_s), fmt::format("{:.0f}", 100.0 * *row.share_of_memory),
+                     fmt::format("{:.0f}", 100.0 * *row.share_of_cache)});
+  return fmt::format("roofline: a triad moves {:.1f} GB/s in memory and {:.1f} in the second level's cache on one thread, {:.1f} and {:.1f} on {}\n\n{}", bandwidth.memory_one,
+                     bandwidth.cache_one, bandwidth.memory, bandwidth.cache, bandwidth.threads, table.text());
+}
+
+ordered_json json_of(const Bandwidth& bandwidth) {
+  return {{"threads", bandwidth.threads},
+          {"memory_gb_per_s_one_thread", bandwidth.memory_one},
+          {"memory_gb_per_s", bandwidth.memory},
+          {"cache_gb_per_s_one_thread", bandwidth.cache_one},
+          {"cache_gb_per_s", bandwidth.cache}};
 }
 
 ordered_json json_of(std::span<const Table1Row> rows) {

@@ -102,6 +102,7 @@ StepMs Table1World::step(double dt) {
     ms.collision = times.broad_phase_ms + times.pairs_ms;
     ms.response = times.flight_ms + times.crowd_ms;
     ms.rest = times.rest_ms;
+    ms.bytes_moved = statistical_->manager.report().bytes_moved;
   }
   return ms;
 }
@@ -133,6 +134,8 @@ std::uint64_t Table1World::state_hash() const {
   }
   return hash;
 }
+
+double Table1World::level_bytes_per_body() const { return statistical_ ? double(statistical_->manager.statistical_bytes()) / settings_.bodies : 0.0; }
 
 double Table1World::bytes_per_body() const { return (heap_bytes() - heap_before_) / settings_.bodies; }
 

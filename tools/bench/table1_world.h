@@ -21,6 +21,7 @@ struct Table1WorldSettings {
 /// Wall time of a step, ms. The stages only where the method tells them apart; they are not all of a step.
 struct StepMs {
   double step = 0.0;
+  double bytes_moved = 0.0;   ///< where the method counts them
   std::optional<double> collision = {}, response = {}, rest = {};
 };
 
@@ -34,6 +35,8 @@ class Table1World {
   std::uint64_t state_hash() const;
   /// Of the heap, per body, that this world holds.
   double bytes_per_body() const;
+  /// Of the statistical level's arrays alone; 0 where nobody counts them.
+  double level_bytes_per_body() const;
 
  private:
   struct Ode {

@@ -50,6 +50,7 @@ TEST(Table1, RowsComeWithTheirStagesAndTheSameStatesEveryTime) {
   }
   EXPECT_NE(rows[0].state_hash, rows[1].state_hash);
   EXPECT_DOUBLE_EQ(*rows[0].times_less_than_spheres7, *rows[1].step_ms / *rows[0].step_ms);
+  EXPECT_DOUBLE_EQ(*rows[1].times_less_than_sphere, *rows[0].step_ms / *rows[1].step_ms);
   EXPECT_FALSE(rows[0].times_less_than_full_plain);
 }
 
@@ -62,6 +63,25 @@ TEST(Table1, RowsThatWouldTakeTooLongAreLeftOut) {
   settings = few({"full_plain"});
   settings.bodies = {1'001};
   EXPECT_NE(measure_table1(settings)[0].left_out.find("1000 bodies"), std::string::npos);
+}
+
+TEST(Bandwidth, OfACacheIsNoLessThanAFewGigabytes) {
+  EXPECT_GT(measure_bandwidth(1 << 18, 1), 0.1);
+  EXPECT_GT(level3_bytes(), level2_bytes());
+}
+
+TEST(Table1, WhatARowMovesIsSetBesideTheMachine) {
+  std::vector<Table1Row> rows = {{.bodies = 1'000, .method = "statistical", .model = "tables", .step_ms = 0.1, .bytes_moved_per_body = 1'000.0},
+                                 {.bodies = 1'000, .method = "statistical", .model = "tables", .threads = 2, .step_ms = 0.1, .bytes_moved_per_body = 1'000.0},
+                                 {.bodies = 1'000, .method = "sphere", .step_ms = 0.1}};
+  compare_with({.threads = 2, .memory_one = 20.0, .memory = 40.0, .cache_one = 100.0, .cache = 200.0}, rows);
+  EXPECT_DOUBLE_EQ(*rows[0].moved_gb_per_s, 10.0);
+  EXPECT_DOUBLE_EQ(*rows[0].share_of_memory, 0.5);
+  EXPECT_DOUBLE_EQ(*rows[1].share_of_memory, 0.25);
+  EXPECT_DOUBLE_EQ(*rows[1].share_of_cache, 0.05);
+  EXPECT_FALSE(rows[2].moved_gb_per_s);
+  const std::string text = roofline_text_of({.threads = 2, .memory_one = 20.0, .memory = 40.0, .cache_one = 100.0, .cache = 200.0}, rows);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 6) << text;  // the machine, a gap, a heading, a rule, two rows
 }
 
 TEST(Table1Report, CsvHasACellForEachKeyOfTheJson) {
