@@ -20,8 +20,6 @@ struct SphereStep {
   std::vector<float> gap;              // m, to the nearest plane, where near
   std::vector<std::uint8_t> on_ground; // GroundState
   std::vector<std::uint8_t> plane;     // the nearest
-  std::vector<std::uint8_t> slides;    // along the ground: no parabola
-  std::vector<std::uint8_t> unsound;   // out: a state that cannot be
   void resize(std::size_t count);
   /// Sets the row of those that sleep.
   void clear_still(std::size_t row) { p[row] = u[row] = a[row] = s[row] = d[row] = {}; }
@@ -42,9 +40,10 @@ struct SphereStep {
 enum class GroundState : std::uint8_t {
   free,     ///< does not meet it
   near,     ///< meets it at a speed that is an impact, or may meet it
-  lies,     ///< presses on it
+  lies,     ///< presses on it, and slides along it: no parabola
   settles,  ///< so, and comes under the resting conditions
   moved,    ///< met it by itself and was moved: the end leaves it alone
+  unsound,  ///< after the end of the step: its state cannot be
 };
 
 struct StepConstants {
@@ -65,7 +64,7 @@ void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepCons
 /// The impulses of a round of contacts become part of the velocities that the next one sees.
 void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
 
-/// Moves the bodies that are not GroundState::moved.
+/// Moves the bodies that are not GroundState::moved, and marks those as GroundState::unsound whose state cannot be.
 void end_step(Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
 
 }  // namespace lodestone

@@ -335,7 +335,7 @@ void TablesLevel::finish(ContactTally& tally) {
     }
     if (kinds_.any_slender) end_step_with_slender(begin, end);
     else end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
-    each_marked(step_.unsound, 1, begin, end, [&](std::int64_t i) { recover(i, own); });
+    each_marked(step_.on_ground, std::uint8_t(GroundState::unsound), begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
 }
