@@ -23,19 +23,55 @@ void advance(FullNeighbor& body, const Vec3& before, const Vec3& gravity, double
 
 }  // namespace
 
+void StatisticalLevel::Impl::mark_near(const FoundPair& pair) {
+  for (const Participant p : {pair.first, pair.second})
+    if (p >= 0) near_another[std::size_t(p)] = 1;
+}
+
+bool StatisticalLevel::Impl::may_strike_ground(std::int32_t slot, double dt) const {
+  const StatisticalBody& body = bodies[std::size_t(slot)];
+  const double fall = 0.5 * settings.gravity.norm() * dt * dt;
+  return std::ranges::any_of(ground.planes, [&](const HalfSpace& plane) {
+    return plane.height_of(body.position) - kind_of(body).shape->radius <= fall - std::min(0.0, body.velocity.dot(plane.normal)) * dt;
+  });
+}
+
+// What strikes another or the ground may stop within the step: then who follows close behind meets it, though neither gains on the other now. Returns the farthest way
+// of a follower, over R.
+double StatisticalLevel::Impl::mark_followers(double dt) {
+  const auto stops = [&](Participant p) { return p < 0 || near_another[std::size_t(p)] || may_strike_ground(p, dt); };
+  double farthest = 0.0;
+  for (bool any = true; any;) {
+    any = false;
+    std::erase_if(following, [&](const FoundPair* pair) {
+      if (!stops(pair->first) && !stops(pair->second)) return false;
+      mark_near(*pair);
+      const double speed = std::max(center_velocity(pair->first, full).norm(), center_velocity(pair->second, full).norm());
+      farthest = std::max(farthest, speed * dt / least_radius(*pair, full));
+      return any = true;
+    });
+  }
+  return farthest;
+}
+
 // Returns how many substeps those take that may touch another.
 int StatisticalLevel::Impl::plan_substeps(double dt) {
   for (const std::int32_t slot : awake) near_another[std::size_t(slot)] = 0;
   bool any = false;
   double longest = 0.0;  // way over R
+  following.clear();
   for (const FoundPair& pair : found) {
-    if (!may_meet(pair, dt, full)) continue;
-    any = true;
-    for (const Participant p : {pair.first, pair.second})
-      if (p >= 0) near_another[std::size_t(p)] = 1;
-    const double radius = std::min(pair_body(pair.first, full).shape->radius, pair_body(pair.second, full).shape->radius);
-    longest = std::max(longest, (center_velocity(pair.first, full) - center_velocity(pair.second, full)).norm() * dt / radius);
+    if (may_meet(pair, dt, full)) {
+      any = true;
+      mark_near(pair);
+      longest = std::max(longest, (center_velocity(pair.first, full) - center_velocity(pair.second, full)).norm() * dt / least_radius(pair, full));
+    } else if (may_follow(pair, dt, full)) {
+      following.push_back(&pair);
+    }
   }
+  const double farthest = mark_followers(dt);
+  any |= farthest > 0.0;
+  longest = std::max(longest, farthest);
   for (const SolidContact& contact : solid_contacts) near_another[std::size_t(contact.slot)] = 1;
   if (!any) return solid_contacts.empty() ? 0 : 1;
   return int(std::ceil(std::clamp(longest / kStride, double(kLeastSubsteps), double(kMostSubsteps))));

@@ -259,12 +259,25 @@ double StatisticalLevel::Impl::find_approach(const FoundPair& pair, double dt, s
   return ((center_velocity(pair.first, neighbors) - center_velocity(pair.second, neighbors)).norm() + turning_of(pair.first) + turning_of(pair.second)) * dt + fall;
 }
 
+double StatisticalLevel::Impl::least_radius(const FoundPair& pair, std::span<const FullNeighbor> neighbors) const {
+  return std::min(pair_body(pair.first, neighbors).shape->radius, pair_body(pair.second, neighbors).shape->radius);
+}
+
+// m: of the two, at least, now. None where that was never looked for.
+double StatisticalLevel::Impl::gap_left(const FoundPair& pair, std::span<const FullNeighbor> neighbors) const {
+  if (!pair.when || !pair.contacts.empty()) return 0.0;
+  return pair.gap - find_motion_since(*pair.when, pair_body(pair.first, neighbors), pair_body(pair.second, neighbors)) - kTouching * least_radius(pair, neighbors);
+}
+
 // Whether they can touch within `dt`, as far as is known; twice what they approach, since others may strike them meanwhile.
 bool StatisticalLevel::Impl::may_meet(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const {
-  if (!pair.when || !pair.contacts.empty()) return true;
-  const PairBody a = pair_body(pair.first, neighbors), b = pair_body(pair.second, neighbors);
-  const double touching = kTouching * std::min(a.shape->radius, b.shape->radius);
-  return pair.gap - find_motion_since(*pair.when, a, b) <= touching + 2.0 * find_approach(pair, dt, neighbors);
+  return gap_left(pair, neighbors) <= 2.0 * find_approach(pair, dt, neighbors);
+}
+
+// Whether one would run into the other if that stopped.
+bool StatisticalLevel::Impl::may_follow(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const {
+  const double way = (center_velocity(pair.first, neighbors).norm() + center_velocity(pair.second, neighbors).norm()) * dt;
+  return gap_left(pair, neighbors) <= way + find_approach(pair, dt, neighbors);
 }
 
 }  // namespace lodestone

@@ -82,6 +82,7 @@ struct StatisticalLevel::Impl {
   std::vector<FullNeighbor> full, full_before;  // the neighbours, moved on between substeps
   std::vector<FoundPair> spare_found;
   std::vector<FoundPair> found, found_before;  // of the pairs of this step and of the last one
+  std::vector<const FoundPair*> following;   // of which neither gains on the other
   std::vector<CrowdContact> contacts;
   std::vector<std::uint32_t> first_contact;  // of each found pair, among those that are looked at
   std::vector<char> may_close;                // of each of these
@@ -109,6 +110,9 @@ struct StatisticalLevel::Impl {
   void find_turning();
   double find_approach(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
   bool may_meet(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
+  bool may_follow(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
+  double gap_left(const FoundPair& pair, std::span<const FullNeighbor> neighbors) const;
+  double least_radius(const FoundPair& pair, std::span<const FullNeighbor> neighbors) const;
   PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;
   void sort_by_place(std::vector<std::int32_t>& slots) const;
   void add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt);
@@ -130,6 +134,9 @@ struct StatisticalLevel::Impl {
   template <class Select>
   ContactTally move_those(double time, Select select);
   int plan_substeps(double dt);
+  void mark_near(const FoundPair& pair);
+  bool may_strike_ground(std::int32_t slot, double dt) const;
+  double mark_followers(double dt);
   void move_alone(std::size_t place, double dt, ContactTally& tally);  ///< place in `awake`
   const StaticGround& ground_below(std::int32_t slot) const;
   void move_support(StatisticalBody& body, int slot, const StaticGround& over, double dt, ContactTally& tally);

@@ -26,8 +26,8 @@ void TablesLevel::rest() {
     const bool among_others = spheres_.since_crowded[i] < kLeaningSteps;
     const double limit = among_others ? 0.5 * speed * speed : kAloneSleepEnergy * gravity * kind_of(i).shape->radius;
     const StatisticalBody body = spheres_.body(i);
-    // Nor while it is still being taken out of an overlap.
-    const double out = step_.push_out(i).norm() / constants_.wide_time;
+    // Nor while it is still being taken out of an overlap; one that is pressed in again as far as it is taken out stays where it is.
+    const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
     const bool still = kinetic_energy(body, *kind_of(i).shape) < limit && (!step_.touches(i) || out < speed);
     spheres_.quiet[i] = still ? spheres_.quiet[i] + constants_.time : 0.0f;
     if (spheres_.quiet[i] >= (among_others ? kSleepTime : kAloneSleepTime)) put_to_sleep(i);
