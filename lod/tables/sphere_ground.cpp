@@ -244,6 +244,7 @@ void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8
 
 void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
                       float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
+  std::fill(step.d.begin() + begin, step.d.begin() + end, Row{});
   choose_loop(constants, ground, [&]<bool OneKind, bool OnePlane>() {
     run_wide(simd, SortLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
   });

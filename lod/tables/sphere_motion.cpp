@@ -35,7 +35,7 @@ struct StartLoop {
     const Tensors soft = soft_of(kinds);
     float *radius = out.radius.data(), *reach = step.reach.data();
     const float* softest = kinds.softest.data();
-    Row *p = step.p.data(), *u = step.u.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
+    Row *p = step.p.data(), *u = step.u.data(), *s = step.s.data();
     std::uint8_t *on_ground = step.on_ground.data(), *plane = step.plane.data();
     const bool update = c.update_radius;
     const float fall = 0.5f * c.gravity * c.time * c.time;
@@ -59,8 +59,6 @@ struct StartLoop {
       u[i].x = r * omega.x, u[i].y = r * omega.y, u[i].z = r * omega.z, u[i].w = 1.0f + r * r * softest[k];
       s[i].x = 0.0f, s[i].y = 0.0f, s[i].z = 0.0f, s[i].w = 0.5f * (dot(v, v) + dot(spun, omega));
     }
-    if (c.clear_added) std::fill(a + begin, a + end, Row{});
-    std::fill(d + begin, d + end, Row{});
     std::fill(on_ground + begin, on_ground + end, std::uint8_t(0));
     std::fill(plane + begin, plane + end, std::uint8_t(0));
   }
@@ -162,6 +160,10 @@ void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepCons
                 SphereStep& step, Spheres& out) {
   if (constants.one_kind) run_wide(simd, StartLoop<true>{spheres, kinds, constants, step, out}, begin, end);
   else run_wide(simd, StartLoop<false>{spheres, kinds, constants, step, out}, begin, end);
+}
+
+void clear_added(std::int64_t begin, std::int64_t end, SphereStep& step) {
+  for (auto* rows : {&step.a, &step.d}) std::fill(rows->begin() + begin, rows->begin() + end, Row{});
 }
 
 void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) { run_wide(simd, TakeLoop{step}, begin, end); }

@@ -1,6 +1,10 @@
 // What every awake body does in a step, in loops over dense arrays: the start, which tells how far it may reach, and the end, which moves it.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <span>
+
 #include "lod/tables/sphere_kinds.h"
 #include "lod/tables/spheres.h"
 #include "lod/tables/lane_math.h"
@@ -21,6 +25,8 @@ struct SphereStep {
   std::vector<std::uint8_t> on_ground; // GroundState
   std::vector<std::uint8_t> plane;     // the nearest
   void resize(std::size_t count);
+  /// Rows that serve for nothing until clear_added.
+  std::array<std::span<std::byte>, 2> free_rows() { return {std::as_writable_bytes(std::span(a)), std::as_writable_bytes(std::span(d))}; }
   /// Sets the row of those that sleep.
   void clear_still(std::size_t row) { p[row] = u[row] = a[row] = s[row] = d[row] = {}; }
 
@@ -54,12 +60,14 @@ struct StepConstants {
   float resting_energy = 0.15f;           // J/kg over g R: the first threshold of 3.4
   bool update_radius = true;              // of those in flight
   bool one_kind = false;
-  bool clear_added = true;                // what contacts add; where there is ground, sort_near_ground does
 };
 
-/// Angular velocities, radii, reaches, and velocities with gravity; clears what contacts add.
+/// Angular velocities, radii, reaches, and velocities with gravity.
 void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
                 SphereStep& step, Spheres& out);
+
+/// Clears what contacts add to velocities and positions: in its memory the search for pairs kept its arrays.
+void clear_added(std::int64_t begin, std::int64_t end, SphereStep& step);
 
 /// The impulses of a round of contacts become part of the velocities that the next one sees.
 void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
