@@ -97,7 +97,7 @@ void StatisticalLevel::Impl::move_crowded(double dt, double time, std::span<Full
   StepWorld crowd_world = world();
   // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
   if (!neighbors.empty()) crowd_world.bounce_velocity += settings.gravity.norm() * (dt - time);
-  tally += crowd.step(bodies, kinds, neighbors, full_contacts, contacts, solid_contacts, faces_below, crowd_world, StatisticalModel::support, time);
+  tally += crowd.step({bodies, kinds, neighbors, full_contacts, faces_below, crowd_world, StatisticalModel::support, time}, contacts, solid_contacts);
   for (const std::int32_t slot : awake)
     if (bodies[slot].crowded && bodies[slot].motion != Motion::asleep) update_quiet(bodies[slot], time, tally);
 }

@@ -70,7 +70,7 @@ void TablesLevel::meet_full(std::span<FullNeighbor> neighbors, std::span<const F
     }
     near_full_.push_back(body);
   }
-  tally += crowd_.step(near_full_, kinds_.kinds, neighbors, full_contacts, full_touches_, {}, {}, world(), StatisticalModel::tables, time);
+  tally += crowd_.step({near_full_, kinds_.kinds, neighbors, full_contacts, {}, world(), StatisticalModel::tables, time}, full_touches_, {});
   for (std::size_t k = 0; k < near_full_.size(); ++k) {
     const StatisticalBody& body = near_full_[k];
     if (body.motion == Motion::asleep) continue;
