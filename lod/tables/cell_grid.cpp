@@ -64,8 +64,9 @@ BallBounds CellGrid::find_bounds(const BallSpan& balls, const JobRunner& jobs) {
   return all;
 }
 
-void CellGrid::fill(const BallSpan& balls, const JobRunner& jobs, int shares) {
+void CellGrid::fill(const BallSpan& balls, const JobRunner& jobs, int shares, const Lent& lent) {
   balls_ = balls;
+  lent_ = lent;
   grids_.clear();
   parts_.clear();
   index_.clear();
@@ -74,7 +75,7 @@ void CellGrid::fill(const BallSpan& balls, const JobRunner& jobs, int shares) {
   if (count == 0) return;
   const BallBounds all = find_bounds(balls, jobs);
   const bool one_cell = count <= kOneCell, one_size = one_cell || all.most_reach <= 1.2f * all.least_reach;
-  base_edge_ = 2.02 * double(all.most_reach);
+  base_edge_ = std::max(1e-9, 2.02 * double(all.most_reach));  // also where no ball reaches anywhere
   if (!one_size) choose_edges(balls, jobs);
   others_.clear();
   usual_ = 0;
@@ -96,7 +97,7 @@ std::pair<float, float> CellGrid::base_reaches() const {
 // Most balls are of the base level: the others are looked at one by one.
 void CellGrid::lay_out_levels(const BallSpan& balls, const JobRunner& jobs) {
   const std::size_t count = balls.x.size();
-  level_.resize(count);
+  level_.take(lent_, count);
   const auto [least, most] = base_reaches();
   constexpr std::uint8_t kOther = 0;
   each_block(balls, jobs, [&, least = least, most = most](std::int64_t begin, std::int64_t end) {
@@ -123,7 +124,7 @@ void CellGrid::lay_out_levels(const BallSpan& balls, const JobRunner& jobs) {
 CellGrid::Range CellGrid::find_usual_range(int level) const {
   const std::array<std::span<const double>, 3> centers = {balls_.x, balls_.y, balls_.z};
   const std::size_t count = balls_.x.size(), stride = std::max<std::size_t>(1, count / kSample);
-  const bool many = !level_.empty();
+  const bool many = level_.size() > 0;
   Range range;
   range.low.fill(-1e300), range.high.fill(1e300);
   std::array<double, 2 * kSample> sample;
@@ -216,8 +217,9 @@ std::int64_t CellGrid::used_cells() const {
 
 std::size_t CellGrid::bytes() const {
   const auto held = [](const auto& array) { return array.capacity() * sizeof array[0]; };
-  return held(grids_) + held(parts_) + held(bounds_) + held(level_) + held(others_) + held(cell_) + held(start_) + held(x_) + held(y_) + held(z_) + held(reach_) + held(index_) +
-         held(grid_begin_);
+  std::size_t own = level_.own_bytes() + cell_.own_bytes() + start_.own_bytes();
+  for (const auto* array : {&x_, &y_, &z_, &reach_}) own += array->own_bytes();
+  return own + held(grids_) + held(parts_) + held(bounds_) + held(others_) + held(index_) + held(grid_begin_);
 }
 
 }  // namespace lodestone

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -21,10 +22,16 @@ namespace lodestone {
 
 class CellGrid {
  public:
+  /// Memory that serves for other things before and after a search, aligned as floats are: 16 bytes a ball each are enough.
+  using Lent = std::array<std::span<std::byte>, 2>;
+
   explicit CellGrid(Simd simd = find_simd()) : simd_(simd) {}
+  CellGrid(CellGrid&&) = default;
+  CellGrid(const CellGrid&) = delete;  // arrays lie in memory that is lent
 
   /// Takes the balls in. The result does not depend on `shares`, into how many the work is divided: as many as `jobs` has threads are enough.
-  void fill(const BallSpan& balls, const JobRunner& jobs = make_job_runner(1), int shares = 1);
+  /// What is lent is needed for as long as pairs or balls near a place are looked for, not for order().
+  void fill(const BallSpan& balls, const JobRunner& jobs = make_job_runner(1), int shares = 1, const Lent& lent = {});
 
   /// Parts of the search for pairs. No two parts of one colour find pairs of the same ball.
   std::int64_t parts() const { return std::int64_t(parts_.size()); }
@@ -128,18 +135,47 @@ class CellGrid {
   void find_in(const Grid& grid, const Vec3& center, double reach, const Found& found) const;
   void find_across(BallPairs& pairs) const;
 
+  /// An array in memory that is lent or, where that is too small, in its own.
+  template <class Value>
+  class Array {
+   public:
+    void take(Lent& lent, std::size_t count) {
+      const std::size_t bytes = (count * sizeof(Value) + 3) / 4 * 4;
+      const auto place = std::ranges::find_if(lent, [&](std::span<std::byte> room) { return room.size() >= bytes; });
+      if (place == lent.end()) {
+        own_.resize(count);
+        values_ = own_;
+      } else {
+        values_ = {reinterpret_cast<Value*>(place->data()), count};
+        *place = place->subspan(bytes);
+      }
+    }
+    void clear() { values_ = {}; }
+    Value* data() { return values_.data(); }
+    const Value* data() const { return values_.data(); }
+    std::size_t size() const { return values_.size(); }
+    Value& operator[](std::size_t i) { return values_[i]; }
+    const Value& operator[](std::size_t i) const { return values_[i]; }
+    std::size_t own_bytes() const { return own_.capacity() * sizeof(Value); }
+
+   private:
+    std::vector<Value> own_;
+    std::span<Value> values_;
+  };
+
   Simd simd_;
+  Lent lent_;                             // what is left of it
   std::vector<Grid> grids_;
   std::array<std::int32_t, 32> grid_of_level_{};
   double base_edge_ = 1.0;                // m, of level kBaseLevel
   std::vector<Part> parts_;
   std::size_t usual_ = 0;                 // grid of the base level
   std::vector<BallBounds> bounds_;        // of blocks of balls
-  std::vector<std::uint8_t> level_;       // of each ball, where they are of several
+  Array<std::uint8_t> level_;             // of each ball, where they are of several
   std::vector<std::uint32_t> others_;     // balls that are not sorted many at a time
-  std::vector<std::uint32_t> cell_;       // of each ball
-  std::vector<std::uint32_t> start_;      // of each cell, and the end of the last
-  std::vector<float> x_, y_, z_, reach_;  // in order; positions within the grid, along its axes
+  Array<std::uint32_t> cell_;             // of each ball
+  Array<std::uint32_t> start_;            // of each cell, and the end of the last
+  Array<float> x_, y_, z_, reach_;        // in order; positions within the grid, along its axes
   std::vector<std::uint32_t> index_;
   std::vector<std::uint32_t> grid_begin_; // of each grid in the order, and the end
   BallSpan balls_;

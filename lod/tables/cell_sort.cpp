@@ -54,9 +54,10 @@ double CellGrid::find_cell(const Grid& grid, int a, double at, std::int32_t& cel
 
 void CellGrid::sort(const BallSpan& balls, const JobRunner& jobs, int shares) {
   const std::size_t count = balls.x.size();
-  start_.assign(grids_.back().end_cell + 2, 0);
-  cell_.resize(count);
-  for (auto* array : {&x_, &y_, &z_, &reach_}) array->resize(count);
+  start_.take(lent_, grids_.back().end_cell + 2);
+  std::fill_n(start_.data(), start_.size(), 0u);
+  cell_.take(lent_, count);
+  for (auto* array : {&x_, &y_, &z_, &reach_}) array->take(lent_, count);
   index_.resize(count);
   const std::array<bool, 3>& wraps = grids_[usual_].wraps;
   const bool any_usual = !(wraps[0] || wraps[1] || wraps[2]) && others_.size() < count;

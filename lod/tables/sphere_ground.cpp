@@ -115,13 +115,45 @@ struct LieLoop {
   StepConstants c;
   SphereStep& step;
 
+  static constexpr std::int64_t kFew = 64;
+
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
-    const float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data(), *radius = spheres.radius.data();
-    const double *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
-    float* held = spheres.held.data();
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
-    const std::uint16_t* kind = spheres.kind.data();
-    const std::int16_t* pose = spheres.pose.data();
+    const SmallNumbers own{motion, spheres.pose.data(), spheres.kind.data(), step.plane.data(), step.on_ground.data()};
+    if (end - begin < kFew) lie_few(own, begin, end - begin);
+    else lie(own.from(begin), begin, end - begin);
+  }
+
+ private:
+  template <class Byte, class Pose, class Kind>
+  struct SmallNumbers {
+    Byte* motion;
+    const Pose* pose;
+    const Kind* kind;
+    const Byte *plane, *on_ground;
+    LODESTONE_INLINE SmallNumbers from(std::int64_t begin) const { return {motion + begin, pose + begin, kind + begin, plane + begin, on_ground + begin}; }
+  };
+
+  // With integers in place of bytes: with those a vector instruction takes more bodies at a time than there are.
+  template <class Own>
+  LODESTONE_INLINE void lie_few(const Own& own, std::int64_t begin, std::int64_t count) const {
+    std::int32_t motion[kFew], pose[kFew], kind[kFew], plane[kFew], on_ground[kFew];
+    for (std::int64_t i = 0; i < count; ++i) {
+      motion[i] = own.motion[begin + i], pose[i] = own.pose[begin + i], kind[i] = own.kind[begin + i];
+      plane[i] = own.plane[begin + i], on_ground[i] = own.on_ground[begin + i];
+    }
+    lie(SmallNumbers{motion, pose, kind, plane, on_ground}, begin, count);
+    for (std::int64_t i = 0; i < count; ++i) own.motion[begin + i] = std::uint8_t(motion[i]);
+  }
+
+  template <class Byte, class Pose, class Kind>
+  LODESTONE_INLINE void lie(const SmallNumbers<Byte, Pose, Kind>& numbers, std::int64_t begin, std::int64_t count) const {
+    const float *qw = spheres.qw.data() + begin, *qx = spheres.qx.data() + begin, *qy = spheres.qy.data() + begin, *qz = spheres.qz.data() + begin, *radius = spheres.radius.data() + begin;
+    const double *lx = spheres.lx.data() + begin, *ly = spheres.ly.data() + begin, *lz = spheres.lz.data() + begin;
+    float* held = spheres.held.data() + begin;
+    Byte* motion = numbers.motion;
+    const Kind* kind = numbers.kind;
+    const Pose* pose = numbers.pose;
     const float *size = kinds.radius.data(), *blend_time = kinds.blend_time.data();
     const float *pose_x = kinds.pose_x.data(), *pose_y = kinds.pose_y.data(), *pose_z = kinds.pose_z.data();
     const std::int32_t* first_pose = kinds.first_pose.data();
@@ -129,13 +161,12 @@ struct LieLoop {
     const Tensors hard{kinds.jxx.data(), kinds.jyy.data(), kinds.jzz.data(), kinds.jxy.data(), kinds.jxz.data(), kinds.jyz.data()};
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *friction = ground.friction.data();
     const int kind_count = int(ground.kinds);
-    const Row* begun = step.p.data();
-    const float* gap = step.gap.data();
-    const std::uint8_t *plane = step.plane.data(), *on_ground = step.on_ground.data();
-    Row *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
-    std::uint8_t* slides = step.slides.data();
+    const Row* begun = step.p.data() + begin;
+    const float* gap = step.gap.data() + begin;
+    const Byte *plane = numbers.plane, *on_ground = numbers.on_ground;
+    Row *a = step.a.data() + begin, *s = step.s.data() + begin, *d = step.d.data() + begin;
 #pragma GCC ivdep
-    for (std::int64_t i = begin; i < end; ++i) {
+    for (std::int64_t i = 0; i < count; ++i) {
       const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), number = pose[i], at = first_pose[k] + choose(number > 0, number, 0);
       const int state = on_ground[i], moves = int(motion[i]);
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)), others = begun[i].w > 0.0f;
@@ -172,8 +203,7 @@ struct LieLoop {
       a[i].x = change.x, a[i].y = change.y, a[i].z = change.z, a[i].w = given_speed;
       s[i].x = turn.x, s[i].y = turn.y, s[i].z = turn.z, s[i].w = moving;
       held[i] = choose(lies & others, given_speed, 0.0f);
-      motion[i] = std::uint8_t(choose(lies & !rests, int(Motion::dynamic), moves));
-      slides[i] = std::uint8_t(choose(lies, 1, 0));
+      motion[i] = Byte(choose(lies & !rests, int(Motion::dynamic), moves));
       // The ground has the last word: among others no sinking in; alone down onto it, or out of it gradually.
       const float height = above + dot(v, n) * c.time + dot(out, n), alone = choose(above < 0.0f, -kRise * above, -above);
       const float raise = choose(lies, choose(others, most(0.0f, -height), alone), 0.0f);
@@ -214,6 +244,7 @@ void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8
 
 void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
                       float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
+  std::fill(step.d.begin() + begin, step.d.begin() + end, Row{});
   choose_loop(constants, ground, [&]<bool OneKind, bool OnePlane>() {
     run_wide(simd, SortLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
   });

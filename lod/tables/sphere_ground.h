@@ -24,6 +24,7 @@ void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8
 
 /// Of those near: GroundState::lies where it presses on the ground, with what the ground gave in the last step if it has contacts with others, which the ground
 /// then adds one to; approaches slower than `bounce_velocity` are no impacts; GroundState::settles where it must choose a rest pose first; the rest stays near, for an impact.
+/// Clears what contacts add, as clear_added.
 void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
                       float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
 

@@ -35,8 +35,8 @@ struct StartLoop {
     const Tensors soft = soft_of(kinds);
     float *radius = out.radius.data(), *reach = step.reach.data();
     const float* softest = kinds.softest.data();
-    Row *p = step.p.data(), *u = step.u.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
-    std::uint8_t *on_ground = step.on_ground.data(), *plane = step.plane.data(), *slides = step.slides.data();
+    Row *p = step.p.data(), *u = step.u.data(), *s = step.s.data();
+    std::uint8_t *on_ground = step.on_ground.data(), *plane = step.plane.data();
     const bool update = c.update_radius;
     const float fall = 0.5f * c.gravity * c.time * c.time;
 #pragma GCC ivdep
@@ -59,10 +59,8 @@ struct StartLoop {
       u[i].x = r * omega.x, u[i].y = r * omega.y, u[i].z = r * omega.z, u[i].w = 1.0f + r * r * softest[k];
       s[i].x = 0.0f, s[i].y = 0.0f, s[i].z = 0.0f, s[i].w = 0.5f * (dot(v, v) + dot(spun, omega));
     }
-    if (c.clear_added) std::fill(a + begin, a + end, Row{});
-    std::fill(d + begin, d + end, Row{});
     std::fill(on_ground + begin, on_ground + end, std::uint8_t(0));
-    std::fill(plane + begin, plane + end, std::uint8_t(0)), std::fill(slides + begin, slides + end, std::uint8_t(0));
+    std::fill(plane + begin, plane + end, std::uint8_t(0));
   }
 };
 
@@ -80,22 +78,22 @@ struct EndLoop {
     const std::uint16_t* kind = spheres.kind.data();
     const Tensors soft = soft_of(kinds);
     const Row *p = step.p.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
-    const std::uint8_t *on_ground = step.on_ground.data(), *slides = step.slides.data();
-    std::uint8_t* unsound = step.unsound.data();
+    std::uint8_t* on_ground = step.on_ground.data();
     std::uint8_t *crowded_for = spheres.crowded_for.data(), *since_crowded = spheres.since_crowded.data();
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
     const float* size = kinds.radius.data();
     const double calm = double(most(0.0f, 1.0f - kCalming * c.time));
-    constexpr auto kMoved = std::uint8_t(GroundState::moved), kFree = std::uint8_t(GroundState::free);
+    constexpr int kMoved = int(GroundState::moved), kFree = int(GroundState::free), kLies = int(GroundState::lies), kSettles = int(GroundState::settles);
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]);
-      const bool here = on_ground[i] != kMoved, touches = p[i].w > 0.0f, flies = !touches & (slides[i] == 0);
+      const int state = on_ground[i];
+      const bool here = state != kMoved, touches = p[i].w > 0.0f, slides = (state >= kLies) & (state <= kSettles), flies = !touches & !slides;
       const double old_x = vx[i], old_y = vy[i], old_z = vz[i], spun_x = lx[i], spun_y = ly[i], spun_z = lz[i];
       const int lonely = int(since_crowded[i]) + 1, crowded = int(crowded_for[i]) + 1, moves = int(motion[i]);
       since_crowded[i] = std::uint8_t(choose(touches, 0, choose(lonely > 255, 255, lonely)));
       // Among others and off the ground it settles no more.
-      motion[i] = std::uint8_t(choose(touches & (moves == int(Motion::settling)) & (on_ground[i] == kFree), int(Motion::dynamic), moves));
+      motion[i] = std::uint8_t(choose(touches & (moves == int(Motion::settling)) & (state == kFree), int(Motion::dynamic), moves));
       // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for ever.
       const bool calms = touches & (crowded > kLying) & (s[i].w < c.resting_energy * c.gravity * size[k]);
       crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
@@ -133,7 +131,7 @@ struct EndLoop {
       const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z) + absolute(a[i].w) + absolute(d[i].w);
       const float far = most(absolute(float(to_x)), most(absolute(float(to_y)), absolute(float(to_z))));
       const float wrong = choose(sum < kFast, 0.0f, 1.0f) + choose(absolute(scale - 1.0f) < 0.1f, 0.0f, 1.0f) + choose(far + absolute(float(to_x - to_x)) < 0.999e8f, 0.0f, 1.0f);
-      unsound[i] = std::uint8_t(choose(wrong > 0.0f, 1, 0));
+      on_ground[i] = std::uint8_t(choose(wrong > 0.0f, int(GroundState::unsound), state));
     }
   }
 };
@@ -155,14 +153,14 @@ struct TakeLoop {
 void SphereStep::resize(std::size_t count) {
   for (auto* rows : {&p, &u, &a, &s, &d}) rows->resize(count + 1);
   for (auto* array : {&reach, &gap}) array->resize(count);
-  for (auto* array : {&on_ground, &plane, &slides, &unsound}) array->resize(count);
+  for (auto* array : {&on_ground, &plane}) array->resize(count);
 }
 
 std::size_t SphereStep::bytes() const {
   std::size_t bytes = 0;
   for (const auto* rows : {&p, &u, &a, &s, &d}) bytes += rows->capacity() * sizeof(Row);
   for (const auto* array : {&reach, &gap}) bytes += array->capacity() * sizeof(float);
-  for (const auto* array : {&on_ground, &plane, &slides, &unsound}) bytes += array->capacity();
+  for (const auto* array : {&on_ground, &plane}) bytes += array->capacity();
   return bytes;
 }
 
@@ -170,6 +168,10 @@ void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepCons
                 SphereStep& step, Spheres& out) {
   if (constants.one_kind) run_wide(simd, StartLoop<true>{spheres, kinds, constants, step, out}, begin, end);
   else run_wide(simd, StartLoop<false>{spheres, kinds, constants, step, out}, begin, end);
+}
+
+void clear_added(std::int64_t begin, std::int64_t end, SphereStep& step) {
+  for (auto* rows : {&step.a, &step.d}) std::fill(rows->begin() + begin, rows->begin() + end, Row{});
 }
 
 void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) { run_wide(simd, TakeLoop{step}, begin, end); }

@@ -1,6 +1,10 @@
 // What every awake body does in a step, in loops over dense arrays: the start, which tells how far it may reach, and the end, which moves it.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <span>
+
 #include "lod/tables/sphere_kinds.h"
 #include "lod/tables/spheres.h"
 #include "lod/tables/lane_math.h"
@@ -20,10 +24,10 @@ struct SphereStep {
   std::vector<float> gap;              // m, to the nearest plane, where near
   std::vector<std::uint8_t> on_ground; // GroundState
   std::vector<std::uint8_t> plane;     // the nearest
-  std::vector<std::uint8_t> slides;    // along the ground: no parabola
-  std::vector<std::uint8_t> unsound;   // out: a state that cannot be
   void resize(std::size_t count);
   std::size_t bytes() const;
+  /// Rows that serve for nothing until clear_added.
+  std::array<std::span<std::byte>, 2> free_rows() { return {std::as_writable_bytes(std::span(a)), std::as_writable_bytes(std::span(d))}; }
   /// Sets the row of those that sleep.
   void clear_still(std::size_t row) { p[row] = u[row] = a[row] = s[row] = d[row] = {}; }
 
@@ -43,9 +47,10 @@ struct SphereStep {
 enum class GroundState : std::uint8_t {
   free,     ///< does not meet it
   near,     ///< meets it at a speed that is an impact, or may meet it
-  lies,     ///< presses on it
+  lies,     ///< presses on it, and slides along it: no parabola
   settles,  ///< so, and comes under the resting conditions
   moved,    ///< met it by itself and was moved: the end leaves it alone
+  unsound,  ///< after the end of the step: its state cannot be
 };
 
 struct StepConstants {
@@ -56,17 +61,19 @@ struct StepConstants {
   float resting_energy = 0.15f;           // J/kg over g R: the first threshold of 3.4
   bool update_radius = true;              // of those in flight
   bool one_kind = false;
-  bool clear_added = true;                // what contacts add; where there is ground, sort_near_ground does
 };
 
-/// Angular velocities, radii, reaches, and velocities with gravity; clears what contacts add.
+/// Angular velocities, radii, reaches, and velocities with gravity.
 void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
                 SphereStep& step, Spheres& out);
+
+/// Clears what contacts add to velocities and positions: in its memory the search for pairs kept its arrays.
+void clear_added(std::int64_t begin, std::int64_t end, SphereStep& step);
 
 /// The impulses of a round of contacts become part of the velocities that the next one sees.
 void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
 
-/// Moves the bodies that are not GroundState::moved.
+/// Moves the bodies that are not GroundState::moved, and marks those as GroundState::unsound whose state cannot be.
 void end_step(Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
 
 }  // namespace lodestone

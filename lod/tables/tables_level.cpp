@@ -39,7 +39,6 @@ int TablesLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shape, do
   const std::int64_t place = spheres_.add(owner);
   const auto slot = int(spheres_.slot[place]);
   spheres_.kind[place] = kind;
-  given_of_slot_.push_back(-1);
   set_state(slot, state);
   spheres_.radius[place] = float(find_sphere_radius(spheres_.body(place), kind_of(place), settings_.tables, settings_.seed));
   if (asleep) put_to_sleep(place);
@@ -72,16 +71,18 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
   std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
   for (Push& push : pushes_)
     if (push.slot == std::int32_t(last)) push.slot = slot;
-  forget_given(gone);
-  if (renamed && given_of_slot_[last] >= 0) given_[std::size_t(given_of_slot_[last])].first = gone;
-  given_of_slot_[gone] = given_of_slot_[last];
-  given_of_slot_.pop_back();
+  given_.erase(gone);
+  if (auto moved = given_.extract(last)) {
+    moved.key() = gone;
+    given_.insert(std::move(moved));
+  }
   ordered_ = 0;
   return renamed ? std::optional(spheres_.owner[spheres_.place_of_slot[gone]]) : std::nullopt;
 }
 
 RigidState TablesLevel::state(int slot) const {
-  if (const std::int32_t given = given_of_slot_[std::size_t(slot)]; given >= 0) return given_[std::size_t(given)].second;
+  if (!given_.empty())
+    if (const auto given = given_.find(std::uint32_t(slot)); given != given_.end()) return given->second;
   const std::int64_t place = spheres_.place_of_slot[std::size_t(slot)];
   const Quat orientation = spheres_.orientation(place);
   return {spheres_.position(place), orientation, spheres_.velocity(place), angular_velocity(orientation, spheres_.spin(place), *kind_of(place).shape)};
@@ -100,9 +101,7 @@ void TablesLevel::set_state(int slot, const RigidState& state) {
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
   spheres_.put(place, body);
-  forget_given(std::uint32_t(slot));
-  given_of_slot_[std::size_t(slot)] = std::int32_t(given_.size());
-  given_.emplace_back(std::uint32_t(slot), state);
+  given_[std::uint32_t(slot)] = state;
 }
 
 void TablesLevel::wake(int slot) {
@@ -115,24 +114,14 @@ void TablesLevel::wake(int slot) {
 
 void TablesLevel::put_to_sleep(std::int64_t place) {
   still_.insert(std::uint32_t(spheres_.slot[place]), spheres_.position(place), kind_of(place).shape->radius);
-  forget_given(std::uint32_t(spheres_.slot[place]));
+  given_.erase(std::uint32_t(spheres_.slot[place]));
   spheres_.put_to_sleep(place);
   ordered_ = 0;
 }
 
-void TablesLevel::forget_given(std::uint32_t slot) {
-  const std::int32_t given = given_of_slot_[slot];
-  if (given < 0) return;
-  given_of_slot_[slot] = -1;
-  given_[std::size_t(given)] = given_.back();
-  given_.pop_back();
-  if (std::size_t(given) < given_.size()) given_of_slot_[given_[std::size_t(given)].first] = given;
-}
-
 void TablesLevel::forget_all_given() {
-  for (const auto& given : given_) given_of_slot_[given.first] = -1;
-  if (given_.size() > 64) std::exchange(given_, {});  // of a whole scene that was added
-  given_.clear();
+  if (given_.size() > 64) given_ = {};  // of a whole scene that was added
+  else if (!given_.empty()) given_.clear();
 }
 
 void TablesLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
@@ -164,7 +153,7 @@ void TablesLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport&
       const StageTimer timer(times.broad_phase_ms);
       const auto count = std::size_t(spheres_.awake);
       cells_.fill({std::span(spheres_.x).first(count), std::span(spheres_.y).first(count), std::span(spheres_.z).first(count), step_.reach}, jobs_,
-                  std::min(settings_.threads, kSharesMost));
+                  std::min(settings_.threads, kSharesMost), step_.free_rows());
       ordered_ = spheres_.awake;
     }
     const StageTimer timer(times.pairs_ms);
@@ -191,7 +180,8 @@ void TablesLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport&
 
 std::size_t TablesLevel::bytes() const {
   const auto held = [](const auto& array) { return array.capacity() * sizeof array[0]; };
-  std::size_t bytes = held(spheres_.place_of_slot) + held(given_) + held(given_of_slot_) + held(pushes_) + held(still_touches_) + held(tallies_);
+  const std::size_t given = given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) + given_.bucket_count() * sizeof(void*);
+  std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) + held(tallies_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
   return bytes + step_.bytes() + contacts_.bytes() + cells_.bytes() + still_.bytes();
 }
@@ -219,7 +209,7 @@ void TablesLevel::start(double dt) {
   const Vec3& g = settings_.gravity;
   check_that(ground_.planes.size() < 255, "at most 254 planes");
   constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .wide_time = dt, .wide_gx = g.x(), .wide_gy = g.y(), .wide_gz = g.z(), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
-                .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1, .clear_added = ground_.planes.empty()};
+                .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1};
   step_.resize(std::size_t(spheres_.awake));
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0) update_radii_one_by_one();
   planes_.set(ground_, materials_, kinds_, settings_.gravity);
@@ -315,8 +305,8 @@ void TablesLevel::respond_as_paper(ContactTally& tally) {
 }
 
 void TablesLevel::sort_ground() {
-  if (ground_.planes.empty()) return;
   each_block([&](std::int64_t begin, std::int64_t end) {
+    if (ground_.planes.empty()) return clear_added(begin, end, step_);
     sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
     each_marked(step_.on_ground, std::uint8_t(GroundState::settles), begin, end, [&](std::int64_t i) { choose_rest_pose(i); });
   });
@@ -344,7 +334,7 @@ void TablesLevel::finish(ContactTally& tally) {
     }
     if (kinds_.any_slender) end_step_with_slender(begin, end);
     else end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
-    each_marked(step_.unsound, 1, begin, end, [&](std::int64_t i) { recover(i, own); });
+    each_marked(step_.on_ground, std::uint8_t(GroundState::unsound), begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
 }

@@ -2,6 +2,8 @@
 // 4 the response of all contacts at once, 5 the ground: impacts at their exact time answered from the tables, 6 motion, 7 rest.
 #pragma once
 
+#include <unordered_map>
+
 #include "lod/statistical/crowd.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_ground.h"
@@ -48,7 +50,6 @@ class TablesLevel {
   float bounce_velocity() const { return float(world().bounce_velocity) + constants_.gravity * constants_.time; }  // with what gravity adds in a step
   double sleep_speed(std::int64_t place) const;
   void put_to_sleep(std::int64_t place);
-  void forget_given(std::uint32_t slot);
   void forget_all_given();
 
   void apply_pushes(double dt, ContactTally& tally);
@@ -92,8 +93,7 @@ class TablesLevel {
   std::int64_t ordered_ = 0;                     // awake bodies that the cells of the last step had in order
 
   // States that were set since the last step are read back to the bit.
-  std::vector<std::pair<std::uint32_t, RigidState>> given_;  // slot, state
-  std::vector<std::int32_t> given_of_slot_;                  // index of the former, −1: none
+  std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
   std::vector<Push> pushes_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> still_touches_;  // place awake, slot asleep; then both places
   std::vector<ContactTally> tallies_;

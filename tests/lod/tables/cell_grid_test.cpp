@@ -71,6 +71,17 @@ void expect_all_pairs(const Balls& balls, double rounding = 1e-3) {
 }
 
 TEST(CellGrid, FewBalls) { expect_all_pairs(cloud(12, {1, 1, 1}, 0.2, 0.2)); }
+TEST(CellGrid, BallsThatReachNowhere) {
+  Balls balls = cloud(200, {1, 1, 1}, 0.1, 0.1);
+  balls.reach.assign(balls.reach.size(), 0.0f);
+  CellGrid grid;
+  grid.fill(balls.span());
+  BallPairs pairs;
+  for (std::int64_t part = 0; part < grid.parts(); ++part) grid.find_pairs(part, pairs);
+  EXPECT_EQ(pairs.size(), 0);
+  balls.reach[7] = 0.3f;
+  expect_all_pairs(balls);
+}
 TEST(CellGrid, ThinLayer) { expect_all_pairs(cloud(1500, {12, 12, 0.3}, 0.1, 0.2)); }
 TEST(CellGrid, Pile) { expect_all_pairs(cloud(1500, {3, 3, 4}, 0.1, 0.15)); }
 TEST(CellGrid, LongRow) { expect_all_pairs(cloud(800, {0.2, 150, 0.2}, 0.1, 0.1)); }
