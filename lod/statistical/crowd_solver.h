@@ -7,7 +7,7 @@
 
 #include "lod/jobs.h"
 #include "lod/statistical/contact_solver.h"
-#include "lod/tables/wide_loop.h"
+#include "lod/wide_loop.h"
 
 namespace lodestone {
 

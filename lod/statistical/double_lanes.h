@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "lod/tables/wide_loop.h"
+#include "lod/wide_loop.h"
 
 namespace lodestone::lane {
 

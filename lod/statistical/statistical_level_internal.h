@@ -6,8 +6,8 @@
 #include "lod/statistical/crowd.h"
 #include "lod/statistical/pair_memory.h"
 #include "lod/statistical/statistical_level.h"
-#include "lod/tables/cell_grid.h"
-#include "lod/tables/still_grid.h"
+#include "lod/broad_phase/cell_grid.h"
+#include "lod/broad_phase/still_grid.h"
 
 namespace lodestone {
 

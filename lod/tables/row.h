@@ -1,7 +1,7 @@
 // Four floats side by side, which any processor adds at once: what a contact reads of a body and adds to it.
 #pragma once
 
-#include "lod/tables/wide_loop.h"
+#include "lod/wide_loop.h"
 
 namespace lodestone::lane {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lod/jobs.h"
-#include "lod/tables/cell_grid.h"
+#include "lod/broad_phase/cell_grid.h"
 #include "lod/tables/sphere_motion.h"
 
 namespace lodestone {

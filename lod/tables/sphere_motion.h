@@ -7,7 +7,7 @@
 
 #include "lod/tables/sphere_kinds.h"
 #include "lod/tables/spheres.h"
-#include "lod/tables/lane_math.h"
+#include "lod/lane_math.h"
 #include "lod/tables/row.h"
 
 namespace lodestone {

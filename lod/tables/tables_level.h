@@ -7,7 +7,7 @@
 #include "lod/statistical/crowd.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_ground.h"
-#include "lod/tables/still_grid.h"
+#include "lod/broad_phase/still_grid.h"
 
 namespace lodestone {
 

@@ -1,7 +1,7 @@
 // How many bytes a step of the tables model moves between the processor and memory, counted from its arrays: what a machine's bandwidth is to be compared with.
 #pragma once
 
-#include "lod/tables/cell_grid.h"
+#include "lod/broad_phase/cell_grid.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_motion.h"
 #include "lod/tables/spheres.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lod/tables/cell_grid.h"
+#include "lod/broad_phase/cell_grid.h"
 
 namespace lodestone {
 

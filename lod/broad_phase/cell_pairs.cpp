@@ -1,5 +1,5 @@
 // The pairs that CellGrid finds: row by row, each cell's balls against those that follow in its row and in half of the rows around.
-#include "lod/tables/cell_grid.h"
+#include "lod/broad_phase/cell_grid.h"
 
 namespace lodestone {
 

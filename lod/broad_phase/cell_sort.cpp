@@ -1,6 +1,6 @@
 // How CellGrid sorts its balls: counts of each cell, their sums, then each ball to its place. Several at a time, and on several threads, for the grid of the
 // usual size; one by one for the few balls of other sizes, and for grids that wrap.
-#include "lod/tables/cell_grid.h"
+#include "lod/broad_phase/cell_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The cells against every pair tried: the same pairs, each once, for layers, piles, sparse clouds and mixed sizes.
-#include "lod/tables/cell_grid.h"
+#include "lod/broad_phase/cell_grid.h"
 
 #include <gtest/gtest.h>
 

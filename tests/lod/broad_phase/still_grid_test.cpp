@@ -1,4 +1,4 @@
-#include "lod/tables/still_grid.h"
+#include "lod/broad_phase/still_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lod/tables/cell_grid.h"
+#include "lod/broad_phase/cell_grid.h"
 
 #include <atomic>
 #include <bit>

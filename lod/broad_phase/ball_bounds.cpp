@@ -1,6 +1,6 @@
-#include "lod/tables/ball_bounds.h"
+#include "lod/broad_phase/ball_bounds.h"
 
-#include "lod/tables/lane_math.h"
+#include "lod/lane_math.h"
 
 namespace lodestone {
 namespace {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "lod/jobs.h"
-#include "lod/tables/ball_bounds.h"
-#include "lod/tables/ball_pairs.h"
+#include "lod/broad_phase/ball_bounds.h"
+#include "lod/broad_phase/ball_pairs.h"
 #include "reference/geometry.h"
 
 namespace lodestone {

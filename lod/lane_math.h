@@ -1,7 +1,7 @@
 // Vectors and rotations of floats for loops over bodies: without branches, and inlined, so that a compiler can make vector instructions of them.
 #pragma once
 
-#include "lod/tables/wide_loop.h"
+#include "lod/wide_loop.h"
 
 namespace lodestone::lane {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "lod/tables/wide_loop.h"
+#include "lod/wide_loop.h"
 
 namespace lodestone {
 
