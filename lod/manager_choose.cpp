@@ -44,14 +44,14 @@ void Manager::Impl::look_at_those_concerned() {
     for (std::uint32_t body = 0; body < bodies.indices(); ++body) look_at(body);
     return;
   }
+  if (std::holds_alternative<DistancePolicy>(policy.policy))  // before any are put in again
+    while (far.next_due() <= traveled) far.take_next(some);
   for (const FullLevel::Member& member : levels.full.members()) look_at(member.owner);
   for (const BodyTable::Newcomer& newcomer : bodies.newcomers()) look_at(newcomer.index);
   if (levels.statistical && policy_sees_places()) {
     for (const std::int32_t slot : levels.statistical->awake()) look_at(levels.owner_of_slot[std::size_t(slot)]);
     for (const std::uint32_t body : fell_asleep) look_at(body);
   }
-  if (std::holds_alternative<DistancePolicy>(policy.policy))
-    while (far.next_due() <= traveled) far.take_next(some);
   for (const std::uint32_t body : some) look_at(body);
 }
 

@@ -55,14 +55,14 @@ TEST(FarBodies, StaleTurnsDoNotPileUp) {
 
 // Crates in rows, and a viewpoint that goes among them.
 struct Scene {
-  explicit Scene(const PolicySettings& policy, int bodies) : manager(on_floor(unmeasured(policy))) {
+  explicit Scene(const PolicySettings& policy, int bodies, bool settled = true) : manager(on_floor(unmeasured(policy))) {
     const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.24})));
     for (int i = 0; i < bodies; ++i) {
       RigidState state;
       state.position = {0.6 * (i % 40), 0.6 * (i / 40), 0.12};
       ids.push_back(manager.add_body({.shape = shape, .state = state, .importance = 1.0 + 0.5 * (i % 3)}));
     }
-    for (int i = 0; i < 90 && (i == 0 || manager.report().asleep < bodies); ++i) manager.step(kFrame);
+    for (int i = 0; i < 90 && (i == 0 || (settled && manager.report().asleep < bodies)); ++i) manager.step(kFrame);
   }
   LevelCandidate candidate(std::size_t i) const {
     return {.position = manager.state(ids[i]).position, .radius = manager.shape(ids[i]).radius, .importance = 1.0 + 0.5 * double(i % 3), .level = manager.level(ids[i])};
@@ -72,10 +72,10 @@ struct Scene {
 };
 
 // Without a dwell or a cap, what the policy would say of all bodies is what they have after the step, whoever was looked at.
-TEST(LevelsOfSleepers, AreThoseThatThePolicyWouldGiveAskedAboutAll) {
+void expect_levels_as_if_asked_about_all(bool settled) {
   PolicySettings policy{.policy = DistancePolicy{1.5}, .min_dwell_frames = 0, .max_transitions_per_frame = 1'000'000};
-  Scene scene(policy, 600);
-  ASSERT_EQ(scene.manager.report().asleep, 600);
+  Scene scene(policy, 600, settled);
+  ASSERT_EQ(scene.manager.report().asleep, settled ? 600 : 0);
   int changes = 0;
   for (int step = 0; step < 120; ++step) {
     const double along = 0.2 * step;
@@ -95,6 +95,9 @@ TEST(LevelsOfSleepers, AreThoseThatThePolicyWouldGiveAskedAboutAll) {
   }
   EXPECT_GT(changes, 100);
 }
+
+TEST(LevelsOfSleepers, AreThoseThatThePolicyWouldGiveAskedAboutAll) { expect_levels_as_if_asked_about_all(true); }
+TEST(LevelsOfSleepers, AreSoTooWhereTheyFallAsleepUnderWay) { expect_levels_as_if_asked_about_all(false); }
 
 // How many a budget has room for hangs on measured times, here a hundred or a few tens; which three are next does not.
 TEST(LevelsOfSleepers, ABudgetTakesTheNearestWithoutALookAtAll) {
