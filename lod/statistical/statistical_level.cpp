@@ -69,6 +69,7 @@ int StatisticalLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shap
   if (asleep) {
     level.put_to_sleep(level.bodies[slot]);
     level.angular_velocity_given[slot].reset();
+    level.given.pop_back();
     level.sort_by_motion();
   }
   return slot;
@@ -97,7 +98,9 @@ std::optional<std::uint32_t> StatisticalLevel::remove(int slot) {
   std::erase_if(level.pushes, [&](const auto& push) { return push.first == slot; });
   for (auto& push : level.pushes)
     if (push.first == last) push.first = slot;
-  if (level.angular_velocity_given[last]) level.given.push_back(slot);
+  // The list of these holds each slot once, so that it does not grow while bodies come and go between steps.
+  if (level.angular_velocity_given[slot]) std::erase(level.given, slot);
+  if (slot != last && level.angular_velocity_given[last]) std::ranges::replace(level.given, last, slot);
   const auto fill_gap = [&](auto& array) {
     array[slot] = array[last];
     array.pop_back();
@@ -171,8 +174,8 @@ void StatisticalLevel::set_state(int slot, const RigidState& state) {
   body.orientation = state.orientation;
   body.velocity = state.velocity;
   body.spin = spin_of(state.orientation, state.angular_velocity, *impl_->kind_of(body).shape);
+  if (!impl_->angular_velocity_given[slot]) impl_->given.push_back(slot);
   impl_->angular_velocity_given[slot] = state.angular_velocity;
-  impl_->given.push_back(slot);
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
   // What no level can hold is mended, and counted, before the next step looks at it.
