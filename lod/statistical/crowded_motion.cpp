@@ -61,11 +61,12 @@ int StatisticalLevel::Impl::plan_substeps(double dt) {
   double longest = 0.0;  // way over R
   following.clear();
   for (const FoundPair& pair : found) {
-    if (may_meet(pair, dt, full)) {
+    const double gap = gap_left(pair, full), approach = find_approach(pair, dt, full);
+    if (gap <= 2.0 * approach) {  // twice, since others may strike them meanwhile
       any = true;
       mark_near(pair);
       longest = std::max(longest, (center_velocity(pair.first, full) - center_velocity(pair.second, full)).norm() * dt / least_radius(pair, full));
-    } else if (may_follow(pair, dt, full)) {
+    } else if (gap <= approach + (center_velocity(pair.first, full).norm() + center_velocity(pair.second, full).norm()) * dt) {
       following.push_back(&pair);
     }
   }

@@ -269,15 +269,4 @@ double StatisticalLevel::Impl::gap_left(const FoundPair& pair, std::span<const F
   return pair.gap - find_motion_since(*pair.when, pair_body(pair.first, neighbors), pair_body(pair.second, neighbors)) - kTouching * least_radius(pair, neighbors);
 }
 
-// Whether they can touch within `dt`, as far as is known; twice what they approach, since others may strike them meanwhile.
-bool StatisticalLevel::Impl::may_meet(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const {
-  return gap_left(pair, neighbors) <= 2.0 * find_approach(pair, dt, neighbors);
-}
-
-// Whether one would run into the other if that stopped.
-bool StatisticalLevel::Impl::may_follow(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const {
-  const double way = (center_velocity(pair.first, neighbors).norm() + center_velocity(pair.second, neighbors).norm()) * dt;
-  return gap_left(pair, neighbors) <= way + find_approach(pair, dt, neighbors);
-}
-
 }  // namespace lodestone

@@ -109,8 +109,6 @@ struct StatisticalLevel::Impl {
   void remember_places();
   void find_turning();
   double find_approach(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
-  bool may_meet(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
-  bool may_follow(const FoundPair& pair, double dt, std::span<const FullNeighbor> neighbors) const;
   double gap_left(const FoundPair& pair, std::span<const FullNeighbor> neighbors) const;
   double least_radius(const FoundPair& pair, std::span<const FullNeighbor> neighbors) const;
   PairBody pair_body(Participant p, std::span<const FullNeighbor> neighbors) const;

@@ -12,7 +12,7 @@ double of_start(const TablesTraffic& t) {
   const Spheres& b = t.spheres;
   const SphereStep& s = t.step;
   const double read = row(b.x, b.y, b.z, b.vx, b.vy, b.vz, b.lx, b.ly, b.lz, b.qw, b.qx, b.qy, b.qz, b.radius, b.kind, b.pose, b.motion, b.since_crowded);
-  return read + row(b.radius, s.reach, s.p, s.u, s.s, s.d, s.gap, s.on_ground, s.plane) + (t.ground ? 0.0 : row(s.a));
+  return read + row(b.radius, s.reach, s.p, s.u, s.s, s.gap, s.on_ground, s.plane) + (t.ground ? 0.0 : row(s.a, s.d));
 }
 
 // The bounds; the cells; how many lie in each; and into them.
@@ -33,7 +33,7 @@ double of_begin(const TablesTraffic& t) { return row(t.spheres.kind, t.spheres.o
 double of_sort_ground(const TablesTraffic& t) {
   const Spheres& b = t.spheres;
   const SphereStep& s = t.step;
-  return row(b.vx, b.vy, b.vz, b.held, b.kind, b.motion, s.plane, s.s, s.a) + 2.0 * row(s.p, s.on_ground);
+  return row(b.vx, b.vy, b.vz, b.held, b.kind, b.motion, s.plane, s.s, s.a, s.d) + 2.0 * row(s.p, s.on_ground);
 }
 
 // A round of contacts, and then of the ground's.
@@ -51,7 +51,7 @@ double of_finish(const TablesTraffic& t) {
   const Spheres& b = t.spheres;
   const SphereStep& s = t.step;
   const double moved = 2.0 * row(b.x, b.y, b.z, b.vx, b.vy, b.vz, b.lx, b.ly, b.lz, b.qw, b.qx, b.qy, b.qz, b.motion, b.since_crowded, b.crowded_for);
-  const double rows = row(b.kind, s.p, s.a, s.s, s.d, s.on_ground);
+  const double rows = row(b.kind, s.p, s.a, s.s, s.d) + 2.0 * row(s.on_ground);
   return moved + rows + (t.ground ? row(b.pose, b.radius, b.held, s.gap, s.plane, s.a, s.s, s.d) : 0.0);
 }
 

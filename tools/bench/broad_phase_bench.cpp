@@ -10,6 +10,7 @@
 #include "tools/bench/bullet_pairs.h"
 #include "tools/compare/bullet_world.h"
 #include "tools/compare/processor_time.h"
+#include "tools/median.h"
 
 namespace lodestone {
 namespace {
@@ -19,12 +20,6 @@ using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 constexpr int kPlainMost = 10'000;  // balls that are tried each with each
 
 double clock_ns() { return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 void put_in_order(Pairs& pairs) {
   for (auto& [a, b] : pairs)

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "reference/error.h"
+#include "tools/median.h"
 
 namespace lodestone {
 namespace {
@@ -49,12 +50,6 @@ class BenchWorld {
   OdeWorld world_;
   int substeps_;
 };
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 struct StepTimes {
   std::vector<double> falling_ms, all_ms;

@@ -10,6 +10,7 @@
 #include "reference/random.h"
 #include "signature/measure/measure.h"
 #include "tools/bench/heap_memory.h"
+#include "tools/median.h"
 
 namespace lodestone {
 namespace {
@@ -18,13 +19,6 @@ constexpr double kFrame = 1.0 / 60, kApart = 0.5;  // s, m
 constexpr int kSettlingMost = 600;                 // steps
 constexpr double kHeight = 5.0, kSearched = 30.0;  // m: of the viewpoint, a little farther than anyone becomes full; about where a body falls, in which those woken are looked for
 const Vec3 kSides(0.2, 0.3, 0.24);                 // m, of a crate
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // Coarse, as nothing here depends on how a crate bounces.
 std::shared_ptr<const Signature> make_signature(const Shape& shape) {

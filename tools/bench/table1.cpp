@@ -1,4 +1,5 @@
 #include "tools/bench/table1.h"
+#include "tools/median.h"
 
 #include <fmt/format.h>
 
@@ -12,12 +13,6 @@ namespace {
 constexpr int kMeshBodiesMax = 1'000, kOtherBodiesMax = 10'000;
 constexpr int kLatestSteps = 10;  // whose mean predicts those to come
 constexpr double kPartToJudge = 0.1;  // of the time allowed is spent first: the steps in which all bodies land are the slowest
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 bool is_mesh(const DropMethod& method) {
   const auto* ode = std::get_if<OdeMethod>(&method.way);

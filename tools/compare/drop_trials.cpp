@@ -8,6 +8,7 @@
 
 #include "tools/compare/drop_world.h"
 #include "tools/compare/processor_time.h"
+#include "tools/median.h"
 
 namespace lodestone {
 namespace {
@@ -32,12 +33,6 @@ DropObservation observe_drop(const DropJob& job, DropWorld& world, double dt) {
   DropObservation drop = observer.result();
   drop.table_extrapolations = world.table_extrapolations();
   return drop;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 double measure_one_by_one(const DropJob& job, const DropMethod& method, const DropBatch& batch,

@@ -6,17 +6,12 @@
 #include <vector>
 
 #include "reference/error.h"
+#include "tools/median.h"
 
 namespace lodestone {
 namespace {
 
 constexpr double kNoticed = 0.1;  // of an impulse
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 double mean_of(const std::vector<double>& values) {
   double sum = 0.0;
