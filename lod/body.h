@@ -1,9 +1,11 @@
 // What the levels share about a body: its id, its level, its definition.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "reference/material.h"
 #include "reference/shape.h"
@@ -19,11 +21,18 @@ struct BodyId {
 
 enum class Level : std::uint8_t { statistical, full };
 
-/// Who decides a body's level: the policy, or the caller for good.
-enum class LevelChoice : std::uint8_t { automatic, full, statistical };
-
-/// How the statistical level meets contacts: the paper's sphere with drawn responses, or ours with the exact support height and impulse.
+/// How a statistical body meets contacts: the paper's sphere with drawn responses, or ours with the exact support height and impulse.
 enum class StatisticalModel : std::uint8_t { tables, support };
+
+/// Where a body is on the ladder, from the cheapest to the truest: both statistical models, then ODE.
+enum class Rung : std::uint8_t { tables, support, full };
+inline constexpr std::size_t kRungs = 3;
+inline constexpr Rung rung_of(StatisticalModel model) { return model == StatisticalModel::tables ? Rung::tables : Rung::support; }
+inline constexpr Level level_of(Rung rung) { return rung == Rung::full ? Level::full : Level::statistical; }
+std::string_view name_of(Rung rung);  ///< "tables", "support", "full"
+
+/// Who decides a body's rung: the policy, or the caller for good. `statistical`: whichever of the two statistical rungs the policy finds.
+enum class LevelChoice : std::uint8_t { automatic, full, statistical, support, tables };
 
 struct BodyDefinition {
   std::shared_ptr<const Shape> shape = {};

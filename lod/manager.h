@@ -1,18 +1,19 @@
-// The engine's public face: bodies that live at the full (ODE trimesh) or the statistical level, moved between the two by a policy.
-// One step: 1 choose levels, 2 transfer, 3 statistical level and its contacts with full bodies, 4 full level, with the impulses of those
+// The engine's public face: bodies on three rungs, full (ODE trimesh), `support` (hull) and `tables` (sphere), moved between them by a policy.
+// One step: 1 choose rungs, 2 transfer, 3 statistical rungs and their contacts with full bodies, 4 full level, with the impulses of those
 // contacts, 5 report.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "lod/body.h"
 #include "lod/jobs.h"
 #include "lod/policy.h"
-#include "lod/tables_options.h"
-#include "lod/signature_store.h"
+#include "lod/signatures.h"
 #include "lod/step_report.h"
+#include "lod/tables_options.h"
 #include "reference/mesh/mesh.h"
 
 struct dxWorld;
@@ -28,7 +29,7 @@ struct ManagerSettings {
   JobRunner jobs = {};        ///< an engine's own, for so many threads; empty: oneTBB's
   int full_substeps = 4;      ///< ODE steps per step
   bool sleeping = true;       ///< bodies at rest cost nothing until something wakes them
-  StatisticalModel model = StatisticalModel::support;
+  std::optional<StatisticalModel> model = {};  ///< that all statistical bodies have; none: what the policy finds, body by body
   TablesOptions tables = {};  ///< of the tables model
   PolicySettings policy = {};
   SignatureFunction signatures = {};  ///< empty: find_or_measure_signature with its defaults
@@ -51,8 +52,8 @@ class Manager {
   MaterialTable& materials();
 
   void add_plane(const Vec3& normal, double offset, MaterialId material = 0);  ///< normal·x = offset, unit normal
-  // Static meshes and boxes are ground for full bodies and for statistical ones of the `support` model. `tables` knows planes only, so its body that nears one's bounding box becomes full (unless forced statistical:
-  // it then passes through).
+  // Static meshes and boxes are ground for full bodies and for those at `support`. `tables` knows planes only: a body that nears one's bounding box goes up to `support`,
+  // or where all statistical bodies are `tables` (ManagerSettings::model) becomes full, unless it was forced there: it then passes through.
   void add_static_mesh(const Mesh& mesh, MaterialId material = 0);             ///< vertices in the world frame
   void add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material = 0);
 
@@ -62,6 +63,7 @@ class Manager {
   BodyId add_body(const BodyDefinition& definition);
   void remove_body(BodyId body);
   void set_level(BodyId body, LevelChoice choice);              ///< from the next step on
+  void set_policy(const PolicySettings& policy);                ///< from the next step on
   void set_viewpoints(std::span<const Vec3> positions);
   void set_state(BodyId body, const RigidState& state);         ///< wakes it
   void add_force(BodyId body, const Vec3& force, const Vec3& torque = Vec3::Zero());  ///< N, N m, over the next step; wakes it
@@ -76,6 +78,7 @@ class Manager {
   double mass(BodyId body) const;
   const Shape& shape(BodyId body) const;
   Level level(BodyId body) const;
+  Rung rung(BodyId body) const;                                 ///< `support` for a body that waits for its first step
   bool asleep(BodyId body) const;
   std::string why(BodyId body) const;                           ///< the rule that decided the level, in words
   dxBody* ode_body(BodyId body) const;                          ///< dBodyID while full, else null

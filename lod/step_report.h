@@ -1,7 +1,10 @@
 // What one step did and cost: a timing per stage, in the order of the stages, and counts.
 #pragma once
 
+#include <array>
 #include <cstdint>
+
+#include "lod/body.h"
 
 namespace lodestone {
 
@@ -32,11 +35,21 @@ struct Counters {
   std::int64_t promotions_put_off = 0;   ///< for overlap with another body
 };
 
+/// What the bodies of a rung cost in a step: predicted before it, measured in it. Milliseconds of the calling thread's processor time.
+struct RungCost {
+  double predicted_ms = 0, measured_ms = 0;
+  double work = 0;                            ///< predicted, in work units: a microsecond of the machine that they were counted on; the same in every run
+};
+
 struct StepReport {
   std::int64_t step = 0;
   StageTimes times;
   int full = 0, statistical = 0, asleep = 0;  ///< bodies at the end of the step; asleep counts within both
-  int promotions = 0, demotions = 0;          ///< in this step
+  int support = 0, tables = 0;                ///< of the statistical ones
+  int promotions = 0, demotions = 0;          ///< changes to a higher rung and to a lower one, in this step
+  /// By Rung, in its order. Filled under a budget only, since clocks and counts cost time themselves.
+  std::array<RungCost, kRungs> cost{};
+  double predicted_ms = 0, measured_ms = 0;   ///< of the whole step, with what is no rung's; under a budget only
   double bytes_moved = 0;                     ///< by the tables model, counted from its arrays; 0 where it is not counted
   int contacts = 0;                           ///< of statistical bodies, with ground and each other, in this step
   Counters counters;

@@ -25,8 +25,8 @@ struct BodyEntry {
 };
 
 LevelChoice load_level(const YamlCursor& key) {
-  static const std::array<std::string, 3> kNames{"auto", "full", "statistical"};
-  return std::array{LevelChoice::automatic, LevelChoice::full, LevelChoice::statistical}[key.choice(kNames)];
+  static const std::array<std::string, 5> kNames{"auto", "full", "statistical", "support", "tables"};
+  return std::array{LevelChoice::automatic, LevelChoice::full, LevelChoice::statistical, LevelChoice::support, LevelChoice::tables}[key.choice(kNames)];
 }
 
 ScatterRegion load_region(const YamlCursor& scatter) {

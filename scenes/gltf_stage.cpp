@@ -1,11 +1,18 @@
 #include "scenes/gltf_stage.h"
 
+#include <fmt/format.h>
+
 #include <numbers>
+
+#include "scenes/camera.h"
 
 namespace lodestone {
 namespace {
 
-constexpr std::array kGroundColor{0.72, 0.72, 0.70}, kFullColor{0.95, 0.50, 0.12}, kStatisticalColor{0.35, 0.55, 0.85};
+using Color = std::array<double, 3>;  // linear
+constexpr Color kGroundColor{0.72, 0.72, 0.70};
+// Orange while full, blue at `support`, a dark green at `tables`: apart for the colour-blind too, by their lightness.
+constexpr std::array<Color, kRungs> kRungColors{{{0.10, 0.27, 0.20}, {0.35, 0.55, 0.85}, {0.95, 0.50, 0.12}}};
 constexpr std::size_t kSmoothFaces = 200;  // coarser meshes have real edges and stay flat
 
 /// Normals of vertices: the sum of their faces' normals, weighted by area.
@@ -33,16 +40,6 @@ Mesh square(double half_side) {
 std::vector<double> gltf_vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 std::vector<double> gltf_rotation(const Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }
 
-Quat camera_rotation(const Vec3& position, const Vec3& target) {
-  Vec3 back = position - target;
-  back = back.norm() > 1e-9 ? Vec3(back.normalized()) : Vec3(-Vec3::UnitY());
-  Vec3 right = Vec3::UnitZ().cross(back);
-  right = right.norm() > 1e-9 ? Vec3(right.normalized()) : Vec3::UnitX();
-  Mat3 axes;
-  axes << right, back.cross(right), back;
-  return Quat(axes);
-}
-
 GltfStage::GltfStage(tinygltf::Model& model, GltfBuffer& buffer) : model_(model), buffer_(buffer) {
   tinygltf::Node root;
   root.name = "world";
@@ -52,8 +49,8 @@ GltfStage::GltfStage(tinygltf::Model& model, GltfBuffer& buffer) : model_(model)
   model_.scenes[0].nodes = {0};
   model_.defaultScene = 0;
   ground_material_ = add_material("ground", kGroundColor);
-  full_material_ = add_material("full", kFullColor);
-  statistical_material_ = add_material("statistical", kStatisticalColor);
+  for (const Rung rung : {Rung::full, Rung::support, Rung::tables})
+    rung_materials_[std::size_t(rung)] = add_material(std::string(name_of(rung)), kRungColors[std::size_t(rung)]);
 }
 
 int GltfStage::add_node(tinygltf::Node node) { return add_child(0, std::move(node)); }
@@ -103,15 +100,13 @@ int GltfStage::add_mesh(const Arrays& arrays, int material, const std::string& n
   return int(model_.meshes.size()) - 1;
 }
 
-int GltfStage::body_mesh(const Shape& shape, Level level) {
-  const auto known = meshes_.find({&shape, level});
+int GltfStage::body_mesh(const Shape& shape, Rung rung) {
+  const auto known = meshes_.find({&shape, rung});
   if (known != meshes_.end()) return known->second;
   const bool smooth = shape.sphere_radius || shape.mesh.faces.size() >= kSmoothFaces;
   if (!arrays_.contains(&shape)) arrays_[&shape] = add_arrays(shape.mesh, smooth);
-  const bool full = level == Level::full;
-  const int mesh = add_mesh(arrays_[&shape], full ? full_material_ : statistical_material_, shape.name + (full ? " full" : " statistical"));
-  meshes_[{&shape, level}] = mesh;
-  return mesh;
+  const int mesh = add_mesh(arrays_[&shape], rung_materials_[std::size_t(rung)], fmt::format("{} {}", shape.name, name_of(rung)));
+  return meshes_[{&shape, rung}] = mesh;
 }
 
 void GltfStage::add_ground(const Ground& ground, double extent_m) {
@@ -136,10 +131,10 @@ void GltfStage::add_ground(const Ground& ground, double extent_m) {
 int GltfStage::add_camera(const Viewpoint& viewpoint) {
   tinygltf::Camera camera;
   camera.type = "perspective";
-  camera.perspective.yfov = 0.9;
+  camera.perspective.yfov = kFieldOfView;
   camera.perspective.znear = 0.02;
   camera.perspective.zfar = 1000.0;  // optional in glTF, but not to every reader
-  camera.perspective.aspectRatio = 16.0 / 9.0;
+  camera.perspective.aspectRatio = kAspectRatio;
   model_.cameras.push_back(std::move(camera));
   tinygltf::Node node;
   node.name = "viewpoint";

@@ -1,6 +1,7 @@
 // What a saved trajectory shows besides motion: meshes, materials, the ground and the camera.
 #pragma once
 
+#include <array>
 #include <map>
 
 #include "scenes/gltf_buffer.h"
@@ -15,7 +16,7 @@ class GltfStage {
 
   int add_node(tinygltf::Node node);                      ///< under the root
   int add_child(int parent, tinygltf::Node node);
-  int body_mesh(const Shape& shape, Level level);         ///< made once for each shape and level; the levels share their arrays
+  int body_mesh(const Shape& shape, Rung rung);           ///< made once for each shape and rung; the rungs share their arrays
   void add_ground(const Ground& ground, double extent_m); ///< planes are drawn `extent_m` to each side
   int add_camera(const Viewpoint& viewpoint);             ///< returns its node
 
@@ -28,15 +29,13 @@ class GltfStage {
   tinygltf::Model& model_;
   GltfBuffer& buffer_;
   std::map<const Shape*, Arrays> arrays_;
-  std::map<std::pair<const Shape*, Level>, int> meshes_;
-  int ground_material_, full_material_, statistical_material_;
+  std::map<std::pair<const Shape*, Rung>, int> meshes_;
+  int ground_material_;
+  std::array<int, kRungs> rung_materials_;
 };
 
 /// As glTF writes them: x, y, z and x, y, z, w.
 std::vector<double> gltf_vector(const Vec3& v);
 std::vector<double> gltf_rotation(const Quat& q);
-
-/// The rotation of a glTF camera, which looks along its −z with y upwards, at `position` looking at `target` with z upwards.
-Quat camera_rotation(const Vec3& position, const Vec3& target);
 
 }  // namespace lodestone

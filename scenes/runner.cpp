@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
+#include "lod/timing/thread_clock.h"
 #include "reference/error.h"
+#include "scenes/camera.h"
 #include "scenes/run_sample.h"
 #include "scenes/step_csv.h"
 #include "scenes/trajectory.h"
@@ -22,6 +23,9 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
   const auto fail = [](const std::string& what) { throw InputError(what); };
   if (steps < 1) fail(fmt::format("steps: found {}, expected at least 1", steps));
   if (!(dt_s > 0 && dt_s <= 0.1)) fail(fmt::format("dt: found {} s, expected a number in (0, 0.1]", dt_s));
+  if (settings.budget_ms && settings.budget_work) fail("budget_ms and budget_work: found both, expected one of them");
+  for (const auto& [name, budget] : {std::pair("budget_ms", settings.budget_ms), {"budget_work", settings.budget_work}})
+    if (budget && !(*budget > 0 && std::isfinite(*budget))) fail(fmt::format("{}: found {}, expected a number above 0", name, *budget));
   if (settings.threads < 1) fail(fmt::format("threads: found {}, expected at least 1", settings.threads));
   const int frames = steps / scene.output.every_n_steps + 1, most = max_trajectory_frames(int(scene.bodies.size()));
   if (!settings.out.empty() && !scene.output.trajectory.empty() && frames > most)
@@ -29,10 +33,17 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
                      scene.output.every_n_steps, frames, scene.bodies.size(), steps / std::max(1, most - 1) + 1));
 }
 
+PolicySettings policy_of(const Scene& scene, const RunSettings& settings) {
+  PolicySettings policy = scene.lod;
+  if (settings.budget_ms) policy.policy = BudgetPolicy{*settings.budget_ms};
+  if (settings.budget_work) policy.policy = WorkPolicy{*settings.budget_work};
+  return policy;
+}
+
 Manager make_manager(const Scene& scene, const RunSettings& settings, const SignatureFunction& signatures) {
   Manager manager({.gravity = scene.step.gravity_m_per_s2, .seed = scene.step.seed, .threads = settings.threads,
-                   .full_substeps = scene.step.full_substeps, .model = settings.model.value_or(scene.model), .tables = scene.tables, .policy = scene.lod,
-                   .signatures = signatures});
+                   .full_substeps = scene.step.full_substeps, .model = settings.model ? settings.model : scene.model, .tables = scene.tables,
+                   .policy = policy_of(scene, settings), .signatures = signatures});
   manager.materials() = scene.materials;
   for (const Ground& ground : scene.ground) {
     if (const auto* plane = std::get_if<GroundPlane>(&ground)) manager.add_plane(plane->normal, plane->offset_m, plane->material);
@@ -58,7 +69,7 @@ class Run {
     result_.bodies = int(bodies_.size());
     observe();
     result_.energy_start_j = result_.energy_max_j = sample_.energy_j;
-    result_.max_penetration_m = 0;  // of the run, not of how the scene was set up
+    result_.max_tables_penetration_m = max_other_penetration_m_ = 0;  // of the run, not of how the scene was set up
     record(0);
   }
 
@@ -72,12 +83,17 @@ class Run {
   using Clock = std::chrono::steady_clock;
   static double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+  /// Processor time of this thread, without what went into signatures.
+  double stepping_ms() const { return thread_time_ms() - signature_thread_ms_; }
+
   /// The source of signatures, on the clock: to measure one is preparation, though it happens within a step.
   SignatureFunction timed_signatures() {
     return [this](const Shape& shape, const ContactLaw& law) {
       const auto start = Clock::now();
+      const double thread_start = thread_time_ms();
       auto signature = settings_.signatures ? settings_.signatures(shape, law) : find_or_measure_signature(shape, law).signature;
       result_.signature_seconds += seconds_since(start);
+      signature_thread_ms_ += thread_time_ms() - thread_start;
       return signature;
     };
   }
@@ -95,15 +111,18 @@ class Run {
     move_viewpoints(step * dt_s_);
     const auto start = Clock::now();
     const double signatures_before = result_.signature_seconds;
+    const double thread_start = stepping_ms();
     const StepReport report = manager_.step(dt_s_);
+    processor_ms_.push_back(stepping_ms() - thread_start);
     times_ms_.push_back(1e3 * (seconds_since(start) - (result_.signature_seconds - signatures_before)));
     result_.reports.push_back(report);
     result_.promotions += report.promotions;
     result_.transitions += report.promotions + report.demotions;
     if (report.asleep < result_.bodies) last_awake_s_ = (step + 1) * dt_s_;
     observe();
+    look(step);
     record(step + 1);
-    if (csv_) csv_->add(report, (step + 1) * dt_s_, sample_.energy_j, sample_.max_penetration_m);
+    if (csv_) csv_->add(report, (step + 1) * dt_s_, sample_.energy_j, std::max(sample_.max_tables_penetration_m, sample_.max_other_penetration_m));
     if (settings_.progress) settings_.progress(step + 1, steps_);
   }
 
@@ -117,23 +136,46 @@ class Run {
     read_sample(manager_, bodies_, scene_, sample_);
     result_.finite = result_.finite && sample_.finite;
     result_.energy_max_j = std::max(result_.energy_max_j, sample_.energy_j);
-    result_.max_penetration_m = std::max(result_.max_penetration_m, sample_.max_penetration_m);
+    result_.max_tables_penetration_m = std::max(result_.max_tables_penetration_m, sample_.max_tables_penetration_m);
+    max_other_penetration_m_ = std::max(max_other_penetration_m_, sample_.max_other_penetration_m);
+  }
+
+  /// At the picture of the first viewpoint, from where the step that ended was given it.
+  void look(int step) {
+    constexpr double kFrom = 0.5;  // s
+    if (scene_.viewpoints.empty() || (step + 1) * dt_s_ < kFrom) return;
+    const Viewpoint& viewpoint = scene_.viewpoints.front();
+    const int full = count_full_in_picture(sample_, Camera(viewpoint.position_at(step * dt_s_), viewpoint.look_at_m));
+    PictureFigures& figures = result_.in_picture ? *result_.in_picture : result_.in_picture.emplace(PictureFigures{.min_full = full});
+    figures.min_full = std::min(figures.min_full, full);
+    figures.mean_full += (full - figures.mean_full) / ++pictures_;
   }
 
   void record(int step) {
     if (result_.trajectory.empty() || step % scene_.output.every_n_steps != 0 || !sample_.finite) return;
-    trajectory_.add_frame(step * dt_s_, sample_.states, sample_.levels);
+    trajectory_.add_frame(step * dt_s_, sample_.states, sample_.rungs);
   }
 
   void finish() {
     result_.steps = int(result_.reports.size());
     result_.state_hash = manager_.state_hash();
     result_.step_ms = summarize(times_ms_);
+    result_.processor_ms = summarize(processor_ms_);
+    result_.budget = find_budget_figures(policy_of(scene_, settings_), result_.reports, processor_ms_);
     result_.states = sample_.states;
-    if (const auto bound = scene_.checks.max_penetration_m)
-      result_.checks.push_back({"max_penetration_m", result_.max_penetration_m, *bound, result_.max_penetration_m <= *bound});
+    check_penetration();
     if (scene_.checks.all_asleep_by_s) result_.checks.push_back(asleep_check(*scene_.checks.all_asleep_by_s));
     if (!result_.trajectory.empty()) save_trajectory(result_.trajectory, trajectory_, scene_);
+  }
+
+  void check_penetration() {
+    const auto add = [this](const char* name, double value, std::optional<double> bound) {
+      if (bound) result_.checks.push_back({name, value, *bound, value <= *bound});
+    };
+    const std::optional<double> of_tables = scene_.checks.max_tables_penetration_m;
+    result_.max_penetration_m = std::max(result_.max_tables_penetration_m, max_other_penetration_m_);
+    add("max_penetration_m", of_tables ? max_other_penetration_m_ : result_.max_penetration_m, scene_.checks.max_penetration_m);
+    add("max_tables_penetration_m", result_.max_tables_penetration_m, of_tables);
   }
 
   /// Its value is when the last body fell asleep; a body that is awake after the bound fails it, even where it slept before.
@@ -153,24 +195,13 @@ class Run {
   Trajectory trajectory_;
   std::optional<StepCsv> csv_;
   RunSample sample_;
-  std::vector<double> times_ms_;
-  double last_awake_s_ = 0;
+  std::vector<double> times_ms_, processor_ms_;
+  double signature_thread_ms_ = 0;
+  int pictures_ = 0;
+  double last_awake_s_ = 0, max_other_penetration_m_ = 0;
 };
 
 }  // namespace
-
-TimeSummary summarize(std::span<const double> sample_ms) {
-  if (sample_ms.empty()) return {};
-  std::vector<double> sorted(sample_ms.begin(), sample_ms.end());
-  std::ranges::sort(sorted);
-  const auto percentile = [&](double part) {
-    const double rank = part * double(sorted.size() - 1);
-    const std::size_t below = std::size_t(rank), above = std::min(below + 1, sorted.size() - 1);
-    return sorted[below] + (rank - double(below)) * (sorted[above] - sorted[below]);
-  };
-  const double mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / double(sorted.size());
-  return {percentile(0.5), percentile(0.95), percentile(0.99), mean, sorted.back()};
-}
 
 RunResult run_scene(const Scene& scene, const RunSettings& settings) {
   const int steps = settings.steps.value_or(scene.default_steps);

@@ -4,11 +4,12 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "scenes/budget_figures.h"
 #include "scenes/scene.h"
+#include "scenes/time_summary.h"
 
 namespace lodestone {
 
@@ -17,17 +18,12 @@ struct RunSettings {
   std::optional<double> dt_s = {};             ///< else the scene's; (0, 0.1]
   std::optional<StatisticalModel> model = {};  ///< else the scene's
   LevelChoice level = LevelChoice::automatic;  ///< other than automatic: forces every body
+  std::optional<double> budget_ms = {}, budget_work = {};  ///< else the scene's policy; at most one of them, positive
   int threads = 1;
   std::filesystem::path out = {};              ///< folder for the trajectory and steps.csv; empty: write nothing
   SignatureFunction signatures = {};
   std::function<void(int step, int steps)> progress = {};
 };
-
-/// Median and tail of a sample of milliseconds.
-struct TimeSummary { double p50 = 0, p95 = 0, p99 = 0, mean = 0, max = 0; };
-
-/// Percentiles are interpolated between the nearest ranks; all 0 for no sample.
-TimeSummary summarize(std::span<const double> sample_ms);
 
 /// One of the scene's `check:` lines, evaluated.
 struct CheckResult {
@@ -37,14 +33,22 @@ struct CheckResult {
   bool decided = true;  ///< false where the run ended before the check could fail or pass; `pass` is true then
 };
 
+/// Full bodies whose centre of mass is in the picture (scenes/camera.h) of the scene's first viewpoint, of each step that ends half a second
+/// after the start or later.
+struct PictureFigures { int min_full = 0; double mean_full = 0; };
+
 struct RunResult {
   int steps = 0, bodies = 0;
   std::uint64_t state_hash = 0;
   TimeSummary step_ms;                         ///< without signature_seconds
+  TimeSummary processor_ms;                    ///< the same in processor time of the calling thread
   double signature_seconds = 0;                ///< spent on loading or measuring signatures when bodies first needed them
   std::vector<StepReport> reports;             ///< one per step
+  std::optional<BudgetFigures> budget;         ///< none without a budget
+  std::optional<PictureFigures> in_picture;    ///< none without a viewpoint, or where the run ended before
   std::int64_t transitions = 0, promotions = 0;
   double max_penetration_m = 0;                ///< deepest hull vertex below a ground plane, over the run
+  double max_tables_penetration_m = 0;         ///< the same of bodies at `tables` and of those that came from there and were not awake for 30 steps since
   double energy_start_j = 0, energy_max_j = 0; ///< kinetic and potential, all bodies
   bool finite = true;                          ///< no NaN or infinity at any step; the run ends at the first
   std::vector<RigidState> states;              ///< at the end, in the scene's order

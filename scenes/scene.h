@@ -46,7 +46,9 @@ struct SceneOutput {
 
 /// What the run must show; each absent unless given.
 struct SceneChecks {
-  std::optional<double> max_penetration_m, all_asleep_by_s;
+  std::optional<double> max_penetration_m;         ///< of all bodies, or where the next is given too, of all others
+  std::optional<double> max_tables_penetration_m;  ///< of those at `tables`, whose spheres sink in by their nature, and of those that came from there and were not awake for 30 steps since
+  std::optional<double> all_asleep_by_s;
 };
 
 struct Scene {
@@ -59,7 +61,7 @@ struct Scene {
   std::vector<SceneBody> bodies;  ///< scatters expanded
   std::vector<Viewpoint> viewpoints;
   PolicySettings lod;
-  StatisticalModel model = StatisticalModel::support;
+  std::optional<StatisticalModel> model;  ///< that all statistical bodies have; none: what the policy finds
   TablesOptions tables;
   SceneOutput output;
   SceneChecks checks;

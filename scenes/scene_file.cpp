@@ -1,5 +1,7 @@
 #include "scenes/scene_file.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <limits>
 
@@ -52,20 +54,39 @@ std::vector<Viewpoint> load_viewpoints(const YamlCursor& root) {
   return viewpoints;
 }
 
-/// The policy; a key that belongs to the other one is refused, since it would do nothing.
+DistancePolicy load_distances(const YamlCursor& section) {
+  DistancePolicy policy;
+  for (const char* key : {"budget_ms", "budget_work"})
+    if (auto budget = section.find(key)) budget->fail(fmt::format("{} with policy distance", key), "full_within_m and support_within_m");
+  if (auto key = section.find("full_within_m")) policy.full_within = key->number(kNotNegative);
+  if (auto key = section.find("support_within_m")) {
+    policy.support_within = key->number(kNotNegative);
+    if (policy.support_within < policy.full_within) key->fail(key->found(), fmt::format("at least full_within_m ({:g})", policy.full_within));
+  }
+  return policy;
+}
+
+/// Of time or of work.
+void load_budget(const YamlCursor& section, PolicySettings& lod) {
+  constexpr NumberRange kTime{0, 1e6}, kWork{0, 1e9};
+  for (const char* key : {"full_within_m", "support_within_m"})
+    if (auto within = section.find(key)) within->fail(fmt::format("{} with policy budget", key), "budget_ms or budget_work");
+  if (section.one_key_of({"budget_ms", "budget_work"}) == "budget_ms") lod.policy = BudgetPolicy{section.at("budget_ms").number(kTime)};
+  else lod.policy = WorkPolicy{section.at("budget_work").number(kWork)};
+}
+
+/// A key that belongs to the other policy is refused, since it would do nothing.
 void load_policy(const YamlCursor& section, PolicySettings& lod) {
   static const std::array<std::string, 2> kPolicies{"distance", "budget"};
   const auto policy = section.find("policy");
-  const bool by_budget = policy && policy->choice(kPolicies) == 1;
-  const auto within = section.find("full_within_m"), budget = section.find("budget_ms");
-  if (by_budget) {
-    if (within) within->fail("full_within_m with policy budget", "budget_ms");
-    lod.policy = BudgetPolicy{};
-    if (budget) std::get<BudgetPolicy>(lod.policy).budget_ms = budget->number({0, 1e6});
-  } else {
-    if (budget) budget->fail("budget_ms with policy distance", "full_within_m");
-    if (within) std::get<DistancePolicy>(lod.policy).full_within = within->number(kNotNegative);
-  }
+  if (policy && policy->choice(kPolicies) == 1) load_budget(section, lod);
+  else lod.policy = load_distances(section);
+  constexpr std::int64_t kMost = kUnlimited;
+  if (auto key = section.find("most_full")) lod.most_full = int(key->integer(0, kMost));
+  if (auto key = section.find("most_support")) lod.most_support = int(key->integer(0, kMost));
+  if (auto key = section.find("hysteresis")) lod.hysteresis = key->number({0, 10});
+  if (auto key = section.find("min_dwell_frames")) lod.min_dwell_frames = int(key->integer(0, 1'000'000));
+  if (auto key = section.find("max_transitions_per_frame")) lod.max_transitions_per_frame = int(key->integer(1, 1'000'000));
 }
 
 bool truth_of(const YamlCursor& key) {
@@ -84,17 +105,18 @@ TablesOptions load_tables_options(const YamlCursor& section) {
   return options;
 }
 
+std::optional<StatisticalModel> load_model(const YamlCursor& key) {
+  static const std::array<std::string, 3> kModels{"auto", "support", "tables"};
+  return std::array<std::optional<StatisticalModel>, 3>{std::nullopt, StatisticalModel::support, StatisticalModel::tables}[key.choice(kModels)];
+}
+
 void load_lod(const YamlCursor& root, Scene& scene) {
-  static const std::array<std::string, 2> kModels{"tables", "support"};
   const auto section = root.find("lod");
   if (!section) return;
-  section->expect_keys({"policy", "full_within_m", "budget_ms", "hysteresis", "min_dwell_frames", "max_transitions_per_frame", "model", "tables"});
+  section->expect_keys({"policy", "full_within_m", "support_within_m", "budget_ms", "budget_work", "most_full", "most_support", "hysteresis", "min_dwell_frames",
+                        "max_transitions_per_frame", "model", "tables"});
   load_policy(*section, scene.lod);
-  if (auto key = section->find("hysteresis")) scene.lod.hysteresis = key->number({0, 10});
-  if (auto key = section->find("min_dwell_frames")) scene.lod.min_dwell_frames = int(key->integer(0, 1'000'000));
-  if (auto key = section->find("max_transitions_per_frame")) scene.lod.max_transitions_per_frame = int(key->integer(1, 1'000'000));
-  if (auto key = section->find("model"))
-    scene.model = std::array{StatisticalModel::tables, StatisticalModel::support}[key->choice(kModels)];
+  if (auto key = section->find("model")) scene.model = load_model(*key);
   if (auto tables = section->find("tables")) scene.tables = load_tables_options(*tables);
 }
 
@@ -116,8 +138,9 @@ SceneChecks load_checks(const YamlCursor& root) {
   SceneChecks checks;
   const auto section = root.find("check");
   if (!section) return checks;
-  section->expect_keys({"max_penetration_m", "all_asleep_by_s"});
+  section->expect_keys({"max_penetration_m", "max_tables_penetration_m", "all_asleep_by_s"});
   if (auto key = section->find("max_penetration_m")) checks.max_penetration_m = key->number(kNotNegative);
+  if (auto key = section->find("max_tables_penetration_m")) checks.max_tables_penetration_m = key->number(kNotNegative);
   if (auto key = section->find("all_asleep_by_s")) checks.all_asleep_by_s = key->number(kPositive);
   return checks;
 }

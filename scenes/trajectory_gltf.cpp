@@ -1,4 +1,4 @@
-// save_trajectory: motion as one glTF animation. A body that changes its level has two meshes below its node, of which one at a time has the
+// save_trajectory: motion as one glTF animation. A body that changes its rung has a mesh for each below its node, all but one of them at the
 // scale 0 (STEP keys), since glTF 2.0 cannot animate colours.
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <map>
 
 #include "reference/error.h"
+#include "scenes/camera.h"
 #include "scenes/gltf_stage.h"
 #include "scenes/trajectory.h"
 
@@ -92,13 +93,14 @@ class TrajectoryWriter {
     const Trajectory::Orientation& q = trajectory_.orientation(0, body);
     node.translation = {p[0], p[1], p[2]};
     node.rotation = gltf_rotation(Quat(q[3], q[0], q[1], q[2]).normalized());
-    const std::vector<int> changes = level_changes(body);
+    const std::vector<int> changes = rung_changes(body);
     const Shape& shape = *given.definition.shape;
-    if (changes.empty()) node.mesh = stage_.body_mesh(shape, trajectory_.level(0, body));
+    if (changes.empty()) node.mesh = stage_.body_mesh(shape, trajectory_.rung(0, body));
     const int index = stage_.add_node(std::move(node));
     add_tracks(body, index);
     if (changes.empty()) return;
-    for (Level level : {Level::full, Level::statistical}) add_part(body, index, level, changes);
+    for (const Rung rung : {Rung::full, Rung::support, Rung::tables})
+      if (has_rung(body, rung, changes)) add_part(body, index, rung, changes);
   }
 
   void add_tracks(int body, int node) {
@@ -112,25 +114,30 @@ class TrajectoryWriter {
                                      TINYGLTF_COMPONENT_TYPE_SHORT, true));
   }
 
-  std::vector<int> level_changes(int body) const {
+  std::vector<int> rung_changes(int body) const {
     std::vector<int> frames;
     for (int frame = 1; frame < trajectory_.frames(); ++frame)
-      if (trajectory_.level(frame, body) != trajectory_.level(frame - 1, body)) frames.push_back(frame);
+      if (trajectory_.rung(frame, body) != trajectory_.rung(frame - 1, body)) frames.push_back(frame);
     return frames;
   }
 
-  /// The mesh that shows `level`, visible while the body has it.
-  void add_part(int body, int parent, Level level, const std::vector<int>& changes) {
+  /// At the start or from one of its changes on.
+  bool has_rung(int body, Rung rung, const std::vector<int>& changes) const {
+    return trajectory_.rung(0, body) == rung || std::ranges::any_of(changes, [&](int frame) { return trajectory_.rung(frame, body) == rung; });
+  }
+
+  /// The mesh that shows `rung`, visible while the body has it.
+  void add_part(int body, int parent, Rung rung, const std::vector<int>& changes) {
     std::vector<float> times{trajectory_.times_s()[0]};
     std::vector<std::array<float, 3>> scales;
-    const auto scale_at = [&](int frame) { return trajectory_.level(frame, body) == level ? 1.0f : 0.0f; };
+    const auto scale_at = [&](int frame) { return trajectory_.rung(frame, body) == rung ? 1.0f : 0.0f; };
     scales.push_back({scale_at(0), scale_at(0), scale_at(0)});
     for (int frame : changes) {
       times.push_back(trajectory_.times_s()[std::size_t(frame)]);
       scales.push_back({scale_at(frame), scale_at(frame), scale_at(frame)});
     }
     tinygltf::Node node;
-    node.mesh = stage_.body_mesh(*scene_.bodies[std::size_t(body)].definition.shape, level);
+    node.mesh = stage_.body_mesh(*scene_.bodies[std::size_t(body)].definition.shape, rung);
     node.scale = {scales[0][0], scales[0][1], scales[0][2]};
     const int index = stage_.add_child(parent, std::move(node));
     add_channel(index, "scale", buffer_.add_scalars(times), buffer_.add_vectors(scales, 0), "STEP");

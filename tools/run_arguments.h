@@ -21,7 +21,7 @@ struct RunArguments {
   std::string step;  ///< empty: the scene's
 };
 
-/// Adds --steps, --dt, --seed, --threads, --level, --model, --mesh-path to `command`. `arguments` outlives the parsing.
+/// Adds --steps, --dt, --seed, --threads, --level, --model, --budget-ms, --budget-work, --mesh-path to `command`. `arguments` outlives the parsing.
 void add_run_arguments(CLI::App& command, RunArguments& arguments);
 
 /// The settings that the arguments ask for, with progress and the measuring of signatures shown on `line`, which outlives the run.

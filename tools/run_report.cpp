@@ -42,6 +42,8 @@ constexpr std::array<std::pair<std::string_view, std::int64_t Counters::*>, 14> 
     {"promotions_put_off", &Counters::promotions_put_off},
 }};
 
+constexpr std::array kFromTheTop = {Rung::full, Rung::support, Rung::tables};
+
 double mean_stage_ms(const RunResult& result, double StageTimes::*stage) {
   double sum = 0.0;
   for (const StepReport& report : result.reports) sum += report.times.*stage;
@@ -64,21 +66,43 @@ std::string text_of_counters(const Counters& counters) {
   return text.empty() ? "all 0" : text;
 }
 
+// Of a run in which steps were counted.
+std::string text_of(const BudgetFigures& budget) {
+  const TimeSummary& ms = budget.step_ms;
+  std::string text = budget.budget_ms ? fmt::format("budget       {:g} ms: {} of {} steps over", *budget.budget_ms, *budget.over, budget.steps)
+                                      : fmt::format("budget       {:g} units: {:.0f} foretold, mean of {} steps", *budget.budget_work, budget.mean_work, budget.steps);
+  text += fmt::format("; processor ms median {:.3f}, 99 % {:.3f}, longest {:.3f}\n", ms.p50, ms.p99, ms.max);
+  text += fmt::format("             foretold {:.3f} ms, measured {:.3f}, {:.3f} apart; mean bodies, ms foretold and measured:", budget.mean_predicted_ms, budget.mean_measured_ms,
+                      budget.mean_error_ms);
+  for (const Rung rung : kFromTheTop) {
+    const std::size_t i = std::size_t(rung);
+    text += fmt::format("{} {} {:.1f}, {:.3f}, {:.3f}", rung == Rung::full ? "" : ";", name_of(rung), budget.mean_bodies[i], budget.mean_cost[i].predicted_ms,
+                        budget.mean_cost[i].measured_ms);
+  }
+  return text + '\n';
+}
+
 std::string text_of(const CheckResult& check) {
   return fmt::format("check        {} {}: {:.4g}, bound {:.4g}\n", !check.decided ? "open:  " : check.pass ? "holds: " : "FAILED:", check.name, check.value, check.bound);
 }
+
+ordered_json json_of(const TimeSummary& ms) { return {{"p50", ms.p50}, {"p95", ms.p95}, {"p99", ms.p99}, {"mean", ms.mean}, {"max", ms.max}}; }
 
 }  // namespace
 
 std::string text_of(const RunResult& result) {
   const StepReport& last = result.last();
-  const TimeSummary& ms = result.step_ms;
+  const TimeSummary &ms = result.step_ms, &processor = result.processor_ms;
   std::string text;
   text += fmt::format("step         median {:.3f} ms, 95 % {:.3f}, 99 % {:.3f}, longest {:.3f}\n", ms.p50, ms.p95, ms.p99, ms.max);
+  text += fmt::format("processor    median {:.3f} ms, 95 % {:.3f}, 99 % {:.3f}, longest {:.3f}\n", processor.p50, processor.p95, processor.p99, processor.max);
   text += fmt::format("stages       mean ms: {}\n", text_of_stages(result));
   text += fmt::format("at the end   {} full, {} statistical, {} of all asleep\n", last.full, last.statistical, last.asleep);
+  text += fmt::format("rungs        {} full, {} support, {} tables\n", last.full, last.support, last.tables);
+  if (result.budget && result.budget->steps > 0) text += text_of(*result.budget);
+  if (result.in_picture) text += fmt::format("in picture   {} full at least, {:.1f} on average\n", result.in_picture->min_full, result.in_picture->mean_full);
   text += fmt::format("transitions  {}, of which {} promotions\n", result.transitions, result.promotions);
-  text += fmt::format("deepest      {:.4g} m below the ground\n", result.max_penetration_m);
+  text += fmt::format("deepest      {:.4g} m below the ground, at tables {:.4g} m\n", result.max_penetration_m, result.max_tables_penetration_m);
   text += fmt::format("energy       {:.6g} J at the start, {:.6g} J at most\n", result.energy_start_j, result.energy_max_j);
   text += fmt::format("counters     {}\n", text_of_counters(last.counters));
   for (const CheckResult& check : result.checks) text += text_of(check);
@@ -89,20 +113,44 @@ std::string text_of(const RunResult& result) {
   return text;
 }
 
+ordered_json json_of(const BudgetFigures& budget) {
+  ordered_json json;
+  if (budget.budget_ms) json["ms"] = *budget.budget_ms;
+  else json["work"] = budget.budget_work.value();
+  json["steps"] = budget.steps;
+  json["over"] = budget.over ? ordered_json(*budget.over) : ordered_json(nullptr);
+  json["p50"] = budget.step_ms.p50;
+  json["p99"] = budget.step_ms.p99;
+  json["max"] = budget.step_ms.max;
+  for (const Rung rung : kFromTheTop) json[fmt::format("mean_{}", name_of(rung))] = budget.mean_bodies[std::size_t(rung)];
+  json["mean_work"] = budget.mean_work;
+  json["mean_predicted_ms"] = budget.mean_predicted_ms;
+  json["mean_measured_ms"] = budget.mean_measured_ms;
+  json["mean_error_ms"] = budget.mean_error_ms;
+  for (const Rung rung : kFromTheTop) {
+    const RungCost& cost = budget.mean_cost[std::size_t(rung)];
+    json["rungs"][std::string(name_of(rung))] = {{"predicted_ms", cost.predicted_ms}, {"measured_ms", cost.measured_ms}, {"work", cost.work}};
+  }
+  return json;
+}
+
 ordered_json json_of(const RunResult& result) {
   const StepReport& last = result.last();
-  const TimeSummary& ms = result.step_ms;
   ordered_json json;
   json["steps"] = result.steps;
   json["bodies"] = result.bodies;
   json["state_hash"] = fmt::format("{:016x}", result.state_hash);
-  json["step_ms"] = {{"p50", ms.p50}, {"p95", ms.p95}, {"p99", ms.p99}, {"mean", ms.mean}, {"max", ms.max}};
+  json["step_ms"] = json_of(result.step_ms);
+  json["step_processor_ms"] = json_of(result.processor_ms);
   for (const auto& [name, stage] : kStages) json["stage_mean_ms"][name] = mean_stage_ms(result, stage);
-  json["levels"] = {{"full", last.full}, {"statistical", last.statistical}, {"asleep", last.asleep}};
+  json["levels"] = {{"full", last.full}, {"statistical", last.statistical}, {"support", last.support}, {"tables", last.tables}, {"asleep", last.asleep}};
+  if (result.budget) json["budget"] = json_of(*result.budget);
+  if (result.in_picture) json["in_picture"] = {{"min_full", result.in_picture->min_full}, {"mean_full", result.in_picture->mean_full}};
   json["transitions"] = result.transitions;
   json["promotions"] = result.promotions;
   for (const auto& [name, counter] : kCounters) json["counters"][name] = last.counters.*counter;
   json["max_penetration_m"] = number_or_null(result.max_penetration_m);
+  json["max_tables_penetration_m"] = number_or_null(result.max_tables_penetration_m);
   json["energy_start_j"] = number_or_null(result.energy_start_j);
   json["energy_max_j"] = number_or_null(result.energy_max_j);
   json["finite"] = result.finite;

@@ -11,6 +11,8 @@ namespace lodestone {
 
 std::string text_of(const RunResult& result);
 
+/// A budget of work has `work` in place of `ms`, and `over` null.
+nlohmann::ordered_json json_of(const BudgetFigures& budget);
 /// Keys as README lists them.
 nlohmann::ordered_json json_of(const RunResult& result);
 

@@ -51,7 +51,7 @@ void fetch_signatures(const Scene& scene, const RunSettings& settings) {
     if (!seen.emplace(body.definition.shape->content_hash, body.definition.material).second) continue;
     ManagerSettings alone;
     alone.signatures = settings.signatures;
-    alone.model = settings.model.value_or(scene.model);
+    alone.model = settings.model ? settings.model : scene.model;
     Manager manager(alone);
     manager.materials() = scene.materials;
     add_first_plane(manager, scene);

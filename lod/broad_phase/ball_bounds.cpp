@@ -1,6 +1,6 @@
 #include "lod/broad_phase/ball_bounds.h"
 
-#include "lod/lane_math.h"
+#include "lod/simd/lane_math.h"
 
 namespace lodestone {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "lod/wide_loop.h"
+#include "lod/simd/wide_loop.h"
 
 namespace lodestone {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lod/wide_loop.h"
+#include "lod/simd/wide_loop.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>

@@ -12,6 +12,9 @@
 
 namespace lodestone {
 
+/// How far from a body an entry of a clip may be for the body to join there (ClipIndex::find_nearest).
+inline constexpr float kGreatestClipDistance = 0.1f;
+
 /// What all bodies of one shape, mass and material share.
 struct BodyKind {
   std::shared_ptr<const Shape> shape;
@@ -40,7 +43,7 @@ struct StatisticalBody {
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();
   Vec3 spin = Vec3::Zero();             ///< angular momentum over mass, m²/s, world frame: what free flight conserves
-  float sphere_radius = 0.0f;           ///< m, `tables`: of the colliding sphere
+  float sphere_radius = 0.0f;           ///< m, `tables`: of the colliding sphere; 0 for a body of `support`
   float quiet_time = 0.0f;              ///< s spent below the sleeping threshold
   std::int32_t support_hint = 0;        ///< hull vertex last found lowest: where the next climb starts
   std::int32_t settling = -1;           ///< index of the settling record (clip or rest pose) while Motion::settling
@@ -49,7 +52,10 @@ struct StatisticalBody {
   std::uint16_t kind = 0;
   Motion motion = Motion::dynamic;
   bool crowded = false;                 ///< touches another body in this step
-  std::uint8_t since_crowded = 255;     ///< 4 ms since it last did, at most 255
+  float since_crowded = 1e9f;           ///< s since it last did
+  float eased = 0.0f;                   ///< s left in which overlaps that it brought from another rung are undone slowly
+
+  bool is_sphere() const { return sphere_radius > 0.0f; }
 };
 
 /// Kinetic energy over mass, J/kg, with the true inertia.

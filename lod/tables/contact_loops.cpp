@@ -57,7 +57,7 @@ struct TouchLoop {
   }
 };
 
-template <bool OneKind, bool Last>
+template <bool OneKind, bool Last, bool Eased>
 struct SweepContacts {
   SweepSettings settings;
   const Spheres& spheres;
@@ -78,9 +78,11 @@ struct SweepContacts {
     const float *inverse_mass = kinds.inverse_mass.data(), *size_of = kinds.radius.data(), *radius = spheres.radius.data();
     const std::uint16_t* kind = spheres.kind.data();
     const float per_time = 1.0f / c.time, bounce = settings.bounce_velocity, slop = settings.contact.slop, push_out = settings.contact.push_out;
+    [[maybe_unused]] const float parting = settings.contact.parting * square_root(most(1.0f, c.gravity)) * c.time;  // m over √m
     const float only_restitution = float(settings.only_law.restitution), only_friction = float(settings.only_law.friction);
     alignas(64) Row relative[kChunk]{}, turning[kChunk]{}, given[kChunk], torque[kChunk], out[kChunk];
-    alignas(64) float size[kChunk]{};
+    alignas(64) float size[kChunk]{}, farthest[kChunk]{};
+    const std::uint8_t* eased = spheres.eased.data();
     for (std::int64_t chunk = begin; chunk < end; chunk += kChunk) {
       const std::int64_t n = std::min(kChunk, end - chunk);
       for (std::int64_t i = 0; i < n; ++i) {
@@ -90,7 +92,8 @@ struct SweepContacts {
         const RowLanes of_b = RowLanes{-1.0f, -1.0f, -1.0f, inverse_mass[kb]} * lanes_of(p[b]);
         relative[i] = row_of(of_a + of_b);
         if constexpr (Last) turning[i] = row_of(only_w(of_a) * lanes_of(u[a]) + only_w(of_b) * lanes_of(u[b]));
-        if constexpr (Last && !OneKind) size[i] = least(size_of[ka], size_of[kb]);
+        if constexpr (Last && (Eased || !OneKind)) size[i] = least(size_of[ka], size_of[kb]);
+        if constexpr (Last && Eased) farthest[i] = (eased[a] | eased[other]) != 0 ? parting : 1e9f;
       }
 #pragma GCC ivdep
       for (std::int64_t i = 0; i < kChunk; ++i) {
@@ -114,7 +117,8 @@ struct SweepContacts {
           ix += fx, iy += fy, iz += fz;
           torque[i].x = fy * z - fz * y, torque[i].y = fz * x - fx * z, torque[i].z = fx * y - fy * x, torque[i].w = 0.0f;  // over the radius
           out[i].x = x, out[i].y = y, out[i].z = z;
-          out[i].w = most(0.0f, -apart - slop * (OneKind ? size_of[0] : size[i])) * push_out * split;
+          const float overlap = most(0.0f, -apart - slop * (OneKind ? size_of[0] : size[i])) * push_out;
+          out[i].w = (Eased ? least(overlap, farthest[i] * square_root(size[i])) : overlap) * split;
         }
         given[i].x = ix, given[i].y = iy, given[i].z = iz, given[i].w = 0.0f;
       }
@@ -150,14 +154,15 @@ ContactRun find_touching(const BallPairs& pairs, const Spheres& spheres, const S
 
 void sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
                     const ContactRun& contacts, SphereStep& step) {
-  const auto run = [&]<bool OneKind, bool Last>() {
-    run_wide(simd, SweepContacts<OneKind, Last>{settings, spheres, kinds, constants, *contacts.arrays, contacts.arrays->impulse.data(), step},
+  const auto run = [&]<bool OneKind, bool Last, bool Eased>() {
+    run_wide(simd, SweepContacts<OneKind, Last, Eased>{settings, spheres, kinds, constants, *contacts.arrays, contacts.arrays->impulse.data(), step},
              std::int64_t(contacts.begin), std::int64_t(contacts.end));
   };
-  if (constants.one_kind && settings.last) run.template operator()<true, true>();
-  else if (constants.one_kind) run.template operator()<true, false>();
-  else if (settings.last) run.template operator()<false, true>();
-  else run.template operator()<false, false>();
+  const auto run_last = [&]<bool OneKind>() { settings.eased ? run.template operator()<OneKind, true, true>() : run.template operator()<OneKind, true, false>(); };
+  if (constants.one_kind && settings.last) run_last.template operator()<true>();
+  else if (constants.one_kind) run.template operator()<true, false, false>();
+  else if (settings.last) run_last.template operator()<false>();
+  else run.template operator()<false, false, false>();
 }
 
 }  // namespace lodestone

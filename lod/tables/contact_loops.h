@@ -17,6 +17,7 @@ struct SweepSettings {
   ContactLaw only_law;            // where all bodies are of one kind
   float bounce_velocity = 0.0f;   // m/s
   bool last = false;
+  bool eased = false;             // some bodies are
 };
 
 /// A round of the contacts given.

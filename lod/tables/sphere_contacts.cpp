@@ -17,6 +17,16 @@ BallPairs& empty_pairs() {
   return pairs;
 }
 
+// Pairs of which one is no sphere.
+void set_apart(BallPairs& pairs, std::uint32_t spheres, BallPairs& others) {
+  others.clear();
+  pairs.filter([&](std::uint32_t first, std::uint32_t second) {
+    if (first < spheres && second < spheres) return true;
+    others.add(first, second);
+    return false;
+  });
+}
+
 }  // namespace
 
 void ContactArrays::make_room(std::size_t elements, bool one_kind) {
@@ -67,8 +77,9 @@ void SphereContacts::put_back(ContactArrays& arrays) {
 }
 
 void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity, const StepConstants& constants,
-                          Simd simd, const JobRunner& jobs) {
+                          Simd simd, const JobRunner& jobs, std::vector<BallPairs>* others) {
   clear();
+  if (others && others->size() < std::size_t(grid.parts())) others->resize(std::size_t(grid.parts()));
   used_parts_ = std::size_t(grid.parts()) + 1;
   if (parts_.size() < used_parts_) parts_.resize(used_parts_);
   for (std::size_t i = 0; i < used_parts_; ++i) {
@@ -78,6 +89,7 @@ void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, cons
   jobs(grid.parts(), TaskRef([&](std::int64_t i) {
     BallPairs& pairs = empty_pairs();
     grid.find_pairs(i, pairs);
+    if (others) set_apart(pairs, std::uint32_t(spheres.awake), (*others)[std::size_t(i)]);
     ContactArrays& arrays = take_arrays();
     parts_[std::size_t(i)].run = find_touching(pairs, spheres, kinds, constants, settings_.touching, simd, arrays);
     recall(spheres, bounce_velocity, constants, parts_[std::size_t(i)].run);
@@ -144,7 +156,7 @@ void SphereContacts::recall(const Spheres& spheres, float bounce_velocity, const
 void SphereContacts::set_laws(const ContactRun& run, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials) const {
   ContactArrays& c = *run.arrays;
   for (std::size_t i = run.begin; i < run.end; ++i) {
-    const ContactLaw law = materials.law(kinds.kinds[spheres.kind[c.first[i]]].material, kinds.kinds[spheres.kind[c.second[i]]].material);
+    const ContactLaw law = materials.law(kinds.material[spheres.kind[c.first[i]]], kinds.material[spheres.kind[c.second[i]]]);
     c.restitution[i] = float(law.restitution), c.friction[i] = float(law.friction);
   }
 }
@@ -167,8 +179,8 @@ void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, con
 }
 
 void SphereContacts::sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity,
-                           const StepConstants& constants, bool last, Simd simd, SphereStep& step, const JobRunner& jobs) {
-  const SweepSettings settings{settings_, materials.law(kinds.kinds[0].material, kinds.kinds[0].material), bounce_velocity, last};
+                           const StepConstants& constants, bool last, bool eased, Simd simd, SphereStep& step, const JobRunner& jobs) {
+  const SweepSettings settings{settings_, materials.law(kinds.material[0], kinds.material[0]), bounce_velocity, last, eased};
   if (last) make_room_to_remember(spheres);
   run_by_colour(jobs, [&](Part& part) {
     sweep_contacts(settings, spheres, kinds, constants, simd, part.run, step);

@@ -66,13 +66,15 @@ struct SphereContactSettings {
   int sweeps = 2;
   float touching = 0.01f;                // m over R: gaps up to it are contacts
   float slop = 0.002f, push_out = 0.5f;  // overlap that stays, over R; part of the rest that is undone in a step
+  float parting = 0.2f;                  // over √(g R): no faster than so where one of them is eased (parting.h), as spheres may overlap where hulls did not
 };
 
 class SphereContacts {
  public:
   /// Between awake bodies, with the impulses known from the last step; approaches faster than `bounce_velocity`, m/s, are impacts.
+  /// Where the grid holds other balls behind the spheres, pairs with those go to `others`, part by part.
   void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity, const StepConstants& constants, Simd simd,
-            const JobRunner& jobs);
+            const JobRunner& jobs, std::vector<BallPairs>* others);
   /// More, where the two touch: of an awake body with any other.
   void add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, float bounce_velocity,
            const StepConstants& constants, Simd simd);
@@ -82,7 +84,7 @@ class SphereContacts {
              const JobRunner& jobs);
   /// One round of all contacts; the last one has friction, moves bodies out of overlaps, and is remembered for the next step.
   void sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants, bool last,
-             Simd simd, SphereStep& step, const JobRunner& jobs);
+             bool eased, Simd simd, SphereStep& step, const JobRunner& jobs);
 
   const SphereContactSettings& settings() const { return settings_; }
   std::int64_t count() const;

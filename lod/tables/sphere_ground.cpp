@@ -227,12 +227,12 @@ void choose_loop(const StepConstants& constants, const SphereGround& ground, con
 void SphereGround::set(const StaticGround& ground, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity) {
   for (auto* array : {&nx, &ny, &nz, &pressure, &friction}) array->clear();
   horizontal.clear();
-  kinds = of.kinds.size();
+  kinds = of.size();
   for (const HalfSpace& plane : ground.planes) {
     nx.push_back(float(plane.normal.x())), ny.push_back(float(plane.normal.y())), nz.push_back(float(plane.normal.z()));
     pressure.push_back(float(std::max(0.0, -gravity.dot(plane.normal))));
     horizontal.push_back(-plane.normal.dot(gravity) > 0.9999 * gravity.norm() && gravity.norm() > 0.0);
-    for (const BodyKind& kind : of.kinds) friction.push_back(float(materials.law(kind.material, plane.material).friction));
+    for (const MaterialId material : of.material) friction.push_back(float(materials.law(material, plane.material).friction));
   }
 }
 

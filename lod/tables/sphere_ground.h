@@ -2,7 +2,7 @@
 // rub and turn into their rest poses (3.4). Impacts are for the response tables, body by body.
 #pragma once
 
-#include "lod/static_ground.h"
+#include "lod/ground/static_ground.h"
 #include "lod/tables/sphere_motion.h"
 
 namespace lodestone {

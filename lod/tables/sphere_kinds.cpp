@@ -6,27 +6,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "lod/statistical/tables_model.h"
-#include "reference/error.h"
+#include "lod/tables/tables_model.h"
 
 namespace lodestone {
-
-std::uint16_t SphereKinds::find(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature,
-                                double gravity) {
-  for (std::size_t i = kinds.size(); i-- > 0;)
-    if (kinds[i].shape == shape && kinds[i].mass == mass && kinds[i].material == material && kinds[i].signature == signature) return std::uint16_t(i);
-  check_that(kinds.size() < 65535, "at most 65,535 kinds of body");
-  check_that(signature != nullptr, "the tables model needs a signature");
-  BodyKind& kind = kinds.emplace_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
-  if (!kind.shape->sphere_radius) kind.faces = std::make_shared<const RestingFaces>(kind.shape->hull);
-  add(kinds.back(), gravity);
-  return std::uint16_t(kinds.size() - 1);
-}
 
 void SphereKinds::add(const BodyKind& kind, double gravity) {
   const Shape& shape = *kind.shape;
   const Mat3& inverse = shape.inverse_inertia_per_mass;
   any_slender |= is_slender(kind);
+  material.push_back(kind.material);
   radius.push_back(float(shape.radius));
   inverse_mass.push_back(float(1.0 / kind.mass));
   ixx.push_back(float(inverse(0, 0))), iyy.push_back(float(inverse(1, 1))), izz.push_back(float(inverse(2, 2)));
@@ -36,7 +24,7 @@ void SphereKinds::add(const BodyKind& kind, double gravity) {
   jxy.push_back(float(inertia(0, 1))), jxz.push_back(float(inertia(0, 2))), jyz.push_back(float(inertia(1, 2)));
   softest.push_back(float(Eigen::SelfAdjointEigenSolver<Mat3>(inverse, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff()));
   const auto height_at = [&](int sample) {
-    if (kind.signature->collision_heights.mean.empty()) return 1.0;
+    if (!kind.signature || kind.signature->collision_heights.mean.empty()) return 1.0;
     const double alpha = std::numbers::pi / 2 * std::min(sample, kHeightSamples - 1) / (kHeightSamples - 1);
     return find_collision_height(kind.signature->collision_heights, alpha).mean;
   };
@@ -47,8 +35,9 @@ void SphereKinds::add(const BodyKind& kind, double gravity) {
     pose_height.push_back(float(over_radius * shape.radius));
     pose_x.push_back(float(normal.x())), pose_y.push_back(float(normal.y())), pose_z.push_back(float(normal.z()));
   };
-  for (const RestPose& pose : kind.signature->rest_poses) add_pose(pose.normal, pose.height);
-  if (kind.signature->rest_poses.empty()) add_pose(Vec3::UnitZ(), 1.0);
+  if (kind.signature)
+    for (const RestPose& pose : kind.signature->rest_poses) add_pose(pose.normal, pose.height);
+  if (!kind.signature || kind.signature->rest_poses.empty()) add_pose(Vec3::UnitZ(), 1.0);
 }
 
 }  // namespace lodestone

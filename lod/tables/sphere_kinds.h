@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "lod/statistical/statistical_body.h"
+#include "lod/statistical/kinds.h"
 
 namespace lodestone {
 
 inline constexpr int kHeightSamples = 64;  // of the collision height over α, resampled evenly from 0 to π/2
 
 struct SphereKinds {
-  std::vector<BodyKind> kinds;
+  std::vector<MaterialId> material;
   std::vector<float> radius, inverse_mass;              // m, 1/kg
   std::vector<float> ixx, iyy, izz, ixy, ixz, iyz;      // inverse inertia over mass, body axes, 1/m²
   std::vector<float> jxx, jyy, jzz, jxy, jxz, jyz;      // inertia over mass, m²
@@ -23,8 +23,11 @@ struct SphereKinds {
 
   /// Whether the midpoint rule would feed energy into its spin.
   static bool is_slender(const BodyKind& kind) { return kind.inverse_moments[2] > 20.0 * kind.inverse_moments[0]; }
-  /// The number of a kind that is known or new. Its signature must hold the tables.
-  std::uint16_t find(std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature, double gravity);
+  /// Takes in those that are new; m/s².
+  void take(const Kinds& kinds, double gravity) {
+    while (radius.size() < kinds.size()) add(kinds[radius.size()], gravity);
+  }
+  std::size_t size() const { return radius.size(); }
 
  private:
   void add(const BodyKind& kind, double gravity);

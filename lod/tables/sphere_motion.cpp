@@ -11,7 +11,8 @@ namespace {
 using namespace lane;
 
 constexpr float kCalming = 4.0f;  // 1/s
-constexpr int kLying = 6;         // steps in a row on others: no passing blow in the air
+constexpr int kLying = 110;       // ms in a row on others: no passing blow in the air
+constexpr float kSettleSpeed = 0.24f;  // radii in the time of the approach to a rest pose: how fast a radius grows into it
 
 Tensors soft_of(const SphereKinds& k) { return {k.ixx.data(), k.iyy.data(), k.izz.data(), k.ixy.data(), k.ixz.data(), k.iyz.data()}; }
 
@@ -29,7 +30,7 @@ struct StartLoop {
     const std::uint16_t* kind = in.kind.data();
     const std::int16_t* pose = in.pose.data();
     const auto* motion = reinterpret_cast<const std::uint8_t*>(in.motion.data());
-    const std::uint8_t* since_crowded = in.since_crowded.data();
+    const std::uint8_t *since_crowded = in.since_crowded.data(), *eased = in.eased.data();
     const float *size = kinds.radius.data(), *height = kinds.height.data(), *pose_height = kinds.pose_height.data(), *blend = kinds.blend_time.data();
     const std::int32_t* first_pose = kinds.first_pose.data();
     const Tensors soft = soft_of(kinds);
@@ -48,9 +49,12 @@ struct StartLoop {
       // The sphere's radius: in flight by the tables, at rest by the pose, among others as it was.
       const float at = arc_tangent(spin, speed) * (float(kHeightSamples - 1) / 1.57079633f);
       const int sample = int(least(at, float(kHeightSamples - 1))), from = k * (kHeightSamples + 1) + sample;
-      const float low = height[from], high = height[from + 1], flying = low + (at - float(sample)) * (high - low);
+      const float low = height[from], high = height[from + 1], measured = low + (at - float(sample)) * (high - low);
+      const float way = (speed + spin) * c.time, slow = (kSettleSpeed * size[k] / blend[k]) * c.time, grown = was + choose(eased[i] > 0, least(way, slow), way);
+      const float flying = least(measured, grown);  // no faster than it moves: bodies that begin to move would leap
       const int number = pose[i], moves = int(motion[i]), rest = first_pose[k] + choose(number > 0, number, 0);
-      const float resting = was + (pose_height[rest] - was) * least(1.0f, 2.0f * c.time / blend[k]);
+      const float settled = was + (pose_height[rest] - was) * least(1.0f, 2.0f * c.time / blend[k]);
+      const float resting = least(settled, was + slow);
       const bool flies = update & (moves == int(Motion::dynamic)) & (since_crowded[i] > 0);
       const float r = choose(moves == int(Motion::settling), resting, choose(flies, flying, was));
       radius[i] = r;
@@ -90,7 +94,7 @@ struct EndLoop {
       const int state = on_ground[i];
       const bool here = state != kMoved, touches = p[i].w > 0.0f, slides = (state >= kLies) & (state <= kSettles), flies = !touches & !slides;
       const double old_x = vx[i], old_y = vy[i], old_z = vz[i], spun_x = lx[i], spun_y = ly[i], spun_z = lz[i];
-      const int lonely = int(since_crowded[i]) + 1, crowded = int(crowded_for[i]) + 1, moves = int(motion[i]);
+      const int lonely = int(since_crowded[i]) + c.ticks, crowded = int(crowded_for[i]) + c.ticks, moves = int(motion[i]);
       since_crowded[i] = std::uint8_t(choose(touches, 0, choose(lonely > 255, 255, lonely)));
       // Among others and off the ground it settles no more.
       motion[i] = std::uint8_t(choose(touches & (moves == int(Motion::settling)) & (state == kFree), int(Motion::dynamic), moves));

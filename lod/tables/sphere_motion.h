@@ -7,8 +7,8 @@
 
 #include "lod/tables/sphere_kinds.h"
 #include "lod/tables/spheres.h"
-#include "lod/lane_math.h"
-#include "lod/tables/row.h"
+#include "lod/simd/lane_math.h"
+#include "lod/simd/row.h"
 
 namespace lodestone {
 
@@ -60,6 +60,7 @@ struct StepConstants {
   float gravity = 0.0f;                   // m/s²
   float resting_energy = 0.15f;           // J/kg over g R: the first threshold of 3.4
   bool update_radius = true;              // of those in flight
+  int ticks = 17;                         // ms that the step is long, as whole ones: over many steps they add up
   bool one_kind = false;
 };
 

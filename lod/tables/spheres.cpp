@@ -17,7 +17,8 @@ StatisticalBody Spheres::body(std::int64_t place) const {
   body.events = events[place];
   body.kind = kind[place];
   body.motion = motion[place];
-  body.since_crowded = since_crowded[place];
+  body.since_crowded = 0.001f * float(since_crowded[place]);
+  body.eased = 0.008f * float(eased[place]);
   return body;
 }
 
@@ -33,7 +34,6 @@ void Spheres::put(std::int64_t place, const StatisticalBody& body) {
   events[place] = body.events;
   kind[place] = body.kind;
   motion[place] = body.motion;
-  since_crowded[place] = body.since_crowded;
 }
 
 namespace {

@@ -26,8 +26,10 @@ struct Spheres {
   std::vector<std::uint16_t> kind;
   std::vector<std::int16_t> pose, plane;       // of the resting record (3.4), −1: none
   std::vector<Motion> motion;
-  std::vector<std::uint8_t> since_crowded;     // steps since it last touched another body, at most 255
-  std::vector<std::uint8_t> crowded_for;       // steps in a row in which it did, at most 255
+  std::vector<std::uint8_t> since_crowded;     // ms since it last touched another body, at most 255
+  std::vector<std::uint8_t> crowded_for;       // ms for which it has without a break, at most 255
+
+  std::vector<std::uint8_t> eased;             // 8 ms awake in which overlaps that it brought from another rung are undone slowly (parting.h)
 
   std::vector<std::uint32_t> place_of_slot;
   std::int64_t awake = 0;                      // places below it
@@ -40,7 +42,7 @@ struct Spheres {
     visit(x), visit(y), visit(z), visit(vx), visit(vy), visit(vz), visit(lx), visit(ly), visit(lz);
     visit(qw), visit(qx), visit(qy), visit(qz), visit(radius), visit(quiet), visit(held);
     visit(slot), visit(owner), visit(events), visit(known_begin), visit(known_count);
-    visit(kind), visit(pose), visit(plane), visit(motion), visit(since_crowded), visit(crowded_for);
+    visit(kind), visit(pose), visit(plane), visit(motion), visit(since_crowded), visit(crowded_for), visit(eased);
   }
 
   template <class Visit>

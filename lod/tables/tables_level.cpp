@@ -5,8 +5,10 @@
 #include <cstring>
 #include <utility>
 
-#include "lod/stage_timer.h"
+#include "lod/contact/hull_contacts.h"
 #include "lod/statistical/flight.h"
+#include "lod/statistical/parting.h"
+#include "lod/statistical/rest_law.h"
 #include "lod/tables/tables_traffic.h"
 #include "reference/error.h"
 
@@ -15,8 +17,9 @@ namespace {
 
 constexpr std::int64_t kBlock = 1024;        // bodies of a job
 constexpr int kOrderInterval = 16;           // steps between looks at how far bodies have moved from their places
-constexpr int kSharesMost = 16;              // of the work of filling the cells
-constexpr double kTouchFactor = 1.02;        // of the radii: what rests on a removed body
+
+constexpr auto kEasedUnits = std::uint8_t(125.0f * kEasedTime);  // of 8 ms
+static_assert(125.0f * kEasedTime < 256.0f);
 
 // Calls visit(i) for the elements of [begin, end) that hold `mark`: mostly few or none.
 template <class Visit>
@@ -27,20 +30,21 @@ void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std:
 
 }  // namespace
 
-TablesLevel::TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, Simd simd)
-    : settings_(settings), ground_(ground), materials_(materials), jobs_(settings.jobs ? settings.jobs : make_job_runner(settings.threads)), simd_(simd), cells_(simd) {
+TablesLevel::TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
+                         const JobRunner& jobs)
+    : settings_(settings), ground_(ground), materials_(materials), all_kinds_(kinds), sleepers_(sleepers), jobs_(jobs), simd_(settings.simd) {
   tables_.options = settings.tables;
 }
 
-int TablesLevel::add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state, bool asleep,
-                     std::shared_ptr<const Signature> signature) {
-  reach_ = std::max(reach_, shape->radius);
-  const std::uint16_t kind = kinds_.find(std::move(shape), mass, material, std::move(signature), settings_.gravity.norm());
+int TablesLevel::add(std::uint32_t owner, std::uint16_t kind, const RigidState& state, bool asleep, bool arrives) {
+  kinds_.take(all_kinds_, settings_.gravity.norm());
   const std::int64_t place = spheres_.add(owner);
   const auto slot = int(spheres_.slot[place]);
   spheres_.kind[place] = kind;
   set_state(slot, state);
-  spheres_.radius[place] = float(find_sphere_radius(spheres_.body(place), kind_of(place), settings_.tables, settings_.seed));
+  const StatisticalBody body = spheres_.body(place);
+  spheres_.radius[place] = arrives ? arriving_radius(body, kind_of(place)) : float(find_sphere_radius(body, kind_of(place), settings_.tables, settings_.seed));
+  if (arrives) spheres_.eased[std::size_t(place)] = kEasedUnits, ++eased_;
   if (asleep) put_to_sleep(place);
   return slot;
 }
@@ -50,24 +54,15 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
   const auto gone = std::uint32_t(slot), last = std::uint32_t(size()) - 1;
   const std::int64_t place = spheres_.place_of_slot[gone];
   const Vec3 position = spheres_.position(place);
-  const double radius = kind_of(place).shape->radius;
-  if (asleep(slot)) still_.remove(gone, position, radius);
-  // What rests on it, or it on, must find new support.
-  std::vector<std::uint32_t> touching;
-  still_.find_near(position, kTouchFactor * radius, [&](std::uint32_t other) {
-    const std::int64_t at = spheres_.place_of_slot[other];
-    if ((spheres_.position(at) - position).norm() < kTouchFactor * (radius + kind_of(at).shape->radius)) touching.push_back(other);
-  });
-  std::ranges::sort(touching);
-  for (const std::uint32_t other : touching) wake(int(other));
-
+  eased_ -= spheres_.eased[std::size_t(place)] > 0;
+  if (asleep(slot)) still().remove(gone, position, kind_of(place).shape->radius);
   const std::int64_t last_place = spheres_.place_of_slot[last];
   const bool renamed = gone != last, last_sleeps = renamed && last_place >= spheres_.awake;
   const Vec3 last_position = spheres_.position(last_place);
   const double last_radius = kind_of(last_place).shape->radius;
-  if (last_sleeps) still_.remove(last, last_position, last_radius);
+  if (last_sleeps) still().remove(last, last_position, last_radius);
   spheres_.remove(gone);
-  if (last_sleeps) still_.insert(gone, last_position, last_radius);
+  if (last_sleeps) still().insert(gone, last_position, last_radius);
   std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
   for (Push& push : pushes_)
     if (push.slot == std::int32_t(last)) push.slot = slot;
@@ -76,8 +71,24 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
     moved.key() = gone;
     given_.insert(std::move(moved));
   }
-  ordered_ = 0;
+  searched_ = 0;
   return renamed ? std::optional(spheres_.owner[spheres_.place_of_slot[gone]]) : std::nullopt;
+}
+
+// The height that its hull has over the plane that it is nearest to, where it is near one: it neither sinks nor rises as it arrives. Else as it moves, but into no plane.
+float TablesLevel::arriving_radius(const StatisticalBody& body, const BodyKind& kind) const {
+  constexpr double kNear = 0.3, kLeast = 0.02;  // over R: a gap; a radius
+  const Shape& shape = *kind.shape;
+  double least_gap = kNear * shape.radius, radius = find_sphere_radius(body, kind, settings_.tables, settings_.seed), least_height = shape.radius;
+  for (const HalfSpace& plane : ground_.planes) {
+    const double height = plane.height_of(body.position);
+    least_height = std::min(least_height, height);
+    if (height > shape.radius + least_gap) continue;
+    std::int32_t hint = 0;
+    const HullContact lowest = find_lowest_point(shape, body.orientation, plane.normal, height, hint);
+    if (lowest.gap < least_gap) least_gap = lowest.gap, radius = -lowest.arm.dot(plane.normal);
+  }
+  return float(std::max(std::min(radius, least_height), kLeast * shape.radius));
 }
 
 RigidState TablesLevel::state(int slot) const {
@@ -87,8 +98,6 @@ RigidState TablesLevel::state(int slot) const {
   const Quat orientation = spheres_.orientation(place);
   return {spheres_.position(place), orientation, spheres_.velocity(place), angular_velocity(orientation, spheres_.spin(place), *kind_of(place).shape)};
 }
-
-Vec3 TablesLevel::position(int slot) const { return spheres_.position(spheres_.place_of_slot[std::size_t(slot)]); }
 
 void TablesLevel::set_state(int slot, const RigidState& state) {
   wake(slot);
@@ -107,16 +116,30 @@ void TablesLevel::set_state(int slot, const RigidState& state) {
 void TablesLevel::wake(int slot) {
   if (!asleep(slot)) return;
   const std::int64_t place = spheres_.place_of_slot[std::size_t(slot)];
-  still_.remove(std::uint32_t(slot), spheres_.position(place), kind_of(place).shape->radius);
+  still().remove(std::uint32_t(slot), spheres_.position(place), kind_of(place).shape->radius);
   spheres_.wake(std::uint32_t(slot));
-  ordered_ = 0;
+  searched_ = 0;
 }
 
 void TablesLevel::put_to_sleep(std::int64_t place) {
-  still_.insert(std::uint32_t(spheres_.slot[place]), spheres_.position(place), kind_of(place).shape->radius);
+  still().insert(std::uint32_t(spheres_.slot[place]), spheres_.position(place), kind_of(place).shape->radius);
   given_.erase(std::uint32_t(spheres_.slot[place]));
   spheres_.put_to_sleep(place);
-  ordered_ = 0;
+  searched_ = 0;
+}
+
+// For as long as there are overlaps, and a while after.
+void TablesLevel::ease() {
+  constexpr double kParting = 1e-3;  // over R: moved out of overlaps in a step
+  if (eased_ == 0) return;
+  const int units = std::max(1, int(std::lround(constants_.wide_time / 0.008)));
+  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
+    std::uint8_t& left = spheres_.eased[std::size_t(i)];
+    const bool parts = step_.push_out(i).norm() > kParting * kind_of(i).shape->radius;
+    if (left == 0 || parts) continue;
+    left = std::uint8_t(std::max(0, int(left) - units));
+    eased_ -= left == 0;
+  }
 }
 
 void TablesLevel::forget_all_given() {
@@ -136,46 +159,15 @@ void TablesLevel::each_block(const Task& task) const {
   jobs_((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
 }
 
-void TablesLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
-  StageTimes& times = report.times;
-  ContactTally tally;
+void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally) {
   forget_all_given();
-  {
-    const StageTimer timer(times.flight_ms);
-    apply_pushes(dt, tally);
-    start(dt);
-  }
-  const bool pair_phase = spheres_.size() + std::int64_t(neighbors.size()) > 1 && spheres_.awake + std::int64_t(neighbors.size()) > 0;
-  report.counters.pair_phases += pair_phase;
-  contacts_.clear();
-  if (pair_phase) {
-    {
-      const StageTimer timer(times.broad_phase_ms);
-      const auto count = std::size_t(spheres_.awake);
-      cells_.fill({std::span(spheres_.x).first(count), std::span(spheres_.y).first(count), std::span(spheres_.z).first(count), step_.reach}, jobs_,
-                  std::min(settings_.threads, kSharesMost), step_.free_rows());
-      ordered_ = spheres_.awake;
-    }
-    const StageTimer timer(times.pairs_ms);
-    find_contacts(neighbors);
-  }
-  {
-    const StageTimer timer(times.crowd_ms);
-    respond(tally);
-    meet_full(neighbors, full_contacts, tally);
-  }
-  {
-    const StageTimer timer(times.flight_ms);
-    finish(tally);
-  }
-  const StageTimer timer(times.rest_ms);
-  rest();
-  ++steps_;
-  report.bytes_moved += count_bytes_moved({spheres_, step_, contacts_, pair_phase, !ground_.planes.empty(), settings_.sleeping});
-  report.contacts += int(tally.contacts);
-  report.counters.energy_clamps += tally.energy_clamps;
-  report.counters.table_extrapolations += tally.table_extrapolations;
-  report.counters.states_recovered += tally.states_recovered;
+  fell_asleep_.clear();
+  apply_pushes(dt, tally);
+  start(dt, order);
+}
+
+double TablesLevel::count_traffic(bool pair_phase) const {
+  return count_bytes_moved({spheres_, step_, contacts_, pair_phase, !ground_.planes.empty(), settings_.sleeping});
 }
 
 std::size_t TablesLevel::bytes() const {
@@ -183,7 +175,7 @@ std::size_t TablesLevel::bytes() const {
   const std::size_t given = given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) + given_.bucket_count() * sizeof(void*);
   std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) + held(tallies_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
-  return bytes + step_.bytes() + contacts_.bytes() + cells_.bytes() + still_.bytes();
+  return bytes + step_.bytes() + contacts_.bytes();
 }
 
 void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
@@ -199,17 +191,21 @@ void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
   pushes_.clear();
 }
 
-void TablesLevel::start(double dt) {
+void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   // Bodies near each other should lie near each other in memory, too.
-  if (steps_ % kOrderInterval == 0 && ordered_ == spheres_.awake && !std::ranges::is_sorted(cells_.order())) {
+  if (steps_ % kOrderInterval == 0 && searched_ == spheres_.awake && searched_ == std::int64_t(order.size()) && !std::ranges::is_sorted(order)) {
     step_.resize(std::size_t(spheres_.awake));
-    spheres_.reorder_awake(cells_.order(), step_.s.data());  // the rows of the last step serve no more
+    spheres_.reorder_awake(order, step_.s.data());  // the rows of the last step serve no more
   }
+  searched_ = spheres_.awake;
+  const auto ticks = [](double time) { return std::int64_t(1000.0 * time); };
+  const int step_ticks = int(std::min<std::int64_t>(255, ticks(elapsed_ + dt) - ticks(elapsed_)));
+  elapsed_ += dt;
   const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height && settings_.tables.radius_update_interval <= 1;
   const Vec3& g = settings_.gravity;
   check_that(ground_.planes.size() < 255, "at most 254 planes");
   constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .wide_time = dt, .wide_gx = g.x(), .wide_gy = g.y(), .wide_gz = g.z(), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
-                .update_radius = plain_radius, .one_kind = kinds_.kinds.size() == 1};
+                .update_radius = plain_radius, .ticks = step_ticks, .one_kind = kinds_.size() == 1};
   step_.resize(std::size_t(spheres_.awake));
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0) update_radii_one_by_one();
   planes_.set(ground_, materials_, kinds_, settings_.gravity);
@@ -228,10 +224,9 @@ void TablesLevel::update_radii_one_by_one() {
       spheres_.radius[i] = float(find_sphere_radius(spheres_.body(i), kind_of(i), settings_.tables, settings_.seed));
 }
 
-void TablesLevel::find_contacts(std::span<FullNeighbor> neighbors) {
+void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
   const std::int64_t were_awake = spheres_.awake;
-  find_full_touches(neighbors);
-  contacts_.find(spheres_, kinds_, cells_, bounce_velocity(), constants_, simd_, jobs_);
+  contacts_.find(spheres_, kinds_, cells, bounce_velocity(), constants_, simd_, jobs_, others);
   find_still_contacts();
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
     step_.resize(std::size_t(spheres_.awake));
@@ -245,10 +240,10 @@ void TablesLevel::find_contacts(std::span<FullNeighbor> neighbors) {
 // Of awake bodies with sleepers; those that are hit hard enough wake.
 void TablesLevel::find_still_contacts() {
   still_touches_.clear();
-  if (still_.empty()) return;
-  for (std::int64_t i = 0; i < std::int64_t(ordered_); ++i) {
+  if (still().empty()) return;
+  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
     const Vec3 position = spheres_.position(i);
-    still_.find_near(position, double(step_.reach[i]), [&](std::uint32_t other) {
+    still().find_near(position, double(step_.reach[i]), [&](std::uint32_t other) {
       const std::int64_t at = spheres_.place_of_slot[other];
       const double limit = double(step_.reach[i]) + 1.01 * double(spheres_.radius[at]);
       if ((spheres_.position(at) - position).squaredNorm() < limit * limit) still_touches_.emplace_back(std::uint32_t(i), other);
@@ -263,7 +258,7 @@ void TablesLevel::find_still_contacts() {
     const Vec3 velocity = spheres_.velocity(place);
     const double closing = velocity.dot(between.normalized());
     const bool touches = gap + closing * double(constants_.time) <= 0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
-    if (touches && velocity.norm() > 2.0 * sleep_speed(at)) wake(int(slot));
+    if (touches && velocity.norm() > rest_law::wake_speed(kind_of(at).shape->radius)) wake(int(slot));
   }
 }
 
@@ -276,7 +271,7 @@ void TablesLevel::respond(ContactTally& tally) {
   if (!crowd) return;
   const int sweeps = contacts_.settings().sweeps;
   for (int sweep = 1; sweep <= sweeps; ++sweep) {
-    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, simd_, step_, jobs_);
+    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, eased_ > 0, simd_, step_, jobs_);
     if (sweep < sweeps)
       each_block([&](std::int64_t begin, std::int64_t end) {
         if (!ground_.planes.empty()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
@@ -295,8 +290,7 @@ void TablesLevel::respond_as_paper(ContactTally& tally) {
     if (c.second >= std::uint32_t(spheres_.awake)) return;
     StatisticalBody first = spheres_.body(c.first), second = spheres_.body(c.second);
     const BodyKind &first_kind = kind_of(c.first), &second_kind = kind_of(c.second);
-    const PairContact contact{Vec3(double(c.nx), double(c.ny), double(c.nz)), double(c.gap), {}};
-    respond_pair_as_paper(first, first_kind, second, second_kind, contact, world(), materials_.law(first_kind.material, second_kind.material), settings_.tables,
+    respond_pair_as_paper(first, first_kind, second, second_kind, Vec3(double(c.nx), double(c.ny), double(c.nz)), world(), materials_.law(first_kind.material, second_kind.material), settings_.tables,
                           tally);
     take(c.first, first);
     take(c.second, second);
@@ -364,6 +358,40 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally) {
   spheres_.put(i, body);
   spheres_.held[i] = 0.0f;
   step_.on_ground[i] = std::uint8_t(GroundState::moved);
+}
+
+StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
+  const auto i = std::int64_t(place_of(guest.slot));
+  StatisticalBody body = spheres_.body(i);
+  if (i < spheres_.awake && step_.touches(i)) {
+    body.velocity = step_.velocity(i) - settings_.gravity * constants_.wide_time;
+    body.spin += step_.added_spin(i);
+    body.position += step_.push_out(i);
+  }
+  return body;
+}
+
+void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> bodies) {
+  const std::int64_t were_awake = spheres_.awake;
+  for (const Guest& guest : guests)
+    if (guest.touched) wake(guest.slot);
+  if (spheres_.awake > were_awake) {
+    step_.resize(std::size_t(spheres_.awake));
+    start_block(were_awake, spheres_.awake, simd_);
+    clear_added(were_awake, spheres_.awake, step_);
+  }
+  for (std::size_t k = 0; k < guests.size(); ++k) {
+    if (!guests[k].touched) continue;
+    const std::size_t i = place_of(guests[k].slot);
+    const StatisticalBody& body = bodies[k];
+    spheres_.put(std::int64_t(i), body);
+    spheres_.pose[i] = std::int16_t(guests[k].resting.pose), spheres_.plane[i] = std::int16_t(guests[k].resting.plane);
+    spheres_.held[i] = 0.0f;
+    // It has moved and lies among others: nothing is left to be added to what it has now.
+    step_.p[i] = {float(body.velocity.x()), float(body.velocity.y()), float(body.velocity.z()), std::max(1.0f, step_.p[i].w)};
+    step_.a[i] = step_.s[i] = step_.d[i] = {};
+    step_.on_ground[i] = std::uint8_t(GroundState::moved);
+  }
 }
 
 // What is no number must not spread.

@@ -1,43 +1,73 @@
-// The statistical level under the tables model: every body a sphere, in dense arrays. A step: 1 start (radii, reaches), 2 near pairs (cells), 3 contacts and who wakes,
-// 4 the response of all contacts at once, 5 the ground: impacts at their exact time answered from the tables, 6 motion, 7 rest.
+// Bodies of `tables`: every one a sphere, in dense arrays. A step: 1 start (radii, reaches), 2 near pairs (cells), 3 contacts of spheres and who wakes, 4 the response of all
+// these at once, 5 those near bodies of other rungs are moved among them (rungs/near_bodies.h), 6 the ground: impacts at their exact time answered from the tables, and motion, 7 rest.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
-#include "lod/statistical/crowd.h"
+#include "lod/broad_phase/cell_grid.h"
+#include "lod/ground/static_ground.h"
+#include "lod/jobs.h"
+#include "lod/statistical/sleepers.h"
+#include "lod/statistical/statistical_settings.h"
+#include "lod/step_report.h"
+#include "lod/tables/guest.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_ground.h"
-#include "lod/broad_phase/still_grid.h"
 
 namespace lodestone {
 
-/// As StatisticalLevel, whose functions of these names lead here.
 class TablesLevel {
  public:
-  TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, Simd simd = find_simd());
+  /// All but the settings must outlive the level.
+  TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
+              const JobRunner& jobs);
 
-  int add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state, bool asleep,
-          std::shared_ptr<const Signature> signature);
+  /// Returns the slot. `arrives`: from another rung, at the height that its hull has.
+  int add(std::uint32_t owner, std::uint16_t kind, const RigidState& state, bool asleep, bool arrives);
+  /// The last body moves into the slot and its owner is returned (none where it was the last). Wakes nobody.
   std::optional<std::uint32_t> remove(int slot);
-  void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts);
 
-  /// That its arrays hold.
+  /// That its arrays hold, without the sleepers' store.
   std::size_t bytes() const;
   int size() const { return int(spheres_.size()); }
   int asleep_count() const { return int(spheres_.size() - spheres_.awake); }
   /// Slots.
   std::span<const std::int32_t> awake() const { return std::span(spheres_.slot).first(std::size_t(spheres_.awake)); }
+  std::span<const std::uint32_t> fell_asleep() const { return fell_asleep_; }    ///< owners, in the last step
+  std::uint32_t owner(int slot) const { return spheres_.owner[place_of(slot)]; }
   RigidState state(int slot) const;
-  Vec3 position(int slot) const;
-  void set_state(int slot, const RigidState& state);
-  bool asleep(int slot) const { return std::int64_t(spheres_.place_of_slot[std::size_t(slot)]) >= spheres_.awake; }
+  Vec3 position(int slot) const { return spheres_.position(std::int64_t(place_of(slot))); }
+  double radius(int slot) const { return double(kinds_.radius[spheres_.kind[place_of(slot)]]); }   ///< m, of the bounding sphere
+  void set_state(int slot, const RigidState& state);                             ///< wakes it
+  bool asleep(int slot) const { return std::int64_t(place_of(slot)) >= spheres_.awake; }
+  bool crowded(int slot) const { return spheres_.since_crowded[place_of(slot)] == 0; }  ///< touched another body in the last step
   void wake(int slot);
-  void add_force(int slot, const Vec3& force, const Vec3& torque);
-  double reach() const { return reach_; }
-  void find_sleepers(const Vec3& center, double reach, std::vector<std::int32_t>& slots) const {
-    still_.find_near(center, reach, [&](std::uint32_t slot) { slots.push_back(std::int32_t(slot)); });
-  }
-  double sphere_radius(int slot) const { return double(spheres_.radius[spheres_.place_of_slot[std::size_t(slot)]]); }
+  void add_force(int slot, const Vec3& force, const Vec3& torque);               ///< over the next step; wakes it
+  double sphere_radius(int slot) const { return double(spheres_.radius[place_of(slot)]); }
+
+  // A step, in this order. `order`: of the awake spheres in the cells of the step before, empty where these hold for others.
+  void begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally);
+  const Spheres& spheres() const { return spheres_; }
+  std::span<const float> reach() const { return step_.reach; }                   ///< m, of those awake
+  CellGrid::Lent free_rows() { return step_.free_rows(); }                       ///< to search in, until respond()
+  /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given.
+  void find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
+  void forget_contacts() { contacts_.clear(); }                                  ///< in their place, where there are none
+  void respond(ContactTally& tally);
+  /// The body as it would go on, with what its contacts with spheres give it.
+  StatisticalBody guest_body(const Guest& guest) const;
+  RestingRecord resting_of(int slot) const { return {spheres_.pose[place_of(slot)], spheres_.plane[place_of(slot)]}; }
+  /// Where those that were touched are now.
+  void take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> bodies);
+  void finish(ContactTally& tally);
+  void rest();
+
+  /// Counted from its arrays, of the last step.
+  double count_traffic(bool pair_phase) const;
 
  private:
   struct Push {
@@ -46,28 +76,26 @@ class TablesLevel {
   };
 
   StepWorld world() const { return {settings_.gravity, &ground_, &materials_, settings_.seed}; }
-  const BodyKind& kind_of(std::int64_t place) const { return kinds_.kinds[spheres_.kind[std::size_t(place)]]; }
+  std::size_t place_of(int slot) const { return spheres_.place_of_slot[std::size_t(slot)]; }
+  StillGrid& still() { return sleepers_.of(StatisticalModel::tables); }
+  const StillGrid& still() const { return sleepers_.of(StatisticalModel::tables); }
+  const BodyKind& kind_of(std::int64_t place) const { return all_kinds_[spheres_.kind[std::size_t(place)]]; }
+  float arriving_radius(const StatisticalBody& body, const BodyKind& kind) const;
   float bounce_velocity() const { return float(world().bounce_velocity) + constants_.gravity * constants_.time; }  // with what gravity adds in a step
-  double sleep_speed(std::int64_t place) const;
   void put_to_sleep(std::int64_t place);
   void forget_all_given();
+  void ease();
 
   void apply_pushes(double dt, ContactTally& tally);
-  void start(double dt);
+  void start(double dt, std::span<const std::uint32_t> order);
   void update_radii_one_by_one();
-  void find_contacts(std::span<FullNeighbor> neighbors);
   void find_still_contacts();
-  void respond(ContactTally& tally);
   void respond_as_paper(ContactTally& tally);
   void start_block(std::int64_t begin, std::int64_t end, Simd simd);
   void sort_ground();
   void choose_rest_pose(std::int64_t place);
   void end_step_with_slender(std::int64_t begin, std::int64_t end);
   void move_alone(std::int64_t place, ContactTally& tally);
-  void meet_full(std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, ContactTally& tally);
-  void find_full_touches(std::span<FullNeighbor> neighbors);
-  void finish(ContactTally& tally);
-  void rest();
   void recover(std::int64_t place, ContactTally& tally);
   template <class Task>
   void each_block(const Task& task) const;
@@ -75,32 +103,29 @@ class TablesLevel {
   StatisticalSettings settings_;
   const StaticGround& ground_;
   const MaterialTable& materials_;
+  const Kinds& all_kinds_;
+  Sleepers& sleepers_;
   JobRunner jobs_;
   Simd simd_;
   TablesSettings tables_;
 
   SphereKinds kinds_;
   Spheres spheres_;
-  StillGrid still_;
-  CellGrid cells_;
   SphereContacts contacts_;
   SphereGround planes_;
   SphereStep step_;
   StepConstants constants_;
-  Crowd crowd_;                                  // of bodies that touch full ones
-  double reach_ = 0.0;
+  double elapsed_ = 0.0;                         // s, over all steps
   std::int64_t steps_ = 0;
-  std::int64_t ordered_ = 0;                     // awake bodies that the cells of the last step had in order
+  std::int64_t eased_ = 0;                       // bodies that are, asleep or not
+  std::int64_t searched_ = 0;                    // awake bodies at the step's start; 0 once the places of any have changed
+  std::vector<std::uint32_t> fell_asleep_;       // owners
 
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
   std::vector<Push> pushes_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> still_touches_;  // place awake, slot asleep; then both places
   std::vector<ContactTally> tallies_;
-  // Bodies that touch full ones.
-  std::vector<StatisticalBody> near_full_;
-  std::vector<std::uint32_t> near_full_slot_;
-  std::vector<CrowdContact> full_touches_;
 };
 
 }  // namespace lodestone

@@ -113,8 +113,8 @@ OdeBodyId OdeWorld::add_body(const OdeBodyDefinition& definition) {
                            impl_->trimeshes);
 }
 
-void OdeWorld::remove_body(OdeBodyId body) {
-  impl_->wake_neighbors(impl_->bodies.find(body));
+void OdeWorld::remove_body(OdeBodyId body, bool stays) {
+  if (!stays) impl_->wake_neighbors(impl_->bodies.find(body));
   impl_->bodies.remove(body);
 }
 

@@ -111,8 +111,8 @@ class OdeWorld {
 
   /// Aborts where mass ≤ 0 or the state is not finite or beyond 1e8 m. The first body of a shape builds its trimesh data, shared by the rest.
   OdeBodyId add_body(const OdeBodyDefinition& definition);
-  /// Wakes what touched it, the caller's bodies too.
-  void remove_body(OdeBodyId body);
+  /// Wakes what touched it, the caller's bodies too, unless it `stays` where it is, as something else.
+  void remove_body(OdeBodyId body, bool stays = false);
 
   /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). Nearly free while all bodies sleep. A body whose state stops being finite is
   /// put back to its last good pose at rest, and counted. A substep that ODE's solver gives up on is repeated a little softer (not in a caller's world).

@@ -1,10 +1,10 @@
 #include "scenes/runner.h"
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <limits>
-#include <numeric>
 
+#include "signature/measure/measure.h"
 #include "tests/scenes/scene_fixture.h"
 
 namespace lodestone {
@@ -35,7 +35,13 @@ TEST_F(Runner, ReportsEveryStepAndWritesFiles) {
   EXPECT_GE(result.step_ms.max, result.step_ms.p99);
   EXPECT_TRUE(std::filesystem::exists(folder() / "out/run.glb"));
   std::ifstream csv(folder() / "out/steps.csv");
-  EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'), 51);
+  std::string heading;
+  std::getline(csv, heading);
+  EXPECT_TRUE(heading.starts_with("step,time_s,total_ms,choose_ms,"));
+  EXPECT_TRUE(heading.ends_with(",energy_j,penetration_m,support,tables,predicted_ms,measured_ms"));
+  int rows = 0;
+  for (std::string row; std::getline(csv, row); ++rows) EXPECT_EQ(std::ranges::count(row, ','), std::ranges::count(heading, ',')) << row;
+  EXPECT_EQ(rows, 50);
 }
 
 TEST_F(Runner, WritesNothingUnlessAsked) {
@@ -81,11 +87,46 @@ TEST_F(Runner, ChecksCanFail) {
   EXPECT_TRUE(result.checks[1].decided);
 }
 
+std::shared_ptr<const Signature> coarse_signature(const Shape& shape, const ContactLaw&) {
+  SignatureSettings coarse;
+  coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8, coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
+  return std::make_shared<const Signature>(measure_signature(shape, coarse, 1));
+}
+
+// A crate that starts 2 cm deep, and one at `tables` that starts 3 cm deep.
+TEST_F(Runner, SpheresOfTablesHaveABoundOfTheirOwn) {
+  Scene scene = load(R"(version: 1
+step: {dt_s: 0.001, steps: 1, full_substeps: 1}
+shapes: {crate: {box_m: [0.2, 0.2, 0.2]}}
+ground: [{plane: {normal: [0, 0, 1], offset_m: 0}}]
+bodies:
+  - {shape: crate, position_m: [0, 0, 0.08], level: full}
+  - {shape: crate, position_m: [3, 0, 0.07], velocity_m_per_s: [0, 0, -1], level: tables}
+check: {max_penetration_m: 0.025, max_tables_penetration_m: 0.04}
+)");
+  const RunSettings settings{.signatures = coarse_signature};
+  const auto checks = run_scene(scene, settings).checks;
+  ASSERT_EQ(checks.size(), 2u);
+  EXPECT_NEAR(checks[0].value, 0.02, 2e-3);
+  EXPECT_GT(checks[1].value, 0.025);
+  EXPECT_TRUE(checks[0].pass && checks[1].pass);
+  scene.checks.max_tables_penetration_m.reset();
+  const auto one = run_scene(scene, settings).checks;
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_EQ(one[0].value, checks[1].value);
+  EXPECT_FALSE(one[0].pass);
+}
+
 TEST_F(Runner, RefusesSettingsOutOfRange) {
   const Scene scene = load(kFalling);
   for (double dt : {0.0, -0.01, 0.2, std::numeric_limits<double>::quiet_NaN()}) EXPECT_THROW(run_scene(scene, {.dt_s = dt}), InputError);
   EXPECT_THROW(run_scene(scene, {.steps = 0}), InputError);
   EXPECT_THROW(run_scene(scene, {.threads = 0}), InputError);
+  for (double budget : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(run_scene(scene, {.budget_ms = budget}), InputError);
+    EXPECT_THROW(run_scene(scene, {.budget_work = budget}), InputError);
+  }
+  EXPECT_THROW(run_scene(scene, {.budget_ms = 4.0, .budget_work = 2000.0}), InputError);
   write("", "a_file");
   EXPECT_THROW(run_scene(scene, {.steps = 1, .out = folder() / "a_file"}), InputError);
 }
@@ -127,17 +168,43 @@ TEST_F(Runner, FollowsProgress) {
   EXPECT_EQ(steps, (std::vector{1, 2, 3, 4}));
 }
 
-TEST(TimeSummary, Percentiles) {
-  std::vector<double> sample(101);
-  std::iota(sample.rbegin(), sample.rend(), 0.0);
-  const TimeSummary summary = summarize(sample);
-  EXPECT_EQ(summary.p50, 50);
-  EXPECT_EQ(summary.p95, 95);
-  EXPECT_EQ(summary.p99, 99);
-  EXPECT_EQ(summary.mean, 50);
-  EXPECT_EQ(summary.max, 100);
-  EXPECT_EQ(summarize({}).max, 0);
-  EXPECT_EQ(summarize(std::vector{7.0}).p95, 7);
+// A viewpoint that looks at one of two full balls and past the other.
+TEST_F(Runner, CountsFullBodiesInThePicture) {
+  const auto scene_of = [&](const std::string& position) {
+    return load(R"(version: 1
+step: {dt_s: 0.1, steps: 10, full_substeps: 1, gravity_m_per_s2: [0, 0, 0]}
+shapes: {ball: {sphere_m: 0.1}}
+bodies:
+  - {shape: ball, position_m: [0, 0, 1], level: full}
+  - {shape: ball, position_m: [9, 0, 1], level: full}
+  - {shape: ball, position_m: [0, 1, 1], level: support}
+viewpoints: [{look_at_m: [0, 0, 1], )" + position + "}]\n");
+  };
+  const auto none = [](const Shape&, const ContactLaw&) { return std::shared_ptr<const Signature>{}; };
+  const auto seen = run_scene(scene_of("position_m: [0, -3, 1]"), {.signatures = none}).in_picture;
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->min_full, 1);
+  EXPECT_EQ(seen->mean_full, 1.0);
+  // Far away both are in it; the last of the six steps that end at .5 s or later begins at .9 s.
+  const auto moved = run_scene(scene_of("path: [{time_s: 0.85, position_m: [0, -3, 1]}, {time_s: 0.86, position_m: [0, -90, 1]}]"), {.signatures = none}).in_picture;
+  ASSERT_TRUE(moved);
+  EXPECT_EQ(moved->min_full, 1);
+  EXPECT_NEAR(moved->mean_full, 7.0 / 6, 1e-12);
+  EXPECT_FALSE(run_scene(scene_of("position_m: [0, -3, 1]"), {.steps = 4, .signatures = none}).in_picture);
+  EXPECT_FALSE(run_scene(load(kFalling), {.steps = 60}).in_picture);
+}
+
+TEST_F(Runner, ABudgetReplacesTheScenesPolicy) {
+  const Scene scene = load(kFalling);
+  EXPECT_FALSE(run_scene(scene, {.steps = 3}).budget);
+  const RunResult timed = run_scene(scene, {.steps = 20, .budget_ms = 5.0}), worked = run_scene(scene, {.steps = 20, .budget_work = 500.0});
+  ASSERT_TRUE(timed.budget && worked.budget);
+  EXPECT_EQ(timed.budget->budget_ms, 5.0);
+  EXPECT_EQ(timed.budget->steps, 11);
+  EXPECT_EQ(timed.budget->mean_bodies[std::size_t(Rung::full)], 2.0);  // forced
+  EXPECT_EQ(worked.budget->budget_work, 500.0);
+  EXPECT_FALSE(worked.budget->over);
+  EXPECT_GT(timed.processor_ms.max, 0.0);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "scenes/scene_file.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/scenes/scene_fixture.h"
 
@@ -36,9 +37,9 @@ bodies:
   - {shape: rock, name: r, scatter: {count: 20, box_m: [[-5, -5, 1], [5, 5, 4]], seed: 3, spacing_m: 0.5}}
   - {shape: pin, scatter: {count: 5, cylinder: {base_m: [20, 0, 1], radius_m: 1, height_m: 3}}}
 viewpoints: [{position_m: [0, -6, 2], look_at_m: [0, 0, 1], path: [{time_s: 0, position_m: [0, -6, 2]}, {time_s: 2, position_m: [0, 6, 2]}]}]
-lod: {policy: budget, budget_ms: 3, hysteresis: 0.2, min_dwell_frames: 10, max_transitions_per_frame: 2, model: tables}
+lod: {policy: budget, budget_ms: 3, most_full: 5, most_support: 0, hysteresis: 0.2, min_dwell_frames: 10, max_transitions_per_frame: 2, model: tables}
 output: {trajectory: run.glb, every_n_steps: 3}
-check: {max_penetration_m: 0.02, all_asleep_by_s: 10}
+check: {max_penetration_m: 0.02, max_tables_penetration_m: 0.2, all_asleep_by_s: 10}
 )";
 
 TEST_F(SceneFile, EveryKeyArrives) {
@@ -61,12 +62,15 @@ TEST_F(SceneFile, EveryKeyArrives) {
   EXPECT_NEAR(scene.shapes.at("tensor")->inertia_per_mass(0, 1), 0.1, 1e-12);
   EXPECT_EQ(scene.model, StatisticalModel::tables);
   EXPECT_EQ(std::get<BudgetPolicy>(scene.lod.policy).budget_ms, 3);
+  EXPECT_EQ(scene.lod.most_full, 5);
+  EXPECT_EQ(scene.lod.most_support, 0);
   EXPECT_EQ(scene.lod.hysteresis, 0.2);
   EXPECT_EQ(scene.lod.min_dwell_frames, 10);
   EXPECT_EQ(scene.lod.max_transitions_per_frame, 2);
   EXPECT_EQ(scene.output.trajectory, "run.glb");
   EXPECT_EQ(scene.output.every_n_steps, 3);
   EXPECT_EQ(scene.checks.max_penetration_m, 0.02);
+  EXPECT_EQ(scene.checks.max_tables_penetration_m, 0.2);
   EXPECT_EQ(scene.checks.all_asleep_by_s, 10);
 }
 
@@ -116,6 +120,38 @@ TEST_F(SceneFile, SeedOfTheRunReachesScatters) {
   EXPECT_NE(place(std::nullopt), place(11));
 }
 
+TEST_F(SceneFile, PoliciesArrive) {
+  const auto lod_of = [&](const std::string& keys) { return load("version: 1\nbodies: []\nlod: {" + keys + "}\n"); };
+  const auto plain = std::get<DistancePolicy>(lod_of("").lod.policy);
+  EXPECT_EQ(plain.full_within, DistancePolicy().full_within);
+  EXPECT_TRUE(std::isinf(plain.support_within));
+  EXPECT_EQ(lod_of("").model, std::nullopt);
+  EXPECT_EQ(lod_of("").lod.most_full, kUnlimited);
+  const auto far = std::get<DistancePolicy>(lod_of("policy: distance, full_within_m: 2, support_within_m: 7").lod.policy);
+  EXPECT_EQ(far.full_within, 2);
+  EXPECT_EQ(far.support_within, 7);
+  EXPECT_EQ(std::get<DistancePolicy>(lod_of("full_within_m: 2, support_within_m: 2").lod.policy).support_within, 2);
+  EXPECT_EQ(std::get<WorkPolicy>(lod_of("policy: budget, budget_work: 2000").lod.policy).budget_work, 2000);
+  EXPECT_EQ(lod_of("model: auto").model, std::nullopt);
+  EXPECT_EQ(lod_of("model: support").model, StatisticalModel::support);
+}
+
+TEST_F(SceneFile, EveryLevelArrives) {
+  const Scene scene = load(R"(version: 1
+shapes: {ball: {sphere_m: 0.1}}
+bodies:
+  - {shape: ball, position_m: [0, 0, 1]}
+  - {shape: ball, position_m: [1, 0, 1], level: auto}
+  - {shape: ball, position_m: [2, 0, 1], level: full}
+  - {shape: ball, position_m: [3, 0, 1], level: statistical}
+  - {shape: ball, position_m: [4, 0, 1], level: support}
+  - {shape: ball, position_m: [5, 0, 1], level: tables}
+)");
+  const LevelChoice expected[] = {LevelChoice::automatic, LevelChoice::automatic, LevelChoice::full, LevelChoice::statistical, LevelChoice::support, LevelChoice::tables};
+  ASSERT_EQ(scene.bodies.size(), std::size(expected));
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) EXPECT_EQ(scene.bodies[i].definition.level, expected[i]) << i;
+}
+
 // --- errors: where, which key, what was found, what was expected
 
 struct BadScene {
@@ -152,9 +188,19 @@ TEST_F(SceneFile, TopLevelErrors) {
       {"step: {seed: -1}", "s.yaml:4: step.seed: found -1, expected"},
       {"version: 1", "s.yaml:4: version: found the key a second time"},
       {"lod: {policy: budgte}", "s.yaml:4: lod.policy: found budgte, expected one of distance, budget (did you mean \"budget\"?)"},
-      {"lod: {policy: budget, full_within_m: 3}", "s.yaml:4: lod.full_within_m: found full_within_m with policy budget, expected budget_ms"},
-      {"lod: {budget_ms: 3}", "s.yaml:4: lod.budget_ms: found"},
-      {"lod: {model: sphere}", "s.yaml:4: lod.model: found sphere, expected one of tables, support"},
+      {"lod: {policy: budget, full_within_m: 3}", "s.yaml:4: lod.full_within_m: found full_within_m with policy budget, expected budget_ms or budget_work"},
+      {"lod: {policy: budget, support_within_m: 3}", "s.yaml:4: lod.support_within_m: found support_within_m with policy budget, expected budget_ms or budget_work"},
+      {"lod: {policy: budget}", "s.yaml:4: lod: found none, expected one of budget_ms, budget_work"},
+      {"lod: {policy: budget, budget_ms: 3, budget_work: 2000}", "s.yaml:4: lod: found budget_ms and budget_work, expected only one of"},
+      {"lod: {policy: budget, budget_ms: -1}", "s.yaml:4: lod.budget_ms: found -1, expected a number in [0,"},
+      {"lod: {policy: budget, budget_work: .inf}", "s.yaml:4: lod.budget_work: found .inf, expected a number in [0,"},
+      {"lod: {budget_ms: 3}", "s.yaml:4: lod.budget_ms: found budget_ms with policy distance, expected full_within_m and support_within_m"},
+      {"lod: {policy: distance, budget_work: 3}", "s.yaml:4: lod.budget_work: found budget_work with policy distance, expected"},
+      {"lod: {full_within_m: 3, support_within_m: 2.5}", "s.yaml:4: lod.support_within_m: found 2.5, expected at least full_within_m (3)"},
+      {"lod: {support_within_m: 2.5}", "s.yaml:4: lod.support_within_m: found 2.5, expected at least full_within_m (4)"},
+      {"lod: {most_full: -1}", "s.yaml:4: lod.most_full: found -1, expected a whole number from 0"},
+      {"lod: {most_suport: 1}", "s.yaml:4: lod.most_suport: found an unknown key, expected one of policy,"},
+      {"lod: {model: sphere}", "s.yaml:4: lod.model: found sphere, expected one of auto, support, tables"},
       {"output: {trajectory: ../run.glb}", "s.yaml:4: output.trajectory: found ../run.glb, expected a file name"},
       {"output: {trajectory: run.obj}", "s.yaml:4: output.trajectory: found run.obj, expected"},
       {"check: {max_penetration_m: -1}", "s.yaml:4: check.max_penetration_m: found -1, expected"},
@@ -225,7 +271,7 @@ TEST_F(SceneFile, BodyErrors) {
       {"{shape: crate, position_m: [0, 0, 0], orientation: [0, 0, 0, 0]}", "s.yaml:3: bodies[0].orientation: found [0, 0, 0, 0], expected a quaternion"},
       {"{shape: crate, position_m: [0, 0, 1e9]}", "s.yaml:3: bodies[0].position_m[2]: found 1e9, expected"},
       {"{shape: crate, position: [0, 0, 1]}", "s.yaml:3: bodies[0].position: found an unknown key"},
-      {"{shape: crate, position_m: [0, 0, 1], level: fully}", "s.yaml:3: bodies[0].level: found fully, expected one of auto, full, statistical"},
+      {"{shape: crate, position_m: [0, 0, 1], level: fully}", "s.yaml:3: bodies[0].level: found fully, expected one of auto, full, statistical, support, tables (did you mean \"full\"?)"},
       {"{shape: crate, position_m: [0, 0, 1], mass_kg: 0}", "s.yaml:3: bodies[0].mass_kg: found 0, expected"},
       {"{shape: crate, scatter: {count: 0, box_m: [[0, 0, 0], [1, 1, 1]]}}", "s.yaml:3: bodies[0].scatter.count: found 0, expected"},
       {"{shape: crate, scatter: {count: 3}}", "s.yaml:3: bodies[0].scatter: found none, expected one of box_m, cylinder"},

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "reference/error.h"
+#include "scenes/camera.h"
 #include "scenes/scene_file.h"
 
 namespace lodestone {
@@ -53,7 +54,7 @@ TEST_P(ShippedScene, LoadsAndStartsApart) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
                          testing::Values(Shipped{"bunnies", 1000}, Shipped{"drop", 1}, Shipped{"boxes", 100}, Shipped{"l_shapes", 300},
-                                         Shipped{"side_by_side", 100}, Shipped{"ten_thousand", 10000}, Shipped{"forced", 1000}),
+                                         Shipped{"side_by_side", 100}, Shipped{"ten_thousand", 10000}, Shipped{"forced", 1000}, Shipped{"heap", 2000}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(ShippedScenes, NoneIsLeftOut) {
@@ -74,16 +75,34 @@ TEST(ShippedScenes, SidesAreAlike) {
   }
 }
 
-// At the start and while all fall freely, until the first lands at about .3 s.
-TEST(ShippedScenes, BunniesSurroundTheViewpoint) {
+// Where the bodies start and where they land: the camera sees those that are nearest to it, which are full.
+TEST(ShippedScenes, TheBunniesNearestToTheViewpointAreInItsPicture) {
   const Scene scene = load("bunnies");
-  const double within = std::get<DistancePolicy>(scene.lod.policy).full_within;
-  for (double time : {0.0, 0.1, 0.2, 0.3}) {
-    const Vec3 eye = scene.viewpoints[0].position_at(time) + Vec3(0, 0, 0.5 * 9.81 * time * time);  // as the falling see it
-    const auto near = std::ranges::count_if(
-        scene.bodies, [&](const SceneBody& body) { return (body.definition.state.position - eye).norm() < within; });
-    EXPECT_GE(near, 5) << time;
-    EXPECT_LE(near, 40) << time;
+  const Viewpoint& viewpoint = scene.viewpoints.at(0);
+  for (const double time : {0.0, 0.5, 5.0, 10.0}) {
+    const Vec3 eye = viewpoint.position_at(time);
+    std::vector<Vec3> places;
+    for (const SceneBody& body : scene.bodies) {
+      places.push_back(body.definition.state.position);
+      if (time > 0.0) places.back().z() = std::max(0.1, places.back().z() - 0.5 * 9.81 * time * time);
+    }
+    std::ranges::sort(places, {}, [&](const Vec3& place) { return (place - eye).norm(); });
+    EXPECT_LT((places[std::size_t(scene.lod.most_full) - 1] - eye).norm(), std::get<DistancePolicy>(scene.lod.policy).full_within) << time;
+    const Camera camera(eye, viewpoint.look_at_m);
+    EXPECT_GE(std::count_if(places.begin(), places.begin() + scene.lod.most_full, [&](const Vec3& place) { return camera.sees(place); }), 10) << time;
+  }
+}
+
+// Every two seconds, and between jumps it stands still.
+TEST(ShippedScenes, TheHeapsViewpointJumps) {
+  const Scene scene = load("heap");
+  EXPECT_EQ(std::get<BudgetPolicy>(scene.lod.policy).budget_ms, 8.0);
+  const Viewpoint& viewpoint = scene.viewpoints.at(0);
+  for (double time = 0.0; time < 9.0; time += 2.0) {
+    EXPECT_EQ(viewpoint.position_at(time), viewpoint.position_at(time + 1.98)) << time;
+    const double jump = (viewpoint.position_at(time + 2.0) - viewpoint.position_at(time)).norm();
+    EXPECT_TRUE(jump > 1.0 || time == 8.0) << time;
+    EXPECT_NEAR(viewpoint.position_at(time).head<2>().norm(), 1.5, 0.01) << "within the heap's edge";
   }
 }
 

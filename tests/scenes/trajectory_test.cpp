@@ -2,7 +2,9 @@
 
 #include <tiny_gltf.h>
 
+#include <cmath>
 #include <cstring>
+#include <map>
 #include <numbers>
 
 #include "tests/scenes/scene_fixture.h"
@@ -12,7 +14,7 @@ namespace {
 
 using TrajectoryFile = SceneFixture;
 
-/// Two boxes (one changes level, one sleeps from frame 10 on) and a ball that never moves.
+/// Two boxes (one changes rung, one sleeps from frame 10 on) and a ball that never moves.
 Scene small_scene() {
   Scene scene;
   const auto box = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
@@ -40,13 +42,17 @@ RigidState pose(int frame, int body) {
   return state;
 }
 
+Rung rung_of_hero(int frame) {
+  if (frame >= 5 && frame < 20) return Rung::full;
+  return frame < 25 ? Rung::support : Rung::tables;
+}
+
 Trajectory record() {
   Trajectory trajectory(3);
   for (int frame = 0; frame < kFrames; ++frame) {
     std::vector<RigidState> states;
     for (int body = 0; body < 3; ++body) states.push_back(pose(frame, body));
-    const bool near = frame >= 5 && frame < 20;
-    trajectory.add_frame(frame / 30.0, states, std::vector{near ? Level::full : Level::statistical, Level::full, Level::statistical});
+    trajectory.add_frame(frame / 30.0, states, std::vector{rung_of_hero(frame), Rung::full, Rung::tables});
   }
   return trajectory;
 }
@@ -137,27 +143,31 @@ TEST_F(SavedTrajectory, LeavesOutWhatDoesNotMove) {
   EXPECT_NEAR(loaded.model.nodes[std::size_t(still)].translation[1], -4.0, 1e-6);
 }
 
-TEST_F(SavedTrajectory, ShowsLevels) {
+TEST_F(SavedTrajectory, ShowsRungs) {
   const Loaded loaded(folder() / "run.glb");
   const auto material_of = [&](int node) {
     const auto& mesh = loaded.model.meshes.at(std::size_t(loaded.model.nodes.at(std::size_t(node)).mesh));
     return loaded.model.materials.at(std::size_t(mesh.primitives[0].material)).name;
   };
   EXPECT_EQ(material_of(loaded.node("body 1")), "full");
-  EXPECT_EQ(material_of(loaded.node("body 2")), "statistical");
+  EXPECT_EQ(material_of(loaded.node("body 2")), "tables");
   const tinygltf::Node& hero = loaded.model.nodes[std::size_t(loaded.node("hero"))];
   EXPECT_EQ(hero.mesh, -1);
-  ASSERT_EQ(hero.children.size(), 2u);
+  ASSERT_EQ(hero.children.size(), 3u);
+  // From frame 0, 5, 20 and 25 on.
+  std::map<std::string, std::vector<float>> shown = {{"full", {0, 1, 0, 0}}, {"support", {1, 0, 1, 0}}, {"tables", {0, 0, 0, 1}}};
   for (int child : hero.children) {
     const auto* scale = loaded.sampler(child, "scale");
     ASSERT_TRUE(scale);
     EXPECT_EQ(scale->interpolation, "STEP");
     const auto times = loaded.numbers<float>(scale->input), scales = loaded.numbers<float>(scale->output);
-    ASSERT_EQ(times.size(), 3u);
+    ASSERT_EQ(times.size(), 4u);
     EXPECT_FLOAT_EQ(times[1], float(5 / 30.0));
     EXPECT_FLOAT_EQ(times[2], float(20 / 30.0));
-    const float before = material_of(child) == "full" ? 0.0f : 1.0f;
-    EXPECT_EQ(scales, (std::vector<float>{before, before, before, 1 - before, 1 - before, 1 - before, before, before, before}));
+    EXPECT_FLOAT_EQ(times[3], float(25 / 30.0));
+    const std::vector<float>& scale_of = shown[material_of(child)];
+    for (std::size_t i = 0; i < scales.size(); ++i) EXPECT_EQ(scales[i], scale_of[i / 3]) << material_of(child) << ' ' << i;
+    shown.erase(material_of(child));
   }
 }
 
@@ -170,8 +180,45 @@ TEST_F(SavedTrajectory, SharesArraysOfAShape) {
       ++boxes;
       positions.push_back(mesh.primitives[0].attributes.at("POSITION"));
     }
-  ASSERT_EQ(boxes, 2);
+  ASSERT_EQ(boxes, 3);
   EXPECT_EQ(positions[0], positions[1]);
+  EXPECT_EQ(positions[0], positions[2]);
+}
+
+// To those who lack a kind of cone, by Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color vision deficiency (2009), table 1:
+// what they see of linear red, green and blue.
+Vec3 seen_color(const Vec3& rgb, int lacking) {
+  Mat3 sees = Mat3::Identity();
+  if (lacking == 1) sees << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998;
+  if (lacking == 2) sees << 0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940, 0.968881;
+  if (lacking == 3) sees << 1.255528, -0.076749, -0.178779, -0.078411, 0.930809, 0.147602, 0.004733, 0.691367, 0.303900;
+  return (sees * rgb).cwiseMax(0.0).cwiseMin(1.0);
+}
+
+// CIE 1976 L*a*b* under D65; two colours 2.3 apart are told apart side by side.
+Vec3 lab_of(const Vec3& rgb) {
+  Mat3 to_xyz;
+  to_xyz << 0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192, 0.9505;
+  const Vec3 xyz = (to_xyz * rgb).cwiseQuotient(Vec3(0.9505, 1.0, 1.0890));
+  const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; };
+  return {116 * f(xyz.y()) - 16, 500 * (f(xyz.x()) - f(xyz.y())), 200 * (f(xyz.y()) - f(xyz.z()))};
+}
+
+TEST_F(SavedTrajectory, RungsAreToldApartWhateverConesOneHas) {
+  const Loaded loaded(folder() / "run.glb");
+  std::vector<Vec3> colors;
+  for (const tinygltf::Material& material : loaded.model.materials) {
+    const std::vector<double>& rgba = material.pbrMetallicRoughness.baseColorFactor;
+    colors.emplace_back(rgba[0], rgba[1], rgba[2]);
+  }
+  ASSERT_EQ(colors.size(), 4u);  // of the ground and of three rungs
+  const auto nearest_two = [&](int lacking) {
+    double least = 1e9;
+    for (std::size_t i = 0; i < colors.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) least = std::min(least, (lab_of(seen_color(colors[i], lacking)) - lab_of(seen_color(colors[j], lacking))).norm());
+    return least;
+  };
+  for (int lacking = 0; lacking < 4; ++lacking) EXPECT_GT(nearest_two(lacking), 15.0) << lacking;
 }
 
 TEST_F(SavedTrajectory, HasGroundAndCamera) {

@@ -35,7 +35,7 @@ Ended run(const std::string& arguments, bool with_errors = false) {
 }
 
 TEST(Program, HelpIsDone) {
-  for (const char* arguments : {"--help", "run --help", "sign --help", "merge --help", "inspect --help", "compare drop --help", "demo --help", "bench hard_cases --help"}) {
+  for (const char* arguments : {"--help", "run --help", "sign --help", "merge --help", "inspect --help", "compare drop --help", "demo --help", "bench hard_cases --help", "bench budget --help", "bench rungs --help"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.exit_code, 0) << arguments;
     EXPECT_FALSE(ended.out.empty()) << arguments;
@@ -43,7 +43,8 @@ TEST(Program, HelpIsDone) {
 }
 
 TEST(Program, WrongUsageIsTwoAndSilentOnStdout) {
-  for (const char* arguments : {"", "nonsense", "run", "compare", "compare drop", "run a.yaml --steps 0", "run a.yaml --level fast", "run a.yaml --dt 0",
+  for (const char* arguments : {"", "nonsense", "run", "compare", "compare drop", "run a.yaml --steps 0", "run a.yaml --level fast", "run a.yaml --model full", "run a.yaml --budget-ms 0", "run a.yaml --budget-ms nan", "run a.yaml --budget-work inf",
+                                "run a.yaml --budget-work -4", "run a.yaml --budget-ms 4 --budget-work 2000", "bench budget --budgets 0", "bench rungs --shape cube", "run a.yaml --dt 0",
                                 "compare drop box:1,1,1 --trials 1", "compare drop box:1,1,1 --dt 1/0", "compare drop box:1,1,1 --methods nonsense",
                                 "compare drop box:1,1,1 --restitution 2", "sign box:1,1,1 --threads -1", "bench", "bench hard_cases --only nonsense"}) {
     const Ended ended = run(arguments);
@@ -89,6 +90,20 @@ TEST(Program, RunPrintsOneJsonObjectAndNothingElse) {
   EXPECT_EQ(json["steps"], 5);
   EXPECT_EQ(json["levels"]["full"].get<int>() + json["levels"]["statistical"].get<int>(), json["bodies"].get<int>());
   EXPECT_EQ(json["counters"]["signatures_loaded"], 0);
+  for (const char* key : {"full", "statistical", "support", "tables", "asleep"}) EXPECT_TRUE(json["levels"].contains(key)) << key;
+  EXPECT_FALSE(json.contains("budget"));
+}
+
+TEST(Program, RunTakesABudget) {
+  const std::string scene = "run " + quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml") + " --level full --steps 20 --json";
+  const auto timed = nlohmann::json::parse(run(scene + " --budget-ms 4").out)["budget"];
+  EXPECT_EQ(timed["ms"], 4.0);
+  EXPECT_EQ(timed["steps"], 11);
+  EXPECT_EQ(timed["mean_full"], 1.0);
+  for (const char* key : {"over", "p50", "p99", "max", "mean_support"}) EXPECT_TRUE(timed[key].is_number()) << key;
+  const auto worked = nlohmann::json::parse(run(scene + " --budget-work 2000").out)["budget"];
+  EXPECT_EQ(worked["work"], 2000.0);
+  EXPECT_TRUE(worked["over"].is_null());
 }
 
 TEST(Program, BenchHardCasesPrintsOneJsonObjectAndNothingElse) {

@@ -15,6 +15,8 @@ RunResult three_steps() {
   result.reports.resize(3);
   result.reports.back().full = 4;
   result.reports.back().statistical = 6;
+  result.reports.back().support = 5;
+  result.reports.back().tables = 1;
   result.reports.back().asleep = 2;
   result.reports.back().counters.energy_clamps = 7;
   for (StepReport& report : result.reports) report.times.full_ms = 1.5;
@@ -28,6 +30,51 @@ TEST(RunReport, JsonSpeaksOfTheLastStep) {
   EXPECT_EQ(json["levels"]["asleep"], 2);
   EXPECT_EQ(json["counters"]["energy_clamps"], 7);
   EXPECT_DOUBLE_EQ(json["stage_mean_ms"]["full"].get<double>(), 1.5);
+}
+
+TEST(RunReport, RungsAddUp) {
+  const auto levels = json_of(three_steps())["levels"];
+  EXPECT_EQ(levels["support"].get<int>() + levels["tables"].get<int>(), levels["statistical"].get<int>());
+  EXPECT_NE(text_of(three_steps()).find("rungs        4 full, 5 support, 1 tables\n"), std::string::npos) << text_of(three_steps());
+}
+
+TEST(RunReport, ABudgetHasItsFiguresAndAnotherPolicyNone) {
+  RunResult result = three_steps();
+  EXPECT_FALSE(json_of(result).contains("budget"));
+  EXPECT_EQ(text_of(result).find("budget"), std::string::npos);
+  result.budget = {.budget_ms = 4.0, .budget_work = std::nullopt, .steps = 591, .over = 2, .step_ms = {.p50 = 1.5, .p99 = 3.5, .max = 4.5}, .mean_bodies = {900.0, 90.0, 10.0}};
+  result.budget->mean_cost[std::size_t(Rung::full)] = {.predicted_ms = 1.25, .measured_ms = 1.5, .work = 1200};
+  const auto json = json_of(result)["budget"];
+  EXPECT_EQ(json["ms"], 4.0);
+  EXPECT_EQ(json["steps"], 591);
+  EXPECT_EQ(json["over"], 2);
+  EXPECT_EQ(json["p50"], 1.5);
+  EXPECT_EQ(json["p99"], 3.5);
+  EXPECT_EQ(json["max"], 4.5);
+  EXPECT_EQ(json["mean_full"], 10.0);
+  EXPECT_EQ(json["mean_support"], 90.0);
+  EXPECT_EQ(json["mean_tables"], 900.0);
+  EXPECT_EQ(json["rungs"]["full"]["measured_ms"], 1.5);
+  EXPECT_NE(text_of(result).find("budget       4 ms: 2 of 591 steps over;"), std::string::npos) << text_of(result);
+}
+
+TEST(RunReport, ABudgetOfWorkIsNotTimed) {
+  RunResult result = three_steps();
+  result.budget = {.budget_ms = std::nullopt, .budget_work = 2000.0, .steps = 591, .over = std::nullopt, .mean_work = 1900.0};
+  const auto json = json_of(result)["budget"];
+  EXPECT_EQ(json["work"], 2000.0);
+  EXPECT_FALSE(json.contains("ms"));
+  EXPECT_TRUE(json["over"].is_null());
+  EXPECT_NE(text_of(result).find("budget       2000 units: 1900 foretold, mean of 591 steps;"), std::string::npos) << text_of(result);
+}
+
+TEST(RunReport, PictureOfTheViewpoint) {
+  RunResult result = three_steps();
+  EXPECT_FALSE(json_of(result).contains("in_picture"));
+  result.in_picture = {.min_full = 8, .mean_full = 12.5};
+  EXPECT_EQ(json_of(result)["in_picture"]["min_full"], 8);
+  EXPECT_EQ(json_of(result)["in_picture"]["mean_full"], 12.5);
+  EXPECT_NE(text_of(result).find("in picture   8 full at least, 12.5 on average"), std::string::npos);
 }
 
 TEST(RunReport, JsonHasNoNumberThatIsNone) {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "lod/statistical/statistical_level.h"
+#include "lod/rungs/statistical_level.h"
 #include "reference/random.h"
 #include "signature/response_lookup.h"
 #include "tools/bench/response_cases.h"
@@ -73,23 +73,24 @@ Fate spoil_heap(const std::shared_ptr<const Shape>& shape, StatisticalModel mode
   StaticGround ground;
   ground.planes.push_back({});
   for (int spoilt = 0; spoilt < 6; ++spoilt) {
-    StatisticalLevel level({.model = model, .tables = {}}, ground, materials);
+    StatisticalLevel level({.tables = {}}, ground, materials);
+    std::vector<StatisticalPlace> places;
     for (int i = 0; i < 12; ++i) {
       RandomStream random(106, std::uint64_t(i), 0);
-      level.add(std::uint32_t(i), shape, 24.0, 0, {.position = {0.25 * (i % 2), 0.25 * (i / 2 % 2), 0.3 + 0.4 * (i / 4)}, .orientation = random.orientation()}, false, signature);
+      places.push_back(level.add(model, std::uint32_t(i), shape, 24.0, 0, {.position = {0.25 * (i % 2), 0.25 * (i / 2 % 2), 0.3 + 0.4 * (i / 4)}, .orientation = random.orientation()}, false, signature));
     }
     StepReport report;
     for (int i = 0; i < 45; ++i) level.step(kCaseStep, {}, report);
-    RigidState state = level.state(3);
+    RigidState state = level.state(places[3]);
     const Vec3 nan = Vec3::Constant(kNan);
     if (spoilt == 0) state.velocity = nan;
     if (spoilt == 1) state.angular_velocity = nan;
     if (spoilt == 2) state.position = nan;
     if (spoilt == 3) state.orientation.coeffs().setConstant(kNan);
-    if (spoilt < 4) level.set_state(3, state);
-    else level.add_force(3, spoilt == 4 ? nan : Vec3(1e308, 0, 0), spoilt == 4 ? Vec3(Vec3::Zero()) : nan);
+    if (spoilt < 4) level.set_state(places[3], state);
+    else level.add_force(places[3], spoilt == 4 ? nan : Vec3(1e308, 0, 0), spoilt == 4 ? Vec3(Vec3::Zero()) : nan);
     for (int i = 0; i < 60; ++i) level.step(kCaseStep, {}, report);
-    for (int slot = 0; slot < level.size(); ++slot) fate.lost += !is_finite(level.state(slot));
+    for (const StatisticalPlace place : places) fate.lost += !is_finite(level.state(place));
     fate.uncounted += report.counters.states_recovered == 0;
   }
   return fate;

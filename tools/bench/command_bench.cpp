@@ -1,8 +1,10 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/bench/command_bench_broad_phase.h"
+#include "tools/bench/command_bench_budget.h"
 #include "tools/bench/command_bench_full_level.h"
 #include "tools/bench/command_bench_hard_cases.h"
+#include "tools/bench/command_bench_rungs.h"
 #include "tools/bench/command_bench_settled.h"
 #include "tools/bench/command_bench_table1.h"
 
@@ -16,6 +18,8 @@ void add_bench_command(CLI::App& program, ExitCode& exit_code) {
   add_bench_table1_command(*bench, exit_code);
   add_bench_broad_phase_command(*bench, exit_code);
   add_bench_settled_command(*bench, exit_code);
+  add_bench_budget_command(*bench, exit_code);
+  add_bench_rungs_command(*bench, exit_code);
 }
 
 }  // namespace lodestone

@@ -1,5 +1,5 @@
 // S2.
-#include "lod/statistical/contact_impulse.h"
+#include "lod/contact/contact_impulse.h"
 #include "reference/random.h"
 #include "tools/bench/response_cases.h"
 #include "tools/bench/statistical_case_parts.h"

@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "lod/statistical/support_model.h"
-#include "lod/statistical/tables_model.h"
+#include "lod/support/support_model.h"
+#include "lod/tables/tables_model.h"
 #include "reference/free_rotation.h"
 #include "reference/random.h"
 #include "signature/response_lookup.h"

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "lod/full_level.h"
+#include "lod/full/full_level.h"
 #include "lod/manager.h"
 #include "reference/trial.h"
 #include "signature/signature_source.h"

@@ -1,16 +1,12 @@
 // Time that a thread spent computing, so that what else the machine does counts little.
 #pragma once
 
-#include <time.h>
+#include "lod/timing/thread_clock.h"
 
 namespace lodestone {
 
 /// ns, of the calling thread.
-inline double processor_ns() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * double(now.tv_sec) + double(now.tv_nsec);
-}
+inline double processor_ns() { return 1e6 * thread_time_ms(); }
 
 /// ns that `work()` takes of the calling thread.
 template <typename Work>

@@ -1,0 +1,288 @@
+#include "lod/contact/crowd.h"
+
+#include <algorithm>
+
+#include "lod/statistical/flight.h"
+#include "lod/statistical/parting.h"
+
+namespace lodestone {
+namespace {
+
+void lift_sphere_out(StatisticalBody& body, const HalfSpace& plane) {
+  const double gap = plane.height_of(body.position) - body.sphere_radius;
+  if (gap >= 0.0) return;
+  body.position -= gap * plane.normal;
+  body.velocity -= std::min(0.0, body.velocity.dot(plane.normal)) * plane.normal;
+}
+
+SolverBody solver_body_of(const ContactScene& scene, Participant p, double time) {
+  SolverBody solver;
+  if (scene.asleep(p)) return solver;
+  if (p.is_statistical()) {
+    const StatisticalBody& body = scene.body(p);
+    const BodyKind& kind = scene.kind_of(body);
+    solver.velocity = body.velocity + scene.world.gravity * time;
+    solver.angular_velocity = angular_velocity(body.orientation, body.spin, *kind.shape);
+    solver.inverse_mass = 1.0 / kind.mass;
+    solver.inverse_inertia = inverse_inertia_world(body.orientation, *kind.shape) / kind.mass;
+  } else {
+    const FullNeighbor& body = scene.neighbor(p);
+    solver.velocity = body.state.velocity + (scene.world.gravity + body.force / body.mass) * time;
+    solver.angular_velocity = body.state.angular_velocity;
+    solver.inverse_mass = 1.0 / body.mass;
+    solver.inverse_inertia = inverse_inertia_world(body.state.orientation, *body.shape) / body.mass;
+  }
+  return solver;
+}
+
+// Of a pair with a full body the statistical one, of two statistical ones the later one.
+Participant deciding(Participant one, Participant other) {
+  if (!one.is_statistical() || !other.is_statistical()) return one.is_statistical() ? one : other;
+  return one.index() > other.index() ? one : other;
+}
+
+bool is_eased(const ContactScene& scene, Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; }
+
+}  // namespace
+
+int Crowd::solver_index(const ContactScene& scene, Participant p, double time) {
+  std::int32_t& index = p.is_statistical() ? index_of_body_[p.index()] : index_of_neighbor_[p.index()];
+  if (index >= 0) return index;
+  index = std::int32_t(solver_bodies_.size());
+  participants_.push_back(p);
+  solver_bodies_.push_back(solver_body_of(scene, p, time));
+  angular_before_.push_back(solver_bodies_.back().angular_velocity);
+  return index;
+}
+
+void Crowd::add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal, const ContactLaw& law) {
+  keys_.push_back(key);
+  manifolds_.push_back({first, second, normal, law, std::uint32_t(points_.size()), 0});
+}
+
+// Of the last manifold.
+void Crowd::add_point(const Vec3& arm_first, const Vec3& arm_second, double gap) {
+  CrowdPoint& point = points_.emplace_back();
+  point.arm_first = arm_first;
+  point.arm_second = arm_second;
+  point.gap = gap;
+  ++manifolds_.back().count;
+}
+
+void Crowd::add_pair_contact(const ContactScene& scene, const CrowdContact& pair, double time) {
+  const std::int32_t first = solver_index(scene, pair.first, time), second = solver_index(scene, pair.second, time);
+  add_manifold(contact_key(scene.owner(pair.first), scene.owner(pair.second)), first, second, pair.contact.normal, scene.law(pair.first, pair.second));
+  const Manifold& manifold = pair.contact.manifold;
+  const Vec3 &at_first = scene.position(pair.first), &at_second = scene.position(pair.second);
+  for (int i = 0; i < manifold.count; ++i) add_point(manifold.points[i].point - at_first, manifold.points[i].point - at_second, manifold.points[i].gap);
+}
+
+void Crowd::add_solid_contact(const ContactScene& scene, const SolidContact& on_solid, double time) {
+  const Participant p = Participant::statistical(std::size_t(on_solid.slot));
+  const StaticGround& ground = *scene.world.ground;
+  const auto solid = std::size_t(on_solid.solid);
+  add_manifold(ground_key(scene.owner(p), ground.planes.size() + solid), solver_index(scene, p, time), -1, on_solid.contact.normal,
+               scene.world.materials->law(scene.material(p), ground.solids[on_solid.solid].material));
+  const Manifold& manifold = on_solid.contact.manifold;
+  for (int i = 0; i < manifold.count; ++i) add_point(manifold.points[i].point - scene.position(p), Vec3::Zero(), manifold.points[i].gap);
+}
+
+// `number`: of the plane, for what is remembered of its contacts.
+void Crowd::add_ground_contacts(const ContactScene& scene, int index, const HalfSpace& plane, std::size_t number, double time) {
+  StatisticalBody& body = scene.body(participants_[std::size_t(index)]);
+  const BodyKind& kind = scene.kind_of(body);
+  const bool hull = !body.is_sphere();
+  const double reach = hull ? kind.shape->radius : double(body.sphere_radius);
+  const double spin_speed = hull ? solver_bodies_[index].angular_velocity.norm() * reach : 0.0;
+  const double height = plane.height_of(body.position);
+  const double falling = std::max(0.0, -solver_bodies_[index].velocity.dot(plane.normal));
+  const double margin = settings_.contact_margin * kind.shape->radius + (falling + 0.5 * spin_speed) * time;
+  if (height > reach + margin) return;
+  HullContacts found;
+  if (hull) {
+    found = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, margin, body.support_hint);
+  } else {
+    found.contact[0] = {-reach * plane.normal, height - reach};
+    found.count = 1;
+  }
+  const auto reaches = [&](const HullContact& contact) { return contact.gap <= margin; };
+  const auto contacts = std::span(found.contact).first(std::size_t(found.count));
+  if (std::ranges::none_of(contacts, reaches)) return;
+  add_manifold(ground_key(body.owner, number), index, -1, plane.normal, scene.world.law(kind, plane));
+  for (const HullContact& contact : contacts)
+    if (reaches(contact)) add_point(contact.arm, Vec3::Zero(), contact.gap);
+}
+
+// A counting sort of the contacts by neighbour; a contact of two is in both runs.
+void Crowd::sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors) {
+  full_start_.assign(neighbors + 1, 0);
+  const auto each_end = [&](const auto& visit) {
+    for (std::size_t i = 0; i < full_contacts.size(); ++i)
+      for (const std::int32_t end : {full_contacts[i].first, full_contacts[i].second})
+        if (end >= 0) visit(end, std::int32_t(i));
+  };
+  each_end([&](std::int32_t end, std::int32_t) { ++full_start_[end + 1]; });
+  for (std::size_t i = 0; i < neighbors; ++i) full_start_[i + 1] += full_start_[i];
+  full_order_.resize(std::size_t(full_start_[neighbors]));
+  full_next_.assign(full_start_.begin(), full_start_.end() - 1);
+  each_end([&](std::int32_t end, std::int32_t contact) { full_order_[full_next_[end]++] = contact; });
+}
+
+// What holds up a full body, and what holds that up in turn: bodies met here take their place among the participants.
+void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch) {
+  const auto self = std::int32_t(participants_[std::size_t(index)].index());
+  const Vec3& at_self = scene.neighbors[self].state.position;
+  for (std::int32_t i = full_start_[self]; i < full_start_[self + 1]; ++i) {
+    const FullContact& contact = touch.full_contacts[full_order_[i]];
+    const bool is_first = contact.first == self;
+    const std::int32_t other = is_first ? contact.second : contact.first, second = other < 0 ? -1 : solver_index(scene, Participant::full(std::size_t(other)), touch.time);
+    const bool added_by_the_other = other >= 0 && second < index && !scene.neighbors[other].asleep;
+    if (added_by_the_other) continue;
+    add_manifold(contact_key(scene.neighbors[self].owner, other < 0 ? 0xffffffff : scene.neighbors[other].owner), index, second,
+                 is_first ? contact.normal : Vec3(-contact.normal), {.restitution = 0.0, .friction = contact.friction});
+    add_point(contact.point - at_self, other < 0 ? Vec3(Vec3::Zero()) : Vec3(contact.point - scene.neighbors[other].state.position), contact.gap);
+  }
+}
+
+// Pair contacts, then what is under every moving participant.
+void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
+  participants_.clear();
+  solver_bodies_.clear();
+  angular_before_.clear();
+  manifolds_.clear();
+  keys_.clear();
+  points_.clear();
+  index_of_body_.resize(std::max(index_of_body_.size(), scene.bodies.size()), -1);
+  index_of_neighbor_.assign(scene.neighbors.size(), -1);
+
+  for (const CrowdContact& pair : touch.contacts) add_pair_contact(scene, pair, touch.time);
+  pair_manifolds_ = manifolds_.size();
+  for (const SolidContact& on_solid : touch.solid_contacts) add_solid_contact(scene, on_solid, touch.time);
+  sort_full_contacts(touch.full_contacts, scene.neighbors.size());
+  const auto& planes = scene.world.ground->planes;
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    const Participant p = participants_[i];
+    if (scene.asleep(p)) continue;
+    if (p.is_full()) {
+      add_full_contacts(scene, int(i), touch);
+      continue;
+    }
+    for (std::size_t number = 0; number < planes.size(); ++number) add_ground_contacts(scene, int(i), planes[number], number, touch.time);
+    std::size_t number = planes.size() + scene.world.ground->solids.size();
+    for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index()))) add_ground_contacts(scene, int(i), face, number++, touch.time);
+  }
+}
+
+void Crowd::solve(const ContactScene& scene, double time) {
+  ContactSolverSettings settings = settings_.solver;
+  settings.bounce_velocity = scene.world.bounce_velocity + scene.world.gravity_strength() * time;  // what gravity adds in a step is no impact
+  settings.fall = scene.world.gravity * time;
+  memory_.recall(keys_, manifolds_, points_, time);
+  solver_.solve(solver_bodies_, manifolds_, points_, time, settings, jobs_);
+  memory_.remember(keys_, manifolds_, points_, time);
+}
+
+// Full neighbours only get their velocities.
+void Crowd::move(const ContactScene& scene, double time) {
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    const Participant p = participants_[i];
+    const SolverBody& solved = solver_bodies_[i];
+    if (p.is_full()) {
+      RigidState& state = scene.neighbor(p).state;
+      state.velocity = solved.velocity;
+      state.angular_velocity = solved.angular_velocity;
+      continue;
+    }
+    index_of_body_[p.index()] = -1;
+    StatisticalBody& body = scene.body(p);
+    if (body.motion == Motion::asleep) continue;
+    const BodyKind& kind = scene.kind_of(body);
+    body.velocity = solved.velocity;
+    body.spin += spin_of(body.orientation, solved.angular_velocity - angular_before_[i], *kind.shape);
+    body.position += body.velocity * time;
+    body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
+    ++body.events;
+  }
+}
+
+void Crowd::give_to_full(const ContactScene& scene) const {
+  if (scene.neighbors.empty()) return;
+  for (const CrowdManifold& m : std::span(manifolds_).first(pair_manifolds_))
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
+      const auto give = [&](Participant to, const Vec3& impulse, const Vec3& arm) {
+        if (!to.is_full() || scene.neighbor(to).asleep) return;
+        Impulse& share = point.bounces ? scene.neighbor(to).hit : scene.neighbor(to).push;
+        share.linear += impulse;
+        share.angular += arm.cross(impulse);
+      };
+      give(participants_[std::size_t(m.first)], point.impulse, point.arm_first);
+      give(participants_[std::size_t(m.second)], -point.impulse, point.arm_second);
+    }
+}
+
+// Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's matter.
+void Crowd::move_apart(const ContactScene& scene, double time) {
+  const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
+    return index < 0 ? Vec3(Vec3::Zero()) : Vec3(solver_bodies_[index].velocity + solver_bodies_[index].angular_velocity.cross(arm));
+  };
+  const auto move = [&](std::int32_t index, const Vec3& by) {
+    if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
+    const Participant p = participants_[index];
+    scene.position(p) += by;
+    if (p.is_full()) scene.neighbor(p).shift += by;
+  };
+  partners_.assign(solver_bodies_.size(), 0);
+  for (const CrowdManifold& m : manifolds_) {
+    ++partners_[std::size_t(m.first)];
+    if (m.second >= 0) ++partners_[std::size_t(m.second)];
+  }
+  for (const CrowdManifold& m : manifolds_) {
+    const Participant one = participants_[std::size_t(m.first)], other = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
+    if (!one.is_statistical() && !other.is_statistical()) continue;
+    const double radius = scene.shape(deciding(one, other)).radius;
+    const bool eased = is_eased(scene, one) || is_eased(scene, other);
+    const int partners = std::max(partners_[std::size_t(m.first)], m.second < 0 ? 0 : partners_[std::size_t(m.second)]);
+    const double farthest = eased ? parting_speed(radius, scene.world.gravity_strength()) * time / partners : 1e300;
+    const double first = solver_bodies_[m.first].inverse_mass, second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
+    if (first + second == 0.0) continue;
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
+      if (push_out_overlap(point.gap, radius) == 0.0) continue;
+      for (const Participant p : {one, other})
+        if (is_eased(scene, p)) scene.body(p).eased = kEasedTime;  // for as long as there is some
+      const double parting = (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
+      const double overlap = point.gap + std::max(0.0, parting) * time;  // the rest is undone by the motion itself
+      const double distance = std::min(push_out_overlap(overlap, radius), farthest) / double(m.count);
+      move(m.first, distance * first / (first + second) * m.normal);
+      move(m.second, -distance * second / (first + second) * m.normal);
+    }
+  }
+}
+
+// The ground has the last word.
+void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) const {
+  const auto lift = [&](Participant p, const HalfSpace& plane) {
+    StatisticalBody& body = scene.body(p);
+    const Shape& shape = *scene.kind_of(body).shape;
+    if (body.is_sphere()) lift_sphere_out(body, plane);
+    else lift_out(body, shape, plane, lift_of(body, shape, scene.world.gravity_strength(), touch.time));
+  };
+  for (const Participant p : participants_) {
+    if (!p.is_statistical() || scene.asleep(p)) continue;
+    for (const HalfSpace& plane : scene.world.ground->planes) lift(p, plane);
+    for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index()))) lift(p, face);
+  }
+}
+
+ContactTally Crowd::step(const ContactScene& scene, const CrowdTouch& touch) {
+  gather(scene, touch);
+  solve(scene, touch.time);
+  move(scene, touch.time);
+  give_to_full(scene);
+  move_apart(scene, touch.time);
+  lift_off_ground(scene, touch);
+  ContactTally tally;
+  tally.contacts = std::int64_t(points_.size());
+  return tally;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,246 @@
+#include "lod/contact/pair_contacts.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lodestone {
+namespace {
+
+// Vertices this near the touching plane, over R, belong to the touching feature.
+constexpr double kFeatureMargin = 0.01;
+
+// The search begins at the line of centres.
+HullGap no_axis() { return {.normal = Vec3::Zero()}; }
+
+PlacedHull place(const PairBody& body) { return {*body.shape, body.position, body.orientation}; }
+
+// The vertices that lie within a hair of the touching plane, as arms from `origin`.
+HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin) {
+  const double lowest = vertex < 0 ? 0.0 : normal.dot(body.orientation * body.shape->hull.vertices[std::size_t(vertex)]);
+  const double margin = lowest + kFeatureMargin * body.shape->radius;
+  HullContacts feature = find_hull_contacts(*body.shape, body.orientation, normal, 0.0, margin, vertex);
+  for (int i = 0; i < feature.count; ++i) feature.contact[i].arm += body.position - origin;
+  return feature;
+}
+
+Vec3 middle_of(const HullContacts& feature) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < feature.count; ++i) sum += feature.contact[i].arm;
+  return sum / feature.count;
+}
+
+Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, HullContacts& upper, HullContacts& lower) {
+  upper = find_feature(first, best.normal, best.vertex_first, second.position);
+  lower = find_feature(second, -best.normal, best.vertex_second, second.position);
+  return find_manifold(upper, lower, best.normal, best.gap);
+}
+
+Manifold find_points(const PairBody& first, const PairBody& second, const HullGap& best) {
+  HullContacts upper, lower;
+  Manifold manifold = clip_features(first, second, best, upper, lower);
+  if (manifold.count == 0) {  // the axis is not quite that of the nearest features
+    manifold.points[0] = {0.5 * (middle_of(upper) + middle_of(lower)), best.gap};
+    manifold.count = 1;
+  }
+  for (ManifoldPoint& p : manifold.points) p.point += second.position;
+  return manifold;
+}
+
+PairContact contact_along(const PairBody& first, const PairBody& second, const HullGap& best) {
+  return {best.normal, best.gap, find_points(first, second, best)};
+}
+
+int count_pieces(const PairBody& body) { return std::max<int>(1, int(body.shape->pieces.size())); }
+
+// The body itself where it has none.
+PairBody piece_of(const PairBody& body, int piece) {
+  if (body.shape->pieces.empty()) return body;
+  PairBody part = body;
+  part.shape = &body.shape->pieces[std::size_t(piece)];
+  part.position += body.orientation * part.shape->center_of_mass_in_mesh;
+  return part;
+}
+
+// Deeper than this in a piece, over its R, is inside it.
+constexpr double kWithin = 1e-3;
+
+bool is_within(const PairBody& piece, const Vec3& point) {
+  const Hull& hull = piece.shape->hull;
+  const Vec3 local = piece.orientation.conjugate() * (point - piece.position);
+  const double margin = kWithin * piece.shape->radius;
+  if (local.squaredNorm() > piece.shape->radius * piece.shape->radius) return false;
+  for (int i = 0; i < int(hull.faces.size()); ++i) {
+    const Vec3 normal = hull.face_normal(i);
+    if (normal.dot(local - hull.vertices[std::size_t(hull.faces[std::size_t(i)][0])]) > -margin * normal.norm()) return false;
+  }
+  return true;
+}
+
+// Whether a point on the surface of piece `own` lies inside another piece of the body: nothing can touch it there.
+bool is_internal(const PairBody& body, int own, const Vec3& point) {
+  for (int i = 0; i < int(body.shape->pieces.size()); ++i)
+    if (i != own && is_within(piece_of(body, i), point)) return true;
+  return false;
+}
+
+void drop_internal_points(const PairBody& first, int i, const PairBody& second, int k, PairContact& contact) {
+  Manifold kept;
+  for (int m = 0; m < contact.manifold.count; ++m) {
+    const ManifoldPoint& p = contact.manifold.points[std::size_t(m)];
+    const Vec3 half = 0.5 * p.gap * contact.normal;
+    if (!is_internal(first, i, p.point + half) && !is_internal(second, k, p.point - half)) kept.points[std::size_t(kept.count++)] = p;
+  }
+  contact.manifold = kept;
+}
+
+// Pieces overlap, so that one contact of the bodies may be several of theirs.
+void add_contact(const PairContact& contact, double grain, std::vector<PairContact>& contacts) {
+  for (PairContact& other : contacts)
+    if (other.normal.dot(contact.normal) > 0.999 && std::abs(other.gap - contact.gap) < grain) {
+      other.manifold = join_manifolds(other.manifold, contact.manifold, other.normal);
+      other.gap = std::min(other.gap, contact.gap);
+      return;
+    }
+  contacts.push_back(contact);
+}
+
+// At least; above the margin where that is known without a search or two spheres show it.
+double gap_of_pieces(const PairBody& a, const PairBody& b, KnownGap& known, double margin) {
+  if (known.when)
+    if (const double left = known.axis.gap - find_motion_since(*known.when, a, b); left > margin) return left;
+  const double apart = (a.position - b.position).norm() - a.shape->radius - b.shape->radius;
+  if (apart > margin) return apart;
+  known.axis = find_hull_gap(place(a), place(b), known.axis, margin);
+  known.when = pose_of(a, b);
+  return known.axis.gap;
+}
+
+void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std::span<KnownGap> known, double margin, HullContactSearch& search) {
+  search.gap = 1e300;
+  for (int i = 0; i < count_pieces(first); ++i)
+    for (int k = 0; k < count_pieces(second); ++k) {
+      const PairBody a = piece_of(first, i), b = piece_of(second, k);
+      KnownGap& of_pieces = known[std::size_t(i * count_pieces(second) + k)];
+      const double gap = gap_of_pieces(a, b, of_pieces, margin);
+      search.gap = std::min(search.gap, gap);
+      if (gap > margin) continue;
+      PairContact contact = contact_along(a, b, of_pieces.axis);
+      drop_internal_points(first, i, second, k, contact);
+      if (contact.manifold.count > 0) add_contact(contact, kWithin * std::min(a.shape->radius, b.shape->radius), search.contacts);
+    }
+}
+
+void search_relative(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
+  search.contacts.clear();
+  if (first.shape->pieces.empty() && second.shape->pieces.empty()) {
+    whole = find_hull_gap(place(first), place(second), whole, margin);
+    search.gap = whole.gap;
+    if (search.gap <= margin) search.contacts.push_back(contact_along(first, second, whole));
+    return;
+  }
+  const bool apart = are_apart(place(first), place(second), margin, whole);
+  search.gap = whole.gap;
+  if (apart && search.gap > margin) return;
+  of_pieces.resize(std::size_t(count_pieces(first) * count_pieces(second)));
+  find_contacts_of_pieces(first, second, of_pieces, margin, search);
+}
+
+// Rounded well above what the last bits of a state hold (and far below what shows), so that the path of the search does not hang on them: the same
+// two bodies meet alike whichever of them is full.
+template <class Numbers>
+Numbers without_last_bits(const Numbers& values) {
+  constexpr double kGrain = 0x1p-36;
+  return ((values / kGrain).array().round() * kGrain).matrix();
+}
+
+std::pair<PairBody, PairBody> relative_to_second(const PairBody& first, const PairBody& second) {
+  PairBody a = first, b = second;
+  a.position = without_last_bits(Vec3(first.position - second.position));
+  b.position.setZero();
+  a.orientation.coeffs() = without_last_bits(Eigen::Vector4d(first.orientation.coeffs()));
+  b.orientation.coeffs() = without_last_bits(Eigen::Vector4d(second.orientation.coeffs()));
+  return {a, b};
+}
+
+void shift(PairContact& contact, const Vec3& by) {
+  for (ManifoldPoint& p : contact.manifold.points) p.point += by;
+}
+
+}  // namespace
+
+std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin) {
+  const Vec3 between = first.position - second.position;
+  const double distance = between.norm(), gap = distance - first.sphere_radius - second.sphere_radius;
+  if (gap > margin) return {};
+  const Vec3 normal = distance > 1e-12 ? Vec3(between / distance) : Vec3::UnitZ();
+  PairContact contact{normal, gap, {}};
+  contact.manifold.points[0] = {second.position + (second.sphere_radius + 0.5 * gap) * normal, gap};
+  contact.manifold.count = 1;
+  return contact;
+}
+
+PairPose pose_of(const PairBody& first, const PairBody& second) {
+  return {(first.position - second.position).cast<float>(), first.orientation.coeffs().cast<float>(), second.orientation.coeffs().cast<float>()};
+}
+
+double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second) {
+  // An angle is at most 2.2 times the chord of two quaternions, up to half a turn.
+  const auto turned = [](const Eigen::Vector4f& from, const Quat& to) {
+    const Eigen::Vector4d was = from.cast<double>();
+    return 2.2 * std::sqrt(std::min((was - to.coeffs()).squaredNorm(), (was + to.coeffs()).squaredNorm()));
+  };
+  return (first.position - second.position - then.apart.cast<double>()).norm() + turned(then.first, first.orientation) * first.shape->radius +
+         turned(then.second, second.orientation) * second.shape->radius;
+}
+
+HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second) {
+  HeldContact held{contact.normal, contact.manifold.count, {}, {}};
+  for (int i = 0; i < contact.manifold.count; ++i) {
+    const ManifoldPoint& p = contact.manifold.points[std::size_t(i)];
+    const Vec3 half = 0.5 * p.gap * contact.normal;
+    held.on_first[std::size_t(i)] = (first.orientation.conjugate() * (p.point + half - first.position)).cast<float>();
+    held.on_second[std::size_t(i)] = (second.orientation.conjugate() * (p.point - half - second.position)).cast<float>();
+  }
+  return held;
+}
+
+PairContact follow(const HeldContact& held, const PairBody& first, const PairBody& second) {
+  const Mat3 turn_first = first.orientation.toRotationMatrix(), turn_second = second.orientation.toRotationMatrix();
+  PairContact contact{held.normal, 1e300, {}};
+  contact.manifold.count = held.count;
+  for (int i = 0; i < held.count; ++i) {
+    const Vec3 on_first = first.position + turn_first * held.on_first[std::size_t(i)].cast<double>();
+    const Vec3 on_second = second.position + turn_second * held.on_second[std::size_t(i)].cast<double>();
+    const double gap = (on_first - on_second).dot(held.normal);
+    contact.manifold.points[std::size_t(i)] = {0.5 * (on_first + on_second), gap};
+    contact.gap = std::min(contact.gap, gap);
+  }
+  return contact;
+}
+
+void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
+  const auto [a, b] = relative_to_second(first, second);
+  search_relative(a, b, whole, of_pieces, margin, search);
+  for (PairContact& contact : search.contacts) shift(contact, second.position);
+}
+
+std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
+  const auto [a, b] = relative_to_second(first, second);
+  const HullGap best = find_hull_gap(place(a), place(b), no_axis(), margin);
+  if (best.gap > margin) return {};
+  PairContact contact = contact_along(a, b, best);
+  shift(contact, second.position);
+  return contact;
+}
+
+std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin) {
+  const HullGap along = measure_hull_gap(place(first), place(second), normal);
+  if (along.gap > margin) return {};
+  HullContacts upper, lower;
+  PairContact contact{normal, along.gap, clip_features(first, second, along, upper, lower)};
+  if (contact.manifold.count == 0) return {};
+  for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
+  return contact;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,73 @@
+// Where two statistical bodies meet: a shared normal and shared points.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lod/body.h"
+#include "lod/contact/contact_manifold.h"
+#include "lod/contact/hull_gap.h"
+
+namespace lodestone {
+
+/// A body as pair contacts see it, of either level.
+struct PairBody {
+  const Shape* shape = nullptr;
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  double sphere_radius = 0.0;  ///< m, `tables`: of the colliding sphere
+};
+
+struct PairContact {
+  Vec3 normal = Vec3::UnitZ();  ///< from the second body into the first
+  double gap = 0.0;             ///< m, the least; negative where they overlap
+  Manifold manifold;            ///< one to four points that both bodies share, world
+};
+
+/// `tables`: the two spheres. None where the gap is above `margin`.
+std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin);
+
+/// A contact that its bodies take along, until they have moved so far that it must be looked for anew. Kept for every pair that touches: floats, which are fine
+/// enough for arms.
+struct HeldContact {
+  Vec3 normal = Vec3::UnitZ();
+  std::int32_t count = 0;
+  std::array<Eigen::Vector3f, 4> on_first, on_second;  ///< m, its points on each body's surface, body axes
+};
+HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second);
+/// Where its points are now, and their gaps along the normal that it was found with.
+PairContact follow(const HeldContact& held, const PairBody& first, const PairBody& second);
+
+/// How two bodies lie to each other.
+struct PairPose {
+  Eigen::Vector3f apart = Eigen::Vector3f::Zero();  ///< m, of the first from the second
+  Eigen::Vector4f first{0, 0, 0, 1}, second{0, 0, 0, 1};  ///< orientations
+};
+PairPose pose_of(const PairBody& first, const PairBody& second);
+/// m: no gap between them has changed by more since they lay so.
+double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second);
+
+/// The gap of two pieces of bodies as it was found.
+struct KnownGap {
+  HullGap axis = {.normal = Vec3::Zero()};  ///< where the next search begins; zero: anywhere
+  std::optional<PairPose> when;             ///< how they lay then; none: never looked for
+};
+
+struct HullContactSearch {
+  double gap = 0.0;                    ///< m: the true distance is at least this
+  std::vector<PairContact> contacts;   ///< those with a gap of at most the margin: one for hulls, one for each two convex pieces that meet
+};
+
+/// `support`. Concave bodies that have convex pieces (Shape::pieces) meet in these, so that they may reach into each other; others as their hulls. `whole`, of the
+/// hulls (at first with a normal of zero), and `of_pieces`, of every two pieces (at first empty), are what earlier searches found. What `search` held before is gone.
+void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search);
+
+/// The two hulls, whatever pieces they have; none where the gap is above `margin`.
+std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);
+
+/// Contact of the two hulls along a given axis (unit, from `second` into `first`); none where the gap along it is above `margin` or the touching features do not
+/// overlap across it.
+std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin);
+
+}  // namespace lodestone

@@ -1,0 +1,37 @@
+#include "lod/contact/pair_memory.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace lodestone {
+
+void PairMemory::clear() {
+  keys_.clear();
+  made_ = false;
+}
+
+std::int32_t PairMemory::find(ContactKey key, std::size_t expected) {
+  constexpr std::size_t kBefore = 2, kAfter = 6;
+  const std::size_t end = std::min(keys_.size(), expected + kAfter);
+  for (std::size_t i = expected > kBefore ? expected - kBefore : 0; i < end; ++i)
+    if (keys_[i] == key) return std::int32_t(i);
+  if (!made_) make_table();
+  return table_[entry_of(key)].place;
+}
+
+// Where the key is, or the free entry in which it would be.
+std::size_t PairMemory::entry_of(ContactKey key) const {
+  const std::size_t mask = table_.size() - 1;
+  std::size_t i = std::size_t((key * 0x9e3779b97f4a7c15u) >> 20) & mask;
+  while (table_[i].key != kEmpty && table_[i].key != key) i = (i + 1) & mask;
+  return i;
+}
+
+void PairMemory::make_table() {
+  table_.assign(std::bit_ceil(std::max<std::size_t>(16, 2 * keys_.size())), Entry{});
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    if (Entry& entry = table_[entry_of(keys_[i])]; entry.key == kEmpty) entry = {keys_[i], std::int32_t(i)};
+  made_ = true;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,84 @@
+// The full level: bodies as trimeshes in ODE. Its world is made when a first body becomes full, or is the caller's from the start.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "lod/ground/static_ground.h"
+#include "lod/step_report.h"
+#include "reference/ode/ode_world.h"
+
+namespace lodestone {
+
+/// Over the shape's size. ODE notices an impact up to v·h inside the plane. Where it is not answered at its own time (timed_contacts.h) bouncing before
+/// that is as wrong in height as after it, so it is done only where the depth would show.
+inline constexpr double kPlaneDepthMax = 0.04;
+
+struct FullSettings {
+  Vec3 gravity{0, 0, -9.81};  ///< m/s²; the caller's world keeps its own
+  std::uint64_t seed = 1;
+  int substeps = 4;
+  bool sleeping = true;
+};
+
+/// How the full level has ODE work.
+OdeSettings ode_settings_of(const FullSettings& settings);
+
+class FullLevel {
+ public:
+  struct Member {
+    std::uint32_t owner;  ///< the manager's index of the body
+    OdeBodyId id;
+  };
+
+  /// `materials` must outlive the level.
+  FullLevel(const FullSettings& settings, const MaterialTable& materials);
+  /// On the caller's world and space, which must outlive the level.
+  FullLevel(dxWorld* world, dxSpace* space, const FullSettings& settings, const MaterialTable& materials);
+
+  /// Ground of this level; see OdeWorld. Costs nothing before there is a world.
+  void add_plane(const HalfSpace& plane);
+  void add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
+  void add_static_mesh(const Mesh& mesh, MaterialId material);
+
+  OdeBodyId add(std::uint32_t owner, const OdeBodyDefinition& definition, bool asleep);
+  /// Wakes what touched it, unless it `stays` where it is, on another rung.
+  void remove(OdeBodyId body, bool stays = false);
+
+  /// Advances every body, the caller's too, and adds what happened to `counters`.
+  void step(double dt, Counters& counters);
+
+  std::span<const Member> members() const { return members_; }
+  /// Where in members() a body is; −1 for one that was removed.
+  std::int32_t index_of(OdeBodyId body) const;
+  int asleep_count() const;
+
+  /// Notes which bodies touched each other in the last substep.
+  void note_touching();
+  /// That a body touches another, of another level.
+  void note_touching(std::size_t index) { touching_[index] = true; }
+  /// As noted last.
+  bool touches(OdeBodyId body) const { return touching_[std::size_t(index_of(body))]; }
+  /// Null before a first body was full, unless it is the caller's.
+  const OdeWorld* world() const { return world_ ? &*world_ : nullptr; }
+  OdeWorld* world() { return world_ ? &*world_ : nullptr; }
+
+ private:
+  void lay(std::function<void(OdeWorld&)> ground);
+  void add_new_counts(Counters& counters);
+
+  FullSettings settings_;
+  const MaterialTable* materials_;
+  std::optional<OdeWorld> world_;
+  std::vector<std::function<void(OdeWorld&)>> waiting_ground_;
+  std::vector<Member> members_;
+  std::vector<char> touching_;  // one of each member
+  std::unordered_map<std::uint32_t, std::int32_t> index_of_id_;
+  OdeCounters counted_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,34 @@
+#include "lod/manager/step_levels.h"
+
+#include "lod/timing/stage_timer.h"
+
+namespace lodestone {
+
+void StepLevels::step_statistical(double dt, StepReport& report) {
+  if (!levels_.statistical || levels_.statistical->size() == 0) {
+    neighborhood_.bodies.clear();
+    levels_.give_forces();
+    return;
+  }
+  {
+    const StageTimer timer(report.times.cross_level_ms);
+    gather(levels_, neighborhood_);
+    levels_.give_forces();
+  }
+  levels_.statistical->step(dt, neighborhood_.bodies, report, neighborhood_.contacts);
+  const StageTimer timer(report.times.cross_level_ms);
+  hand_over(levels_, neighborhood_, dt);
+}
+
+void StepLevels::step_full(double dt, StepReport& report) {
+  const StageTimer timer(report.times.full_ms);
+  levels_.full.step(dt, report.counters);
+}
+
+void StepLevels::note_touching() {
+  levels_.full.note_touching();
+  for (std::size_t i = 0; i < neighborhood_.bodies.size(); ++i)
+    if (is_touched(neighborhood_.bodies[i])) levels_.full.note_touching(i);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,24 @@
+// Stages 3 and 4 of a step: the statistical rungs and their contacts with full bodies, then the full level with what came of those contacts.
+#pragma once
+
+#include "lod/manager/cross_level.h"
+#include "lod/manager/levels.h"
+#include "lod/step_report.h"
+
+namespace lodestone {
+
+class StepLevels {
+ public:
+  explicit StepLevels(Levels& levels) : levels_(levels) {}
+
+  void step_statistical(double dt, StepReport& report);
+  void step_full(double dt, StepReport& report);
+  /// Notes which full bodies touch another, on whatever rung; after both.
+  void note_touching();
+
+ private:
+  Levels& levels_;
+  Neighborhood neighborhood_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,30 @@
+// Which bodies may touch another in this step: marks by index that cost nothing for those that sleep.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lod/contact/participant.h"
+
+namespace lodestone {
+
+class NearMarks {
+ public:
+  void begin(std::size_t bodies) {
+    for (const std::int32_t index : marked_) marks_[std::size_t(index)] = 0;
+    marked_.clear();
+    if (marks_.size() < bodies) marks_.resize(bodies, 0);
+  }
+  void mark(Participant p) {
+    if (!p.is_statistical() || marks_[p.index()]) return;
+    marks_[p.index()] = 1;
+    marked_.push_back(std::int32_t(p.index()));
+  }
+  bool operator[](std::size_t index) const { return marks_[index] != 0; }
+
+ private:
+  std::vector<char> marks_;
+  std::vector<std::int32_t> marked_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,171 @@
+#include "lod/rungs/near_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone {
+namespace {
+
+constexpr double kTouching = 0.01;  // over R: a gap that is as good as none
+constexpr double kFar = 0.25;       // over R: across so wide a gap fast bodies may well miss each other
+
+// Whether two that close in at `closing` (m/s, of the first) do touch within `time`: conservative advancement of their hulls as they are turned now.
+bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3& closing, const PairContact& contact, double touching, double time) {
+  constexpr int kMostSteps = 12;
+  HullGap gap{contact.normal, contact.gap, -1, -1};
+  double gone = 0.0;
+  for (int i = 0; i < kMostSteps && gap.gap > touching; ++i) {
+    const double speed = -closing.dot(gap.normal);
+    if (speed <= 0.0) return false;
+    gone += gap.gap / speed;
+    if (gone > time) return false;
+    gap = find_hull_gap(PlacedHull(*first.shape, first.position + gone * closing, first.orientation),
+                        PlacedHull(*second.shape, second.position, second.orientation), gap, 1e300);
+  }
+  return true;
+}
+
+bool comes_before(const Vec3& p, const Vec3& q) { return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end()); }
+
+}  // namespace
+
+// Pairs too many are set aside, not freed: what they have allocated serves others.
+void NearPairs::resize(std::size_t count) {
+  while (found_.size() > count) {
+    spare_.push_back(std::move(found_.back()));
+    found_.pop_back();
+  }
+  while (found_.size() < count) {
+    if (spare_.empty()) {
+      found_.emplace_back();
+      continue;
+    }
+    found_.push_back(std::move(spare_.back()));
+    spare_.pop_back();
+  }
+}
+
+void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs) {
+  std::swap(found_, before_);
+  memory_.clear();
+  for (const FoundPair& pair : before_) memory_.add(pair.key);
+  resize(pairs.size());
+  std::size_t expected = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    // By place, so that a contact is the same on whichever rungs its bodies are and whichever was added first.
+    auto [first, second] = pairs[i];
+    if (comes_before(scene.position(second), scene.position(first))) std::swap(first, second);
+    const ContactKey key = contact_key(scene.owner(first), scene.owner(second));
+    const std::int32_t before = memory_.find(key, expected);  // none, too, where they have changed places: what is known holds for their old order
+    if (before < 0) found_[i].forget();
+    else std::swap(found_[i], before_[std::size_t(before)]), expected = std::size_t(before) + 1;
+    found_[i].key = key;
+    found_[i].first = first;
+    found_[i].second = second;
+  }
+}
+
+Vec3 NearPairs::point_velocity(const ContactScene& scene, Participant p, const Vec3& point) const {
+  if (p.is_full()) {
+    const RigidState& s = scene.neighbor(p).state;
+    return s.velocity + s.angular_velocity.cross(point - s.position);
+  }
+  const StatisticalBody& body = scene.body(p);
+  if (body.motion == Motion::asleep) return Vec3::Zero();
+  return body.velocity + turning_[p.index()].angular_velocity.cross(point - body.position);
+}
+
+void NearPairs::find_contact(const ContactScene& scene, double time, FoundPair& pair) const {
+  // Over R: so far bodies take a contact along. A sphere's orientation is coarse anyway, and spheres among others may overlap deeply, where a search is dear.
+  constexpr double kHeld = 0.02, kHeldBySphere = 0.1;
+  const PairBody a = scene.pair_body(pair.first), b = scene.pair_body(pair.second);
+  const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
+  const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;
+  if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(scene, pair, time)) return;
+  const auto is_sphere = [&](Participant p) { return p.is_statistical() && scene.body(p).is_sphere(); };
+  const double held = is_sphere(pair.first) || is_sphere(pair.second) ? kHeldBySphere : kHeld;
+  if (!pair.contacts.empty() && moved < held * least_radius) return;
+  const Vec3 closing = scene.velocity(pair.first) - scene.velocity(pair.second);
+  thread_local HullContactSearch search;
+  find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + closing.norm() * time, search);
+  pair.gap = search.gap;
+  pair.when = pose_of(a, b);
+  pair.contacts.clear();
+  const auto meet = [&](const PairContact& contact) { return contact.gap < kFar * least_radius || meet_on_their_way(a, b, closing, contact, touching, time); };
+  for (const PairContact& contact : search.contacts)
+    if (meet(contact)) pair.contacts.push_back(hold(contact, a, b));
+}
+
+// Within the time, or nearly so.
+bool NearPairs::closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact, double time) const {
+  const double touching = kTouching * least_radius(scene, pair);
+  return std::ranges::any_of(std::span(contact.manifold.points).first(std::size_t(contact.manifold.count)), [&](const ManifoldPoint& p) {
+    const Vec3 velocity = point_velocity(scene, pair.first, p.point) - point_velocity(scene, pair.second, p.point);
+    return p.gap + velocity.dot(contact.normal) * time <= touching;
+  });
+}
+
+void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> awake, NearMarks& near) {
+  for (const std::int32_t slot : awake) scene.bodies[std::size_t(slot)].crowded = false;
+  const auto moved_on = [&](Participant p) { return p.is_statistical() && !near[p.index()] && !scene.asleep(p); };
+  const auto looked_at = [&](const FoundPair& pair) {
+    if (pair.first.is_full() && pair.second.is_full()) return false;  // two full bodies are the full level's matter
+    if (moved_on(pair.first) || moved_on(pair.second)) return false;
+    return !(scene.asleep(pair.first) && scene.asleep(pair.second));
+  };
+  constexpr std::int64_t kGrain = 64;
+  const auto count = std::int64_t(found_.size());
+  run_in_pieces(jobs_, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i)
+      if (looked_at(found_[std::size_t(i)])) find_contact(scene, time, found_[std::size_t(i)]);
+  });
+  first_contact_.assign(1, 0);
+  for (const FoundPair& pair : found_) first_contact_.push_back(first_contact_.back() + (pair.contacts.empty() || !looked_at(pair) ? 0 : std::uint32_t(pair.contacts.size())));
+  contacts_.resize(first_contact_.back());
+  may_close_.resize(first_contact_.back());
+  run_in_pieces(jobs_, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      const FoundPair& pair = found_[std::size_t(i)];
+      for (std::uint32_t at = first_contact_[std::size_t(i)]; at < first_contact_[std::size_t(i) + 1]; ++at) {
+        const HeldContact& held = pair.contacts[at - first_contact_[std::size_t(i)]];
+        contacts_[at] = {pair.first, pair.second, follow(held, scene.pair_body(pair.first), scene.pair_body(pair.second))};
+        may_close_[at] = closes(scene, pair, contacts_[at].contact, time);
+      }
+    }
+  });
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < contacts_.size(); ++at) {
+    if (!may_close_[at]) continue;
+    if (kept != at) contacts_[kept] = contacts_[at];
+    for (const Participant p : {contacts_[at].first, contacts_[at].second})
+      if (p.is_statistical()) scene.body(p).crowded = true, near.mark(p);
+    ++kept;
+  }
+  contacts_.resize(kept);
+}
+
+void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int32_t> awake) {
+  turning_.resize(std::max(turning_.size(), scene.bodies.size()));
+  for (const std::int32_t slot : awake) {
+    const StatisticalBody& body = scene.bodies[std::size_t(slot)];
+    const Shape& shape = *scene.kind_of(body).shape;
+    const Vec3 omega = body.motion == Motion::asleep ? Vec3(Vec3::Zero()) : angular_velocity(body.orientation, body.spin, shape);
+    turning_[std::size_t(slot)] = {omega, omega.norm() * shape.radius};
+  }
+}
+
+double NearPairs::find_approach(const ContactScene& scene, const FoundPair& pair, double time) const {
+  const auto rim_speed = [&](Participant p) {
+    if (p.is_statistical()) return scene.asleep(p) ? 0.0 : turning_[p.index()].rim_speed;
+    return scene.neighbor(p).state.angular_velocity.norm() * scene.shape(p).radius;
+  };
+  const double fall = 0.5 * scene.world.gravity_strength() * time * time;
+  return ((scene.velocity(pair.first) - scene.velocity(pair.second)).norm() + rim_speed(pair.first) + rim_speed(pair.second)) * time + fall;
+}
+
+double NearPairs::gap_left(const ContactScene& scene, const FoundPair& pair) const {
+  if (!pair.when || !pair.contacts.empty()) return 0.0;
+  return pair.gap - find_motion_since(*pair.when, scene.pair_body(pair.first), scene.pair_body(pair.second)) - kTouching * least_radius(scene, pair);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,87 @@
+// Stages 2 and 3: which of the bodies that may meet in a step do touch: of `support`, full ones, and those of `tables` near them. What is known of a pair is kept from step
+// to step. Bodies meet as their hulls, whatever their rung: spheres are for two of `tables`, which meet by themselves (tables/).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lod/contact/contact_scene.h"
+#include "lod/contact/crowd.h"
+#include "lod/contact/pair_memory.h"
+#include "lod/jobs.h"
+#include "lod/rungs/near_marks.h"
+
+namespace lodestone {
+
+using NearPair = std::pair<Participant, Participant>;
+
+/// What is known of a near pair. A gap lasts until its bodies have moved by it, so most near pairs need no look at their hulls (conservative advancement;
+/// Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996); a contact lasts while they move little.
+struct FoundPair {
+  ContactKey key = 0;
+  Participant first = Participant::ground(), second = Participant::ground();
+  double gap = 0.0;                ///< m, at least, when it was found
+  std::optional<PairPose> when;    ///< how the bodies lay then; none: never
+  HullGap whole = {.normal = Vec3::Zero()};  ///< as the two after it, see find_pair_contacts
+  std::vector<KnownGap> of_pieces;
+  std::vector<HeldContact> contacts;
+
+  void forget() {
+    when.reset();
+    whole = {.normal = Vec3::Zero()};
+    of_pieces.clear();
+    contacts.clear();
+  }
+};
+
+class NearPairs {
+ public:
+  explicit NearPairs(JobRunner jobs) : jobs_(std::move(jobs)) {}
+
+  /// Takes the pairs of a step; what is known of those that were near before stays so.
+  void take(const ContactScene& scene, std::span<const NearPair> pairs);
+  void clear() { found_.clear(); }
+  std::span<const FoundPair> pairs() const { return found_; }
+
+  /// Of each body given, by index, before its contacts are looked for.
+  void find_turning(const ContactScene& scene, std::span<const std::int32_t> awake);
+  /// Of one that was just woken.
+  void clear_turning(Participant p) { turning_[p.index()] = {}; }
+  /// Contacts that may close within `time` seconds: of pairs whose bodies are near others (`near`) or asleep. Marks as crowded, and near, who has one.
+  void find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> awake, NearMarks& near);
+  std::span<const CrowdContact> contacts() const { return contacts_; }
+
+  /// m: by how much the gap of a pair can shrink in `time` seconds, at most, if nothing strikes them.
+  double find_approach(const ContactScene& scene, const FoundPair& pair, double time) const;
+  /// m: the gap of a pair, at least, now. None where that was never looked for.
+  double gap_left(const ContactScene& scene, const FoundPair& pair) const;
+  /// m/s, of a point that goes with the body.
+  Vec3 point_velocity(const ContactScene& scene, Participant p, const Vec3& point) const;
+
+ private:
+  /// How fast a body turns.
+  struct Turning {
+    Vec3 angular_velocity = Vec3::Zero();  // rad/s, world
+    double rim_speed = 0.0;                // m/s: of the point farthest from the centre about it
+  };
+
+  void resize(std::size_t count);
+  void find_contact(const ContactScene& scene, double time, FoundPair& pair) const;
+  bool closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact, double time) const;
+
+  JobRunner jobs_;
+  PairMemory memory_;                         // places in before_
+  std::vector<FoundPair> found_, before_;     // of the pairs of this step and of the last one
+  std::vector<FoundPair> spare_;
+  std::vector<Turning> turning_;              // by index; of those awake
+  std::vector<CrowdContact> contacts_;
+  std::vector<std::uint32_t> first_contact_;  // of each pair, among those that are looked at
+  std::vector<char> may_close_;               // of each of these
+};
+
+/// m.
+inline double least_radius(const ContactScene& scene, const FoundPair& pair) { return std::min(scene.shape(pair.first).radius, scene.shape(pair.second).radius); }
+
+}  // namespace lodestone

@@ -1,0 +1,202 @@
+#include "lod/rungs/near_search.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lodestone {
+namespace {
+
+constexpr double kBall = 1.02;        // over R: of the ball about a hull
+constexpr int kSharesMost = 16;       // of the work of filling the cells
+
+}  // namespace
+
+// By place, so that nothing hangs on the order in which bodies were added.
+void NearSearch::sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const {
+  const auto place = [&](std::int32_t index) {
+    const Vec3& p = bodies[std::size_t(index)].position;
+    return std::array{p.x(), p.y(), p.z()};
+  };
+  std::ranges::sort(indices, {}, place);
+}
+
+void NearSearch::add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt) {
+  const Vec3 half_way = (0.5 * dt) * velocity, center = position + half_way;
+  x_.push_back(center.x()), y_.push_back(center.y()), z_.push_back(center.z());
+  reach_.push_back(float(kBall * radius + half_way.norm() + 0.5 * gravity_.norm() * dt * dt));
+}
+
+void NearSearch::add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support, std::span<const FullNeighbor> neighbors) {
+  for (const std::int32_t index : movers_) {
+    const StatisticalBody& body = bodies[std::size_t(index)];
+    add_ball(body.position, body.velocity, support.kind_of(body).shape->radius, dt);
+  }
+  for (const FullNeighbor& n : neighbors) add_ball(n.state.position, n.state.velocity, n.shape->radius, dt);
+}
+
+void NearSearch::clear() {
+  pairs_.clear();
+  guests_.clear();
+  order_.clear();
+  mixed_ = true;  // no order
+}
+
+void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& support, std::span<const FullNeighbor> neighbors) {
+  const Spheres& s = tables.spheres();
+  spheres_ = std::size_t(s.awake);
+  own_bodies_ = std::size_t(support.size());
+  movers_.assign(support.awake().begin(), support.awake().end());
+  mixed_ = spheres_ > 0 && movers_.size() + neighbors.size() > 0;
+  x_.clear(), y_.clear(), z_.clear(), reach_.clear();
+  const auto cells_of_spheres = [&](const auto& x, const auto& y, const auto& z, std::span<const float> reach, const CellGrid::Lent& lent) {
+    cells_.fill({std::span<const double>(x).first(reach.size()), std::span<const double>(y).first(reach.size()), std::span<const double>(z).first(reach.size()), reach},
+                jobs_, std::min(threads_, kSharesMost), lent);
+  };
+  if (spheres_ > 0 && !mixed_) return cells_of_spheres(s.x, s.y, s.z, tables.reach(), tables.free_rows());
+
+  sort_by_place(support.bodies(), movers_);
+  if (!mixed_) {
+    add_hull_balls(dt, support.bodies(), support, neighbors);
+    return cells_.fill({x_, y_, z_, reach_});
+  }
+  // Spheres keep the balls that they have among themselves; those of hulls are drawn larger by as much as the hull of any sphere stands out of it.
+  double standing_out = 0.0;
+  for (std::size_t i = 0; i < spheres_; ++i) standing_out = std::max(standing_out, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
+  const auto copy = [&](auto& to, const auto& from) { to.assign(from.begin(), from.begin() + std::ptrdiff_t(spheres_)); };
+  copy(x_, s.x), copy(y_, s.y), copy(z_, s.z), copy(reach_, tables.reach());
+  add_hull_balls(dt, support.bodies(), support, neighbors);
+  drawn_reach_ = reach_;
+  for (std::size_t i = spheres_; i < reach_.size(); ++i) drawn_reach_[i] += float(standing_out);
+  for (std::size_t i = 0; i < spheres_; ++i) reach_[i] += float(std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i])));
+  cells_of_spheres(x_, y_, z_, drawn_reach_, {});
+  note_order(spheres_);
+}
+
+void NearSearch::note_order(std::size_t spheres) {
+  order_.clear();
+  for (const std::uint32_t ball : cells_.order())
+    if (ball < spheres) order_.push_back(ball);
+}
+
+void NearSearch::find_hull_pairs() {
+  ball_pairs_.clear();
+  for (std::int64_t part = 0; part < cells_.parts(); ++part) cells_.find_pairs(part, ball_pairs_);
+}
+
+bool NearSearch::meet(std::uint32_t a, std::uint32_t b) const {
+  const double dx = x_[a] - x_[b], dy = y_[a] - y_[b], dz = z_[a] - z_[b], limit = double(reach_[a]) + double(reach_[b]);
+  return dx * dx + dy * dy + dz * dz < limit * limit;
+}
+
+Participant NearSearch::guest(std::int32_t slot) {
+  std::int32_t& number = guest_of_slot_[std::size_t(slot)];
+  if (number < 0) {
+    number = std::int32_t(guests_.size());
+    guests_.push_back({.slot = slot});
+  }
+  return Participant::statistical(own_bodies_ + std::size_t(number));
+}
+
+Participant NearSearch::participant(std::uint32_t ball, const TablesLevel& tables) {
+  if (ball < spheres_) return guest(tables.spheres().slot[ball]);
+  const std::size_t mover = ball - spheres_;
+  return mover < movers_.size() ? Participant::statistical(std::size_t(movers_[mover])) : Participant::full(mover - movers_.size());
+}
+
+void NearSearch::add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables) {
+  const std::uint32_t low = std::min(first, second), high = std::max(first, second);
+  if (low >= spheres_ + movers_.size()) return;  // two full bodies are the full level's matter
+  if (mixed_ && !meet(low, high)) return;
+  const Participant a = participant(low, tables), b = participant(high, tables);
+  pairs_.emplace_back(a, b);
+}
+
+void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
+  pairs_.clear();
+  for (const Guest& guest : guests_)
+    if (std::size_t(guest.slot) < guest_of_slot_.size()) guest_of_slot_[std::size_t(guest.slot)] = -1;
+  guests_.clear();
+  const bool hulls = movers_.size() + neighbors.size() > 0 || !sleepers_.of(StatisticalModel::support).empty();
+  if (hulls) guest_of_slot_.resize(std::size_t(tables.size()), -1);
+  if (spheres_ > 0) {
+    tables.find_contacts(cells_, mixed_ ? &others_ : nullptr);
+    if (mixed_)
+      for (std::int64_t part = 0; part < cells_.parts(); ++part)
+        for (std::int64_t i = 0; i < others_[std::size_t(part)].size(); ++i) add_pair(others_[std::size_t(part)].first(i), others_[std::size_t(part)].second(i), tables);
+    find_still_hulls_near_spheres(support, tables);
+  } else {
+    find_hull_pairs();
+    for (std::int64_t i = 0; i < ball_pairs_.size(); ++i) add_pair(ball_pairs_.first(i), ball_pairs_.second(i), tables);
+  }
+  find_still_pairs(support, neighbors, &tables);
+}
+
+// Of moving hulls with those that sleep.
+void NearSearch::find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors, const TablesLevel* tables) {
+  if (sleepers_.empty()) return;
+  const std::span<const StatisticalBody> bodies = support.bodies();
+  for (std::size_t i = spheres_; i < x_.size(); ++i) {
+    const bool full = i >= spheres_ + movers_.size();
+    if (full && neighbors[i - spheres_ - movers_.size()].asleep) continue;
+    const Vec3 center(x_[i], y_[i], z_[i]);
+    const auto own_reach = double(reach_[i]);
+    const auto is_near = [&](const Vec3& position, double radius) { return (position - center).squaredNorm() < (own_reach + kBall * radius) * (own_reach + kBall * radius); };
+    const Participant self = full ? Participant::full(i - spheres_ - movers_.size()) : Participant::statistical(std::size_t(movers_[i - spheres_]));
+    still_near_.clear();
+    sleepers_.of(StatisticalModel::support).find_near(center, own_reach, [&](std::uint32_t slot) {
+      if (is_near(bodies[slot].position, support.kind_of(bodies[slot]).shape->radius)) still_near_.push_back(std::int32_t(slot));
+    });
+    sort_by_place(bodies, still_near_);
+    for (const std::int32_t slot : still_near_) pairs_.emplace_back(self, Participant::statistical(std::size_t(slot)));
+    if (!tables) continue;
+    still_near_.clear();
+    sleepers_.of(StatisticalModel::tables).find_near(center, own_reach, [&](std::uint32_t slot) {
+      if (is_near(tables->position(int(slot)), tables->radius(int(slot)))) still_near_.push_back(std::int32_t(slot));
+    });
+    std::ranges::sort(still_near_);
+    for (const std::int32_t slot : still_near_) pairs_.emplace_back(self, guest(slot));
+  }
+}
+
+void NearSearch::find_still_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables) {
+  const StillGrid& still = sleepers_.of(StatisticalModel::support);
+  if (still.empty()) return;
+  const std::span<const StatisticalBody> bodies = support.bodies();
+  const Spheres& s = tables.spheres();
+  for (std::size_t i = 0; i < spheres_; ++i) {
+    const Vec3 center = s.position(std::int64_t(i));
+    const double own_reach = double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
+    still_near_.clear();
+    still.find_near(center, own_reach, [&](std::uint32_t slot) {
+      const double limit = own_reach + kBall * support.kind_of(bodies[slot]).shape->radius;
+      if ((bodies[slot].position - center).squaredNorm() < limit * limit) still_near_.push_back(std::int32_t(slot));
+    });
+    sort_by_place(bodies, still_near_);
+    for (const std::int32_t slot : still_near_) pairs_.emplace_back(guest(s.slot[i]), Participant::statistical(std::size_t(slot)));
+  }
+}
+
+void NearSearch::find_again(double dt, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
+  const std::span<const StatisticalBody> bodies = support.bodies();
+  movers_.assign(support.awake_with_guests().begin(), support.awake_with_guests().end());
+  for (std::size_t i = own_bodies_; i < bodies.size(); ++i)
+    if (bodies[i].motion == Motion::asleep) movers_.push_back(std::int32_t(i));  // in no store of `support`
+  sort_by_place(bodies, movers_);
+  spheres_ = 0;
+  x_.clear(), y_.clear(), z_.clear(), reach_.clear();
+  add_hull_balls(dt, bodies, support, neighbors);
+  cells_.fill({x_, y_, z_, reach_});
+  mixed_ = true;  // the cells hold no spheres now
+  find_hull_pairs();
+  pairs_.clear();
+  const auto is_guest = [&](std::uint32_t ball) { return ball < movers_.size() && support.is_guest(movers_[ball]); };
+  for (std::int64_t i = 0; i < ball_pairs_.size(); ++i) {
+    const std::uint32_t low = std::min(ball_pairs_.first(i), ball_pairs_.second(i)), high = std::max(ball_pairs_.first(i), ball_pairs_.second(i));
+    if (low >= movers_.size() || (is_guest(low) && is_guest(high))) continue;
+    const Participant first = Participant::statistical(std::size_t(movers_[low]));
+    pairs_.emplace_back(first, high < movers_.size() ? Participant::statistical(std::size_t(movers_[high])) : Participant::full(high - movers_.size()));
+  }
+  find_still_pairs(support, neighbors, nullptr);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,74 @@
+// Stage 2: who is near whom, on all rungs. One set of cells holds the balls of all that move: awake spheres, awake bodies of `support`, full ones; those that sleep are looked up
+// in their store. Pairs of spheres stay with the tables level; all others are near pairs of hulls, and spheres among them become guests there.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lod/broad_phase/cell_grid.h"
+#include "lod/rungs/near_pairs.h"
+#include "lod/statistical/full_neighbor.h"
+#include "lod/statistical/sleepers.h"
+#include "lod/support/support_level.h"
+#include "lod/tables/tables_level.h"
+
+namespace lodestone {
+
+class NearSearch {
+ public:
+  /// `sleepers` must outlive it.
+  NearSearch(const StatisticalSettings& settings, const Sleepers& sleepers, const JobRunner& jobs)
+      : gravity_(settings.gravity), sleepers_(sleepers), threads_(settings.threads), jobs_(jobs), cells_(settings.simd) {}
+
+  /// Puts all that move into cells, for a step of `dt` seconds.
+  void fill(double dt, TablesLevel& tables, const SupportLevel& support, std::span<const FullNeighbor> neighbors);
+  /// The contacts of spheres, then the near pairs of all others; spheres among these are guests().
+  void find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors);
+  /// The near pairs anew within a step of `dt` seconds, after some were woken. Guests stay who they are.
+  void find_again(double dt, SupportLevel& support, std::span<const FullNeighbor> neighbors);
+  void clear();
+
+  std::span<const NearPair> pairs() const { return pairs_; }
+  std::span<Guest> guests() { return guests_; }
+  /// Of the awake spheres, in the cells.
+  std::span<const std::uint32_t> order_of_spheres() const { return mixed_ ? order_ : cells_.order(); }
+  std::size_t bytes() const { return cells_.bytes(); }
+
+ private:
+  void add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support, std::span<const FullNeighbor> neighbors);
+  void add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt);
+  void sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const;
+  void note_order(std::size_t spheres);
+  void find_hull_pairs();
+  void add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables);
+  bool meet(std::uint32_t first, std::uint32_t second) const;
+  Participant participant(std::uint32_t ball, const TablesLevel& tables);
+  Participant guest(std::int32_t slot);
+  void find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors, const TablesLevel* tables);
+  void find_still_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables);
+
+  Vec3 gravity_;
+  const Sleepers& sleepers_;
+  int threads_;
+  JobRunner jobs_;
+  CellGrid cells_;
+
+  // Balls: the awake spheres by place, then movers_, then full neighbours.
+  std::vector<double> x_, y_, z_;          // m
+  std::vector<float> reach_;               // m: how far its hull may reach in this step
+  std::vector<float> drawn_reach_;         // m: of its ball in the cells
+  std::size_t spheres_ = 0;
+  std::vector<std::int32_t> movers_;       // indices of bodies that move, by place
+  bool mixed_ = false;                     // spheres and others
+  std::vector<BallPairs> others_;          // of parts of the cells: pairs that are not of two spheres
+  BallPairs ball_pairs_;
+  std::vector<std::uint32_t> order_;
+  std::vector<NearPair> pairs_;
+  std::vector<Guest> guests_;
+  std::vector<std::int32_t> guest_of_slot_;  // of spheres; −1: none
+  std::size_t own_bodies_ = 0;             // of `support`: guests follow these
+  std::vector<std::int32_t> still_near_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,213 @@
+#include "lod/rungs/statistical_level.h"
+
+#include <algorithm>
+
+#include "lod/rungs/near_bodies.h"
+#include "lod/rungs/near_search.h"
+#include "lod/timing/stage_timer.h"
+#include "lod/timing/thread_clock.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kTouchFactor = 1.02;  // of the radii: what rests on a removed body
+
+}  // namespace
+
+struct StatisticalLevel::Impl {
+  Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m)
+      : settings(s), jobs(s.jobs ? s.jobs : make_job_runner(s.threads)), support(s, g, m, kinds, sleepers), tables(s, g, m, kinds, sleepers, jobs),
+        search(s, sleepers, jobs), near_bodies(s, g, m, kinds, jobs) {}
+
+  StatisticalSettings settings;
+  JobRunner jobs;
+  Kinds kinds;
+  Sleepers sleepers;
+  SupportLevel support;
+  TablesLevel tables;
+  NearSearch search;
+  NearBodies near_bodies;
+  std::vector<StatisticalBody> guest_bodies;
+  std::vector<std::uint32_t> fell_asleep;
+  double reach = 0.0;     // m, greatest bounding radius
+  StatisticalCost cost;
+  bool clocked = false;
+
+  template <class Do>
+  auto at(StatisticalPlace place, const Do& act) {
+    return place.model == StatisticalModel::tables ? act(tables) : act(support);
+  }
+  Vec3 position(StatisticalPlace place) const { return place.model == StatisticalModel::tables ? tables.position(place.slot) : support.body(place.slot).position; }
+  double radius(StatisticalPlace place) const {
+    return place.model == StatisticalModel::tables ? tables.radius(place.slot) : support.kind_of(support.body(place.slot)).shape->radius;
+  }
+  std::uint32_t owner(StatisticalPlace place) const { return place.model == StatisticalModel::tables ? tables.owner(place.slot) : support.body(place.slot).owner; }
+  double clock() const { return clocked ? thread_time_ms() : 0.0; }
+  void wake_touching(StatisticalPlace place);
+  bool any_pairs(std::span<const FullNeighbor> neighbors) const;
+  void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts);
+  void count_bodies();
+};
+
+// What rests on a body, or it on, must find new support once it is gone.
+void StatisticalLevel::Impl::wake_touching(StatisticalPlace gone) {
+  const Vec3 center = position(gone);
+  const double own_radius = radius(gone);
+  std::vector<StatisticalPlace> touching;
+  sleepers.find_near(center, kTouchFactor * own_radius, [&](StatisticalModel model, std::int32_t slot) {
+    const StatisticalPlace other{model, slot};
+    if (other != gone && (position(other) - center).norm() < kTouchFactor * (own_radius + radius(other))) touching.push_back(other);
+  });
+  std::ranges::sort(touching, {}, [](StatisticalPlace p) { return std::pair(p.model, p.slot); });
+  for (const StatisticalPlace other : touching) at(other, [&](auto& level) { level.wake(other.slot); });
+}
+
+bool StatisticalLevel::Impl::any_pairs(std::span<const FullNeighbor> neighbors) const {
+  const bool any_moves = tables.awake().size() + support.awake().size() > 0 || std::ranges::any_of(neighbors, [](const FullNeighbor& n) { return !n.asleep; });
+  return any_moves && std::size_t(tables.size() + support.size()) + neighbors.size() > 1;
+}
+
+void StatisticalLevel::Impl::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
+  StageTimes& times = report.times;
+  ContactTally tally;
+  const double started = clock();
+  // 1 start
+  {
+    const StageTimer timer(times.flight_ms);
+    tables.begin_step(dt, search.order_of_spheres(), tally);
+    support.begin_step(dt, tally);
+  }
+  // 2 near pairs, and the contacts of spheres
+  const bool pair_phase = any_pairs(neighbors);
+  report.counters.pair_phases += pair_phase;
+  if (pair_phase) {
+    {
+      const StageTimer timer(times.broad_phase_ms);
+      search.fill(dt, tables, support, neighbors);
+    }
+    const StageTimer timer(times.pairs_ms);
+    search.find(tables, support, neighbors);
+  } else {
+    search.clear();
+    tables.forget_contacts();
+  }
+  // 3 the response of spheres
+  {
+    const StageTimer timer(times.crowd_ms);
+    tables.respond(tally);
+  }
+  // 4 hulls, and spheres near them
+  const double hulls_from = clock();
+  if (!support.awake().empty() || !search.pairs().empty()) {
+    guest_bodies.clear();
+    for (Guest& guest : search.guests()) {
+      guest.resting = tables.resting_of(guest.slot);
+      guest_bodies.push_back(tables.guest_body(guest));
+    }
+    support.admit_guests(guest_bodies);
+    near_bodies.step(dt, support, search.guests(), search, neighbors, full_contacts, times, tally);
+    tables.take_guests(search.guests(), support.bodies().subspan(std::size_t(support.size())));
+    support.dismiss_guests();
+  } else {
+    near_bodies.forget_pairs();
+  }
+  const double hulls_until = clock();
+  // 5 spheres move
+  {
+    const StageTimer timer(times.flight_ms);
+    tables.finish(tally);
+  }
+  // 6 rest
+  {
+    const StageTimer timer(times.rest_ms);
+    tables.rest();
+    support.end_step();
+  }
+  fell_asleep.assign(tables.fell_asleep().begin(), tables.fell_asleep().end());
+  fell_asleep.insert(fell_asleep.end(), support.fell_asleep().begin(), support.fell_asleep().end());
+  if (clocked) {
+    cost.support_ms = hulls_until - hulls_from;
+    cost.tables_ms = clock() - started - cost.support_ms;
+    count_bodies();
+  }
+  if (tables.size() > 0) report.bytes_moved += tables.count_traffic(pair_phase);
+  report.contacts += int(tally.contacts);
+  report.counters.energy_clamps += tally.energy_clamps;
+  report.counters.table_extrapolations += tally.table_extrapolations;
+  report.counters.states_recovered += tally.states_recovered;
+}
+
+void StatisticalLevel::Impl::count_bodies() {
+  cost.tables = cost.support = {};
+  const auto count = [](auto& counts, Activity activity) { ++counts[std::size_t(activity)]; };
+  for (const std::int32_t slot : tables.awake()) count(cost.tables, tables.crowded(slot) ? Activity::crowded : Activity::alone);
+  for (const std::int32_t slot : support.awake()) count(cost.support, support.crowded(slot) ? Activity::crowded : Activity::alone);
+  cost.tables[std::size_t(Activity::asleep)] = tables.asleep_count();
+  cost.support[std::size_t(Activity::asleep)] = support.asleep_count();
+}
+
+StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials)
+    : impl_(std::make_unique<Impl>(settings, ground, materials)) {}
+StatisticalLevel::~StatisticalLevel() = default;
+
+StatisticalPlace StatisticalLevel::add(StatisticalModel model, std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material,
+                                       const RigidState& state, bool asleep, std::shared_ptr<const Signature> signature, bool arrives) {
+  impl_->reach = std::max(impl_->reach, shape->radius);
+  const std::uint16_t kind = impl_->kinds.find(model, std::move(shape), mass, material, std::move(signature));
+  return {model, impl_->at({model, 0}, [&](auto& level) { return level.add(owner, kind, state, asleep, arrives); })};
+}
+
+std::optional<std::uint32_t> StatisticalLevel::remove(StatisticalPlace place, bool stays) {
+  if (!stays) impl_->wake_touching(place);
+  return impl_->at(place, [&](auto& level) { return level.remove(place.slot); });
+}
+
+void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
+  impl_->step(dt, neighbors, report, full_contacts);
+}
+
+std::size_t StatisticalLevel::bytes() const {
+  return impl_->tables.size() == 0 ? 0 : impl_->tables.bytes() + impl_->search.bytes() + impl_->sleepers.bytes();
+}
+int StatisticalLevel::size(StatisticalModel model) const { return model == StatisticalModel::tables ? impl_->tables.size() : impl_->support.size(); }
+int StatisticalLevel::asleep_count() const { return impl_->support.asleep_count() + impl_->tables.asleep_count(); }
+std::span<const std::uint32_t> StatisticalLevel::fell_asleep() const { return impl_->fell_asleep; }
+
+void StatisticalLevel::find_awake(std::vector<std::uint32_t>& owners) const {
+  for (const std::int32_t slot : impl_->tables.awake()) owners.push_back(impl_->tables.owner(slot));
+  for (const std::int32_t slot : impl_->support.awake()) owners.push_back(impl_->support.body(slot).owner);
+}
+
+RigidState StatisticalLevel::state(StatisticalPlace place) const {
+  return impl_->at(place, [&](const auto& level) { return level.state(place.slot); });
+}
+Vec3 StatisticalLevel::position(StatisticalPlace place) const { return impl_->position(place); }
+void StatisticalLevel::set_state(StatisticalPlace place, const RigidState& state) {
+  impl_->at(place, [&](auto& level) { level.set_state(place.slot, state); });
+}
+bool StatisticalLevel::asleep(StatisticalPlace place) const {
+  return impl_->at(place, [&](const auto& level) { return level.asleep(place.slot); });
+}
+double StatisticalLevel::sphere_radius(StatisticalPlace place) const {
+  return place.model == StatisticalModel::tables ? impl_->tables.sphere_radius(place.slot) : 0.0;
+}
+void StatisticalLevel::wake(StatisticalPlace place) {
+  impl_->at(place, [&](auto& level) { level.wake(place.slot); });
+}
+void StatisticalLevel::add_force(StatisticalPlace place, const Vec3& force, const Vec3& torque) {
+  impl_->at(place, [&](auto& level) { level.add_force(place.slot, force, torque); });
+}
+double StatisticalLevel::reach() const { return impl_->reach; }
+
+void StatisticalLevel::find_sleepers(const Vec3& center, double reach, std::vector<std::uint32_t>& owners) const {
+  impl_->sleepers.find_near(center, reach, [&](StatisticalModel model, std::int32_t slot) { owners.push_back(impl_->owner({model, slot})); });
+}
+
+Activity StatisticalLevel::activity(StatisticalPlace place) const {
+  return impl_->at(place, [&](const auto& level) { return level.asleep(place.slot) ? Activity::asleep : level.crowded(place.slot) ? Activity::crowded : Activity::alone; });
+}
+
+const StatisticalCost& StatisticalLevel::cost() const { return impl_->cost; }
+void StatisticalLevel::set_clocked(bool clocked) { impl_->clocked = clocked; }
+
+}  // namespace lodestone

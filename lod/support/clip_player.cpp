@@ -1,0 +1,84 @@
+#include "lod/support/clip_player.h"
+
+#include <cmath>
+
+#include "lod/contact/hull_contacts.h"
+
+namespace lodestone {
+namespace {
+
+// The part of `rotation` about `axis` (swing–twist decomposition).
+Quat twist_about(const Quat& rotation, const Vec3& axis) {
+  const double along = rotation.vec().dot(axis);
+  Quat twist(rotation.w(), along * axis.x(), along * axis.y(), along * axis.z());
+  const double norm = twist.norm();
+  return norm > 1e-9 ? Quat(twist.coeffs() / norm) : Quat(1, 0, 0, 0);
+}
+
+Vec3 rotation_vector(const Quat& q) {
+  const Eigen::AngleAxisd turn(q.w() < 0.0 ? Quat(-q.coeffs()) : q);
+  return turn.angle() * turn.axis();
+}
+
+// Clips are recorded over the plane z = 0; `yaw` takes z to the ground's normal too.
+RigidState state_of(const ClipPlayback& p, const BodyKind& kind, double gravity) {
+  const ClipState clip = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
+  const double radius = kind.shape->radius, speed_unit = std::sqrt(gravity * radius);
+  const double fade = p.residual_left * p.residual_left * (3.0 - 2.0 * p.residual_left);
+  return {p.origin + p.yaw * (clip.position * radius) + fade * p.residual_position,
+          rotation_from_vector(fade * p.residual_rotation) * (p.yaw * clip.orientation), p.yaw * (clip.velocity * speed_unit),
+          p.yaw * (clip.angular_velocity * (speed_unit / radius))};
+}
+
+}  // namespace
+
+std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKind& kind, const HalfSpace& ground, double gravity,
+                                      const ClipSettings& settings) {
+  const Shape& shape = *kind.shape;
+  const double radius = shape.radius, speed_unit = std::sqrt(gravity * radius);
+  const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
+  const double kinetic = 0.5 * (body.velocity.squaredNorm() + body.spin.dot(omega));
+  if (kinetic > settings.energy_limit * gravity * radius) return {};
+
+  const Quat to_body = body.orientation.conjugate();
+  const double height = ground.height_of(body.position);
+  const SettlingKey key{(to_body * ground.normal).cast<float>(), (to_body * body.velocity / speed_unit).cast<float>(),
+                        (to_body * omega * (radius / speed_unit)).cast<float>(), float(kinetic / (gravity * radius) + height / radius)};
+  const auto energy = float(kinetic / (gravity * radius));
+  const float distance = std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);
+  const std::optional<ClipEntry> entry = kind.clips.find_nearest(key, settings.energy_slack, distance);
+  if (!entry) return {};
+
+  ClipPlayback p;
+  p.clip = entry->clip;
+  p.ground = ground;
+  p.frame = entry->frame;
+  p.residual_left = 1.0;
+  const ClipState pose = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
+  const Quat upright = Quat::FromTwoVectors(Vec3::UnitZ(), ground.normal);
+  p.yaw = twist_about(body.orientation * (upright * pose.orientation).conjugate(), ground.normal) * upright;
+  const Vec3 above_origin = p.yaw * (pose.position * radius);
+  p.origin = body.position - above_origin;
+  p.origin += (ground.offset - p.origin.dot(ground.normal)) * ground.normal;
+  p.residual_position = body.position - p.origin - above_origin;
+  p.residual_rotation = rotation_vector(body.orientation * (p.yaw * pose.orientation).conjugate());
+  return p;
+}
+
+bool advance_clip(ClipPlayback& p, StatisticalBody& body, const BodyKind& kind, double gravity, double time, const ClipSettings& settings) {
+  const double time_unit = std::sqrt(kind.shape->radius / gravity);
+  p.frame += time / (kind.signature->clip_frame_interval * time_unit);
+  p.residual_left = std::max(0.0, p.residual_left - time / (settings.fade_time * time_unit / std::sqrt(0.2 / 9.81)));
+  RigidState state = state_of(p, kind, gravity);
+  if (p.residual_left > 0.0) {  // between two poses the hull may dip below the ground
+    const double gap = find_lowest_point(*kind.shape, state.orientation, p.ground.normal, p.ground.height_of(state.position), body.support_hint).gap;
+    if (gap < 0.0) state.position -= gap * p.ground.normal;
+  }
+  body.position = state.position;
+  body.orientation = state.orientation.normalized();
+  body.velocity = state.velocity;
+  body.spin = spin_of(body.orientation, state.angular_velocity, *kind.shape);
+  return p.frame >= kind.signature->clips[p.clip].frames - 1.0 && p.residual_left <= 0.0;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,110 @@
+// How a body comes to rest, sleeps and wakes.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "lod/contact/hull_contacts.h"
+#include "lod/statistical/rest_law.h"
+#include "lod/support/support_level.h"
+
+namespace lodestone {
+namespace {
+
+// J/kg: with less kinetic energy no body moves or spins too fast for a level to hold it.
+constexpr double kSurelySound = 1e3;
+
+}  // namespace
+
+void SupportLevel::wake(int slot) {
+  StatisticalBody& body = bodies_[std::size_t(slot)];
+  if (body.motion != Motion::asleep) return;
+  body.motion = Motion::dynamic;
+  body.quiet_time = 0.0f;
+  if (!is_guest(slot)) {
+    if (!lies_still_[std::size_t(slot)]) return;  // put to sleep in this very step, and still among the awake
+    take_from_still(slot);
+  }
+  awake_.push_back(slot);
+  woken_ = true;
+}
+
+void SupportLevel::lay_still(std::int32_t slot) {
+  const StatisticalBody& b = body(slot);
+  sleepers_.of(StatisticalModel::support).insert(std::uint32_t(slot), b.position, kind_of(b).shape->radius);
+  lies_still_[std::size_t(slot)] = 1;
+}
+
+void SupportLevel::take_from_still(std::int32_t slot) {
+  const StatisticalBody& b = body(slot);
+  sleepers_.of(StatisticalModel::support).remove(std::uint32_t(slot), b.position, kind_of(b).shape->radius);
+  lies_still_[std::size_t(slot)] = 0;
+}
+
+void SupportLevel::put_to_sleep(StatisticalBody& body) const {
+  body.motion = Motion::asleep;
+  body.velocity.setZero();
+  body.spin.setZero();
+}
+
+// Awake slots stay in order, so that the result of a step does not depend on the history of sleeping.
+void SupportLevel::sort_by_motion() {
+  const auto first_asleep = std::stable_partition(awake_.begin(), awake_.end(), [this](std::int32_t slot) { return !asleep(slot); });
+  std::for_each(first_asleep, awake_.end(), [this](std::int32_t slot) {
+    lay_still(slot);
+    fell_asleep_.push_back(body(slot).owner);
+  });
+  awake_.erase(first_asleep, awake_.end());
+  if (!std::is_sorted(awake_.begin(), awake_.end())) std::sort(awake_.begin(), awake_.end());
+}
+
+/// `energy`: kinetic over mass, J/kg.
+bool SupportLevel::is_sound(const StatisticalBody& body, double energy) const {
+  if (!is_within_limit(body.position)) return false;
+  if (energy < kSurelySound) return true;  // not so for NaN
+  return is_within_limit(body.velocity) && is_within_limit(angular_velocity(body.orientation, body.spin, *kind_of(body).shape));
+}
+
+// Put to rest at the nearest place that can be held, or, where the place is no number, the last one known: what is not sound must neither spread nor
+// reach ODE, which would end the process.
+void SupportLevel::recover(StatisticalBody& body, const Vec3& last_place, ContactTally& tally) const {
+  if (!body.position.allFinite()) body.position = last_place;
+  body.position = body.position.cwiseMax(-kStateLimit).cwiseMin(kStateLimit);
+  if (!(std::abs(body.orientation.squaredNorm() - 1.0) < 1e-6)) body.orientation = Quat::Identity();
+  body.velocity.setZero();
+  body.spin.setZero();
+  ++tally.states_recovered;
+}
+
+void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally) {
+  StatisticalBody& body = bodies_[std::size_t(slot)];
+  const BodyKind& kind = kind_of(body);
+  const bool among_others = body.crowded || double(body.since_crowded) < rest_law::kLeaningTime;
+  body.since_crowded = body.crowded ? 0.0f : body.since_crowded + float(time);
+  body.eased = std::max(0.0f, body.eased - float(time));
+  const double energy = kinetic_energy(body, *kind.shape);
+  if (!is_sound(body, energy)) recover(body, last_places_[std::size_t(slot)], tally);
+  const bool still = energy < rest_law::still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
+  body.quiet_time = still ? body.quiet_time + float(time) : 0.0f;
+  if (!settings_.sleeping || body.quiet_time < rest_law::still_time(among_others)) return;
+  if (among_others || stands_firmly(body, faces)) put_to_sleep(body);
+}
+
+// On three vertices at least: on an edge a body may balance for a while, but not for good.
+bool SupportLevel::stands_firmly(const StatisticalBody& body, std::span<const HalfSpace> faces) const {
+  constexpr double kFlat = 0.02;  // over R
+  const Shape& shape = *kind_of(body).shape;
+  if (shape.sphere_radius) return true;
+  int vertices = 0;
+  const auto count_on = [&](const HalfSpace& plane) {
+    const double height = plane.height_of(body.position), margin = kFlat * shape.radius;
+    if (height > shape.radius + margin) return;
+    std::int32_t hint = body.support_hint;
+    const HullContacts low = find_hull_contacts(shape, body.orientation, plane.normal, height, margin, hint);
+    for (int i = 0; i < low.count; ++i) vertices += low.contact[std::size_t(i)].gap < margin;
+  };
+  for (const HalfSpace& plane : ground_.planes) count_on(plane);
+  for (const HalfSpace& face : faces) count_on(face);
+  return vertices >= 3;
+}
+
+}  // namespace lodestone

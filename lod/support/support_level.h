@@ -1,0 +1,94 @@
+// Bodies of `support`, as dense arrays: how one moves that touches no other, comes to rest, sleeps and wakes. Those near others are moved by rungs/near_bodies.h.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lod/contact/solid_contacts.h"
+#include "lod/statistical/kinds.h"
+#include "lod/statistical/sleepers.h"
+#include "lod/statistical/statistical_settings.h"
+#include "lod/statistical/step_world.h"
+#include "lod/support/clip_player.h"
+
+namespace lodestone {
+
+class SupportLevel {
+ public:
+  /// All but the settings must outlive the level.
+  SupportLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers)
+      : settings_(settings), ground_(ground), materials_(materials), kinds_(kinds), sleepers_(sleepers) {}
+
+  /// Returns the slot. `eased`: comes from another rung, perhaps with overlaps.
+  int add(std::uint32_t owner, std::uint16_t kind, const RigidState& state, bool asleep, bool eased);
+  /// The last body moves into the slot and its owner is returned (none where it was the last). Wakes nobody.
+  std::optional<std::uint32_t> remove(int slot);
+
+  int size() const { return int(clips_.size()); }
+  int asleep_count() const { return size() - int(awake_.size()); }
+  std::span<const std::int32_t> awake() const { return awake_; }                 ///< slots, in order
+  std::span<const std::uint32_t> fell_asleep() const { return fell_asleep_; }    ///< owners, in the last step
+  const StatisticalBody& body(int slot) const { return bodies_[std::size_t(slot)]; }
+  const BodyKind& kind_of(const StatisticalBody& body) const { return kinds_[body.kind]; }
+  RigidState state(int slot) const;
+  void set_state(int slot, const RigidState& state);                             ///< wakes it
+  bool asleep(int slot) const { return body(slot).motion == Motion::asleep; }
+  bool crowded(int slot) const { return body(slot).since_crowded == 0.0f; }      ///< touched another body in the last step
+  void wake(int slot);
+  void add_force(int slot, const Vec3& force, const Vec3& torque);               ///< over the next step; wakes it
+
+  // A step, in this order.
+  void begin_step(double dt, ContactTally& tally);
+  /// Bodies of `tables` that are near others in this step follow in bodies(), until dismiss_guests(). They are among those awake, unless they sleep.
+  void admit_guests(std::span<const StatisticalBody> guests);
+  std::span<StatisticalBody> bodies() { return bodies_; }
+  std::span<const StatisticalBody> bodies() const { return bodies_; }
+  bool is_guest(std::int32_t index) const { return index >= size(); }
+  std::span<const std::int32_t> awake_with_guests() const { return awake_; }
+  /// Whether one that slept since an earlier step was woken, since this was last asked.
+  bool take_woken() { return std::exchange(woken_, false); }
+  /// Moves a body that touches no other, over `faces` of static solids and the planes.
+  void move_alone(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally);
+  /// Whether it rests, after a move of `time` seconds; what is not sound is put right.
+  void update_quiet(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally);
+  void dismiss_guests();
+  void end_step();
+
+ private:
+  struct Push {
+    std::int32_t slot;
+    Vec3 force, torque;
+  };
+
+  StepWorld world() const { return {settings_.gravity, &ground_, &materials_, settings_.seed}; }
+  void put_to_sleep(StatisticalBody& body) const;
+  void lay_still(std::int32_t slot);        // a sleeper leaves all loops
+  void take_from_still(std::int32_t slot);
+  void sort_by_motion();
+  bool stands_firmly(const StatisticalBody& body, std::span<const HalfSpace> faces) const;
+  bool is_sound(const StatisticalBody& body, double energy) const;
+  void recover(StatisticalBody& body, const Vec3& last_place, ContactTally& tally) const;
+
+  StatisticalSettings settings_;
+  const StaticGround& ground_;
+  const MaterialTable& materials_;
+  const Kinds& kinds_;
+  Sleepers& sleepers_;
+
+  // One of each per body, by slot.
+  std::vector<StatisticalBody> bodies_;      // and guests
+  std::vector<ClipPlayback> clips_;
+  std::vector<std::optional<Vec3>> angular_velocity_given_;  // until the next step: a state that was set is read back to the bit
+  std::vector<Vec3> last_places_;            // m, at the step's start
+  std::vector<char> lies_still_;             // sleeps since an earlier step, and is in no loop
+
+  std::vector<std::int32_t> awake_;          // slots
+  std::vector<std::int32_t> given_;          // slots whose angular velocity was given
+  std::vector<Push> pushes_;                 // of the next step
+  std::vector<std::uint32_t> fell_asleep_;   // owners
+  bool woken_ = false;
+};
+
+}  // namespace lodestone

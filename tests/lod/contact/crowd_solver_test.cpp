@@ -1,0 +1,149 @@
+// The crowd's solver: one result for every instruction set and number of threads, that of the plain solver once converged, momentum kept, no more manifolds side by
+// side than may be.
+#include <gtest/gtest.h>
+
+#include "lod/contact/crowd_solver.h"
+#include "reference/random.h"
+
+namespace lodestone {
+namespace {
+
+struct Crowd {
+  std::vector<SolverBody> bodies;
+  std::vector<CrowdManifold> manifolds;
+  std::vector<CrowdPoint> points;
+
+  void add_manifold(std::int32_t first, std::int32_t second, const Vec3& normal, int count, RandomStream& random) {
+    manifolds.push_back({first, second, normal, {.restitution = 0.4, .friction = 0.5}, std::uint32_t(points.size()), std::uint32_t(count)});
+    for (int i = 0; i < count; ++i) {
+      CrowdPoint point;
+      point.arm_first = Vec3(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)) - 0.1 * normal;
+      point.arm_second = point.arm_first + 0.2 * normal;
+      point.gap = random.uniform(-1e-3, 1e-3);
+      point.guess = random.uniform(0.0, 0.2) * normal;
+      points.push_back(point);
+    }
+  }
+};
+
+// Bodies thrown at each other at random, some fixed and some on the ground.
+Crowd make_crowd(int bodies, int manifolds, bool ground) {
+  RandomStream random(5, 1, 0);
+  const auto vector = [&](double size) { return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)); };
+  Crowd crowd;
+  for (int i = 0; i < bodies; ++i) {
+    SolverBody body;
+    body.velocity = vector(2.0);
+    body.angular_velocity = vector(5.0);
+    if (i % 9 != 3 || !ground) {
+      body.inverse_mass = random.uniform(0.1, 1.0);
+      const Vec3 inverse_moments = body.inverse_mass * Vec3(random.uniform(60, 100), random.uniform(60, 100), random.uniform(100, 130));
+      const Mat3 axes = random.orientation().toRotationMatrix();
+      body.inverse_inertia = axes * inverse_moments.asDiagonal() * axes.transpose();
+    } else {
+      body.velocity.setZero(), body.angular_velocity.setZero();
+    }
+    crowd.bodies.push_back(body);
+  }
+  for (int i = 0; i < manifolds; ++i) {
+    const auto first = std::int32_t(random.uniform(0, bodies)), second = std::int32_t((first + 1 + std::int32_t(random.uniform(0, bodies - 1))) % bodies);
+    crowd.add_manifold(first, ground && i % 4 == 0 ? -1 : second, random.orientation() * Vec3::UnitZ(), 1 + i % 4, random);
+  }
+  return crowd;
+}
+
+constexpr double kStep = 1.0 / 180.0;
+
+void solve(Crowd& crowd, Simd simd, int threads, const ContactSolverSettings& settings) {
+  CrowdSolver(simd).solve(crowd.bodies, crowd.manifolds, crowd.points, kStep, settings, make_job_runner(threads));
+}
+
+bool same(const Crowd& a, const Crowd& b) {
+  for (std::size_t i = 0; i < a.bodies.size(); ++i)
+    if (a.bodies[i].velocity != b.bodies[i].velocity || a.bodies[i].angular_velocity != b.bodies[i].angular_velocity) return false;
+  for (std::size_t i = 0; i < a.points.size(); ++i)
+    if (a.points[i].impulse != b.points[i].impulse || a.points[i].bounces != b.points[i].bounces) return false;
+  return true;
+}
+
+TEST(CrowdSolver, HasOneResultForEveryInstructionSetAndNumberOfThreads) {
+  const ContactSolverSettings settings{.sweeps = 10, .tolerance = 1e-3, .fall = {0, 0, -9.81 * kStep}};
+  Crowd portable = make_crowd(4'000, 9'000, true);
+  const Crowd start = portable;
+  solve(portable, Simd::portable, 1, settings);
+  EXPECT_FALSE(same(portable, start));
+  for (const Simd simd : {Simd::portable, Simd::avx2, Simd::avx512}) {
+    if (simd > find_simd()) continue;
+    for (const int threads : {1, 2, 3}) {
+      Crowd crowd = make_crowd(4'000, 9'000, true);
+      solve(crowd, simd, threads, settings);
+      EXPECT_TRUE(same(crowd, portable)) << int(simd) << ' ' << threads;
+    }
+  }
+}
+
+// The same contacts for the plain solver.
+std::vector<SolverContact> plain_contacts(const Crowd& crowd) {
+  std::vector<SolverContact> contacts;
+  for (const CrowdManifold& m : crowd.manifolds)
+    for (const CrowdPoint& point : std::span(crowd.points).subspan(m.begin, m.count)) {
+      SolverContact& c = contacts.emplace_back();
+      c.first = m.first, c.second = m.second, c.normal = m.normal, c.law = m.law;
+      c.arm_first = point.arm_first, c.arm_second = point.arm_second, c.gap = point.gap, c.guess = point.guess;
+    }
+  return contacts;
+}
+
+// A chain has one answer, whatever the order: bodies in a row, the first on the ground.
+TEST(CrowdSolver, FindsWhatThePlainSolverFinds) {
+  RandomStream random(5, 2, 0);
+  Crowd crowd = make_crowd(12, 0, false);
+  for (int i = 0; i < 12; ++i) crowd.add_manifold(i, i - 1, random.orientation() * Vec3::UnitZ(), 1, random);
+  for (CrowdManifold& m : crowd.manifolds) m.law.friction = 0.0;
+  std::vector<SolverContact> contacts = plain_contacts(crowd);
+  std::vector<SolverBody> bodies = crowd.bodies;
+  const ContactSolverSettings settings{.sweeps = 3'000, .tolerance = 1e-13};
+  solve_contacts(bodies, contacts, kStep, settings);
+  solve(crowd, find_simd(), 1, settings);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    EXPECT_LT((crowd.bodies[i].velocity - bodies[i].velocity).norm(), 1e-9) << i;
+    EXPECT_LT((crowd.bodies[i].angular_velocity - bodies[i].angular_velocity).norm(), 1e-8) << i;
+  }
+}
+
+TEST(CrowdSolver, KeepsMomentumAndBoundsFriction) {
+  Crowd crowd = make_crowd(60, 150, false);
+  const auto momentum = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (const SolverBody& body : crowd.bodies) sum += body.velocity / body.inverse_mass;
+    return sum;
+  };
+  const Vec3 before = momentum();
+  solve(crowd, find_simd(), 1, {});
+  EXPECT_LT((momentum() - before).norm(), 1e-11);
+  int pressing = 0;
+  for (const CrowdManifold& m : crowd.manifolds)
+    for (const CrowdPoint& point : std::span(crowd.points).subspan(m.begin, m.count)) {
+      const double normal = point.impulse.dot(m.normal);
+      EXPECT_GE(normal, 0.0);
+      EXPECT_LE((point.impulse - normal * m.normal).norm(), std::sqrt(2.0) * m.law.friction * normal + 1e-12);  // a bound along each of two axes
+      pressing += normal > 0.0;
+    }
+  EXPECT_GT(pressing, 20);
+}
+
+// More contacts of one body than there are colours.
+TEST(CrowdSolver, HoldsUpABodyOnAHundredContacts) {
+  RandomStream random(5, 3, 0);
+  Crowd crowd = make_crowd(1, 0, false);
+  crowd.bodies[0].velocity = {0, 0, -1};
+  crowd.bodies[0].angular_velocity.setZero();
+  for (int i = 0; i < 100; ++i) crowd.add_manifold(0, -1, Vec3::UnitZ(), 1, random);
+  for (CrowdManifold& m : crowd.manifolds) m.law.restitution = 0.0;
+  for (CrowdPoint& point : crowd.points) point.guess.setZero(), point.gap = 0.0;
+  solve(crowd, find_simd(), 2, {.sweeps = 2'000, .tolerance = 1e-12});
+  EXPECT_NEAR(crowd.bodies[0].velocity.z(), 0.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace lodestone

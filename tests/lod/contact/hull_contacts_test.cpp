@@ -1,0 +1,61 @@
+#include "lod/contact/hull_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include "reference/random.h"
+
+namespace lodestone {
+namespace {
+
+TEST(HullContacts, SupportHeightOfABoxIsItsClosedForm) {
+  const Vec3 half(0.1, 0.15, 0.2);
+  const Shape shape = make_shape("box", make_box(2.0 * half));
+  std::int32_t hint = 0;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    RandomStream random(3, i, 0);
+    const Quat q = random.orientation();
+    const double expected = (q.conjugate() * Vec3::UnitZ()).cwiseAbs().dot(half);
+    EXPECT_NEAR(-find_lowest_point(shape, q, Vec3::UnitZ(), 0.0, hint).gap, expected, 1e-12);
+  }
+}
+
+// S13, figure 3 of the paper: a square of side 1, as a long prism turning about its axis.
+TEST(HullContacts, SquareOfFigureThreeStaysBetweenHalfAndRootHalf) {
+  const Shape prism = make_shape("prism", make_box({1.0, 8.0, 1.0}));
+  std::int32_t hint = 0;
+  double lowest = 10.0, highest = 0.0;
+  for (int degree = 0; degree <= 360; ++degree) {
+    const Quat q = rotation_from_vector({0.0, degree * std::numbers::pi / 180.0, 0.0});
+    const double height = -find_lowest_point(prism, q, Vec3::UnitZ(), 0.0, hint).gap;
+    lowest = std::min(lowest, height), highest = std::max(highest, height);
+  }
+  EXPECT_NEAR(lowest, 0.5, 1e-12);
+  EXPECT_NEAR(highest, std::sqrt(0.5), 1e-12);
+}
+
+TEST(HullContacts, FlatBoxStandsOnItsFourCorners) {
+  const Shape shape = make_shape("box", make_box({0.2, 0.3, 0.4}));
+  std::int32_t hint = 0;
+  const HullContacts found = find_hull_contacts(shape, Quat::Identity(), Vec3::UnitZ(), 0.2, 0.001, hint);
+  ASSERT_EQ(found.count, 4);
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(found.contact[i].gap, 0.0, 1e-12);
+    sum += found.contact[i].arm;
+  }
+  EXPECT_LT((sum / 4 - Vec3(0, 0, -0.2)).norm(), 1e-12);
+}
+
+TEST(HullContacts, EdgeGivesTwoAndCornerOne) {
+  const Shape shape = make_shape("box", make_box({0.2, 0.3, 0.4}));
+  std::int32_t hint = 0;
+  const Quat on_edge = rotation_from_vector({0.7, 0.0, 0.0});
+  const double height = -find_lowest_point(shape, on_edge, Vec3::UnitZ(), 0.0, hint).gap;
+  EXPECT_EQ(find_hull_contacts(shape, on_edge, Vec3::UnitZ(), height, 0.001, hint).count, 2);
+  const Quat on_corner = rotation_from_vector({0.5, 0.4, 0.1});
+  const double corner_height = -find_lowest_point(shape, on_corner, Vec3::UnitZ(), 0.0, hint).gap;
+  EXPECT_EQ(find_hull_contacts(shape, on_corner, Vec3::UnitZ(), corner_height, 0.001, hint).count, 1);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,56 @@
+#include "lod/contact/pair_contacts.h"
+
+#include <gtest/gtest.h>
+
+namespace lodestone {
+namespace {
+
+constexpr double kMargin = 0.003;
+
+PairBody at(const Shape& shape, const Vec3& position, const Quat& orientation = Quat::Identity()) { return {&shape, position, orientation}; }
+
+HullContactSearch search_afresh(const PairBody& first, const PairBody& second) {
+  HullGap nowhere{.normal = Vec3::Zero()};
+  std::vector<KnownGap> nothing;
+  HullContactSearch search;
+  find_pair_contacts(first, second, nowhere, nothing, kMargin, search);
+  return search;
+}
+
+class LInL : public ::testing::Test {
+ protected:
+  // Legs .3 and .2 m, bars .08 m wide, .1 m thick: the same way up, one's corner reaches into the other's notch.
+  Shape l_ = make_shape("l", make_l(0.3, 0.2, 0.08, 0.1));
+  HullContactSearch search(const Vec3& shift) { return search_afresh(at(l_, shift), at(l_, Vec3::Zero())); }
+};
+
+TEST_F(LInL, BodiesClearOfEachOtherDoNotTouchThoughTheirHullsOverlap) {
+  const HullContactSearch clear = search({0.1, 0.1, 0.0});
+  EXPECT_TRUE(clear.contacts.empty());
+  EXPECT_GT(clear.gap, kMargin);
+  EXPECT_LE(clear.gap, 0.02 + 1e-9);  // never more than the true distance
+  EXPECT_TRUE(find_hull_contact(at(l_, {0.1, 0.1, 0.0}), at(l_, Vec3::Zero()), kMargin).has_value());
+}
+
+TEST_F(LInL, TheyTouchWhereTheirLegsDo) {
+  const HullContactSearch touching = search({0.1, 0.078, 0.0});  // 2 mm into the long leg
+  ASSERT_EQ(touching.contacts.size(), 1U);
+  const PairContact& contact = touching.contacts[0];
+  EXPECT_NEAR(contact.gap, -0.002, 1e-6);
+  EXPECT_NEAR(contact.normal.y(), 1.0, 1e-6);
+  ASSERT_EQ(contact.manifold.count, 4);
+  double least = 1.0, greatest = -1.0;  // along the long leg
+  for (const ManifoldPoint& p : contact.manifold.points) least = std::min(least, p.point.x()), greatest = std::max(greatest, p.point.x());
+  EXPECT_NEAR(greatest - least, 0.2, 1e-6);
+}
+
+TEST_F(LInL, BothBodiesMeetAlikeWhicheverIsFirst) {
+  const Quat turned(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()));
+  const PairBody a = at(l_, {0.12, 0.05, 0.04}, turned), b = at(l_, Vec3::Zero());
+  const auto there = search_afresh(a, b).contacts, back = search_afresh(b, a).contacts;
+  ASSERT_FALSE(there.empty());
+  ASSERT_EQ(there.size(), back.size());
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,329 @@
+#include "lod/manager/choose_levels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone {
+namespace {
+
+using Indices = std::vector<std::int32_t>;
+
+constexpr RungSet kSupportOrFull{Rung::support, Rung::full};
+const std::vector<Vec3> kAtOrigin{Vec3::Zero()};
+
+PolicySettings by_distance(double full_within = 4.0) { return {.policy = DistancePolicy{full_within}}; }
+PolicySettings by_budget(double milliseconds) { return {.policy = BudgetPolicy{milliseconds}, .max_transitions_per_frame = 1000}; }
+
+LevelCandidate at(double distance, Rung rung = Rung::support, RungSet open = kSupportOrFull) {
+  return {.position = {distance, 0, 0}, .cost = {0.0f, 0.0f, 1.0f}, .rung = rung, .open = open};
+}
+/// On any of the three rungs, which cost 0, 1/8 and 1.
+LevelCandidate on_ladder(double distance, Rung rung = Rung::tables) {
+  LevelCandidate c = at(distance, rung, kEveryRung);
+  c.cost = {0.0f, 0.125f, 1.0f};
+  return c;
+}
+
+LevelDecision choose(const std::vector<LevelCandidate>& candidates, const PolicySettings& settings, double others = 0.0) {
+  return choose_levels(candidates, kAtOrigin, settings, {.others = others});
+}
+
+Indices who(const std::vector<LevelDecision::Change>& changes) {
+  Indices candidates;
+  for (const auto& change : changes) candidates.push_back(change.candidate);
+  return candidates;
+}
+
+void make_changes(const LevelDecision& decision, std::vector<LevelCandidate>& candidates) {
+  for (LevelCandidate& c : candidates) ++c.frames_since_change;
+  for (const auto* changes : {&decision.demote, &decision.promote})
+    for (const auto& [i, to] : *changes) candidates[std::size_t(i)].rung = to, candidates[std::size_t(i)].frames_since_change = 0;
+}
+
+std::int64_t count_on(Rung rung, const std::vector<LevelCandidate>& candidates) { return std::ranges::count(candidates, rung, &LevelCandidate::rung); }
+
+TEST(DistancePolicy, PromotesNearAndDemotesFar) {
+  const auto decision = choose({at(1), at(9), at(1, Rung::full), at(9, Rung::full)}, by_distance());
+  EXPECT_EQ(who(decision.promote), Indices{0});
+  EXPECT_EQ(who(decision.demote), Indices{3});
+  EXPECT_EQ(decision.reasons, (std::vector{LevelReason::near, LevelReason::far, LevelReason::near, LevelReason::far}));
+}
+
+TEST(DistancePolicy, BodyBetweenTheTwoLimitsKeepsItsLevel) {
+  const auto decision = choose({at(4.2), at(4.2, Rung::full)}, by_distance());
+  EXPECT_TRUE(decision.promote.empty() && decision.demote.empty());
+  EXPECT_EQ(decision.reasons[1], LevelReason::within_hysteresis);
+}
+
+TEST(DistancePolicy, MeasuresToTheSurfaceAndScalesByImportance) {
+  std::vector<LevelCandidate> candidates{at(4.5), at(4.5), at(7), at(7)};
+  candidates[1].radius = 0.6;
+  candidates[3].importance = 2.0;
+  EXPECT_EQ(who(choose(candidates, by_distance()).promote), (Indices{3, 1}));
+}
+
+TEST(DistancePolicy, NearestOfSeveralViewpointsCounts) {
+  const std::vector<Vec3> viewpoints{{100, 0, 0}, {8, 0, 0}};
+  EXPECT_EQ(who(choose_levels(std::vector{at(9)}, viewpoints, by_distance()).promote), Indices{0});
+}
+
+TEST(DistancePolicy, WithoutViewpointsEveryBodyIsStatistical) {
+  const auto decision = choose_levels(std::vector{at(0), at(0, Rung::full)}, {}, by_distance());
+  EXPECT_TRUE(decision.promote.empty());
+  EXPECT_EQ(who(decision.demote), Indices{1});
+}
+
+TEST(Policy, DwellKeepsANewLevel) {
+  std::vector<LevelCandidate> candidates{at(1), at(9, Rung::full)};
+  candidates[0].frames_since_change = candidates[1].frames_since_change = 29;
+  const auto held = choose(candidates, by_distance());
+  EXPECT_TRUE(held.promote.empty() && held.demote.empty());
+  EXPECT_EQ(held.reasons, (std::vector{LevelReason::dwell, LevelReason::dwell}));
+  candidates[0].frames_since_change = candidates[1].frames_since_change = 30;
+  const auto free = choose(candidates, by_distance());
+  EXPECT_EQ(who(free.promote), Indices{0});
+  EXPECT_EQ(who(free.demote), Indices{1});
+}
+
+TEST(Policy, T8CapTakesTheNearestFirstAndQueuesTheRest) {
+  const auto decision = choose({at(3), at(1), at(2), at(2), at(0.5), at(3.5)}, by_distance());
+  EXPECT_EQ(who(decision.promote), (Indices{4, 1, 2, 3}));
+  EXPECT_EQ(decision.reasons[0], LevelReason::queued);
+  EXPECT_EQ(decision.reasons[5], LevelReason::queued);
+}
+
+TEST(Policy, T8PromotionsAndDemotionsShareTheCapByTurns) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 5; ++i) candidates.push_back(at(1 + 0.1 * i));
+  for (int i = 0; i < 5; ++i) candidates.push_back(at(9 + 0.1 * i, Rung::full));
+  const auto both = choose(candidates, by_distance());
+  EXPECT_EQ(who(both.promote), (Indices{0, 1}));
+  EXPECT_EQ(who(both.demote), (Indices{9, 8}));
+  candidates.resize(6);
+  const auto rest_goes_to_promotions = choose(candidates, by_distance());
+  EXPECT_EQ(who(rest_goes_to_promotions.promote), (Indices{0, 1, 2}));
+  EXPECT_EQ(who(rest_goes_to_promotions.demote), Indices{5});
+}
+
+TEST(Policy, ForcedBodiesWaitForNothing) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 10; ++i) {
+    candidates.push_back(at(1000));
+    candidates.back().open = {Rung::full};
+    candidates.back().frames_since_change = 0;
+  }
+  candidates.push_back(at(0, Rung::full));
+  candidates.back().open = {Rung::support};
+  for (const PolicySettings& settings : {by_distance(), by_budget(0.0)}) {
+    const auto decision = choose(candidates, settings);
+    EXPECT_EQ(decision.promote.size(), 10u);
+    EXPECT_EQ(who(decision.demote), Indices{10});
+    EXPECT_EQ(decision.reasons[3], LevelReason::forced);
+  }
+}
+
+TEST(Policy, NewcomersAreNotLimited) {
+  std::vector<LevelCandidate> candidates(20, at(1));
+  for (LevelCandidate& c : candidates) c.newcomer = true;
+  EXPECT_EQ(choose(candidates, by_distance()).promote.size(), 20u);
+}
+
+TEST(Policy, PutOffBodyWaitsAndLeavesItsTurnToOthers) {
+  std::vector<LevelCandidate> candidates(6, at(1));
+  candidates[0].put_off = true;
+  const auto decision = choose(candidates, by_distance());
+  EXPECT_EQ(who(decision.promote), (Indices{1, 2, 3, 4}));
+  EXPECT_EQ(decision.reasons[0], LevelReason::overlap_put_off);
+}
+
+TEST(Policy, T7CameraAboutTheThresholdChangesNothingOrOnceADwell) {
+  for (const double hysteresis : {0.1, 0.0}) {
+    PolicySettings settings = by_distance();
+    settings.hysteresis = hysteresis;
+    std::vector<LevelCandidate> candidates{at(4)};
+    int changes = 0;
+    constexpr int kFrames = 3600;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      candidates[0].position.x() = 4.0 * (1.0 + 0.01 * ((frame / 3) % 2 ? 1 : -1));
+      const auto decision = choose(candidates, settings);
+      changes += int(decision.promote.size() + decision.demote.size());
+      make_changes(decision, candidates);
+    }
+    EXPECT_LE(changes, hysteresis > 0.0 ? 1 : kFrames / settings.min_dwell_frames + 1);
+    EXPECT_GE(changes, 1);
+  }
+}
+
+TEST(BudgetPolicy, KeepsTheNearestThatFitBesidesTheStatisticalLevel) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 20; ++i) candidates.push_back(at(20 - i));
+  const auto decision = choose(candidates, by_budget(7.0), 2.0);  // 5 fit; 4 leave a tenth of it free
+  EXPECT_EQ(who(decision.promote), (Indices{19, 18, 17, 16}));
+  EXPECT_EQ(decision.reasons[19], LevelReason::in_budget);
+  EXPECT_EQ(decision.reasons[0], LevelReason::over_budget);
+}
+
+TEST(BudgetPolicy, ForcedFullBodiesUseUpTheBudgetFirst) {
+  std::vector<LevelCandidate> candidates{at(50, Rung::full), at(60, Rung::full), at(1), at(2)};
+  candidates[0].open = candidates[1].open = {Rung::full};
+  EXPECT_EQ(who(choose(candidates, by_budget(3.4)).promote), Indices{2});
+  EXPECT_TRUE(choose(candidates, by_budget(2.5)).promote.empty());
+}
+
+TEST(BudgetPolicy, ANearerBodyTakesThePlaceOfAFartherOne) {
+  const auto decision = choose({at(5, Rung::full), at(6, Rung::full), at(4), at(5.8)}, by_budget(2.0));
+  EXPECT_EQ(who(decision.promote), Indices{2});
+  EXPECT_EQ(who(decision.demote), Indices{1});  // 5.8 is not a tenth nearer than 6
+}
+
+TEST(BudgetPolicy, NoiseOfTheMeasuredCostFlipsNothing) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 40; ++i) candidates.push_back(at(1 + i));
+  const PolicySettings settings = by_budget(20.0);
+  make_changes(choose(candidates, settings), candidates);
+  for (int frame = 0; frame < 200; ++frame) {
+    for (LevelCandidate& c : candidates) c.cost[2] = float(1.0 + 0.04 * std::sin(frame));
+    const auto decision = choose(candidates, settings);
+    EXPECT_TRUE(decision.demote.empty());
+    make_changes(decision, candidates);
+  }
+}
+
+TEST(BudgetPolicy, T11NeverOverBudgetThoughItChangesEveryFrame) {
+  constexpr int kBodies = 30;
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < kBodies; ++i) candidates.push_back(at(1 + i));
+  int most = 0;
+  for (int frame = 0; frame < 400; ++frame) {
+    const int fits[] = {0, 1, kBodies - 1, kBodies};
+    const int budget = fits[frame % 4];
+    make_changes(choose(candidates, by_budget(budget)), candidates);
+    ASSERT_LE(count_on(Rung::full, candidates), budget) << "frame " << frame;
+    most = std::max(most, int(count_on(Rung::full, candidates)));
+  }
+  EXPECT_GE(most, 1);
+}
+
+TEST(BudgetPolicy, T11EveryBodyHasItsTurnAsTheViewpointMoves) {
+  constexpr int kBodies = 30;
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < kBodies; ++i) candidates.push_back(at(i));
+  std::vector<bool> was_full(kBodies);
+  for (int frame = 0; frame < 1200; ++frame) {
+    const std::vector<Vec3> viewpoint{{frame * kBodies / 1200.0, 0, 0}};
+    make_changes(choose_levels(candidates, viewpoint, by_budget(5.0)), candidates);
+    for (int i = 0; i < kBodies; ++i) was_full[i] = was_full[i] || candidates[i].rung == Rung::full;
+  }
+  EXPECT_EQ(std::ranges::count(was_full, true), kBodies);
+}
+
+TEST(Policy, EveryReasonHasWords) {
+  for (int reason = 0; reason <= int(LevelReason::signature_pending); ++reason) EXPECT_FALSE(text_of(LevelReason(reason)).empty());
+}
+
+TEST(DistancePolicy, EachRungHasItsDistanceAndItsHysteresis) {
+  const PolicySettings settings{.policy = DistancePolicy{.full_within = 4.0, .support_within = 12.0}};
+  const auto decision = choose({on_ladder(3), on_ladder(11), on_ladder(13), on_ladder(13, Rung::support), on_ladder(14, Rung::support), on_ladder(5, Rung::full)}, settings);
+  EXPECT_EQ(decision.promote, (std::vector<LevelDecision::Change>{{0, Rung::full}, {1, Rung::support}}));
+  EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{4, Rung::tables}, {5, Rung::support}}));
+  EXPECT_EQ(decision.reasons, (std::vector{LevelReason::near, LevelReason::near, LevelReason::far, LevelReason::within_hysteresis, LevelReason::far, LevelReason::near}));
+}
+
+TEST(DistancePolicy, AClosedRungIsPassedOver) {
+  const PolicySettings settings{.policy = DistancePolicy{.full_within = 4.0, .support_within = 12.0}};
+  const auto decision = choose({at(8, Rung::full, {Rung::tables, Rung::full}), at(20, Rung::full), at(3, Rung::tables, {Rung::tables, Rung::support})}, settings);
+  EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{1, Rung::support}, {0, Rung::tables}}));
+  EXPECT_EQ(decision.promote, (std::vector<LevelDecision::Change>{{2, Rung::support}}));
+}
+
+TEST(DistancePolicy, BodiesThatStayPutAreThoseForWhomNothingChanges) {
+  const PolicySettings settings{.policy = DistancePolicy{.full_within = 4.0, .support_within = 12.0}, .min_dwell_frames = 0};
+  const auto& policy = std::get<DistancePolicy>(settings.policy);
+  int stay = 0;
+  for (const Rung rung : {Rung::tables, Rung::support})
+    for (int i = 0; i < 300; ++i) {
+      const LevelCandidate c = on_ladder(0.05 * i, rung);
+      const auto decision = choose({c}, settings);
+      const double travel = travel_until_change(c, kAtOrigin, policy, settings.hysteresis);
+      const bool changes = !decision.promote.empty() || !decision.demote.empty();
+      EXPECT_FALSE(changes && stays_put(c, kAtOrigin, policy)) << i;
+      EXPECT_FALSE(changes && travel > 1e-9) << i;
+      if (travel > 1e-9)  // a little less than that far, in both directions, and still nothing changes
+        for (const double moved : {0.999 * travel, -0.999 * travel}) {
+          const auto later = choose({on_ladder(std::max(0.0, 0.05 * i + moved), rung)}, settings);
+          EXPECT_TRUE(later.promote.empty() && later.demote.empty()) << i << " moved by " << moved;
+        }
+      stay += stays_put(c, kAtOrigin, policy);
+    }
+  EXPECT_GT(stay, 150);
+}
+
+TEST(Policy, MostOnARungIsNeverExceededAndTheNearestAreThere) {
+  for (const bool budget : {false, true}) {
+    PolicySettings settings = budget ? by_budget(1e6) : PolicySettings{.policy = DistancePolicy{100.0, 200.0}, .max_transitions_per_frame = 1000};
+    settings.most_full = 5, settings.most_support = 7, settings.min_dwell_frames = 0;
+    std::vector<LevelCandidate> candidates;
+    for (int i = 0; i < 40; ++i) candidates.push_back(on_ladder(1 + i));
+    for (int frame = 0; frame < 60; ++frame) {
+      for (int i = 0; i < 40; ++i) candidates[std::size_t(i)].position.x() = 1 + std::abs(i - frame / 2);
+      const auto decision = choose(candidates, settings);
+      make_changes(decision, candidates);
+      ASSERT_LE(count_on(Rung::full, candidates), 5) << budget << " frame " << frame;
+      ASSERT_LE(count_on(Rung::support, candidates), 7) << budget << " frame " << frame;
+    }
+    EXPECT_EQ(count_on(Rung::full, candidates), 5);
+    EXPECT_EQ(candidates[29].rung, Rung::full);
+    EXPECT_EQ(choose(candidates, settings).reasons[0], LevelReason::most_reached);
+  }
+}
+
+TEST(BudgetPolicy, TheNearestAreFullTheNextSupportTheRestTables) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 200; ++i) candidates.push_back(on_ladder(1 + i));
+  const PolicySettings settings = by_budget(11.0);
+  make_changes(choose(candidates, settings), candidates);
+  const auto full = count_on(Rung::full, candidates), support = count_on(Rung::support, candidates);
+  EXPECT_EQ(full, 7);  // three quarters of 10, which leaves a tenth free
+  EXPECT_EQ(support, 24);  // with the rest
+  for (std::size_t i = 1; i < candidates.size(); ++i) EXPECT_LE(int(candidates[i].rung), int(candidates[i - 1].rung)) << i;
+}
+
+TEST(BudgetPolicy, OverItTheFarthestGoDownAtOnceWhateverDwellAndCap) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 50; ++i) candidates.push_back(on_ladder(1 + i, Rung::full));
+  for (LevelCandidate& c : candidates) c.frames_since_change = 0;
+  PolicySettings settings = by_budget(14.0);
+  settings.max_transitions_per_frame = 1;
+  make_changes(choose(candidates, settings), candidates);
+  double cost = 0.0;
+  for (const LevelCandidate& c : candidates) cost += c.cost_at(c.rung);
+  EXPECT_LE(cost, 14.0);
+  EXPECT_GT(cost, 13.0);
+  EXPECT_EQ(candidates.front().rung, Rung::full);
+  EXPECT_EQ(candidates.back().rung, Rung::tables);
+}
+
+TEST(BudgetPolicy, NothingIsLeftWhereOthersUseItUp) {
+  const auto decision = choose({on_ladder(1, Rung::full), on_ladder(2, Rung::support), on_ladder(3)}, by_budget(4.0), 5.0);
+  EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{1, Rung::tables}, {0, Rung::tables}}));
+  EXPECT_TRUE(decision.promote.empty());
+}
+
+TEST(BudgetPolicy, AMarginAndTheCostOfChangesKeepBodiesDown) {
+  const std::vector<LevelCandidate> candidates(30, at(1));
+  EXPECT_EQ(choose(candidates, by_budget(22.0)).promote.size(), 20u);
+  EXPECT_EQ(choose_levels(candidates, kAtOrigin, by_budget(22.0), {.margin = 1.0}).promote.size(), 10u);
+  EXPECT_EQ(choose_levels(candidates, kAtOrigin, by_budget(22.0), {.change = {0, 0, 1.0}}).promote.size(), 11u);
+}
+
+TEST(BudgetPolicy, ReachOfFullIsWhereItsRoomEnds) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 100; ++i) candidates.push_back(at(1 + i));
+  EXPECT_EQ(reach_of_full(candidates, kAtOrigin, by_budget(11.0), {}), 11.0);  // ten fit
+  EXPECT_EQ(reach_of_full(candidates, kAtOrigin, by_budget(1e3), {}), std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,128 @@
+// Signatures that take their time: the bodies that need them are full meanwhile.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "reference/error.h"
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone::testing {
+namespace {
+
+// A source that is slow until it is let go.
+struct SlowSource {
+  std::atomic<bool> done = false;
+  std::atomic<int> asked = 0;
+  std::atomic<std::thread::id> thread;
+  SignatureFunction function() {
+    return [this](const Shape&, const ContactLaw&) -> std::shared_ptr<const Signature> {
+      thread = std::this_thread::get_id();
+      ++asked;
+      while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return std::make_shared<const Signature>();
+    };
+  }
+};
+
+ManagerSettings with(SlowSource& source, SignatureTiming timing) { return {.signatures = source.function(), .signature_timing = timing}; }
+
+// Steps until the thread is done: how many steps that takes differs from run to run.
+void step_until_loaded(Manager& manager) {
+  while (manager.report().counters.signatures_loaded == 0) {
+    manager.step(kFrame);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+TEST(SignatureTiming, BodiesAreFullUntilTheThreadIsDone) {
+  SlowSource source;
+  Manager manager = on_floor(with(source, SignatureTiming::in_background));
+  const auto box = box_shape({0.2, 0.3, 0.4});
+  const BodyId far = add(manager, box, at({0, 0, 1})), forced = add(manager, box, at({3, 0, 1}), LevelChoice::statistical);
+  const BodyId overlapping = add(manager, box, at({0.01, 0, 1}));
+  run(manager, 0.1);  // returns, though the source does not
+  for (const BodyId body : {far, forced, overlapping}) {
+    EXPECT_EQ(manager.level(body), Level::full);
+    EXPECT_EQ(manager.why(body), "full: its signature is still being measured");
+  }
+  while (source.asked == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the thread may only just have begun
+  EXPECT_EQ(source.asked, 1);
+  EXPECT_NE(source.thread.load(), std::this_thread::get_id());
+  source.done = true;
+  step_until_loaded(manager);
+  run(manager, 0.1);
+  EXPECT_EQ(manager.level(forced), Level::statistical);
+  EXPECT_EQ(manager.level(far), Level::statistical);
+  EXPECT_EQ(source.asked, 1);
+  const BodyId late = add(manager, box, at({6, 0, 1}));
+  manager.step(kFrame);
+  EXPECT_EQ(manager.level(late), Level::statistical);
+}
+
+TEST(SignatureTiming, ABodyThatWasFullForGoodWaitsToo) {
+  SlowSource source;
+  Manager manager = on_floor(with(source, SignatureTiming::in_background));
+  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}), LevelChoice::full);
+  run(manager, 0.1);
+  EXPECT_EQ(source.asked, 0);
+  manager.set_level(body, LevelChoice::statistical);
+  run(manager, 0.1);
+  EXPECT_EQ(manager.level(body), Level::full);
+  source.done = true;
+  step_until_loaded(manager);
+  run(manager, 0.1);
+  EXPECT_EQ(manager.level(body), Level::statistical);
+}
+
+TEST(SignatureTiming, InStepTheStepWaits) {
+  SlowSource source;
+  source.done = true;
+  for (const SignatureTiming timing : {SignatureTiming::in_step, SignatureTiming::automatic}) {
+    Manager manager = on_floor(with(source, timing));
+    const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}));
+    manager.step(kFrame);
+    EXPECT_EQ(manager.level(body), Level::statistical);
+    EXPECT_EQ(source.thread, std::this_thread::get_id());
+  }
+}
+
+TEST(SignatureTiming, ASignatureThatCannotBeHadIsSaidByTheStep) {
+  ManagerSettings settings{.signatures = [](const Shape&, const ContactLaw&) -> std::shared_ptr<const Signature> { throw InputError("no room"); },
+                           .signature_timing = SignatureTiming::in_background};
+  Manager manager = on_floor(settings);
+  add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}));
+  EXPECT_THROW(
+      for (int i = 0; i < 10'000; ++i) {
+        manager.step(kFrame);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      },
+      InputError);
+}
+
+// The default source, which measures: the manager goes away in the middle of it, soon, and without a signature in the cache.
+TEST(SignatureTiming, AManagerDoesNotWaitForWhatItMeasures) {
+  const auto cache = std::filesystem::temp_directory_path() / ("lodestone-timing-" + std::to_string(::getpid()));
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before ? before : "";
+  std::filesystem::create_directories(cache);
+  ::setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+  {
+    Manager manager = on_floor({});
+    const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}));
+    manager.step(kFrame);
+    EXPECT_EQ(manager.why(body), "full: its signature is still being measured");
+    EXPECT_EQ(manager.level(body), Level::full);
+  }
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(cache)) EXPECT_NE(entry.path().extension(), ".sig");
+  std::filesystem::remove_all(cache);
+  if (before) ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
+  else ::unsetenv("XDG_CACHE_HOME");
+}
+
+}  // namespace
+}  // namespace lodestone::testing

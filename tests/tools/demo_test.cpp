@@ -1,0 +1,56 @@
+// `demo`: a scene under three budgets, and what the report says of them.
+#include "tools/demo/demo.h"
+
+#include <gtest/gtest.h>
+
+namespace lodestone {
+namespace {
+
+Scene two_crates() {
+  Scene scene;
+  scene.ground = {GroundPlane{}};
+  for (const double x : {0.0, 2.0}) {
+    SceneBody body;
+    body.definition.shape = std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.2, 0.2})));
+    body.definition.state.position = {x, 0, 0.5};
+    body.definition.level = LevelChoice::full;  // needs no signature
+    scene.bodies.push_back(body);
+  }
+  scene.default_steps = 25;
+  return scene;
+}
+
+TEST(DemoBudgets, AreThreeOfOneScene) {
+  RunSettings settings;
+  settings.out = "/nowhere";  // of the main scene's run alone
+  settings.budget_work = 100.0;
+  const auto budgets = run_budgets(two_crates(), settings, {});
+  ASSERT_EQ(budgets.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(budgets[i].budget_ms, kDemoBudgets[i]);
+    EXPECT_EQ(budgets[i].steps, 16);
+    EXPECT_EQ(budgets[i].mean_bodies[std::size_t(Rung::full)], 2.0);
+  }
+}
+
+TEST(DemoReport, ShowsBudgetsAndThePictureWhereThereAreAny) {
+  DemoResult result;
+  result.rows.push_back({.name = "full", .whole_ms = std::nullopt, .processor_ms = std::nullopt, .busy_ms = {.p50 = 1.0}, .most_full = 2});
+  result.mixed.reports.resize(1);
+  result.drop.shape = two_crates().bodies[0].definition.shape;
+  EXPECT_EQ(text_of(result).find("What a budget buys"), std::string::npos);
+  EXPECT_EQ(text_of(result).find("in the picture"), std::string::npos);
+  result.budget_scene = "heap.yaml";
+  result.budgets = {{.budget_ms = 4.0, .budget_work = std::nullopt, .steps = 591, .over = 7, .step_ms = {.p50 = 1.25, .p99 = 3.5, .max = 4.75}, .mean_bodies = {70.0, 20.0, 10.0}}};
+  result.mixed.in_picture = {.min_full = 8, .mean_full = 9.5};
+  const std::string text = text_of(result);
+  EXPECT_NE(text.find("What a budget buys: heap.yaml, processor time of 591 steps from step 10 on"), std::string::npos) << text;
+  EXPECT_NE(text.find("at least 8 full bodies are in the picture of the scene's viewpoint (60 deg high, 16 : 9), on average 9.5"), std::string::npos) << text;
+  const auto json = json_of(result);
+  EXPECT_EQ(json["budgets"][0]["over"], 7);
+  EXPECT_EQ(json["budgets"][0]["mean_full"], 10.0);
+  EXPECT_EQ(json["mixed"]["in_picture"]["min_full"], 8);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,136 @@
+#include "tools/demo/demo.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/scene_signatures.h"
+
+namespace lodestone {
+namespace {
+
+constexpr int kBusySteps = 8;     // a step of a thousand trimeshes takes seconds
+constexpr int kUntimedSteps = 2;  // in which ODE's bodies are made
+
+// Where the statistical level has the most contacts.
+int find_busy_step(const RunResult& result) {
+  const auto busiest = std::ranges::max_element(result.reports, {}, &StepReport::contacts);
+  return std::clamp(int(busiest - result.reports.begin()), 0, std::max(0, result.steps - kBusySteps));
+}
+
+TimeSummary summarize_window(const RunResult& result, int first) {
+  std::vector<double> ms;
+  for (int i = first; i < std::min(first + kBusySteps, result.steps); ++i) ms.push_back(result.reports[i].times.total_ms);
+  return summarize(ms);
+}
+
+DemoRow make_row(std::string name, const RunResult& result, int busy_step) {
+  const int most_full = std::ranges::max_element(result.reports, {}, &StepReport::full)->full;
+  return {.name = std::move(name), .whole_ms = result.step_ms, .processor_ms = result.processor_ms, .busy_ms = summarize_window(result, busy_step), .most_full = most_full};
+}
+
+class Demo {
+ public:
+  Demo(const Scene& scene, const RunSettings& settings, const Progress& progress)
+      : scene_(scene), settings_(settings), progress_(progress) {}
+
+  DemoResult run(int trials) {
+    DemoResult result;
+    fetch_signatures(scene_, settings_);
+    result.dt_s = settings_.dt_s.value_or(scene_.step.dt_s);
+    measure_times(result);
+    result.drop = make_drop_job();
+    result.errors = compare(result.drop, result.dt_s, trials);
+    return result;
+  }
+
+ private:
+  void measure_times(DemoResult& result) {
+    const RunResult support = run_statistical(StatisticalModel::support);
+    result.busy_step = find_busy_step(support);
+    result.busy_steps = kBusySteps;
+    result.rows.push_back(make_row("statistical, support", support, result.busy_step));
+    result.rows.push_back(make_row("statistical, tables", run_statistical(StatisticalModel::tables), result.busy_step));
+    result.mixed = run_scene(scene_, reporting(settings_, "mixed"));
+    result.rows.push_back(make_row("mixed", result.mixed, result.busy_step));
+    result.rows.push_back(run_full(result.busy_step));
+  }
+
+  RunSettings reporting(RunSettings settings, const std::string& name) const {
+    settings.progress = [this, name](int step, int steps) { if (progress_) progress_(name, double(step) / steps); };
+    return settings;
+  }
+
+  RunSettings at_level(LevelChoice level, const std::string& name) const {
+    RunSettings settings = reporting(settings_, name);
+    settings.out.clear();
+    settings.level = level;
+    return settings;
+  }
+
+  RunResult run_statistical(StatisticalModel model) const {
+    RunSettings settings = at_level(LevelChoice::statistical, "statistical");
+    settings.model = model;
+    return run_scene(scene_, settings);
+  }
+
+  DemoRow run_full(int busy_step) const {
+    RunSettings settings = at_level(LevelChoice::full, "full");
+    settings.steps = kUntimedSteps + kBusySteps;
+    const RunResult result = run_scene(scene_after(busy_step), settings);
+    return {.name = "full", .whole_ms = std::nullopt, .processor_ms = std::nullopt, .busy_ms = summarize_window(result, kUntimedSteps), .most_full = result.bodies};
+  }
+
+  // The scene as a statistical run leaves it.
+  Scene scene_after(int steps) const {
+    Scene later = scene_;
+    if (steps == 0) return later;
+    RunSettings settings = at_level(LevelChoice::statistical, "statistical, up to the busy window");
+    settings.steps = steps;
+    const RunResult result = run_scene(scene_, settings);
+    for (std::size_t i = 0; i < later.bodies.size(); ++i) later.bodies[i].definition.state = result.states[i];
+    return later;
+  }
+
+  DropJob make_drop_job() const {
+    const BodyDefinition& body = scene_.bodies.front().definition;
+    DropJob job;
+    job.shape = body.shape;
+    job.material = scene_.materials[body.material];
+    return job;
+  }
+
+  DropComparison compare(const DropJob& job, double dt_s, int trials) const {
+    DropComparisonSettings settings;
+    settings.trials = trials;
+    settings.dt_s = {dt_s};
+    settings.methods = {"full", "full_1", "statistical"};
+    settings.progress = progress_;
+    return compare_drops(job, settings);
+  }
+
+  const Scene& scene_;
+  const RunSettings& settings_;
+  const Progress& progress_;
+};
+
+}  // namespace
+
+DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials, const Progress& progress) {
+  return Demo(scene, settings, progress).run(trials);
+}
+
+std::vector<BudgetFigures> run_budgets(const Scene& scene, RunSettings settings, const Progress& progress) {
+  fetch_signatures(scene, settings);
+  settings.out.clear();
+  settings.budget_work.reset();
+  std::vector<BudgetFigures> budgets;
+  for (const double ms : kDemoBudgets) {
+    settings.budget_ms = ms;
+    settings.progress = [&](int step, int steps) { if (progress) progress(fmt::format("a budget of {:g} ms", ms), double(step) / steps); };
+    budgets.push_back(run_scene(scene, settings).budget.value());
+  }
+  return budgets;
+}
+
+}  // namespace lodestone

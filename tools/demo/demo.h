@@ -1,0 +1,47 @@
+// One scene at every level: what a step costs, and what the speed costs in accuracy.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/runner.h"
+#include "tools/compare/drop_comparison.h"
+
+namespace lodestone {
+
+/// How one level copes with the scene.
+struct DemoRow {
+  std::string name;
+  std::optional<TimeSummary> whole_ms;  ///< none for full, which is run over the busy window only
+  std::optional<TimeSummary> processor_ms;  ///< the same in processor time
+  TimeSummary busy_ms;                  ///< over the busy window
+  int most_full = 0;                    ///< bodies at the full level at once
+};
+
+struct DemoResult {
+  double dt_s = 0.0;
+  int busy_step = 0, busy_steps = 0;    ///< where the window of the most contacts begins, and its length
+  std::vector<DemoRow> rows;
+  RunResult mixed;                      ///< the run whose trajectory is written
+  DropJob drop;                         ///< the scene's first shape, dropped alone
+  DropComparison errors;
+  std::string budget_scene;             ///< run under each of kDemoBudgets; empty: none
+  std::vector<BudgetFigures> budgets;
+};
+
+inline constexpr std::array kDemoBudgets = {4.0, 8.0, 16.0};  ///< ms
+
+/// Runs `scene` mixed (as its policy says), statistically with each model, and in full from where the statistical run has the most contacts on; then
+/// compares `trials` single drops of its first body's shape with the truth.
+DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials, const Progress& progress);
+
+/// Runs `scene` under each of kDemoBudgets.
+std::vector<BudgetFigures> run_budgets(const Scene& scene, RunSettings settings, const Progress& progress);
+
+std::string text_of(const DemoResult& result);
+nlohmann::ordered_json json_of(const DemoResult& result);
+
+}  // namespace lodestone
