@@ -47,7 +47,8 @@ struct SceneOutput {
 /// What the run must show; each absent unless given.
 struct SceneChecks {
   std::optional<double> max_penetration_m;         ///< of all bodies, or where the next is given too, of all others
-  std::optional<double> max_tables_penetration_m;  ///< of those at `tables`, whose spheres sink in by their nature, and of those that came from there and were not awake for 30 steps since
+  /// Of those at `tables`, whose spheres sink in by their nature, and of those that came from there and were not awake for 30 steps since.
+  std::optional<double> max_tables_penetration_m;
   std::optional<double> all_asleep_by_s;
 };
 

@@ -37,9 +37,13 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
   command.add_option("--dt", arguments.step, "step, s: 0.01 or 1/60, instead of the scene's")->check(find_step_fault, "SECONDS");
   command.add_option("--seed", arguments.loading.seed, "instead of the scene's, for scatters too");
   command.add_option("--threads", running.threads, "of the statistical level; 0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
-  command.add_option_function<std::string>("--level", [&](const std::string& name) { running.level = kLevels.at(name); }, "auto: the scene's policy; statistical: the policy says which of support and tables; else one rung for every body")
+  command
+      .add_option_function<std::string>("--level", [&](const std::string& name) { running.level = kLevels.at(name); },
+                                        "auto: the scene's policy; statistical: it says which of support and tables; else one rung for every body")
       ->check(CLI::IsMember({"auto", "full", "support", "tables", "statistical"}));
-  command.add_option_function<std::string>("--model", [&](const std::string& name) { running.model = kModels.at(name); }, "of all statistical bodies, whatever the policy says")
+  command
+      .add_option_function<std::string>("--model", [&](const std::string& name) { running.model = kModels.at(name); },
+                                        "of all statistical bodies, whatever the policy says")
       ->check(CLI::IsMember({"tables", "support"}));
   CLI::Option* ms = command.add_option("--budget-ms", running.budget_ms, "processor time of a step, instead of the scene's policy")->check(find_budget_fault, "MS");
   command.add_option("--budget-work", running.budget_work, "the same in work units, which repeat exactly")->check(find_budget_fault, "UNITS")->excludes(ms);

@@ -248,7 +248,7 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
       for (const Participant p : {one, other})
-        if (is_eased(scene, p)) scene.body(p).eased = kEasedTime;  // for as long as there is some
+        if (is_eased(scene, p) && point.gap < -kBroughtOverlap * radius) scene.body(p).eased = kEasedTime;  // for as long as there is some
       const double parting = (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
       const double overlap = point.gap + std::max(0.0, parting) * time;  // the rest is undone by the motion itself
       const double distance = std::min(push_out_overlap(overlap, radius), farthest) / double(m.count);

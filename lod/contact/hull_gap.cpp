@@ -183,7 +183,7 @@ HullGap measure_hull_gap(const PlacedHull& first, const PlacedHull& second, cons
   return along;
 }
 
-HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough) {
+HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough, bool exact) {
   const bool known = !start.normal.isZero(0.0);
   HullGap gap = measure_hull_gap(first, second, known ? start.normal : from_line_of_centers(first, second), start);
   if (gap.gap > enough) return gap;
@@ -197,7 +197,7 @@ HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const H
   other = find_axis_of_overlap(first, second, other, enough);
   if (other.gap > gap.gap) gap = other;
   const auto inner = [](const Shape& shape) { return shape.sphere_radius ? *shape.sphere_radius : shape.inner_radius; };
-  if (-gap.gap < kDeep * std::min(inner(*first.shape), inner(*second.shape))) return gap;
+  if (!exact || -gap.gap < kDeep * std::min(inner(*first.shape), inner(*second.shape))) return gap;
   const auto overlap = find_hull_overlap(*first.shape, {first.position, first.orientation}, *second.shape, {second.position, second.orientation});
   return overlap && -overlap->depth > gap.gap ? measure_hull_gap(first, second, overlap->direction, gap) : gap;
 }

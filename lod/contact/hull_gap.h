@@ -37,8 +37,8 @@ struct HullGap {
 };
 
 /// The axis of the greatest gap, from `start` (its normal, zero: the line of centres; its vertices, −1: unknown). Ends early, with a gap above `enough`, once
-/// an axis shows one.
-HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough);
+/// an axis shows one. Not `exact`: of hulls that overlap deeply any axis that was found will do, since the one of least depth takes a long search.
+HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough, bool exact = true);
 
 /// Whether they do not overlap; `gap` is where the search begins and what it finds: their distance, or a gap above `enough`.
 bool are_apart(const PlacedHull& first, const PlacedHull& second, double enough, HullGap& gap);

@@ -105,12 +105,12 @@ void add_contact(const PairContact& contact, double grain, std::vector<PairConta
 }
 
 // At least; above the margin where that is known without a search or two spheres show it.
-double gap_of_pieces(const PairBody& a, const PairBody& b, KnownGap& known, double margin) {
+double gap_of_pieces(const PairBody& a, const PairBody& b, KnownGap& known, double margin, bool exact) {
   if (known.when)
     if (const double left = known.axis.gap - find_motion_since(*known.when, a, b); left > margin) return left;
   const double apart = (a.position - b.position).norm() - a.shape->radius - b.shape->radius;
   if (apart > margin) return apart;
-  known.axis = find_hull_gap(place(a), place(b), known.axis, margin);
+  known.axis = find_hull_gap(place(a), place(b), known.axis, margin, exact);
   known.when = pose_of(a, b);
   return known.axis.gap;
 }
@@ -121,7 +121,7 @@ void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std:
     for (int k = 0; k < count_pieces(second); ++k) {
       const PairBody a = piece_of(first, i), b = piece_of(second, k);
       KnownGap& of_pieces = known[std::size_t(i * count_pieces(second) + k)];
-      const double gap = gap_of_pieces(a, b, of_pieces, margin);
+      const double gap = gap_of_pieces(a, b, of_pieces, margin, search.exact);
       search.gap = std::min(search.gap, gap);
       if (gap > margin) continue;
       PairContact contact = contact_along(a, b, of_pieces.axis);
@@ -133,7 +133,7 @@ void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std:
 void search_relative(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
   search.contacts.clear();
   if (first.shape->pieces.empty() && second.shape->pieces.empty()) {
-    whole = find_hull_gap(place(first), place(second), whole, margin);
+    whole = find_hull_gap(place(first), place(second), whole, margin, search.exact);
     search.gap = whole.gap;
     if (search.gap <= margin) search.contacts.push_back(contact_along(first, second, whole));
     return;

@@ -55,6 +55,7 @@ struct KnownGap {
 };
 
 struct HullContactSearch {
+  bool exact = true;                   ///< in: see find_hull_gap
   double gap = 0.0;                    ///< m: the true distance is at least this
   std::vector<PairContact> contacts;   ///< those with a gap of at most the margin: one for hulls, one for each two convex pieces that meet
 };

@@ -31,6 +31,7 @@ struct BodyLevel {
   static constexpr std::int64_t kLongAgo = -(std::int64_t(1) << 30);
   double importance = 1.0;
   std::int64_t changed_at = kLongAgo;  ///< step
+  std::int64_t woke_at = kLongAgo;     ///< step, or the last in which it was seen asleep; under a budget
   std::int64_t looked_at = -1;         ///< step in which the policy last thought of it
   LevelChoice choice = LevelChoice::statistical;
   Rung rung = Rung::support;

@@ -13,6 +13,9 @@ namespace {
 // m of travel, and over the distance: by so much a body's turn comes early, for rounding.
 constexpr double kEarly = 1e-6;
 
+// Of a game.
+constexpr double kFrame_s = 1.0 / 60.0;
+
 /// m, of the one that came farthest; as many now as before.
 double find_travel(std::span<const Vec3> before, std::span<const Vec3> now) {
   double farthest = 0.0;
@@ -80,6 +83,7 @@ void Choose::look_at_those_concerned(StepReport& report) {
   counts_ = {};
   BodyTable& bodies = levels_.bodies;
   std::vector<std::uint32_t> some = std::exchange(wishing_, {});
+  for (const std::uint32_t body : std::exchange(support_sleepers_, {})) some.push_back(body);
   some.insert(some.end(), changed_.begin(), changed_.end());
   changed_.clear();
   const bool all = std::exchange(look_at_all_, true);  // until the step has done what was decided
@@ -90,14 +94,13 @@ void Choose::look_at_those_concerned(StepReport& report) {
   }
   if (!budgeted())  // before any are put in again
     while (far_.next_due() <= traveled_) far_.take_next(some);
-  for (const FullLevel::Member& member : levels_.full.members()) look_at(member.owner, report);
-  for (const BodyTable::Newcomer& newcomer : bodies.newcomers()) look_at(newcomer.index, report);
+  for (const FullLevel::Member& member : levels_.full.members()) some.push_back(member.owner);
+  for (const BodyTable::Newcomer& newcomer : bodies.newcomers()) some.push_back(newcomer.index);
   if (levels_.statistical && sees_places()) {
-    std::vector<std::uint32_t> awake;
-    levels_.statistical->find_awake(awake);
-    for (const std::uint32_t body : awake) look_at(body, report);
-    for (const std::uint32_t body : levels_.statistical->fell_asleep()) look_at(body, report);
+    levels_.statistical->find_awake(some);
+    for (const std::uint32_t body : levels_.statistical->fell_asleep()) some.push_back(body);
   }
+  std::ranges::sort(some);  // sooner than the candidates, which are large
   for (const std::uint32_t body : some) look_at(body, report);
 }
 
@@ -120,13 +123,15 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   if (!levels_.bodies.alive(body)) return;
   BodyLevel& level = levels_.bodies.level(body);
   if (level.looked_at == report.step) return;
+  const bool unseen = level.looked_at < report.step - 1;  // it slept
   level.looked_at = report.step;
   ++report.counters.levels_considered;
   if (level.rung == Rung::full || level.newcomer) note_waiting(body);
   if (!model_ && level.tables_open < 0 && open_to(level, false).has(Rung::tables)) ask_for_tables(body);
   const Activity does = budgeted() ? activity(levels_.bodies[body]) : Activity::alone;
   const RungSet open = open_to(level, does == Activity::asleep);
-  if (budgeted()) ++counts_.at(level.newcomer ? open.lowest() : level.rung, does);
+  if (does == Activity::asleep || unseen) level.woke_at = report.step;
+  if (budgeted()) count(level.newcomer ? open.lowest() : level.rung, does, arrives(level, does), 1.0);
   const bool settled = open.one() && open.has(level.rung) && !level.newcomer && level.rung != Rung::full;
   if (settled && !budgeted()) {
     level.reason = LevelReason::forced;
@@ -134,6 +139,9 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   }
   LevelCandidate candidate = make_candidate(body, open, does == Activity::asleep);
   candidate.cost = cost_of_[std::size_t(does)];
+  if (does == Activity::asleep && !open.has(Rung::tables)) candidate.cost[std::size_t(Rung::support)] = 0.0f;  // not all of them are looked at
+  if (budgeted() && does == Activity::asleep && level.rung == Rung::support && open.has(Rung::tables)) support_sleepers_.push_back(body);
+  if (budgeted() && arrives(level, does)) candidate.cost[std::size_t(level.rung)] += float(costs_->cost_of_arriving(level.rung));
   const auto* distance = std::get_if<DistancePolicy>(&policy_.policy);
   if (distance && !level.newcomer && policy_.most_full == kUnlimited && policy_.most_support == kUnlimited && stays_put(candidate, viewpoints_, *distance)) {
     level.reason = reason_for_rung(*distance, level.rung);
@@ -145,7 +153,7 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   activities_.push_back(does);
 }
 
-// One that sleeps costs the same on both statistical rungs: a budget has nothing to gain from moving it between them.
+// One that sleeps at `tables` costs nothing there, and a budget has nothing to gain from moving it to `support`.
 RungSet Choose::open_to(const BodyLevel& level, bool asleep) const {
   if (level.waits_for_signature || level.choice == LevelChoice::full) return {Rung::full};
   if (level.choice == LevelChoice::support) return {Rung::support};
@@ -154,7 +162,7 @@ RungSet Choose::open_to(const BodyLevel& level, bool asleep) const {
   std::optional<Rung> fixed = model_ ? std::optional(rung_of(*model_)) : std::nullopt;
   if (!fixed && distance && distance->support_within == std::numeric_limits<double>::infinity()) fixed = Rung::support;
   if (!fixed && level.tables_open == 0) fixed = Rung::support;
-  if (!fixed && budgeted() && asleep && !level.newcomer) fixed = level.rung == Rung::full ? Rung::support : level.rung;
+  if (!fixed && budgeted() && asleep && !level.newcomer && level.rung == Rung::tables) fixed = Rung::tables;
   if (level.choice == LevelChoice::statistical) return fixed ? RungSet{*fixed} : RungSet{Rung::tables, Rung::support};
   return fixed ? RungSet{*fixed, Rung::full} : kEveryRung;
 }
@@ -164,6 +172,8 @@ LevelCandidate Choose::make_candidate(std::uint32_t body, RungSet open, bool asl
   const BodyRecord& record = levels_.bodies[body];
   LevelCandidate candidate{.radius = levels_.bodies.shape(body)->radius,
                            .importance = level.importance,
+                           .mesh = budgeted() ? mesh_weight(*levels_.bodies.shape(body)) : 0.0f,
+                           .asleep = asleep,
                            .rung = level.rung,
                            .open = open,
                            .decided_by = level.waits_for_signature && level.choice != LevelChoice::full ? LevelReason::signature_pending : LevelReason::forced,
@@ -172,6 +182,7 @@ LevelCandidate Choose::make_candidate(std::uint32_t body, RungSet open, bool asl
   candidate.frames_since_change = std::int32_t(std::min<std::int64_t>(levels_.now - level.changed_at, LevelCandidate{}.frames_since_change));
   if (record.statistical) candidate.position = levels_.statistical->position(record.statistical);  // all that it takes, of most bodies
   else candidate.position = levels_.state(body).position;
+  if (budgeted() && record.ode && !asleep) candidate.motion = kFrame_s * levels_.full.world()->state(record.ode).velocity;
   const bool left_to_policy = level.choice == LevelChoice::automatic || (level.choice == LevelChoice::statistical && !model_);
   if (!static_bounds_.empty() && open.has(Rung::tables) && left_to_policy && !(asleep && open.one())) close_tables_near_static_ground(body, candidate);
   return candidate;
@@ -193,6 +204,20 @@ Activity Choose::activity(const BodyRecord& record) const {
   if (!record.ode) return Activity::alone;
   if (levels_.full.world()->asleep(record.ode)) return Activity::asleep;
   return levels_.full.touches(record.ode) ? Activity::crowded : Activity::alone;
+}
+
+bool Choose::arrives(const BodyLevel& level, Activity does) const {
+  return !level.newcomer && does == Activity::crowded && levels_.now - std::max(level.changed_at, level.woke_at) < kArrivalSteps;
+}
+
+void Choose::count_meetings() {
+  counts_.rungs[std::size_t(Rung::full)][kOfFull] = levels_.full_pairs().awake;
+  counts_.rungs[std::size_t(Rung::support)][kOfFull] = counts_.at(Rung::full, Activity::crowded);
+}
+
+void Choose::count(Rung rung, Activity does, bool arriving, double bodies) {
+  counts_.at(rung, does) += bodies;
+  if (arriving) counts_.rungs[std::size_t(rung)][kArriving] += bodies;
 }
 
 // A sleeper: where it is, and how far the viewpoints can travel before that matters.
@@ -233,7 +258,8 @@ RungChanges Choose::take_answers(const LevelDecision& decision) {
   for (const auto& [from, to] : {std::pair{&decision.promote, &changes.promote}, {&decision.demote, &changes.demote}})
     for (const LevelDecision::Change& change : *from) {
       const std::uint32_t body = asked_[std::size_t(change.candidate)];
-      const RungSet open = candidates_[std::size_t(change.candidate)].open;
+      RungSet open = candidates_[std::size_t(change.candidate)].open;
+      if (change.to == Rung::full) open = open_to(levels_.bodies.level(body), false);  // for one that is not let in, and sleeps
       const bool newcomer = levels_.bodies.level(body).newcomer;
       if (newcomer) levels_.bodies.newcomer(body).rung = change.to == Rung::full ? below_full(open) : change.to;
       if (!newcomer || change.to == Rung::full) to->push_back({body, change.to, open});
@@ -251,8 +277,8 @@ void Choose::count_changes(const RungChanges& changes) {
   for (const auto* list : {&changes.demote, &changes.promote})
     for (const RungChanges::Change& change : *list) {
       const auto i = std::size_t(std::ranges::lower_bound(asked_, change.body) - asked_.begin());
-      --counts_.at(candidates_[i].present(), activities_[i]);
-      ++counts_.at(change.to, activities_[i]);
+      count(candidates_[i].present(), activities_[i], arrives(levels_.bodies.level(change.body), activities_[i]), -1.0);
+      count(change.to, activities_[i], activities_[i] == Activity::crowded && !candidates_[i].newcomer, 1.0);
       ++counts_.changes[std::size_t(change.to)];
     }
 }

@@ -48,6 +48,8 @@ class Choose {
 
   /// Bodies that it saw, on the rungs that they have after its decision.
   const StepCounts& counts() const { return counts_; }
+  /// What full bodies do, after the changes.
+  void count_meetings();
 
  private:
   bool budgeted() const { return !std::holds_alternative<DistancePolicy>(policy_.policy); }
@@ -59,6 +61,8 @@ class Choose {
   void close_tables_near_static_ground(std::uint32_t body, LevelCandidate& candidate) const;
   LevelCandidate make_candidate(std::uint32_t body, RungSet open, bool asleep) const;
   Activity activity(const BodyRecord& record) const;
+  void count(Rung rung, Activity does, bool arriving, double bodies);
+  bool arrives(const BodyLevel& level, Activity does) const;
   void ask_for_tables(std::uint32_t body);
   void note_waiting(std::uint32_t body);
   void put_far(std::uint32_t body, const LevelCandidate& candidate);
@@ -75,6 +79,7 @@ class Choose {
   bool look_at_all_ = true;
   std::vector<std::uint32_t> wishing_;              // that did not get the rung that is wanted for them
   std::vector<std::uint32_t> changed_;              // by the caller, or by a change of rung
+  std::vector<std::uint32_t> support_sleepers_;     // that may go down to `tables`, under a budget
   FarBodies far_;
   double traveled_ = 0.0;                           // m: how far viewpoints came, at most
   std::vector<std::uint32_t> asked_;                // bodies of the candidates

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lod/manager/share_of_full.h"
+
 namespace lodestone {
 namespace {
 
@@ -18,17 +20,8 @@ constexpr double kShareOfRing = 0.25;
 struct Target {
   Rung rung = Rung::support;
   LevelReason reason = LevelReason::far;
-  bool at_once = false;  // neither dwell nor cap may hold it up
+  bool at_once = false;  // neither dwell nor cap may hold it up while too much or too many are there
 };
-
-/// A body by its distance, or by its rank among the others; ties go to the lower index, so that the order is the same in every run.
-struct Ranked {
-  double distance = 0.0;
-  std::int32_t index = 0;
-  Rung to = Rung::support;
-};
-bool nearer(const Ranked& a, const Ranked& b) { return a.distance != b.distance ? a.distance < b.distance : a.index < b.index; }
-bool farther(const Ranked& a, const Ranked& b) { return a.distance != b.distance ? a.distance > b.distance : a.index < b.index; }
 
 double squared_distance(const LevelCandidate& candidate, std::span<const Vec3> viewpoints) {
   double nearest = kInfinity;
@@ -52,27 +45,16 @@ Target target_by_distance(const LevelCandidate& c, double distance, const Distan
 /// What a budget leaves, in its unit: above what all cost on their lowest rungs.
 struct BudgetRoom {
   double keep = 0.0, grow = 0.0;  // for those that are on a higher rung; for more of them
-  double full_now = 0.0;          // taken up by those that are full
-  bool over = false;
-};
+  double now = 0.0;               // left by all as they are
+  double full_now = 0.0;          // taken up by those that are full, with their pairs
 
-double raise(const LevelCandidate& c, Rung to) { return c.cost_at(to) - c.cost_at(c.open.lowest()); }
-
-// The number on a higher rung grows while part of the budget is free, and shrinks when all of it is used up.
-BudgetRoom find_room(std::span<const LevelCandidate> candidates, double budget, double hysteresis, const StepOverhead& overhead) {
-  BudgetRoom room;
-  double lowest = overhead.others, now = overhead.others;
-  for (const LevelCandidate& c : candidates) {
-    lowest += c.cost_at(c.open.lowest());
-    now += c.cost_at(c.decided() ? c.open.lowest() : c.present());
-    if (!c.decided() && c.present() == Rung::full) room.full_now += raise(c, Rung::full);
+  bool over() const { return now < 0.0; }
+  /// Whoever of the three rungs may be asked leaves some to the ring.
+  double for_full(bool ring) const {
+    const double share = ring ? 1.0 - kShareOfRing : 1.0;
+    return std::min(share * keep, std::max(full_now, share * grow));
   }
-  const double usable = budget / (1.0 + overhead.margin);
-  room.keep = std::max(0.0, usable - lowest);
-  room.grow = std::max(0.0, usable / (1.0 + hysteresis) - lowest);
-  room.over = now > usable;
-  return room;
-}
+};
 
 double budget_of(const PolicySettings& settings) {
   if (const auto* timed = std::get_if<BudgetPolicy>(&settings.policy)) return timed->budget_ms;
@@ -101,10 +83,10 @@ std::size_t take_nearest(std::span<Ranked> ranked, double room, std::int64_t mos
   return begin;
 }
 
-/// The room that full bodies have: whoever of the three rungs may be asked leaves some to the ring.
-double room_of_full(const BudgetRoom& room, bool ring) {
-  const double share = ring ? 1.0 - kShareOfRing : 1.0;
-  return std::min(share * room.keep, std::max(room.full_now, share * room.grow));
+// One that has to wait gives room to others meanwhile.
+bool may_be_full_now(const LevelCandidate& c, int min_dwell_frames) {
+  if (c.decided() || !c.open.has(Rung::full)) return false;
+  return c.present() == Rung::full || c.newcomer || (!c.put_off && c.frames_since_change >= min_dwell_frames);
 }
 
 bool can_be_in_ring(const LevelCandidate& c) { return !c.decided() && c.open.has(Rung::tables) && c.open.has(Rung::support); }
@@ -112,7 +94,7 @@ bool can_be_in_ring(const LevelCandidate& c) { return !c.decided() && c.open.has
 class Chooser {
  public:
   Chooser(std::span<const LevelCandidate> candidates, std::span<const Vec3> viewpoints, const PolicySettings& settings, const StepOverhead& overhead)
-      : candidates_(candidates), viewpoints_(viewpoints), settings_(settings), overhead_(overhead) {
+      : candidates_(candidates), viewpoints_(viewpoints), settings_(settings), overhead_(overhead), forced_(candidates, overhead), stays_full_(forced_), pairs_(candidates.size()), goes_down_(candidates.size()) {
     decision_.reasons.resize(candidates.size());
   }
 
@@ -137,71 +119,90 @@ class Chooser {
   }
 
   LevelDecision by_budget(double budget) {
-    const BudgetRoom room = find_room(candidates_, budget, settings_.hysteresis, overhead_);
-    room_ = budget / (1.0 + overhead_.margin) - overhead_.others;
-    std::vector<Ranked> ranked;
+    const BudgetRoom room = find_room(budget);
+    room_ = room.now;
+    std::vector<Ranked> may_be_full, others;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      room_ -= c.cost_at(c.decided() ? c.open.lowest() : c.present());
       if (c.decided()) consider({0.0, i}, {});
-      else ranked.push_back({rank_distance(c, viewpoints_, settings_.hysteresis), i});
+      else (may_be_full_now(c, settings_.min_dwell_frames) ? may_be_full : others).push_back({rank_distance(c, viewpoints_, settings_.hysteresis), i});
     }
-    share_out(room, ranked);
+    share_out(room, std::move(may_be_full), std::move(others));
     count_limits();
     grant();
     return std::move(decision_);
   }
 
-  /// The rank distance of the nearest that finds no room to be full.
-  double reach(double budget) const {
+  /// The rank distance up to which bodies were looked at for the full level.
+  double reach(double budget) {
     if (viewpoints_.empty()) return 0.0;
-    std::vector<Ranked> ranked;
-    bool ring = false;
+    const BudgetRoom room = find_room(budget);
+    std::vector<Ranked> may_be_full;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      ring |= can_be_in_ring(c);
-      if (!c.decided() && c.open.has(Rung::full)) ranked.push_back({rank_distance(c, viewpoints_, settings_.hysteresis), i});
+      if (may_be_full_now(c, settings_.min_dwell_frames)) may_be_full.push_back({rank_distance(c, viewpoints_, settings_.hysteresis), i});
     }
-    const double room = room_of_full(find_room(candidates_, budget, settings_.hysteresis, overhead_), ring);
-    const std::size_t taken = take_full(ranked, room);
-    if (taken == ranked.size()) return std::int64_t(taken) < settings_.most_full ? kInfinity : 0.0;
-    return std::min_element(ranked.begin() + std::ptrdiff_t(taken), ranked.end(), nearer)->distance;
+    return share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()), settings_.most_full).reach;
   }
 
  private:
   std::int32_t count() const { return std::int32_t(candidates_.size()); }
   const LevelCandidate& candidate(const Ranked& r) const { return candidates_[std::size_t(r.index)]; }
 
-  std::size_t take_full(std::span<Ranked> ranked, double room) const {
-    return take_nearest(ranked, room, settings_.most_full, [this](std::int32_t i) { return raise(candidates_[std::size_t(i)], Rung::full); });
+  bool has_ring() const { return std::ranges::any_of(candidates_, can_be_in_ring); }
+
+  /// The number on a higher rung grows while part of the budget is free, and shrinks when all of it is used up. Notes what must be full, and what the pairs cost of those that
+  /// are.
+  BudgetRoom find_room(double budget) {
+    BudgetRoom room;
+    double lowest = overhead_.others, now = 0.0;
+    pairs_.assign(candidates_.size(), 0.0f);
+    for (const LevelCandidate& c : candidates_) {
+      lowest += c.cost_at(c.open.lowest());
+      if (!c.decided()) now += raise(c, c.present());
+      else if (c.open.has(Rung::full)) forced_.add(c);
+    }
+    lowest += forced_.total();
+    // The farther of two that meet answers for the pair: it is the one that goes down.
+    FullBill full = forced_;
+    std::vector<Ranked> full_now;
+    for (std::int32_t i = 0; i < count(); ++i)
+      if (const LevelCandidate& c = candidates_[std::size_t(i)]; !c.decided() && c.present() == Rung::full) full_now.push_back({rank_distance(c, viewpoints_, 0.0), i});
+    std::ranges::sort(full_now, nearer);
+    for (const Ranked& r : full_now) {
+      float& pairs = pairs_[std::size_t(r.index)] = float(full.price_of_pairs(candidate(r)));
+      now += double(pairs);
+      full.add(candidate(r));
+    }
+    const double usable = budget / (1.0 + overhead_.margin);
+    room.full_now = full.total() - forced_.total();
+    room.keep = std::max(0.0, usable - lowest);
+    room.grow = std::max(0.0, usable / (1.0 + settings_.hysteresis) - lowest);
+    room.now = usable - lowest - now;
+    return room;
   }
 
   /// The nearest full, as many as there is room for, the next `support`, the rest on their lowest rungs.
-  void share_out(const BudgetRoom& room, std::span<Ranked> ranked) {
-    const bool ring = std::ranges::any_of(ranked, [this](const Ranked& r) { return can_be_in_ring(candidate(r)); });
-    const std::span<Ranked> never_full(std::ranges::partition(ranked, [this](const Ranked& r) { return candidate(r).open.has(Rung::full); }));
-    const std::span<Ranked> may_be_full = ranked.first(ranked.size() - never_full.size());
-    const std::size_t full = viewpoints_.empty() ? 0 : take_full(may_be_full, room_of_full(room, ring));
-    const bool most_full = full < may_be_full.size() && std::int64_t(full) == settings_.most_full;
-    double used = 0.0;
-    for (const Ranked& r : ranked.first(full)) {
-      used += raise(candidate(r), Rung::full);
-      consider(r, {Rung::full, LevelReason::in_budget});
-    }
-    const std::span<Ranked> rest = ranked.subspan(full);
+  void share_out(const BudgetRoom& room, std::vector<Ranked> may_be_full, std::vector<Ranked> rest) {
+    ShareOfFull share{.taken = {}, .rest = {}, .used = 0.0, .reach = 0.0};
+    if (viewpoints_.empty()) share.rest = std::move(may_be_full);
+    else share = share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()), settings_.most_full);
+    const bool most_full = !share.rest.empty() && std::int64_t(share.taken.size()) == settings_.most_full;
+    for (const Ranked& r : share.taken) consider(r, {Rung::full, LevelReason::in_budget});
+    rest.insert(rest.end(), share.rest.begin(), share.rest.end());
     const std::span<Ranked> lowest(std::ranges::partition(rest, [this](const Ranked& r) { return can_be_in_ring(candidate(r)); }));
-    const std::span<Ranked> may_be_in_ring = rest.first(rest.size() - lowest.size());
+    const std::span<Ranked> may_be_in_ring = std::span(rest).first(rest.size() - lowest.size());
     double ring_now = 0.0;
     for (const Ranked& r : may_be_in_ring)
       if (candidate(r).present() != Rung::tables) ring_now += raise(candidate(r), Rung::support);
-    const double room_of_ring = std::min(room.keep - used, std::max(ring_now, room.grow - used));
+    const double room_of_ring = std::min(room.keep - share.used, std::max(ring_now, room.grow - share.used));
     const std::size_t support = take_nearest(may_be_in_ring, room_of_ring, settings_.most_support, [this](std::int32_t i) { return raise(candidates_[std::size_t(i)], Rung::support); });
     const bool most_support = support < may_be_in_ring.size() && std::int64_t(support) == settings_.most_support;
-    for (const Ranked& r : may_be_in_ring.first(support)) consider(r, {Rung::support, LevelReason::in_budget, room.over});
+    for (const Ranked& r : may_be_in_ring.first(support)) consider(r, {Rung::support, LevelReason::in_budget, room.over()});
     const LevelReason reason = viewpoints_.empty() ? LevelReason::far : LevelReason::over_budget;
-    for (const Ranked& r : rest.subspan(support)) {
+    for (const Ranked& r : std::span(rest).subspan(support)) {
       const bool limited = can_be_in_ring(candidate(r)) ? most_support : most_full;
-      consider(r, {candidate(r).open.lowest(), limited ? LevelReason::most_reached : reason, room.over});
+      consider(r, {candidate(r).open.lowest(), limited ? LevelReason::most_reached : reason, room.over()});
     }
   }
 
@@ -237,7 +238,7 @@ class Chooser {
     const LevelCandidate& c = candidate(by_distance);
     LevelReason& reason = decision_.reasons[std::size_t(by_distance.index)];
     if (c.decided()) target = {c.open.lowest(), c.decided_by, true};
-    reason = target.reason;
+    reason = c.put_off && c.rung != Rung::full && target.rung == c.rung ? LevelReason::overlap_put_off : target.reason;
     if (target.rung == c.present() && (!c.decided() || !c.newcomer || target.rung != Rung::full)) return;
 
     const bool up = c.newcomer || target.rung > c.rung;
@@ -248,31 +249,44 @@ class Chooser {
       (up ? decision_.promote : decision_.demote).push_back({wish.index, wish.to});
     } else if (c.newcomer || (target.at_once && !up)) {
       (up ? promote_at_once_ : demote_at_once_).push_back(wish);
-    } else if (c.frames_since_change < settings_.min_dwell_frames) {
-      reason = LevelReason::dwell;
     } else {
-      (up ? promote_ : demote_).push_back(wish);
+      hold_or_queue(wish, up ? promote_ : demote_);
     }
+  }
+
+  void hold_or_queue(const Ranked& wish, std::vector<Ranked>& queue) {
+    if (candidate(wish).frames_since_change < settings_.min_dwell_frames) decision_.reasons[std::size_t(wish.index)] = LevelReason::dwell;
+    else queue.push_back(wish);
   }
 
   /// Lets wishes come true, as long as there is room, and no more changes than the cap; the rest are queued.
   void grant() {
     std::ranges::sort(promote_at_once_, nearer);
     std::ranges::sort(demote_at_once_, farther);
-    const auto turns = std::size_t(std::max(0, settings_.max_transitions_per_frame));
-    std::ranges::partial_sort(promote_, promote_.begin() + std::ptrdiff_t(std::min(turns, promote_.size())), nearer);
-    std::ranges::partial_sort(demote_, demote_.begin() + std::ptrdiff_t(std::min(turns, demote_.size())), farther);
     for (Ranked& wish : demote_at_once_) {
+      if (room_ >= 0.0 && places_[std::size_t(candidate(wish).rung)] >= 0) {  // enough went down
+        hold_or_queue(wish, demote_);
+        continue;
+      }
       if (places_[std::size_t(wish.to)] <= 0) wish.to = candidate(wish).open.lowest();
       make(wish, decision_.demote);
     }
+    const auto turns = std::size_t(std::max(0, settings_.max_transitions_per_frame));
+    const std::size_t in_order = std::min(turns + kPassedOver, promote_.size());
+    std::ranges::partial_sort(promote_, promote_.begin() + std::ptrdiff_t(in_order), nearer);
+    std::ranges::partial_sort(demote_, demote_.begin() + std::ptrdiff_t(std::min(turns, demote_.size())), farther);
+    // Those that stay full for now are met, too, wanted or not.
+    for (std::int32_t i = 0; i < count(); ++i)
+      if (const LevelCandidate& c = candidates_[std::size_t(i)]; !c.decided() && c.present() == Rung::full && !goes_down_[std::size_t(i)]) stays_full_.add(c);
     for (const Ranked& wish : promote_at_once_)
       if (fits(wish)) make(wish, decision_.promote);
       else decision_.reasons[std::size_t(wish.index)] = LevelReason::over_budget;
 
     std::size_t up = 0, down = 0;
     for (std::size_t left = turns; left > 0; --left) {
-      const bool can_rise = up < promote_.size() && fits(promote_[up]), can_fall = down < demote_.size() && places_[std::size_t(demote_[down].to)] > 0;
+      for (; up < in_order && places_[std::size_t(promote_[up].to)] > 0 && !fits(promote_[up]) && fits_but_for_pairs(promote_[up]); ++up)
+        decision_.reasons[std::size_t(promote_[up].index)] = LevelReason::queued;
+      const bool can_rise = up < in_order && fits(promote_[up]), can_fall = down < demote_.size() && places_[std::size_t(demote_[down].to)] > 0;
       if (can_rise && (up <= down || !can_fall)) make(promote_[up++], decision_.promote);
       else if (can_fall) make(demote_[down++], decision_.demote);
       else break;
@@ -283,20 +297,31 @@ class Chooser {
 
   double cost_of(const Ranked& wish) const {
     const LevelCandidate& c = candidate(wish);
-    return c.cost_at(wish.to) - c.cost_at(c.present()) + overhead_.change[std::size_t(wish.to)];
+    const double pairs = double(pairs_[std::size_t(wish.index)]);
+    const double change_of_pairs = wish.to == Rung::full ? pairs : c.present() == Rung::full ? -pairs : 0.0;
+    return c.cost_at(wish.to) - c.cost_at(c.present()) + change_of_pairs + overhead_.change[std::size_t(wish.to)];
   }
-  bool fits(const Ranked& wish) const { return places_[std::size_t(wish.to)] > 0 && cost_of(wish) <= room_; }
+  bool fits(const Ranked& wish) {
+    if (wish.to == Rung::full) pairs_[std::size_t(wish.index)] = float(stays_full_.price_of_pairs(candidate(wish)));
+    return places_[std::size_t(wish.to)] > 0 && cost_of(wish) <= room_;
+  }
+  bool fits_but_for_pairs(const Ranked& wish) const { return wish.to == Rung::full && cost_of(wish) - double(pairs_[std::size_t(wish.index)]) <= room_; }
   void make(const Ranked& wish, std::vector<LevelDecision::Change>& changes) {
     changes.push_back({wish.index, wish.to});
     room_ -= cost_of(wish);
     --places_[std::size_t(wish.to)];
     if (!candidate(wish).newcomer) ++places_[std::size_t(candidate(wish).rung)];
+    if (wish.to == Rung::full) stays_full_.add(candidate(wish));
+    else goes_down_[std::size_t(wish.index)] = true;
   }
 
   std::span<const LevelCandidate> candidates_;
   std::span<const Vec3> viewpoints_;
   const PolicySettings& settings_;
   const StepOverhead& overhead_;
+  FullBill forced_, stays_full_;                                        // of those that must be full; with those that are for now
+  std::vector<float> pairs_;                                            // what those of a candidate cost that is full, or shall be
+  std::vector<char> goes_down_;                                         // or to `support`
   LevelDecision decision_;
   double room_ = kInfinity;                                             // of the budget
   std::array<std::int64_t, kRungs> places_{kNoLimit, kNoLimit, kNoLimit};  // for more bodies on each rung

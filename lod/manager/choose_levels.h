@@ -45,7 +45,10 @@ struct LevelCandidate {
   Vec3 position = Vec3::Zero();
   double radius = 0.0;            ///< m, distance is measured to the nearest point of the bounding sphere
   double importance = 1.0;
-  std::array<float, kRungs> cost{};  ///< predicted for a step at each rung, in the unit of the budget
+  std::array<float, kRungs> cost{};  ///< predicted for a step at each rung, in the unit of the budget; at the full level without pairs
+  float mesh = 0.0f;              ///< weight of its mesh in pairs of full bodies (full_pairs.h)
+  bool asleep = false;
+  Vec3 motion = Vec3::Zero();     ///< m, of a full body in the next frame
   std::int32_t frames_since_change = 1 << 30;
   Rung rung = Rung::support;
   RungSet open = kEveryRung;
@@ -63,8 +66,10 @@ struct LevelCandidate {
 /// What a budget has to bear besides the candidates, in the same unit.
 struct StepOverhead {
   double others = 0.0;                    ///< whatever is no candidate's
-  double margin = 0.0;                    ///< over the prediction: that it is likely to err by
+  double margin = 0.0;                    ///< over the prediction: that it is likely to err by, as a part of it
   std::array<double, kRungs> change{};    ///< once, of a change to each rung
+  double pair = 0.0;                      ///< of full bodies that may meet, of weight 1; half of it where both sleep: all that wakes at once may take twice the budget
+  double spike = 0.0;                     ///< once, where there is such a pair that is awake, for what the dearest of them may take in a bad step
 };
 
 struct LevelDecision {

@@ -1,5 +1,5 @@
-// What a body costs in a step, on the rung that it has and on those that it might have. Counted work is fixed: a microsecond of the machine that it was measured on,
-// so that it repeats exactly. Milliseconds are the work times a factor that is learnt, rung by rung, from measured steps.
+// What bodies cost in a step, on the rungs that they have and on those that they might have. Counted work is fixed: a microsecond of the machine that it was measured on,
+// so that it repeats exactly. Milliseconds are the work times factors that are learnt from measured steps, one for each line of a rung's bill.
 #pragma once
 
 #include <array>
@@ -11,14 +11,21 @@
 
 namespace lodestone {
 
-/// Bodies by rung and by what they do, and changes to each rung.
-struct StepCounts {
-  std::array<std::array<int, kActivities>, kRungs> bodies{};
-  std::array<int, kRungs> changes{};
-  int asked = 0;  ///< bodies that the policy was asked about
+/// What a rung is charged for in a step: bodies asleep, alone and in a crowd, as Activity has them; those of the crowd that came to it or woke lately, besides; and what
+/// full bodies do there: at the full level the pairs that they make (full_pairs.h), at `support` their contacts with statistical bodies, one for each that touches any.
+inline constexpr std::size_t kArriving = kActivities, kOfFull = kActivities + 1, kCharges = kActivities + 2;
+using Charges = std::array<double, kCharges>;
 
-  int& at(Rung rung, Activity activity) { return bodies[std::size_t(rung)][std::size_t(activity)]; }
-  int at(Rung rung, Activity activity) const { return bodies[std::size_t(rung)][std::size_t(activity)]; }
+/// Steps in which a body counts as arriving.
+inline constexpr int kArrivalSteps = 16;
+
+struct StepCounts {
+  std::array<Charges, kRungs> rungs{};
+  std::array<int, kRungs> changes{};  ///< made in this step, to each rung
+  int asked = 0;                      ///< bodies that the policy was asked about
+
+  double& at(Rung rung, Activity activity) { return rungs[std::size_t(rung)][std::size_t(activity)]; }
+  double at(Rung rung, Activity activity) const { return rungs[std::size_t(rung)][std::size_t(activity)]; }
 };
 
 /// Processor time of a step, ms.
@@ -35,33 +42,31 @@ class CostModel {
   enum class Unit : std::uint8_t { work, milliseconds };
   void set_unit(Unit unit) { unit_ = unit; }
 
-  /// Of one more body that does this, at each rung, by what is full at present. One that touches nothing is charged for the crowd that it may be in soon, too.
+  /// Of one more body that does this, at each rung, but for the pairs that it makes there. One that touches nothing is charged for the crowd that it may be in soon, too.
   std::array<float, kRungs> cost_of(Activity activity) const;
+  /// Besides, of one that came to the rung lately and is in a crowd.
+  double cost_of_arriving(Rung rung) const { return price(rung, kArriving); }
   /// Besides the bodies.
   StepOverhead overhead(const StepCounts& counts) const;
-  /// Predicted for all the bodies of `counts`: fills predicted_ms and work.
+  /// Predicted for all that `counts` has: fills predicted_ms and work.
   void predict(const StepCounts& counts, StepReport& report) const;
-  /// From a step in which the bodies did what `counts` says.
-  void learn(const StepCounts& counts, const StepMeasurement& measured);
-  /// Full bodies that touch others, of which a heap is made, and those that are awake, of which one may be.
-  void set_heap(int touching, int awake) { heap_ = touching, awake_ = awake; }
+  /// From a step that was predicted to take so many ms of its budget, and in which the bodies did what `counts` says.
+  void learn(double budget_ms, double predicted_ms, const StepCounts& counts, const StepMeasurement& measured);
 
   double margin() const { return margin_; }
 
  private:
-  double factor(Rung rung, Activity activity) const;
+  double price(Rung rung, std::size_t charge) const;
   double ms_of(const StepCounts& counts, Rung rung) const;
+  void learn_rung(std::size_t rung, const Charges& charges, double measured_ms);
 
   Unit unit_ = Unit::work;
-  std::array<std::array<double, kActivities>, kRungs> factors_{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
+  std::array<Charges, kRungs> factors_{{{1, 1, 1, 1, 1}, {1, 1, 1, 1, 1}, {1, 1, 1, 1, 1}}};
   double others_factor_ = 1.0;
-  std::array<double, kRungs> spread_{0.2, 0.2, 2.0};  // over what a rung is predicted to cost
-  std::array<double, kRungs> arrival_ms_{};             // of one change to a rung, in the step in which it is made
-  double margin_ = 0.1;  // over all that
-  int heap_ = 0, awake_ = 0;
+  double margin_ = 0.3;  // by which a step may exceed its prediction, as a part of it
 };
 
-/// Work units, µs, of a body on a rung, where `heap` full bodies touch others.
-double work_of(Rung rung, Activity activity, int heap);
+/// Work units, µs, of one on a rung.
+double work_of(Rung rung, std::size_t charge);
 
 }  // namespace lodestone

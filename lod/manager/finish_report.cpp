@@ -1,19 +1,23 @@
 #include "lod/manager/finish_report.h"
 
+#include <algorithm>
+
 namespace lodestone {
 namespace {
 
-/// What full bodies do now, and what the statistical ones did in the step.
-StepCounts count_activities(const Levels& levels, const StepCounts& counts) {
-  StepCounts done{.bodies = {}, .changes = counts.changes, .asked = counts.asked};
+/// What full bodies do now, and what the statistical ones did in the step; who arrived, and the pairs, as the step had them.
+StepCounts count_activities(const Levels& levels, StepCounts counts) {
+  const auto set = [&](Rung rung, const auto& bodies) { std::ranges::copy(bodies, counts.rungs[std::size_t(rung)].begin()); };
+  std::array<int, kActivities> full{};
   for (const FullLevel::Member& member : levels.full.members()) {
     const bool asleep = levels.full.world()->asleep(member.id);
-    ++done.at(Rung::full, asleep ? Activity::asleep : levels.full.touches(member.id) ? Activity::crowded : Activity::alone);
+    ++full[std::size_t(asleep ? Activity::asleep : levels.full.touches(member.id) ? Activity::crowded : Activity::alone)];
   }
-  if (!levels.statistical) return done;
-  done.bodies[std::size_t(Rung::tables)] = levels.statistical->cost().tables;
-  done.bodies[std::size_t(Rung::support)] = levels.statistical->cost().support;
-  return done;
+  set(Rung::full, full);
+  counts.rungs[std::size_t(Rung::support)][kOfFull] = full[std::size_t(Activity::crowded)];
+  set(Rung::tables, levels.statistical ? levels.statistical->cost().tables : std::array<int, kActivities>{});
+  set(Rung::support, levels.statistical ? levels.statistical->cost().support : std::array<int, kActivities>{});
+  return counts;
 }
 
 }  // namespace
@@ -30,16 +34,12 @@ void report_bodies(const Levels& levels, StepReport& report) {
   report.counters.signatures_loaded = levels.signatures.loaded();
 }
 
-void report_cost(const Levels& levels, const StepCounts& counts, const StepMeasurement& measured, bool clocked, CostModel& costs, StepReport& report) {
+void report_cost(const Levels& levels, const StepCounts& counts, const StepMeasurement& measured, std::optional<double> budget_ms, CostModel& costs, StepReport& report) {
   costs.predict(counts, report);
-  const StepCounts done = count_activities(levels, counts);
-  if (clocked) {
-    for (std::size_t rung = 0; rung < kRungs; ++rung) report.cost[rung].measured_ms = measured.rungs_ms[rung];
-    report.measured_ms = measured.total_ms();
-    costs.learn(done, measured);
-  }
-  const int touching = done.at(Rung::full, Activity::crowded);
-  costs.set_heap(touching, touching + done.at(Rung::full, Activity::alone));
+  if (!budget_ms) return;
+  for (std::size_t rung = 0; rung < kRungs; ++rung) report.cost[rung].measured_ms = measured.rungs_ms[rung];
+  report.measured_ms = measured.total_ms();
+  costs.learn(*budget_ms, report.predicted_ms, count_activities(levels, counts), measured);
 }
 
 }  // namespace lodestone

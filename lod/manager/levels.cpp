@@ -69,6 +69,21 @@ void Levels::find_near(std::uint32_t body, double factor, Level level, std::vect
   for (const std::uint32_t owner : owners) add(owner, statistical->position(bodies[owner].statistical));
 }
 
+PairWeights Levels::full_pairs() const {
+  PairWeights all;
+  double most_radius = 0.0;
+  for (const FullLevel::Member& member : full.members()) most_radius = std::max(most_radius, bodies.shape(member.owner)->radius);
+  FullPairs pairs(most_radius);
+  for (const FullLevel::Member& member : full.members()) {
+    const Shape& shape = *bodies.shape(member.owner);
+    const FullPairs::Body body{full.world()->state(member.id).position, shape.radius, mesh_weight(shape), full.world()->asleep(member.id)};
+    const PairWeights met = pairs.meet(body);
+    all.awake += met.awake, all.asleep += met.asleep, all.dearest = std::max(all.dearest, met.dearest);
+    pairs.add(body);
+  }
+  return all;
+}
+
 void Levels::give_forces() {
   for (const std::uint32_t body : bodies.pushed()) {
     const BodyRecord& record = bodies[body];

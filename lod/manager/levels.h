@@ -4,8 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "lod/manager/body_table.h"
 #include "lod/full/full_level.h"
+#include "lod/manager/body_table.h"
+#include "lod/manager/full_pairs.h"
 #include "lod/manager/signature_store.h"
 #include "lod/rungs/statistical_level.h"
 
@@ -41,6 +42,8 @@ struct Levels {
   void wake_near(std::uint32_t body, Level level);
   /// Adds the other bodies of `level`, or those of them that sleep, whose bounding sphere meets that of `body`, both `factor` times as large.
   void find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near, bool asleep_only) const;
+  /// That the full bodies make as they are.
+  PairWeights full_pairs() const;
   /// Gives bodies the forces that are held for them, over the next step of their level.
   void give_forces();
 };

@@ -181,6 +181,7 @@ const StepReport& Manager::step(double dt) {
   levels.now = report.step;
   const auto& policy = stages.choose.policy().policy;
   const bool budgeted = !std::holds_alternative<DistancePolicy>(policy), clocked = std::holds_alternative<BudgetPolicy>(policy);
+  const std::optional<double> budget_ms = clocked ? std::optional(std::get<BudgetPolicy>(policy).budget_ms) : std::nullopt;
   if (levels.statistical) levels.statistical->set_clocked(clocked);
   StepMeasurement measured;
   ThreadLaps laps(clocked);
@@ -193,6 +194,7 @@ const StepReport& Manager::step(double dt) {
     if (stages.callers_space) read_callers_planes(stages.callers_space, stages.own_planes, levels.ground.planes);
     levels.ground.solids.prepare();
     if (changes) stages.move_bodies.run(*changes, report);
+    if (budgeted) stages.choose.count_meetings();
     measured.others_ms += laps.lap_ms();
     // 3 statistical rungs and their contacts with full bodies
     stages.step_levels.step_statistical(dt, report);
@@ -206,7 +208,7 @@ const StepReport& Manager::step(double dt) {
   if (!budgeted) return report;
   stages.step_levels.note_touching();
   measured.others_ms += laps.lap_ms();
-  report_cost(levels, stages.choose.counts(), measured, clocked, stages.costs, report);
+  report_cost(levels, stages.choose.counts(), measured, budget_ms, stages.costs, report);
   return report;
 }
 

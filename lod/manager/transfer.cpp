@@ -52,6 +52,27 @@ bool overlaps_ground(const Levels& levels, const Shape& shape, const RigidState&
   });
 }
 
+template <class Visit>
+void each_piece(const Shape& shape, const RigidState& state, const Visit& visit) {
+  if (shape.pieces.empty()) return visit(shape, state);
+  for (const Shape& piece : shape.pieces) {
+    RigidState at = state;
+    at.position += state.orientation * piece.center_of_mass_in_mesh;
+    visit(piece, at);
+  }
+}
+
+// m: of the hulls or, where these overlap by more than is allowed, of the convex pieces of those that have some, so that one L may hook into another.
+double measure_overlap(const Shape& first, const RigidState& at_first, const Shape& second, const RigidState& at_second, double allowed) {
+  const double of_hulls = measure_hull_overlap(first, at_first, second, at_second);
+  if (of_hulls <= allowed || (first.pieces.empty() && second.pieces.empty())) return of_hulls;
+  double deepest = 0.0;
+  each_piece(first, at_first, [&](const Shape& a, const RigidState& at_a) {
+    each_piece(second, at_second, [&](const Shape& b, const RigidState& at_b) { deepest = std::max(deepest, measure_hull_overlap(a, at_a, b, at_b)); });
+  });
+  return deepest;
+}
+
 }  // namespace
 
 void place(Levels& levels, std::uint32_t body, Rung rung) {
@@ -86,7 +107,7 @@ bool overlaps(const Levels& levels, std::uint32_t body) {
   const auto overlaps_body = [&](std::uint32_t other, const RigidState& there) {
     const Shape& other_shape = *levels.bodies.shape(other);
     const double reach = shape.radius + other_shape.radius, allowed = kOverlapAllowed * std::min(shape.radius, other_shape.radius);
-    return other != body && (there.position - state.position).squaredNorm() <= reach * reach && measure_hull_overlap(shape, state, other_shape, there) > allowed;
+    return other != body && (there.position - state.position).squaredNorm() <= reach * reach && measure_overlap(shape, state, other_shape, there, allowed) > allowed;
   };
   std::vector<std::uint32_t> near;
   levels.find_near(body, 1.0, Level::full, near, false);

@@ -83,10 +83,12 @@ void NearPairs::find_contact(const ContactScene& scene, double time, FoundPair& 
   const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;
   if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(scene, pair, time)) return;
   const auto is_sphere = [&](Participant p) { return p.is_statistical() && scene.body(p).is_sphere(); };
+  const auto is_eased = [&](Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; };
   const double held = is_sphere(pair.first) || is_sphere(pair.second) ? kHeldBySphere : kHeld;
   if (!pair.contacts.empty() && moved < held * least_radius) return;
   const Vec3 closing = scene.velocity(pair.first) - scene.velocity(pair.second);
   thread_local HullContactSearch search;
+  search.exact = !is_sphere(pair.first) && !is_sphere(pair.second) && !is_eased(pair.first) && !is_eased(pair.second);
   find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + closing.norm() * time, search);
   pair.gap = search.gap;
   pair.when = pose_of(a, b);

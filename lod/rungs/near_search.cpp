@@ -125,6 +125,7 @@ void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<cons
         for (std::int64_t i = 0; i < others_[std::size_t(part)].size(); ++i) add_pair(others_[std::size_t(part)].first(i), others_[std::size_t(part)].second(i), tables);
     find_still_hulls_near_spheres(support, tables);
   } else {
+    tables.forget_contacts();
     find_hull_pairs();
     for (std::int64_t i = 0; i < ball_pairs_.size(); ++i) add_pair(ball_pairs_.first(i), ball_pairs_.second(i), tables);
   }

@@ -45,7 +45,6 @@ struct StatisticalLevel::Impl {
   double clock() const { return clocked ? thread_time_ms() : 0.0; }
   void wake_touching(StatisticalPlace place);
   bool any_pairs(std::span<const FullNeighbor> neighbors) const;
-  void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts);
   void count_bodies();
 };
 
@@ -65,76 +64,6 @@ void StatisticalLevel::Impl::wake_touching(StatisticalPlace gone) {
 bool StatisticalLevel::Impl::any_pairs(std::span<const FullNeighbor> neighbors) const {
   const bool any_moves = tables.awake().size() + support.awake().size() > 0 || std::ranges::any_of(neighbors, [](const FullNeighbor& n) { return !n.asleep; });
   return any_moves && std::size_t(tables.size() + support.size()) + neighbors.size() > 1;
-}
-
-void StatisticalLevel::Impl::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
-  StageTimes& times = report.times;
-  ContactTally tally;
-  const double started = clock();
-  // 1 start
-  {
-    const StageTimer timer(times.flight_ms);
-    tables.begin_step(dt, search.order_of_spheres(), tally);
-    support.begin_step(dt, tally);
-  }
-  // 2 near pairs, and the contacts of spheres
-  const bool pair_phase = any_pairs(neighbors);
-  report.counters.pair_phases += pair_phase;
-  if (pair_phase) {
-    {
-      const StageTimer timer(times.broad_phase_ms);
-      search.fill(dt, tables, support, neighbors);
-    }
-    const StageTimer timer(times.pairs_ms);
-    search.find(tables, support, neighbors);
-  } else {
-    search.clear();
-    tables.forget_contacts();
-  }
-  // 3 the response of spheres
-  {
-    const StageTimer timer(times.crowd_ms);
-    tables.respond(tally);
-  }
-  // 4 hulls, and spheres near them
-  const double hulls_from = clock();
-  if (!support.awake().empty() || !search.pairs().empty()) {
-    guest_bodies.clear();
-    for (Guest& guest : search.guests()) {
-      guest.resting = tables.resting_of(guest.slot);
-      guest_bodies.push_back(tables.guest_body(guest));
-    }
-    support.admit_guests(guest_bodies);
-    near_bodies.step(dt, support, search.guests(), search, neighbors, full_contacts, times, tally);
-    tables.take_guests(search.guests(), support.bodies().subspan(std::size_t(support.size())));
-    support.dismiss_guests();
-  } else {
-    near_bodies.forget_pairs();
-  }
-  const double hulls_until = clock();
-  // 5 spheres move
-  {
-    const StageTimer timer(times.flight_ms);
-    tables.finish(tally);
-  }
-  // 6 rest
-  {
-    const StageTimer timer(times.rest_ms);
-    tables.rest();
-    support.end_step();
-  }
-  fell_asleep.assign(tables.fell_asleep().begin(), tables.fell_asleep().end());
-  fell_asleep.insert(fell_asleep.end(), support.fell_asleep().begin(), support.fell_asleep().end());
-  if (clocked) {
-    cost.support_ms = hulls_until - hulls_from;
-    cost.tables_ms = clock() - started - cost.support_ms;
-    count_bodies();
-  }
-  if (tables.size() > 0) report.bytes_moved += tables.count_traffic(pair_phase);
-  report.contacts += int(tally.contacts);
-  report.counters.energy_clamps += tally.energy_clamps;
-  report.counters.table_extrapolations += tally.table_extrapolations;
-  report.counters.states_recovered += tally.states_recovered;
 }
 
 void StatisticalLevel::Impl::count_bodies() {
@@ -163,7 +92,77 @@ std::optional<std::uint32_t> StatisticalLevel::remove(StatisticalPlace place, bo
 }
 
 void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
-  impl_->step(dt, neighbors, report, full_contacts);
+  Impl& s = *impl_;
+  SupportLevel& support = s.support;
+  TablesLevel& tables = s.tables;
+  NearSearch& search = s.search;
+  StageTimes& times = report.times;
+  ContactTally tally;
+  const double started = s.clock();
+  // 1 start
+  {
+    const StageTimer timer(times.flight_ms);
+    tables.begin_step(dt, search.order_of_spheres(), tally);
+    support.begin_step(dt, tally);
+  }
+  // 2 near pairs, and the contacts of spheres
+  const bool pair_phase = s.any_pairs(neighbors);
+  report.counters.pair_phases += pair_phase;
+  if (pair_phase) {
+    {
+      const StageTimer timer(times.broad_phase_ms);
+      search.fill(dt, tables, support, neighbors);
+    }
+    const StageTimer timer(times.pairs_ms);
+    search.find(tables, support, neighbors);
+  } else {
+    search.clear();
+    tables.forget_contacts();
+  }
+  // 3 the response of spheres
+  {
+    const StageTimer timer(times.crowd_ms);
+    tables.respond(tally);
+  }
+  // 4 hulls, and spheres near them
+  const double hulls_from = s.clock();
+  if (!support.awake().empty() || !search.pairs().empty()) {
+    s.guest_bodies.clear();
+    for (Guest& guest : search.guests()) {
+      guest.resting = tables.resting_of(guest.slot);
+      s.guest_bodies.push_back(tables.guest_body(guest));
+    }
+    support.admit_guests(s.guest_bodies);
+    s.near_bodies.step(dt, support, search.guests(), search, neighbors, full_contacts, times, tally);
+    tables.take_guests(search.guests(), support.bodies().subspan(std::size_t(support.size())));
+    support.dismiss_guests();
+  } else {
+    s.near_bodies.forget_pairs();
+  }
+  const double hulls_until = s.clock();
+  // 5 spheres move
+  {
+    const StageTimer timer(times.flight_ms);
+    tables.finish(tally);
+  }
+  // 6 rest
+  {
+    const StageTimer timer(times.rest_ms);
+    tables.rest();
+    support.end_step();
+  }
+  s.fell_asleep.assign(tables.fell_asleep().begin(), tables.fell_asleep().end());
+  s.fell_asleep.insert(s.fell_asleep.end(), support.fell_asleep().begin(), support.fell_asleep().end());
+  if (s.clocked) {
+    s.cost.support_ms = hulls_until - hulls_from;
+    s.cost.tables_ms = s.clock() - started - s.cost.support_ms;
+    s.count_bodies();
+  }
+  if (tables.size() > 0) report.bytes_moved += tables.count_traffic(pair_phase);
+  report.contacts += int(tally.contacts);
+  report.counters.energy_clamps += tally.energy_clamps;
+  report.counters.table_extrapolations += tally.table_extrapolations;
+  report.counters.states_recovered += tally.states_recovered;
 }
 
 std::size_t StatisticalLevel::bytes() const {

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "lod/contact/hull_contacts.h"
+#include "lod/statistical/parting.h"
 #include "lod/statistical/rest_law.h"
 #include "lod/support/support_level.h"
 
@@ -80,10 +81,11 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
   const BodyKind& kind = kind_of(body);
   const bool among_others = body.crowded || double(body.since_crowded) < rest_law::kLeaningTime;
   body.since_crowded = body.crowded ? 0.0f : body.since_crowded + float(time);
+  const bool parts = body.eased == kEasedTime;  // from what it overlaps since it came: it is not at rest, though it has no velocity
   body.eased = std::max(0.0f, body.eased - float(time));
   const double energy = kinetic_energy(body, *kind.shape);
   if (!is_sound(body, energy)) recover(body, last_places_[std::size_t(slot)], tally);
-  const bool still = energy < rest_law::still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
+  const bool still = !parts && energy < rest_law::still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
   body.quiet_time = still ? body.quiet_time + float(time) : 0.0f;
   if (!settings_.sleeping || body.quiet_time < rest_law::still_time(among_others)) return;
   if (among_others || stands_firmly(body, faces)) put_to_sleep(body);

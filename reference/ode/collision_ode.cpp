@@ -63,7 +63,7 @@ bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.bod
 Collision::Collision(dSpaceID around, const OdeSettings& settings)
     : settings_(settings),
       broad_phase_(around, settings.hash_space),
-      narrow_phase_(settings.mesh_contacts != MeshContacts::plain),
+      narrow_phase_(settings.mesh_contacts != MeshContacts::plain, settings.most_mesh_measures),
       plane_phase_(settings),
       attached_(around != nullptr) {}
 

@@ -32,13 +32,16 @@ class Places {
     for (const ContactPoint& contact : contacts) middle_ += contact.point / double(contacts.size());
   }
   std::optional<WayOut> measure(const Vec3& place, const Vec3& direction, double inward) const {
+    ++measured_;
     if (auto way = measure_(place + inward * (middle_ - place), direction)) return way;
     return measure_(place + kBarely * (middle_ - place), direction);
   }
+  int measured() const { return measured_; }  ///< so far
 
  private:
   const WayOutMeasure& measure_;
   Vec3 middle_;
+  mutable int measured_ = 0;
 };
 
 void add_unlike(std::vector<Vec3>& normals, const Vec3& normal) {
@@ -58,9 +61,11 @@ std::vector<Vec3> edges_between(std::span<const Vec3> normals) {
 /// Looks for the displacement with the least depth for each of the places that it clears.
 class Search {
  public:
-  Search(std::span<const ContactPoint> sample, double slack, const Places& places) : sample_(sample), slack_(slack), places_(places) {}
+  /// Tries no new direction once `places` has measured `until` ways out.
+  Search(std::span<const ContactPoint> sample, double slack, const Places& places, int until) : sample_(sample), slack_(slack), places_(places), until_(until) {}
 
   void consider(const Vec3& direction) {
+    if (places_.measured() >= until_) return;
     if (std::ranges::any_of(tried_, [&](const Vec3& other) { return other.dot(direction) > kTried; })) return;
     tried_.push_back(direction);
     const auto ways = measure(direction);
@@ -124,6 +129,7 @@ class Search {
   std::span<const ContactPoint> sample_;
   double slack_;
   const Places& places_;
+  int until_;
   std::vector<Vec3> tried_;
   std::optional<Displacement> best_;
   std::vector<WayOut> faces_of_best_;
@@ -131,8 +137,8 @@ class Search {
   double least_ = std::numeric_limits<double>::infinity();
 };
 
-std::optional<Displacement> find_displacement(std::span<ContactPoint> contacts, double size, const Places& places) {
-  Search search(contacts.first(reduce_contacts(contacts, kSample, size)), kDepthSlack * size, places);
+std::optional<Displacement> find_displacement(std::span<ContactPoint> contacts, double size, const Places& places, int until) {
+  Search search(contacts.first(reduce_contacts(contacts, kSample, size)), kDepthSlack * size, places, until);
   std::vector<ContactPoint> shallow_first(contacts.begin(), contacts.end());
   std::ranges::stable_sort(shallow_first, {}, &ContactPoint::depth);
   for (const ContactPoint& contact : shallow_first) search.consider(contact.normal);
@@ -171,11 +177,12 @@ bool plainly_believable(std::span<const ContactPoint> contacts, double size) {
   });
 }
 
-int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure) {
+int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure, int most_measures) {
+  constexpr int kLeast = 5 * kSample;  // of a round: those that are left want a direction, too
   const Places places(contacts, measure);
   std::span<ContactPoint> left = contacts;
   while (!left.empty()) {
-    const auto way = find_displacement(left, size, places);
+    const auto way = find_displacement(left, size, places, std::max(most_measures, places.measured() + kLeast));
     if (!way) break;
     left = turn_cleared(left, *way, kDepthSlack * size, places);
   }

@@ -22,7 +22,8 @@ Vec3 face_normal(dGeomID mesh, int face) {
 
 }  // namespace
 
-NarrowPhase::NarrowPhase(bool filtered) : found_(kMostContacts), ray_(dCreateRay(nullptr, 1.0)), filtered_(filtered) {
+NarrowPhase::NarrowPhase(bool filtered, int most_measures)
+    : found_(kMostContacts), ray_(dCreateRay(nullptr, 1.0)), filtered_(filtered), most_measures_(most_measures) {
   for (dGeomID& geom : local_) geom = dCreateTriMesh(nullptr, nullptr, nullptr, nullptr, nullptr);
   dGeomRaySetBackfaceCull(ray_, 0);
   dGeomRaySetClosestHit(ray_, 1);
@@ -54,7 +55,7 @@ void NarrowPhase::find_of_meshes(dGeomID first, dGeomID second, double size, std
   if (filtered_ && !plainly_believable(found, size)) {
     const auto few = found.first(reduce_contacts(found, kMostFiltered, size));
     const auto measure = [&](const Vec3& place, const Vec3& direction) { return measure_way_out(place, direction); };
-    points.resize(before + filter_contacts(few, size, measure));
+    points.resize(before + filter_contacts(few, size, measure, most_measures_));
   }
   for (ContactPoint& point : std::span(points).subspan(before)) {
     point.point += origin_;

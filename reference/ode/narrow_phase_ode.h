@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "reference/ode/contact_filter.h"
@@ -20,7 +21,8 @@ class NarrowPhase {
   };
 
  public:
-  explicit NarrowPhase(bool filtered = true);
+  /// `most_measures`: of a pair of meshes, see filter_contacts.
+  explicit NarrowPhase(bool filtered = true, int most_measures = std::numeric_limits<int>::max());
   ~NarrowPhase();
   NarrowPhase(const NarrowPhase&) = delete;
   NarrowPhase& operator=(const NarrowPhase&) = delete;
@@ -42,6 +44,7 @@ class NarrowPhase {
   Vec3 origin_ = Vec3::Zero();
   double size_ = 0.0;
   bool filtered_;
+  int most_measures_;
 };
 
 }  // namespace lodestone::ode

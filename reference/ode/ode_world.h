@@ -41,6 +41,7 @@ struct OdeSettings {
   bool friction_along_slip = true;      ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
   int max_contacts_per_pair = 8;
   MeshContacts mesh_contacts = MeshContacts::exact;
+  int most_mesh_measures = 1 << 30;     ///< of the contacts of two concave meshes in a substep: after so many the search for their directions ends (contact_filter.h)
   bool plane_contacts_from_hull = true; ///< false: dCollide of the trimesh with the plane, brute force over all faces
   double plane_depth_max = 1e9;         ///< over the shape's size: a hull vertex that would sink deeper into a plane within the step bounces beforehand
   /// In substeps longer than the first and no longer than the second (s) a hull's contacts with planes are answered at their own time, where it

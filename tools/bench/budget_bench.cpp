@@ -115,7 +115,8 @@ std::vector<BudgetBenchRow> bench_budget(const BudgetBenchSettings& settings) {
     rows.push_back(BudgetRun(settings, {.policy = BudgetPolicy{ms}}, settings.threads, shape, signature).measure(fmt::format("{:g} ms", ms)));
   if (settings.work > 0.0)
     for (const int threads : {1, 2, 1, 2})
-      rows.push_back(BudgetRun(settings, {.policy = WorkPolicy{settings.work}}, threads, shape, signature).measure(fmt::format("{:g} units, {} threads", settings.work, threads)));
+      rows.push_back(BudgetRun(settings, {.policy = WorkPolicy{settings.work}}, threads, shape, signature)
+                         .measure(fmt::format("{:g} units, {} threads", settings.work, threads)));
   return rows;
 }
 

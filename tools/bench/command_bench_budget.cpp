@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tools/bench/budget_bench.h"
 #include "tools/csv_file.h"
@@ -48,15 +49,22 @@ std::string text_of(const std::vector<BudgetBenchRow>& rows) {
   return table.text();
 }
 
+// Once for the runs of a budget of work, which are alike.
 std::string text_of_waiting(const std::vector<BudgetBenchRow>& rows, int bodies) {
   std::string text;
+  bool worked = false;
   for (const BudgetBenchRow& row : rows) {
+    if (row.figures.budget_work && std::exchange(worked, true)) continue;
     std::string whys;
     for (const auto& [why, count] : row.waiting)
       if (count >= 0.05) whys += fmt::format("{} {:.1f} ({})", whys.empty() ? "" : ",", count, why);
     if (!whys.empty()) text += fmt::format("of the {} nearest, not full at {}, mean of steps:{}\n", std::min(kNearest, bodies), name_of(row.figures), whys);
   }
   return text;
+}
+
+std::string text_of_repeating(double work, bool repeats) {
+  return fmt::format("under {:g} units the runs on 1 and 2 threads, twice each, end {}", work, repeats ? "in the same state" : "DIFFERENTLY");
 }
 
 ordered_json or_null(const auto& value) { return value ? ordered_json(*value) : ordered_json(nullptr); }
@@ -103,7 +111,7 @@ ExitCode run_bench(Arguments arguments) {
                "kept: 99 % within 1.1 times the budget, at most 1 step in 100 over it, none over twice it\n"
                "nearest: of the n nearest to the viewpoint, where n are full, the part that is; once settled: half a second after a jump and later\n\n{}\n{}{}\n",
                arguments.bench.bodies, kJumpEvery_s, kFirstBudgetStep, text_of(rows), text_of_waiting(rows, arguments.bench.bodies),
-               arguments.bench.work > 0.0 ? fmt::format("under {:g} units the runs on 1 and 2 threads, twice each, end {}", arguments.bench.work, repeats ? "in the same state" : "DIFFERENTLY") : "");
+               arguments.bench.work > 0.0 ? text_of_repeating(arguments.bench.work, repeats) : "");
   const bool kept = std::ranges::all_of(rows, [](const BudgetBenchRow& row) { return is_kept(row.figures); });
   return kept && repeats ? ExitCode::done : ExitCode::check_failed;
 }

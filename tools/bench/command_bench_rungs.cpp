@@ -26,7 +26,8 @@ struct Arguments {
 double height_change_percent(const RungsHeap& heap) { return 100.0 * (heap.mean_height_after_m / heap.mean_height_before_m - 1.0); }
 
 std::string text_of(const RungsHeap& heap) {
-  TextTable table({"change", "bodies", "median mm", "99 % mm", "99.9 % mm", "most mm", "unseen", "unexplained 99.9 %", "most", "others mm", "energy/mgR", "woken", "put off"});
+  TextTable table({"change", "bodies", "median mm", "99 % mm", "99.9 % mm", "most mm", "unseen", "unexplained 99.9 %", "most", "others mm", "energy/mgR", "woken",
+                   "put off"});
   for (const RungsRow& row : heap.rows)
     table.add_row({row.change, fmt::format("{}", row.changes), fmt::format("{:.3f}", row.p50_mm), fmt::format("{:.2f}", row.p99_mm), fmt::format("{:.2f}", row.p999_mm),
                    fmt::format("{:.2f}", row.max_mm), row.change == "none" ? "-" : is_unseen(row) ? "yes" : "NO", fmt::format("{:.2f}", row.unexplained_p999_mm), fmt::format("{:.2f}", row.unexplained_max_mm),

@@ -318,6 +318,50 @@ TEST(BudgetPolicy, AMarginAndTheCostOfChangesKeepBodiesDown) {
   EXPECT_EQ(choose_levels(candidates, kAtOrigin, by_budget(22.0), {.change = {0, 0, 1.0}}).promote.size(), 11u);
 }
 
+/// In a row, each touching the next; all of one mesh.
+std::vector<LevelCandidate> a_row(int count, bool asleep = false) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < count; ++i) {
+    LevelCandidate& c = candidates.emplace_back(at(10 + i, Rung::tables, {Rung::tables, Rung::full}));
+    c.radius = 1.0, c.mesh = 1.0f, c.asleep = asleep;
+  }
+  return candidates;
+}
+
+TEST(BudgetPolicy, APairOfFullBodiesIsChargedBesidesThem) {
+  const auto promoted = [](double budget, const StepOverhead& overhead, bool asleep = false) { return choose_levels(a_row(9, asleep), kAtOrigin, by_budget(budget), overhead).promote.size(); };
+  EXPECT_EQ(promoted(11.0, {}), 9u);
+  EXPECT_EQ(promoted(16.6, {.pair = 2.0}), 7u);  // without the next but one it would meet the one before: 5 alone, of which 2 make pairs
+  EXPECT_EQ(promoted(11.0, {.pair = 1e3}), 5u);  // every other one
+  EXPECT_EQ(promoted(11.0, {.spike = 1e3}), 5u);
+  EXPECT_EQ(promoted(11.0, {.spike = 1e3}, true), 9u);  // no pair of sleepers has a spike
+}
+
+TEST(BudgetPolicy, OfTwoFullBodiesThatComeTooCloseTheFartherGoesDownAtOnce) {
+  std::vector<LevelCandidate> candidates = a_row(3);
+  for (LevelCandidate& c : candidates) c.rung = Rung::full, c.frames_since_change = 0;
+  candidates[2].position.x() += 5.0;
+  const auto decision = choose_levels(candidates, kAtOrigin, by_budget(11.0), {.pair = 1e3});
+  EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{1, Rung::tables}}));
+}
+
+TEST(BudgetPolicy, OnlyAsManyGoDownAtOnceAsMust) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 20; ++i) candidates.push_back(at(30 - i, Rung::full));
+  PolicySettings settings = by_budget(18.0);
+  settings.max_transitions_per_frame = 0;
+  for (LevelCandidate& c : candidates) c.frames_since_change = 0;
+  EXPECT_EQ(who(choose(candidates, settings).demote), (Indices{0, 1}));
+}
+
+TEST(BudgetPolicy, ABodyThatIsPutOffGivesItsRoomToTheNext) {
+  std::vector<LevelCandidate> candidates{at(1), at(2), at(3)};
+  candidates[0].put_off = true;
+  const auto decision = choose(candidates, by_budget(2.4));
+  EXPECT_EQ(who(decision.promote), (Indices{1, 2}));
+  EXPECT_EQ(decision.reasons[0], LevelReason::overlap_put_off);
+}
+
 TEST(BudgetPolicy, ReachOfFullIsWhereItsRoomEnds) {
   std::vector<LevelCandidate> candidates;
   for (int i = 0; i < 100; ++i) candidates.push_back(at(1 + i));

@@ -6,29 +6,16 @@
 #include "lod/rungs/statistical_level.h"
 #include "reference/free_rotation.h"
 #include "reference/random.h"
-#include "signature/measure/measure.h"
 #include "tests/allocations.h"
+#include "tests/lod/rungs/rung_fixture.h"
 
 namespace lodestone {
 namespace {
 
+using testing::box, testing::box_signature;
+
 constexpr double kFrame = 1.0 / 60, kMass = 24.0;
 constexpr auto kSupport = StatisticalModel::support, kTables = StatisticalModel::tables;
-
-std::shared_ptr<const Shape> box() {
-  static const auto shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
-  return shape;
-}
-
-std::shared_ptr<const Signature> box_signature() {
-  static const auto signature = [] {
-    SignatureSettings settings;
-    settings.n_theta = 4, settings.n_phi = 4, settings.n_alpha = 6, settings.trials_per_cell = 16;
-    settings.height_trials = 200, settings.settling_trials = 60, settings.clips = 30;
-    return std::make_shared<const Signature>(measure_signature(*box(), settings, 2));
-  }();
-  return signature;
-}
 
 struct Motions {
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // over the mass of a box
@@ -46,6 +33,18 @@ class Meeting : public ::testing::Test {
  protected:
   StatisticalPlace add(StatisticalLevel& level, StatisticalModel model, const RigidState& state, bool asleep = false) {
     return level.add(model, std::uint32_t(level.size()), box(), kMass, 0, state, asleep, box_signature(), asleep);
+  }
+  /// 48 boxes in three layers, every third one of `support`.
+  std::vector<StatisticalPlace> add_heap(StatisticalLevel& level) {
+    std::vector<StatisticalPlace> places;
+    for (int i = 0; i < 48; ++i) {
+      RandomStream random(3, std::uint64_t(i), 0);
+      RigidState s;
+      s.position = {0.42 * (i % 4), 0.42 * (i / 4 % 4), 0.4 + 0.55 * (i / 16)};
+      s.orientation = random.orientation();
+      places.push_back(add(level, i % 3 ? kTables : kSupport, s));
+    }
+    return places;
   }
   static FullNeighbor full_box(std::uint32_t owner, const RigidState& state) {
     FullNeighbor neighbor;
@@ -199,18 +198,11 @@ TEST_F(Meeting, SleepersAreWokenFromEitherRung) {
   }
 }
 
-// Heaps of both rungs, mixed: nothing passes through anything, all comes to rest, and a warm step allocates nothing.
+// Heaps of both rungs, mixed: nothing passes through anything, and all comes to rest.
 TEST_F(Meeting, AMixedHeapComesToRest) {
   settings_.gravity = Vec3(0, 0, -9.81);
   StatisticalLevel level(settings_, floor_, materials_);
-  std::vector<StatisticalPlace> places;
-  for (int i = 0; i < 48; ++i) {
-    RandomStream random(3, std::uint64_t(i), 0);
-    RigidState s;
-    s.position = {0.42 * (i % 4), 0.42 * (i / 4 % 4), 0.4 + 0.55 * (i / 16)};
-    s.orientation = random.orientation();
-    places.push_back(add(level, i % 3 ? kTables : kSupport, s));
-  }
+  const std::vector<StatisticalPlace> places = add_heap(level);
   StepReport report;
   for (int i = 0; i < 900; ++i) report = {}, level.step(kFrame, {}, report);
   for (const StatisticalPlace place : places) {
@@ -218,6 +210,96 @@ TEST_F(Meeting, AMixedHeapComesToRest) {
     EXPECT_LT(level.state(place).velocity.norm(), 0.3);
   }
   EXPECT_GT(level.asleep_count(), 40);
+}
+
+TEST_F(Meeting, AWarmMixedStepAllocatesNothing) {
+  settings_.gravity = Vec3(0, 0, -9.81);
+  settings_.sleeping = false;
+  StatisticalLevel level(settings_, floor_, materials_);
+  add_heap(level);
+  StepReport report;
+  for (int i = 0; i < 900; ++i) level.step(kFrame, {}, report);
+  const std::int64_t before = allocations();
+  report.contacts = 0;
+  for (int i = 0; i < 30; ++i) level.step(kFrame, {}, report);
+  EXPECT_EQ(allocations() - before, 0);
+  EXPECT_GT(report.contacts, 30 * 40);
+}
+
+// Spheres that touched and fell asleep are in no contact any more, while hulls move on beside them.
+TEST_F(Meeting, SleepingSpheresLieStillBesideMovingHulls) {
+  settings_.gravity = Vec3(0, 0, -9.81);
+  StatisticalLevel level(settings_, floor_, materials_);
+  std::vector<StatisticalPlace> spheres;
+  for (int i = 0; i < 6; ++i) {
+    RigidState s;
+    s.position = {0.38 * i, 0, 0.5};
+    spheres.push_back(add(level, kTables, s));
+  }
+  RigidState high;
+  high.position = {0, 6, 40};
+  const StatisticalPlace hull = add(level, kSupport, high);
+  int asleep_for = 0;
+  for (int i = 0; i < 600; ++i) {
+    StepReport report;
+    level.step(kFrame, {}, report);
+    const bool asleep = std::ranges::all_of(spheres, [&](StatisticalPlace place) { return level.asleep(place); });
+    if (!asleep || level.asleep(hull)) continue;
+    ++asleep_for;
+    EXPECT_LE(report.contacts, 8) << i;
+  }
+  EXPECT_GT(asleep_for, 20);
+}
+
+// A box that lies on the floor and is nudged at 2 cm/s stays down: its sphere grows no faster than it moves.
+TEST_F(Meeting, ANudgedSphereDoesNotRise) {
+  settings_.gravity = Vec3(0, 0, -9.81);
+  for (const double height : {0.1, 0.15, 0.2}) {  // on each of its three faces
+    StatisticalLevel level(settings_, floor_, materials_);
+    RigidState lying;
+    lying.position.z() = height;
+    const Vec3 down = height == 0.1 ? Vec3::UnitX() : height == 0.15 ? Vec3::UnitY() : Vec3::UnitZ();
+    lying.orientation = Quat::FromTwoVectors(down, Vec3::UnitZ());
+    const StatisticalPlace place = add(level, kTables, lying, true);
+    EXPECT_NEAR(level.sphere_radius(place), height, 1e-6);
+    lying.velocity = Vec3(0.02, 0, 0);
+    level.set_state(place, lying);
+    double highest = 0.0;
+    for (int i = 0; i < 60; ++i) {
+      StepReport report;
+      level.step(kFrame, {}, report);
+      highest = std::max(highest, level.position(place).z());
+    }
+    EXPECT_LT(highest, height + 0.002) << height;
+  }
+}
+
+// Spheres overlap where hulls did not: they come apart at a walking pace that nobody sees.
+TEST_F(Meeting, OverlapsThatArriveAreUndoneSlowly) {
+  settings_.gravity = Vec3(0, 0, -9.81);
+  for (const StatisticalModel model : {kSupport, kTables}) {
+    StatisticalLevel level(settings_, floor_, materials_);
+    std::vector<StatisticalPlace> places;
+    for (int i = 0; i < 4; ++i) {
+      RigidState s;
+      s.position = {0.12 * i, 0, 0.2};  // hulls of .2 m
+      places.push_back(level.add(model, std::uint32_t(i), box(), kMass, 0, s, false, box_signature(), true));
+    }
+    double farthest = 0.0;
+    for (int i = 0; i < 120; ++i) {
+      std::vector<RigidState> before;
+      for (const StatisticalPlace place : places) before.push_back(level.state(place));
+      StepReport report;
+      level.step(kFrame, {}, report);
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        const RigidState after = level.state(places[k]);
+        const double explained = std::max(before[k].velocity.norm(), after.velocity.norm()) * kFrame;
+        farthest = std::max(farthest, (after.position - before[k].position).norm() - explained);
+      }
+    }
+    EXPECT_LT(farthest, 0.006) << int(model);
+    EXPECT_GT(level.position(places[3]).x() - level.position(places[0]).x(), 0.45) << int(model);
+  }
 }
 
 // Who touched another lately leans on it still, and sleeps soon once it is still: by seconds, whatever the step. Counted in steps, that ended four times too early at 240 Hz, and the

@@ -3,29 +3,13 @@
 #include "lod/tables/tables_model.h"
 #include "reference/free_rotation.h"
 #include "reference/random.h"
-#include "signature/measure/measure.h"
 #include "tests/allocations.h"
-#include "tests/lod/rungs/one_rung.h"
+#include "tests/lod/rungs/rung_fixture.h"
 
 namespace lodestone {
 namespace {
 
-using testing::OneRung;
-
-std::shared_ptr<const Shape> box() {
-  static const auto shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
-  return shape;
-}
-
-std::shared_ptr<const Signature> box_signature() {
-  static const auto signature = [] {
-    SignatureSettings settings;
-    settings.n_theta = 4, settings.n_phi = 4, settings.n_alpha = 6, settings.trials_per_cell = 16;
-    settings.height_trials = 200, settings.settling_trials = 60, settings.clips = 30;
-    return std::make_shared<const Signature>(measure_signature(*box(), settings, 2));
-  }();
-  return signature;
-}
+using testing::box, testing::box_signature, testing::OneRung;
 
 class Statistical : public ::testing::TestWithParam<StatisticalModel> {
  protected:

@@ -1,7 +1,7 @@
 // What substeps are for: many bodies that fall on each other.
 #include <gtest/gtest.h>
 
-#include "tests/lod/rungs/one_rung.h"
+#include "tests/lod/rungs/rung_fixture.h"
 #include "tools/compare/pile_overlap.h"
 #include "tools/compare/pile_start.h"
 #include "tools/compare/pile_world.h"

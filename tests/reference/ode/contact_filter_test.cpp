@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 namespace lodestone {
 namespace {
@@ -68,6 +70,23 @@ TEST(ContactFilter, KeepsFloorAndWallOfACorner) {
   ASSERT_EQ(kept, 12);
   EXPECT_EQ(std::ranges::count(contacts, Vec3(1, 0, 0), &ContactPoint::normal), 6);
   EXPECT_EQ(std::ranges::count(contacts, Vec3(0, 0, 1), &ContactPoint::normal), 6);
+}
+
+// Many false directions, which all want to be looked at: once the search has measured enough it takes the best that it has, which is upright.
+TEST(ContactFilter, EndsTheSearchOnceEnoughWasMeasured) {
+  const auto filter = [](int most_measures, int& measured) {
+    std::vector<ContactPoint> contacts{{{0, 0, 0}, {0, 0, 1}, 1e-3}};
+    for (int i = 1; i < 40; ++i)
+      contacts.push_back({{0.1 * (i % 7), 0.1 * (i / 7), 0}, Vec3(std::cos(i), std::sin(i), 0.3 * std::cos(3.0 * i)).normalized(), 0.2 + 0.01 * i});
+    const int kept = filter_contacts(contacts, 1.0, [&](const Vec3& place, const Vec3& direction) { return ++measured, FloorAndWall{}(place, direction); }, most_measures);
+    for (const ContactPoint& contact : std::span(contacts).first(std::size_t(kept))) EXPECT_GT(contact.normal.z(), 0.9);
+    return kept;
+  };
+  int all = 0, some = 0;
+  EXPECT_EQ(filter(std::numeric_limits<int>::max(), all), 40);
+  EXPECT_EQ(filter(60, some), 40);
+  EXPECT_GT(all, 200);
+  EXPECT_LT(some, all * 2 / 3);
 }
 
 TEST(ContactReduction, TakesTheDeepestAndSpreadsTheRest) {

@@ -1,9 +1,25 @@
-// A statistical level whose bodies are all on one rung, known by their slots there.
+// For tests of the statistical rungs: a box with a signature of few trials, and a level whose bodies are all on one rung, known by their slots there.
 #pragma once
 
 #include "lod/rungs/statistical_level.h"
+#include "signature/measure/measure.h"
 
 namespace lodestone::testing {
+
+inline std::shared_ptr<const Shape> box() {
+  static const auto shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
+  return shape;
+}
+
+inline std::shared_ptr<const Signature> box_signature() {
+  static const auto signature = [] {
+    SignatureSettings settings;
+    settings.n_theta = 4, settings.n_phi = 4, settings.n_alpha = 6, settings.trials_per_cell = 16;
+    settings.height_trials = 200, settings.settling_trials = 60, settings.clips = 30;
+    return std::make_shared<const Signature>(measure_signature(*box(), settings, 2));
+  }();
+  return signature;
+}
 
 class OneRung {
  public:
