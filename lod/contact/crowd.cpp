@@ -152,7 +152,7 @@ void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   manifolds_.clear();
   keys_.clear();
   points_.clear();
-  index_of_body_.resize(std::max(index_of_body_.size(), scene.bodies.size()), -1);
+  make_room(scene.bodies.size());
   index_of_neighbor_.assign(scene.neighbors.size(), -1);
 
   for (const CrowdContact& pair : touch.contacts) add_pair_contact(scene, pair, touch.time);

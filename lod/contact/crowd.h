@@ -1,6 +1,7 @@
 // Bodies that touch other bodies: their pair contacts and ground contacts solved together, momentum exact to rounding.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,7 @@ class Crowd {
   /// Solves the contacts of `touch` with the ground contacts of every body in them (the faces among these) and those of the full contacts that hold up a full body, then moves
   /// the statistical ones among them by its time. Bodies asleep hold still; full neighbours receive impulses, the velocities that these give them, and shifts, but do not move on.
   ContactTally step(const ContactScene& scene, const CrowdTouch& touch);
+  void make_room(std::size_t bodies) { index_of_body_.resize(std::max(index_of_body_.size(), bodies), -1); }
 
  private:
   void gather(const ContactScene& scene, const CrowdTouch& touch);

@@ -12,7 +12,8 @@ constexpr std::array<Charges, kRungs> kWork{{{0.0, 0.05, 0.8, 0.2, 0.0}, {0.0, 0
 constexpr double kChangeWork[] = {2.0, 10.0, 100.0};
 constexpr double kOthersWork = 20.0, kAskedWork = 0.15;
 
-// The dearest step in some hundreds of a pair of meshes, µs: what no prediction tells beforehand.
+// What the dearest pair of meshes is charged once, µs: several times what one was seen to cost in a step. With less no more bodies are full in the end, as the margin then keeps
+// the reserve, and half as many are at `support`.
 constexpr double kSpikeWork = 50e3;
 
 // One that is alone is charged a part of what it would cost in a crowd: a flock of them lands within a few steps.

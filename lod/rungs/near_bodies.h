@@ -26,7 +26,9 @@ class NearBodies {
   /// Moves the bodies of `support`, and the guests that are touched, by `dt` seconds; full neighbours receive their share of the contacts.
   void step(double dt, SupportLevel& support, std::span<Guest> guests, NearSearch& search, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts,
             StageTimes& times, ContactTally& tally);
-  /// In its place, where nothing moves that could be near another.
+  /// As bodies are added, little by little, so that no step has to.
+  void make_room(std::size_t bodies) { pairs_.make_room(bodies), near_.make_room(bodies), crowd_.make_room(bodies); }
+  /// In place of a step, where nothing moves that could be near another.
   void forget_pairs() { pairs_.clear(); }
 
  private:

@@ -1,7 +1,8 @@
 // Which bodies may touch another in this step: marks by index that cost nothing for those that sleep.
 #pragma once
 
-#include <span>
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "lod/contact/participant.h"
@@ -13,8 +14,9 @@ class NearMarks {
   void begin(std::size_t bodies) {
     for (const std::int32_t index : marked_) marks_[std::size_t(index)] = 0;
     marked_.clear();
-    if (marks_.size() < bodies) marks_.resize(bodies, 0);
+    make_room(bodies);
   }
+  void make_room(std::size_t bodies) { marks_.resize(std::max(marks_.size(), bodies), 0); }
   void mark(Participant p) {
     if (!p.is_statistical() || marks_[p.index()]) return;
     marks_[p.index()] = 1;

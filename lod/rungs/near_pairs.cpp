@@ -147,7 +147,7 @@ void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<
 }
 
 void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int32_t> awake) {
-  turning_.resize(std::max(turning_.size(), scene.bodies.size()));
+  make_room(scene.bodies.size());
   for (const std::int32_t slot : awake) {
     const StatisticalBody& body = scene.bodies[std::size_t(slot)];
     const Shape& shape = *scene.kind_of(body).shape;

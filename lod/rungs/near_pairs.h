@@ -43,6 +43,7 @@ class NearPairs {
   /// Takes the pairs of a step; what is known of those that were near before stays so.
   void take(const ContactScene& scene, std::span<const NearPair> pairs);
   void clear() { found_.clear(); }
+  void make_room(std::size_t bodies) { turning_.resize(std::max(turning_.size(), bodies)); }
   std::span<const FoundPair> pairs() const { return found_; }
 
   /// Of each body given, by index, before its contacts are looked for.

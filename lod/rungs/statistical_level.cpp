@@ -83,7 +83,9 @@ StatisticalPlace StatisticalLevel::add(StatisticalModel model, std::uint32_t own
                                        const RigidState& state, bool asleep, std::shared_ptr<const Signature> signature, bool arrives) {
   impl_->reach = std::max(impl_->reach, shape->radius);
   const std::uint16_t kind = impl_->kinds.find(model, std::move(shape), mass, material, std::move(signature));
-  return {model, impl_->at({model, 0}, [&](auto& level) { return level.add(owner, kind, state, asleep, arrives); })};
+  const StatisticalPlace place{model, impl_->at({model, 0}, [&](auto& level) { return level.add(owner, kind, state, asleep, arrives); })};
+  impl_->near_bodies.make_room(std::size_t(impl_->support.size()));
+  return place;
 }
 
 std::optional<std::uint32_t> StatisticalLevel::remove(StatisticalPlace place, bool stays) {
