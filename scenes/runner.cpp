@@ -73,9 +73,37 @@ class Run {
     record(0);
   }
 
-  RunResult result() {
-    for (int step = 0; step < steps_ && result_.finite; ++step) advance(step);
-    finish();
+  bool goes_on(int step) const { return step < steps_ && result_.finite; }
+
+  void advance(int step) {
+    move_viewpoints(step * dt_s_);
+    const auto start = Clock::now();
+    const double signatures_before = result_.signature_seconds;
+    const double thread_start = stepping_ms();
+    const StepReport report = manager_.step(dt_s_);
+    processor_ms_.push_back(stepping_ms() - thread_start);
+    times_ms_.push_back(1e3 * (seconds_since(start) - (result_.signature_seconds - signatures_before)));
+    result_.reports.push_back(report);
+    result_.promotions += report.promotions;
+    result_.transitions += report.promotions + report.demotions;
+    if (report.asleep < result_.bodies) last_awake_s_ = (step + 1) * dt_s_;
+    observe();
+    look(step);
+    record(step + 1);
+    if (csv_) csv_->add(report, (step + 1) * dt_s_, sample_.energy_j, std::max(sample_.max_tables_penetration_m, sample_.max_other_penetration_m));
+    if (settings_.progress) settings_.progress(step + 1, steps_);
+  }
+
+  RunResult finish() {
+    result_.steps = int(result_.reports.size());
+    result_.state_hash = manager_.state_hash();
+    result_.step_ms = summarize(times_ms_);
+    result_.processor_ms = summarize(processor_ms_);
+    result_.budget = find_budget_figures(policy_of(scene_, settings_), result_.reports, processor_ms_);
+    result_.states = sample_.states;
+    check_penetration();
+    if (scene_.checks.all_asleep_by_s) result_.checks.push_back(asleep_check(*scene_.checks.all_asleep_by_s));
+    if (!result_.trajectory.empty()) save_trajectory(result_.trajectory, trajectory_, scene_);
     return std::move(result_);
   }
 
@@ -107,25 +135,6 @@ class Run {
     if (!scene_.output.trajectory.empty()) result_.trajectory = settings_.out / scene_.output.trajectory;
   }
 
-  void advance(int step) {
-    move_viewpoints(step * dt_s_);
-    const auto start = Clock::now();
-    const double signatures_before = result_.signature_seconds;
-    const double thread_start = stepping_ms();
-    const StepReport report = manager_.step(dt_s_);
-    processor_ms_.push_back(stepping_ms() - thread_start);
-    times_ms_.push_back(1e3 * (seconds_since(start) - (result_.signature_seconds - signatures_before)));
-    result_.reports.push_back(report);
-    result_.promotions += report.promotions;
-    result_.transitions += report.promotions + report.demotions;
-    if (report.asleep < result_.bodies) last_awake_s_ = (step + 1) * dt_s_;
-    observe();
-    look(step);
-    record(step + 1);
-    if (csv_) csv_->add(report, (step + 1) * dt_s_, sample_.energy_j, std::max(sample_.max_tables_penetration_m, sample_.max_other_penetration_m));
-    if (settings_.progress) settings_.progress(step + 1, steps_);
-  }
-
   void move_viewpoints(double time_s) {
     std::vector<Vec3> positions;
     for (const Viewpoint& viewpoint : scene_.viewpoints) positions.push_back(viewpoint.position_at(time_s));
@@ -154,18 +163,6 @@ class Run {
   void record(int step) {
     if (result_.trajectory.empty() || step % scene_.output.every_n_steps != 0 || !sample_.finite) return;
     trajectory_.add_frame(step * dt_s_, sample_.states, sample_.rungs);
-  }
-
-  void finish() {
-    result_.steps = int(result_.reports.size());
-    result_.state_hash = manager_.state_hash();
-    result_.step_ms = summarize(times_ms_);
-    result_.processor_ms = summarize(processor_ms_);
-    result_.budget = find_budget_figures(policy_of(scene_, settings_), result_.reports, processor_ms_);
-    result_.states = sample_.states;
-    check_penetration();
-    if (scene_.checks.all_asleep_by_s) result_.checks.push_back(asleep_check(*scene_.checks.all_asleep_by_s));
-    if (!result_.trajectory.empty()) save_trajectory(result_.trajectory, trajectory_, scene_);
   }
 
   void check_penetration() {
@@ -207,7 +204,9 @@ RunResult run_scene(const Scene& scene, const RunSettings& settings) {
   const int steps = settings.steps.value_or(scene.default_steps);
   const double dt_s = settings.dt_s.value_or(scene.step.dt_s);
   check_settings(scene, steps, dt_s, settings);
-  return Run(scene, settings, steps, dt_s).result();
+  Run run(scene, settings, steps, dt_s);
+  for (int step = 0; run.goes_on(step); ++step) run.advance(step);
+  return run.finish();
 }
 
 }  // namespace lodestone

@@ -48,7 +48,7 @@ void SupportLevel::put_to_sleep(StatisticalBody& body) const {
 }
 
 // Awake slots stay in order, so that the result of a step does not depend on the history of sleeping.
-void SupportLevel::sort_by_motion() {
+void SupportLevel::end_step() {
   const auto first_asleep = std::stable_partition(awake_.begin(), awake_.end(), [this](std::int32_t slot) { return !asleep(slot); });
   std::for_each(first_asleep, awake_.end(), [this](std::int32_t slot) {
     lay_still(slot);

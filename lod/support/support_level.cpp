@@ -124,6 +124,4 @@ void SupportLevel::dismiss_guests() {
   std::erase_if(awake_, [this](std::int32_t index) { return is_guest(index); });
 }
 
-void SupportLevel::end_step() { sort_by_motion(); }
-
 }  // namespace lodestone

@@ -66,7 +66,6 @@ class SupportLevel {
   void put_to_sleep(StatisticalBody& body) const;
   void lay_still(std::int32_t slot);        // a sleeper leaves all loops
   void take_from_still(std::int32_t slot);
-  void sort_by_motion();
   bool stands_firmly(const StatisticalBody& body, std::span<const HalfSpace> faces) const;
   bool is_sound(const StatisticalBody& body, double energy) const;
   void recover(StatisticalBody& body, const Vec3& last_place, ContactTally& tally) const;
