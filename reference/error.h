@@ -1,7 +1,8 @@
-// The three kinds of error, and no more: a broken contract aborts with its values (`check_that`); bad input
-// throws `InputError`; numerical trouble while stepping is counted in the step report and never thrown.
+// The three kinds of error, and no more: a bug of ours aborts with its values (`check_that`); bad input throws `InputError`;
+// numerical trouble while stepping is counted in the step report and never thrown.
 #pragma once
 
+#include <functional>
 #include <source_location>
 #include <stdexcept>
 #include <string>
@@ -9,15 +10,22 @@
 
 namespace lodestone {
 
-/// A file, YAML key, command-line argument or mesh is bad. The message reads `file:line: key: found …, expected …`.
-/// Thrown only by `load_*`, `make_*` and the command line; nothing is left half-loaded.
+/// What was given cannot be used: a file, YAML key, command-line argument or mesh, or at run time a time step, an id, a state, a force, a material. The message
+/// reads `where: found …, expected …`. Whatever throws it has changed nothing: nothing is half-loaded, no body moved.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
 };
 
-/// Aborts, naming the place and `values`, where the caller broke a contract. Always on.
+/// Throws InputError `what: found …, expected …`.
+[[noreturn]] void throw_input_error(std::string_view what, std::string_view found, std::string_view expected);
+
+/// Aborts, naming the place and `values`, where something that must hold does not: a bug of ours. Always on.
 void check_that(bool holds, std::string_view contract, std::string_view values = "",
                 std::source_location place = std::source_location::current());
+
+/// What is called with the message of such a bug before the process aborts, on the thread that met it; it may write a log, or throw, and then nothing aborts (and nothing
+/// of the engine may be used any more). Empty: none, as at the start. For all threads.
+void set_assertion_handler(std::function<void(std::string_view message)> handler);
 
 }  // namespace lodestone

@@ -1,28 +1,50 @@
 #include "reference/material.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "reference/error.h"
 
 namespace lodestone {
+namespace {
+
+void check_contact(double restitution, double friction) {
+  if (!(restitution >= 0.0 && restitution <= 1.0)) throw_input_error("restitution", fmt::to_string(restitution), "0 … 1");
+  if (!(friction >= 0.0 && std::isfinite(friction))) throw_input_error("friction", fmt::to_string(friction), "a finite number of 0 or more");
+}
+
+void check(const Material& material) {
+  check_contact(material.restitution, material.friction);
+  if (!(material.density > 0.0 && std::isfinite(material.density))) throw_input_error("density", fmt::format("{} kg/m³", material.density), "a positive, finite number");
+}
+
+}  // namespace
 
 MaterialId MaterialTable::add(const Material& material) {
+  check(material);
   materials_.push_back(material);
   rebuild();
   return int(materials_.size()) - 1;
 }
 
 void MaterialTable::replace(MaterialId id, const Material& material) {
-  check_that(id >= 0 && id < size(), "material id out of range");
+  check_known(id);
+  check(material);
   materials_[id] = material;
   rebuild();
 }
 
 void MaterialTable::set_law(MaterialId a, MaterialId b, const ContactLaw& law) {
-  check_that(a >= 0 && a < size() && b >= 0 && b < size(), "material id out of range");
+  check_known(a), check_known(b);
+  check_contact(law.restitution, law.friction);
   listed_.push_back({a, b, law});
   rebuild();
+}
+
+void MaterialTable::check_known(MaterialId id) const {
+  if (!has(id)) throw_input_error("material", fmt::to_string(id), fmt::format("0 … {}, as many as were added", size() - 1));
 }
 
 void MaterialTable::rebuild() {

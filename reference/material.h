@@ -13,14 +13,15 @@ struct Material {
 
 /// What two touching materials do together.
 struct ContactLaw {
-  double restitution = 0.4;
-  double friction = 0.5;
+  double restitution = 0.4;  ///< 0 … 1
+  double friction = 0.5;     ///< ≥ 0
   friend bool operator==(const ContactLaw&, const ContactLaw&) = default;
 };
 
 using MaterialId = int;  ///< index into a MaterialTable; 0 is the default material
 
-/// The materials of a scene. A pair takes the lower restitution and √(μ₁ μ₂) unless it is listed.
+/// The materials of a scene. A pair takes the lower restitution and √(μ₁ μ₂) unless it is listed. What adds to it throws InputError, and changes nothing, for numbers out of
+/// the ranges above or not finite, and for materials that it does not have.
 class MaterialTable {
  public:
   MaterialTable() { add(Material{}); }
@@ -30,6 +31,8 @@ class MaterialTable {
   const Material& operator[](MaterialId id) const { return materials_[id]; }
   ContactLaw law(MaterialId a, MaterialId b) const { return laws_[a * materials_.size() + b]; }
   int size() const { return int(materials_.size()); }
+  bool has(MaterialId id) const { return id >= 0 && id < size(); }
+  void check_known(MaterialId id) const;  ///< throws InputError where it has none of that id
 
  private:
   struct Listed { MaterialId a, b; ContactLaw law; };

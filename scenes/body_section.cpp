@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "scenes/ground_heights.h"
 #include "scenes/material_section.h"
 #include "scenes/scatter.h"
 
@@ -20,6 +21,7 @@ struct BodyEntry {
   SceneBody body = {};
   bool has_orientation = false;
   std::optional<Scatter> scatter = {};
+  bool on_ground = false, lying = false;
   int count() const { return scatter ? scatter->count : 1; }
   double radius() const { return body.definition.shape->radius; }
 };
@@ -27,6 +29,11 @@ struct BodyEntry {
 LevelChoice load_level(const YamlCursor& key) {
   static const std::array<std::string, 5> kNames{"auto", "full", "statistical", "support", "tables"};
   return std::array{LevelChoice::automatic, LevelChoice::full, LevelChoice::statistical, LevelChoice::support, LevelChoice::tables}[key.choice(kNames)];
+}
+
+Rung load_rung(const YamlCursor& key) {
+  static const std::array<std::string, 3> kNames{"tables", "support", "full"};
+  return Rung(key.choice(kNames));
 }
 
 ScatterRegion load_region(const YamlCursor& scatter) {
@@ -43,7 +50,7 @@ ScatterRegion load_region(const YamlCursor& scatter) {
 }
 
 Scatter load_scatter(const YamlCursor& place, std::uint64_t otherwise_seed, const SceneLoadSettings& settings) {
-  place.expect_keys({"count", "box_m", "cylinder", "seed", "spacing_m"});
+  place.expect_keys({"count", "box_m", "cylinder", "seed", "spacing_m", "on_ground", "lying"});
   Scatter scatter{.region = load_region(place), .seed = otherwise_seed};
   scatter.count = int(place.at("count").integer(1, settings.max_bodies));
   if (auto key = place.find("seed")) {
@@ -74,7 +81,7 @@ void load_motion(const YamlCursor& place, BodyEntry& entry) {
 BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
                      const SceneLoadSettings& settings) {
   place.expect_keys({"shape", "position_m", "orientation", "velocity_m_per_s", "angular_velocity_rad_per_s", "scatter", "level", "name",
-                     "material", "mass_kg", "importance"});
+                     "material", "mass_kg", "importance", "asleep", "least_rung", "greatest_rung"});
   place.one_key_of({"position_m", "scatter"});
   const SceneShape& shape = find_shape(place.at("shape"), shapes);
   BodyEntry entry{.place = place};
@@ -86,15 +93,26 @@ BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene, con
   if (auto key = place.find("mass_kg")) body.mass = key->number(kPositive);
   if (auto key = place.find("importance")) body.importance = key->number(kPositive);
   if (auto key = place.find("level")) body.level = load_level(*key);
+  if (auto key = place.find("least_rung")) body.least_rung = load_rung(*key);
+  if (auto key = place.find("greatest_rung")) {
+    body.greatest_rung = load_rung(*key);
+    if (body.greatest_rung < body.least_rung) key->fail(key->found(), fmt::format("at least least_rung ({})", name_of(body.least_rung)));
+  }
   if (auto key = place.find("name")) entry.body.name = key->text();
-  if (auto key = place.find("scatter")) entry.scatter = load_scatter(*key, scene.step.seed + std::uint64_t(index), settings);
+  if (auto key = place.find("asleep")) entry.body.asleep = key->truth();
+  if (auto scatter = place.find("scatter")) {
+    entry.scatter = load_scatter(*scatter, scene.step.seed + std::uint64_t(index), settings);
+    if (auto key = scatter->find("on_ground")) entry.on_ground = key->truth();
+    if (auto key = scatter->find("lying")) entry.lying = key->truth();
+    if (entry.lying && entry.on_ground) scatter->at("lying").fail("lying beside on_ground", "one of them");
+  }
   return entry;
 }
 
 std::vector<BodyEntry> load_entries(const YamlCursor& list, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
                                     const SceneLoadSettings& settings) {
   std::vector<BodyEntry> entries;
-  std::int64_t bodies = 0;
+  std::int64_t bodies = std::int64_t(scene.bodies.size());
   for (const YamlCursor& place : list.items()) {
     entries.push_back(load_entry(place, int(entries.size()), scene, shapes, settings));
     bodies += entries.back().count();
@@ -103,16 +121,38 @@ std::vector<BodyEntry> load_entries(const YamlCursor& list, const Scene& scene, 
   return entries;
 }
 
-void expand_scatter(const BodyEntry& entry, std::span<const KeepAbove> grounds, PlacedSpheres& placed, std::vector<SceneBody>& bodies) {
+std::optional<RigidState> lay(const GroundHeights& heights, const BodyEntry& entry, int index, const Vec3& center) {
+  const BodyDefinition& body = entry.body.definition;
+  return heights.lay(*body.shape, body.state.orientation, scatter_turn(*entry.scatter, index), center);
+}
+
+/// Empty for bodies that are where they were drawn.
+PutOnGround put_on(const GroundHeights& heights, const BodyEntry& entry) {
+  if (entry.lying)
+    return [&](int index, const Vec3& center) {
+      const std::optional<RigidState> state = lay(heights, entry, index, center);
+      return state ? std::optional(state->position) : std::nullopt;
+    };
+  if (!entry.on_ground) return {};
+  return [&](int, const Vec3& center) -> std::optional<Vec3> {
+    const std::optional<double> highest = heights.highest_under(center, entry.radius());
+    if (!highest) return std::nullopt;
+    return Vec3(center + (*highest + entry.radius()) * Vec3::UnitZ());
+  };
+}
+
+void expand_scatter(const BodyEntry& entry, std::span<const KeepAbove> planes, const GroundHeights& heights, PlacedSpheres& placed, std::vector<SceneBody>& bodies) {
   const Scatter& scatter = *entry.scatter;
-  const std::vector<Vec3> centers = place_scatter(scatter, entry.radius(), grounds, placed);
+  const std::vector<Vec3> centers = place_scatter(scatter, entry.radius(), planes, placed, put_on(heights, entry));
   if (int(centers.size()) < scatter.count)
     entry.place.at("scatter").fail(fmt::format("{} bodies of radius {:.3g} m", scatter.count, entry.radius()),
                                    fmt::format("at most the {} that found room without overlap (a larger region, or fewer)", centers.size()));
   for (int i = 0; i < scatter.count; ++i) {
     SceneBody body = entry.body;
-    body.definition.state.position = centers[std::size_t(i)];
-    if (!entry.has_orientation) body.definition.state.orientation = scatter_orientation(scatter, i);
+    RigidState& state = body.definition.state;
+    state.position = centers[std::size_t(i)];
+    if (entry.lying) state.orientation = lay(heights, entry, i, state.position)->orientation;
+    else if (!entry.has_orientation) state.orientation = scatter_orientation(scatter, i);
     if (!body.name.empty()) body.name += fmt::format("[{}]", i);
     bodies.push_back(std::move(body));
   }
@@ -120,28 +160,28 @@ void expand_scatter(const BodyEntry& entry, std::span<const KeepAbove> grounds, 
 
 std::vector<KeepAbove> planes_of(const Scene& scene) {
   std::vector<KeepAbove> planes;
-  for (const Ground& ground : scene.ground)
+  for (const SceneGround& ground : scene.ground)
     if (const auto* plane = std::get_if<GroundPlane>(&ground)) planes.push_back({plane->normal, plane->offset_m});
   return planes;
 }
 
 }  // namespace
 
-std::vector<SceneBody> load_bodies(const YamlCursor& root, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
-                                   const SceneLoadSettings& settings) {
+void add_bodies(const YamlCursor& root, Scene& scene, const std::map<std::string, SceneShape>& shapes, const SceneLoadSettings& settings) {
   const std::vector<BodyEntry> entries = load_entries(root.at("bodies"), scene, shapes, settings);
   double largest = 1e-4;
   for (const BodyEntry& entry : entries) largest = std::max(largest, entry.radius());
+  for (const SceneBody& body : scene.bodies) largest = std::max(largest, body.definition.shape->radius);
   PlacedSpheres placed(largest);
+  for (const SceneBody& body : scene.bodies) placed.add(body.definition.state.position, body.definition.shape->radius);
   for (const BodyEntry& entry : entries)
     if (!entry.scatter) placed.add(entry.body.definition.state.position, entry.radius());
   const std::vector<KeepAbove> planes = planes_of(scene);
-  std::vector<SceneBody> bodies;
+  const GroundHeights heights(scene.ground);
   for (const BodyEntry& entry : entries) {
-    if (entry.scatter) expand_scatter(entry, planes, placed, bodies);
-    else bodies.push_back(entry.body);
+    if (entry.scatter) expand_scatter(entry, planes, heights, placed, scene.bodies);
+    else scene.bodies.push_back(entry.body);
   }
-  return bodies;
 }
 
 }  // namespace lodestone

@@ -28,9 +28,12 @@ RungCost mean_cost(std::span<const StepReport> reports, std::size_t rung) {
 
 std::optional<BudgetFigures> find_budget_figures(const PolicySettings& policy, std::span<const StepReport> reports, std::span<const double> step_ms) {
   BudgetFigures figures;
-  if (const auto* time = std::get_if<BudgetPolicy>(&policy.policy)) figures.budget_ms = time->budget_ms, figures.over = 0;
+  if (const auto* time = std::get_if<BudgetPolicy>(&policy.policy)) figures.budget_ms = time->budget_ms;
   else if (const auto* work = std::get_if<WorkPolicy>(&policy.policy)) figures.budget_work = work->budget_work;
+  else if (const auto* error = std::get_if<ErrorBudgetPolicy>(&policy.policy)) error->budget_work ? figures.budget_work = error->budget_work : figures.budget_ms = error->budget_ms;
   else return std::nullopt;
+  if (figures.budget_ms) figures.over = 0;
+  if (std::holds_alternative<ErrorBudgetPolicy>(policy.policy)) figures.mean_error_pixels = 0.0;
   const std::size_t before = kFirstBudgetStep - 1;
   if (reports.size() <= before) return figures;
   reports = reports.subspan(before), step_ms = step_ms.subspan(before);
@@ -45,6 +48,7 @@ std::optional<BudgetFigures> find_budget_figures(const PolicySettings& policy, s
   }
   figures.mean_predicted_ms = mean_over(reports, [](const StepReport& r) { return r.predicted_ms; });
   figures.mean_measured_ms = mean_over(reports, [](const StepReport& r) { return r.measured_ms; });
+  if (figures.mean_error_pixels) figures.mean_error_pixels = mean_over(reports, [](const StepReport& r) { return r.predicted_error_pixels; });
   figures.mean_error_ms = mean_over(reports, [](const StepReport& r) { return std::abs(r.predicted_ms - r.measured_ms); });
   return figures;
 }

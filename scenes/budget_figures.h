@@ -25,6 +25,7 @@ struct BudgetFigures {
   double mean_predicted_ms = 0, mean_measured_ms = 0;  ///< of a whole step, by its report
   double mean_error_ms = 0;                      ///< |predicted − measured|
   double mean_work = 0;                          ///< units of all rungs
+  std::optional<double> mean_error_pixels = {};  ///< predicted of the scene (StepReport::predicted_error_pixels), under an error budget
 };
 
 /// `step_ms`: processor time of each of `reports`. None for a policy without a budget.

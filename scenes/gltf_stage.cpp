@@ -109,7 +109,7 @@ int GltfStage::body_mesh(const Shape& shape, Rung rung) {
   return meshes_[{&shape, rung}] = mesh;
 }
 
-void GltfStage::add_ground(const Ground& ground, double extent_m) {
+void GltfStage::add_ground(const SceneGround& ground, double extent_m) {
   tinygltf::Node node;
   node.name = "ground";
   Mesh mesh;
@@ -128,7 +128,7 @@ void GltfStage::add_ground(const Ground& ground, double extent_m) {
   add_node(std::move(node));
 }
 
-int GltfStage::add_camera(const Viewpoint& viewpoint) {
+int GltfStage::add_camera(const SceneViewpoint& viewpoint) {
   tinygltf::Camera camera;
   camera.type = "perspective";
   camera.perspective.yfov = kFieldOfView;

@@ -17,8 +17,8 @@ class GltfStage {
   int add_node(tinygltf::Node node);                      ///< under the root
   int add_child(int parent, tinygltf::Node node);
   int body_mesh(const Shape& shape, Rung rung);           ///< made once for each shape and rung; the rungs share their arrays
-  void add_ground(const Ground& ground, double extent_m); ///< planes are drawn `extent_m` to each side
-  int add_camera(const Viewpoint& viewpoint);             ///< returns its node
+  void add_ground(const SceneGround& ground, double extent_m); ///< planes are drawn `extent_m` to each side
+  int add_camera(const SceneViewpoint& viewpoint);        ///< returns its node
 
  private:
   struct Arrays { int positions = -1, normals = -1, indices = -1; };

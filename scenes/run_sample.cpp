@@ -26,7 +26,7 @@ void read_sample(const Manager& manager, std::span<const BodyId> bodies, const S
     if (sample.rungs[i] == Rung::tables) awake_since_tables = 0;
     else if (!manager.asleep(bodies[i])) awake_since_tables = std::min(awake_since_tables + 1, kSinking);
     double& deepest = awake_since_tables < kSinking ? sample.max_tables_penetration_m : sample.max_other_penetration_m;
-    for (const Ground& ground : scene.ground)
+    for (const SceneGround& ground : scene.ground)
       if (const auto* plane = std::get_if<GroundPlane>(&ground)) deepest = std::max(deepest, depth_below(shape, state, plane->normal, plane->offset_m));
   }
 }

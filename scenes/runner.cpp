@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "lod/timing/thread_clock.h"
 #include "reference/error.h"
@@ -27,6 +29,9 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
   for (const auto& [name, budget] : {std::pair("budget_ms", settings.budget_ms), {"budget_work", settings.budget_work}})
     if (budget && !(*budget > 0 && std::isfinite(*budget))) fail(fmt::format("{}: found {}, expected a number above 0", name, *budget));
   if (settings.threads < 1) fail(fmt::format("threads: found {}, expected at least 1", settings.threads));
+  if (!settings.record.empty() && !scene.joints.empty()) fail(fmt::format("{}: found joints in a scene to be recorded, expected none: a recording knows nothing of them", scene.file.string()));
+  if (settings.full_within_m && (settings.budget_ms || settings.budget_work)) fail("full_within_m: found it beside a budget, expected one of them");
+  if (settings.full_within_m && !(*settings.full_within_m >= 0)) fail(fmt::format("full_within_m: found {}, expected a number from 0 on", *settings.full_within_m));
   const int frames = steps / scene.output.every_n_steps + 1, most = max_trajectory_frames(int(scene.bodies.size()));
   if (!settings.out.empty() && !scene.output.trajectory.empty() && frames > most)
     fail(fmt::format("{}: output.every_n_steps: found {} ({} frames of {} bodies), expected at least {} (a .glb holds 4 GB)", scene.file.string(),
@@ -35,22 +40,43 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
 
 PolicySettings policy_of(const Scene& scene, const RunSettings& settings) {
   PolicySettings policy = scene.lod;
-  if (settings.budget_ms) policy.policy = BudgetPolicy{*settings.budget_ms};
-  if (settings.budget_work) policy.policy = WorkPolicy{*settings.budget_work};
+  const bool by_error = std::holds_alternative<ErrorBudgetPolicy>(policy.policy);
+  if (settings.budget_ms && by_error) policy.policy = ErrorBudgetPolicy{.budget_ms = *settings.budget_ms};
+  else if (settings.budget_ms) policy.policy = BudgetPolicy{*settings.budget_ms};
+  if (settings.budget_work && by_error) policy.policy = ErrorBudgetPolicy{.budget_work = *settings.budget_work};
+  else if (settings.budget_work) policy.policy = WorkPolicy{*settings.budget_work};
+  if (settings.full_within_m) policy.policy = DistancePolicy{.full_within = *settings.full_within_m};
   return policy;
 }
 
 Manager make_manager(const Scene& scene, const RunSettings& settings, const SignatureFunction& signatures) {
   Manager manager({.gravity = scene.step.gravity_m_per_s2, .seed = scene.step.seed, .threads = settings.threads,
                    .full_substeps = scene.step.full_substeps, .model = settings.model ? settings.model : scene.model, .tables = scene.tables,
-                   .policy = policy_of(scene, settings), .signatures = signatures});
+                   .policy = policy_of(scene, settings), .audit_ms = settings.audit_ms.value_or(scene.audit_ms), .signatures = signatures});
   manager.materials() = scene.materials;
-  for (const Ground& ground : scene.ground) {
+  for (const SceneGround& ground : scene.ground) {
     if (const auto* plane = std::get_if<GroundPlane>(&ground)) manager.add_plane(plane->normal, plane->offset_m, plane->material);
     else if (const auto* box = std::get_if<GroundBox>(&ground)) manager.add_static_box(box->sides_m, box->position_m, box->orientation, box->material);
     else manager.add_static_mesh(std::get<GroundMesh>(ground).mesh, std::get<GroundMesh>(ground).material);
   }
   return manager;
+}
+
+RecordFunction open_recording(const fs::path& file) {
+  const auto out = std::make_shared<std::ofstream>(file, std::ios::binary);
+  const auto check = [file](bool good) {
+    if (!good) throw InputError(file.string() + ": cannot be written");
+  };
+  check(out->good());
+  return [out, check](std::span<const std::byte> bytes) { check(out->write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size())).flush().good()); };
+}
+
+std::vector<std::byte> bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad()) throw InputError(file.string() + ": cannot be read");
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
 }
 
 /// One run, step by step.
@@ -61,11 +87,8 @@ class Run {
         trajectory_(int(scene.bodies.size())) {
     open_output();
     move_viewpoints(0);
-    for (const SceneBody& body : scene.bodies) {
-      BodyDefinition definition = body.definition;
-      if (settings.level != LevelChoice::automatic) definition.level = settings.level;
-      bodies_.push_back(manager_.add_body(definition));
-    }
+    if (!settings.record.empty()) manager_.set_record(open_recording(settings.record));
+    add_bodies();
     result_.bodies = int(bodies_.size());
     observe();
     result_.energy_start_j = result_.energy_max_j = sample_.energy_j;
@@ -126,6 +149,26 @@ class Run {
     };
   }
 
+  void add_bodies() {
+    std::vector<char> joined(scene_.bodies.size());
+    for (const SceneJoint& joint : scene_.joints)
+      for (const int body : {joint.first, joint.second})
+        if (body != SceneJoint::kWorld) joined[std::size_t(body)] = true;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      BodyDefinition definition = scene_.bodies[i].definition;
+      if (settings_.level != LevelChoice::automatic && !joined[i]) definition.level = settings_.level;
+      bodies_.push_back(manager_.add_body(definition));
+      if (scene_.bodies[i].asleep) manager_.sleep(bodies_.back());
+    }
+    const auto ode_body = [this](int body) { return body == SceneJoint::kWorld ? nullptr : manager_.ode_body(bodies_[std::size_t(body)]); };
+    for (const SceneJoint& joint : scene_.joints) join_bodies(ode_body(joint.first), ode_body(joint.second), joint.kind, joint.anchor_m, joint.axis);
+    for (const std::vector<int>& group : scene_.groups) {
+      std::vector<BodyId> members;
+      for (const int body : group) members.push_back(bodies_[std::size_t(body)]);
+      manager_.make_group(members);
+    }
+  }
+
   void open_output() {
     if (settings_.out.empty()) return;
     std::error_code error;
@@ -136,9 +179,13 @@ class Run {
   }
 
   void move_viewpoints(double time_s) {
-    std::vector<Vec3> positions;
-    for (const Viewpoint& viewpoint : scene_.viewpoints) positions.push_back(viewpoint.position_at(time_s));
-    manager_.set_viewpoints(positions);
+    std::vector<Viewpoint> viewpoints;
+    for (const SceneViewpoint& viewpoint : scene_.viewpoints) {
+      const Vec3 position = viewpoint.position_at(time_s), direction = viewpoint.look_at_m - position;
+      const auto of_sight = direction.isZero(0.0) ? std::nullopt : std::optional(direction);
+      viewpoints.push_back({.position = position, .direction = of_sight, .vertical_fov_rad = kFieldOfView, .height_px = viewpoint.height_px, .aspect = kAspectRatio});
+    }
+    manager_.set_viewpoints(viewpoints);
   }
 
   void observe() {
@@ -153,7 +200,7 @@ class Run {
   void look(int step) {
     constexpr double kFrom = 0.5;  // s
     if (scene_.viewpoints.empty() || (step + 1) * dt_s_ < kFrom) return;
-    const Viewpoint& viewpoint = scene_.viewpoints.front();
+    const SceneViewpoint& viewpoint = scene_.viewpoints.front();
     const int full = count_full_in_picture(sample_, Camera(viewpoint.position_at(step * dt_s_), viewpoint.look_at_m));
     PictureFigures& figures = result_.in_picture ? *result_.in_picture : result_.in_picture.emplace(PictureFigures{.min_full = full});
     figures.min_full = std::min(figures.min_full, full);
@@ -207,6 +254,13 @@ RunResult run_scene(const Scene& scene, const RunSettings& settings) {
   Run run(scene, settings, steps, dt_s);
   for (int step = 0; run.goes_on(step); ++step) run.advance(step);
   return run.finish();
+}
+
+ReplayResult replay_scene(const Scene& scene, const RunSettings& settings, const std::filesystem::path& recording) {
+  Manager manager = make_manager(scene, settings, settings.signatures);
+  std::vector<std::shared_ptr<const Shape>> shapes;
+  for (const auto& [name, shape] : scene.shapes) shapes.push_back(shape);
+  return manager.replay(bytes_of(recording), shapes);
 }
 
 }  // namespace lodestone

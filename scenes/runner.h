@@ -19,8 +19,11 @@ struct RunSettings {
   std::optional<StatisticalModel> model = {};  ///< else the scene's
   LevelChoice level = LevelChoice::automatic;  ///< other than automatic: forces every body
   std::optional<double> budget_ms = {}, budget_work = {};  ///< else the scene's policy; at most one of them, positive
+  std::optional<double> full_within_m = {};    ///< else the scene's policy; instead of a budget, ≥ 0: policy distance with it
+  std::optional<double> audit_ms = {};         ///< else the scene's
   int threads = 1;
   std::filesystem::path out = {};              ///< folder for the trajectory and steps.csv; empty: write nothing
+  std::filesystem::path record = {};           ///< file for a recording (lod/record.h) of what is done to the bodies; empty: none
   SignatureFunction signatures = {};
   std::function<void(int step, int steps)> progress = {};
 };
@@ -59,5 +62,8 @@ struct RunResult {
 
 /// Runs at least one step. Throws InputError for settings out of range or an `out` that cannot be written, before anything is simulated.
 RunResult run_scene(const Scene& scene, const RunSettings& settings = {});
+
+/// Does again what a run of `scene` with the same settings recorded. Throws InputError for a file that cannot be read, that is no recording, or of another scene.
+ReplayResult replay_scene(const Scene& scene, const RunSettings& settings, const std::filesystem::path& recording);
 
 }  // namespace lodestone

@@ -48,7 +48,7 @@ bool PlacedSpheres::overlaps(const Vec3& center, double radius) const {
   return false;
 }
 
-std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span<const KeepAbove> grounds, PlacedSpheres& placed) {
+std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span<const KeepAbove> grounds, PlacedSpheres& placed, const PutOnGround& put) {
   const double own_radius = std::max(radius, 0.5 * scatter.spacing_m);
   PlacedSpheres own(own_radius);  // apart from `placed`, since the spacing holds within this scatter only
   std::vector<Vec3> centers;
@@ -56,10 +56,15 @@ std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span
     RandomStream stream(scatter.seed, std::uint64_t(i), kPlaceStream);
     bool found = false;
     for (int draw = 0; draw < kDraws && !found; ++draw) {
-      const Vec3 local = std::visit([&](const auto& region) { return draw_within(region, stream); }, scatter.region);
+      Vec3 local = std::visit([&](const auto& region) { return draw_within(region, stream); }, scatter.region);
+      if (put) {
+        const std::optional<Vec3> start = put(i, origin_of(scatter.region) + local);
+        if (!start) continue;
+        local = *start - origin_of(scatter.region);
+      }
       const Vec3 center = origin_of(scatter.region) + local;
       const auto is_above = [&](const KeepAbove& ground) { return ground.normal.dot(center) - ground.offset >= radius; };
-      found = std::ranges::all_of(grounds, is_above) && !own.overlaps(local, own_radius) && !placed.overlaps(center, radius);
+      found = (put || std::ranges::all_of(grounds, is_above)) && !own.overlaps(local, own_radius) && !placed.overlaps(center, radius);
       if (!found) continue;
       own.add(local, own_radius);
       centers.push_back(center);
@@ -72,6 +77,10 @@ std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span
 
 Quat scatter_orientation(const Scatter& scatter, int index) {
   return RandomStream(scatter.seed, std::uint64_t(index), kOrientationStream).orientation();
+}
+
+double scatter_turn(const Scatter& scatter, int index) {
+  return RandomStream(scatter.seed, std::uint64_t(index), kOrientationStream).uniform(0.0, 2.0 * std::numbers::pi);
 }
 
 }  // namespace lodestone

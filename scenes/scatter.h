@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -42,11 +43,18 @@ class PlacedSpheres {
   std::unordered_multimap<std::uint64_t, Sphere> cells_;
 };
 
+/// Where body `index` of a scatter, drawn at `center`, starts on the ground; none: not there.
+using PutOnGround = std::function<std::optional<Vec3>(int index, const Vec3& center)>;
+
 /// Places `scatter.count` spheres of `radius` and adds them to `placed`. Body i's place is drawn from (seed, i), relative to the region, so
 /// two scatters with the same seed in regions of the same size look the same. Returns fewer where no room was found in 2,000 draws.
-std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span<const KeepAbove> grounds, PlacedSpheres& placed);
+/// With `put`, bodies are where that puts them, and the grounds are its matter.
+std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span<const KeepAbove> grounds, PlacedSpheres& placed, const PutOnGround& put = {});
 
 /// The orientation of body `index` of a scatter: uniform over rotations.
 Quat scatter_orientation(const Scatter& scatter, int index);
+
+/// How far it is turned about the vertical where it lies: 0 … 2π.
+double scatter_turn(const Scatter& scatter, int index);
 
 }  // namespace lodestone

@@ -4,7 +4,7 @@
 
 namespace lodestone {
 
-Vec3 Viewpoint::position_at(double time_s) const {
+Vec3 SceneViewpoint::position_at(double time_s) const {
   if (path.empty()) return position_m;
   if (time_s <= path.front().time_s) return path.front().position_m;
   const auto next = std::ranges::upper_bound(path, time_s, {}, &Key::time_s);

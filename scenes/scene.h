@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lod/manager.h"
+#include "reference/ode/body_joints.h"
 
 namespace lodestone {
 
@@ -23,19 +24,30 @@ struct SceneStep {
 struct GroundPlane { Vec3 normal = Vec3::UnitZ(); double offset_m = 0; MaterialId material = 0; };
 struct GroundBox { Vec3 sides_m; Vec3 position_m; Quat orientation; MaterialId material = 0; };
 struct GroundMesh { Mesh mesh; MaterialId material = 0; };
-using Ground = std::variant<GroundPlane, GroundBox, GroundMesh>;
+using SceneGround = std::variant<GroundPlane, GroundBox, GroundMesh>;
 
 struct SceneBody {
   std::string name;  ///< may be empty
   BodyDefinition definition;
+  bool asleep = false;  ///< from the start, until something touches it
+};
+
+/// Between two bodies, or a body and the world. Those that it holds are full throughout.
+struct SceneJoint {
+  JointKind kind = JointKind::ball;
+  int first = 0;            ///< of Scene::bodies
+  int second = kWorld;
+  Vec3 anchor_m = Vec3::Zero(), axis = Vec3::UnitZ();  ///< world, as the bodies start
+  static constexpr int kWorld = -1;
 };
 
 /// A camera, standing or moving along `path` (piecewise linear in time).
-struct Viewpoint {
+struct SceneViewpoint {
   struct Key { double time_s; Vec3 position_m; };
   Vec3 position_m = Vec3::Zero();
   Vec3 look_at_m = Vec3::Zero();
   std::vector<Key> path;
+  double height_px = 1080;  ///< of its picture
   Vec3 position_at(double time_s) const;
 };
 
@@ -58,10 +70,13 @@ struct Scene {
   MaterialTable materials;
   std::vector<std::string> material_names;
   std::map<std::string, std::shared_ptr<const Shape>> shapes;
-  std::vector<Ground> ground;
-  std::vector<SceneBody> bodies;  ///< scatters expanded
-  std::vector<Viewpoint> viewpoints;
+  std::vector<SceneGround> ground;
+  std::vector<SceneBody> bodies;  ///< those of ragdolls first, then the others, scatters expanded
+  std::vector<SceneJoint> joints;
+  std::vector<std::vector<int>> groups;  ///< of `bodies`, each a ragdoll
+  std::vector<SceneViewpoint> viewpoints;
   PolicySettings lod;
+  double audit_ms = 0;            ///< of each step, for the audit
   std::optional<StatisticalModel> model;  ///< that all statistical bodies have; none: what the policy finds
   TablesOptions tables;
   SceneOutput output;

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
 #include "scenes/body_section.h"
+#include "scenes/ground_section.h"
+#include "scenes/joint_section.h"
 #include "scenes/material_section.h"
+#include "scenes/ragdoll_section.h"
 #include "scenes/shape_section.h"
 #include "scenes/yaml_cursor.h"
 
@@ -29,10 +33,11 @@ SceneStep load_step(const YamlCursor& root, const SceneLoadSettings& settings, i
   return step;
 }
 
-Viewpoint load_viewpoint(const YamlCursor& place) {
-  place.expect_keys({"position_m", "look_at_m", "path"});
-  Viewpoint viewpoint;
+SceneViewpoint load_viewpoint(const YamlCursor& place) {
+  place.expect_keys({"position_m", "look_at_m", "path", "height_px"});
+  SceneViewpoint viewpoint;
   if (auto key = place.find("look_at_m")) viewpoint.look_at_m = key->vector();
+  if (auto key = place.find("height_px")) viewpoint.height_px = key->number({1, 1e5});
   if (auto key = place.find("path")) {
     for (const YamlCursor& corner : key->items()) {
       corner.expect_keys({"time_s", "position_m"});
@@ -47,8 +52,8 @@ Viewpoint load_viewpoint(const YamlCursor& place) {
   return viewpoint;
 }
 
-std::vector<Viewpoint> load_viewpoints(const YamlCursor& root) {
-  std::vector<Viewpoint> viewpoints;
+std::vector<SceneViewpoint> load_viewpoints(const YamlCursor& root) {
+  std::vector<SceneViewpoint> viewpoints;
   if (auto section = root.find("viewpoints"))
     for (const YamlCursor& place : section->items()) viewpoints.push_back(load_viewpoint(place));
   return viewpoints;
@@ -56,8 +61,6 @@ std::vector<Viewpoint> load_viewpoints(const YamlCursor& root) {
 
 DistancePolicy load_distances(const YamlCursor& section) {
   DistancePolicy policy;
-  for (const char* key : {"budget_ms", "budget_work"})
-    if (auto budget = section.find(key)) budget->fail(fmt::format("{} with policy distance", key), "full_within_m and support_within_m");
   if (auto key = section.find("full_within_m")) policy.full_within = key->number(kNotNegative);
   if (auto key = section.find("support_within_m")) {
     policy.support_within = key->number(kNotNegative);
@@ -66,42 +69,76 @@ DistancePolicy load_distances(const YamlCursor& section) {
   return policy;
 }
 
-/// Of time or of work.
-void load_budget(const YamlCursor& section, PolicySettings& lod) {
-  constexpr NumberRange kTime{0, 1e6}, kWork{0, 1e9};
-  for (const char* key : {"full_within_m", "support_within_m"})
-    if (auto within = section.find(key)) within->fail(fmt::format("{} with policy budget", key), "budget_ms or budget_work");
-  if (section.one_key_of({"budget_ms", "budget_work"}) == "budget_ms") lod.policy = BudgetPolicy{section.at("budget_ms").number(kTime)};
-  else lod.policy = WorkPolicy{section.at("budget_work").number(kWork)};
+ProjectedSizePolicy load_sizes(const YamlCursor& section) {
+  ProjectedSizePolicy policy;
+  if (auto key = section.find("full_above_px")) policy.full_above_px = key->number(kNotNegative);
+  if (auto key = section.find("support_above_px")) {
+    policy.support_above_px = key->number(kNotNegative);
+    if (policy.support_above_px > policy.full_above_px) key->fail(key->found(), fmt::format("at most full_above_px ({:g})", policy.full_above_px));
+  }
+  return policy;
 }
 
-/// A key that belongs to the other policy is refused, since it would do nothing.
+/// Of time or of work; `by_error`: spent where it lessens the error most.
+void load_budget(const YamlCursor& section, bool by_error, PolicySettings& lod) {
+  constexpr NumberRange kTime{0, 1e6}, kWork{0, 1e9};
+  if (section.one_key_of({"budget_ms", "budget_work"}) == "budget_ms") {
+    const double ms = section.at("budget_ms").number(kTime);
+    if (by_error) lod.policy = ErrorBudgetPolicy{.budget_ms = ms};
+    else lod.policy = BudgetPolicy{ms};
+  } else {
+    const double work = section.at("budget_work").number(kWork);
+    if (by_error) lod.policy = ErrorBudgetPolicy{.budget_work = work};
+    else lod.policy = WorkPolicy{work};
+  }
+}
+
+/// Each policy has keys of its own; one that belongs to another is refused, since it would do nothing.
+void refuse_keys_of_others(const YamlCursor& section, const std::string& policy) {
+  struct Keys {
+    std::vector<std::string> policies, keys;
+    std::string expected;
+  };
+  static const std::vector<Keys> kKeys{{{"distance"}, {"full_within_m", "support_within_m"}, "full_within_m and support_within_m"},
+                                       {{"projected_size"}, {"full_above_px", "support_above_px"}, "full_above_px and support_above_px"},
+                                       {{"budget", "error_budget"}, {"budget_ms", "budget_work"}, "budget_ms or budget_work"}};
+  const auto own = std::ranges::find_if(kKeys, [&](const Keys& k) { return std::ranges::count(k.policies, policy) > 0; });
+  for (const Keys& others : kKeys)
+    for (const std::string& key : others.keys)
+      if (auto found = section.find(key); found && &others != &*own) found->fail(fmt::format("{} with policy {}", key, policy), own->expected);
+}
+
 void load_policy(const YamlCursor& section, PolicySettings& lod) {
-  static const std::array<std::string, 2> kPolicies{"distance", "budget"};
-  const auto policy = section.find("policy");
-  if (policy && policy->choice(kPolicies) == 1) load_budget(section, lod);
-  else lod.policy = load_distances(section);
+  static const std::array<std::string, 4> kPolicies{"distance", "budget", "projected_size", "error_budget"};
+  const auto key = section.find("policy");
+  const std::string& policy = kPolicies[key ? key->choice(kPolicies) : 0];
+  refuse_keys_of_others(section, policy);
+  if (policy == "distance") lod.policy = load_distances(section);
+  else if (policy == "projected_size") lod.policy = load_sizes(section);
+  else load_budget(section, policy == "error_budget", lod);
+}
+
+/// What every policy has.
+void load_limits(const YamlCursor& section, PolicySettings& lod) {
   constexpr std::int64_t kMost = kUnlimited;
   if (auto key = section.find("most_full")) lod.most_full = int(key->integer(0, kMost));
   if (auto key = section.find("most_support")) lod.most_support = int(key->integer(0, kMost));
   if (auto key = section.find("hysteresis")) lod.hysteresis = key->number({0, 10});
   if (auto key = section.find("min_dwell_frames")) lod.min_dwell_frames = int(key->integer(0, 1'000'000));
   if (auto key = section.find("max_transitions_per_frame")) lod.max_transitions_per_frame = int(key->integer(1, 1'000'000));
-}
-
-bool truth_of(const YamlCursor& key) {
-  static const std::array<std::string, 2> kTruths{"false", "true"};
-  return key.choice(kTruths) == 1;
+  if (auto key = section.find("out_of_view_factor")) lod.out_of_view_factor = key->number({1, 1e9});
+  if (auto key = section.find("look_ahead_s")) lod.look_ahead_s = key->number({0, 10});
+  if (auto key = section.find("contact_groups_together")) lod.contact_groups_together = key->truth();
 }
 
 TablesOptions load_tables_options(const YamlCursor& section) {
   TablesOptions options;
   section.expect_keys({"interpolate", "draw_height", "radius_update_interval", "nearest_rest_pose", "paper_pair_rule"});
-  if (auto key = section.find("interpolate")) options.interpolate = truth_of(*key);
-  if (auto key = section.find("draw_height")) options.draw_height = truth_of(*key);
+  if (auto key = section.find("interpolate")) options.interpolate = key->truth();
+  if (auto key = section.find("draw_height")) options.draw_height = key->truth();
   if (auto key = section.find("radius_update_interval")) options.radius_update_interval = int(key->integer(1, 1000));
-  if (auto key = section.find("nearest_rest_pose")) options.nearest_rest_pose = truth_of(*key);
-  if (auto key = section.find("paper_pair_rule")) options.paper_pair_rule = truth_of(*key);
+  if (auto key = section.find("nearest_rest_pose")) options.nearest_rest_pose = key->truth();
+  if (auto key = section.find("paper_pair_rule")) options.paper_pair_rule = key->truth();
   return options;
 }
 
@@ -113,9 +150,11 @@ std::optional<StatisticalModel> load_model(const YamlCursor& key) {
 void load_lod(const YamlCursor& root, Scene& scene) {
   const auto section = root.find("lod");
   if (!section) return;
-  section->expect_keys({"policy", "full_within_m", "support_within_m", "budget_ms", "budget_work", "most_full", "most_support", "hysteresis", "min_dwell_frames",
-                        "max_transitions_per_frame", "model", "tables"});
+  section->expect_keys({"policy", "full_within_m", "support_within_m", "full_above_px", "support_above_px", "budget_ms", "budget_work", "most_full", "most_support", "hysteresis",
+                        "min_dwell_frames", "max_transitions_per_frame", "out_of_view_factor", "look_ahead_s", "contact_groups_together", "audit_ms", "model", "tables"});
   load_policy(*section, scene.lod);
+  load_limits(*section, scene.lod);
+  if (auto key = section->find("audit_ms")) scene.audit_ms = key->number({0, 1e6});
   if (auto key = section->find("model")) scene.model = load_model(*key);
   if (auto tables = section->find("tables")) scene.tables = load_tables_options(*tables);
 }
@@ -158,7 +197,7 @@ Scene load_scene(const fs::path& file, const SceneLoadSettings& settings) {
   const YamlValue document = load_yaml(file);
   const std::string name = file.string();
   const YamlCursor root(document, name);
-  root.expect_keys({"version", "step", "materials", "contacts", "shapes", "ground", "bodies", "viewpoints", "lod", "output", "check"});
+  root.expect_keys({"version", "step", "materials", "contacts", "shapes", "ground", "bodies", "ragdolls", "joints", "viewpoints", "lod", "output", "check"});
   root.at("version").integer(1, 1);
   const ShapeOptions search = search_of(file, settings);
 
@@ -173,8 +212,10 @@ Scene load_scene(const fs::path& file, const SceneLoadSettings& settings) {
   load_materials(root, scene);
   scene.ground = load_ground(root, scene, search);
   const std::map<std::string, SceneShape> shapes = load_shapes(root, scene, search);
-  scene.bodies = load_bodies(root, scene, shapes, settings);
   for (const auto& [shape_name, shape] : shapes) scene.shapes.emplace(shape_name, shape.shape);
+  load_ragdolls(root, scene);
+  add_bodies(root, scene, shapes, settings);
+  load_joints(root, scene);
   return scene;
 }
 

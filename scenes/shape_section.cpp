@@ -8,10 +8,8 @@
 #include "scenes/material_section.h"
 
 namespace lodestone {
-namespace {
 
-/// Puts what a mesh's maker found (`name: found …, expected …`) where the scene asked for the mesh.
-[[noreturn]] void fail_at(const YamlCursor& place, const InputError& error, const std::string& hint = "") {
+void fail_at(const YamlCursor& place, const InputError& error, const std::string& hint) {
   const std::string what = error.what();
   const std::size_t found = what.find("found "), expected = what.find(", expected ");
   if (found == what.npos) place.fail(what, "a mesh that bounds a solid" + hint);
@@ -20,6 +18,8 @@ namespace {
   place.fail(name.empty() ? defect : fmt::format("{} ({})", defect, name),
              (expected == what.npos ? "a mesh that bounds a solid" : what.substr(expected + 11)) + hint);
 }
+
+namespace {
 
 /// Three numbers are the diagonal, three rows the whole tensor.
 Mat3 load_inertia(const YamlCursor& key) {
@@ -91,50 +91,6 @@ SceneShape load_shape(const std::string& name, const YamlCursor& place, const Sc
   return result;
 }
 
-GroundMesh load_ground_mesh(const YamlCursor& place, const ShapeOptions& search) {
-  place.expect_keys({"mesh", "size_m", "position_m", "material"});
-  const YamlCursor key = place.at("mesh");
-  const std::string name = key.text();
-  const auto size = place.find("size_m"), position = place.find("position_m");
-  const std::optional<double> size_m = size ? std::optional(size->number(kLength)) : std::nullopt;
-  const Vec3 position_m = position ? position->vector() : Vec3::Zero();
-  try {
-    GroundMesh ground{.mesh = load_mesh(find_mesh_file(name, search))};
-    if (size_m) ground.mesh = scale_to_size(std::move(ground.mesh), *size_m);
-    for (Vec3& vertex : ground.mesh.vertices) vertex += position_m;
-    return ground;
-  } catch (const InputError& error) {
-    fail_at(key, error);
-  }
-}
-
-GroundPlane load_ground_plane(const YamlCursor& plane) {
-  plane.expect_keys({"normal", "offset_m"});
-  GroundPlane ground;
-  if (auto key = plane.find("normal")) ground.normal = key->direction();
-  if (auto key = plane.find("offset_m")) ground.offset_m = key->number();
-  return ground;
-}
-
-GroundBox load_ground_box(const YamlCursor& box) {
-  box.expect_keys({"sides_m", "position_m", "orientation"});
-  GroundBox ground{.sides_m = box.at("sides_m").vector(kPositive), .position_m = Vec3::Zero(), .orientation = Quat::Identity()};
-  if (auto key = box.find("position_m")) ground.position_m = key->vector();
-  if (auto key = box.find("orientation")) ground.orientation = key->rotation();
-  return ground;
-}
-
-Ground load_ground_part(const YamlCursor& place, const Scene& scene, const ShapeOptions& search) {
-  place.expect_keys({"plane", "box", "mesh", "size_m", "position_m", "material"});
-  const std::string_view kind = place.one_key_of({"plane", "box", "mesh"});
-  if (kind != "mesh") place.expect_keys({kind, "material"});
-  Ground ground = kind == "plane" ? Ground(load_ground_plane(place.at("plane")))
-                  : kind == "box" ? Ground(load_ground_box(place.at("box")))
-                                  : Ground(load_ground_mesh(place, search));
-  std::visit([&](auto& part) { part.material = load_material_id(place, scene); }, ground);
-  return ground;
-}
-
 }  // namespace
 
 std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scene& scene, const ShapeOptions& search) {
@@ -142,13 +98,6 @@ std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scen
   if (auto section = root.find("shapes"))
     for (const auto& [name, place] : section->entries()) shapes.emplace(name, load_shape(name, place, scene, search));
   return shapes;
-}
-
-std::vector<Ground> load_ground(const YamlCursor& root, const Scene& scene, const ShapeOptions& search) {
-  std::vector<Ground> ground;
-  if (auto section = root.find("ground"))
-    for (const YamlCursor& place : section->items()) ground.push_back(load_ground_part(place, scene, search));
-  return ground;
 }
 
 }  // namespace lodestone

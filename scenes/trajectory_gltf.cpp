@@ -24,7 +24,7 @@ class TrajectoryWriter {
     model_.asset.generator = "Lodestone";
     model_.animations.resize(1);
     model_.animations[0].name = "run";
-    for (const Ground& ground : scene_.ground) stage_.add_ground(ground, extent());
+    for (const SceneGround& ground : scene_.ground) stage_.add_ground(ground, extent());
     add_views();
     for (int body = 0; body < trajectory_.bodies(); ++body) add_body(body);
     if (!scene_.viewpoints.empty()) add_viewpoint(scene_.viewpoints[0]);
@@ -143,7 +143,7 @@ class TrajectoryWriter {
     add_channel(index, "scale", buffer_.add_scalars(times), buffer_.add_vectors(scales, 0), "STEP");
   }
 
-  void add_viewpoint(const Viewpoint& viewpoint) {
+  void add_viewpoint(const SceneViewpoint& viewpoint) {
     const int node = stage_.add_camera(viewpoint);
     if (viewpoint.path.empty() || trajectory_.frames() < 2) return;
     std::vector<std::array<float, 3>> positions;

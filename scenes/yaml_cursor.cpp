@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -179,6 +180,11 @@ Quat YamlCursor::rotation() const {
   const Quat rotation(q[0], q[1], q[2], q[3]);
   if (rotation.norm() < 1e-12) fail("[0, 0, 0, 0]", "a quaternion w, x, y, z of any length but 0");
   return rotation.normalized();
+}
+
+bool YamlCursor::truth() const {
+  static const std::array<std::string, 2> kTruths{"false", "true"};
+  return choice(kTruths) == 1;
 }
 
 std::size_t YamlCursor::choice(std::span<const std::string> names) const {

@@ -51,6 +51,7 @@ class YamlCursor {
   std::string text() const;
   double number(const NumberRange& range = {}) const;
   std::int64_t integer(std::int64_t low, std::int64_t high) const;
+  bool truth() const;      ///< false or true
   Vec3 vector(const NumberRange& range = {}) const;
   Vec3 direction() const;  ///< of any length but 0; normalised
   Quat rotation() const;   ///< w, x, y, z of any length but 0; normalised

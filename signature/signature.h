@@ -18,6 +18,7 @@
 #include "reference/material.h"
 #include "signature/collision_heights.h"
 #include "signature/response.h"
+#include "signature/rung_errors.h"
 
 namespace lodestone {
 
@@ -109,6 +110,7 @@ struct Signature {
   std::vector<ClipEntry> clip_entries;
   float clip_frame_interval = 0.0f;  ///< time between frames over √(R/g)
   std::uint64_t trials = 0;          ///< collision and settling trials simulated
+  RungErrors rung_errors;            ///< not in the file but beside it, since it is measured with what stands above
   double measuring_seconds = 0.0;    ///< wall time; not in the file, whose bytes are the same however long it took
 };
 

@@ -62,6 +62,7 @@ std::shared_ptr<const Signature> find_cached(const std::filesystem::path& file, 
   try {
     auto signature = std::make_shared<Signature>(load_signature(file));
     std::ifstream(beside(file, ".seconds")) >> signature->measuring_seconds;
+    if (const auto errors = load_rung_errors(beside(file, ".errors"))) signature->rung_errors = *errors;
     check_measured_for(*signature, shape, file.string());
     return signature;
   } catch (const InputError&) {
@@ -114,6 +115,12 @@ SourcedSignature find_or_measure_in(const std::filesystem::path& file, const Sha
 }
 
 }  // namespace
+
+std::filesystem::path rung_errors_file(const Shape& shape, const ContactLaw& law, const SignatureSourceSettings& settings) {
+  SignatureSettings measuring = settings.measuring;
+  measuring.law = law;
+  return beside(cache_file(shape, measuring, settings), ".errors");
+}
 
 std::string measuring_versions() { return fmt::format("format {} measuring {} ode {}", kSignatureFormatVersion, kMeasuringVersion, LODESTONE_ODE_VERSION); }
 

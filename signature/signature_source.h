@@ -44,6 +44,9 @@ SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw&
 /// is not made: check the stop token.
 MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Share& share, const SignatureSourceSettings& settings = {});
 
+/// Where the errors of a signature's rungs are kept, beside its file in the cache.
+std::filesystem::path rung_errors_file(const Shape& shape, const ContactLaw& law, const SignatureSourceSettings& settings = {});
+
 /// The versions of the format, of the measuring code and of ODE, on all of which a signature depends.
 std::string measuring_versions();
 

@@ -12,6 +12,7 @@ enum class ExitCode { done = 0, check_failed = 1, usage = 2, bad_input = 3, dive
 
 /// `exit_code` receives how the chosen command ended; it outlives the program's parsing. InputError passes through.
 void add_run_command(CLI::App& program, ExitCode& exit_code);
+void add_replay_command(CLI::App& program, ExitCode& exit_code);
 void add_sign_command(CLI::App& program, ExitCode& exit_code);
 void add_merge_command(CLI::App& program, ExitCode& exit_code);
 void add_inspect_command(CLI::App& program, ExitCode& exit_code);

@@ -46,7 +46,9 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
                                         "of all statistical bodies, whatever the policy says")
       ->check(CLI::IsMember({"tables", "support"}));
   CLI::Option* ms = command.add_option("--budget-ms", running.budget_ms, "processor time of a step, instead of the scene's policy")->check(find_budget_fault, "MS");
-  command.add_option("--budget-work", running.budget_work, "the same in work units, which repeat exactly")->check(find_budget_fault, "UNITS")->excludes(ms);
+  CLI::Option* work = command.add_option("--budget-work", running.budget_work, "the same in work units, which repeat exactly")->check(find_budget_fault, "UNITS")->excludes(ms);
+  command.add_option("--full-within-m", running.full_within_m, "policy distance with this, instead of the scene's policy")->check(CLI::NonNegativeNumber)->excludes(ms)->excludes(work);
+  command.add_option("--audit-ms", running.audit_ms, "processor time of each step for simulating demoted bodies on in full, beside the world")->check(CLI::Range(0.0, 1e6));
   command.add_option("--mesh-path", arguments.loading.mesh_paths, "folders in which mesh files are looked up")->delimiter(':')->allow_extra_args(false);
 }
 

@@ -82,6 +82,12 @@ std::string text_of(const BudgetFigures& budget) {
   return text + '\n';
 }
 
+std::string text_of(const AuditReport& audit) {
+  const auto figure = [](const char* name, const AuditFigure& f) { return fmt::format("; {} {:.3g} full, {:.3g} demoted, {:+.2g} to {:+.2g}", name, f.full, f.demoted, f.difference[0], f.difference[1]); };
+  return fmt::format("audit        {} demoted bodies beside themselves in full{}{}{}; apart after 1 s {:.2f} sizes, {:.2f} to {:.2f}\n", audit.bodies, figure("time to rest s", audit.rest_time_s),
+                     figure("distance m", audit.distance_m), figure("rest height", audit.rest_height), audit.drift, audit.drift_interval[0], audit.drift_interval[1]);
+}
+
 std::string text_of(const CheckResult& check) {
   return fmt::format("check        {} {}: {:.4g}, bound {:.4g}\n", !check.decided ? "open:  " : check.pass ? "holds: " : "FAILED:", check.name, check.value, check.bound);
 }
@@ -100,6 +106,8 @@ std::string text_of(const RunResult& result) {
   text += fmt::format("at the end   {} full, {} statistical, {} of all asleep\n", last.full, last.statistical, last.asleep);
   text += fmt::format("rungs        {} full, {} support, {} tables\n", last.full, last.support, last.tables);
   if (result.budget && result.budget->steps > 0) text += text_of(*result.budget);
+  if (result.budget && result.budget->mean_error_pixels) text += fmt::format("error        {:.1f} px predicted, sum over the bodies, mean of {} steps\n", *result.budget->mean_error_pixels, result.budget->steps);
+  if (last.audit.bodies > 0) text += text_of(last.audit);
   if (result.in_picture) text += fmt::format("in picture   {} full at least, {:.1f} on average\n", result.in_picture->min_full, result.in_picture->mean_full);
   text += fmt::format("transitions  {}, of which {} promotions\n", result.transitions, result.promotions);
   text += fmt::format("deepest      {:.4g} m below the ground, at tables {:.4g} m\n", result.max_penetration_m, result.max_tables_penetration_m);
@@ -111,6 +119,12 @@ std::string text_of(const RunResult& result) {
     if (!file.empty()) text += fmt::format("written      {}\n", file.string());
   text += fmt::format("state hash   {:016x}\n", result.state_hash);
   return text;
+}
+
+ordered_json json_of(const AuditReport& audit) {
+  const auto figure = [](const AuditFigure& f) { return ordered_json{{"full", f.full}, {"demoted", f.demoted}, {"deviation", f.deviation}, {"difference", f.difference}}; };
+  return {{"bodies", audit.bodies}, {"watched", audit.watched}, {"left_out", audit.left_out}, {"rest_time_s", figure(audit.rest_time_s)}, {"distance_m", figure(audit.distance_m)},
+          {"rest_height", figure(audit.rest_height)}, {"drift", audit.drift}, {"drift_interval", audit.drift_interval}};
 }
 
 ordered_json json_of(const BudgetFigures& budget) {
@@ -127,6 +141,7 @@ ordered_json json_of(const BudgetFigures& budget) {
   json["mean_predicted_ms"] = budget.mean_predicted_ms;
   json["mean_measured_ms"] = budget.mean_measured_ms;
   json["mean_error_ms"] = budget.mean_error_ms;
+  if (budget.mean_error_pixels) json["mean_predicted_error_px"] = *budget.mean_error_pixels;
   for (const Rung rung : kFromTheTop) {
     const RungCost& cost = budget.mean_cost[std::size_t(rung)];
     json["rungs"][std::string(name_of(rung))] = {{"predicted_ms", cost.predicted_ms}, {"measured_ms", cost.measured_ms}, {"work", cost.work}};
@@ -145,6 +160,7 @@ ordered_json json_of(const RunResult& result) {
   for (const auto& [name, stage] : kStages) json["stage_mean_ms"][name] = mean_stage_ms(result, stage);
   json["levels"] = {{"full", last.full}, {"statistical", last.statistical}, {"support", last.support}, {"tables", last.tables}, {"asleep", last.asleep}};
   if (result.budget) json["budget"] = json_of(*result.budget);
+  if (last.audit.bodies + last.audit.watched + last.audit.left_out > 0) json["audit"] = json_of(last.audit);
   if (result.in_picture) json["in_picture"] = {{"min_full", result.in_picture->min_full}, {"mean_full", result.in_picture->mean_full}};
   json["transitions"] = result.transitions;
   json["promotions"] = result.promotions;

@@ -30,8 +30,11 @@ bool stays_full(const BodyDefinition& body, const RunSettings& settings) {
 
 // The first plane only: what a signature is measured for.
 void add_first_plane(Manager& manager, const Scene& scene) {
-  for (const Ground& ground : scene.ground)
-    if (const auto* plane = std::get_if<GroundPlane>(&ground)) return manager.add_plane(plane->normal, plane->offset_m, plane->material);
+  for (const SceneGround& ground : scene.ground)
+    if (const auto* plane = std::get_if<GroundPlane>(&ground)) {
+      manager.add_plane(plane->normal, plane->offset_m, plane->material);
+      return;
+    }
 }
 
 }  // namespace

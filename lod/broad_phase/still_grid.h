@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "reference/geometry.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -19,6 +20,7 @@ class StillGrid {
   /// With what it was inserted with.
   void remove(std::uint32_t body, const Vec3& position, double radius);
   bool empty() const { return bodies_ == 0; }
+  void archive(StateArchive& a) { a(cells_, used_, bodies_, next_, of_level_); }
   std::size_t bytes() const { return cells_.capacity() * sizeof(Cell) + next_.capacity() * sizeof(std::uint32_t); }
 
   /// Calls found(body) for every body whose ball may meet this one, and for some a cell beyond, in an order that follows from what was inserted and removed.

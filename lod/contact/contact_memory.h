@@ -8,6 +8,7 @@
 
 #include "lod/contact/crowd_solver.h"
 #include "lod/contact/pair_memory.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -18,6 +19,8 @@ class ContactMemory {
   void recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points, double step);
   /// Forgets what was before.
   void remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> points, double step);
+
+  void archive(StateArchive& a) { a(place_, runs_, forces_); }
 
  private:
   struct Run {

@@ -32,6 +32,9 @@ struct ContactScene {
     if (asleep(p)) return Vec3::Zero();
     return p.is_statistical() ? body(p).velocity : neighbor(p).state.velocity;
   }
+  const BodyProperties& properties(Participant p) const { return world.properties_of(owner(p)); }
+  /// m/s², as it acts on the body.
+  Vec3 gravity(Participant p) const { return properties(p).gravity ? world.gravity : Vec3(Vec3::Zero()); }
   PairBody pair_body(Participant p) const { return {&shape(p), position(p), orientation(p)}; }
   ContactLaw law(Participant a, Participant b) const { return world.materials->law(material(a), material(b)); }
 };

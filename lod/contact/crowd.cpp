@@ -1,6 +1,7 @@
 #include "lod/contact/crowd.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "lod/statistical/flight.h"
 #include "lod/statistical/parting.h"
@@ -18,17 +19,22 @@ void lift_sphere_out(StatisticalBody& body, const HalfSpace& plane) {
 SolverBody solver_body_of(const ContactScene& scene, Participant p, double time) {
   SolverBody solver;
   if (scene.asleep(p)) return solver;
+  const bool moved = !scene.properties(p).kinematic;  // by what it meets
+  const Vec3 gravity = moved ? scene.gravity(p) : Vec3(Vec3::Zero());
   if (p.is_statistical()) {
     const StatisticalBody& body = scene.body(p);
     const BodyKind& kind = scene.kind_of(body);
-    solver.velocity = body.velocity + scene.world.gravity * time;
+    solver.velocity = body.velocity + gravity * time;
     solver.angular_velocity = angular_velocity(body.orientation, body.spin, *kind.shape);
-    solver.inverse_mass = 1.0 / kind.mass;
-    solver.inverse_inertia = inverse_inertia_world(body.orientation, *kind.shape) / kind.mass;
+    if (!moved) return solver;
+    solver.inverse_mass = 1.0 / body.mass;
+    solver.inverse_inertia = inverse_inertia_world(body.orientation, *kind.shape) / body.mass;
   } else {
     const FullNeighbor& body = scene.neighbor(p);
-    solver.velocity = body.state.velocity + (scene.world.gravity + body.force / body.mass) * time;
+    solver.velocity = body.state.velocity;
     solver.angular_velocity = body.state.angular_velocity;
+    if (!moved) return solver;
+    solver.velocity += (gravity + body.force / body.mass) * time;
     solver.inverse_mass = 1.0 / body.mass;
     solver.inverse_inertia = inverse_inertia_world(body.state.orientation, *body.shape) / body.mass;
   }
@@ -40,6 +46,9 @@ Participant deciding(Participant one, Participant other) {
   if (!one.is_statistical() || !other.is_statistical()) return one.is_statistical() ? one : other;
   return one.index() > other.index() ? one : other;
 }
+
+// Numbers of what bodies touch besides planes, for what is remembered of contacts.
+constexpr std::size_t kFirstSolid = 1 << 16, kFirstFace = 1u << 31;
 
 bool is_eased(const ContactScene& scene, Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; }
 
@@ -55,9 +64,25 @@ int Crowd::solver_index(const ContactScene& scene, Participant p, double time) {
   return index;
 }
 
+// Ground that moves carries what touches it: a body that nothing stops. −1: it stands still.
+std::int32_t Crowd::solver_index(const GroundPart& part) {
+  if (!part.moves()) return -1;
+  const auto known = std::ranges::find(moving_parts_, &part, &std::pair<const GroundPart*, std::int32_t>::first);
+  if (known != moving_parts_.end()) return known->second;
+  const auto index = std::int32_t(solver_bodies_.size());
+  moving_parts_.emplace_back(&part, index);
+  participants_.push_back(Participant::ground());
+  SolverBody& body = solver_bodies_.emplace_back();
+  body.velocity = part.pose.velocity;
+  body.angular_velocity = part.pose.angular_velocity;
+  angular_before_.push_back(body.angular_velocity);
+  return index;
+}
+
 void Crowd::add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal, const ContactLaw& law) {
   keys_.push_back(key);
   manifolds_.push_back({first, second, normal, law, std::uint32_t(points_.size()), 0});
+  grounds_.emplace_back();
 }
 
 // Of the last manifold.
@@ -79,12 +104,13 @@ void Crowd::add_pair_contact(const ContactScene& scene, const CrowdContact& pair
 
 void Crowd::add_solid_contact(const ContactScene& scene, const SolidContact& on_solid, double time) {
   const Participant p = Participant::statistical(std::size_t(on_solid.slot));
-  const StaticGround& ground = *scene.world.ground;
-  const auto solid = std::size_t(on_solid.solid);
-  add_manifold(ground_key(scene.owner(p), ground.planes.size() + solid), solver_index(scene, p, time), -1, on_solid.contact.normal,
-               scene.world.materials->law(scene.material(p), ground.solids[on_solid.solid].material));
+  const std::int32_t index = solver_index(scene, p, time), ground = solver_index(*on_solid.part);
+  add_manifold(ground_key(scene.owner(p), kFirstSolid + on_solid.number), index, ground, on_solid.contact.normal,
+               scene.world.materials->law(scene.material(p), on_solid.material));
+  grounds_.back() = {on_solid.part->id, on_solid.material};
   const Manifold& manifold = on_solid.contact.manifold;
-  for (int i = 0; i < manifold.count; ++i) add_point(manifold.points[i].point - scene.position(p), Vec3::Zero(), manifold.points[i].gap);
+  for (int i = 0; i < manifold.count; ++i)
+    add_point(manifold.points[i].point - scene.position(p), manifold.points[i].point - on_solid.part->pose.position, manifold.points[i].gap);
 }
 
 // `number`: of the plane, for what is remembered of its contacts.
@@ -109,6 +135,7 @@ void Crowd::add_ground_contacts(const ContactScene& scene, int index, const Half
   const auto contacts = std::span(found.contact).first(std::size_t(found.count));
   if (std::ranges::none_of(contacts, reaches)) return;
   add_manifold(ground_key(body.owner, number), index, -1, plane.normal, scene.world.law(kind, plane));
+  grounds_.back() = {plane.id, plane.material};
   for (const HullContact& contact : contacts)
     if (reaches(contact)) add_point(contact.arm, Vec3::Zero(), contact.gap);
 }
@@ -151,7 +178,9 @@ void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   angular_before_.clear();
   manifolds_.clear();
   keys_.clear();
+  grounds_.clear();
   points_.clear();
+  moving_parts_.clear();
   make_room(scene.bodies.size());
   index_of_neighbor_.assign(scene.neighbors.size(), -1);
 
@@ -159,16 +188,17 @@ void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   pair_manifolds_ = manifolds_.size();
   for (const SolidContact& on_solid : touch.solid_contacts) add_solid_contact(scene, on_solid, touch.time);
   sort_full_contacts(touch.full_contacts, scene.neighbors.size());
-  const auto& planes = scene.world.ground->planes;
+  const auto& planes = scene.world.planes;
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     const Participant p = participants_[i];
-    if (scene.asleep(p)) continue;
+    if (p.is_ground() || scene.asleep(p) || scene.properties(p).kinematic) continue;
     if (p.is_full()) {
       add_full_contacts(scene, int(i), touch);
       continue;
     }
+    if (!meets_ground(scene.properties(p))) continue;
     for (std::size_t number = 0; number < planes.size(); ++number) add_ground_contacts(scene, int(i), planes[number], number, touch.time);
-    std::size_t number = planes.size() + scene.world.ground->solids.size();
+    std::size_t number = kFirstFace;
     for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index()))) add_ground_contacts(scene, int(i), face, number++, touch.time);
   }
 }
@@ -178,8 +208,50 @@ void Crowd::solve(const ContactScene& scene, double time) {
   settings.bounce_velocity = scene.world.bounce_velocity + scene.world.gravity_strength() * time;  // what gravity adds in a step is no impact
   settings.fall = scene.world.gravity * time;
   memory_.recall(keys_, manifolds_, points_, time);
+  const std::size_t known = scene.world.log ? note_approaches(scene, time) : 0;
   solver_.solve(solver_bodies_, manifolds_, points_, time, settings, jobs_);
   memory_.remember(keys_, manifolds_, points_, time);
+  if (scene.world.log) note_impulses(*scene.world.log, known);
+}
+
+// What touches, but for two full bodies. The impulses follow, in the same order.
+std::size_t Crowd::note_approaches(const ContactScene& scene, double time) const {
+  std::vector<ContactRecord>& records = scene.world.log->records();
+  const std::size_t known = records.size();
+  const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
+    if (index < 0) return Vec3(Vec3::Zero());
+    const SolverBody& body = solver_bodies_[std::size_t(index)];
+    const Vec3 fall = body.inverse_mass > 0.0 ? Vec3(scene.gravity(participants_[std::size_t(index)]) * time) : Vec3(Vec3::Zero());
+    return Vec3(body.velocity - fall + body.angular_velocity.cross(arm));
+  };
+  for (std::size_t i = 0; i < manifolds_.size(); ++i) {
+    const CrowdManifold& m = manifolds_[i];
+    const Participant first = participants_[std::size_t(m.first)], second = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
+    ContactRecord& record = records.emplace_back(ContactRecord{.first = scene.owner(first), .normal = m.normal});
+    if (second.is_ground()) std::tie(record.ground, record.ground_material) = grounds_[i];
+    else record.second = scene.owner(second);
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
+      record.approach = std::max(record.approach, (velocity_of(m.second, point.arm_second) - velocity_of(m.first, point.arm_first)).dot(m.normal));
+      record.point += (scene.position(first) + point.arm_first) / double(m.count);
+    }
+  }
+  return known;
+}
+
+// Those that gave nothing were no touch. Two full bodies, or one and its ground, are the full level's matter.
+void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
+  std::vector<ContactRecord>& records = log.records();
+  std::size_t kept = known;
+  for (std::size_t i = 0; i < manifolds_.size(); ++i) {
+    const CrowdManifold& m = manifolds_[i];
+    const bool statistical = participants_[std::size_t(m.first)].is_statistical() || (m.second >= 0 && participants_[std::size_t(m.second)].is_statistical());
+    double impulse = 0.0;
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) impulse += point.impulse.dot(m.normal);
+    if (!statistical || impulse <= 0.0) continue;
+    records[kept] = records[known + i];
+    records[kept++].impulse = impulse;
+  }
+  records.resize(kept);
 }
 
 // Full neighbours only get their velocities.
@@ -187,6 +259,7 @@ void Crowd::move(const ContactScene& scene, double time) {
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     const Participant p = participants_[i];
     const SolverBody& solved = solver_bodies_[i];
+    if (p.is_ground()) continue;
     if (p.is_full()) {
       RigidState& state = scene.neighbor(p).state;
       state.velocity = solved.velocity;
@@ -197,6 +270,10 @@ void Crowd::move(const ContactScene& scene, double time) {
     StatisticalBody& body = scene.body(p);
     if (body.motion == Motion::asleep) continue;
     const BodyKind& kind = scene.kind_of(body);
+    if (scene.properties(p).kinematic) {
+      advance_kinematic(body, kind, time);
+      continue;
+    }
     body.velocity = solved.velocity;
     body.spin += spin_of(body.orientation, solved.angular_velocity - angular_before_[i], *kind.shape);
     body.position += body.velocity * time;
@@ -210,7 +287,7 @@ void Crowd::give_to_full(const ContactScene& scene) const {
   for (const CrowdManifold& m : std::span(manifolds_).first(pair_manifolds_))
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       const auto give = [&](Participant to, const Vec3& impulse, const Vec3& arm) {
-        if (!to.is_full() || scene.neighbor(to).asleep) return;
+        if (!to.is_full() || scene.neighbor(to).asleep || scene.properties(to).kinematic) return;
         Impulse& share = point.bounces ? scene.neighbor(to).hit : scene.neighbor(to).push;
         share.linear += impulse;
         share.angular += arm.cross(impulse);
@@ -268,7 +345,8 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
   };
   for (const Participant p : participants_) {
     if (!p.is_statistical() || scene.asleep(p)) continue;
-    for (const HalfSpace& plane : scene.world.ground->planes) lift(p, plane);
+    if (const BodyProperties& own = scene.properties(p); own.kinematic || !meets_ground(own)) continue;
+    for (const HalfSpace& plane : scene.world.planes) lift(p, plane);
     for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index()))) lift(p, face);
   }
 }

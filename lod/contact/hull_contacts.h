@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "lod/ground/static_ground.h"
+#include "lod/ground/ground.h"
 #include "lod/statistical/statistical_body.h"
 
 namespace lodestone {

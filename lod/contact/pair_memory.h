@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "reference/state_archive.h"
+
 namespace lodestone {
 
 /// Which two bodies touch, by their owners, who stay the same while they do; a plane of the ground counts down from the greatest number.
@@ -14,6 +16,10 @@ inline ContactKey ground_key(std::uint32_t body, std::size_t plane) { return con
 class PairMemory {
  public:
   void clear();
+  void archive(StateArchive& a) {
+    a(keys_);
+    made_ = made_ && !a.reading();
+  }
   void add(ContactKey key) { keys_.push_back(key); }
   /// The place at which `key` was added, the first one; −1: never. Quick where that is about `expected`: lists mostly keep their order from step to step.
   std::int32_t find(ContactKey key, std::size_t expected);

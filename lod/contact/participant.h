@@ -16,6 +16,7 @@ class Participant {
 
   bool is_statistical() const { return kind() == Kind::statistical; }
   bool is_full() const { return kind() == Kind::full; }
+  bool is_ground() const { return kind() == Kind::ground; }
   Kind kind() const { return Kind(code_ >> kIndexBits); }
   std::size_t index() const { return code_ & ((1u << kIndexBits) - 1); }
   friend bool operator==(Participant, Participant) = default;

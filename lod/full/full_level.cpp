@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "reference/ode/callers_bodies.h"
+#include "reference/state_archive.h"
+
 namespace lodestone {
 namespace {
 
@@ -29,7 +32,8 @@ OdeSettings ode_settings_of(const FullSettings& settings) {
           .most_mesh_measures = kMostMeshMeasures,
           .plane_depth_max = kPlaneDepthMax,
           .timed_contacts_above = kTimedContactsAbove,
-          .auto_disable = settings.sleeping};
+          .auto_disable = settings.sleeping,
+          .sleep = {settings.sleep.speed, settings.sleep.speed, 5.0 * settings.sleep.time}};
 }
 
 FullLevel::FullLevel(const FullSettings& settings, const MaterialTable& materials) : settings_(settings), materials_(&materials) {}
@@ -37,29 +41,74 @@ FullLevel::FullLevel(const FullSettings& settings, const MaterialTable& material
 FullLevel::FullLevel(dxWorld* world, dxSpace* space, const FullSettings& settings, const MaterialTable& materials)
     : settings_(settings), materials_(&materials), world_(std::in_place, world, space, ode_settings_of(settings), materials) {}
 
-void FullLevel::lay(std::function<void(OdeWorld&)> ground) {
-  if (world_) ground(*world_);
-  else waiting_ground_.push_back(std::move(ground));
+void FullLevel::add_ground(GroundId id, std::function<OdeGroundId(OdeWorld&)> make) {
+  Piece& piece = pieces_.emplace_back(Piece{.id = id, .make = std::move(make)});
+  if (world_) lay(piece);
 }
 
-void FullLevel::add_plane(const HalfSpace& plane) {
-  lay([plane](OdeWorld& world) { world.add_plane(plane.normal, plane.offset, plane.material); });
+void FullLevel::lay(Piece& piece) {
+  piece.laid = piece.make(*world_);
+  piece.make = {};
+  if (piece.moved) world_->move_ground(piece.laid, *piece.moved);
+  id_of_laid_[piece.laid.value] = piece.id;
 }
 
-void FullLevel::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
-  lay([=](OdeWorld& world) { world.add_static_box(sides, position, orientation, material); });
+void FullLevel::add_plane(GroundId id, const HalfSpace& plane) {
+  add_ground(id, [plane](OdeWorld& world) { return world.add_plane(plane.normal, plane.offset, plane.material); });
 }
 
-void FullLevel::add_static_mesh(const Mesh& mesh, MaterialId material) {
-  lay([mesh, material](OdeWorld& world) { world.add_static_mesh(mesh, material); });
+void FullLevel::add_static_box(GroundId id, const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+  add_ground(id, [=](OdeWorld& world) { return world.add_static_box(sides, position, orientation, material); });
+}
+
+void FullLevel::add_static_mesh(GroundId id, const Mesh& mesh, MaterialId material) {
+  add_ground(id, [mesh, material](OdeWorld& world) { return world.add_static_mesh(mesh, material); });
+}
+
+void FullLevel::move_ground(GroundId id, const RigidState& state) {
+  Piece& piece = *std::ranges::find(pieces_, id, &Piece::id);
+  if (world_) world_->move_ground(piece.laid, state);
+  else piece.moved = state;
+}
+
+void FullLevel::remove_ground(GroundId id) {
+  const auto piece = std::ranges::find(pieces_, id, &Piece::id);
+  if (world_) {
+    world_->remove_ground(piece->laid);
+    id_of_laid_.erase(piece->laid.value);
+  }
+  pieces_.erase(piece);
+}
+
+GroundId FullLevel::ground_of(OdeGroundId id) const {
+  const auto known = id_of_laid_.find(id.value);
+  return known == id_of_laid_.end() ? GroundId{} : known->second;
+}
+
+void FullLevel::set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter) {
+  pair_filter_ = std::move(filter);
+  if (world_) filter_pairs();
+}
+
+void FullLevel::filter_pairs() {
+  if (!pair_filter_) return world_->set_pair_filter({});
+  const auto owner = [this](OdeBodyId body) { return members_[std::size_t(index_of(body))].owner; };
+  world_->set_pair_filter([this, owner](OdeBodyId a, OdeBodyId b) { return pair_filter_(owner(a), owner(b)); });
+}
+
+void FullLevel::make_world() {
+  world_.emplace(ode_settings_of(settings_), *materials_);
+  for (Piece& piece : pieces_) lay(piece);
+  if (pair_filter_) filter_pairs();
+}
+
+void FullLevel::set_gravity(const Vec3& gravity) {
+  settings_.gravity = gravity;
+  if (world_) callers::set_gravity(world_->ode_world(), gravity);
 }
 
 OdeBodyId FullLevel::add(std::uint32_t owner, const OdeBodyDefinition& definition, bool asleep) {
-  if (!world_) {
-    world_.emplace(ode_settings_of(settings_), *materials_);
-    for (const auto& ground : waiting_ground_) ground(*world_);
-    waiting_ground_.clear();
-  }
+  if (!world_) make_world();
   const OdeBodyId body = world_->add_body(definition);
   if (asleep) world_->set_asleep(body, true);
   index_of_id_[body.value] = std::int32_t(members_.size());
@@ -80,6 +129,20 @@ void FullLevel::remove(OdeBodyId body, bool stays) {
   index_of_id_.erase(body.value);
 }
 
+void FullLevel::archive(StateArchive& a) {
+  bool has_world = world_.has_value();
+  a(has_world);
+  if (has_world && !world_) make_world();
+  if (has_world) world_->archive(a);
+  else if (world_)
+    while (!members_.empty()) remove(members_.back().id, true);
+  a(members_, touching_);
+  if (!a.reading()) return;
+  index_of_id_.clear();
+  for (std::size_t i = 0; i < members_.size(); ++i) index_of_id_[members_[i].id.value] = std::int32_t(i);
+  if (world_) counted_ = world_->counters();
+}
+
 std::int32_t FullLevel::index_of(OdeBodyId body) const {
   const auto found = index_of_id_.find(body.value);
   return found == index_of_id_.end() ? -1 : found->second;
@@ -88,6 +151,13 @@ std::int32_t FullLevel::index_of(OdeBodyId body) const {
 void FullLevel::step(double dt, Counters& counters) {
   if (!world_) return;
   world_->step(dt, settings_.substeps);
+  add_new_counts(counters);
+}
+
+void FullLevel::begin_callers_step(double dt) { world_->begin_callers_step(dt); }
+
+void FullLevel::end_callers_step(Counters& counters) {
+  world_->end_callers_step();
   add_new_counts(counters);
 }
 

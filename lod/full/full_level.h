@@ -8,9 +8,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lod/ground/static_ground.h"
+#include "lod/ground/ground.h"
 #include "lod/step_report.h"
 #include "reference/ode/ode_world.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -23,6 +24,7 @@ struct FullSettings {
   std::uint64_t seed = 1;
   int substeps = 4;
   bool sleeping = true;
+  SleepThresholds sleep = {};
 };
 
 /// How the full level has ODE work.
@@ -41,16 +43,33 @@ class FullLevel {
   FullLevel(dxWorld* world, dxSpace* space, const FullSettings& settings, const MaterialTable& materials);
 
   /// Ground of this level; see OdeWorld. Costs nothing before there is a world.
-  void add_plane(const HalfSpace& plane);
-  void add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
-  void add_static_mesh(const Mesh& mesh, MaterialId material);
+  void add_plane(GroundId id, const HalfSpace& plane);
+  void add_static_box(GroundId id, const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
+  void add_static_mesh(GroundId id, const Mesh& mesh, MaterialId material);
+  void move_ground(GroundId id, const RigidState& state);
+  void remove_ground(GroundId id);
+  /// Null for ground of the caller's.
+  GroundId ground_of(OdeGroundId id) const;
+
+  /// m/s², from the next step on, in a caller's world too.
+  void set_gravity(const Vec3& gravity);
+  /// Of the owners of two bodies: whether they may meet; empty: all may.
+  void set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter);
+  void set_substeps(int substeps) { settings_.substeps = substeps; }
 
   OdeBodyId add(std::uint32_t owner, const OdeBodyDefinition& definition, bool asleep);
   /// Wakes what touched it, unless it `stays` where it is, on another rung.
   void remove(OdeBodyId body, bool stays = false);
 
+  /// See OdeWorld::archive.
+  void archive(StateArchive& a);
+
   /// Advances every body, the caller's too, and adds what happened to `counters`.
   void step(double dt, Counters& counters);
+
+  /// What step() does, around a step of the caller's world that he takes himself; see OdeWorld::begin_callers_step.
+  void begin_callers_step(double dt);
+  void end_callers_step(Counters& counters);
 
   std::span<const Member> members() const { return members_; }
   /// Where in members() a body is; −1 for one that was removed.
@@ -68,13 +87,25 @@ class FullLevel {
   OdeWorld* world() { return world_ ? &*world_ : nullptr; }
 
  private:
-  void lay(std::function<void(OdeWorld&)> ground);
+  /// Ground that was given, laid once there is a world.
+  struct Piece {
+    GroundId id;
+    std::function<OdeGroundId(OdeWorld&)> make;
+    std::optional<RigidState> moved = {};  // since it was made
+    OdeGroundId laid = {};
+  };
+  void add_ground(GroundId id, std::function<OdeGroundId(OdeWorld&)> make);
+  void lay(Piece& piece);
+  void filter_pairs();
+  void make_world();
   void add_new_counts(Counters& counters);
 
   FullSettings settings_;
   const MaterialTable* materials_;
   std::optional<OdeWorld> world_;
-  std::vector<std::function<void(OdeWorld&)>> waiting_ground_;
+  std::function<bool(std::uint32_t, std::uint32_t)> pair_filter_;
+  std::vector<Piece> pieces_;  // in the order in which they came
+  std::unordered_map<std::uint32_t, GroundId> id_of_laid_;
   std::vector<Member> members_;
   std::vector<char> touching_;  // one of each member
   std::unordered_map<std::uint32_t, std::int32_t> index_of_id_;

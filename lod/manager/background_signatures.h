@@ -1,4 +1,4 @@
-// Signatures had by a thread of their own, one after the other, while the bodies that need them are simulated full.
+// Signatures had by threads of their own, of the lowest priority, while the bodies that need them are simulated without.
 #pragma once
 
 #include <condition_variable>
@@ -9,6 +9,7 @@
 #include <mutex>
 #include <stop_token>
 #include <thread>
+#include <vector>
 
 #include "reference/material.h"
 #include "reference/shape.h"
@@ -20,9 +21,10 @@ using FutureSignature = std::shared_future<std::shared_ptr<const Signature>>;
 
 class BackgroundSignatures {
  public:
-  /// Given to the thread; what it throws comes out of the future. It returns soon once the token is stopped.
+  /// Given to a thread; what it throws comes out of the future. It returns soon once the token is stopped.
   using Source = std::function<std::shared_ptr<const Signature>(const Shape&, const ContactLaw&, std::stop_token)>;
-  explicit BackgroundSignatures(Source source);
+  /// So many threads at most; each begins with the first request that finds the others busy.
+  BackgroundSignatures(int most_threads, Source source);
   /// Stops the source and waits for it.
   ~BackgroundSignatures();
 
@@ -36,7 +38,9 @@ class BackgroundSignatures {
   std::mutex mutex_;
   std::condition_variable_any more_;
   std::deque<Task> tasks_;
-  std::jthread thread_;  // last: it uses the others
+  std::size_t most_threads_;
+  std::size_t idle_ = 0;               // threads that wait for a task
+  std::vector<std::jthread> threads_;  // last: they use the others
 };
 
 }  // namespace lodestone

@@ -34,9 +34,11 @@ BodyId BodyTable::add(const BodyDefinition& definition, double mass) {
                      .generation = generation,
                      .shape = share(definition.shape),
                      .material = definition.material,
-                     .newcomer = std::int32_t(newcomers_.size())};
-  levels_[index] = {.importance = definition.importance, .choice = definition.level, .newcomer = true};
-  newcomers_.push_back({index, definition.state});
+                     .newcomer = std::int32_t(newcomers_.size()),
+                     .user_data = definition.user_data};
+  levels_[index] = {.importance = definition.importance, .choice = definition.level, .least = definition.least_rung, .greatest = definition.greatest_rung, .newcomer = true};
+  set_properties(index, definition.properties);
+  newcomers_.push_back({.index = index, .state = definition.state});
   ++counts_[std::size_t(definition.level)];
   greatest_importance_ = std::max(greatest_importance_, definition.importance);
   return {index, generation};
@@ -47,12 +49,20 @@ void BodyTable::remove(BodyId id) {
   if (levels_[index].newcomer) remove_newcomer(index);
   --counts_[std::size_t(levels_[index].choice)];
   give_back(records_[index].shape);
-  forces_.erase(index);
-  std::erase(pushed_, index);
+  drop_force(index);
   forget_rare(index);
+  properties_.forget(index);
   records_[index] = {.generation = id.generation};
   levels_[index] = {};
   free_.push_back(index);
+}
+
+void BodyTable::archive(StateArchive& a) {
+  a(records_, levels_, free_, shapes_, free_shapes_, newcomers_, forces_, pushed_, rare_, properties_, births_, counts_, greatest_importance_);
+  if (!a.reading()) return;
+  number_of_shape_.clear();
+  for (std::size_t i = 0; i < shapes_.size(); ++i)
+    if (shapes_[i].shape) number_of_shape_[shapes_[i].shape.get()] = std::uint32_t(i);
 }
 
 void BodyTable::set_choice(std::uint32_t index, LevelChoice choice) {
@@ -60,21 +70,56 @@ void BodyTable::set_choice(std::uint32_t index, LevelChoice choice) {
   levels_[index].choice = choice;
 }
 
-void BodyTable::forget_newcomers() { clear(newcomers_); }
+void BodyTable::forget_newcomers() {
+  clear(newcomers_);
+  newcomers_gone_ = 0;
+}
 
+// Its place stays, as that of one that was placed since, until there are more such places than others.
 void BodyTable::remove_newcomer(std::uint32_t index) {
-  const auto place = std::size_t(records_[index].newcomer);
-  for (std::size_t i = place + 1; i < newcomers_.size(); ++i)
-    if (waits_at(i)) --records_[newcomers_[i].index].newcomer;
-  newcomers_.erase(newcomers_.begin() + std::ptrdiff_t(place));
   records_[index].newcomer = -1;
+  if (++newcomers_gone_ < kKept || 2 * newcomers_gone_ < newcomers_.size()) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < newcomers_.size(); ++i) {
+    if (!waits_at(i)) continue;
+    newcomers_[kept] = newcomers_[i];
+    records_[newcomers_[kept].index].newcomer = std::int32_t(kept);
+    ++kept;
+  }
+  newcomers_.resize(kept);
+  newcomers_gone_ = 0;
 }
 
 void BodyTable::add_force(std::uint32_t index, const Force& force) {
+  const Force before = this->force(index), sum{before.force + force.force, before.torque + force.torque};
+  if (!sum.force.allFinite() || !sum.torque.allFinite()) throw_input_error("force", "a sum with those given before that is not finite", "a finite one");
   const auto [held, fresh] = forces_.try_emplace(index);
   if (fresh) pushed_.push_back(index);
-  held->second.force += force.force;
-  held->second.torque += force.torque;
+  held->second = sum;
+}
+
+void BodyTable::drop_force(std::uint32_t index) {
+  if (forces_.erase(index) > 0) std::erase(pushed_, index);
+}
+
+BodyTable::Forces BodyTable::forces() const {
+  Forces all;
+  for (const std::uint32_t body : pushed_) all.held.emplace_back(body, force(body));
+  return all;
+}
+
+void BodyTable::hold(const Forces& forces) {
+  for (const auto& [body, force] : forces.held) add_force(body, force);
+}
+
+void BodyTable::set_importance(std::uint32_t index, double importance) {
+  levels_[index].importance = importance;
+  greatest_importance_ = std::max(greatest_importance_, importance);
+}
+
+void BodyTable::set_properties(std::uint32_t index, const BodyProperties& properties) {
+  properties_.set(index, properties);
+  levels_[index].own_properties = properties_.has(index);
 }
 
 BodyTable::Force BodyTable::force(std::uint32_t index) const {
@@ -111,7 +156,7 @@ void BodyTable::give_back(std::uint32_t shape) {
 }
 
 std::uint32_t BodyTable::index_of(BodyId id) const {
-  if (!valid(id)) check_that(false, "a body's id is valid:", fmt::format("index {}, generation {}", id.index, id.generation));
+  if (!valid(id)) throw_input_error("body", fmt::format("the id {{{}, {}}}", id.index, id.generation), "that of a body of this manager which was not removed");
   return id.index;
 }
 

@@ -10,7 +10,9 @@
 #include "lod/body.h"
 #include "lod/manager/choose_levels.h"
 #include "lod/rungs/statistical_level.h"
+#include "lod/statistical/own_properties.h"
 #include "reference/ode/ode_world.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -24,6 +26,7 @@ struct BodyRecord {
   std::int32_t newcomer = -1;        ///< its place among the newcomers; −1: it is on a rung
   StatisticalPlace statistical = {}; ///< nowhere while it is full
   OdeBodyId ode = {};                ///< at the full level, else null
+  std::uintptr_t user_data = 0;
 };
 
 /// What the policy goes by, besides where the body is.
@@ -35,10 +38,12 @@ struct BodyLevel {
   std::int64_t looked_at = -1;         ///< step in which the policy last thought of it
   LevelChoice choice = LevelChoice::statistical;
   Rung rung = Rung::support;
-  LevelReason reason = LevelReason::forced;
+  Rung least = Rung::tables, greatest = Rung::full;
+  Rule reason = Rule::forced;
   bool newcomer = false;    ///< on no rung yet
   bool put_off = false;     ///< its promotion was put off lately
-  bool waits_for_signature = false;
+  bool waits_for_signature = false;  ///< and is at `support` without settling clips, or full, until it is there
+  bool own_properties = false;  ///< that `tables` knows nothing of
   std::int8_t tables_open = -1;  ///< whether it has the signature that `tables` needs; −1: that was not asked for yet
 };
 
@@ -48,8 +53,9 @@ class BodyTable {
   void remove(BodyId id);
 
   bool valid(BodyId id) const { return id && id.index < records_.size() && records_[id.index].generation == id.generation && records_[id.index].birth; }
-  /// The index of a body; aborts where the id is not valid.
+  /// The index of a body; throws InputError where the id is not valid.
   std::uint32_t index_of(BodyId id) const;
+  BodyId id(std::uint32_t index) const { return {index, records_[index].generation}; }
   bool alive(std::uint32_t index) const { return records_[index].birth != 0; }
 
   BodyRecord& operator[](std::uint32_t index) { return records_[index]; }
@@ -62,14 +68,19 @@ class BodyTable {
   void set_choice(std::uint32_t index, LevelChoice choice);
   /// Bodies of a choice.
   int count(LevelChoice choice) const { return counts_[std::size_t(choice)]; }
+  void set_importance(std::uint32_t index, double importance);
+  const BodyProperties& properties(std::uint32_t index) const { return properties_.of(index); }
+  void set_properties(std::uint32_t index, const BodyProperties& properties);
+  const OwnProperties& own_properties() const { return properties_; }
   /// The greatest that any body had.
   double greatest_importance() const { return greatest_importance_; }
 
-  /// Bodies on no rung yet, in order of creation, as they were given.
+  /// Bodies on no rung yet, in order of creation, as they were given; and places of some that are gone (waits_at).
   struct Newcomer {
     std::uint32_t index = 0;
     RigidState state;
     Rung rung = Rung::support;  // that it shall have where it is not full
+    bool asleep = false;
   };
   const std::vector<Newcomer>& newcomers() const { return newcomers_; }
   Newcomer& newcomer(std::uint32_t index) { return newcomers_[std::size_t(records_[index].newcomer)]; }
@@ -83,11 +94,19 @@ class BodyTable {
   struct Force {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // N, N m
   };
+  /// Throws InputError where the sum would not be finite.
   void add_force(std::uint32_t index, const Force& force);
+  void drop_force(std::uint32_t index);
   Force force(std::uint32_t index) const;
   /// Bodies with a force, in the order in which they got the first.
   const std::vector<std::uint32_t>& pushed() const { return pushed_; }
   void clear_forces();
+  /// All that are held, to be held again for the next part of a step that is divided.
+  struct Forces {
+    std::vector<std::pair<std::uint32_t, Force>> held;
+  };
+  Forces forces() const;
+  void hold(const Forces& forces);
 
   /// What few bodies need at a time.
   struct Rare {
@@ -104,6 +123,8 @@ class BodyTable {
     if (const auto rare = rare_.find(index); rare != rare_.end()) rare->second.still_s = 0.0;
   }
 
+  void archive(StateArchive& a);
+
   int size() const { return int(records_.size() - free_.size()); }
   std::uint32_t indices() const { return std::uint32_t(records_.size()); }
   std::vector<std::uint32_t> in_order_of_creation() const;
@@ -112,6 +133,7 @@ class BodyTable {
   struct SharedShape {
     std::shared_ptr<const Shape> shape;
     std::uint32_t bodies = 0;
+    void archive(StateArchive& a) { a(shape, bodies); }
   };
   std::uint32_t share(const std::shared_ptr<const Shape>& shape);
   void give_back(std::uint32_t shape);
@@ -123,9 +145,11 @@ class BodyTable {
   std::vector<std::uint32_t> free_shapes_;
   std::unordered_map<const Shape*, std::uint32_t> number_of_shape_;
   std::vector<Newcomer> newcomers_;
+  std::size_t newcomers_gone_ = 0;  // of these, removed since
   std::unordered_map<std::uint32_t, Force> forces_;
   std::vector<std::uint32_t> pushed_;
   std::unordered_map<std::uint32_t, Rare> rare_;
+  OwnProperties properties_;
   std::uint64_t births_ = 0;
   std::array<int, 5> counts_{};  // of each choice
   double greatest_importance_ = 1.0;

@@ -3,8 +3,6 @@
 // decision is the one that it would be of all.
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,8 +11,11 @@
 #include "lod/manager/choose_levels.h"
 #include "lod/manager/cost_model.h"
 #include "lod/manager/far_bodies.h"
+#include "lod/manager/groups.h"
 #include "lod/manager/levels.h"
+#include "lod/manager/views.h"
 #include "lod/step_report.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -24,6 +25,7 @@ struct RungChanges {
     std::uint32_t body = 0;
     Rung to = Rung::support;
     RungSet open = kEveryRung;
+    std::int32_t together = -1;  ///< those that follow each other with the same number change all or not at all
   };
   std::vector<Change> promote, demote;
 };
@@ -31,62 +33,94 @@ struct RungChanges {
 class Choose {
  public:
   /// `model`: that all statistical bodies have which the caller leaves to the manager.
-  Choose(Levels& levels, const PolicySettings& policy, std::optional<StatisticalModel> model) : levels_(levels), policy_(policy), model_(model) {}
+  Choose(Levels& levels, const PolicySettings& policy, std::optional<StatisticalModel> model)
+      : levels_(levels), groups_(levels), policy_(policy), limits_(limits_of(policy)), model_(model) {}
+
+  Groups& groups() { return groups_; }
+  const Groups& groups() const { return groups_; }
 
   const PolicySettings& policy() const { return policy_; }
+  const Views& views() const { return views_; }
   void set_policy(const PolicySettings& policy);
-  void set_viewpoints(std::span<const Vec3> positions);
-  /// Of a static box or mesh.
-  void add_static_bounds(const Eigen::AlignedBox3d& bounds);
+  void set_views(Views views);
   /// The caller, or a change of rung, did something to it: it is looked at in the next step.
   void note(std::uint32_t body) { changed_.push_back(body); }
-  void forget(std::uint32_t body) { far_.forget(body); }
+  void forget(std::uint32_t body) { far_.forget(body), groups_.forget(body); }
 
   /// Nothing: all stay as they are. What was decided and not done, because the step threw, is decided anew: see done().
   std::optional<RungChanges> run(StepReport& report, CostModel& costs);
   void done() { look_at_all_ = false; }
+  /// Bodies at `support` whose signature has come, of those that waited for it: a few in each step.
+  std::vector<std::uint32_t> take_supplied();
 
   /// Bodies that it saw, on the rungs that they have after its decision.
   const StepCounts& counts() const { return counts_; }
+  /// px: of those that it saw and that are awake, on the rungs that they have after its decision; under an error budget.
+  double predicted_error() const { return predicted_error_; }
+  /// Where a body is and how it is seen, as the policy has it now; without costs.
+  LevelCandidate seen(std::uint32_t body) const;
+  /// Of a body as it is now.
+  Activity activity(std::uint32_t body) const;
+  bool in_view(const Vec3& center, double radius) const;
+  /// Of its bounding sphere's diameter, where it is largest; 0 without viewpoints.
+  double pixels(const LevelCandidate& seen) const;
   /// What full bodies do, after the changes.
   void count_meetings();
 
+  /// But for the policy and the ground, which are the reader's.
+  void archive(StateArchive& a) { a(groups_, views_, turned_, look_at_all_, wishing_, changed_, support_sleepers_, seen_or_not_, waiting_, next_waiting_, far_, traveled_, counts_); }
+
  private:
-  bool budgeted() const { return !std::holds_alternative<DistancePolicy>(policy_.policy); }
+  bool budgeted() const { return !limits_; }
+  bool by_error() const { return std::holds_alternative<ErrorBudgetPolicy>(policy_.policy); }
   bool sees_places() const;
   void look_at_those_concerned(StepReport& report);
   void look_at(std::uint32_t body, StepReport& report);
   void look_at_nearest(StepReport& report);
   RungSet open_to(const BodyLevel& level, bool asleep) const;
-  void close_tables_near_static_ground(std::uint32_t body, LevelCandidate& candidate) const;
-  LevelCandidate make_candidate(std::uint32_t body, RungSet open, bool asleep) const;
-  Activity activity(const BodyRecord& record) const;
+  RungSet open_by_choice(const BodyLevel& level, bool asleep) const;
+  LevelCandidate make_candidate(std::uint32_t body, RungSet open, bool asleep);
+  void look_ahead();
+  void look_ahead(LevelCandidate& candidate, std::span<const std::size_t> full) const;
+  double significance(std::uint32_t body) const;
+  void predict_errors(std::uint32_t body, LevelCandidate& candidate) const;
   void count(Rung rung, Activity does, bool arriving, double bodies);
   bool arrives(const BodyLevel& level, Activity does) const;
   void ask_for_tables(std::uint32_t body);
   void note_waiting(std::uint32_t body);
   void put_far(std::uint32_t body, const LevelCandidate& candidate);
   void put_in_order();
+  LevelDecision decide();
+  LevelDecision tell_members(const LevelDecision& of_all);
   RungChanges take_answers(const LevelDecision& decision);
   Rung below_full(RungSet open) const;
   void count_changes(const RungChanges& changes);
+  void add_up_errors(const RungChanges& changes);
 
   Levels& levels_;
+  Groups groups_;
   PolicySettings policy_;
+  std::optional<Limits> limits_;                    // of the policy, but for a budget
   std::optional<StatisticalModel> model_;
-  std::vector<Vec3> viewpoints_;
-  std::vector<Eigen::AlignedBox3d> static_bounds_;  // of the static boxes and meshes
+  Views views_;
+  bool turned_ = false;                             // a view, since the last step
   bool look_at_all_ = true;
   std::vector<std::uint32_t> wishing_;              // that did not get the rung that is wanted for them
   std::vector<std::uint32_t> changed_;              // by the caller, or by a change of rung
   std::vector<std::uint32_t> support_sleepers_;     // that may go down to `tables`, under a budget
+  std::vector<std::uint32_t> seen_or_not_;          // sleepers whose rung depends on whether they are in view
+  std::vector<std::uint32_t> waiting_;              // for their signature
+  std::size_t next_waiting_ = 0;                    // to be asked about
   FarBodies far_;
   double traveled_ = 0.0;                           // m: how far viewpoints came, at most
   std::vector<std::uint32_t> asked_;                // bodies of the candidates
   std::vector<LevelCandidate> candidates_;
+  std::vector<std::int32_t> unit_of_;               // of each candidate: what it changes rung with, below; empty: each is alone
+  std::vector<LevelCandidate> units_;
   std::vector<Activity> activities_;                // of the candidates, under a budget
   std::array<std::array<float, kRungs>, kActivities> cost_of_{};  // of one body, under a budget
   StepCounts counts_;
+  double predicted_error_ = 0.0;                    // px
   CostModel* costs_ = nullptr;                      // of this step
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lod/manager/share_by_error.h"
 #include "lod/manager/share_of_full.h"
 
 namespace lodestone {
@@ -19,27 +20,20 @@ constexpr double kShareOfRing = 0.25;
 /// What the policy itself wants of one body.
 struct Target {
   Rung rung = Rung::support;
-  LevelReason reason = LevelReason::far;
+  Rule reason = Rule::far;
   bool at_once = false;  // neither dwell nor cap may hold it up while too much or too many are there
 };
 
-double squared_distance(const LevelCandidate& candidate, std::span<const Vec3> viewpoints) {
-  double nearest = kInfinity;
-  for (const Vec3& viewpoint : viewpoints) nearest = std::min(nearest, (candidate.position - viewpoint).squaredNorm());
-  return nearest;
-}
-
-double scaled_distance(const LevelCandidate& candidate, std::span<const Vec3> viewpoints) {
-  return std::max(0.0, std::sqrt(squared_distance(candidate, viewpoints)) - candidate.radius) / candidate.importance;
-}
-
-Target target_by_distance(const LevelCandidate& c, double distance, const DistancePolicy& policy, double hysteresis) {
-  const auto at = [&](Rung rung, LevelReason reason) { return Target{c.open.at_most(rung), reason}; };
-  if (distance <= policy.full_within) return at(Rung::full, LevelReason::near);
-  if (c.present() == Rung::full && distance <= policy.full_within * (1.0 + hysteresis)) return at(Rung::full, LevelReason::within_hysteresis);
-  if (distance <= policy.support_within) return at(Rung::support, reason_for_rung(policy, Rung::support));
-  if (c.present() != Rung::tables && distance <= policy.support_within * (1.0 + hysteresis)) return at(Rung::support, LevelReason::within_hysteresis);
-  return at(Rung::tables, LevelReason::far);
+Target target_by_limits(const LevelCandidate& c, double distance, const Limits& limits, double hysteresis) {
+  const auto at = [&](Rung rung, Rule reason) { return Target{c.open.at_most(rung), reason}; };
+  if (distance <= limits.full_within) return at(Rung::full, Rule::near);
+  if (c.hits_full) return at(Rung::full, Rule::look_ahead);
+  if (c.present() == Rung::full && distance <= limits.full_within * (1.0 + hysteresis)) return at(Rung::full, Rule::within_hysteresis);
+  const bool in_view = distance <= c.view_factor * limits.full_within;  // it would be full, were it in view
+  const Rule far = c.view_factor > 1.0 && in_view ? Rule::out_of_view : Rule::far;
+  if (distance <= limits.support_within) return at(Rung::support, limits.three_rungs() ? Rule::near : far);
+  if (c.present() != Rung::tables && distance <= limits.support_within * (1.0 + hysteresis)) return at(Rung::support, Rule::within_hysteresis);
+  return at(Rung::tables, c.view_factor > 1.0 ? Rule::out_of_view : Rule::far);
 }
 
 /// What a budget leaves, in its unit: above what all cost on their lowest rungs.
@@ -55,11 +49,6 @@ struct BudgetRoom {
     return std::min(share * keep, std::max(full_now, share * grow));
   }
 };
-
-double budget_of(const PolicySettings& settings) {
-  if (const auto* timed = std::get_if<BudgetPolicy>(&settings.policy)) return timed->budget_ms;
-  return std::get<WorkPolicy>(settings.policy).budget_work;
-}
 
 /// Moves the nearest to the front, as many as there is room for and no more than `most`, and returns how many they are. Halves in place of a sort.
 template <class Cost>
@@ -83,36 +72,28 @@ std::size_t take_nearest(std::span<Ranked> ranked, double room, std::int64_t mos
   return begin;
 }
 
-// One that has to wait gives room to others meanwhile.
-bool may_be_full_now(const LevelCandidate& c, int min_dwell_frames) {
-  if (c.decided() || !c.open.has(Rung::full)) return false;
-  return c.present() == Rung::full || c.newcomer || (!c.put_off && c.frames_since_change >= min_dwell_frames);
-}
-
-bool can_be_in_ring(const LevelCandidate& c) { return !c.decided() && c.open.has(Rung::tables) && c.open.has(Rung::support); }
-
 class Chooser {
  public:
-  Chooser(std::span<const LevelCandidate> candidates, std::span<const Vec3> viewpoints, const PolicySettings& settings, const StepOverhead& overhead)
-      : candidates_(candidates), viewpoints_(viewpoints), settings_(settings), overhead_(overhead), forced_(candidates, overhead), stays_full_(forced_), pairs_(candidates.size()), goes_down_(candidates.size()) {
+  Chooser(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings, const StepOverhead& overhead)
+      : candidates_(candidates), views_(views), settings_(settings), overhead_(overhead), forced_(candidates, overhead), stays_full_(forced_), pairs_(candidates.size()), goes_down_(candidates.size()) {
     decision_.reasons.resize(candidates.size());
   }
 
-  LevelDecision by(const DistancePolicy& policy) {
+  LevelDecision by(const Limits& limits) {
     const bool limited = settings_.most_full < kUnlimited || settings_.most_support < kUnlimited;
     std::vector<Ranked> ranked;
     std::vector<Target> targets;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      if (!limited && !c.newcomer && stays_put(c, viewpoints_, policy)) {
-        decision_.reasons[std::size_t(i)] = reason_for_rung(policy, c.rung);
+      if (!limited && !c.newcomer && stays_put(c, views_, limits)) {
+        decision_.reasons[std::size_t(i)] = reason_for_rung(limits, c);
         continue;
       }
-      const double distance = scaled_distance(c, viewpoints_);
+      const double distance = remoteness(c, views_, limits.measure);
       ranked.push_back({distance, i});
-      targets.push_back(c.decided() ? Target{} : target_by_distance(c, distance, policy, settings_.hysteresis));
+      targets.push_back(c.decided() ? Target{} : target_by_limits(c, distance, limits, settings_.hysteresis));
     }
-    if (limited) limit(ranked, targets);
+    if (limited) limit(ranked, targets, limits.measure);
     for (std::size_t k = 0; k < ranked.size(); ++k) consider(ranked[k], targets[k]);
     grant();
     return std::move(decision_);
@@ -125,7 +106,7 @@ class Chooser {
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
       if (c.decided()) consider({0.0, i}, {});
-      else (may_be_full_now(c, settings_.min_dwell_frames) ? may_be_full : others).push_back({rank_distance(c, viewpoints_, settings_.hysteresis), i});
+      else (may_be_full_now(c, settings_.min_dwell_frames) ? may_be_full : others).push_back({rank_distance(c, views_, settings_.hysteresis), i});
     }
     share_out(room, std::move(may_be_full), std::move(others));
     count_limits();
@@ -133,14 +114,32 @@ class Chooser {
     return std::move(decision_);
   }
 
+  /// A body goes up where that lessens the error most for what it costs.
+  LevelDecision by_error(double budget) {
+    const BudgetRoom room = find_room(budget);
+    room_ = room.now;
+    std::vector<Rung> wanted;
+    if (!views_.empty()) wanted = share_by_error(candidates_, forced_, {room.keep, room.grow}, {.most_full = settings_.most_full, .most_support = settings_.most_support, .hysteresis = settings_.hysteresis, .min_dwell_frames = settings_.min_dwell_frames});
+    for (std::int32_t i = 0; i < count(); ++i) {
+      const LevelCandidate& c = candidates_[std::size_t(i)];
+      const Rung to = wanted.empty() ? c.open.lowest() : wanted[std::size_t(i)];
+      const Rule reason = to == c.open.highest() || to != c.open.lowest() ? Rule::in_budget : views_.empty() ? Rule::far : Rule::over_budget;
+      const double nearness = 1.0 / std::max(1e-9, c.error_at(c.open.lowest()) - c.error_at(to));  // what saves most goes up first
+      consider({to < c.present() ? 1.0 / std::max(1e-9, c.error_at(to) - c.error_at(c.present())) : nearness, i}, {to, reason, room.over()});
+    }
+    count_limits();
+    grant();
+    return std::move(decision_);
+  }
+
   /// The rank distance up to which bodies were looked at for the full level.
   double reach(double budget) {
-    if (viewpoints_.empty()) return 0.0;
+    if (views_.empty()) return 0.0;
     const BudgetRoom room = find_room(budget);
     std::vector<Ranked> may_be_full;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      if (may_be_full_now(c, settings_.min_dwell_frames)) may_be_full.push_back({rank_distance(c, viewpoints_, settings_.hysteresis), i});
+      if (may_be_full_now(c, settings_.min_dwell_frames)) may_be_full.push_back({rank_distance(c, views_, settings_.hysteresis), i});
     }
     return share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()), settings_.most_full).reach;
   }
@@ -167,7 +166,7 @@ class Chooser {
     FullBill full = forced_;
     std::vector<Ranked> full_now;
     for (std::int32_t i = 0; i < count(); ++i)
-      if (const LevelCandidate& c = candidates_[std::size_t(i)]; !c.decided() && c.present() == Rung::full) full_now.push_back({rank_distance(c, viewpoints_, 0.0), i});
+      if (const LevelCandidate& c = candidates_[std::size_t(i)]; !c.decided() && c.present() == Rung::full) full_now.push_back({rank_distance(c, views_, 0.0), i});
     std::ranges::sort(full_now, nearer);
     for (const Ranked& r : full_now) {
       float& pairs = pairs_[std::size_t(r.index)] = float(full.price_of_pairs(candidate(r)));
@@ -185,10 +184,10 @@ class Chooser {
   /// The nearest full, as many as there is room for, the next `support`, the rest on their lowest rungs.
   void share_out(const BudgetRoom& room, std::vector<Ranked> may_be_full, std::vector<Ranked> rest) {
     ShareOfFull share{.taken = {}, .rest = {}, .used = 0.0, .reach = 0.0};
-    if (viewpoints_.empty()) share.rest = std::move(may_be_full);
+    if (views_.empty()) share.rest = std::move(may_be_full);
     else share = share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()), settings_.most_full);
     const bool most_full = !share.rest.empty() && std::int64_t(share.taken.size()) == settings_.most_full;
-    for (const Ranked& r : share.taken) consider(r, {Rung::full, LevelReason::in_budget});
+    for (const Ranked& r : share.taken) consider(r, {Rung::full, Rule::in_budget});
     rest.insert(rest.end(), share.rest.begin(), share.rest.end());
     const std::span<Ranked> lowest(std::ranges::partition(rest, [this](const Ranked& r) { return can_be_in_ring(candidate(r)); }));
     const std::span<Ranked> may_be_in_ring = std::span(rest).first(rest.size() - lowest.size());
@@ -198,16 +197,16 @@ class Chooser {
     const double room_of_ring = std::min(room.keep - share.used, std::max(ring_now, room.grow - share.used));
     const std::size_t support = take_nearest(may_be_in_ring, room_of_ring, settings_.most_support, [this](std::int32_t i) { return raise(candidates_[std::size_t(i)], Rung::support); });
     const bool most_support = support < may_be_in_ring.size() && std::int64_t(support) == settings_.most_support;
-    for (const Ranked& r : may_be_in_ring.first(support)) consider(r, {Rung::support, LevelReason::in_budget, room.over()});
-    const LevelReason reason = viewpoints_.empty() ? LevelReason::far : LevelReason::over_budget;
+    for (const Ranked& r : may_be_in_ring.first(support)) consider(r, {Rung::support, Rule::in_budget, room.over()});
+    const Rule reason = views_.empty() ? Rule::far : Rule::over_budget;
     for (const Ranked& r : std::span(rest).subspan(support)) {
       const bool limited = can_be_in_ring(candidate(r)) ? most_support : most_full;
-      consider(r, {candidate(r).open.lowest(), limited ? LevelReason::most_reached : reason, room.over()});
+      consider(r, {candidate(r).open.lowest(), limited ? Rule::most_reached : reason, room.over()});
     }
   }
 
   /// Sends the farthest of those that are wanted on a rung down where they would be more than `most`.
-  void limit(std::span<const Ranked> ranked, std::span<Target> targets) {
+  void limit(std::span<const Ranked> ranked, std::span<Target> targets, Measure measure) {
     for (const auto& [rung, most] : {std::pair{Rung::full, settings_.most_full}, {Rung::support, settings_.most_support}}) {
       std::vector<Ranked> wanted;
       std::int64_t there = 0;
@@ -215,12 +214,12 @@ class Chooser {
         const LevelCandidate& c = candidate(ranked[k]);
         if (c.decided()) continue;
         there += !c.newcomer && c.rung == rung;
-        if (targets[k].rung == rung && c.open.lowest() < rung) wanted.push_back({rank_distance(c, viewpoints_, settings_.hysteresis), std::int32_t(k)});
+        if (targets[k].rung == rung && c.open.lowest() < rung) wanted.push_back({rank_distance(c, views_, settings_.hysteresis, measure), std::int32_t(k)});
       }
       if (std::int64_t(wanted.size()) <= most) continue;
       std::ranges::nth_element(wanted, wanted.begin() + most, nearer);
       for (auto w = wanted.begin() + most; w != wanted.end(); ++w)
-        targets[std::size_t(w->index)] = {candidate(ranked[std::size_t(w->index)]).open.at_most(Rung(int(rung) - 1)), LevelReason::most_reached, there > most};
+        targets[std::size_t(w->index)] = {candidate(ranked[std::size_t(w->index)]).open.at_most(Rung(int(rung) - 1)), Rule::most_reached, there > most};
     }
     count_limits();
   }
@@ -230,21 +229,21 @@ class Chooser {
     places_[std::size_t(Rung::full)] = settings_.most_full < kUnlimited ? settings_.most_full : kNoLimit;
     places_[std::size_t(Rung::support)] = settings_.most_support < kUnlimited ? settings_.most_support : kNoLimit;
     for (const LevelCandidate& c : candidates_)
-      if (!c.decided() && !c.newcomer) --places_[std::size_t(c.rung)];
+      if (!c.decided() && !c.newcomer) places_[std::size_t(c.rung)] -= c.bodies;
   }
 
   /// Notes why a body has its rung, and its wish for a change.
   void consider(const Ranked& by_distance, Target target) {
     const LevelCandidate& c = candidate(by_distance);
-    LevelReason& reason = decision_.reasons[std::size_t(by_distance.index)];
+    Rule& reason = decision_.reasons[std::size_t(by_distance.index)];
     if (c.decided()) target = {c.open.lowest(), c.decided_by, true};
-    reason = c.put_off && c.rung != Rung::full && target.rung == c.rung ? LevelReason::overlap_put_off : target.reason;
+    reason = c.put_off && c.rung != Rung::full && target.rung == c.rung ? Rule::overlap_put_off : target.reason;
     if (target.rung == c.present() && (!c.decided() || !c.newcomer || target.rung != Rung::full)) return;
 
     const bool up = c.newcomer || target.rung > c.rung;
     const Ranked wish{by_distance.distance, by_distance.index, target.rung};
     if (up && target.rung == Rung::full && c.put_off && !c.newcomer) {
-      reason = LevelReason::overlap_put_off;
+      reason = Rule::overlap_put_off;
     } else if (c.decided()) {
       (up ? decision_.promote : decision_.demote).push_back({wish.index, wish.to});
     } else if (c.newcomer || (target.at_once && !up)) {
@@ -255,7 +254,7 @@ class Chooser {
   }
 
   void hold_or_queue(const Ranked& wish, std::vector<Ranked>& queue) {
-    if (candidate(wish).frames_since_change < settings_.min_dwell_frames) decision_.reasons[std::size_t(wish.index)] = LevelReason::dwell;
+    if (candidate(wish).frames_since_change < settings_.min_dwell_frames) decision_.reasons[std::size_t(wish.index)] = Rule::dwell;
     else queue.push_back(wish);
   }
 
@@ -280,43 +279,43 @@ class Chooser {
       if (const LevelCandidate& c = candidates_[std::size_t(i)]; !c.decided() && c.present() == Rung::full && !goes_down_[std::size_t(i)]) stays_full_.add(c);
     for (const Ranked& wish : promote_at_once_)
       if (fits(wish)) make(wish, decision_.promote);
-      else decision_.reasons[std::size_t(wish.index)] = LevelReason::over_budget;
+      else decision_.reasons[std::size_t(wish.index)] = Rule::over_budget;
 
     std::size_t up = 0, down = 0;
     for (std::size_t left = turns; left > 0; --left) {
       for (; up < in_order && places_[std::size_t(promote_[up].to)] > 0 && !fits(promote_[up]) && fits_but_for_pairs(promote_[up]); ++up)
-        decision_.reasons[std::size_t(promote_[up].index)] = LevelReason::queued;
+        decision_.reasons[std::size_t(promote_[up].index)] = Rule::queued;
       const bool can_rise = up < in_order && fits(promote_[up]), can_fall = down < demote_.size() && places_[std::size_t(demote_[down].to)] > 0;
       if (can_rise && (up <= down || !can_fall)) make(promote_[up++], decision_.promote);
       else if (can_fall) make(demote_[down++], decision_.demote);
       else break;
     }
-    for (; up < promote_.size(); ++up) decision_.reasons[std::size_t(promote_[up].index)] = LevelReason::queued;
-    for (; down < demote_.size(); ++down) decision_.reasons[std::size_t(demote_[down].index)] = LevelReason::queued;
+    for (; up < promote_.size(); ++up) decision_.reasons[std::size_t(promote_[up].index)] = Rule::queued;
+    for (; down < demote_.size(); ++down) decision_.reasons[std::size_t(demote_[down].index)] = Rule::queued;
   }
 
   double cost_of(const Ranked& wish) const {
     const LevelCandidate& c = candidate(wish);
     const double pairs = double(pairs_[std::size_t(wish.index)]);
     const double change_of_pairs = wish.to == Rung::full ? pairs : c.present() == Rung::full ? -pairs : 0.0;
-    return c.cost_at(wish.to) - c.cost_at(c.present()) + change_of_pairs + overhead_.change[std::size_t(wish.to)];
+    return c.cost_at(wish.to) - c.cost_at(c.present()) + change_of_pairs + double(c.bodies) * overhead_.change[std::size_t(wish.to)];
   }
   bool fits(const Ranked& wish) {
     if (wish.to == Rung::full) pairs_[std::size_t(wish.index)] = float(stays_full_.price_of_pairs(candidate(wish)));
-    return places_[std::size_t(wish.to)] > 0 && cost_of(wish) <= room_;
+    return places_[std::size_t(wish.to)] >= candidate(wish).bodies && cost_of(wish) <= room_;
   }
   bool fits_but_for_pairs(const Ranked& wish) const { return wish.to == Rung::full && cost_of(wish) - double(pairs_[std::size_t(wish.index)]) <= room_; }
   void make(const Ranked& wish, std::vector<LevelDecision::Change>& changes) {
     changes.push_back({wish.index, wish.to});
     room_ -= cost_of(wish);
-    --places_[std::size_t(wish.to)];
-    if (!candidate(wish).newcomer) ++places_[std::size_t(candidate(wish).rung)];
+    places_[std::size_t(wish.to)] -= candidate(wish).bodies;
+    if (!candidate(wish).newcomer) places_[std::size_t(candidate(wish).rung)] += candidate(wish).bodies;
     if (wish.to == Rung::full) stays_full_.add(candidate(wish));
     else goes_down_[std::size_t(wish.index)] = true;
   }
 
   std::span<const LevelCandidate> candidates_;
-  std::span<const Vec3> viewpoints_;
+  const Views& views_;
   const PolicySettings& settings_;
   const StepOverhead& overhead_;
   FullBill forced_, stays_full_;                                        // of those that must be full; with those that are for now
@@ -330,64 +329,25 @@ class Chooser {
 
 }  // namespace
 
-std::string_view text_of(LevelReason reason) {
-  switch (reason) {
-    case LevelReason::forced: return "the caller chose this level";
-    case LevelReason::near: return "near a viewpoint";
-    case LevelReason::far: return "far from every viewpoint";
-    case LevelReason::within_hysteresis: return "only just past the limit, within the hysteresis";
-    case LevelReason::dwell: return "it changed too recently to change again";
-    case LevelReason::queued: return "it waits its turn: this step has made all the changes it may";
-    case LevelReason::over_budget: return "nearer bodies use up the budget";
-    case LevelReason::in_budget: return "among the nearest bodies that fit the budget";
-    case LevelReason::most_reached: return "as many nearer bodies as may be on a higher level are there";
-    case LevelReason::overlap_put_off: return "its promotion waits until it overlaps no other body";
-    case LevelReason::static_ground: return "near static boxes or meshes, which the tables model does not meet";
-    case LevelReason::signature_pending: return "its signature is still being measured";
-  }
-  return "";
+bool counts_work(const PolicySettings& settings) {
+  if (const auto* error = std::get_if<ErrorBudgetPolicy>(&settings.policy)) return error->budget_work.has_value();
+  return std::holds_alternative<WorkPolicy>(settings.policy);
 }
 
-LevelReason reason_for_rung(const DistancePolicy& policy, Rung rung) {
-  return rung == Rung::full || (rung == Rung::support && policy.support_within < kInfinity) ? LevelReason::near : LevelReason::far;
+double budget_of(const PolicySettings& settings) {
+  if (const auto* timed = std::get_if<BudgetPolicy>(&settings.policy)) return timed->budget_ms;
+  if (const auto* error = std::get_if<ErrorBudgetPolicy>(&settings.policy)) return error->budget_work.value_or(error->budget_ms);
+  return std::get<WorkPolicy>(settings.policy).budget_work;
 }
 
-// Told without a division.
-bool stays_put(const LevelCandidate& c, std::span<const Vec3> viewpoints, const DistancePolicy& policy) {
-  if (c.rung == Rung::full || c.decided() || !c.open.has(c.rung)) return false;
-  const double squared = squared_distance(c, viewpoints);
-  const auto reach_of = [&](double within) { return within * c.importance + c.radius; };
-  const auto beyond = [&](double within) { return squared > 1.001 * reach_of(within) * reach_of(within); };
-  if (c.open.has(Rung::full) && !beyond(policy.full_within)) return false;
-  if (!can_be_in_ring(c) || policy.support_within == kInfinity) return c.rung == c.open.at_most(Rung::support);
-  if (c.rung == Rung::tables) return beyond(policy.support_within);
-  return squared < 0.999 * reach_of(policy.support_within) * reach_of(policy.support_within);
+double reach_of_full(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings, const StepOverhead& overhead) {
+  return Chooser(candidates, views, settings, overhead).reach(budget_of(settings));
 }
 
-double travel_until_change(const LevelCandidate& c, std::span<const Vec3> viewpoints, const DistancePolicy& policy, double hysteresis) {
-  const double nearest = std::sqrt(squared_distance(c, viewpoints));
-  const auto reach_of = [&](double within) { return within * c.importance + c.radius; };
-  double travel = kInfinity;
-  if (c.open.has(Rung::full)) travel = nearest - reach_of(policy.full_within);
-  if (!can_be_in_ring(c) || policy.support_within == kInfinity) return travel;
-  if (c.rung == Rung::tables) return std::min(travel, nearest - reach_of(policy.support_within));
-  return std::min(travel, reach_of(policy.support_within * (1.0 + hysteresis)) - nearest);
-}
-
-double rank_distance(const LevelCandidate& c, std::span<const Vec3> viewpoints, double hysteresis) {
-  const double distance = scaled_distance(c, viewpoints);
-  if (c.newcomer) return distance;
-  if (c.rung == Rung::full) return distance / (1.0 + hysteresis);
-  return c.rung == Rung::tables && c.open.has(Rung::support) ? distance * (1.0 + hysteresis) : distance;
-}
-
-double reach_of_full(std::span<const LevelCandidate> candidates, std::span<const Vec3> viewpoints, const PolicySettings& settings, const StepOverhead& overhead) {
-  return Chooser(candidates, viewpoints, settings, overhead).reach(budget_of(settings));
-}
-
-LevelDecision choose_levels(std::span<const LevelCandidate> candidates, std::span<const Vec3> viewpoints, const PolicySettings& settings, const StepOverhead& overhead) {
-  Chooser chooser(candidates, viewpoints, settings, overhead);
-  if (const auto* distance = std::get_if<DistancePolicy>(&settings.policy)) return chooser.by(*distance);
+LevelDecision choose_levels(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings, const StepOverhead& overhead) {
+  Chooser chooser(candidates, views, settings, overhead);
+  if (const std::optional<Limits> limits = limits_of(settings)) return chooser.by(*limits);
+  if (std::holds_alternative<ErrorBudgetPolicy>(settings.policy)) return chooser.by_error(budget_of(settings));
   return chooser.by_budget(budget_of(settings));
 }
 

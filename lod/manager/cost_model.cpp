@@ -47,8 +47,10 @@ double work_of(Rung rung, std::size_t charge) { return kWork[std::size_t(rung)][
 
 double CostModel::price(Rung rung, std::size_t charge) const {
   const double work = work_of(rung, charge);
-  return unit_ == Unit::work ? work : 1e-3 * factors_[std::size_t(rung)][charge] * work;
+  return unit_ == Unit::work ? work : ms_of_one(rung, charge);
 }
+
+double CostModel::ms_of_one(Rung rung, std::size_t charge) const { return 1e-3 * factors_[std::size_t(rung)][charge] * work_of(rung, charge); }
 
 std::array<float, kRungs> CostModel::cost_of(Activity activity) const {
   std::array<float, kRungs> cost;

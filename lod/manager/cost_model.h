@@ -8,6 +8,7 @@
 #include "lod/manager/choose_levels.h"
 #include "lod/rungs/statistical_level.h"
 #include "lod/step_report.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -53,7 +54,10 @@ class CostModel {
   /// From a step that was predicted to take so many ms of its budget, and in which the bodies did what `counts` says.
   void learn(double budget_ms, double predicted_ms, const StepCounts& counts, const StepMeasurement& measured);
 
+  /// Of one body, whatever the unit.
+  double ms_of_one(Rung rung, std::size_t charge) const;
   double margin() const { return margin_; }
+  void archive(StateArchive& a) { a(unit_, factors_, others_factor_, margin_); }
 
  private:
   double price(Rung rung, std::size_t charge) const;

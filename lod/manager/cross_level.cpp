@@ -59,14 +59,15 @@ Vec3 angular_velocity_change(const FullNeighbor& body, const Vec3& angular_impul
 bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impulse.angular.isZero(0.0); }
 
 // ODE lets no body sleep that none of its own contacts holds up: by the same measure, one that statistical bodies hold up sleeps here.
-bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, double dt) {
-  constexpr double kStillSpeed = 0.05, kStillTime = 0.5;  // m/s and s
+bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepThresholds& thresholds, double dt) {
+  const double still_speed = thresholds.speed, still_time = 5.0 * thresholds.time;  // m/s and s, as alone
+  if (!bodies.properties(neighbor.owner).allow_sleep) return false;
   const double turning = neighbor.state.angular_velocity.norm() * neighbor.shape->radius;
-  const bool still = !is_zero(neighbor.push) && neighbor.state.velocity.norm() < kStillSpeed && turning < kStillSpeed;
+  const bool still = !is_zero(neighbor.push) && neighbor.state.velocity.norm() < still_speed && turning < still_speed;
   if (!still) return bodies.stir(neighbor.owner), false;
   double& still_s = bodies.rare(neighbor.owner).still_s;
   still_s += dt;
-  return still_s >= kStillTime;
+  return still_s >= still_time;
 }
 
 void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
@@ -98,13 +99,16 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
   neighborhood.contacts.clear();
   for (const FullLevel::Member& member : levels.full.members()) neighborhood.bodies.push_back(neighbor_of(levels, member));
   if (!neighborhood.bodies.empty()) gather_contacts(levels, neighborhood);
+  levels.callers.bodies.gather(levels.ground, levels.statistical_settings.gravity, neighborhood.bodies, neighborhood.contacts);
 }
 
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
-  for (std::size_t i = 0; i < neighborhood.bodies.size(); ++i) {
+  const std::size_t own = levels.full.members().size();
+  levels.callers.bodies.hand_over(std::span(neighborhood.bodies).subspan(own), dt);
+  for (std::size_t i = 0; i < own; ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
-    const bool sleeps = falls_asleep(levels.bodies, neighbor, dt) && levels.statistical_settings.sleeping;
+    const bool sleeps = falls_asleep(levels.bodies, neighbor, levels.statistical_settings.sleep, dt) && levels.statistical_settings.sleeping;
     if (sleeps) put_to_sleep(*levels.full.world(), id, neighbor.state);
     else hand_over(*levels.full.world(), id, neighbor, dt);
   }

@@ -9,7 +9,7 @@
 
 namespace lodestone {
 
-/// The full bodies, in the order of the full level's members, and the contacts among them.
+/// The full bodies, in the order of the full level's members, then the caller's, and the contacts among them.
 struct Neighborhood {
   std::vector<FullNeighbor> bodies;
   std::vector<FullContact> contacts;

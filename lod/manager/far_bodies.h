@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include "reference/state_archive.h"
+
 namespace lodestone {
 
 class FarBodies {
@@ -14,6 +16,7 @@ class FarBodies {
   void put(std::uint32_t body, double due);
   void forget(std::uint32_t body);
   void clear();
+  void archive(StateArchive& a) { a(places_, place_of_, entries_, bodies_); }
 
   /// m: no body is due before.
   double next_due() const { return places_.empty() ? 1e300 : places_.begin()->first * kWidth; }

@@ -8,10 +8,18 @@ namespace {
 // Bodies at rest on each other are apart by less than this fraction of their radii.
 constexpr double kTouchMargin = 0.05;
 
+// Fewer full bodies are looked at one by one.
+constexpr std::size_t kFewFull = 32;
+
 }  // namespace
 
 ContactLaw Levels::ground_law(MaterialId material) const {
-  return materials.law(material, ground.planes.empty() ? 0 : ground.planes.front().material);
+  return materials.law(material, ground.planes().empty() ? 0 : ground.planes().front().material);
+}
+
+std::array<RungError, kRungs> Levels::errors_of(std::uint32_t body) const {
+  const RungErrors& errors = signatures.errors(*bodies.shape(body), ground_law(bodies[body].material));
+  return {errors.tables, errors.support, errors.full};
 }
 
 RigidState Levels::state(std::uint32_t body) const {
@@ -24,24 +32,73 @@ RigidState Levels::state(std::uint32_t body) const {
 bool Levels::asleep(std::uint32_t body) const {
   const BodyRecord& record = bodies[body];
   if (record.ode) return full.world()->asleep(record.ode);
-  return record.statistical && statistical->asleep(record.statistical);
+  return record.statistical ? statistical->asleep(record.statistical) : bodies.newcomer(body).asleep;
 }
 
 void Levels::set_state(std::uint32_t body, const RigidState& state) {
-  BodyRecord& record = bodies[body];
   wake_near(body, Level::full);
   wake_near(body, Level::statistical);
-  if (record.ode) full.world()->set_state(record.ode, state);
+  set_motion(body, state);
+}
+
+void Levels::set_motion(std::uint32_t body, const RigidState& state) {
+  const BodyRecord& record = bodies[body];
+  wake(body);
+  if (record.ode) full.world()->set_state(record.ode, state), note_full(body);
   else if (record.statistical) statistical->set_state(record.statistical, state);
   else bodies.newcomer(body).state = state;
-  wake(body);
 }
 
 void Levels::wake(std::uint32_t body) {
   const BodyRecord& record = bodies[body];
   if (!asleep(body)) return;
+  woken.push_back(body);
   if (record.ode) full.world()->set_asleep(record.ode, false);
-  else statistical->wake(record.statistical);
+  else if (record.statistical) statistical->wake(record.statistical);
+  else bodies.newcomer(body).asleep = false;
+}
+
+void Levels::put_to_sleep(std::uint32_t body) {
+  const BodyRecord& record = bodies[body];
+  bodies.drop_force(body);
+  if (asleep(body)) return;
+  if (record.statistical) return statistical->put_to_sleep(record.statistical);
+  RigidState still = state(body);
+  still.velocity = still.angular_velocity = Vec3::Zero();
+  set_motion(body, still);
+  if (record.ode) full.world()->set_asleep(record.ode, true);
+  else bodies.newcomer(body).asleep = true;
+}
+
+void Levels::set_gravity(const Vec3& gravity) {
+  statistical_settings.gravity = gravity;
+  full.set_gravity(gravity);
+  if (statistical) statistical->set_gravity(gravity);
+  wake_all();
+}
+
+void Levels::wake_all() {
+  for (std::uint32_t body = 0; body < bodies.indices(); ++body)
+    if (bodies.alive(body)) wake(body);
+}
+
+void Levels::follow_callers_space(double dt) {
+  if (!full.world() || !full.world()->callers_space()) return;
+  full.world()->look_at_callers_space();
+  const SpaceMirror* mirror = full.world()->callers_space();
+  callers.ground.follow(*mirror, dt, [this](const Eigen::AlignedBox3d& box) { wake_in(box); });
+  callers.bodies.follow(*mirror);
+}
+
+void Levels::wake_in(const Eigen::AlignedBox3d& box) {
+  if (!statistical || statistical->asleep_count() == 0) return;
+  std::vector<std::uint32_t> near;
+  statistical->find_sleepers(box.center(), 0.5 * box.sizes().norm(), near);
+  std::ranges::sort(near);
+  for (const std::uint32_t body : near) {
+    const double reach = (1.0 + kTouchMargin) * bodies.shape(body)->radius;
+    if (box.squaredExteriorDistance(statistical->position(bodies[body].statistical)) <= reach * reach) wake(body);
+  }
 }
 
 void Levels::wake_near(std::uint32_t body, Level level) {
@@ -59,7 +116,11 @@ void Levels::find_near(std::uint32_t body, double factor, Level level, std::vect
     if (other != body && (place - position).squaredNorm() <= reach * reach) near.push_back(other);
   };
   if (level == Level::full) {
-    for (const FullLevel::Member& member : full.members()) add(member.owner, full.world()->state(member.id).position);
+    const auto add_full = [&](std::uint32_t other) {
+      if (bodies[other].ode) add(other, full.world()->state(bodies[other].ode).position);
+    };
+    if (full.members().size() > kFewFull) near_full().find(position, factor * radius, add_full);
+    else for (const FullLevel::Member& member : full.members()) add_full(member.owner);
     return;
   }
   if (!statistical) return;
@@ -67,6 +128,18 @@ void Levels::find_near(std::uint32_t body, double factor, Level level, std::vect
   statistical->find_sleepers(position, factor * (radius + statistical->reach()) - statistical->reach(), owners);
   if (!asleep_only) statistical->find_awake(owners);
   for (const std::uint32_t owner : owners) add(owner, statistical->position(bodies[owner].statistical));
+}
+
+void Levels::note_full(std::uint32_t body) {
+  if (near_full_.made()) near_full_.add(body, full.world()->state(bodies[body].ode).position, (1.0 + kTouchMargin) * bodies.shape(body)->radius);
+}
+
+const NearFull& Levels::near_full() const {
+  if (near_full_.made()) return near_full_;
+  near_full_.begin();
+  for (const FullLevel::Member& member : full.members())
+    near_full_.add(member.owner, full.world()->state(member.id).position, (1.0 + kTouchMargin) * bodies.shape(member.owner)->radius);
+  return near_full_;
 }
 
 PairWeights Levels::full_pairs() const {
@@ -88,7 +161,7 @@ void Levels::give_forces() {
   for (const std::uint32_t body : bodies.pushed()) {
     const BodyRecord& record = bodies[body];
     const auto [force, torque] = bodies.force(body);
-    if (record.ode) full.world()->add_force(record.ode, force, torque);
+    if (record.ode) full.world()->add_force(record.ode, force, torque), eased.forget(body);
     else if (record.statistical) statistical->add_force(record.statistical, force, torque);
   }
   bodies.clear_forces();

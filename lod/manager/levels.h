@@ -4,9 +4,12 @@
 #include <memory>
 #include <vector>
 
+#include "lod/callers/callers_space.h"
 #include "lod/full/full_level.h"
 #include "lod/manager/body_table.h"
+#include "lod/manager/eased_bodies.h"
 #include "lod/manager/full_pairs.h"
+#include "lod/manager/near_full.h"
 #include "lod/manager/signature_store.h"
 #include "lod/rungs/statistical_level.h"
 
@@ -14,38 +17,64 @@ namespace lodestone {
 
 struct Levels {
   Levels(const StatisticalSettings& statistical_level, const FullSettings& full_level, SignatureStore store)
-      : full(full_level, materials), statistical_settings(statistical_level), signatures(std::move(store)) {}
+      : full(full_level, materials), statistical_settings(statistical_level), signatures(std::move(store)), callers(ground) {}
   Levels(dxWorld* world, dxSpace* space, const StatisticalSettings& statistical_level, const FullSettings& full_level,
          SignatureStore store)
-      : full(world, space, full_level, materials), statistical_settings(statistical_level), signatures(std::move(store)) {}
+      : full(world, space, full_level, materials), statistical_settings(statistical_level), signatures(std::move(store)), callers(ground) {}
   Levels(const Levels&) = delete;  // the levels point at materials and ground
   Levels& operator=(const Levels&) = delete;
 
   MaterialTable materials;
-  StaticGround ground;
+  Ground ground;
   BodyTable bodies;
   FullLevel full;
   std::unique_ptr<StatisticalLevel> statistical;  ///< null until a first body is statistical
   StatisticalSettings statistical_settings;
   SignatureStore signatures;
+  EasedBodies eased;                              ///< at the full level
+  CallersSpace callers;
   std::int64_t now = 0;                           ///< steps so far
+  std::vector<RungChange> rung_changes;           ///< of this step
+  std::vector<std::uint32_t> woken;               ///< by wake(), until somebody takes note
 
   /// The law between a body and the ground that it most likely meets: the first plane, else ground of the default material.
   ContactLaw ground_law(MaterialId material) const;
+
+  /// Of a body's shape at each rung, by Rung.
+  std::array<RungError, kRungs> errors_of(std::uint32_t body) const;
 
   RigidState state(std::uint32_t body) const;
   bool asleep(std::uint32_t body) const;
   /// Wakes the body and what was near it.
   void set_state(std::uint32_t body, const RigidState& state);
+  /// Wakes the body alone: for another motion in the same place.
+  void set_motion(std::uint32_t body, const RigidState& state);
   void wake(std::uint32_t body);
+  /// Lays it still where it is, without the force that is held for it. One on no rung yet will be so on its first.
+  void put_to_sleep(std::uint32_t body);
+  void wake_all();
+  /// m/s², from now on; wakes all.
+  void set_gravity(const Vec3& gravity);
+  /// Brings ground and bodies to what the caller's space holds now, before a step of `dt` s; what lay on ground that came, went or moved wakes.
+  void follow_callers_space(double dt);
+  /// Wakes the statistical bodies whose bounding spheres meet `box`.
+  void wake_in(const Eigen::AlignedBox3d& box);
   /// Wakes every other body of `level` whose bounding sphere meets that of `body`.
   void wake_near(std::uint32_t body, Level level);
   /// Adds the other bodies of `level`, or those of them that sleep, whose bounding sphere meets that of `body`, both `factor` times as large.
   void find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near, bool asleep_only) const;
   /// That the full bodies make as they are.
   PairWeights full_pairs() const;
+  /// A body has become full, or was moved there.
+  void note_full(std::uint32_t body);
+  /// The full level has moved its bodies.
+  void forget_places() { near_full_.clear(); }
   /// Gives bodies the forces that are held for them, over the next step of their level.
   void give_forces();
+
+ private:
+  const NearFull& near_full() const;
+  mutable NearFull near_full_;
 };
 
 }  // namespace lodestone

@@ -1,63 +1,37 @@
-#include "lod/manager.h"
+#include "lod/manager/manager_impl.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "lod/manager/finish_report.h"
-#include "lod/manager/move_bodies.h"
-#include "lod/manager/step_levels.h"
 #include "lod/manager/transfer.h"
 #include "lod/timing/stage_timer.h"
+#include "lod/timing/stage_zones.h"
 #include "lod/timing/thread_clock.h"
 #include "reference/error.h"
-#include "reference/ode/static_planes.h"
+#include "reference/ode/callers_bodies.h"
 
 namespace lodestone {
 namespace {
 
-StatisticalSettings statistical_settings(const ManagerSettings& settings, const Vec3& gravity) {
+constexpr double kLongestPart = 0.1;  // s, of a step
+
+JobRunner runner_of(const ManagerSettings& settings) { return settings.jobs ? settings.jobs : make_job_runner(settings.threads); }
+
+StatisticalSettings statistical_settings(const ManagerSettings& settings, const std::shared_ptr<JobRunner>& jobs, const Vec3& gravity) {
   return {.gravity = gravity,
           .seed = settings.seed,
           .threads = settings.threads,
-          .jobs = settings.jobs,
+          .jobs = [jobs](std::int64_t count, TaskRef task) { (*jobs)(count, task); },
           .tables = settings.tables,
-          .sleeping = settings.sleeping};
+          .sleeping = settings.sleeping,
+          .sleep = settings.sleep};
 }
 
 FullSettings full_settings(const ManagerSettings& settings) {
-  check_that(settings.full_substeps > 0, "full_substeps is positive:", std::to_string(settings.full_substeps));
-  return {.gravity = settings.gravity, .seed = settings.seed, .substeps = settings.full_substeps, .sleeping = settings.sleeping};
-}
-
-/// A state that both levels can take; aborts where there is none.
-RigidState checked(RigidState state) {
-  const bool finite = state.position.allFinite() && state.velocity.allFinite() && state.angular_velocity.allFinite();
-  check_that(finite && state.position.lpNorm<Eigen::Infinity>() <= 1e8, "a body's state is finite and within 1e8 m of the origin:",
-             fmt::format("position {} {} {}", state.position.x(), state.position.y(), state.position.z()));
-  const double norm = state.orientation.norm();
-  check_that(std::abs(norm - 1.0) <= 1e-6, "an orientation has unit length:", fmt::format("length {}", norm));
-  state.orientation.normalize();
-  return state;
-}
-
-double checked_mass(const BodyDefinition& definition, const MaterialTable& materials) {
-  check_that(definition.shape != nullptr, "a body has a shape");
-  check_that(definition.material >= 0 && definition.material < materials.size(), "a body's material is in the table:",
-             std::to_string(definition.material));
-  check_that(definition.importance > 0.0, "a body's importance is positive:", std::to_string(definition.importance));
-  const double mass = definition.mass.value_or(materials[definition.material].density * definition.shape->volume);
-  check_that(mass > 0.0 && std::isfinite(mass), "a body's mass is positive:", std::to_string(mass));
-  return mass;
-}
-
-/// Ground that the caller has in his own space, behind ours.
-void read_callers_planes(dxSpace* space, std::size_t own_planes, std::vector<HalfSpace>& planes) {
-  planes.resize(own_planes);
-  for (const StaticPlane& plane : find_static_planes(space)) planes.push_back({plane.normal, plane.offset, 0});
+  return {.gravity = settings.gravity, .seed = settings.seed, .substeps = settings.full_substeps, .sleeping = settings.sleeping, .sleep = settings.sleep};
 }
 
 /// Of a statistical stage that took `ms` in all.
@@ -71,182 +45,205 @@ void add_statistical(const Levels& levels, double ms, StepMeasurement& measured)
 
 }  // namespace
 
-std::string_view name_of(Rung rung) { return std::array{"tables", "support", "full"}[std::size_t(rung)]; }
+Manager::Impl::Impl(const ManagerSettings& s)
+    : jobs(std::make_shared<JobRunner>(runner_of(s))),
+      own_jobs(!s.jobs),
+      levels(statistical_settings(s, jobs, s.gravity), full_settings(s), SignatureStore(s.signatures, s.signature_timing)),
+      choose(levels, s.policy, s.model),
+      audit(levels, full_settings(s), s.audit_ms),
+      events(levels, s.events) {
+  set_up(s);
+}
+Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
+    : jobs(std::make_shared<JobRunner>(runner_of(s))),
+      own_jobs(!s.jobs),
+      levels(world, space, statistical_settings(s, jobs, callers::gravity(world)), full_settings(s), SignatureStore(s.signatures, s.signature_timing)),
+      choose(levels, s.policy, s.model),
+      audit(levels, full_settings(s), s.audit_ms),
+      events(levels, s.events),
+      callers_world(world) {
+  set_up(s);
+}
 
-/// The bodies and the stages of a step, in their order.
-struct Manager::Impl {
-  explicit Impl(const ManagerSettings& s)
-      : levels(statistical_settings(s, s.gravity), full_settings(s), SignatureStore(s.signatures, s.signature_timing)), choose(levels, s.policy, s.model) {}
-  Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
-      : levels(world, space, statistical_settings(s, gravity_of(world)), full_settings(s), SignatureStore(s.signatures, s.signature_timing)),
-        choose(levels, s.policy, s.model),
-        callers_space(space) {}
+// What the statistical level, made later, refers to here.
+void Manager::Impl::set_up(const ManagerSettings& settings) {
+  levels.statistical_settings.properties = &levels.bodies.own_properties();
+  if (!settings.pair_filter) return;
+  levels.statistical_settings.pair_filter = [filter = settings.pair_filter, &bodies = levels.bodies](std::uint32_t a, std::uint32_t b) {
+    const bool own = a < bodies.indices() && b < bodies.indices();  // the caller's bodies are beyond
+    return !own || filter(bodies.id(a), bodies.id(b));
+  };
+  levels.full.set_pair_filter(levels.statistical_settings.pair_filter);
+}
 
-  Levels levels;
-  CostModel costs;
-  Choose choose;
-  MoveBodies move_bodies{levels, choose};
-  StepLevels step_levels{levels};
-  StepReport report;
-  dxSpace* callers_space = nullptr;
-  std::size_t own_planes = 0;  // those of the caller's space follow in levels.ground
-};
-
-Manager::Manager(const ManagerSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
-Manager::Manager(dxWorld* world, dxSpace* space, const ManagerSettings& settings)
-    : impl_(std::make_unique<Impl>(world, space, settings)) {}
+Manager::Manager(const ManagerSettings& settings) : impl_(std::make_unique<Impl>(checked(settings))) {}
+Manager::Manager(dxWorld* world, dxSpace* space, const ManagerSettings& settings) {
+  if (!world || !space) throw_input_error("world and space", "a null one", "the caller's own");
+  impl_ = std::make_unique<Impl>(world, space, checked(settings));
+}
 Manager::~Manager() = default;
 Manager::Manager(Manager&&) noexcept = default;
 Manager& Manager::operator=(Manager&&) noexcept = default;
 
-MaterialTable& Manager::materials() { return impl_->levels.materials; }
-
-void Manager::add_plane(const Vec3& normal, double offset, MaterialId material) {
-  check_that(std::abs(normal.norm() - 1.0) <= 1e-6 && std::isfinite(offset), "a plane has a unit normal and a finite offset:",
-             fmt::format("normal {} {} {}, offset {}", normal.x(), normal.y(), normal.z(), offset));
-  const HalfSpace plane{normal.normalized(), offset, material};
-  auto& planes = impl_->levels.ground.planes;
-  planes.insert(planes.begin() + std::ptrdiff_t(impl_->own_planes++), plane);
-  impl_->levels.full.add_plane(plane);
-}
-
-void Manager::add_static_mesh(const Mesh& mesh, MaterialId material) {
-  Eigen::AlignedBox3d bounds;
-  for (const Vec3& vertex : mesh.vertices) bounds.extend(vertex);
-  impl_->choose.add_static_bounds(bounds);
-  impl_->levels.ground.solids.add_mesh(mesh, material);
-  impl_->levels.full.add_static_mesh(mesh, material);
-}
-
-void Manager::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
-  const Vec3 reach = orientation.toRotationMatrix().cwiseAbs() * (0.5 * sides);
-  impl_->choose.add_static_bounds({position - reach, position + reach});
-  impl_->levels.ground.solids.add_box(sides, position, orientation, material);
-  impl_->levels.full.add_static_box(sides, position, orientation, material);
-}
-
-BodyId Manager::add_body(const BodyDefinition& definition) {
-  Levels& levels = impl_->levels;
-  const double mass = checked_mass(definition, levels.materials);
-  BodyDefinition normalized = definition;
-  normalized.state = checked(definition.state);
-  const BodyId body = levels.bodies.add(normalized, mass);
-  if (definition.level == LevelChoice::full) {
-    place(levels, body.index, Rung::full);
-    levels.bodies.forget_last_newcomer();
-  }
-  return body;
-}
-
-void Manager::remove_body(BodyId body) {
-  take_out(impl_->levels, impl_->levels.bodies.index_of(body));
-  impl_->levels.bodies.remove(body);
-  impl_->move_bodies.forget(body.index);
-  impl_->choose.forget(body.index);
-}
-
-void Manager::set_level(BodyId body, LevelChoice choice) {
-  BodyTable& bodies = impl_->levels.bodies;
-  bodies.set_choice(bodies.index_of(body), choice);
-  impl_->choose.note(body.index);
-}
-
-void Manager::set_policy(const PolicySettings& policy) { impl_->choose.set_policy(policy); }
-
-void Manager::set_viewpoints(std::span<const Vec3> positions) {
-  for (const Vec3& position : positions) check_that(position.allFinite(), "a viewpoint is finite");
-  impl_->choose.set_viewpoints(positions);
-}
-
-void Manager::set_state(BodyId body, const RigidState& state) {
-  const std::uint32_t index = impl_->levels.bodies.index_of(body);
-  const RigidState sound = checked(state);
-  impl_->levels.set_state(index, sound);
-  impl_->choose.note(index);
-}
-
-void Manager::add_force(BodyId body, const Vec3& force, const Vec3& torque) {
-  check_that(force.allFinite() && torque.allFinite(), "force and torque are finite");
-  const std::uint32_t index = impl_->levels.bodies.index_of(body);
-  impl_->levels.bodies.add_force(index, {force, torque});
-  impl_->levels.wake(index);
-}
-
 const StepReport& Manager::step(double dt) {
-  check_that(dt > 0.0 && dt <= 0.1, "a step lasts more than 0 and at most 0.1 s:", std::to_string(dt));
-  Impl& stages = *impl_;
-  Levels& levels = stages.levels;
-  StepReport& report = stages.report;
-  report = {.step = report.step + 1, .times = {}, .counters = report.counters};
-  levels.now = report.step;
-  const auto& policy = stages.choose.policy().policy;
-  const bool budgeted = !std::holds_alternative<DistancePolicy>(policy), clocked = std::holds_alternative<BudgetPolicy>(policy);
-  const std::optional<double> budget_ms = clocked ? std::optional(std::get<BudgetPolicy>(policy).budget_ms) : std::nullopt;
-  if (levels.statistical) levels.statistical->set_clocked(clocked);
-  StepMeasurement measured;
-  ThreadLaps laps(clocked);
-  {
-    const StageTimer timer(report.times.total_ms);
-    // 1 choose rungs
-    stages.move_bodies.count_down_retries();
-    const std::optional<RungChanges> changes = stages.choose.run(report, stages.costs);
-    // 2 transfer
-    if (stages.callers_space) read_callers_planes(stages.callers_space, stages.own_planes, levels.ground.planes);
-    levels.ground.solids.prepare();
-    if (changes) stages.move_bodies.run(*changes, report);
-    if (budgeted) stages.choose.count_meetings();
-    measured.others_ms += laps.lap_ms();
-    // 3 statistical rungs and their contacts with full bodies
-    stages.step_levels.step_statistical(dt, report);
-    add_statistical(levels, laps.lap_ms(), measured);
-    // 4 full level
-    stages.step_levels.step_full(dt, report);
-    measured.rungs_ms[std::size_t(Rung::full)] = laps.lap_ms();
+  check_step(dt);
+  Impl& impl = *impl_;
+  if (impl.waits_for_world_step) throw_input_error("step", "one between before_world_step and after_world_step", "none");
+  if (dt == 0.0) {
+    impl.begin_lists();
+    impl.report.dt_s = 0.0;
+    return impl.report;
   }
-  // 5 report
-  report_bodies(levels, report);
-  if (!budgeted) return report;
-  stages.step_levels.note_touching();
-  measured.others_ms += laps.lap_ms();
-  report_cost(levels, stages.choose.counts(), measured, budget_ms, stages.costs, report);
+  const StageZones zones(impl.profile, impl.report.times);
+  impl.follow_gravity();
+  impl.begin_lists();
+  if (const int parts = int(std::ceil(dt / kLongestPart)); parts > 1) impl.step_divided(dt, parts);
+  else impl.step(dt);
+  return impl.finish_lists(dt);
+}
+
+void Manager::before_world_step(double dt) {
+  Impl& impl = *impl_;
+  if (!impl.callers_world) throw_input_error("world", "the manager's own", "the caller's");
+  if (impl.waits_for_world_step) throw_input_error("before_world_step", "a second one", "after_world_step");
+  if (!(dt > 0.0 && dt <= kLongestPart)) throw_input_error("time step", fmt::format("{:g} s", dt), fmt::format("more than 0, at most {:g} s", kLongestPart));
+  const StageZones zones(impl.profile, impl.report.times);
+  impl.follow_gravity();
+  impl.begin_lists();
+  impl.guarded([&] { impl.begin_stages(dt); });
+  impl.levels.eased.hold_back(impl.levels, dt);
+  impl.levels.full.begin_callers_step(dt);
+  impl.waits_for_world_step = true;
+}
+
+const StepReport& Manager::after_world_step() {
+  Impl& impl = *impl_;
+  if (!impl.waits_for_world_step) throw_input_error("after_world_step", "none before it", "before_world_step");
+  const StageZones zones(impl.profile, impl.report.times);
+  impl.waits_for_world_step = false;
+  const double dt = impl.underway->dt;
+  impl.levels.full.end_callers_step(impl.report.counters);
+  impl.levels.forget_places();
+  impl.end_stages();
+  impl.changes.take_part();
+  return impl.finish_lists(dt);
+}
+
+void Manager::Impl::begin_lists() {
+  changes.begin();
+  events.begin();
+}
+
+const StepReport& Manager::Impl::finish_lists(double dt) {
+  changes.finish();
+  for (const BodyId body : changes.fell_asleep()) choose.note(body.index);  // whoever laid it to sleep
+  events.finish(dt, changes.woke());
+  queries.finish(changes.fell_asleep(), changes.moved_and_slept());
+  report.dt_s = dt;
+  if (recorder.on()) recorder.note(Call::step, dt, body_hashes(levels));
   return report;
 }
 
-int Manager::bodies() const { return impl_->levels.bodies.size(); }
-bool Manager::valid(BodyId body) const { return impl_->levels.bodies.valid(body); }
-RigidState Manager::state(BodyId body) const { return impl_->levels.state(impl_->levels.bodies.index_of(body)); }
-double Manager::mass(BodyId body) const { return impl_->levels.bodies[impl_->levels.bodies.index_of(body)].mass; }
-const Shape& Manager::shape(BodyId body) const {
-  return *impl_->levels.bodies.shape(impl_->levels.bodies.index_of(body));
-}
-Level Manager::level(BodyId body) const { return level_of(rung(body)); }
-Rung Manager::rung(BodyId body) const { return impl_->levels.bodies.level(impl_->levels.bodies.index_of(body)).rung; }
-bool Manager::asleep(BodyId body) const { return impl_->levels.asleep(impl_->levels.bodies.index_of(body)); }
-dxBody* Manager::ode_body(BodyId body) const {
-  const BodyRecord& record = impl_->levels.bodies[impl_->levels.bodies.index_of(body)];
-  return record.ode ? impl_->levels.full.world()->ode_body(record.ode) : nullptr;
-}
-const StepReport& Manager::report() const { return impl_->report; }
-std::size_t Manager::statistical_bytes() const { return impl_->levels.statistical ? impl_->levels.statistical->bytes() : 0; }
-
-std::string Manager::why(BodyId body) const {
-  const std::uint32_t index = impl_->levels.bodies.index_of(body);
-  const BodyLevel& level = impl_->levels.bodies.level(index);
-  if (level.newcomer) return "at no level yet: the next step chooses one";
-  return fmt::format("{}: {}", name_of(level.rung), text_of(level.reason));
+void Manager::Impl::follow_gravity() {
+  if (!callers_world) return;
+  const Vec3 gravity = callers::gravity(callers_world);
+  if (gravity == levels.statistical_settings.gravity) return;
+  check_finite(gravity, "gravity of the caller's world");
+  levels.set_gravity(gravity);
 }
 
-std::uint64_t Manager::state_hash() const {
-  const Levels& levels = impl_->levels;
-  std::uint64_t hash = 0;
-  for (const std::uint32_t body : levels.bodies.in_order_of_creation()) {
-    const auto [x, q, v, w] = levels.state(body);
-    const bool full(levels.bodies[body].ode), asleep = levels.asleep(body);
-    const std::array<double, 15> numbers{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(), v.x(),
-                                         v.y(), v.z(), w.x(), w.y(), w.z(), double(full), double(asleep)};
-    hash = XXH64(numbers.data(), sizeof numbers, hash);
+// The report is that of all parts together. Forces last as long as all of them.
+void Manager::Impl::step_divided(double dt, int parts) {
+  const BodyTable::Forces forces = levels.bodies.forces();
+  StepReport sum;
+  for (int i = 0; i < parts; ++i) {
+    if (i > 0) levels.bodies.hold(forces);
+    if (i > 0 && callers_world) levels.full.world()->repeat_callers_forces();
+    step(dt / parts);
+    sum.times += report.times;
+    sum.promotions += report.promotions, sum.demotions += report.demotions;
+    sum.bytes_moved += report.bytes_moved, sum.contacts += report.contacts;
+    sum.predicted_ms += report.predicted_ms, sum.measured_ms += report.measured_ms;
   }
-  return hash;
+  report.times = sum.times;
+  report.promotions = sum.promotions, report.demotions = sum.demotions;
+  report.bytes_moved = sum.bytes_moved, report.contacts = sum.contacts;
+  report.predicted_ms = sum.predicted_ms, report.measured_ms = sum.measured_ms;
+  ++report.counters.divided_steps;
+}
+
+void Manager::Impl::step(double dt) {
+  guarded([&] { do_stages(dt); });
+  changes.take_part();
+}
+
+// Before anything is moved: they may not be there.
+void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
+  std::vector<std::uint32_t> to_full;
+  for (const auto* list : {&rung_changes.demote, &rung_changes.promote})
+    for (const RungChanges::Change& change : *list) {
+      if (change.to == Rung::full) to_full.push_back(change.body);
+      else find_signature(levels, change.body, change.to);
+    }
+  std::ranges::sort(to_full);
+  const auto& newcomers = levels.bodies.newcomers();
+  for (std::size_t i = 0; i < newcomers.size(); ++i)
+    if (levels.bodies.waits_at(i) && !std::ranges::binary_search(to_full, newcomers[i].index)) find_signature(levels, newcomers[i].index, newcomers[i].rung);
+}
+
+void Manager::Impl::do_stages(double dt) {
+  begin_stages(dt);
+  step_levels.step_full(dt, report);
+  end_stages();
+}
+
+void Manager::Impl::begin_stages(double dt) {
+  report = {.step = report.step + 1, .times = {}, .counters = report.counters};
+  levels.now = report.step;
+  const PolicySettings& policy = choose.policy();
+  const bool budgeted = !limits_of(policy), clocked = budgeted && !counts_work(policy);
+  if (levels.statistical) levels.statistical->set_clocked(clocked);
+  step_log.begin_step(report.counters);
+  underway.emplace(Underway{dt, ThreadLaps(clocked)});
+  auto& [_, laps, measured] = *underway;
+  const StageTimer timer(report.times.total_ms);
+  levels.follow_callers_space(dt);
+  audit.begin_step();
+  // 1 choose rungs
+  move_bodies.count_down_retries();
+  move_bodies.supply_signatures();
+  if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::awake, report);
+  const std::optional<RungChanges> rung_changes = choose.run(report, costs);
+  if (rung_changes) find_signatures(*rung_changes);
+  // 2 transfer
+  if (rung_changes) move_bodies.run(*rung_changes, report);
+  if (budgeted) choose.count_meetings();
+  measured.others_ms += laps.lap_ms();
+  // 3 statistical rungs and their contacts with full bodies
+  if (levels.statistical) levels.statistical->set_log(events.log());
+  step_levels.step_statistical(dt, report);
+  if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::as_it_slept, report);
+  add_statistical(levels, laps.lap_ms(), measured);
+  // 4 full level
+  if (levels.full.world()) levels.full.world()->record_touches(events.wanted());
+}
+
+void Manager::Impl::end_stages() {
+  auto& [dt, laps, measured] = *underway;
+  measured.rungs_ms[std::size_t(Rung::full)] = laps.lap_ms();
+  report.times.total_ms += report.times.full_ms;
+  if (events.wanted()) write_full_touches(levels, *events.log());
+  // 5 report
+  report_bodies(levels, report);
+  report.predicted_error_pixels = choose.predicted_error();
+  const PolicySettings& policy = choose.policy();
+  if (!limits_of(policy)) {
+    step_levels.note_touching();
+    measured.others_ms += laps.lap_ms();
+    report_cost(levels, choose.counts(), measured, counts_work(policy) ? std::nullopt : std::optional(budget_of(policy)), costs, report);
+  }
+  audit.end_step(dt, report);
+  step_log.end_step(report);
 }
 
 }  // namespace lodestone

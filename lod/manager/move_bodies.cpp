@@ -21,14 +21,34 @@ void MoveBodies::count_down_retries() {
   });
 }
 
+void MoveBodies::bring_back_woken(Groups::Return how, StepReport& report) {
+  std::vector<GroupId> woken;
+  choose_.groups().wake_together(woken);
+  for (const GroupId group : woken) {
+    report.promotions += choose_.groups().bring_back(group, how);
+    for (const std::uint32_t body : choose_.groups().members(group)) choose_.note(body);
+  }
+}
+
+void MoveBodies::supply_signatures() {
+  for (const std::uint32_t body : choose_.take_supplied()) {
+    const std::int64_t changed_at = levels_.bodies.level(body).changed_at;
+    find_signature(levels_, body, Rung::support);
+    transfer(levels_, body, Rung::support);
+    levels_.bodies.level(body).changed_at = changed_at;
+  }
+}
+
 void MoveBodies::run(const RungChanges& changes, StepReport& report) {
   const StageTimer timer(report.times.transfer_ms);
-  for (const RungChanges::Change& change : changes.demote) {
-    transfer(levels_, change.body, change.to);
-    choose_.note(change.body);
-    ++report.demotions;
-  }
-  for (const RungChanges::Change& change : changes.promote) promote(change, report);
+  const auto each_run = [](Run all, const auto& act) {
+    for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
+      for (end = begin + 1; all[begin].together >= 0 && end < all.size() && all[end].together == all[begin].together;) ++end;
+      act(all.subspan(begin, end - begin));
+    }
+  };
+  each_run(changes.demote, [&](Run run) { demote(run, report); });
+  each_run(changes.promote, [&](Run run) { promote(run, report); });
   BodyTable& bodies = levels_.bodies;
   for (std::size_t i = 0; i < bodies.newcomers().size(); ++i)
     if (bodies.waits_at(i)) place(levels_, bodies.newcomers()[i].index, bodies.newcomers()[i].rung);
@@ -36,11 +56,38 @@ void MoveBodies::run(const RungChanges& changes, StepReport& report) {
   choose_.done();
 }
 
-void MoveBodies::promote(const RungChanges::Change& change, StepReport& report) {
-  const auto [body, wanted, open] = change;
+void MoveBodies::demote(Run run, StepReport& report) {
+  if (const GroupId group = choose_.groups().of(run.front().body); group && !choose_.groups().release(group)) return;
+  for (const RungChanges::Change& change : run) {
+    const bool audited = audit_.on() && levels_.bodies[change.body].ode && !levels_.asleep(change.body);
+    transfer(levels_, change.body, change.to);
+    if (audited) audit_.watch(change.body, levels_.state(change.body));
+    choose_.note(change.body);
+    ++report.demotions;
+  }
+}
+
+// One that overlaps a body of no matter which other run keeps all of its run where they are.
+void MoveBodies::promote(Run run, StepReport& report) {
+  Groups& groups = choose_.groups();
+  const GroupId group = groups.of(run.front().body);
+  if (group && groups.detached(group) && run.front().to == Rung::full) {
+    report.promotions += groups.bring_back(group, Groups::Return::asleep);
+    return;
+  }
+  std::vector<std::uint32_t> bodies;
+  for (const RungChanges::Change& change : run) bodies.push_back(change.body);
+  const bool blocked = run.front().to == Rung::full && std::ranges::any_of(bodies, [&](std::uint32_t body) {
+    const BodyLevel& level = levels_.bodies.level(body);
+    const bool placed_full = level.newcomer && level.choice == LevelChoice::full;
+    return !placed_full && overlaps(levels_, body, bodies);
+  });
+  for (const RungChanges::Change& change : run) promote(change, blocked, report);
+}
+
+void MoveBodies::promote(const RungChanges::Change& change, bool blocked, StepReport& report) {
+  const auto [body, wanted, open, together] = change;
   const BodyLevel& level = levels_.bodies.level(body);
-  const bool placed_full = level.newcomer && (level.choice == LevelChoice::full || level.waits_for_signature);
-  const bool blocked = wanted == Rung::full && !placed_full && overlaps(levels_, body);
   // Spheres overlap where hulls do not yet: `support` parts them.
   const Rung to = blocked && !level.newcomer && level.rung == Rung::tables && open.has(Rung::support) ? Rung::support : wanted;
   if (blocked && to == Rung::full) {
@@ -59,7 +106,7 @@ void MoveBodies::put_off(std::uint32_t body, StepReport& report) {
   BodyTable::Rare& rare = levels_.bodies.rare(body);
   rare.frames_to_retry = rare.retry_after = std::clamp(2 * rare.retry_after, kFirstRetry, kLastRetry);
   levels_.bodies.level(body).put_off = true;
-  levels_.bodies.level(body).reason = LevelReason::overlap_put_off;
+  levels_.bodies.level(body).reason = Rule::overlap_put_off;
   put_off_.push_back(body);
   choose_.note(body);
   ++report.counters.promotions_put_off;

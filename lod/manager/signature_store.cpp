@@ -1,8 +1,11 @@
 #include "lod/manager/signature_store.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
+#include "reference/error.h"
 #include "signature/signature_source.h"
 
 namespace lodestone {
@@ -11,11 +14,13 @@ namespace {
 // A game goes on meanwhile.
 int half_of_the_cores() { return std::max(1, int(std::thread::hardware_concurrency()) / 2); }
 
+// Each signature is measured by one thread, whose priority is the lowest: with more, they would be oneTBB's, which the game's own loops may wait for.
 std::unique_ptr<BackgroundSignatures> make_background(const SignatureFunction& source) {
-  return std::make_unique<BackgroundSignatures>([source](const Shape& shape, const ContactLaw& law, std::stop_token stop) {
+  // A caller's source may not bear two threads at a time.
+  return std::make_unique<BackgroundSignatures>(source ? 1 : half_of_the_cores(), [source](const Shape& shape, const ContactLaw& law, std::stop_token stop) {
     if (source) return source(shape, law);
     SignatureSourceSettings settings;
-    settings.threads = half_of_the_cores();
+    settings.threads = 1;
     settings.stop = std::move(stop);
     return find_or_measure_signature(shape, law, settings).signature;
   });
@@ -37,15 +42,33 @@ bool SignatureStore::ready(const Shape& shape, const ContactLaw& law) {
   }
   if (!entry->pending.valid()) return true;
   if (entry->pending.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-  take(*entry);
+  take(shape, *entry);
   return true;
 }
 
 std::shared_ptr<const Signature> SignatureStore::find(const Shape& shape, const ContactLaw& law) {
-  if (Entry* entry = find_entry(shape, law)) return entry->pending.valid() ? take(*entry) : entry->signature;
-  entries_.push_back({shape.content_hash, law, source_ ? source_(shape, law) : find_or_measure_signature(shape, law).signature, {}});
+  if (Entry* entry = find_entry(shape, law)) return entry->pending.valid() ? take(shape, *entry) : entry->signature;
+  entries_.push_back({shape.content_hash, law, logged(shape, [&] { return source_ ? source_(shape, law) : find_or_measure_signature(shape, law).signature; }), {}});
   if (entries_.back().signature) ++loaded_;
   return entries_.back().signature;
+}
+
+template <class Get>
+std::shared_ptr<const Signature> SignatureStore::logged(const Shape& shape, const Get& get) const {
+  try {
+    std::shared_ptr<const Signature> signature = get();
+    if (log_ && signature) log_(LogLevel::info, fmt::format("the signature of {} is there", shape.name));
+    return signature;
+  } catch (const InputError& error) {
+    if (log_) log_(LogLevel::error, fmt::format("the signature of {} cannot be had: {}", shape.name, error.what()));
+    throw;
+  }
+}
+
+const RungErrors& SignatureStore::errors(const Shape& shape, const ContactLaw& law) const {
+  static const RungErrors kAverages;
+  const Entry* entry = find_entry(shape, law);
+  return entry && entry->signature ? entry->signature->rung_errors : kAverages;
 }
 
 SignatureStore::Entry* SignatureStore::find_entry(const Shape& shape, const ContactLaw& law) {
@@ -54,8 +77,8 @@ SignatureStore::Entry* SignatureStore::find_entry(const Shape& shape, const Cont
 }
 
 // Waits where it must. What the thread could not have is thrown here, each time.
-std::shared_ptr<const Signature> SignatureStore::take(Entry& entry) {
-  entry.signature = entry.pending.get();
+std::shared_ptr<const Signature> SignatureStore::take(const Shape& shape, Entry& entry) {
+  entry.signature = logged(shape, [&] { return entry.pending.get(); });
   entry.pending = {};
   if (entry.signature) ++loaded_;
   return entry.signature;

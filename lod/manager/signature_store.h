@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "lod/hooks.h"
 #include "lod/manager/background_signatures.h"
 #include "lod/signatures.h"
 #include "reference/shape.h"
@@ -14,14 +15,18 @@ namespace lodestone {
 
 class SignatureStore {
  public:
-  /// `source` empty: find_or_measure_signature with its defaults, in the background on half of the cores.
+  /// `source` empty: find_or_measure_signature with its defaults, in the background on up to half of the cores.
   SignatureStore(SignatureFunction source, SignatureTiming timing);
 
   /// Whether find() would return at once. Where not, a thread begins to make it so. Throws InputError where the signature cannot be had.
   bool ready(const Shape& shape, const ContactLaw& law);
   /// The signature of `shape`, or of a scaled copy of it, under `law`; null where the source has none.
   std::shared_ptr<const Signature> find(const Shape& shape, const ContactLaw& law);
+  /// Of what was found; else the averages. Asks for nothing.
+  const RungErrors& errors(const Shape& shape, const ContactLaw& law) const;
   std::int64_t loaded() const { return loaded_; }
+  /// Told of each signature that is there, or cannot be had.
+  void set_log(LogFunction log) { log_ = std::move(log); }
 
  private:
   struct Entry {
@@ -31,10 +36,14 @@ class SignatureStore {
     FutureSignature pending;  // valid until it is in `signature`
   };
   Entry* find_entry(const Shape& shape, const ContactLaw& law);
-  std::shared_ptr<const Signature> take(Entry& entry);
+  std::shared_ptr<const Signature> take(const Shape& shape, Entry& entry);
+  template <class Get>
+  std::shared_ptr<const Signature> logged(const Shape& shape, const Get& get) const;
+  const Entry* find_entry(const Shape& shape, const ContactLaw& law) const { return const_cast<SignatureStore*>(this)->find_entry(shape, law); }
 
   SignatureFunction source_;
   bool in_background_;
+  LogFunction log_;
   std::vector<Entry> entries_;
   std::int64_t loaded_ = 0;
   std::unique_ptr<BackgroundSignatures> background_;  // made when it is first needed

@@ -1,5 +1,7 @@
 #include "lod/manager/step_levels.h"
 
+#include <algorithm>
+
 #include "lod/timing/stage_timer.h"
 
 namespace lodestone {
@@ -22,12 +24,14 @@ void StepLevels::step_statistical(double dt, StepReport& report) {
 
 void StepLevels::step_full(double dt, StepReport& report) {
   const StageTimer timer(report.times.full_ms);
+  levels_.eased.hold_back(levels_, dt);
   levels_.full.step(dt, report.counters);
+  levels_.forget_places();
 }
 
 void StepLevels::note_touching() {
   levels_.full.note_touching();
-  for (std::size_t i = 0; i < neighborhood_.bodies.size(); ++i)
+  for (std::size_t i = 0; i < std::min(neighborhood_.bodies.size(), levels_.full.members().size()); ++i)
     if (is_touched(neighborhood_.bodies[i])) levels_.full.note_touching(i);
 }
 

@@ -4,6 +4,7 @@
 #include "lod/manager/cross_level.h"
 #include "lod/manager/levels.h"
 #include "lod/step_report.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -15,6 +16,7 @@ class StepLevels {
   void step_full(double dt, StepReport& report);
   /// Notes which full bodies touch another, on whatever rung; after both.
   void note_touching();
+  void archive(StateArchive& a) { a(neighborhood_.seen); }
 
  private:
   Levels& levels_;

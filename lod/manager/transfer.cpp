@@ -2,7 +2,10 @@
 
 #include <algorithm>
 
+#include "lod/statistical/parting.h"
+#include "reference/error.h"
 #include "reference/hull/hull_overlap.h"
+#include "signature/signature_file.h"
 
 namespace lodestone {
 namespace {
@@ -13,8 +16,9 @@ constexpr double kOverlapAllowed = 0.02;
 void enter_full(Levels& levels, std::uint32_t body, const RigidState& state, bool asleep) {
   BodyRecord& record = levels.bodies[body];
   const OdeBodyDefinition definition{
-      .shape = levels.bodies.shape(body), .mass = record.mass, .material = record.material, .state = state};
+      .shape = levels.bodies.shape(body), .mass = record.mass, .material = record.material, .state = state, .properties = levels.bodies.properties(body)};
   record.ode = levels.full.add(body, definition, asleep);
+  levels.note_full(body);
 }
 
 void enter_statistical(Levels& levels, std::uint32_t body, StatisticalModel model, const RigidState& state, bool asleep, bool arrives) {
@@ -23,7 +27,7 @@ void enter_statistical(Levels& levels, std::uint32_t body, StatisticalModel mode
   if (!levels.statistical)
     levels.statistical = std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
   record.statistical = levels.statistical->add(model, body, shape, record.mass, record.material, state, asleep,
-                                               levels.signatures.find(*shape, levels.ground_law(record.material)), arrives);
+                                               levels.bodies.level(body).waits_for_signature ? nullptr : levels.signatures.find(*shape, levels.ground_law(record.material)), arrives);
 }
 
 /// `arrives`: from another rung.
@@ -46,8 +50,8 @@ void leave(Levels& levels, std::uint32_t body, bool stays) {
   }
 }
 
-bool overlaps_ground(const Levels& levels, const Shape& shape, const RigidState& state) {
-  return std::ranges::any_of(levels.ground.planes, [&](const HalfSpace& plane) {
+bool overlaps_planes(std::span<const HalfSpace> planes, const Shape& shape, const RigidState& state) {
+  return std::ranges::any_of(planes, [&](const HalfSpace& plane) {
     return measure_plane_overlap(shape, state, plane.normal, plane.offset) > kOverlapAllowed * shape.radius;
   });
 }
@@ -73,11 +77,50 @@ double measure_overlap(const Shape& first, const RigidState& at_first, const Sha
   return deepest;
 }
 
+// Whether it leans on others there, or may do so, and hardly moves.
+bool lies_among_others(const Levels& levels, std::uint32_t body, const RigidState& state) {
+  const Activity does = levels.statistical->activity(levels.bodies[body].statistical);
+  const double radius = levels.bodies.shape(body)->radius, slow = 2.0 * parting_speed(radius, levels.statistical_settings.gravity.norm());
+  return does != Activity::alone && state.velocity.norm() <= slow && state.angular_velocity.norm() * radius <= slow;
+}
+
+// With planes and the parts of the ground; those known by rays count as the plane below.
+bool overlaps_ground(const Levels& levels, const Shape& shape, const RigidState& state) {
+  if (overlaps_planes(levels.ground.planes(), shape, state)) return true;
+  if (!levels.ground.has_parts()) return false;
+  const double allowed = kOverlapAllowed * shape.radius;
+  std::vector<const GroundPart*> parts;
+  std::vector<PlacedSolid> near;
+  std::vector<HalfSpace> probed;
+  levels.ground.find_parts(state.position, shape.radius, parts);
+  for (const GroundPart* part : parts) {
+    find_solids(*part, state.position, shape.radius, 0.0, near);
+    if (const auto plane = probe_below(*part, state.position, shape.radius)) probed.push_back(*plane);
+  }
+  return overlaps_planes(probed, shape, state) || std::ranges::any_of(near, [&](const PlacedSolid& solid) {
+    RigidState at;
+    at.position = solid.position;
+    at.orientation = solid.orientation;
+    return measure_overlap(shape, state, *solid.solid->shape, at, allowed) > allowed;
+  });
+}
+
 }  // namespace
+
+void find_signature(Levels& levels, std::uint32_t body, Rung rung) {
+  if (levels.bodies.level(body).waits_for_signature) return;  // it goes without
+  const Shape& shape = *levels.bodies.shape(body);
+  const auto signature = levels.signatures.find(shape, levels.ground_law(levels.bodies[body].material));
+  const std::string name = "signature of shape " + shape.name;
+  if (signature) check_measured_for(*signature, shape, name);
+  if (rung != Rung::tables) return;
+  if (!signature) throw_input_error(name, "none", "one, without which the body cannot be at tables");
+  if (signature->collision_heights.mean.empty()) throw_input_error(name, "no collision heights", "some, without which the body cannot be at tables");
+}
 
 void place(Levels& levels, std::uint32_t body, Rung rung) {
   const RigidState given = levels.bodies.newcomer(body).state;
-  enter(levels, body, rung, given, false, false);
+  enter(levels, body, rung, given, levels.bodies.newcomer(body).asleep, false);
   levels.bodies[body].newcomer = -1;
   levels.bodies.level(body).newcomer = false;
   levels.bodies.level(body).changed_at = BodyLevel::kLongAgo;
@@ -91,8 +134,12 @@ void transfer(Levels& levels, std::uint32_t body, Rung to) {
     levels.wake_near(body, level_of(to));
     if (from == level_of(to)) levels.wake_near(body, Level::full);
   }
+  const bool lies = to == Rung::full && levels.bodies[body].statistical && lies_among_others(levels, body, state);
+  const Rung before = levels.bodies.level(body).rung;
   leave(levels, body, asleep);
   enter(levels, body, to, state, asleep, true);
+  if (lies) levels.eased.add(body, levels.bodies[body].ode);
+  if (before != to) levels.rung_changes.push_back({levels.bodies.id(body), before, to});
 }
 
 void take_out(Levels& levels, std::uint32_t body) {
@@ -100,19 +147,25 @@ void take_out(Levels& levels, std::uint32_t body) {
   leave(levels, body, false);
 }
 
-bool overlaps(const Levels& levels, std::uint32_t body) {
+bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uint32_t> but) {
   const RigidState state = levels.state(body);
   const Shape& shape = *levels.bodies.shape(body);
   if (overlaps_ground(levels, shape, state)) return true;
   const auto overlaps_body = [&](std::uint32_t other, const RigidState& there) {
     const Shape& other_shape = *levels.bodies.shape(other);
     const double reach = shape.radius + other_shape.radius, allowed = kOverlapAllowed * std::min(shape.radius, other_shape.radius);
-    return other != body && (there.position - state.position).squaredNorm() <= reach * reach && measure_overlap(shape, state, other_shape, there, allowed) > allowed;
+    return other != body && std::ranges::find(but, other) == but.end() && (there.position - state.position).squaredNorm() <= reach * reach && measure_overlap(shape, state, other_shape, there, allowed) > allowed;
   };
   std::vector<std::uint32_t> near;
   levels.find_near(body, 1.0, Level::full, near, false);
   levels.find_near(body, 1.0, Level::statistical, near, false);
   if (std::ranges::any_of(near, [&](std::uint32_t other) { return overlaps_body(other, levels.state(other)); })) return true;
+  bool meets_callers = false;
+  levels.callers.bodies.each_near(state.position, shape.radius, [&](const Shape& other, const RigidState& there) {
+    const double allowed = kOverlapAllowed * std::min(shape.radius, other.radius);
+    meets_callers |= measure_overlap(shape, state, other, there, allowed) > allowed;
+  });
+  if (meets_callers) return true;
   const auto& newcomers = levels.bodies.newcomers();
   for (std::size_t i = 0; i < newcomers.size(); ++i)
     if (levels.bodies.waits_at(i) && overlaps_body(newcomers[i].index, newcomers[i].state)) return true;

@@ -2,19 +2,20 @@
 
 #include <algorithm>
 
-#include "lod/statistical/rest_law.h"
 #include "lod/timing/stopwatch.h"
 
 namespace lodestone {
 namespace {
 
 // Where a full neighbour is after a substep that it began with velocity `before`: what took part in the crowd has its velocity from there, gravity included.
-void advance(FullNeighbor& body, const Vec3& before, const Vec3& gravity, double time) {
+void advance(FullNeighbor& body, const BodyProperties& own, const Vec3& before, const Vec3& gravity, double time) {
   if (body.asleep) return;
-  if (body.state.velocity == before) body.state.velocity += (gravity + body.force / body.mass) * time;
+  if (body.state.velocity == before && !own.kinematic) body.state.velocity += (own.gravity ? Vec3(gravity + body.force / body.mass) : Vec3(body.force / body.mass)) * time;
   body.state.position += body.state.velocity * time;
   body.state.orientation = (rotation_from_vector(body.state.angular_velocity * time) * body.state.orientation).normalized();
 }
+
+bool meets_solids(const BodyProperties& own) { return !own.kinematic && meets_ground(own); }
 
 }  // namespace
 
@@ -30,7 +31,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
   times.broad_phase_ms += watch.lap_ms();
 
   for (const std::int32_t index : support.awake_with_guests()) scene.bodies[std::size_t(index)].crowded = false;
-  find_ground_solids(scene, support, dt, false);
+  find_ground_solids(scene, support, 0.0, dt, false);
   if (!pairs_.pairs().empty()) pairs_.find_turning(scene, support.awake_with_guests());
   const int substeps = plan_.make(scene, pairs_, solid_contacts_, dt, near_);
   move_those(support, guests, dt, tally, [&](std::int32_t index) { return !near_[std::size_t(index)] && !support.is_guest(index); });
@@ -45,7 +46,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     if (i > 0) pairs_.find_turning(scene, support.awake_with_guests());
     pairs_.find_contacts(scene, time, support.awake_with_guests(), near_);  // who is crowded is decided anew
     wake_touched(scene, support);
-    if (substeps > 1) find_ground_solids(scene, support, time, true);
+    if (substeps > 1) find_ground_solids(scene, support, i * time, time, true);
     for (const SolidContact& contact : solid_contacts_) scene.bodies[std::size_t(contact.slot)].crowded = true;
     times.pairs_ms += watch.lap_ms();
 
@@ -65,17 +66,20 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
   }
 }
 
-// Static boxes and meshes: what nears one is solved with all that it touches.
-void NearBodies::find_ground_solids(const ContactScene& scene, const SupportLevel& support, double time, bool of_near_only) {
+// Parts of the ground: what nears one is solved with all that it touches.
+void NearBodies::find_ground_solids(const ContactScene& scene, const SupportLevel& support, double after, double time, bool of_near_only) {
   solid_contacts_.clear();
   faces_.faces.clear();
-  if (ground_.solids.empty()) return faces_.run.clear();
+  if (!ground_.has_parts()) return faces_.run.clear();
   faces_.run.resize(scene.bodies.size());  // of those awake; nobody asks about others
   for (const std::int32_t index : support.awake_with_guests()) {
     StatisticalBody& body = scene.bodies[std::size_t(index)];
     const std::size_t before = solid_contacts_.size(), faces = faces_.faces.size();
-    if (!support.is_guest(index) && (!of_near_only || near_[std::size_t(index)]))
-      find_solid_contacts(body, scene.kind_of(body), index, ground_.solids, time, solid_contacts_, faces_.faces);
+    if (meets_solids(scene.world.properties_of(body.owner))) {
+      if (support.is_guest(index)) find_sphere_contacts(body, scene.kind_of(body), index, ground_, after, time, solid_contacts_, faces_.faces);
+      else if (!of_near_only || near_[std::size_t(index)])
+        find_solid_contacts(body, scene.kind_of(body), index, ground_, after, time, solid_contacts_, faces_.faces);
+    }
     faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
     if (solid_contacts_.size() > before) body.crowded = true;
   }
@@ -98,15 +102,20 @@ void NearBodies::move_those(SupportLevel& support, std::span<Guest> guests, doub
 void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time, ContactTally& tally) const {
   if (!support.is_guest(index)) return support.move_alone(index, faces_.of(index), time, tally);
   StatisticalBody& body = support.bodies()[std::size_t(index)];
-  tally = step_tables_body(body, guests[std::size_t(index - support.size())].resting, kinds_[body.kind], world(), time, tables_);
+  StepWorld around = world();
+  around.planes = join_planes(ground_.planes(), faces_.of(index));
+  around.log = nullptr;  // where it touches nobody in the end, the tables level moves it once more
+  tally = step_tables_body(body, guests[std::size_t(index - support.size())].resting, kinds_[body.kind], around, time, tables_);
 }
 
 void NearBodies::wake_touched(const ContactScene& scene, SupportLevel& support) {
   for (const CrowdContact& c : pairs_.contacts())
     for (const auto& [sleeper, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
+      const bool carried = scene.properties(other).kinematic && !scene.velocity(other).isZero(0.0);  // however slowly
+      if (carried && sleeper.is_statistical()) scene.body(sleeper).quiet_time = 0.0f;
       if (!scene.asleep(sleeper)) continue;
       const double speed = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point).norm();
-      if (speed <= rest_law::wake_speed(scene.shape(sleeper).radius)) continue;
+      if (speed <= rest_law_.wake_speed(scene.shape(sleeper).radius) && !carried) continue;
       if (sleeper.is_full()) {
         scene.neighbor(sleeper).asleep = false;
       } else {
@@ -136,7 +145,7 @@ void NearBodies::move_crowded(const ContactScene& scene, SupportLevel& support, 
 
 void NearBodies::move_on(double time, int substep) {
   for (std::size_t k = 0; k < full_.size(); ++k) {
-    advance(full_[k], full_before_[k].state.velocity, settings_.gravity, time);
+    advance(full_[k], world().properties_of(full_[k].owner), full_before_[k].state.velocity, settings_.gravity, time);
     // The full level takes every hit at the step's beginning: too early by some substeps, in which it must not carry the body along.
     full_[k].shift -= (substep * time / full_[k].mass) * (full_[k].hit.linear - full_before_[k].hit.linear);
   }

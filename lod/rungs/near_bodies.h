@@ -10,16 +10,18 @@
 #include "lod/rungs/near_pairs.h"
 #include "lod/rungs/near_search.h"
 #include "lod/rungs/substep_plan.h"
+#include "lod/statistical/rest_law.h"
 #include "lod/step_report.h"
 #include "lod/support/support_level.h"
 #include "lod/tables/guest.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
 class NearBodies {
  public:
-  NearBodies(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, const Kinds& kinds, const JobRunner& jobs)
-      : settings_(settings), ground_(ground), materials_(materials), kinds_(kinds), jobs_(jobs), pairs_(jobs), crowd_(jobs) {
+  NearBodies(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials, const Kinds& kinds, const JobRunner& jobs)
+      : settings_(settings), ground_(ground), materials_(materials), kinds_(kinds), jobs_(jobs), pairs_(jobs), crowd_(jobs), rest_law_(settings.sleep) {
     tables_.options = settings.tables;
   }
 
@@ -28,12 +30,17 @@ class NearBodies {
             StageTimes& times, ContactTally& tally);
   /// As bodies are added, little by little, so that no step has to.
   void make_room(std::size_t bodies) { pairs_.make_room(bodies), near_.make_room(bodies), crowd_.make_room(bodies); }
+  void archive(StateArchive& a) { a(pairs_, crowd_); }
+  void set_gravity(const Vec3& gravity) { settings_.gravity = gravity; }
+  void set_log(ContactLog* log) { log_ = log; }  ///< null: none
   /// In place of a step, where nothing moves that could be near another.
   void forget_pairs() { pairs_.clear(); }
+  /// Between bodies, found in the last substep.
+  std::span<const CrowdContact> contacts() const { return pairs_.contacts(); }
 
  private:
-  StepWorld world() const { return {settings_.gravity, &ground_, &materials_, settings_.seed}; }
-  void find_ground_solids(const ContactScene& scene, const SupportLevel& support, double time, bool of_near_only);
+  StepWorld world() const { return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, settings_.properties, log_}; }
+  void find_ground_solids(const ContactScene& scene, const SupportLevel& support, double after, double time, bool of_near_only);
   template <class Select>
   void move_those(SupportLevel& support, std::span<Guest> guests, double time, ContactTally& tally, const Select& select);
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time, ContactTally& tally) const;
@@ -42,17 +49,19 @@ class NearBodies {
   void move_on(double time, int substep);
 
   StatisticalSettings settings_;
-  const StaticGround& ground_;
+  const Ground& ground_;
   const MaterialTable& materials_;
   const Kinds& kinds_;
   JobRunner jobs_;
   TablesSettings tables_;
+  ContactLog* log_ = nullptr;
   double step_s_ = 0.0;                           // s, of the whole step
 
   NearPairs pairs_;
   NearMarks near_;
   SubstepPlan plan_;
   Crowd crowd_;
+  RestLaw rest_law_;
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
   std::vector<SolidContact> solid_contacts_;
   FacesBelow faces_;

@@ -12,6 +12,7 @@
 #include "lod/contact/pair_memory.h"
 #include "lod/jobs.h"
 #include "lod/rungs/near_marks.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -28,6 +29,7 @@ struct FoundPair {
   std::vector<KnownGap> of_pieces;
   std::vector<HeldContact> contacts;
 
+  void archive(StateArchive& a) { a(key, first, second, gap, when, whole, of_pieces, contacts); }
   void forget() {
     when.reset();
     whole = {.normal = Vec3::Zero()};
@@ -42,7 +44,8 @@ class NearPairs {
 
   /// Takes the pairs of a step; what is known of those that were near before stays so.
   void take(const ContactScene& scene, std::span<const NearPair> pairs);
-  void clear() { found_.clear(); }
+  void clear() { found_.clear(), contacts_.clear(); }
+  void archive(StateArchive& a) { a(found_, contacts_); }
   void make_room(std::size_t bodies) { turning_.resize(std::max(turning_.size(), bodies)); }
   std::span<const FoundPair> pairs() const { return found_; }
 

@@ -34,9 +34,22 @@ void NearSearch::add_hull_balls(double dt, std::span<const StatisticalBody> bodi
   for (const FullNeighbor& n : neighbors) add_ball(n.state.position, n.state.velocity, n.shape->radius, dt);
 }
 
+void NearSearch::invite_cornered(const TablesLevel& tables, const SupportLevel& support) {
+  if (tables.cornered().empty()) return;
+  own_bodies_ = std::size_t(support.size());
+  guest_of_slot_.resize(std::max(guest_of_slot_.size(), std::size_t(tables.size())), -1);
+  for (const std::int32_t slot : tables.cornered()) guest(slot);
+}
+
+void NearSearch::forget_guests() {
+  for (const Guest& guest : guests_)
+    if (std::size_t(guest.slot) < guest_of_slot_.size()) guest_of_slot_[std::size_t(guest.slot)] = -1;
+  guests_.clear();
+}
+
 void NearSearch::clear() {
   pairs_.clear();
-  guests_.clear();
+  forget_guests();
   order_.clear();
   mixed_ = true;  // no order
 }
@@ -111,11 +124,20 @@ void NearSearch::add_pair(std::uint32_t first, std::uint32_t second, const Table
   pairs_.emplace_back(a, b);
 }
 
+// Of two owners.
+bool NearSearch::lets_meet(std::uint32_t first, std::uint32_t second) const {
+  if (properties_ && !properties_->empty() && !may_meet(properties_->of(first), properties_->of(second))) return false;
+  return !pair_filter_ || pair_filter_(first, second);
+}
+
+template <class Owner>
+void NearSearch::filter_pairs(const Owner& owner) {
+  if (pair_filter_ || (properties_ && !properties_->empty())) std::erase_if(pairs_, [&](const NearPair& pair) { return !lets_meet(owner(pair.first), owner(pair.second)); });
+}
+
 void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
   pairs_.clear();
-  for (const Guest& guest : guests_)
-    if (std::size_t(guest.slot) < guest_of_slot_.size()) guest_of_slot_[std::size_t(guest.slot)] = -1;
-  guests_.clear();
+  forget_guests();
   const bool hulls = movers_.size() + neighbors.size() > 0 || !sleepers_.of(StatisticalModel::support).empty();
   if (hulls) guest_of_slot_.resize(std::size_t(tables.size()), -1);
   if (spheres_ > 0) {
@@ -130,6 +152,10 @@ void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<cons
     for (std::int64_t i = 0; i < ball_pairs_.size(); ++i) add_pair(ball_pairs_.first(i), ball_pairs_.second(i), tables);
   }
   find_still_pairs(support, neighbors, &tables);
+  filter_pairs([&](Participant p) {
+    if (p.is_full()) return neighbors[p.index()].owner;
+    return p.index() < own_bodies_ ? support.body(int(p.index())).owner : tables.owner(guests_[p.index() - own_bodies_].slot);
+  });
 }
 
 // Of moving hulls with those that sleep.
@@ -198,6 +224,7 @@ void NearSearch::find_again(double dt, SupportLevel& support, std::span<const Fu
     pairs_.emplace_back(first, high < movers_.size() ? Participant::statistical(std::size_t(movers_[high])) : Participant::full(high - movers_.size()));
   }
   find_still_pairs(support, neighbors, nullptr);
+  filter_pairs([&](Participant p) { return p.is_full() ? neighbors[p.index()].owner : bodies[p.index()].owner; });
 }
 
 }  // namespace lodestone

@@ -12,6 +12,7 @@
 #include "lod/statistical/sleepers.h"
 #include "lod/support/support_level.h"
 #include "lod/tables/tables_level.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -19,7 +20,7 @@ class NearSearch {
  public:
   /// `sleepers` must outlive it.
   NearSearch(const StatisticalSettings& settings, const Sleepers& sleepers, const JobRunner& jobs)
-      : gravity_(settings.gravity), sleepers_(sleepers), threads_(settings.threads), jobs_(jobs), cells_(settings.simd) {}
+      : gravity_(settings.gravity), properties_(settings.properties), pair_filter_(settings.pair_filter), sleepers_(sleepers), threads_(settings.threads), jobs_(jobs), cells_(settings.simd) {}
 
   /// Puts all that move into cells, for a step of `dt` seconds.
   void fill(double dt, TablesLevel& tables, const SupportLevel& support, std::span<const FullNeighbor> neighbors);
@@ -28,12 +29,22 @@ class NearSearch {
   /// The near pairs anew within a step of `dt` seconds, after some were woken. Guests stay who they are.
   void find_again(double dt, SupportLevel& support, std::span<const FullNeighbor> neighbors);
   void clear();
+  void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
+  void set_threads(int threads) { threads_ = threads; }
+  /// Spheres that one plane of the ground does not hold become guests, too; after find() or clear().
+  void invite_cornered(const TablesLevel& tables, const SupportLevel& support);
 
   std::span<const NearPair> pairs() const { return pairs_; }
   std::span<Guest> guests() { return guests_; }
   /// Of the awake spheres, in the cells.
   std::span<const std::uint32_t> order_of_spheres() const { return mixed_ ? order_ : cells_.order(); }
   std::size_t bytes() const { return cells_.bytes(); }
+  /// Of what it found only the order of spheres counts for the next step.
+  void archive(StateArchive& a) {
+    if (!a.reading()) order_.assign(order_of_spheres().begin(), order_of_spheres().end());
+    mixed_ = true;
+    a(order_);
+  }
 
  private:
   void add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support, std::span<const FullNeighbor> neighbors);
@@ -43,12 +54,18 @@ class NearSearch {
   void find_hull_pairs();
   void add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables);
   bool meet(std::uint32_t first, std::uint32_t second) const;
+  bool lets_meet(std::uint32_t first, std::uint32_t second) const;
+  template <class Owner>
+  void filter_pairs(const Owner& owner);
   Participant participant(std::uint32_t ball, const TablesLevel& tables);
   Participant guest(std::int32_t slot);
+  void forget_guests();
   void find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors, const TablesLevel* tables);
   void find_still_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables);
 
   Vec3 gravity_;
+  const OwnProperties* properties_;
+  std::function<bool(std::uint32_t, std::uint32_t)> pair_filter_;
   const Sleepers& sleepers_;
   int threads_;
   JobRunner jobs_;

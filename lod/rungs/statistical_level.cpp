@@ -15,7 +15,7 @@ constexpr double kTouchFactor = 1.02;  // of the radii: what rests on a removed 
 }  // namespace
 
 struct StatisticalLevel::Impl {
-  Impl(const StatisticalSettings& s, const StaticGround& g, const MaterialTable& m)
+  Impl(const StatisticalSettings& s, const Ground& g, const MaterialTable& m)
       : settings(s), jobs(s.jobs ? s.jobs : make_job_runner(s.threads)), support(s, g, m, kinds, sleepers), tables(s, g, m, kinds, sleepers, jobs),
         search(s, sleepers, jobs), near_bodies(s, g, m, kinds, jobs) {}
 
@@ -75,22 +75,25 @@ void StatisticalLevel::Impl::count_bodies() {
   cost.support[std::size_t(Activity::asleep)] = support.asleep_count();
 }
 
-StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials)
+StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials)
     : impl_(std::make_unique<Impl>(settings, ground, materials)) {}
 StatisticalLevel::~StatisticalLevel() = default;
 
 StatisticalPlace StatisticalLevel::add(StatisticalModel model, std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material,
                                        const RigidState& state, bool asleep, std::shared_ptr<const Signature> signature, bool arrives) {
   impl_->reach = std::max(impl_->reach, shape->radius);
-  const std::uint16_t kind = impl_->kinds.find(model, std::move(shape), mass, material, std::move(signature));
-  const StatisticalPlace place{model, impl_->at({model, 0}, [&](auto& level) { return level.add(owner, kind, state, asleep, arrives); })};
+  const std::uint32_t kind = impl_->kinds.take(model, std::move(shape), material, std::move(signature));
+  const StatisticalPlace place{model, impl_->at({model, 0}, [&](auto& level) { return level.add(owner, kind, mass, state, asleep, arrives); })};
   impl_->near_bodies.make_room(std::size_t(impl_->support.size()));
   return place;
 }
 
 std::optional<std::uint32_t> StatisticalLevel::remove(StatisticalPlace place, bool stays) {
   if (!stays) impl_->wake_touching(place);
-  return impl_->at(place, [&](auto& level) { return level.remove(place.slot); });
+  const std::uint32_t kind = impl_->at(place, [&](const auto& level) { return level.kind(place.slot); });
+  const auto moved = impl_->at(place, [&](auto& level) { return level.remove(place.slot); });
+  impl_->kinds.give_back(kind);
+  return moved;
 }
 
 void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
@@ -121,6 +124,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     search.clear();
     tables.forget_contacts();
   }
+  search.invite_cornered(tables, support);
   // 3 the response of spheres
   {
     const StageTimer timer(times.crowd_ms);
@@ -128,7 +132,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   }
   // 4 hulls, and spheres near them
   const double hulls_from = s.clock();
-  if (!support.awake().empty() || !search.pairs().empty()) {
+  if (!support.awake().empty() || !search.pairs().empty() || !search.guests().empty()) {
     s.guest_bodies.clear();
     for (Guest& guest : search.guests()) {
       guest.resting = tables.resting_of(guest.slot);
@@ -174,6 +178,27 @@ int StatisticalLevel::size(StatisticalModel model) const { return model == Stati
 int StatisticalLevel::asleep_count() const { return impl_->support.asleep_count() + impl_->tables.asleep_count(); }
 std::span<const std::uint32_t> StatisticalLevel::fell_asleep() const { return impl_->fell_asleep; }
 
+void StatisticalLevel::take_woke(std::vector<std::uint32_t>& owners) {
+  impl_->tables.take_woke(owners);
+  impl_->support.take_woke(owners);
+}
+
+void StatisticalLevel::set_gravity(const Vec3& gravity) {
+  impl_->settings.gravity = gravity;
+  impl_->support.set_gravity(gravity);
+  impl_->tables.set_gravity(gravity);
+  impl_->search.set_gravity(gravity);
+  impl_->near_bodies.set_gravity(gravity);
+}
+
+void StatisticalLevel::set_log(ContactLog* log) {
+  impl_->support.set_log(log);
+  impl_->tables.set_log(log);
+  impl_->near_bodies.set_log(log);
+}
+
+void StatisticalLevel::set_threads(int threads) { impl_->search.set_threads(threads); }
+
 void StatisticalLevel::find_awake(std::vector<std::uint32_t>& owners) const {
   for (const std::int32_t slot : impl_->tables.awake()) owners.push_back(impl_->tables.owner(slot));
   for (const std::int32_t slot : impl_->support.awake()) owners.push_back(impl_->support.body(slot).owner);
@@ -195,6 +220,9 @@ double StatisticalLevel::sphere_radius(StatisticalPlace place) const {
 void StatisticalLevel::wake(StatisticalPlace place) {
   impl_->at(place, [&](auto& level) { level.wake(place.slot); });
 }
+void StatisticalLevel::put_to_sleep(StatisticalPlace place) {
+  impl_->at(place, [&](auto& level) { level.put_to_sleep(place.slot); });
+}
 void StatisticalLevel::add_force(StatisticalPlace place, const Vec3& force, const Vec3& torque) {
   impl_->at(place, [&](auto& level) { level.add_force(place.slot, force, torque); });
 }
@@ -202,6 +230,17 @@ double StatisticalLevel::reach() const { return impl_->reach; }
 
 void StatisticalLevel::find_sleepers(const Vec3& center, double reach, std::vector<std::uint32_t>& owners) const {
   impl_->sleepers.find_near(center, reach, [&](StatisticalModel model, std::int32_t slot) { owners.push_back(impl_->owner({model, slot})); });
+}
+
+void StatisticalLevel::archive(StateArchive& a, const std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>& signature_of) {
+  Impl& s = *impl_;
+  s.kinds.archive(a, signature_of);
+  a(s.sleepers, s.support, s.tables, s.search, s.near_bodies, s.fell_asleep, s.reach, s.cost, s.clocked);
+  s.near_bodies.make_room(std::size_t(s.support.size()));
+}
+
+void StatisticalLevel::find_contacts(std::vector<PairContact>& contacts) const {
+  for (const CrowdContact& contact : impl_->near_bodies.contacts()) contacts.push_back(contact.contact);
 }
 
 Activity StatisticalLevel::activity(StatisticalPlace place) const {

@@ -4,16 +4,20 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "lod/body.h"
-#include "lod/ground/static_ground.h"
+#include "lod/contact/pair_contacts.h"
+#include "lod/ground/ground.h"
+#include "lod/statistical/contact_log.h"
 #include "lod/statistical/full_neighbor.h"
 #include "lod/statistical/statistical_settings.h"
 #include "lod/step_report.h"
+#include "reference/state_archive.h"
 #include "signature/signature.h"
 
 namespace lodestone {
@@ -39,7 +43,7 @@ struct StatisticalCost {
 class StatisticalLevel {
  public:
   /// `ground` and `materials` must outlive the level.
-  StatisticalLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials);
+  StatisticalLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials);
   ~StatisticalLevel();
 
   /// Adds a body for `owner` (the manager's index of it). `signature` may be null for `support`, which then rests without settling clips. One that `arrives` from another rung
@@ -62,16 +66,31 @@ class StatisticalLevel {
   void find_awake(std::vector<std::uint32_t>& owners) const;
   /// Owners of those that fell asleep in the last step.
   std::span<const std::uint32_t> fell_asleep() const;
+  /// Appends the owners of those that woke since this was last asked; some may be twice there, or asleep again.
+  void take_woke(std::vector<std::uint32_t>& owners);
+  /// Where steps write down what touches what; null, as at first: nowhere.
+  void set_log(ContactLog* log);
+  /// m/s², from the next step on; wakes nobody.
+  void set_gravity(const Vec3& gravity);
+  /// As many as the jobs run on.
+  void set_threads(int threads);
   RigidState state(StatisticalPlace place) const;
   Vec3 position(StatisticalPlace place) const;
   void set_state(StatisticalPlace place, const RigidState& state);                   ///< wakes it
   bool asleep(StatisticalPlace place) const;
   double sphere_radius(StatisticalPlace place) const;                                ///< m, of the colliding sphere at `tables`; 0 at `support`
   void wake(StatisticalPlace place);
+  void put_to_sleep(StatisticalPlace place);                                         ///< where it is, at once
   void add_force(StatisticalPlace place, const Vec3& force, const Vec3& torque);     ///< over the next step; wakes it
   double reach() const;                                                              ///< m, greatest bounding radius
   /// Appends the owners of sleepers whose bounding sphere meets this one, and perhaps others; `reach` in m.
   void find_sleepers(const Vec3& center, double reach, std::vector<std::uint32_t>& owners) const;
+
+  /// Appends the contacts of the last step in which one of the two bodies met as a hull.
+  void find_contacts(std::vector<PairContact>& contacts) const;
+
+  /// All that its next steps depend on. Where it reads, `signature_of` tells the signatures that bodies had.
+  void archive(StateArchive& a, const std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>& signature_of);
 
   /// What it did in the last step.
   Activity activity(StatisticalPlace place) const;

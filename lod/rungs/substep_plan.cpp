@@ -11,7 +11,7 @@ constexpr double kStride = 0.07;  // over R: how far two bodies may close in in 
 
 bool may_strike_ground(const ContactScene& scene, const StatisticalBody& body, double dt) {
   const double fall = 0.5 * scene.world.gravity_strength() * dt * dt;
-  return std::ranges::any_of(scene.world.ground->planes, [&](const HalfSpace& plane) {
+  return std::ranges::any_of(scene.world.planes, [&](const HalfSpace& plane) {
     return plane.height_of(body.position) - scene.kind_of(body).shape->radius <= fall - std::min(0.0, body.velocity.dot(plane.normal)) * dt;
   });
 }

@@ -45,4 +45,12 @@ inline void advance_flight(StatisticalBody& body, const BodyKind& kind, const Ve
   body.orientation.coeffs() *= 1.5 - 0.5 * body.orientation.squaredNorm();
 }
 
+/// Moves a kinematic body by `time` seconds: steadily, whatever its shape.
+inline void advance_kinematic(StatisticalBody& body, const BodyKind& kind, double time) {
+  const Vec3 omega = angular_velocity(body.orientation, body.spin, *kind.shape);
+  body.position += body.velocity * time;
+  body.orientation = (rotation_from_vector(omega * time) * body.orientation).normalized();
+  body.spin = spin_of(body.orientation, omega, *kind.shape);
+}
+
 }  // namespace lodestone

@@ -6,31 +6,98 @@
 #include "reference/error.h"
 
 namespace lodestone {
+namespace {
 
-std::size_t Kinds::Hash::operator()(const Key& key) const {
-  std::size_t hash = std::hash<const void*>()(key.shape);
-  const auto mix = [&](std::size_t part) { hash = (hash ^ part) * 0x9e3779b97f4a7c15u; };
-  mix(std::hash<const void*>()(key.signature)), mix(std::hash<double>()(key.mass)), mix(std::size_t(key.material));
-  return hash ^ (hash >> 32);
+template <class... Part>
+std::size_t hash_of(const Part&... part) {
+  std::size_t hash = 0;
+  ((hash = (hash ^ std::hash<Part>()(part)) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32), ...);
+  return hash;
 }
 
-std::uint16_t Kinds::find(StatisticalModel model, std::shared_ptr<const Shape> shape, double mass, MaterialId material, std::shared_ptr<const Signature> signature) {
-  const auto [known, fresh] = known_.try_emplace({shape.get(), signature.get(), mass, material}, std::uint16_t(kinds_.size()));
-  if (fresh) {
-    check_that(kinds_.size() < 65535, "at most 65,535 kinds of body");
-    kinds_.push_back(make_body_kind(std::move(shape), std::move(signature), mass, material));
+// With its shape, whose hull it refers to.
+std::shared_ptr<const RestingFaces> make_faces(const std::shared_ptr<const Shape>& shape) {
+  struct Held {
+    std::shared_ptr<const Shape> shape;
+    RestingFaces faces;
+  };
+  const auto held = std::make_shared<const Held>(shape, RestingFaces(shape->hull));
+  return {held, &held->faces};
+}
+
+}  // namespace
+
+std::size_t Kinds::Hash::operator()(const Key& key) const { return hash_of(key.shape, key.signature, key.material); }
+std::size_t Kinds::Hash::operator()(const PartsKey& key) const { return hash_of(key.shape_hash, key.signature); }
+
+std::uint32_t Kinds::take(StatisticalModel model, std::shared_ptr<const Shape> shape, MaterialId material, std::shared_ptr<const Signature> signature) {
+  const auto known = known_.find({shape.get(), signature.get(), material});
+  const std::uint32_t number = known != known_.end() ? known->second : add(make_body_kind(std::move(shape), std::move(signature), material));
+  prepare(model, kinds_[number]);
+  ++uses_[number].bodies;
+  return number;
+}
+
+std::uint32_t Kinds::add(BodyKind kind) {
+  if (free_.empty()) {
+    free_.push_back(std::uint32_t(kinds_.size()));
+    kinds_.emplace_back();
+    uses_.emplace_back();
   }
-  prepare(model, kinds_[known->second]);
-  return known->second;
+  const std::uint32_t number = free_.back();
+  known_.emplace(key_of(kind), number);
+  free_.pop_back();
+  kinds_[number] = std::move(kind);
+  uses_[number].birth = ++births_;
+  return number;
+}
+
+void Kinds::give_back(std::uint32_t number) {
+  check_that(uses_[number].bodies > 0, "a kind that is given back was taken");
+  if (--uses_[number].bodies > 0) return;
+  const PartsKey key = parts_key_of(kinds_[number]);
+  known_.erase(key_of(kinds_[number]));
+  kinds_[number] = {};
+  free_.push_back(number);
+  if (const auto parts = parts_.find(key); parts != parts_.end() && parts->second.clips.expired() && parts->second.faces.expired()) parts_.erase(parts);
+}
+
+void Kinds::archive(StateArchive& a, const SignatureOf& signature_of) {
+  struct Known {
+    std::shared_ptr<const Shape> shape;  // null: a number that no kind has
+    MaterialId material = 0;
+    bool has_signature = false, tables = false, support = false;
+    void archive(StateArchive& b) { b(shape, material, has_signature, tables, support); }
+  };
+  std::vector<Known> known;
+  for (const BodyKind& kind : kinds_) known.push_back({kind.shape, kind.material, kind.signature != nullptr, kind.faces != nullptr, kind.clips != nullptr});
+  a(known, uses_, free_, births_);
+  if (!a.reading()) return;
+  kinds_.assign(known.size(), {});
+  known_.clear();
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const Known& kind = known[i];
+    if (!kind.shape) continue;
+    kinds_[i] = make_body_kind(kind.shape, kind.has_signature ? signature_of(*kind.shape, kind.material) : nullptr, kind.material);
+    known_.emplace(key_of(kinds_[i]), std::uint32_t(i));
+    if (kind.tables) prepare(StatisticalModel::tables, kinds_[i]);
+    if (kind.support) prepare(StatisticalModel::support, kinds_[i]);
+  }
 }
 
 // What only one model asks for is made when its first body comes.
 void Kinds::prepare(StatisticalModel model, BodyKind& kind) {
   if (model == StatisticalModel::tables) {
     check_that(kind.signature != nullptr, "the tables model needs a signature");
-    if (!kind.faces && !kind.shape->sphere_radius) kind.faces = std::make_shared<const RestingFaces>(kind.shape->hull);
-  } else if (kind.signature && kind.clips.empty()) {
-    kind.clips = ClipIndex(*kind.signature, kind.shape->inertia_per_mass / (kind.shape->radius * kind.shape->radius), kGreatestClipDistance);
+    if (kind.faces || kind.shape->sphere_radius) return;
+    std::weak_ptr<const RestingFaces>& known = parts_[parts_key_of(kind)].faces;
+    kind.faces = known.lock();
+    if (!kind.faces) known = kind.faces = make_faces(kind.shape);
+  } else if (kind.signature && !kind.clips) {
+    std::weak_ptr<const ClipIndex>& known = parts_[parts_key_of(kind)].clips;
+    kind.clips = known.lock();
+    const double radius = kind.shape->radius;
+    if (!kind.clips) known = kind.clips = std::make_shared<const ClipIndex>(*kind.signature, kind.shape->inertia_per_mass / (radius * radius), kGreatestClipDistance);
   }
 }
 

@@ -1,29 +1,44 @@
 // When a body sleeps and what wakes it, on either statistical rung (section 3.4's second threshold). Among other bodies: slower than .05 m/s at R = .2 m, scaled with √R,
-// for .1 s. Alone a body may still rock slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s.
+// for .1 s. Alone a body may still rock slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s. Other thresholds
+// (SleepThresholds) scale all of these alike.
 #pragma once
 
 #include <cmath>
 
-namespace lodestone::rest_law {
+#include "lod/body.h"
 
-inline constexpr double kSleepSpeed = 0.05, kSleepSpeedRadius = 0.2;  // m/s, m
-inline constexpr float kSleepTime = 0.1f;                             // s, among others
-inline constexpr double kAloneSleepEnergy = 2.5e-4;                   // J/kg over g R
-inline constexpr float kAloneSleepTime = 0.5f;                        // s
-inline constexpr double kLeaningTime = 0.19;                          // s: a body that touched another so lately still leans on it, though a hair apart
-inline constexpr double kWakeFactor = 2.0;                            // a sleeper wakes when touched faster than this times its sleeping speed
+namespace lodestone {
 
-/// m/s.
-inline double sleep_speed(double radius) { return kSleepSpeed * std::sqrt(radius / kSleepSpeedRadius); }
-inline double wake_speed(double radius) { return kWakeFactor * sleep_speed(radius); }
+class RestLaw {
+ public:
+  static constexpr double kSleepSpeedRadius = 0.2;      // m
+  static constexpr double kAloneSleepEnergy = 2.5e-4;   // J/kg over g R
+  static constexpr double kAloneSleepTime = 5.0;        // of the time among others
+  static constexpr double kLeaningTime = 0.19;          // s: a body that touched another so lately still leans on it, though a hair apart
+  static constexpr double kWakeFactor = 2.0;            // a sleeper wakes when touched faster than this times its sleeping speed
 
-/// J/kg: with more kinetic energy a body is not still. `gravity` in m/s².
-inline double still_energy(bool among_others, double radius, double gravity) {
-  const double speed = sleep_speed(radius);
-  return among_others ? 0.5 * speed * speed : kAloneSleepEnergy * gravity * radius;
-}
+  explicit RestLaw(const SleepThresholds& thresholds = {})
+      : speed_(thresholds.speed), alone_energy_(kAloneSleepEnergy * square(thresholds.speed / SleepThresholds{}.speed)), time_(float(thresholds.time)),
+        alone_time_(float(kAloneSleepTime * thresholds.time)) {}
 
-/// s: so long it must have been still.
-inline float still_time(bool among_others) { return among_others ? kSleepTime : kAloneSleepTime; }
+  /// m/s.
+  double sleep_speed(double radius) const { return speed_ * std::sqrt(radius / kSleepSpeedRadius); }
+  double wake_speed(double radius) const { return kWakeFactor * sleep_speed(radius); }
 
-}  // namespace lodestone::rest_law
+  /// J/kg: with more kinetic energy a body is not still. `gravity` in m/s².
+  double still_energy(bool among_others, double radius, double gravity) const {
+    const double speed = sleep_speed(radius);
+    return among_others ? 0.5 * speed * speed : alone_energy_ * gravity * radius;
+  }
+
+  /// s: so long it must have been still.
+  float still_time(bool among_others) const { return among_others ? time_ : alone_time_; }
+
+ private:
+  static double square(double x) { return x * x; }
+  double speed_;         // m/s, at kSleepSpeedRadius
+  double alone_energy_;  // J/kg over g R
+  float time_, alone_time_;
+};
+
+}  // namespace lodestone

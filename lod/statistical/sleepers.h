@@ -5,6 +5,7 @@
 
 #include "lod/body.h"
 #include "lod/broad_phase/still_grid.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -13,6 +14,7 @@ class Sleepers {
   StillGrid& of(StatisticalModel model) { return grids_[std::size_t(model)]; }
   const StillGrid& of(StatisticalModel model) const { return grids_[std::size_t(model)]; }
   bool empty() const { return grids_[0].empty() && grids_[1].empty(); }
+  void archive(StateArchive& a) { a(grids_[0], grids_[1]); }
   std::size_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
 
   /// Calls found(model, slot) for those whose ball may meet this one, and for some a cell beyond.

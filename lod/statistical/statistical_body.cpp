@@ -6,7 +6,7 @@
 
 namespace lodestone {
 
-BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature, double mass, MaterialId material) {
+BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature, MaterialId material) {
   BodyKind kind;
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(shape->inverse_inertia_per_mass);
   Mat3 axes = principal.eigenvectors();
@@ -17,7 +17,6 @@ BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<cons
   kind.isotropic = kind.inverse_moments[2] - kind.inverse_moments[0] < 1e-9 * kind.inverse_moments[2];
   kind.shape = std::move(shape);
   kind.signature = std::move(signature);
-  kind.mass = mass;
   kind.material = material;
   return kind;
 }

@@ -15,13 +15,12 @@ namespace lodestone {
 /// How far from a body an entry of a clip may be for the body to join there (ClipIndex::find_nearest).
 inline constexpr float kGreatestClipDistance = 0.1f;
 
-/// What all bodies of one shape, mass and material share.
+/// What all bodies of one shape and material share.
 struct BodyKind {
   std::shared_ptr<const Shape> shape;
   std::shared_ptr<const Signature> signature;  ///< may be null (support model)
-  ClipIndex clips;                             ///< of the signature's settling clips (support model)
+  std::shared_ptr<const ClipIndex> clips;      ///< of the signature's settling clips (support model); none without a signature
   std::shared_ptr<const RestingFaces> faces;   ///< on which it can stand (tables model); none for a sphere
-  double mass = 1.0;                           ///< kg
   MaterialId material = 0;
   bool isotropic = false;                      ///< a sphere or a cube: rotates steadily
   Quat principal_axes = Quat::Identity();      ///< take principal axes of inertia to body axes
@@ -30,7 +29,7 @@ struct BodyKind {
 };
 
 /// With what follows from the shape's inertia.
-BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature = nullptr, double mass = 1.0, MaterialId material = 0);
+BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature = nullptr, MaterialId material = 0);
 
 enum class Motion : std::uint8_t {
   dynamic,   ///< flies and collides
@@ -43,13 +42,14 @@ struct StatisticalBody {
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();
   Vec3 spin = Vec3::Zero();             ///< angular momentum over mass, m²/s, world frame: what free flight conserves
+  double mass = 1.0;                    ///< kg
   float sphere_radius = 0.0f;           ///< m, `tables`: of the colliding sphere; 0 for a body of `support`
   float quiet_time = 0.0f;              ///< s spent below the sleeping threshold
   std::int32_t support_hint = 0;        ///< hull vertex last found lowest: where the next climb starts
   std::int32_t settling = -1;           ///< index of the settling record (clip or rest pose) while Motion::settling
   std::uint32_t owner = 0;
   std::uint32_t events = 0;             ///< collisions so far: keys the random draws
-  std::uint16_t kind = 0;
+  std::uint32_t kind = 0;
   Motion motion = Motion::dynamic;
   bool crowded = false;                 ///< touches another body in this step
   float since_crowded = 1e9f;           ///< s since it last did

@@ -1,8 +1,12 @@
 // How the statistical bodies of a world are simulated.
 #pragma once
 
+#include <functional>
+
+#include "lod/body.h"
 #include "lod/jobs.h"
 #include "lod/simd/wide_loop.h"
+#include "lod/statistical/own_properties.h"
 #include "lod/tables_options.h"
 #include "reference/geometry.h"
 
@@ -15,6 +19,9 @@ struct StatisticalSettings {
   JobRunner jobs = {};        ///< empty: oneTBB's on so many threads
   TablesOptions tables = {};
   bool sleeping = true;
+  SleepThresholds sleep = {};
+  const OwnProperties* properties = nullptr;  ///< of bodies at `support` and of full ones, by owner; those at `tables` have none. Null: nobody has any. Must outlive the level
+  std::function<bool(std::uint32_t, std::uint32_t)> pair_filter = {};  ///< of two owners: whether they may meet; empty: all do. Called from several threads
   Simd simd = find_simd();    ///< the results do not depend on it
 };
 

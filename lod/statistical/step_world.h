@@ -1,7 +1,11 @@
 // What both models need to move one body that touches no other: the world it moves in, and what happened to it.
 #pragma once
 
-#include "lod/ground/static_ground.h"
+#include <span>
+
+#include "lod/ground/half_space.h"
+#include "lod/statistical/contact_log.h"
+#include "lod/statistical/own_properties.h"
 #include "lod/statistical/statistical_body.h"
 
 namespace lodestone {
@@ -9,10 +13,17 @@ namespace lodestone {
 /// Constant over a step.
 struct StepWorld {
   Vec3 gravity{0, 0, -9.81};
-  const StaticGround* ground = nullptr;
+  std::span<const HalfSpace> planes = {};
   const MaterialTable* materials = nullptr;
   std::uint64_t seed = 1;
+  const OwnProperties* properties = nullptr;  ///< null: nobody has any
+  ContactLog* log = nullptr;      ///< null: nobody asked
   double bounce_velocity = 0.05;  ///< m/s, ODE's: slower contacts do not bounce
+
+  const BodyProperties& properties_of(std::uint32_t owner) const {
+    static const BodyProperties usual;
+    return properties ? properties->of(owner) : usual;
+  }
 
   ContactLaw law(const BodyKind& kind, const HalfSpace& plane) const { return materials->law(kind.material, plane.material); }
   double gravity_strength() const { return gravity.norm(); }

@@ -46,7 +46,7 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
                         (to_body * omega * (radius / speed_unit)).cast<float>(), float(kinetic / (gravity * radius) + height / radius)};
   const auto energy = float(kinetic / (gravity * radius));
   const float distance = std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);
-  const std::optional<ClipEntry> entry = kind.clips.find_nearest(key, settings.energy_slack, distance);
+  const std::optional<ClipEntry> entry = kind.clips->find_nearest(key, settings.energy_slack, distance);
   if (!entry) return {};
 
   ClipPlayback p;

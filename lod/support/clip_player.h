@@ -1,7 +1,7 @@
 // Plays a settling clip for a body: how `support` brings a body to rest on a horizontal plane.
 #pragma once
 
-#include "lod/ground/static_ground.h"
+#include "lod/ground/ground.h"
 #include "lod/statistical/statistical_body.h"
 #include "signature/settling_clips.h"
 

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "lod/contact/hull_contacts.h"
 #include "lod/statistical/parting.h"
-#include "lod/statistical/rest_law.h"
 #include "lod/support/support_level.h"
 
 namespace lodestone {
@@ -22,23 +22,45 @@ void SupportLevel::wake(int slot) {
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
   if (!is_guest(slot)) {
-    if (!lies_still_[std::size_t(slot)]) return;  // put to sleep in this very step, and still among the awake
+    if (!lies_still(slot)) return;  // put to sleep in this very step, and still among the awake
     take_from_still(slot);
+    woke_.push_back(body.owner);
+    add_awake(slot);
+  } else {
+    awake_.push_back(slot);
   }
-  awake_.push_back(slot);
   woken_ = true;
+}
+
+void SupportLevel::put_to_sleep(int slot) {
+  if (asleep(slot)) return;
+  put_to_sleep(bodies_[std::size_t(slot)]);
+  if (angular_velocity_given_[std::size_t(slot)]) std::erase(given_, slot);
+  angular_velocity_given_[std::size_t(slot)].reset();
+  std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
+  drop_awake(slot);
+  lay_still(slot);
+}
+
+void SupportLevel::set_gravity(const Vec3& gravity) {
+  settings_.gravity = gravity;
+  for (const std::int32_t slot : awake_)
+    if (StatisticalBody& body = bodies_[std::size_t(slot)]; body.motion == Motion::settling) body.motion = Motion::dynamic;
+}
+
+void SupportLevel::take_woke(std::vector<std::uint32_t>& owners) {
+  owners.insert(owners.end(), woke_.begin(), woke_.end());
+  woke_.clear();
 }
 
 void SupportLevel::lay_still(std::int32_t slot) {
   const StatisticalBody& b = body(slot);
   sleepers_.of(StatisticalModel::support).insert(std::uint32_t(slot), b.position, kind_of(b).shape->radius);
-  lies_still_[std::size_t(slot)] = 1;
 }
 
 void SupportLevel::take_from_still(std::int32_t slot) {
   const StatisticalBody& b = body(slot);
   sleepers_.of(StatisticalModel::support).remove(std::uint32_t(slot), b.position, kind_of(b).shape->radius);
-  lies_still_[std::size_t(slot)] = 0;
 }
 
 void SupportLevel::put_to_sleep(StatisticalBody& body) const {
@@ -47,15 +69,16 @@ void SupportLevel::put_to_sleep(StatisticalBody& body) const {
   body.spin.setZero();
 }
 
-// Awake slots stay in order, so that the result of a step does not depend on the history of sleeping.
 void SupportLevel::end_step() {
   const auto first_asleep = std::stable_partition(awake_.begin(), awake_.end(), [this](std::int32_t slot) { return !asleep(slot); });
   std::for_each(first_asleep, awake_.end(), [this](std::int32_t slot) {
+    place_awake_[std::size_t(slot)] = -1;
     lay_still(slot);
     fell_asleep_.push_back(body(slot).owner);
   });
   awake_.erase(first_asleep, awake_.end());
-  if (!std::is_sorted(awake_.begin(), awake_.end())) std::sort(awake_.begin(), awake_.end());
+  awake_in_order_ = false;
+  put_awake_in_order();
 }
 
 /// `energy`: kinetic over mass, J/kg.
@@ -79,16 +102,31 @@ void SupportLevel::recover(StatisticalBody& body, const Vec3& last_place, Contac
 void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally) {
   StatisticalBody& body = bodies_[std::size_t(slot)];
   const BodyKind& kind = kind_of(body);
-  const bool among_others = body.crowded || double(body.since_crowded) < rest_law::kLeaningTime;
+  const bool among_others = body.crowded || double(body.since_crowded) < RestLaw::kLeaningTime;
   body.since_crowded = body.crowded ? 0.0f : body.since_crowded + float(time);
   const bool parts = body.eased == kEasedTime;  // from what it overlaps since it came: it is not at rest, though it has no velocity
   body.eased = std::max(0.0f, body.eased - float(time));
+  const BodyProperties& own = properties_of(body);
+  govern(body, own, time);
   const double energy = kinetic_energy(body, *kind.shape);
   if (!is_sound(body, energy)) recover(body, last_places_[std::size_t(slot)], tally);
-  const bool still = !parts && energy < rest_law::still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
+  const bool still = !parts && energy < rest_law_.still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
   body.quiet_time = still ? body.quiet_time + float(time) : 0.0f;
-  if (!settings_.sleeping || body.quiet_time < rest_law::still_time(among_others)) return;
+  if (own.kinematic) {  // moved by nothing else: without a velocity it is at rest
+    if (settings_.sleeping && own.allow_sleep && energy == 0.0) put_to_sleep(body);
+    return;
+  }
+  if (!settings_.sleeping || !own.allow_sleep || body.quiet_time < rest_law_.still_time(among_others)) return;
   if (among_others || stands_firmly(body, faces)) put_to_sleep(body);
+}
+
+void SupportLevel::govern(StatisticalBody& body, const BodyProperties& own, double time) const {
+  if (own.kinematic) return;
+  if (own.linear_damping > 0.0) body.velocity *= std::exp(-own.linear_damping * time);
+  if (own.angular_damping > 0.0) body.spin *= std::exp(-own.angular_damping * time);
+  if (own.max_angular_speed == std::numeric_limits<double>::infinity()) return;
+  const double speed = angular_velocity(body.orientation, body.spin, *kind_of(body).shape).norm();
+  if (speed > own.max_angular_speed) body.spin *= own.max_angular_speed / speed;
 }
 
 // On three vertices at least: on an edge a body may balance for a while, but not for good.
@@ -104,7 +142,7 @@ bool SupportLevel::stands_firmly(const StatisticalBody& body, std::span<const Ha
     const HullContacts low = find_hull_contacts(shape, body.orientation, plane.normal, height, margin, hint);
     for (int i = 0; i < low.count; ++i) vertices += low.contact[std::size_t(i)].gap < margin;
   };
-  for (const HalfSpace& plane : ground_.planes) count_on(plane);
+  for (const HalfSpace& plane : ground_.planes()) count_on(plane);
   for (const HalfSpace& face : faces) count_on(face);
   return vertices >= 3;
 }

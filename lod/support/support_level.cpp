@@ -6,22 +6,10 @@
 #include "reference/error.h"
 
 namespace lodestone {
-namespace {
-
-// Drops `gone` from a list in order, and where `last`, the greatest of all, is in it, puts `gone` there instead.
-void rename_in_order(std::vector<std::int32_t>& list, std::int32_t last, std::int32_t gone) {
-  const auto place = std::ranges::lower_bound(list, gone);
-  if (place != list.end() && *place == gone) list.erase(place);
-  if (list.empty() || list.back() != last) return;
-  list.pop_back();
-  list.insert(std::ranges::lower_bound(list, gone), gone);
-}
-
-}  // namespace
-
-int SupportLevel::add(std::uint32_t owner, std::uint16_t kind, const RigidState& state, bool asleep, bool eased) {
+int SupportLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep, bool eased) {
   StatisticalBody body;
   body.kind = kind;
+  body.mass = mass;
   body.owner = owner;
   body.eased = eased ? kEasedTime : 0.0f;
   const int slot = size();
@@ -29,42 +17,73 @@ int SupportLevel::add(std::uint32_t owner, std::uint16_t kind, const RigidState&
   clips_.emplace_back();
   last_places_.push_back(state.position.allFinite() ? state.position : Vec3(Vec3::Zero()));
   angular_velocity_given_.emplace_back();
-  lies_still_.push_back(0);
-  awake_.push_back(slot);
+  place_awake_.push_back(-1);
+  add_awake(slot);
   set_state(slot, state);
   if (asleep) {
     put_to_sleep(bodies_[std::size_t(slot)]);
     angular_velocity_given_[std::size_t(slot)].reset();
-    given_.pop_back();
+    drop_awake(slot);
     lay_still(slot);
-    awake_.pop_back();
   }
   return slot;
 }
 
 std::optional<std::uint32_t> SupportLevel::remove(int slot) {
   check_that(slot >= 0 && slot < size(), "slot out of range");
-  const auto at = std::size_t(slot);
-  if (lies_still_[at]) take_from_still(slot);
-  std::ranges::sort(awake_);
   const int last = size() - 1;
-  const auto at_last = std::size_t(last);
-  const bool last_lies = slot != last && lies_still_[at_last];
+  const auto at = std::size_t(slot), at_last = std::size_t(last);
+  if (lies_still(slot)) take_from_still(slot);
+  else drop_awake(slot);
+  const bool last_lies = slot != last && lies_still(last);
   if (last_lies) take_from_still(last);
-  rename_in_order(awake_, last, slot);
   std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
   for (Push& push : pushes_)
     if (push.slot == last) push.slot = slot;
-  // The list of these holds each slot once, so that it does not grow while bodies come and go between steps.
-  if (angular_velocity_given_[at]) std::erase(given_, slot);
-  if (slot != last && angular_velocity_given_[at_last]) std::ranges::replace(given_, last, slot);
+  const bool last_given = slot != last && angular_velocity_given_[at_last];
   const auto fill_gap = [&](auto& array) {
     array[at] = array[at_last];
     array.pop_back();
   };
-  fill_gap(bodies_), fill_gap(clips_), fill_gap(last_places_), fill_gap(angular_velocity_given_), fill_gap(lies_still_);
+  fill_gap(bodies_), fill_gap(clips_), fill_gap(last_places_), fill_gap(angular_velocity_given_), fill_gap(place_awake_);
+  if (slot == last) return {};
+  if (last_given) note_given(slot);
   if (last_lies) lay_still(slot);
-  return slot == last ? std::nullopt : std::optional(bodies_[at].owner);
+  else awake_[std::size_t(place_awake_[at])] = slot, awake_in_order_ = false;
+  return bodies_[at].owner;
+}
+
+void SupportLevel::add_awake(std::int32_t slot) {
+  place_awake_[std::size_t(slot)] = std::int32_t(awake_.size());
+  awake_in_order_ = awake_in_order_ && (awake_.empty() || awake_.back() < slot);
+  awake_.push_back(slot);
+}
+
+// The last of the list takes its place there.
+void SupportLevel::drop_awake(std::int32_t slot) {
+  const std::int32_t place = std::exchange(place_awake_[std::size_t(slot)], -1), moved = awake_.back();
+  awake_.pop_back();
+  if (moved == slot) return;
+  awake_[std::size_t(place)] = moved;
+  place_awake_[std::size_t(moved)] = place;
+  awake_in_order_ = false;
+}
+
+// So that the result of a step does not depend on who slept, or was removed, before.
+void SupportLevel::put_awake_in_order() {
+  if (awake_in_order_) return;
+  if (!std::ranges::is_sorted(awake_)) std::ranges::sort(awake_);
+  for (std::size_t i = 0; i < awake_.size(); ++i) place_awake_[std::size_t(awake_[i])] = std::int32_t(i);
+  awake_in_order_ = true;
+}
+
+// The list of these may hold slots that are none any more, but does not grow while bodies come and go between steps.
+void SupportLevel::note_given(std::int32_t slot) {
+  given_.push_back(slot);
+  if (given_.size() < 2 * bodies_.size() + 64) return;
+  std::ranges::sort(given_);
+  given_.erase(std::unique(given_.begin(), given_.end()), given_.end());
+  std::erase_if(given_, [this](std::int32_t listed) { return listed >= size() || !angular_velocity_given_[std::size_t(listed)]; });
 }
 
 RigidState SupportLevel::state(int slot) const {
@@ -81,8 +100,9 @@ void SupportLevel::set_state(int slot, const RigidState& state) {
   body.orientation = state.orientation;
   body.velocity = state.velocity;
   body.spin = spin_of(state.orientation, state.angular_velocity, *kind_of(body).shape);
-  if (!angular_velocity_given_[std::size_t(slot)]) given_.push_back(slot);
+  const bool given_before = angular_velocity_given_[std::size_t(slot)].has_value();
   angular_velocity_given_[std::size_t(slot)] = state.angular_velocity;
+  if (!given_before) note_given(slot);
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
   // What no level can hold is mended, and counted, before the next step looks at it.
@@ -101,9 +121,10 @@ void SupportLevel::begin_step(double dt, ContactTally& tally) {
   given_.clear();
   fell_asleep_.clear();
   woken_ = false;
+  put_awake_in_order();
   for (const auto& [slot, force, torque] : pushes_) {
     StatisticalBody& body = bodies_[std::size_t(slot)];
-    const double impulse = dt / kind_of(body).mass;
+    const double impulse = dt / body.mass;
     body.velocity += impulse * force;
     body.spin += impulse * torque;
     if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape))) recover(body, last_places_[std::size_t(slot)], tally);

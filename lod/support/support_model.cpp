@@ -20,11 +20,11 @@ struct LowestPoint {
 };
 
 // The lowest point over the plane it is nearest to (or deepest in); planes out of reach are not looked at.
-LowestPoint find_lowest(StatisticalBody& body, const BodyKind& kind, const StaticGround& ground) {
+LowestPoint find_lowest(StatisticalBody& body, const BodyKind& kind, std::span<const HalfSpace> planes) {
   LowestPoint lowest;
   lowest.contact.gap = 1e300;
-  for (int i = 0; i < int(ground.planes.size()); ++i) {
-    const HalfSpace& plane = ground.planes[i];
+  for (int i = 0; i < int(planes.size()); ++i) {
+    const HalfSpace& plane = planes[std::size_t(i)];
     const double height = plane.height_of(body.position);
     if (height > kind.shape->radius || height - kind.shape->radius > lowest.contact.gap) continue;
     const HullContact contact = find_lowest_point(*kind.shape, body.orientation, plane.normal, height, body.support_hint);
@@ -54,7 +54,7 @@ Impact find_impact(const StatisticalBody& start, const StatisticalBody& end, con
     const double fraction = i < 2 || gap_before <= 0.0 ? 0.5 : std::clamp(gap_before / (gap_before - gap_after), 0.1, 0.9);
     Impact middle{before.time + fraction * (after.time - before.time), start, {}};
     advance_flight(middle.body, kind, world.gravity, middle.time);
-    middle.lowest = find_lowest(middle.body, kind, *world.ground);
+    middle.lowest = find_lowest(middle.body, kind, world.planes);
     if (middle.lowest.contact.gap < 0.0) {
       gap_after = middle.lowest.contact.gap;
       after = middle;
@@ -130,19 +130,27 @@ struct HeldVertices {
   }
 };
 
+// Of impulses over mass.
+void write_touch(const StatisticalBody& body, const StepWorld& world, int plane, const Vec3& arm, double approach, double impulse) {
+  const HalfSpace& ground = world.planes[std::size_t(plane)];
+  world.log->add({.first = body.owner, .ground = ground.id, .ground_material = ground.material, .point = body.position + arm, .normal = ground.normal, .impulse = body.mass * impulse, .approach = std::max(0.0, approach)});
+}
+
 // One step of sliding, rolling or rocking: gravity, every vertex near the ground held or bounced at once, then motion.
 void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time, const SupportSettings& settings,
                   HeldVertices& held, ContactTally& tally) {
   const Shape& shape = *kind.shape;
+  const StatisticalBody at_first = body;
   body.velocity += world.gravity * time;
   std::array<SolverBody, 1> bodies{SolverBody{body.velocity, angular_velocity(body.orientation, body.spin, shape), 1.0,
                                               inverse_inertia_world(body.orientation, shape)}};
   std::array<SolverContact, 3 * kMaxGroundContacts> contacts;
   std::array<std::int32_t, 3 * kMaxGroundContacts> vertices;
+  std::array<int, 3 * kMaxGroundContacts> planes;
   int count = 0;
   double deepest = 0.0;
-  for (int i = 0; i < int(world.ground->planes.size()) && count + kMaxGroundContacts <= int(contacts.size()); ++i) {
-    const HalfSpace& plane = world.ground->planes[i];
+  for (int i = 0; i < int(world.planes.size()) && count + kMaxGroundContacts <= int(contacts.size()); ++i) {
+    const HalfSpace& plane = world.planes[i];
     const double height = plane.height_of(body.position);
     const double margin = settings.contact_margin * shape.radius + (body.velocity.norm() + bodies[0].angular_velocity.norm() * shape.radius) * time;
     if (height > shape.radius + margin) continue;
@@ -156,6 +164,7 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
       c.law = world.law(kind, plane);
       c.guess = held.find(found.contact[k].vertex);
       vertices[count - 1] = found.contact[k].vertex;
+      planes[count - 1] = i;
       deepest = std::min(deepest, c.gap);
       tally.touched_plane = i;
     }
@@ -171,13 +180,15 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
       const Vec3 impulse = impulse_of(contacts[k]);
       body.spin += contacts[k].arm_first.cross(impulse);
       held.impulse[k] = {vertices[k], contacts[k].bounces ? Vec3::Zero() : impulse};
+      if (world.log && contacts[k].impulse[0] > 0.0)
+        write_touch(at_first, world, planes[k], contacts[k].arm_first, -velocity_at(at_first, kind, contacts[k].arm_first).dot(contacts[k].normal), contacts[k].impulse[0]);
     }
     if (bounces) clamp_energy(before, body, shape, tally);
     tally.contacts += count;
   }
   held.count = count;
   body.position += body.velocity * time;
-  if (deepest < 0.0 && body.eased <= 0.0f) body.position += push_out_overlap(deepest, shape.radius) * world.ground->planes[tally.touched_plane].normal;
+  if (deepest < 0.0 && body.eased <= 0.0f) body.position += push_out_overlap(deepest, shape.radius) * world.planes[tally.touched_plane].normal;
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
 }
 
@@ -189,23 +200,24 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
   for (int hit = 0; hit < settings.max_impacts && left > 0.0; ++hit) {
     StatisticalBody end = body;
     advance_flight(end, kind, world.gravity, left);
-    const LowestPoint lowest = find_lowest(end, kind, *world.ground);
+    const LowestPoint lowest = find_lowest(end, kind, world.planes);
     if (lowest.plane < 0 || lowest.contact.gap >= 0.0) {
       body = end;
       return tally;
     }
-    if (touches_already(body, kind, world.ground->planes[lowest.plane], end.support_hint, world.bounce_velocity)) {
+    if (touches_already(body, kind, world.planes[lowest.plane], end.support_hint, world.bounce_velocity)) {
       body.support_hint = end.support_hint;
       break;
     }
     const Impact impact = find_impact(body, end, lowest, kind, world, left);
-    const HalfSpace& plane = world.ground->planes[impact.lowest.plane];
+    const HalfSpace& plane = world.planes[impact.lowest.plane];
     const double approach = velocity_at(impact.body, kind, impact.lowest.contact.arm).dot(plane.normal);
     if (approach > -world.bounce_velocity) break;  // not a bounce: it stays in contact
     body = impact.body;
     left -= impact.time;
     respond(body, kind, impact.lowest.contact, plane, world.law(kind, plane), world.gravity_strength(), settings);
     clamp_energy(impact.body, body, *kind.shape, tally);
+    if (world.log) write_touch(body, world, impact.lowest.plane, impact.lowest.contact.arm, -approach, (body.velocity - impact.body.velocity).dot(plane.normal));
     tally.touched_plane = impact.lowest.plane;
     ++tally.contacts;
   }
@@ -214,7 +226,7 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
     const int steps = std::clamp(int(std::ceil(left / longest)), 1, 32);
     HeldVertices held;
     for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, held, tally);
-    if (tally.touched_plane >= 0) lift_out(body, *kind.shape, world.ground->planes[tally.touched_plane], lift_of(body, *kind.shape, world.gravity_strength(), left));
+    if (tally.touched_plane >= 0) lift_out(body, *kind.shape, world.planes[tally.touched_plane], lift_of(body, *kind.shape, world.gravity_strength(), left));
   }
   return tally;
 }

@@ -21,7 +21,7 @@ struct TouchLoop {
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     const double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data(), *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data();
     const float *radius = spheres.radius.data(), *size = kinds.radius.data();
-    const std::uint16_t* kind = spheres.kind.data();
+    [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
     alignas(64) float bx[kChunk]{}, by[kChunk]{}, bz[kChunk]{}, ux[kChunk]{}, uy[kChunk]{}, uz[kChunk]{}, sum[kChunk]{}, limit[kChunk]{};
     alignas(64) float nx[kChunk], ny[kChunk], nz[kChunk], gap[kChunk], closing[kChunk];
     alignas(64) std::int32_t touches[kChunk];
@@ -75,8 +75,9 @@ struct SweepContacts {
     float* gives = impulse;
     const Row *p = step.p.data(), *u = step.u.data();
     Row *added = step.a.data(), *turned_by = step.s.data(), *pushed = step.d.data();
-    const float *inverse_mass = kinds.inverse_mass.data(), *size_of = kinds.radius.data(), *radius = spheres.radius.data();
-    const std::uint16_t* kind = spheres.kind.data();
+    const double* inverse_mass = spheres.inverse_mass.data();
+    const float *size_of = kinds.radius.data(), *radius = spheres.radius.data();
+    [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
     const float per_time = 1.0f / c.time, bounce = settings.bounce_velocity, slop = settings.contact.slop, push_out = settings.contact.push_out;
     [[maybe_unused]] const float parting = settings.contact.parting * square_root(most(1.0f, c.gravity)) * c.time;  // m over √m
     const float only_restitution = float(settings.only_law.restitution), only_friction = float(settings.only_law.friction);
@@ -87,9 +88,9 @@ struct SweepContacts {
       const std::int64_t n = std::min(kChunk, end - chunk);
       for (std::int64_t i = 0; i < n; ++i) {
         const std::uint32_t a = first[chunk + i], other = second[chunk + i], b = std::min(other, awake);
-        const std::size_t ka = OneKind ? 0 : kind[a], kb = OneKind ? 0 : kind[other];
-        const RowLanes of_a = RowLanes{1.0f, 1.0f, 1.0f, inverse_mass[ka]} * lanes_of(p[a]);
-        const RowLanes of_b = RowLanes{-1.0f, -1.0f, -1.0f, inverse_mass[kb]} * lanes_of(p[b]);
+        [[maybe_unused]] const std::size_t ka = OneKind ? 0 : kind[a], kb = OneKind ? 0 : kind[other];
+        const RowLanes of_a = RowLanes{1.0f, 1.0f, 1.0f, float(inverse_mass[OneKind ? 0 : a])} * lanes_of(p[a]);
+        const RowLanes of_b = RowLanes{-1.0f, -1.0f, -1.0f, float(inverse_mass[OneKind ? 0 : other])} * lanes_of(p[b]);
         relative[i] = row_of(of_a + of_b);
         if constexpr (Last) turning[i] = row_of(only_w(of_a) * lanes_of(u[a]) + only_w(of_b) * lanes_of(u[b]));
         if constexpr (Last && (Eased || !OneKind)) size[i] = least(size_of[ka], size_of[kb]);
@@ -124,7 +125,7 @@ struct SweepContacts {
       }
       for (std::int64_t i = 0; i < n; ++i) {
         const std::uint32_t a = first[chunk + i], other = second[chunk + i], b = std::min(other, awake);
-        const float wa = inverse_mass[OneKind ? 0 : kind[a]], wb = inverse_mass[OneKind ? 0 : kind[other]];
+        const auto wa = float(inverse_mass[OneKind ? 0 : a]), wb = float(inverse_mass[OneKind ? 0 : other]);
         const RowLanes sum = lanes_of(given[i]);
         add_to(added[a], wa * sum);
         add_to(added[b], -wb * sum);

@@ -90,6 +90,7 @@ void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, cons
     BallPairs& pairs = empty_pairs();
     grid.find_pairs(i, pairs);
     if (others) set_apart(pairs, std::uint32_t(spheres.awake), (*others)[std::size_t(i)]);
+    if (pair_filter_) pairs.filter([&](std::uint32_t first, std::uint32_t second) { return pair_filter_(spheres.owner[first], spheres.owner[second]); });
     ContactArrays& arrays = take_arrays();
     parts_[std::size_t(i)].run = find_touching(pairs, spheres, kinds, constants, settings_.touching, simd, arrays);
     recall(spheres, bounce_velocity, constants, parts_[std::size_t(i)].run);
@@ -172,8 +173,8 @@ void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, con
       const std::uint32_t a = c.first[i], b = c.second[i];
       const float impulse = c.impulse[i];
       const RowLanes normal{c.nx[i], c.ny[i], c.nz[i], 0.0f}, one{0.0f, 0.0f, 0.0f, 1.0f};
-      add_to(step.p[a], impulse * kinds.inverse_mass[spheres.kind[a]] * normal + one);
-      if (b < awake) add_to(step.p[b], -impulse * kinds.inverse_mass[spheres.kind[b]] * normal + one);
+      add_to(step.p[a], impulse * float(spheres.inverse_mass[a]) * normal + one);
+      if (b < awake) add_to(step.p[b], -impulse * float(spheres.inverse_mass[b]) * normal + one);
     }
   });
 }

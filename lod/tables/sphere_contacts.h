@@ -5,6 +5,7 @@
 
 #include <array>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "lod/jobs.h"
 #include "lod/broad_phase/cell_grid.h"
 #include "lod/tables/sphere_motion.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -48,6 +50,7 @@ struct ContactRun {
 struct SphereContact {
   std::uint32_t first, second;
   float nx, ny, nz, gap, closing;
+  float impulse;                             // N s
 };
 
 /// One of a body's contacts of the last step.
@@ -75,6 +78,8 @@ class SphereContacts {
   /// Where the grid holds other balls behind the spheres, pairs with those go to `others`, part by part.
   void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity, const StepConstants& constants, Simd simd,
             const JobRunner& jobs, std::vector<BallPairs>* others);
+  /// Of two owners: whether they may meet; empty: all. Called from several threads.
+  void set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter) { pair_filter_ = std::move(filter); }
   /// More, where the two touch: of an awake body with any other.
   void add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, float bounce_velocity,
            const StepConstants& constants, Simd simd);
@@ -86,6 +91,7 @@ class SphereContacts {
   void sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants, bool last,
              bool eased, Simd simd, SphereStep& step, const JobRunner& jobs);
 
+  void archive(StateArchive& a) { a(known_, known_apart_); }
   const SphereContactSettings& settings() const { return settings_; }
   std::int64_t count() const;
   std::size_t bytes() const;
@@ -105,7 +111,7 @@ class SphereContacts {
     std::uint32_t known_begin = 0;  // of its contacts in known_
   };
   static SphereContact contact_of(const ContactArrays& c, std::size_t i) {
-    return {c.first[i], c.second[i], c.nx[i], c.ny[i], c.nz[i], c.gap[i], c.closing[i]};
+    return {c.first[i], c.second[i], c.nx[i], c.ny[i], c.nz[i], c.gap[i], c.closing[i], c.impulse[i]};
   }
   // A blow is none.
   static bool is_support(const ContactArrays& c, std::size_t i, float bounce_velocity) { return (c.impulse[i] > 0.0f) & (c.closing[i] >= -bounce_velocity); }
@@ -125,6 +131,7 @@ class SphereContacts {
   static bool is_apart(int colour) { return colour >= CellGrid::kColours - 1; }
 
   SphereContactSettings settings_;
+  std::function<bool(std::uint32_t, std::uint32_t)> pair_filter_;
   std::vector<Part> parts_;       // the grid's, and one for contacts that were added
   // As many arrays as parts were searched at once: room for the contacts of all parts together, not for as many as each of them ever had.
   std::deque<ContactArrays> arrays_;

@@ -16,7 +16,7 @@ struct NearLoop {
   const Spheres& spheres;
   F3 n;
   double wide_x, wide_y, wide_z, offset;
-  std::uint8_t number;
+  std::int32_t number;
   StepConstants c;
   SphereStep& step;
 
@@ -24,7 +24,8 @@ struct NearLoop {
     const double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data();
     const double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data();
     const float* radius = spheres.radius.data();
-    std::uint8_t *on_ground = step.on_ground.data(), *plane = step.plane.data();
+    std::uint8_t* on_ground = step.on_ground.data();
+    std::int32_t* plane = step.plane.data();
     float* gap = step.gap.data();
     const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz);
 #pragma GCC ivdep
@@ -36,7 +37,7 @@ struct NearLoop {
       const int near = -int(above + 1.001f * way < 0.002f * radius[i]), nearest = near & -(int(state == 0) | int(above < known));  // masks
       on_ground[i] = std::uint8_t((int(kNear) & near) | (state & ~near));
       gap[i] = select(nearest, above, known);
-      plane[i] = std::uint8_t((int(number) & nearest) | (other & ~nearest));
+      plane[i] = (number & nearest) | (other & ~nearest);
     }
   }
 };
@@ -56,9 +57,9 @@ struct SortLoop {
     const float* size = kinds.radius.data();
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *pressure = ground.pressure.data();
     const std::uint8_t* horizontal = ground.horizontal.data();
-    const std::uint16_t* kind = spheres.kind.data();
+    const std::uint32_t* kind = spheres.kind.data();
     const auto* motion = reinterpret_cast<const std::uint8_t*>(spheres.motion.data());
-    const std::uint8_t* plane = step.plane.data();
+    const std::int32_t* plane = step.plane.data();
     const Row* s = step.s.data();
     Row *given = step.a.data(), *start = step.p.data();
     std::uint8_t* on_ground = step.on_ground.data();
@@ -92,7 +93,8 @@ struct SweepLoop {
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data();
     const Row* start = step.p.data();
     const float* gap = step.gap.data();
-    const std::uint8_t *plane = step.plane.data(), *on_ground = step.on_ground.data();
+    const std::int32_t* plane = step.plane.data();
+    const std::uint8_t* on_ground = step.on_ground.data();
     Row* added = step.a.data();
     const float per_time = 1.0f / c.time;
 #pragma GCC ivdep
@@ -130,7 +132,8 @@ struct LieLoop {
     Byte* motion;
     const Pose* pose;
     const Kind* kind;
-    const Byte *plane, *on_ground;
+    const std::int32_t* plane;
+    const Byte* on_ground;
     LODESTONE_INLINE SmallNumbers from(std::int64_t begin) const { return {motion + begin, pose + begin, kind + begin, plane + begin, on_ground + begin}; }
   };
 
@@ -160,10 +163,12 @@ struct LieLoop {
     const Tensors soft{kinds.ixx.data(), kinds.iyy.data(), kinds.izz.data(), kinds.ixy.data(), kinds.ixz.data(), kinds.iyz.data()};
     const Tensors hard{kinds.jxx.data(), kinds.jyy.data(), kinds.jzz.data(), kinds.jxy.data(), kinds.jxz.data(), kinds.jyz.data()};
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *friction = ground.friction.data();
+    const std::int32_t* row = ground.row.data();
     const int kind_count = int(ground.kinds);
     const Row* begun = step.p.data() + begin;
     const float* gap = step.gap.data() + begin;
-    const Byte *plane = numbers.plane, *on_ground = numbers.on_ground;
+    const std::int32_t* plane = numbers.plane;
+    const Byte* on_ground = numbers.on_ground;
     Row *a = step.a.data() + begin, *s = step.s.data() + begin, *d = step.d.data() + begin;
 #pragma GCC ivdep
     for (std::int64_t i = 0; i < count; ++i) {
@@ -190,7 +195,7 @@ struct LieLoop {
 
       // Friction of the lowest point, and of the footprint against pivoting.
       const F3 omega = in_world(soft, k, q, spin), arm = -r * n, touching = v + cross(omega, arm), slip = touching - dot(touching, n) * n;
-      const float speed = length(slip), available = friction[p * kind_count + k] * given_speed;
+      const float speed = length(slip), available = friction[row[p] * kind_count + k] * given_speed;
       const F3 direction = 1.0f / most(speed, 1e-12f) * slip, lever = cross(arm, direction);
       const float needed = speed / (1.0f + dot(lever, in_world(soft, k, q, lever)));
       const F3 rub = -least(available, needed) * direction;
@@ -224,19 +229,34 @@ void choose_loop(const StepConstants& constants, const SphereGround& ground, con
 
 }  // namespace
 
-void SphereGround::set(const StaticGround& ground, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity) {
+void SphereGround::clear(std::size_t kinds_now) {
   for (auto* array : {&nx, &ny, &nz, &pressure, &friction}) array->clear();
   horizontal.clear();
-  kinds = of.size();
-  for (const HalfSpace& plane : ground.planes) {
-    nx.push_back(float(plane.normal.x())), ny.push_back(float(plane.normal.y())), nz.push_back(float(plane.normal.z()));
-    pressure.push_back(float(std::max(0.0, -gravity.dot(plane.normal))));
-    horizontal.push_back(-plane.normal.dot(gravity) > 0.9999 * gravity.norm() && gravity.norm() > 0.0);
-    for (const MaterialId material : of.material) friction.push_back(float(materials.law(material, plane.material).friction));
-  }
+  row.clear();
+  row_of_material.clear();
+  kinds = kinds_now;
 }
 
-void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
+std::int32_t SphereGround::add(const HalfSpace& plane, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity) {
+  nx.push_back(float(plane.normal.x())), ny.push_back(float(plane.normal.y())), nz.push_back(float(plane.normal.z()));
+  pressure.push_back(float(std::max(0.0, -gravity.dot(plane.normal))));
+  horizontal.push_back(-plane.normal.dot(gravity) > 0.9999 * gravity.norm() && gravity.norm() > 0.0);
+  row_of_material.resize(std::max(row_of_material.size(), std::size_t(plane.material) + 1), -1);
+  std::int32_t& own_row = row_of_material[std::size_t(plane.material)];
+  if (own_row < 0) {
+    own_row = std::int32_t(friction.size() / std::max<std::size_t>(1, kinds));
+    of_material.assign(std::size_t(materials.size()), -1.0f);  // far fewer than kinds
+    for (const MaterialId material : of.material) {
+      float& known = of_material[std::size_t(material)];
+      if (known < 0.0f) known = float(materials.law(material, plane.material).friction);
+      friction.push_back(known);
+    }
+  }
+  row.push_back(own_row);
+  return std::int32_t(nx.size()) - 1;
+}
+
+void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::int32_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
                       std::int64_t end, SphereStep& step) {
   const Vec3& n = plane.normal;
   run_wide(simd, NearLoop{spheres, {float(n.x()), float(n.y()), float(n.z())}, n.x(), n.y(), n.z(), plane.offset, number, constants, step}, begin, end);

@@ -2,24 +2,29 @@
 // rub and turn into their rest poses (3.4). Impacts are for the response tables, body by body.
 #pragma once
 
-#include "lod/ground/static_ground.h"
+#include "lod/ground/ground.h"
 #include "lod/tables/sphere_motion.h"
 
 namespace lodestone {
 
-/// The planes as floats. Friction is by plane and kind.
+/// Planes as floats: the ground's, which all spheres may meet, then faces of its parts, each for a sphere near it. Friction is by material and kind.
 struct SphereGround {
   std::vector<float> nx, ny, nz;      // normals
   std::vector<float> pressure;        // m/s²: of gravity onto the plane
   std::vector<std::uint8_t> horizontal;
-  std::vector<float> friction;        // of kind k with plane p at p · kinds + k
+  std::vector<std::int32_t> row;      // of each plane's material in `friction`
+  std::vector<float> friction;        // of kind k with a material at row · kinds + k
   std::size_t kinds = 0;
+  std::vector<std::int32_t> row_of_material;
+  std::vector<float> of_material;     // friction with the material of a new row; negative: not asked for yet
 
-  void set(const StaticGround& ground, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity);
+  void clear(std::size_t kinds_now);
+  /// Returns the plane's number.
+  std::int32_t add(const HalfSpace& plane, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity);
 };
 
 /// Marks as GroundState::near those that may meet a plane in this step, with the nearest plane and the gap to it.
-void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::uint8_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
+void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::int32_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
                       std::int64_t end, SphereStep& step);
 
 /// Of those near: GroundState::lies where it presses on the ground, with what the ground gave in the last step if it has contacts with others, which the ground

@@ -10,34 +10,59 @@
 
 namespace lodestone {
 
-void SphereKinds::add(const BodyKind& kind, double gravity) {
+void SphereKinds::take(const Kinds& kinds, std::uint32_t kind, double gravity) {
+  if (size() < kinds.size()) resize(kinds.size());
+  if (birth_[kind] == kinds.birth(kind)) return;
+  birth_[kind] = kinds.birth(kind);
+  set(kind, kinds[kind], gravity);
+}
+
+void SphereKinds::resize(std::size_t size) {
+  for (auto* array : {&radius, &ixx, &iyy, &izz, &ixy, &ixz, &iyz, &jxx, &jyy, &jzz, &jxy, &jxz, &jyz, &softest, &blend_time}) array->resize(size, 1.0f);
+  height.resize(size * (kHeightSamples + 1));
+  material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size), is_slender_.resize(size);
+}
+
+void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   const Shape& shape = *kind.shape;
   const Mat3& inverse = shape.inverse_inertia_per_mass;
-  any_slender |= is_slender(kind);
-  material.push_back(kind.material);
-  radius.push_back(float(shape.radius));
-  inverse_mass.push_back(float(1.0 / kind.mass));
-  ixx.push_back(float(inverse(0, 0))), iyy.push_back(float(inverse(1, 1))), izz.push_back(float(inverse(2, 2)));
-  ixy.push_back(float(inverse(0, 1))), ixz.push_back(float(inverse(0, 2))), iyz.push_back(float(inverse(1, 2)));
   const Mat3& inertia = shape.inertia_per_mass;
-  jxx.push_back(float(inertia(0, 0))), jyy.push_back(float(inertia(1, 1))), jzz.push_back(float(inertia(2, 2)));
-  jxy.push_back(float(inertia(0, 1))), jxz.push_back(float(inertia(0, 2))), jyz.push_back(float(inertia(1, 2)));
-  softest.push_back(float(Eigen::SelfAdjointEigenSolver<Mat3>(inverse, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff()));
+  slender_ -= is_slender_[k];
+  is_slender_[k] = is_slender(kind);
+  slender_ += is_slender_[k];
+  material[k] = kind.material;
+  radius[k] = float(shape.radius);
+  ixx[k] = float(inverse(0, 0)), iyy[k] = float(inverse(1, 1)), izz[k] = float(inverse(2, 2));
+  ixy[k] = float(inverse(0, 1)), ixz[k] = float(inverse(0, 2)), iyz[k] = float(inverse(1, 2));
+  jxx[k] = float(inertia(0, 0)), jyy[k] = float(inertia(1, 1)), jzz[k] = float(inertia(2, 2));
+  jxy[k] = float(inertia(0, 1)), jxz[k] = float(inertia(0, 2)), jyz[k] = float(inertia(1, 2));
+  softest[k] = float(Eigen::SelfAdjointEigenSolver<Mat3>(inverse, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
   const auto height_at = [&](int sample) {
     if (!kind.signature || kind.signature->collision_heights.mean.empty()) return 1.0;
     const double alpha = std::numbers::pi / 2 * std::min(sample, kHeightSamples - 1) / (kHeightSamples - 1);
     return find_collision_height(kind.signature->collision_heights, alpha).mean;
   };
-  for (int i = 0; i <= kHeightSamples; ++i) height.push_back(float(height_at(i) * shape.radius));
-  blend_time.push_back(float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity))));
-  first_pose.push_back(std::int32_t(pose_height.size()));
-  const auto add_pose = [&](const Vec3& normal, double over_radius) {
-    pose_height.push_back(float(over_radius * shape.radius));
-    pose_x.push_back(float(normal.x())), pose_y.push_back(float(normal.y())), pose_z.push_back(float(normal.z()));
-  };
-  if (kind.signature)
-    for (const RestPose& pose : kind.signature->rest_poses) add_pose(pose.normal, pose.height);
-  if (!kind.signature || kind.signature->rest_poses.empty()) add_pose(Vec3::UnitZ(), 1.0);
+  for (int i = 0; i <= kHeightSamples; ++i) height[k * std::size_t(kHeightSamples + 1) + std::size_t(i)] = float(height_at(i) * shape.radius);
+  blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
+  set_poses(k, kind);
+}
+
+// Where the poses of the number's last kind were, if they fit there.
+void SphereKinds::set_poses(std::uint32_t k, const BodyKind& kind) {
+  const std::vector<RestPose> none = {{.normal = Vec3::UnitZ(), .height = 1.0}};
+  const auto& poses = kind.signature && !kind.signature->rest_poses.empty() ? kind.signature->rest_poses : none;
+  const auto count = std::int32_t(poses.size());
+  if (count > pose_room_[k]) {
+    first_pose[k] = std::int32_t(pose_height.size());
+    pose_room_[k] = count;
+    for (auto* array : {&pose_height, &pose_x, &pose_y, &pose_z}) array->resize(array->size() + poses.size());
+  }
+  auto at = std::size_t(first_pose[k]);
+  for (const RestPose& pose : poses) {
+    pose_height[at] = float(pose.height * kind.shape->radius);
+    pose_x[at] = float(pose.normal.x()), pose_y[at] = float(pose.normal.y()), pose_z[at] = float(pose.normal.z());
+    ++at;
+  }
 }
 
 }  // namespace lodestone

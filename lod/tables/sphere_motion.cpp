@@ -27,7 +27,7 @@ struct StartLoop {
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     const double *vx = in.vx.data(), *vy = in.vy.data(), *vz = in.vz.data(), *lx = in.lx.data(), *ly = in.ly.data(), *lz = in.lz.data();
     const float *qw = in.qw.data(), *qx = in.qx.data(), *qy = in.qy.data(), *qz = in.qz.data();
-    const std::uint16_t* kind = in.kind.data();
+    const std::uint32_t* kind = in.kind.data();
     const std::int16_t* pose = in.pose.data();
     const auto* motion = reinterpret_cast<const std::uint8_t*>(in.motion.data());
     const std::uint8_t *since_crowded = in.since_crowded.data(), *eased = in.eased.data();
@@ -37,7 +37,8 @@ struct StartLoop {
     float *radius = out.radius.data(), *reach = step.reach.data();
     const float* softest = kinds.softest.data();
     Row *p = step.p.data(), *u = step.u.data(), *s = step.s.data();
-    std::uint8_t *on_ground = step.on_ground.data(), *plane = step.plane.data();
+    std::uint8_t* on_ground = step.on_ground.data();
+    std::int32_t* plane = step.plane.data();
     const bool update = c.update_radius;
     const float fall = 0.5f * c.gravity * c.time * c.time;
 #pragma GCC ivdep
@@ -64,7 +65,7 @@ struct StartLoop {
       s[i].x = 0.0f, s[i].y = 0.0f, s[i].z = 0.0f, s[i].w = 0.5f * (dot(v, v) + dot(spun, omega));
     }
     std::fill(on_ground + begin, on_ground + end, std::uint8_t(0));
-    std::fill(plane + begin, plane + end, std::uint8_t(0));
+    std::fill(plane + begin, plane + end, 0);
   }
 };
 
@@ -79,7 +80,7 @@ struct EndLoop {
     double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data();
     double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
     float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data();
-    const std::uint16_t* kind = spheres.kind.data();
+    const std::uint32_t* kind = spheres.kind.data();
     const Tensors soft = soft_of(kinds);
     const Row *p = step.p.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
     std::uint8_t* on_ground = step.on_ground.data();
@@ -157,14 +158,14 @@ struct TakeLoop {
 void SphereStep::resize(std::size_t count) {
   for (auto* rows : {&p, &u, &a, &s, &d}) rows->resize(count + 1);
   for (auto* array : {&reach, &gap}) array->resize(count);
-  for (auto* array : {&on_ground, &plane}) array->resize(count);
+  on_ground.resize(count), plane.resize(count);
 }
 
 std::size_t SphereStep::bytes() const {
   std::size_t bytes = 0;
   for (const auto* rows : {&p, &u, &a, &s, &d}) bytes += rows->capacity() * sizeof(Row);
   for (const auto* array : {&reach, &gap}) bytes += array->capacity() * sizeof(float);
-  for (const auto* array : {&on_ground, &plane}) bytes += array->capacity();
+  bytes += on_ground.capacity() + plane.capacity() * sizeof(std::int32_t);
   return bytes;
 }
 

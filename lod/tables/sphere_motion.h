@@ -23,7 +23,7 @@ struct SphereStep {
   std::vector<lane::Row> d;            // m: how far they move it out of overlaps; w holds nothing
   std::vector<float> gap;              // m, to the nearest plane, where near
   std::vector<std::uint8_t> on_ground; // GroundState
-  std::vector<std::uint8_t> plane;     // the nearest
+  std::vector<std::int32_t> plane;     // the nearest
   void resize(std::size_t count);
   std::size_t bytes() const;
   /// Rows that serve for nothing until clear_added.

@@ -11,6 +11,7 @@ StatisticalBody Spheres::body(std::int64_t place) const {
   body.orientation = orientation(place);
   body.velocity = velocity(place);
   body.spin = spin(place);
+  body.mass = 1.0 / inverse_mass[place];
   body.sphere_radius = radius[place];
   body.quiet_time = quiet[place];
   body.owner = owner[place];
@@ -52,7 +53,7 @@ std::int64_t Spheres::add(std::uint32_t new_owner) {
   each_array([](auto& array) { grow(array); });
   qw[last] = 1.0f;
   owner[last] = new_owner;
-  pose[last] = plane[last] = -1;
+  pose[last] = -1;
   since_crowded[last] = 255;
   slot[last] = std::int32_t(last);
   grow(place_of_slot);

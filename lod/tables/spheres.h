@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lod/statistical/statistical_body.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -15,6 +16,7 @@ struct Spheres {
   std::vector<double> x, y, z;                 // m
   std::vector<double> vx, vy, vz;              // m/s
   std::vector<double> lx, ly, lz;              // spin: angular momentum over mass, m²/s, world
+  std::vector<double> inverse_mass;            // 1/kg
   std::vector<float> qw, qx, qy, qz;
   std::vector<float> radius;                   // m, of the colliding sphere
   std::vector<float> quiet;                    // s below the sleeping threshold
@@ -23,8 +25,8 @@ struct Spheres {
   std::vector<std::uint32_t> owner, events;
   std::vector<std::uint32_t> known_begin;      // of its run of contacts known from the last step
   std::vector<std::uint8_t> known_count;
-  std::vector<std::uint16_t> kind;
-  std::vector<std::int16_t> pose, plane;       // of the resting record (3.4), −1: none
+  std::vector<std::uint32_t> kind;
+  std::vector<std::int16_t> pose;              // of the resting record (3.4), −1: none
   std::vector<Motion> motion;
   std::vector<std::uint8_t> since_crowded;     // ms since it last touched another body, at most 255
   std::vector<std::uint8_t> crowded_for;       // ms for which it has without a break, at most 255
@@ -39,15 +41,20 @@ struct Spheres {
   /// Calls `visit` with each array that goes by place.
   template <class Visit>
   void each_array(const Visit& visit) {
-    visit(x), visit(y), visit(z), visit(vx), visit(vy), visit(vz), visit(lx), visit(ly), visit(lz);
+    visit(x), visit(y), visit(z), visit(vx), visit(vy), visit(vz), visit(lx), visit(ly), visit(lz), visit(inverse_mass);
     visit(qw), visit(qx), visit(qy), visit(qz), visit(radius), visit(quiet), visit(held);
     visit(slot), visit(owner), visit(events), visit(known_begin), visit(known_count);
-    visit(kind), visit(pose), visit(plane), visit(motion), visit(since_crowded), visit(crowded_for), visit(eased);
+    visit(kind), visit(pose), visit(motion), visit(since_crowded), visit(crowded_for), visit(eased);
   }
 
   template <class Visit>
   void each_array(const Visit& visit) const {
     const_cast<Spheres*>(this)->each_array([&](auto& array) { visit(std::as_const(array)); });
+  }
+
+  void archive(StateArchive& a) {
+    each_array([&](auto& array) { a(array); });
+    a(place_of_slot, awake);
   }
 
   Vec3 position(std::int64_t place) const { return {x[place], y[place], z[place]}; }

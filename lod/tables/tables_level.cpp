@@ -8,7 +8,6 @@
 #include "lod/contact/hull_contacts.h"
 #include "lod/statistical/flight.h"
 #include "lod/statistical/parting.h"
-#include "lod/statistical/rest_law.h"
 #include "lod/tables/tables_traffic.h"
 #include "reference/error.h"
 
@@ -30,22 +29,25 @@ void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std:
 
 }  // namespace
 
-TablesLevel::TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
+TablesLevel::TablesLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
                          const JobRunner& jobs)
-    : settings_(settings), ground_(ground), materials_(materials), all_kinds_(kinds), sleepers_(sleepers), jobs_(jobs), simd_(settings.simd) {
+    : settings_(settings), ground_(ground), materials_(materials), all_kinds_(kinds), sleepers_(sleepers), jobs_(jobs), simd_(settings.simd), rest_law_(settings.sleep) {
   tables_.options = settings.tables;
+  contacts_.set_pair_filter(settings.pair_filter);
 }
 
-int TablesLevel::add(std::uint32_t owner, std::uint16_t kind, const RigidState& state, bool asleep, bool arrives) {
-  kinds_.take(all_kinds_, settings_.gravity.norm());
+int TablesLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep, bool arrives) {
+  kinds_.take(all_kinds_, kind, settings_.gravity.norm());
   const std::int64_t place = spheres_.add(owner);
   const auto slot = int(spheres_.slot[place]);
   spheres_.kind[place] = kind;
+  spheres_.inverse_mass[place] = 1.0 / mass;
+  one_mass_ = size() == 1 || (one_mass_ && spheres_.inverse_mass[place] == spheres_.inverse_mass[place > 0 ? 0 : 1]);
   set_state(slot, state);
   const StatisticalBody body = spheres_.body(place);
   spheres_.radius[place] = arrives ? arriving_radius(body, kind_of(place)) : float(find_sphere_radius(body, kind_of(place), settings_.tables, settings_.seed));
   if (arrives) spheres_.eased[std::size_t(place)] = kEasedUnits, ++eased_;
-  if (asleep) put_to_sleep(place);
+  if (asleep) lay_still(place);
   return slot;
 }
 
@@ -80,7 +82,11 @@ float TablesLevel::arriving_radius(const StatisticalBody& body, const BodyKind& 
   constexpr double kNear = 0.3, kLeast = 0.02;  // over R: a gap; a radius
   const Shape& shape = *kind.shape;
   double least_gap = kNear * shape.radius, radius = find_sphere_radius(body, kind, settings_.tables, settings_.seed), least_height = shape.radius;
-  for (const HalfSpace& plane : ground_.planes) {
+  std::vector<GroundNear> near;
+  std::vector<HalfSpace> faces;
+  find_ground_near(ground_, body.position, shape.radius + least_gap, 0.0, near);
+  for (const GroundNear& n : near) faces.push_back(n.plane(body.position));
+  for (const HalfSpace& plane : join_planes(ground_.planes(), faces)) {
     const double height = plane.height_of(body.position);
     least_height = std::min(least_height, height);
     if (height > shape.radius + least_gap) continue;
@@ -119,13 +125,40 @@ void TablesLevel::wake(int slot) {
   still().remove(std::uint32_t(slot), spheres_.position(place), kind_of(place).shape->radius);
   spheres_.wake(std::uint32_t(slot));
   searched_ = 0;
+  woke_.push_back(spheres_.owner[place_of(slot)]);
 }
 
-void TablesLevel::put_to_sleep(std::int64_t place) {
+void TablesLevel::put_to_sleep(int slot) {
+  if (asleep(slot)) return;
+  std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
+  lay_still(std::int64_t(place_of(slot)));
+}
+
+void TablesLevel::set_gravity(const Vec3& gravity) {
+  settings_.gravity = gravity;
+  kinds_ = {};
+  for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, gravity.norm());
+  for (std::int64_t i = 0; i < spheres_.awake; ++i)
+    if (spheres_.motion[std::size_t(i)] == Motion::settling) spheres_.motion[std::size_t(i)] = Motion::dynamic;
+}
+
+void TablesLevel::take_woke(std::vector<std::uint32_t>& owners) {
+  owners.insert(owners.end(), woke_.begin(), woke_.end());
+  woke_.clear();
+}
+
+void TablesLevel::lay_still(std::int64_t place) {
   still().insert(std::uint32_t(spheres_.slot[place]), spheres_.position(place), kind_of(place).shape->radius);
   given_.erase(std::uint32_t(spheres_.slot[place]));
   spheres_.put_to_sleep(place);
   searched_ = 0;
+}
+
+void TablesLevel::archive(StateArchive& a) {
+  a(spheres_, contacts_, elapsed_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_, cornered_, given_, pushes_);
+  if (!a.reading()) return;
+  kinds_ = {};
+  for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());
 }
 
 // For as long as there are overlaps, and a while after.
@@ -167,7 +200,7 @@ void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, Co
 }
 
 double TablesLevel::count_traffic(bool pair_phase) const {
-  return count_bytes_moved({spheres_, step_, contacts_, pair_phase, !ground_.planes.empty(), settings_.sleeping});
+  return count_bytes_moved({spheres_, step_, contacts_, pair_phase, has_planes(), settings_.sleeping});
 }
 
 std::size_t TablesLevel::bytes() const {
@@ -182,7 +215,7 @@ void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
   for (const Push& push : pushes_) {
     const std::int64_t place = spheres_.place_of_slot[std::size_t(push.slot)];
     StatisticalBody body = spheres_.body(place);
-    const double impulse = dt / kind_of(place).mass;
+    const double impulse = dt * spheres_.inverse_mass[std::size_t(place)];
     body.velocity += impulse * push.force;
     body.spin += impulse * push.torque;
     spheres_.put(place, body);
@@ -203,19 +236,57 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   elapsed_ += dt;
   const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height && settings_.tables.radius_update_interval <= 1;
   const Vec3& g = settings_.gravity;
-  check_that(ground_.planes.size() < 255, "at most 254 planes");
   constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .wide_time = dt, .wide_gx = g.x(), .wide_gy = g.y(), .wide_gz = g.z(), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
-                .update_radius = plain_radius, .ticks = step_ticks, .one_kind = kinds_.size() == 1};
+                .update_radius = plain_radius, .ticks = step_ticks, .one_kind = all_kinds_.size() == 1 && one_mass_};
   step_.resize(std::size_t(spheres_.awake));
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0) update_radii_one_by_one();
-  planes_.set(ground_, materials_, kinds_, settings_.gravity);
+  planes_.clear(kinds_.size());
+  for (const HalfSpace& plane : ground_.planes()) planes_.add(plane, materials_, kinds_, settings_.gravity);
+  faces_.clear();
+  near_faces_.clear();
+  cornered_.clear();
+  carried_.clear();
+  find_near_faces(0, spheres_.awake);
   each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
 }
 
 void TablesLevel::start_block(std::int64_t begin, std::int64_t end, Simd simd) {
   start_step(spheres_, kinds_, constants_, simd, begin, end, step_, spheres_);
-  for (std::size_t p = 0; p < ground_.planes.size(); ++p)
-    find_near_ground(spheres_, ground_.planes[p], std::uint8_t(p), constants_, simd, begin, end, step_);
+  for (std::size_t p = 0; p < ground_.planes().size(); ++p)
+    find_near_ground(spheres_, ground_.planes()[p], std::int32_t(p), constants_, simd, begin, end, step_);
+  const auto first = std::ranges::lower_bound(near_faces_, begin, {}, &NearFaces::place);
+  for (auto near = first; near != near_faces_.end() && near->place < end; ++near)
+    for (std::int32_t face = near->begin; face < near->end; ++face)
+      find_near_ground(spheres_, faces_[std::size_t(face)], std::int32_t(ground_.planes().size()) + face, constants_, Simd::portable, near->place, near->place + 1, step_);
+}
+
+// Of the spheres at places [begin, end): what they are near of the ground's parts, as planes.
+void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
+  if (!ground_.has_parts()) return;
+  const double time = constants_.wide_time, fall = 0.5 * settings_.gravity.norm() * time * time;
+  thread_local std::vector<GroundNear> near;
+  for (std::int64_t i = begin; i < end; ++i) {
+    const double size = double(kinds_.radius[spheres_.kind[i]]), way = spheres_.velocity(i).norm() * time + fall;
+    const Vec3 center = spheres_.position(i);
+    near.clear();
+    find_ground_near(ground_, center, 1.01 * size + way, 0.0, near);
+    if (near.empty()) continue;
+    const auto first = std::int32_t(faces_.size());
+    for (const GroundNear& n : near) {
+      faces_.push_back(n.plane(center));
+      planes_.add(faces_.back(), materials_, kinds_, settings_.gravity);
+    }
+    near_faces_.push_back({i, first, std::int32_t(faces_.size())});
+    const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) { return n.part->moves() && n.height < double(spheres_.radius[i]) + 0.01 * size + way; });
+    if (mover != near.end()) carried_.push_back({i, mover->part->velocity_at(center), mover->part->pose.angular_velocity});
+    if (is_held_several_ways(near, ground_.planes(), center, double(spheres_.radius[i]) + 0.01 * size + way)) cornered_.push_back(spheres_.slot[i]);
+  }
+}
+
+std::span<const HalfSpace> TablesLevel::faces_of(std::int64_t place) const {
+  const auto near = std::ranges::lower_bound(near_faces_, place, {}, &NearFaces::place);
+  if (near == near_faces_.end() || near->place != place) return {};
+  return std::span(faces_).subspan(std::size_t(near->begin), std::size_t(near->end - near->begin));
 }
 
 void TablesLevel::update_radii_one_by_one() {
@@ -230,6 +301,7 @@ void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
   find_still_contacts();
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
     step_.resize(std::size_t(spheres_.awake));
+    find_near_faces(were_awake, spheres_.awake);
     start_block(were_awake, spheres_.awake, simd_);
   }
   if (still_touches_.empty()) return;
@@ -249,6 +321,8 @@ void TablesLevel::find_still_contacts() {
       if ((spheres_.position(at) - position).squaredNorm() < limit * limit) still_touches_.emplace_back(std::uint32_t(i), other);
     });
   }
+  if (settings_.pair_filter)
+    std::erase_if(still_touches_, [&](const auto& touch) { return !settings_.pair_filter(spheres_.owner[touch.first], spheres_.owner[spheres_.place_of_slot[touch.second]]); });
   std::ranges::sort(still_touches_);
   for (const auto& [place, slot] : still_touches_) {
     const std::int64_t at = spheres_.place_of_slot[slot];
@@ -258,7 +332,7 @@ void TablesLevel::find_still_contacts() {
     const Vec3 velocity = spheres_.velocity(place);
     const double closing = velocity.dot(between.normalized());
     const bool touches = gap + closing * double(constants_.time) <= 0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
-    if (touches && velocity.norm() > rest_law::wake_speed(kind_of(at).shape->radius)) wake(int(slot));
+    if (touches && velocity.norm() > rest_law_.wake_speed(kind_of(at).shape->radius)) wake(int(slot));
   }
 }
 
@@ -274,9 +348,32 @@ void TablesLevel::respond(ContactTally& tally) {
     contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, eased_ > 0, simd_, step_, jobs_);
     if (sweep < sweeps)
       each_block([&](std::int64_t begin, std::int64_t end) {
-        if (!ground_.planes.empty()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
+        if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
         take_impulses(simd_, begin, end, step_);
       });
+  }
+  if (log_) write_contacts();
+}
+
+void TablesLevel::write_contacts() {
+  contacts_.each([&](const SphereContact& c) {
+    if (c.impulse <= 0.0f) return;
+    const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
+    log_->add({.first = spheres_.owner[c.first], .second = spheres_.owner[c.second], .point = spheres_.position(c.first) - double(spheres_.radius[c.first]) * normal, .normal = normal,
+               .impulse = double(c.impulse), .approach = std::max(0.0, -double(c.closing))});
+  });
+}
+
+// Of those that lie on it; impacts are written where they are answered.
+void TablesLevel::write_ground() {
+  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
+    const std::uint8_t state = step_.on_ground[std::size_t(i)];
+    if (state != std::uint8_t(GroundState::lies) && state != std::uint8_t(GroundState::settles)) continue;
+    const HalfSpace& under = plane(step_.plane[std::size_t(i)]);
+    const double pressing = std::max(0.0, -settings_.gravity.dot(under.normal)) * constants_.wide_time;  // m/s
+    log_->add({.first = spheres_.owner[std::size_t(i)], .ground = under.id, .ground_material = under.material,
+               .point = spheres_.position(i) - double(spheres_.radius[std::size_t(i)]) * under.normal, .normal = under.normal,
+               .impulse = std::max(pressing, double(spheres_.held[std::size_t(i)])) / spheres_.inverse_mass[std::size_t(i)]});
   }
 }
 
@@ -300,24 +397,25 @@ void TablesLevel::respond_as_paper(ContactTally& tally) {
 
 void TablesLevel::sort_ground() {
   each_block([&](std::int64_t begin, std::int64_t end) {
-    if (ground_.planes.empty()) return clear_added(begin, end, step_);
+    if (!has_planes()) return clear_added(begin, end, step_);
     sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
     each_marked(step_.on_ground, std::uint8_t(GroundState::settles), begin, end, [&](std::int64_t i) { choose_rest_pose(i); });
+    for (auto carried = std::ranges::lower_bound(carried_, begin, {}, &Carried::place); carried != carried_.end() && carried->place < end; ++carried)
+      step_.on_ground[std::size_t(carried->place)] = std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
   });
 }
 
 // The rest pose that needs the smallest rotation (3.4).
 void TablesLevel::choose_rest_pose(std::int64_t i) {
-  const RestingRecord resting = find_resting(spheres_.orientation(i), kind_of(i), ground_.planes[step_.plane[i]], step_.plane[i], settings_.tables);
+  const RestingRecord resting = find_resting(spheres_.orientation(i), kind_of(i), plane(step_.plane[i]), settings_.tables);
   if (resting.pose < 0) return;
   spheres_.pose[i] = std::int16_t(resting.pose);
-  spheres_.plane[i] = std::int16_t(resting.plane);
   spheres_.motion[i] = Motion::settling;
 }
 
 // Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts, motion.
 void TablesLevel::finish(ContactTally& tally) {
-  const bool ground = !ground_.planes.empty();
+  const bool ground = has_planes();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
   each_block([&](std::int64_t begin, std::int64_t end) {
     ContactTally& own = tallies_[std::size_t(begin / kBlock)];
@@ -326,11 +424,12 @@ void TablesLevel::finish(ContactTally& tally) {
       lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
       each_marked(step_.on_ground, std::uint8_t(GroundState::near), begin, end, [&](std::int64_t i) { move_alone(i, own); });
     }
-    if (kinds_.any_slender) end_step_with_slender(begin, end);
+    if (kinds_.any_slender()) end_step_with_slender(begin, end);
     else end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
     each_marked(step_.on_ground, std::uint8_t(GroundState::unsound), begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
+  if (log_ && ground) write_ground();
 }
 
 // The orientations of slender bodies follow by splitting, one by one.
@@ -351,10 +450,20 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally) {
   body.velocity = step_.touches(i) ? step_.velocity(i, {constants_.gx * t, constants_.gy * t, constants_.gz * t, 0.0f}) : spheres_.velocity(i);
   body.spin += step_.added_spin(i);
   body.position += step_.push_out(i);
-  RestingRecord resting{spheres_.pose[i], spheres_.plane[i]};
-  ContactTally own = step_tables_body(body, resting, kind_of(i), world(), constants_.wide_time, tables_);
+  RestingRecord resting{spheres_.pose[i]};
+  StepWorld around = world();
+  around.planes = join_planes(ground_.planes(), faces_of(i));
+  const auto carried = std::ranges::lower_bound(carried_, i, {}, &Carried::place);
+  const bool rides = carried != carried_.end() && carried->place == i;
+  if (rides) body.velocity -= carried->velocity;
+  const ContactTally own = step_tables_body(body, resting, kind_of(i), around, constants_.wide_time, tables_);
   tally += own;
-  spheres_.pose[i] = std::int16_t(resting.pose), spheres_.plane[i] = std::int16_t(resting.plane);
+  if (rides) {
+    body.velocity += carried->velocity;
+    body.position += carried->velocity * constants_.wide_time;
+    body.orientation = (rotation_from_vector(carried->angular_velocity * constants_.wide_time) * body.orientation).normalized();
+  }
+  spheres_.pose[i] = std::int16_t(resting.pose);
   spheres_.put(i, body);
   spheres_.held[i] = 0.0f;
   step_.on_ground[i] = std::uint8_t(GroundState::moved);
@@ -377,6 +486,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     if (guest.touched) wake(guest.slot);
   if (spheres_.awake > were_awake) {
     step_.resize(std::size_t(spheres_.awake));
+    find_near_faces(were_awake, spheres_.awake);
     start_block(were_awake, spheres_.awake, simd_);
     clear_added(were_awake, spheres_.awake, step_);
   }
@@ -385,7 +495,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     const std::size_t i = place_of(guests[k].slot);
     const StatisticalBody& body = bodies[k];
     spheres_.put(std::int64_t(i), body);
-    spheres_.pose[i] = std::int16_t(guests[k].resting.pose), spheres_.plane[i] = std::int16_t(guests[k].resting.plane);
+    spheres_.pose[i] = std::int16_t(guests[k].resting.pose);
     spheres_.held[i] = 0.0f;
     // It has moved and lies among others: nothing is left to be added to what it has now.
     step_.p[i] = {float(body.velocity.x()), float(body.velocity.y()), float(body.velocity.z()), std::max(1.0f, step_.p[i].w)};

@@ -9,25 +9,28 @@
 #include <vector>
 
 #include "lod/broad_phase/cell_grid.h"
-#include "lod/ground/static_ground.h"
+#include "lod/contact/solid_contacts.h"
+#include "lod/ground/ground.h"
 #include "lod/jobs.h"
+#include "lod/statistical/rest_law.h"
 #include "lod/statistical/sleepers.h"
 #include "lod/statistical/statistical_settings.h"
 #include "lod/step_report.h"
 #include "lod/tables/guest.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_ground.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
 class TablesLevel {
  public:
   /// All but the settings must outlive the level.
-  TablesLevel(const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
+  TablesLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
               const JobRunner& jobs);
 
   /// Returns the slot. `arrives`: from another rung, at the height that its hull has.
-  int add(std::uint32_t owner, std::uint16_t kind, const RigidState& state, bool asleep, bool arrives);
+  int add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep, bool arrives);
   /// The last body moves into the slot and its owner is returned (none where it was the last). Wakes nobody.
   std::optional<std::uint32_t> remove(int slot);
 
@@ -38,6 +41,7 @@ class TablesLevel {
   /// Slots.
   std::span<const std::int32_t> awake() const { return std::span(spheres_.slot).first(std::size_t(spheres_.awake)); }
   std::span<const std::uint32_t> fell_asleep() const { return fell_asleep_; }    ///< owners, in the last step
+  std::uint32_t kind(int slot) const { return spheres_.kind[place_of(slot)]; }
   std::uint32_t owner(int slot) const { return spheres_.owner[place_of(slot)]; }
   RigidState state(int slot) const;
   Vec3 position(int slot) const { return spheres_.position(std::int64_t(place_of(slot))); }
@@ -46,6 +50,12 @@ class TablesLevel {
   bool asleep(int slot) const { return std::int64_t(place_of(slot)) >= spheres_.awake; }
   bool crowded(int slot) const { return spheres_.since_crowded[place_of(slot)] == 0; }  ///< touched another body in the last step
   void wake(int slot);
+  void put_to_sleep(int slot);                                                   ///< where it is, at once
+  /// m/s², from the next step on. Who comes to rest begins anew.
+  void set_gravity(const Vec3& gravity);
+  void set_log(ContactLog* log) { log_ = log; }                                  ///< null: none
+  /// Appends the owners of those that woke since this was last asked.
+  void take_woke(std::vector<std::uint32_t>& owners);
   void add_force(int slot, const Vec3& force, const Vec3& torque);               ///< over the next step; wakes it
   double sphere_radius(int slot) const { return double(spheres_.radius[place_of(slot)]); }
 
@@ -57,37 +67,59 @@ class TablesLevel {
   /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given.
   void find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
   void forget_contacts() { contacts_.clear(); }                                  ///< in their place, where there are none
+  /// Slots of those in this step that parts of the ground hold several ways: one plane does not tell how they go on.
+  std::span<const std::int32_t> cornered() const { return cornered_; }
   void respond(ContactTally& tally);
   /// The body as it would go on, with what its contacts with spheres give it.
   StatisticalBody guest_body(const Guest& guest) const;
-  RestingRecord resting_of(int slot) const { return {spheres_.pose[place_of(slot)], spheres_.plane[place_of(slot)]}; }
+  RestingRecord resting_of(int slot) const { return {spheres_.pose[place_of(slot)]}; }
   /// Where those that were touched are now.
   void take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> bodies);
   void finish(ContactTally& tally);
   void rest();
 
+  /// The kinds must be those of the writer already.
+  void archive(StateArchive& a);
+
   /// Counted from its arrays, of the last step.
   double count_traffic(bool pair_phase) const;
 
  private:
+  struct NearFaces {
+    std::int64_t place = 0;
+    std::int32_t begin = 0, end = 0;  // in faces_
+  };
+  struct Carried {
+    std::int64_t place = 0;
+    Vec3 velocity, angular_velocity;  // of the ground below
+  };
   struct Push {
     std::int32_t slot;
     Vec3 force, torque;
   };
 
-  StepWorld world() const { return {settings_.gravity, &ground_, &materials_, settings_.seed}; }
+  StepWorld world() const { return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, nullptr, log_}; }
+  void write_contacts();
+  void write_ground();
   std::size_t place_of(int slot) const { return spheres_.place_of_slot[std::size_t(slot)]; }
+  bool has_planes() const { return !ground_.planes().empty() || !faces_.empty(); }
+  const HalfSpace& plane(std::int32_t number) const {
+    const auto own = std::int32_t(ground_.planes().size());
+    return number < own ? ground_.planes()[std::size_t(number)] : faces_[std::size_t(number - own)];
+  }
+  std::span<const HalfSpace> faces_of(std::int64_t place) const;
   StillGrid& still() { return sleepers_.of(StatisticalModel::tables); }
   const StillGrid& still() const { return sleepers_.of(StatisticalModel::tables); }
   const BodyKind& kind_of(std::int64_t place) const { return all_kinds_[spheres_.kind[std::size_t(place)]]; }
   float arriving_radius(const StatisticalBody& body, const BodyKind& kind) const;
   float bounce_velocity() const { return float(world().bounce_velocity) + constants_.gravity * constants_.time; }  // with what gravity adds in a step
-  void put_to_sleep(std::int64_t place);
+  void lay_still(std::int64_t place);
   void forget_all_given();
   void ease();
 
   void apply_pushes(double dt, ContactTally& tally);
   void start(double dt, std::span<const std::uint32_t> order);
+  void find_near_faces(std::int64_t begin, std::int64_t end);
   void update_radii_one_by_one();
   void find_still_contacts();
   void respond_as_paper(ContactTally& tally);
@@ -101,25 +133,32 @@ class TablesLevel {
   void each_block(const Task& task) const;
 
   StatisticalSettings settings_;
-  const StaticGround& ground_;
+  const Ground& ground_;
   const MaterialTable& materials_;
   const Kinds& all_kinds_;
   Sleepers& sleepers_;
   JobRunner jobs_;
   Simd simd_;
   TablesSettings tables_;
+  RestLaw rest_law_;
+  ContactLog* log_ = nullptr;
 
   SphereKinds kinds_;
   Spheres spheres_;
   SphereContacts contacts_;
   SphereGround planes_;
   SphereStep step_;
+  std::vector<HalfSpace> faces_;                 // of this step: of the ground's parts, each for the sphere near it
+  std::vector<NearFaces> near_faces_;            // by place
+  std::vector<std::int32_t> cornered_;           // slots
+  std::vector<Carried> carried_;                 // by place: near ground that moves
   StepConstants constants_;
   double elapsed_ = 0.0;                         // s, over all steps
   std::int64_t steps_ = 0;
+  bool one_mass_ = true;                         // all bodies have, since there last were none
   std::int64_t eased_ = 0;                       // bodies that are, asleep or not
   std::int64_t searched_ = 0;                    // awake bodies at the step's start; 0 once the places of any have changed
-  std::vector<std::uint32_t> fell_asleep_;       // owners
+  std::vector<std::uint32_t> fell_asleep_, woke_;  // owners
 
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot

@@ -163,10 +163,10 @@ void respond_pair_as_paper(StatisticalBody& first, const BodyKind& first_kind, S
   second.velocity += first_velocity;
 }
 
-RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, int plane_index, const TablesOptions& options) {
+RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, const TablesOptions& options) {
   Vec3 up = orientation.conjugate() * plane.normal;
   if (kind.faces && !options.nearest_rest_pose) up = kind.faces->faces()[std::size_t(kind.faces->find_quasistatic(up))].normal;
-  return {find_nearest_rest_pose(*kind.signature, up), plane_index};
+  return {find_nearest_rest_pose(*kind.signature, up)};
 }
 
 ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, const BodyKind& kind, const StepWorld& world, double time,
@@ -179,21 +179,24 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
   for (int hit = 0; left > 0.0; ++hit) {
     int touched = -1;
     double touch = left;
-    for (int i = 0; i < int(world.ground->planes.size()); ++i)
-      if (const auto t = find_touch(body, world.ground->planes[i], world.gravity, touch); t && (touched < 0 || *t < touch)) touched = i, touch = *t;
+    for (int i = 0; i < int(world.planes.size()); ++i)
+      if (const auto t = find_touch(body, world.planes[i], world.gravity, touch); t && (touched < 0 || *t < touch)) touched = i, touch = *t;
     advance_flight(body, kind, world.gravity, touch);
     left -= touch;
     if (touched < 0) return tally;
 
-    const HalfSpace& plane = world.ground->planes[touched];
+    const HalfSpace& plane = world.planes[touched];
     const ContactLaw law = world.law(kind, plane);
     tally.touched_plane = touched;
     const double energy_before = kinetic_energy(body, shape);
     const double approach = -body.velocity.dot(plane.normal);
     const bool presses = approach < world.bounce_velocity + world.gravity_strength() * time;  // no impact: what gravity adds in a step
     if (body.motion != Motion::settling || !presses) respond_from_tables(body, kind, plane.normal, world, law, settings.options, tally);
+    if (world.log)
+      world.log->add({.first = body.owner, .ground = plane.id, .ground_material = plane.material, .point = body.position - body.sphere_radius * plane.normal, .normal = plane.normal,
+                      .impulse = body.mass * std::max(0.0, approach + body.velocity.dot(plane.normal)), .approach = std::max(0.0, approach)});
     if (body.motion == Motion::dynamic && world.is_horizontal(plane) && energy_before < settings.resting_energy * energy_unit) {
-      resting = find_resting(body.orientation, kind, plane, touched, settings.options);
+      resting = find_resting(body.orientation, kind, plane, settings.options);
       if (resting.pose >= 0) body.motion = Motion::settling;
     }
     if (body.motion == Motion::settling && energy_before > 2.0 * settings.resting_energy * energy_unit) body.motion = Motion::dynamic;

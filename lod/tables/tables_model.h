@@ -11,7 +11,6 @@ namespace lodestone {
 /// A body under the resting conditions: the pose it is led to.
 struct RestingRecord {
   int pose = -1;                 ///< index into Signature::rest_poses
-  int plane = -1;                ///< the ground plane it rests on
 };
 
 struct TablesSettings {
@@ -37,7 +36,7 @@ void respond_pair_as_paper(StatisticalBody& first, const BodyKind& first_kind, S
 ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, const BodyKind& kind, const StepWorld& world, double time,
                               const TablesSettings& settings);
 
-/// The resting condition's pose on `plane`, number `plane_index`: the one that needs the smallest rotation (3.4); −1 where the signature has none.
-RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, int plane_index, const TablesOptions& options);
+/// The resting condition's pose on `plane`: the one that needs the smallest rotation (3.4); −1 where the signature has none.
+RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, const TablesOptions& options);
 
 }  // namespace lodestone

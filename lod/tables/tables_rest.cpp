@@ -1,5 +1,4 @@
 // Stage 7 of TablesLevel's step: coming to rest, the second threshold of section 3.4.
-#include "lod/statistical/rest_law.h"
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
@@ -8,7 +7,7 @@ void TablesLevel::rest() {
   ++steps_;
   ease();
   if (!settings_.sleeping) return;
-  constexpr int kLeaning = int(1000.0 * rest_law::kLeaningTime);  // ms
+  constexpr int kLeaning = int(1000.0 * RestLaw::kLeaningTime);  // ms
   const double gravity = settings_.gravity.norm();
   for (std::int64_t i = spheres_.awake - 1; i >= 0; --i) {  // from the end: the last one takes the place of one that falls asleep
     const double radius = kind_of(i).shape->radius;
@@ -16,12 +15,12 @@ void TablesLevel::rest() {
     const StatisticalBody body = spheres_.body(i);
     // Nor while it is still being taken out of an overlap; one that is pressed in again as far as it is taken out stays where it is.
     const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
-    const bool still = kinetic_energy(body, *kind_of(i).shape) < rest_law::still_energy(among_others, radius, gravity) &&
-                       (!step_.touches(i) || out < rest_law::sleep_speed(radius));
+    const bool still = kinetic_energy(body, *kind_of(i).shape) < rest_law_.still_energy(among_others, radius, gravity) &&
+                       (!step_.touches(i) || out < rest_law_.sleep_speed(radius));
     spheres_.quiet[i] = still ? spheres_.quiet[i] + constants_.time : 0.0f;
-    if (spheres_.quiet[i] < rest_law::still_time(among_others)) continue;
+    if (spheres_.quiet[i] < rest_law_.still_time(among_others)) continue;
     fell_asleep_.push_back(spheres_.owner[std::size_t(i)]);
-    put_to_sleep(i);
+    lay_still(i);
   }
 }
 

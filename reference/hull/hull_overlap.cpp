@@ -130,6 +130,13 @@ std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidStat
   if (least.depth < kShallow * std::min(first.radius, second.radius)) return least.depth > 0.0 ? std::optional(least) : std::nullopt;
   if (const auto by_polytope = find_way_out(a, b, ccdGJKPenetration))
     if (const HullOverlap other = Walk(a, b, *by_polytope).end(); other.depth < least.depth) least = other;
+  // Of two that touch and hardly overlap both may name the far side of the second. What is less by rounding alone is the same way.
+  constexpr double kLess = 0.999;
+  const auto try_from = [&](const Vec3& start) {
+    if (const HullOverlap other = Walk(a, b, start).end(); other.depth < kLess * least.depth) least = other;
+  };
+  try_from(-*by_portal);
+  if (const double distance = b.state.position.norm(); distance > 0.0) try_from(-b.state.position / distance);
   return least.depth > 0.0 ? std::optional(least) : std::nullopt;
 }
 

@@ -139,7 +139,7 @@ void fit_radii(std::vector<Sphere>& spheres, double volume, const Eigen::Aligned
 }  // namespace
 
 std::vector<Sphere> fit_spheres(const Mesh& mesh, int count) {
-  check_that(count > 0 && count <= 1000, "1 to 1000 spheres");
+  if (count < 1 || count > 1000) throw_input_error("spheres", std::to_string(count), "1 … 1000");
   const std::vector<Vec3> points = sample_inside(mesh, count);
   const double volume = measure_mass_properties(mesh).volume;
   std::vector<Sphere> spheres = find_clusters(points, count, volume);

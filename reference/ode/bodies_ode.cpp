@@ -27,17 +27,22 @@ std::string describe(const RigidState& s) {
 }
 
 void check_state(const RigidState& state) {
-  if (!is_sound(state))
-    check_that(false, "a body's state is finite, below 1e8 in each part, its orientation of unit norm:", describe(state));
+  if (!is_sound(state)) throw InputError("a body's state: found " + describe(state) + ", expected finite, below 1e8 in each part, the orientation of unit norm");
+}
+
+void check_properties(const BodyProperties& properties) {
+  const bool rates = properties.linear_damping >= 0.0 && properties.angular_damping >= 0.0;
+  if (!rates || !std::isfinite(properties.linear_damping) || !std::isfinite(properties.angular_damping))
+    throw InputError(fmt::format("a body's damping: found {} and {} 1/s, expected finite, 0 or more", properties.linear_damping, properties.angular_damping));
+  if (!(properties.max_angular_speed > 0.0)) throw InputError(fmt::format("a body's greatest angular speed: found {} rad/s, expected more than 0", properties.max_angular_speed));
 }
 
 void check_definition(const OdeBodyDefinition& definition, const OdeSettings& settings) {
-  check_that(definition.shape != nullptr, "a body has a shape");
-  check_that(definition.mass > 0.0 && std::isfinite(definition.mass), "a body's mass is positive:",
-             std::to_string(definition.mass));
-  check_that(is_possible_inertia(definition.shape->inertia_per_mass), "a rigid body can have the inertia of shape",
-             definition.shape->name);
   check_that(settings.max_contacts_per_pair > 0, "pairs have at least one contact");
+  if (!definition.shape) throw InputError("a body's shape: found none");
+  if (!(definition.mass > 0.0 && std::isfinite(definition.mass))) throw InputError(fmt::format("a body's mass: found {} kg, expected more than 0", definition.mass));
+  if (!is_possible_inertia(definition.shape->inertia_per_mass)) throw InputError("shape " + definition.shape->name + ": no rigid body can have its inertia");
+  check_properties(definition.properties);
   check_state(definition.state);
 }
 
@@ -47,15 +52,6 @@ void set_mass(dBodyID body, double mass, const Mat3& inertia_per_mass) {
   dMassSetParameters(&parameters, mass, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1),
                      inertia(0, 2), inertia(1, 2));
   dBodySetMass(body, &parameters);
-}
-
-void set_sleeping(dBodyID body, bool sleeps, double radius) {
-  dBodySetAutoDisableFlag(body, sleeps);
-  dBodySetAutoDisableLinearThreshold(body, 0.05);
-  dBodySetAutoDisableAngularThreshold(body, 0.05 / radius);
-  dBodySetAutoDisableTime(body, 0.5);
-  dBodySetAutoDisableSteps(body, 0);
-  dBodyEnable(body);  // starts the .5 s; else a new body at rest would sleep in its first step
 }
 
 std::vector<Piece> pieces_of(const OdeBodyDefinition& definition) {
@@ -75,8 +71,11 @@ double reach_of(const Shape& shape, std::span<const Sphere> spheres) {
   return reach;
 }
 
-void destroy(dBodyID body) {
-  while (const dGeomID geom = dBodyGetFirstGeom(body)) dGeomDestroy(geom);
+void destroy(dBodyID body, dSpaceID space) {
+  while (const dGeomID geom = dBodyGetFirstGeom(body)) {
+    if (dGeomGetSpace(geom) == space) dGeomDestroy(geom);
+    else dGeomSetBody(geom, nullptr);  // the caller's, who hung it there
+  }
   dBodyDestroy(body);
 }
 
@@ -85,6 +84,34 @@ void destroy(dBodyID body) {
 bool is_sound(const RigidState& state) {
   return within_limit(state.position) && within_limit(state.velocity) && within_limit(state.angular_velocity) &&
          std::abs(state.orientation.squaredNorm() - 1.0) <= 1e-6;
+}
+
+std::uint32_t slot_of(OdeBodyId id) { return id.value & kSlotMask; }
+
+void set_properties(Body& body, const BodyProperties& properties) {
+  check_properties(properties);
+  body.properties = properties;
+  properties.kinematic ? dBodySetKinematic(body.body) : dBodySetDynamic(body.body);
+  dBodySetGravityMode(body.body, properties.gravity);
+  dBodySetMaxAngularSpeed(body.body, properties.max_angular_speed);
+  for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) {
+    dGeomSetCategoryBits(geom, properties.category);
+    dGeomSetCollideBits(geom, properties.collide);
+  }
+}
+
+// ODE takes the same part of a velocity away in each of its steps, however long.
+void set_damping(Body& body, double h) {
+  const BodyProperties& properties = body.properties;
+  const bool damps = properties.linear_damping > 0.0 || properties.angular_damping > 0.0;
+  if (!damps && !body.damped) return;
+  dBodySetDamping(body.body, -std::expm1(-properties.linear_damping * h), -std::expm1(-properties.angular_damping * h));
+  body.damped = damps;
+}
+
+bool is_moving(dBodyID body) {
+  if (!body || !dBodyIsEnabled(body)) return false;
+  return !dBodyIsKinematic(body) || !to_vec3(dBodyGetLinearVel(body)).isZero(0.0) || !to_vec3(dBodyGetAngularVel(body)).isZero(0.0);
 }
 
 RigidState state_of(dBodyID body) {
@@ -108,16 +135,20 @@ Bodies::~Bodies() { clear(); }
 
 void Bodies::clear() {
   for (const Body& body : slots_)
-    if (body.body) destroy(body.body);
+    if (body.body) destroy(body.body, space_);
   slots_.clear();
   free_.clear();
   count_ = 0;
 }
 
-OdeBodyId Bodies::add(dWorldID world, dSpaceID space, const OdeBodyDefinition& definition, const OdeSettings& settings,
-                      TrimeshCache& cache) {
+OdeBodyId Bodies::add(dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings, TrimeshCache& cache) {
   check_definition(definition, settings);
   const std::size_t slot = take_slot();
+  make(slot, world, definition, settings, cache);
+  return slots_[slot].id;
+}
+
+void Bodies::make(std::size_t slot, dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings, TrimeshCache& cache) {
   Body& entry = slots_[slot];
   entry.id = {std::uint32_t(slot) | entry.generation << kSlotBits};
   entry.shape = definition.shape;
@@ -127,16 +158,24 @@ OdeBodyId Bodies::add(dWorldID world, dSpaceID space, const OdeBodyDefinition& d
   entry.reach = reach_of(*entry.shape, entry.spheres);
   entry.thickness = entry.spheres.size() == 1 ? entry.spheres[0].radius : entry.shape->inner_radius;
   entry.last_good = definition.state;
+  entry.geometry = definition.geometry;
+  entry.birth = ++births_;
 
   entry.body = dBodyCreate(world);
   dBodySetData(entry.body, reinterpret_cast<void*>(slot + 1));
   set_mass(entry.body, definition.mass, entry.shape->inertia_per_mass);
   dBodySetGyroscopicMode(entry.body, settings.gyroscopic);
-  set_sleeping(entry.body, settings.auto_disable, entry.reach);
-  make_geoms(space, entry.body, definition, entry.spheres, cache);
+  // Whatever the caller's world gives its bodies: sleep is ours (sleep_ode.h), the rest is in the properties.
+  dBodySetAutoDisableFlag(entry.body, 0);
+  dBodySetDamping(entry.body, 0.0, 0.0);
+  dBodySetLinearDampingThreshold(entry.body, 0.0);
+  dBodySetAngularDampingThreshold(entry.body, 0.0);
+  entry.to_sleep_s = settings.sleep.time;  // else a new body at rest would sleep in its first step
+  make_geoms(space_, entry.body, definition, entry.spheres, cache);
+  set_properties(entry, definition.properties);
   set_state(entry.body, definition.state);
+  greatest_reach_ = std::max(greatest_reach_, entry.reach);
   ++count_, ++created_;
-  return entry.id;
 }
 
 std::size_t Bodies::take_slot() {
@@ -155,7 +194,7 @@ std::size_t Bodies::take_slot() {
 
 void Bodies::remove(OdeBodyId id) {
   Body& entry = find(id);
-  destroy(entry.body);
+  destroy(entry.body, space_);
   Body free_slot;
   free_slot.generation = entry.generation;
   entry = std::move(free_slot);
@@ -165,7 +204,8 @@ void Bodies::remove(OdeBodyId id) {
 
 const Body& Bodies::find(OdeBodyId id) const {
   const std::size_t slot = id.value & kSlotMask;
-  check_that(id && slot < slots_.size() && slots_[slot].body && slots_[slot].id == id, "the OdeBodyId is of a body in this world");
+  if (!(id && slot < slots_.size() && slots_[slot].body && slots_[slot].id == id))
+    throw InputError(fmt::format("OdeBodyId {}: found no such body in this world", id.value));
   return slots_[slot];
 }
 

@@ -9,6 +9,7 @@
 #include "reference/ode/ode_world.h"
 #include "reference/ode/piece_contacts.h"
 #include "reference/ode/runtime_ode.h"
+#include "reference/state_archive.h"
 
 namespace lodestone::ode {
 
@@ -26,26 +27,42 @@ struct Body {
   int last_support = 0;            ///< the hull vertex deepest in a plane last time
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   RigidState last_good;
+  BodyProperties properties;
+  double to_sleep_s = 0.0;         ///< how much longer it has to be still to fall asleep
+  bool was_enabled = true;         ///< after the last substep
+  bool damped = false;             ///< ODE was told of its damping
+  OdeGeometry geometry = OdeGeometry::trimesh;
+  std::uint64_t birth = 0;         ///< bodies of this world made before it: ODE goes through them from the last to the first
   bool in_company = false;         ///< in this substep: it may touch more than planes
   std::optional<double> impact_time = {};  ///< in this substep: s after its start, of an impact that is answered at its own time
 };
 
+/// Tells ODE, but of the damping, which depends on the step.
+void set_properties(Body& body, const BodyProperties& properties);
+/// Of steps of `h` s.
+void set_damping(Body& body, double h);
+
 /// Whether every part is finite and within ODE's reach: 1e8 m, m/s and rad/s; the squared norm of the quaternion within 1e-6 of one.
 bool is_sound(const RigidState& state);
 
+std::uint32_t slot_of(OdeBodyId id);
+
+/// A body of ours or the caller's that can push: awake and, where it is kinematic, on its way.
+bool is_moving(dBodyID body);
 RigidState state_of(dBodyID body);
 void set_state(dBodyID body, const RigidState& state);
 
 class Bodies {
  public:
-  Bodies() = default;
+  explicit Bodies(dSpaceID space) : space_(space) {}  ///< for their geoms
   ~Bodies();
   Bodies(const Bodies&) = delete;
   Bodies& operator=(const Bodies&) = delete;
 
-  OdeBodyId add(dWorldID world, dSpaceID space, const OdeBodyDefinition& definition, const OdeSettings& settings,
-                TrimeshCache& cache);
+  OdeBodyId add(dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings, TrimeshCache& cache);
   void remove(OdeBodyId id);
+  /// Where it reads, bodies are kept if the writer had the very same ones; else all are made anew. Throws InputError, and nothing has changed, where one of those has a joint.
+  void archive(StateArchive& a, dWorldID world, const OdeSettings& settings, TrimeshCache& cache);
   void clear();
   Body& find(OdeBodyId id);
   const Body& find(OdeBodyId id) const;
@@ -57,15 +74,20 @@ class Bodies {
   /// Every slot in order; those with a null `body` are free.
   std::span<Body> slots() { return slots_; }
   int count() const { return count_; }
+  double greatest_reach() const { return greatest_reach_; }  ///< m, of any body so far
   std::int64_t created() const { return created_; }
 
  private:
   std::size_t take_slot();
+  void make(std::size_t slot, dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings, TrimeshCache& cache);
 
+  dSpaceID space_;
   std::vector<Body> slots_;
   std::vector<std::uint32_t> free_;
   int count_ = 0;
   std::int64_t created_ = 0;
+  std::uint64_t births_ = 0;
+  double greatest_reach_ = 0.0;
 };
 
 }  // namespace lodestone::ode

@@ -6,101 +6,175 @@
 namespace lodestone::ode {
 namespace {
 
-constexpr std::uint64_t kGroundOrder = 1ull << 60, kForeignOrder = 2ull << 60;
+// Of a body's reach: bodies at rest on something are apart by less.
+constexpr double kTouchMargin = 0.02;
 
 std::uint32_t part_of(dGeomID geom) { return std::uint32_t(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))); }
 
-bool awake(dBodyID body) { return body && dBodyIsEnabled(body); }
+bool is_dynamic(dBodyID body) { return body && !dBodyIsKinematic(body); }
 
-bool may_touch(dGeomID a, dGeomID b) {
-  const dBodyID first = dGeomGetBody(a), second = dGeomGetBody(b);
-  if (first == second || !(awake(first) || awake(second))) return false;
+bool may_touch(dBodyID first, dBodyID second) {
+  if (first == second || !(is_moving(first) || is_moving(second)) || !(is_dynamic(first) || is_dynamic(second))) return false;
   return !(first && second && dAreConnectedExcluding(first, second, dJointTypeContact));
 }
 
-auto order_of(const Candidate& c) { return std::tie(c.first_order, c.second_order, c.first_part, c.second_part); }
+auto sorted_by(const Candidate& c) { return std::tie(c.first_order, c.second_order, c.first_part, c.second_part); }
 
-/// Whether our geoms, which are of every category, may collide with it.
-bool has_surface(dGeomID geom) {
-  const int kind = dGeomGetClass(geom);
-  return kind != dPlaneClass && kind != dRayClass && dGeomIsEnabled(geom) && (dGeomGetCategoryBits(geom) | dGeomGetCollideBits(geom)) != 0;
-}
-
-// A space nobody else's collision detection looks into: dSpaceCollide passes over a geom without categories.
-dSpaceID make_hidden(dSpaceID space) {
-  const dGeomID geom = reinterpret_cast<dGeomID>(space);
-  dGeomSetCategoryBits(geom, 0);
-  dGeomSetCollideBits(geom, 0);
-  return space;
-}
+Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box, double by) { return {box.min() - Vec3::Constant(by), box.max() + Vec3::Constant(by)}; }
 
 }  // namespace
 
-BroadPhase::BroadPhase(dSpaceID around, bool hash_space)
-    : around_(around),
-      bodies_space_(make_hidden(hash_space ? dHashSpaceCreate(around) : dSweepAndPruneSpaceCreate(around, dSAP_AXES_XYZ))),
-      ground_space_(make_hidden(dSimpleSpaceCreate(around))) {}
-
-BroadPhase::~BroadPhase() {
-  dSpaceDestroy(bodies_space_);
-  dSpaceDestroy(ground_space_);
+Eigen::AlignedBox3d bounds_of(dGeomID geom) {
+  dReal b[6];
+  dGeomGetAABB(geom, b);
+  return {Vec3(b[0], b[2], b[4]), Vec3(b[1], b[3], b[5])};
 }
+
+Eigen::AlignedBox3d bounds_of(const Body& body) {
+  Eigen::AlignedBox3d bounds;
+  for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) bounds.extend(ode::bounds_of(geom));
+  return bounds;
+}
+
+BroadPhase::BroadPhase(const SpaceMirror* callers, bool hash_space)
+    : callers_(callers), bodies_space_(hash_space ? dHashSpaceCreate(nullptr) : dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ)) {}
+
+BroadPhase::~BroadPhase() { dSpaceDestroy(bodies_space_); }
+
+void BroadPhase::add_ground(dGeomID geom) {
+  const std::uint32_t number = part_of(geom);
+  if (number >= ground_.size()) ground_.resize(number + 1);
+  ground_[number] = geom;
+  const BoxTree::Entry entry{number, bounds_of(geom)};
+  ground_tree_.add({&entry, 1});
+}
+
+void BroadPhase::remove_ground(dGeomID geom) {
+  ground_[part_of(geom)] = nullptr;
+  ground_tree_.remove(part_of(geom));
+}
+
+void BroadPhase::follow_ground(dGeomID geom, const Eigen::AlignedBox3d& before) { ground_tree_.move(part_of(geom), before, bounds_of(geom)); }
 
 std::span<const Candidate> BroadPhase::find(Bodies& bodies) {
   candidates_.clear();
   bodies_ = &bodies;
-  const auto ours = reinterpret_cast<dGeomID>(bodies_space_);
-  if (bodies.count() > 1) dSpaceCollide(bodies_space_, this, meet);
-  if (dSpaceGetNumGeoms(ground_space_) > 0) dSpaceCollide2(ours, reinterpret_cast<dGeomID>(ground_space_), this, meet);
-  if (around_) dSpaceCollide2(ours, reinterpret_cast<dGeomID>(around_), this, meet);
-  std::ranges::stable_sort(candidates_, {}, order_of);
+  const auto is_awake = [](const Body& body) { return body.body && dBodyIsEnabled(body.body); };
+  if (bodies.count() > 1 && std::ranges::any_of(bodies.slots(), is_awake)) dSpaceCollide(bodies_space_, this, meet_ours);
+  for (const Body& body : bodies.slots())
+    if (is_awake(body)) find_around(body, std::uint64_t(&body - bodies.slots().data()));
+  if (callers_) find_sleepers_met();
+  std::ranges::stable_sort(candidates_, {}, sorted_by);
   return candidates_;
 }
 
-void BroadPhase::meet(void* self, dGeomID a, dGeomID b) {
-  if (dGeomIsSpace(a) || dGeomIsSpace(b))
-    dSpaceCollide2(a, b, self, meet);  // a space within the caller's
-  else if (may_touch(a, b))
-    static_cast<BroadPhase*>(self)->add(a, b);
+void BroadPhase::meet_ours(void* data, dGeomID a, dGeomID b) {
+  BroadPhase& self = *static_cast<BroadPhase*>(data);
+  if (!may_touch(dGeomGetBody(a), dGeomGetBody(b))) return;
+  const Body *first = self.bodies_->owner(a), *second = self.bodies_->owner(b);
+  if (second < first) std::swap(first, second), std::swap(a, b);
+  if (!self.lets_meet(*first, *second)) return;
+  const Body* slots = self.bodies_->slots().data();
+  self.candidates_.push_back({a, b, std::uint64_t(first - slots), std::uint64_t(second - slots), part_of(a), part_of(b)});
 }
 
-void BroadPhase::add(dGeomID a, dGeomID b) {
-  const auto place_of = [&](dGeomID geom) -> std::uint64_t {
-    if (const Body* body = bodies_->owner(geom)) return body - bodies_->slots().data();
-    return dGeomGetSpace(geom) == ground_space_ ? kGroundOrder + part_of(geom) : kForeignOrder + candidates_.size();
-  };
-  Candidate found{a, b, place_of(a), place_of(b), part_of(a), part_of(b)};
-  if (found.second_order < found.first_order) found = {b, a, found.second_order, found.first_order, found.second_part, found.first_part};
-  candidates_.push_back(found);
+bool BroadPhase::lets_meet(const Body& first, const Body& second) const {
+  const BodyProperties &a = first.properties, &b = second.properties;
+  return may_meet(a.category, a.collide, b.category, b.collide) && (!filter_ || filter_(first.id, second.id));
 }
 
-std::span<const dGeomID> BroadPhase::find_others(const Eigen::AlignedBox3d& box) {
-  others_.clear();
-  collect(around_ ? around_ : ground_space_, box);
-  return others_;
-}
-
-void BroadPhase::collect(dSpaceID space, const Eigen::AlignedBox3d& box) {
-  if (space == bodies_space_) return;
-  for (int i = 0; i < dSpaceGetNumGeoms(space); ++i) {
-    const dGeomID geom = dSpaceGetGeom(space, i);
-    if (dGeomIsSpace(geom)) {
-      collect(reinterpret_cast<dSpaceID>(geom), box);
-    } else if (has_surface(geom)) {
-      dReal b[6];
-      dGeomGetAABB(geom, b);
-      if (box.intersects(Eigen::AlignedBox3d(Vec3(b[0], b[2], b[4]), Vec3(b[1], b[3], b[5])))) others_.push_back(geom);
+void BroadPhase::find_around(const Body& body, std::uint64_t order) {
+  for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) {
+    const Eigen::AlignedBox3d box = bounds_of(geom);
+    found_.clear();
+    ground_tree_.find(box, found_);
+    for (const std::uint32_t number : found_) add({geom, ground_[number], order, Candidate::kGround + number, part_of(geom), 0}, ~0u, ~0u);
+    if (!callers_) continue;
+    found_.clear();
+    callers_->find_followed(box, found_);
+    for (const std::uint32_t slot : found_) {
+      const MirroredGeom& other = callers_->geoms()[slot];
+      add({geom, other.geom, order, Candidate::kCallers + slot, part_of(geom), 0}, other.category, other.collide);
     }
   }
 }
 
-void BroadPhase::wake_around(dGeomID geom) {
-  const auto wake = [](void* center, dGeomID a, dGeomID b) {
-    const dGeomID other = a == center ? b : a;
-    if (const dBodyID body = dGeomGetBody(other)) dBodyEnable(body);
+/// Where their boxes overlap and bodies and bits let them.
+void BroadPhase::add(const Candidate& pair, unsigned category, unsigned collide) {
+  if (!may_meet(unsigned(dGeomGetCategoryBits(pair.first)), unsigned(dGeomGetCollideBits(pair.first)), category, collide)) return;
+  if (bounds_of(pair.first).intersects(bounds_of(pair.second)) && may_touch(dGeomGetBody(pair.first), dGeomGetBody(pair.second)))
+    candidates_.push_back(pair);
+}
+
+// Piles flicker between sleep and waking: one that slept keeps its place in the tree until it has left it.
+void BroadPhase::note_sleep(const Body& body) {
+  const std::uint32_t slot = slot_of(body.id);
+  if (slot >= slept_.size()) slept_.resize(slot + 1);
+  if (dBodyIsEnabled(body.body)) {
+    if (slept_[slot] == Slept::here) slept_[slot] = Slept::near_here;
+  } else if (slept_[slot] != Slept::here) {
+    const BoxTree::Entry entry{slot, bounds_of(body)};
+    if (slept_[slot] == Slept::no) sleepers_.add({&entry, 1});
+    else sleepers_.move(slot, entry.box, entry.box);
+    slept_[slot] = Slept::here;
+  }
+}
+
+void BroadPhase::find_sleepers_met() {
+  for (const std::uint32_t slot : callers_->bodied()) {
+    const MirroredGeom& geom = callers_->geoms()[slot];
+    if (!is_moving(geom.body)) continue;
+    found_.clear();
+    sleepers_.find(bounds_of(geom.geom), found_);
+    for (const std::uint32_t sleeper : found_) {
+      const dBodyID body = bodies_->slots()[sleeper].body;
+      if (dBodyIsEnabled(body)) continue;
+      for (dGeomID own = dBodyGetFirstGeom(body); own; own = dBodyGetNextGeom(own))
+        add({own, geom.geom, sleeper, Candidate::kCallers + slot, part_of(own), 0}, geom.category, geom.collide);
+    }
+  }
+}
+
+std::span<const dGeomID> BroadPhase::find_others(const Eigen::AlignedBox3d& box, const BodyProperties& properties) {
+  others_.clear();
+  const auto add_where_it_is = [&](dGeomID geom) {
+    if (bounds_of(geom).intersects(box)) others_.push_back(geom);
   };
-  dSpaceCollide2(geom, reinterpret_cast<dGeomID>(bodies_space_), geom, wake);
-  if (around_) dSpaceCollide2(geom, reinterpret_cast<dGeomID>(around_), geom, wake);
+  found_.clear();
+  ground_tree_.find(box, found_);
+  std::ranges::sort(found_);
+  for (const std::uint32_t number : found_) add_where_it_is(ground_[number]);
+  if (!callers_) return others_;
+  found_.clear();
+  callers_->find_followed(box, found_);
+  std::ranges::sort(found_);
+  for (const std::uint32_t slot : found_) {
+    const MirroredGeom& other = callers_->geoms()[slot];
+    if (may_meet(properties.category, properties.collide, other.category, other.collide)) add_where_it_is(other.geom);
+  }
+  return others_;
+}
+
+void BroadPhase::wake_ours(Bodies& bodies, const Eigen::AlignedBox3d& box) {
+  found_.clear();
+  sleepers_.find(widened(box, kTouchMargin * bodies.greatest_reach()), found_);
+  for (const std::uint32_t sleeper : found_) {
+    const Body& body = bodies.slots()[sleeper];
+    if (!dBodyIsEnabled(body.body) && widened(bounds_of(body), kTouchMargin * body.reach).intersects(box)) dBodyEnable(body.body);
+  }
+}
+
+void BroadPhase::wake_callers(const Eigen::AlignedBox3d& box) {
+  callers_->find_near(box, found_);
+  for (const std::uint32_t slot : found_)
+    if (const dBodyID body = callers_->geoms()[slot].body) dBodyEnable(body);
+}
+
+void BroadPhase::forget(const Body& body) {
+  const std::uint32_t slot = slot_of(body.id);
+  if (slot >= slept_.size() || slept_[slot] == Slept::no) return;
+  sleepers_.remove(slot);
+  slept_[slot] = Slept::no;
 }
 
 }  // namespace lodestone::ode

@@ -1,5 +1,7 @@
 #include "reference/ode/collision_ode.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -11,7 +13,7 @@
 namespace lodestone::ode {
 namespace {
 
-ContactSide side_of(const Body& body) { return {body.body, body.material, body.id}; }
+ContactSide side_of_ours(const Body& body) { return ode::side_of(body.body, body.material, body.id); }
 
 bool same_pair(const Candidate& a, const Candidate& b) {
   return a.first_order == b.first_order && a.second_order == b.second_order;
@@ -19,17 +21,12 @@ bool same_pair(const Candidate& a, const Candidate& b) {
 
 bool is_awake(const Body& body) { return body.body && dBodyIsEnabled(body.body); }
 
-Plane plane_of(dGeomID geom) {
-  dVector4 p;
-  dGeomPlaneGetParams(geom, p);
-  return {to_vec3(p), p[3], 0, geom};
-}
-
 Pieces pieces_of(const Body& body) { return {body.pieces, state_of(body.body)}; }
 
-Pieces pieces_of(const Ground* ground) {
-  if (!ground || !ground->box) return {};
-  return {{{ground->box.get()}}, ground->state};
+void place(dGeomID geom, const RigidState& state) {
+  dGeomSetPosition(geom, state.position.x(), state.position.y(), state.position.z());
+  const dQuaternion q = {state.orientation.w(), state.orientation.x(), state.orientation.y(), state.orientation.z()};
+  dGeomSetQuaternion(geom, q);
 }
 
 /// Whether two meshes whose surfaces do not cross are one inside the other.
@@ -60,40 +57,92 @@ bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.bod
 
 }  // namespace
 
-Collision::Collision(dSpaceID around, const OdeSettings& settings)
+Collision::Collision(const SpaceMirror* callers, const OdeSettings& settings)
     : settings_(settings),
-      broad_phase_(around, settings.hash_space),
+      broad_phase_(callers, settings.hash_space),
       narrow_phase_(settings.mesh_contacts != MeshContacts::plain, settings.most_mesh_measures),
       plane_phase_(settings),
-      attached_(around != nullptr) {}
+      callers_(callers) {}
 
 Collision::~Collision() {
   for (const Plane& plane : planes_) dGeomDestroy(plane.geom);
+  for (const Ground& ground : ground_)
+    if (ground.id) dGeomDestroy(ground.geom);
 }
 
-void Collision::add_plane(const Vec3& normal, double offset, MaterialId material) {
-  check_that(std::abs(normal.norm() - 1.0) < 1e-6 && std::isfinite(offset), "a plane's normal has unit length, its offset is finite");
-  planes_.push_back({normal, offset, material, dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), offset)});
+OdeGroundId Collision::add_plane(const Vec3& normal, double offset, MaterialId material) {
+  if (!(std::abs(normal.norm() - 1.0) < 1e-6 && std::isfinite(offset))) throw InputError("a plane: expected a normal of unit length and a finite offset");
+  planes_.push_back({normal, offset, material, dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), offset), ~0u, ~0u, {++last_ground_id_}});
+  return planes_.back().id;
 }
 
-void Collision::add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
-  check_that(sides.allFinite() && sides.minCoeff() > 0.0, "a box's sides are positive");
-  check_that(is_sound({position, orientation, Vec3::Zero(), Vec3::Zero()}), "a box's pose is finite, below 1e8 m");
-  const dGeomID box = dCreateBox(broad_phase_.ground_space(), sides.x(), sides.y(), sides.z());
-  dGeomSetPosition(box, position.x(), position.y(), position.z());
-  const dQuaternion q = {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
-  dGeomSetQuaternion(box, q);
-  add_ground(box, {material, std::make_shared<const Shape>(make_shape("static box", make_box(sides))), {position, orientation, Vec3::Zero(), Vec3::Zero()}});
+OdeGroundId Collision::add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+  const RigidState state{position, orientation, Vec3::Zero(), Vec3::Zero()};
+  if (!(sides.allFinite() && sides.minCoeff() > 0.0 && is_sound(state))) throw InputError("a static box: expected positive sides and a finite pose, below 1e8 m");
+  const dGeomID box = dCreateBox(nullptr, sides.x(), sides.y(), sides.z());
+  place(box, state);
+  return add_ground({{}, box, material, std::make_shared<const Shape>(make_shape("static box", make_box(sides))), state});
 }
 
-void Collision::add_mesh(const Mesh& mesh, MaterialId material) {
-  ground_meshes_.push_back(std::make_unique<TrimeshData>(mesh.vertices, mesh.faces));
-  add_ground(dCreateTriMesh(broad_phase_.ground_space(), ground_meshes_.back()->id(), nullptr, nullptr, nullptr), {material});
+OdeGroundId Collision::add_mesh(const Mesh& mesh, MaterialId material) {
+  auto data = std::make_unique<TrimeshData>(mesh.vertices, mesh.faces);
+  const dGeomID geom = dCreateTriMesh(nullptr, data->id(), nullptr, nullptr, nullptr);
+  ++ground_meshes_;
+  return add_ground({{}, geom, material, nullptr, {}, std::move(data)});
 }
 
-void Collision::add_ground(dGeomID geom, Ground ground) {
-  dGeomSetData(geom, reinterpret_cast<void*>(ground_.size()));
-  ground_.push_back(std::move(ground));
+OdeGroundId Collision::add_ground(Ground ground) {
+  std::size_t number = ground_.size();
+  if (free_ground_.empty()) {
+    ground_.emplace_back();
+  } else {
+    number = free_ground_.back();
+    free_ground_.pop_back();
+  }
+  ground.id = {++last_ground_id_};
+  dGeomSetData(ground.geom, reinterpret_cast<void*>(number));
+  broad_phase_.add_ground(ground.geom);
+  ground_[number] = std::move(ground);
+  return ground_[number].id;
+}
+
+Ground& Collision::find_ground(OdeGroundId id) {
+  const auto found = std::ranges::find(ground_, id, &Ground::id);
+  if (!id || found == ground_.end()) throw InputError(fmt::format("OdeGroundId {}: found no such box or mesh", id.value));
+  return *found;
+}
+
+void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bodies) {
+  Ground& ground = find_ground(id);
+  if (!is_sound(state)) throw InputError("a pose of ground: expected finite, below 1e8 in each part, the orientation of unit norm");
+  const Eigen::AlignedBox3d before = bounds_of(ground.geom);
+  place(ground.geom, state);
+  ground.state = state;
+  ground.moved = true;
+  ground.moves = !state.velocity.isZero(0.0) || !state.angular_velocity.isZero(0.0);
+  broad_phase_.follow_ground(ground.geom, before);
+  broad_phase_.wake_ours(bodies, before);
+  broad_phase_.wake_ours(bodies, bounds_of(ground.geom));
+}
+
+void Collision::remove_ground(OdeGroundId id, Bodies& bodies) {
+  if (const auto plane = std::ranges::find(planes_, id, &Plane::id); id && plane != planes_.end()) {
+    for (const Body& body : bodies.slots())
+      if (body.body && plane->normal.dot(to_vec3(dBodyGetPosition(body.body))) - plane->offset < 1.1 * body.reach) dBodyEnable(body.body);
+    dGeomDestroy(plane->geom);
+    planes_.erase(plane);
+    return;
+  }
+  Ground& ground = find_ground(id);
+  broad_phase_.wake_ours(bodies, bounds_of(ground.geom));
+  broad_phase_.remove_ground(ground.geom);
+  dGeomDestroy(ground.geom);
+  free_ground_.push_back(std::uint32_t(&ground - ground_.data()));
+  ground = {};
+}
+
+void Collision::end_step() {
+  for (Ground& ground : ground_) ground.moved = false;
 }
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
@@ -101,12 +150,28 @@ void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
   const bool any_awake = std::ranges::any_of(bodies.slots(), is_awake);
   // One body over planes needs no broad phase, nor do sleepers, except from a caller's bodies.
   std::span<const Candidate> candidates;
-  if (attached_ || (any_awake && (bodies.count() > 1 || !ground_.empty()))) candidates = broad_phase_.find(bodies);
+  if (callers_ || (any_awake && (bodies.count() > 1 || !ground_.empty()))) candidates = broad_phase_.find(bodies);
   mark_company(bodies, candidates);
-  for (Body& body : bodies.slots())
-    if (is_awake(body))
-      for (const Plane& plane : planes_) collide_plane(body, plane, joints);
+  if (callers_) note_callers_planes();
+  for (Body& body : bodies.slots()) {
+    if (!is_awake(body) || dBodyIsKinematic(body.body)) continue;
+    for (const Plane& plane : planes_) collide_plane(body, plane, joints);
+    for (const Plane& plane : callers_planes_) collide_plane(body, plane, joints);
+  }
   collide_candidates(bodies, candidates, joints);
+}
+
+void Collision::note_changes(Bodies& bodies) {
+  callers_shapes_.forget(*callers_);
+  for (const Eigen::AlignedBox3d& box : callers_->disturbed()) broad_phase_.wake_ours(bodies, box);
+}
+
+void Collision::note_callers_planes() {
+  callers_planes_.clear();
+  for (const std::uint32_t slot : callers_->planes()) {
+    const MirroredGeom& plane = callers_->geoms()[slot];
+    callers_planes_.push_back({plane.normal, plane.offset, 0, plane.geom, plane.category, plane.collide, {}});
+  }
 }
 
 // Those that may touch more than planes, or hang on a joint.
@@ -116,46 +181,49 @@ void Collision::mark_company(Bodies& bodies, std::span<const Candidate> candidat
     body.in_company = body.body && dBodyGetNumJoints(body.body) > 0;
   }
   for (const Candidate& candidate : candidates) {
-    if (dGeomGetClass(candidate.second) == dPlaneClass) continue;
     for (const dGeomID geom : {candidate.first, candidate.second})
       if (Body* body = bodies.owner(geom)) body->in_company = true;
   }
 }
 
 void Collision::collide_plane(Body& body, const Plane& plane, ContactJoints& joints) {
+  if (!may_meet(body.properties.category, body.properties.collide, plane.category, plane.collide)) return;
   points_.clear();
   plane_phase_.find(body, plane, joints.law(body.material, plane.material), step_, points_);
-  if (!points_.empty()) joints.add(ode::side_of(body), {nullptr, plane.material, {}}, points_);
+  if (!points_.empty()) joints.add(side_of_ours(body), {nullptr, plane.material, {}, {}, false, plane.id ? nullptr : plane.geom, plane.id}, points_);
 }
 
 void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints) {
   for (std::size_t i = 0, next; i < candidates.size(); i = next) {
     points_.clear();
-    Body& body = *bodies.owner(candidates[i].first);
+    const Body& body = *bodies.owner(candidates[i].first);
     const Body* other = bodies.owner(candidates[i].second);
-    if (dGeomGetClass(candidates[i].second) == dPlaneClass) {
-      const Plane plane = plane_of(candidates[i].second);
-      plane_phase_.find(body, plane, joints.law(body.material, plane.material), step_, points_);
-      next = i + 1;
-    } else {
-      for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next) {}
-      find_pair_points(body, other, candidates.subspan(i, next - i));
-    }
-    if (!points_.empty()) joints.add(ode::side_of(body), side_of(bodies, candidates[i].second), points_);
+    for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next) {}
+    find_pair_points(body, other, candidates.subspan(i, next - i));
+    if (!points_.empty()) joints.add(side_of_ours(body), side_of(candidates[i], other), points_);
   }
 }
 
 void Collision::find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts) {
   const double size = other ? std::min(body.reach, other->reach) : body.reach;
   const bool exact = settings_.mesh_contacts == MeshContacts::exact;
-  const Pieces first = pieces_of(body), second = other ? pieces_of(*other) : pieces_of(ground_of(parts[0].second));
+  const Pieces first = pieces_of(body), second = exact && !first.empty() ? pieces_of_other(parts[0], other) : Pieces{};
   if (exact && !first.empty() && !second.empty())
     find_contacts_of_pieces(first, second, points_);
   else if (exact && other && is_mesh(body) && is_mesh(*other))
     find_filtered_points(body, *other, parts[0], size);
   else
-    for (const Candidate& part : parts) narrow_phase_.find(part.first, part.second, size, points_);
+    for (const Candidate& part : parts) {
+      if (dGeomGetClass(part.second) == dConvexClass) prepare_for_convex(part.first);
+      narrow_phase_.find(part.first, part.second, size, points_);
+    }
   drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
+}
+
+// ODE fails an assertion where a convex meets a trimesh that does not know the angles between its faces.
+void Collision::prepare_for_convex(dGeomID geom) {
+  if (dGeomGetClass(geom) != dTriMeshClass || !with_angles_.insert(dGeomTriMeshGetData(geom)).second) return;
+  dGeomTriMeshDataPreprocess2(dGeomTriMeshGetData(geom), 1u << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
 }
 
 /// Bodies are clear of each other once their hulls are.
@@ -178,16 +246,31 @@ void Collision::drop_beyond(int kept) {
   points_.resize(kept);
 }
 
-ContactSide Collision::side_of(Bodies& bodies, dGeomID geom) const {
-  if (const Body* body = bodies.owner(geom)) return ode::side_of(*body);
-  const Ground* ground = ground_of(geom);
-  return ground ? ContactSide{nullptr, ground->material, {}} : ContactSide{dGeomGetBody(geom), 0, {}};
+Pieces Collision::pieces_of_other(const Candidate& candidate, const Body* other) {
+  if (other) return pieces_of(*other);
+  if (candidate.with_ground()) {
+    const Ground& ground = ground_[candidate.second_number()];
+    return ground.box ? Pieces{{{ground.box.get()}}, ground.state} : Pieces{};
+  }
+  const CallersShape* shape = callers_shapes_.find(*callers_, candidate.second_number());
+  if (!shape) return {};
+  dQuaternion q;
+  dGeomGetQuaternion(candidate.second, q);
+  return {{{shape->shape.get(), shape->center}}, {to_vec3(dGeomGetPosition(candidate.second)), to_quat(q), Vec3::Zero(), Vec3::Zero()}};
 }
 
-/// Null where `geom` is not of this world's ground.
-const Ground* Collision::ground_of(dGeomID geom) const {
-  if (dGeomGetSpace(geom) != broad_phase_.ground_space()) return nullptr;
-  return &ground_[reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))];
+ContactSide Collision::side_of(const Candidate& candidate, const Body* other) const {
+  if (other) return side_of_ours(*other);
+  if (candidate.with_ground()) {
+    const Ground& ground = ground_[candidate.second_number()];
+    ContactSide side{nullptr, ground.material, {}, {}, ground.moved || ground.moves, nullptr, ground.id};
+    if (ground.moves) side.motion = SurfaceMotion{ground.state.position, ground.state.velocity, ground.state.angular_velocity};
+    return side;
+  }
+  const MirroredGeom& geom = callers_->geoms()[candidate.second_number()];
+  ContactSide side = ode::side_of(geom.body, 0, {}, geom.geom);
+  side.moves |= !geom.body && std::ranges::binary_search(callers_->moved(), candidate.second_number());
+  return side;
 }
 
 }  // namespace lodestone::ode

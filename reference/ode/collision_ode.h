@@ -2,63 +2,85 @@
 #pragma once
 
 #include <memory>
+#include <unordered_set>
 #include <vector>
 
 #include "reference/ode/bodies_ode.h"
 #include "reference/ode/broad_phase_ode.h"
+#include "reference/ode/callers_shapes_ode.h"
 #include "reference/ode/joints_ode.h"
 #include "reference/ode/narrow_phase_ode.h"
 #include "reference/ode/plane_phase_ode.h"
 
 namespace lodestone::ode {
 
-/// A static box or mesh.
+/// A box or mesh that nothing can push.
 struct Ground {
+  OdeGroundId id{};                       ///< null: removed
+  dGeomID geom = nullptr;
   MaterialId material = 0;
   std::shared_ptr<const Shape> box = {};  ///< null for a mesh
-  RigidState state = {};                  ///< of the box
+  RigidState state = {};
+  std::unique_ptr<TrimeshData> mesh = {};
+  bool moved = false;                     ///< before this step
+  bool moves = false;                     ///< its state has a velocity
 };
 
 class Collision {
  public:
-  Collision(dSpaceID around, const OdeSettings& settings);
+  /// `callers`: null in a world of its own.
+  Collision(const SpaceMirror* callers, const OdeSettings& settings);
   ~Collision();
   Collision(const Collision&) = delete;
   Collision& operator=(const Collision&) = delete;
 
-  void add_plane(const Vec3& normal, double offset, MaterialId material);
-  void add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
-  void add_mesh(const Mesh& mesh, MaterialId material);
+  OdeGroundId add_plane(const Vec3& normal, double offset, MaterialId material);
+  OdeGroundId add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
+  OdeGroundId add_mesh(const Mesh& mesh, MaterialId material);
+  void move_ground(OdeGroundId id, const RigidState& state, Bodies& bodies);
+  void remove_ground(OdeGroundId id, Bodies& bodies);
 
+  /// After the mirror was refreshed: wakes what the caller disturbed.
+  void note_changes(Bodies& bodies);
+  /// Ground that is not moved again stands.
+  void end_step();
   /// Finds the contacts of every awake body and gives them to `joints`; `h` is the step to come, s.
   void collide(Bodies& bodies, ContactJoints& joints, double h);
 
   BroadPhase& broad_phase() { return broad_phase_; }
   std::int64_t contacts_dropped() const { return plane_phase_.dropped() + dropped_; }
   std::int64_t swallowed() const { return swallowed_; }
-  std::int64_t ground_trimeshes() const { return std::int64_t(ground_meshes_.size()); }
+  std::int64_t ground_trimeshes() const { return ground_meshes_; }
 
  private:
   void mark_company(Bodies& bodies, std::span<const Candidate> candidates);
+  void note_callers_planes();
   void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);
   void collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
   void find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size);
-  const Ground* ground_of(dGeomID geom) const;
+  void prepare_for_convex(dGeomID geom);
+  Pieces pieces_of_other(const Candidate& candidate, const Body* other);
   void drop_beyond(int kept);
-  void add_ground(dGeomID geom, Ground ground);
-  ContactSide side_of(Bodies& bodies, dGeomID geom) const;
+  OdeGroundId add_ground(Ground ground);
+  Ground& find_ground(OdeGroundId id);
+  ContactSide side_of(const Candidate& candidate, const Body* other) const;
 
   OdeSettings settings_;
   BroadPhase broad_phase_;
   NarrowPhase narrow_phase_;
   PlanePhase plane_phase_;
   std::vector<Plane> planes_;
+  std::vector<Plane> callers_planes_;
   std::vector<Ground> ground_;                // by the ground geom's number (dGeomGetData)
-  std::vector<std::unique_ptr<TrimeshData>> ground_meshes_;
+  std::vector<std::uint32_t> free_ground_;
+  std::uint32_t last_ground_id_ = 0;
+  std::int64_t ground_meshes_ = 0;
   std::vector<ContactPoint> points_;          // of the pair at hand
-  bool attached_;
+  const SpaceMirror* callers_;
+  CallersShapes callers_shapes_;
   PlaneStep step_;                            // the one to come
+  std::unordered_set<dTriMeshDataID> with_angles_;  // trimeshes prepared for convexes
   std::int64_t dropped_ = 0, swallowed_ = 0;
 };
 

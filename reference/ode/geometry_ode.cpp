@@ -1,5 +1,7 @@
 #include "reference/ode/geometry_ode.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -10,10 +12,12 @@ namespace {
 
 void check_faces(std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {
   // A single triangle against another mesh makes OPCODE crash, and it takes indices out of range silently.
-  check_that(faces.size() >= 2, "a trimesh has two faces or more");
-  for (const Vec3& vertex : vertices) check_that(vertex.allFinite(), "vertices of a trimesh are finite");
+  if (faces.size() < 2) throw InputError(fmt::format("a trimesh: found {} faces, expected two or more", faces.size()));
+  for (const Vec3& vertex : vertices)
+    if (!vertex.allFinite()) throw InputError("a trimesh: found a vertex that is not finite");
   for (const auto& face : faces)
-    for (const int i : face) check_that(i >= 0 && i < int(vertices.size()), "faces of a trimesh name its vertices");
+    for (const int i : face)
+      if (i < 0 || i >= int(vertices.size())) throw InputError(fmt::format("a trimesh: found a face of vertex {}, of {}", i, vertices.size()));
 }
 
 Sphere sphere_of_volume(const Shape& shape) {

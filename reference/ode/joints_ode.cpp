@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/ode/geometry_ode.h"
+#include "reference/ode/bodies_ode.h"
+#include "reference/ode/touches_ode.h"
 
 namespace lodestone::ode {
 namespace {
@@ -12,6 +13,7 @@ void copy(const Vec3& from, dReal* to) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
 
+/// kg; of what nothing can push, infinite.
 double mass_of(dBodyID body) {
   if (!body) return dInfinity;
   dMass mass;
@@ -19,9 +21,24 @@ double mass_of(dBodyID body) {
   return mass.mass;
 }
 
+/// m/s
+Vec3 velocity_at(const ContactSide& side, const Vec3& point) {
+  if (side.motion) return side.motion->velocity_at(point);
+  if (!side.body) return Vec3::Zero();
+  const Vec3 arm = point - to_vec3(dBodyGetPosition(side.body));
+  return to_vec3(dBodyGetLinearVel(side.body)) + to_vec3(dBodyGetAngularVel(side.body)).cross(arm);
+}
+
 Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - v.dot(normal) * normal; }
 
 }  // namespace
+
+ContactSide side_of(dBodyID body, MaterialId material, OdeBodyId id, dGeomID callers_geom) {
+  if (!body || !dBodyIsKinematic(body)) return {body, material, id, {}, false, callers_geom, {}};
+  if (!is_moving(body)) return {nullptr, material, id, {}, false, callers_geom, {}};
+  const RigidState state = state_of(body);
+  return {nullptr, material, id, SurfaceMotion{state.position, state.velocity, state.angular_velocity}, true, callers_geom, {}};
+}
 
 ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const MaterialTable& materials)
     : world_(world),
@@ -30,8 +47,8 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
       erp_(settings.erp),
       cfm_(settings.cfm),
       max_correcting_velocity_(settings.max_correcting_velocity) {
-  joint_.surface.mode = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM;
-  if (settings.friction_along_slip) joint_.surface.mode |= dContactFDir1;
+  mode_ = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+  if (settings.friction_along_slip) mode_ |= dContactFDir1;
   joint_.surface.soft_erp = settings.erp;
   joint_.surface.bounce_vel = settings.bounce_velocity;
 }
@@ -44,6 +61,8 @@ void ContactJoints::begin(double h, int attempt) {
   dWorldGetGravity(world_, gravity);
   gravity_ = to_vec3(gravity);
   contacts_.clear();
+  carried_.clear();
+  if (touches_) touches_->begin_substep();
   h_ = h;
   attempt_cfm_ = cfm_ + kAddedCfm[attempt];
   unevenness_ = kUnevenness[attempt] * gravity_.norm() * h * h;
@@ -56,6 +75,11 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second, std
   joint_.surface.mu = pair.friction;
   joint_.surface.bounce = pair.restitution;
   joint_.surface.soft_cfm = attempt_cfm_ * cfm_share(std::min(mass_of(first.body), mass_of(second.body)));
+  for (const auto& [side, other] : {std::pair(first, second), std::pair(second, first)}) {
+    if (!side.body || !other.moves) continue;
+    carried_.push_back(side.body);
+    if (!dBodyIsEnabled(side.body)) dBodyEnable(side.body);
+  }
   for (const ContactPoint& point : points) {
     add_joint(first, second, point);
     const double side = first.id ? 1.0 : -1.0;  // contacts() names this world's body first
@@ -68,12 +92,30 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second, std
 void ContactJoints::add_joint(const ContactSide& first, const ContactSide& second, const ContactPoint& point) {
   copy(point.point, joint_.geom.pos);
   copy(point.normal, joint_.geom.normal);
-  joint_.geom.depth = second.body ? depth_of(point) : std::min(point.depth, deepest_);
+  joint_.geom.depth = first.body && second.body ? depth_of(point) : std::min(point.depth, deepest_);
+  joint_.surface.mode = mode_;
   joint_.surface.motionN = point.lift;
   if (point.lift != 0.0) joint_.surface.mode |= dContactMotionN;
-  else joint_.surface.mode &= ~dContactMotionN;
-  copy(slip_direction(first.body, second.body, point), joint_.fdir1);
-  dJointAttach(dJointCreateContact(world_, group_, &joint_), first.body, second.body);
+  copy(slip_direction(first, second, point), joint_.fdir1);
+  for (const ContactSide* side : {&first, &second})
+    if (side->motion) move_surface(side->motion->velocity_at(point.point), point, side == &first);
+  const dJointID joint = dJointCreateContact(world_, group_, &joint_);
+  dJointAttach(joint, first.body, second.body);
+  if (touches_) touches_->watch(joint, first, second, point, approach_of(first, second, point));
+}
+
+/// m/s along the normal, as they are now.
+double ContactJoints::approach_of(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const {
+  return point.normal.dot(velocity_at(second, point.point) - velocity_at(first, point.point));
+}
+
+/// `turned`: the surface is the first side, ODE's first body the second.
+void ContactJoints::move_surface(const Vec3& velocity, const ContactPoint& point, bool turned) {
+  const Vec3 normal = turned ? Vec3(-point.normal) : point.normal, along = to_vec3(joint_.fdir1);
+  joint_.surface.mode |= dContactFDir1 | dContactMotionN | dContactMotion1 | dContactMotion2;
+  joint_.surface.motionN += normal.dot(velocity);
+  joint_.surface.motion1 = along.dot(velocity);
+  joint_.surface.motion2 = normal.cross(along).dot(velocity);
 }
 
 // ODE's solver gives up where two contacts tie exactly, as those of bodies at rest on each other do; a small part of what a body falls in a
@@ -85,7 +127,7 @@ double ContactJoints::depth_of(const ContactPoint& point) const {
 
 // ODE's friction is a box: μ along fdir1 and μ across it, so only along fdir1 is it Coulomb's. Friction opposes the slip that the step
 // would have without it; taking that rather than the slip before it lets a body at rest on a slope start downhill.
-Vec3 ContactJoints::slip_direction(dBodyID first, dBodyID second, const ContactPoint& point) const {
+Vec3 ContactJoints::slip_direction(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const {
   const Vec3 relative = unhindered_velocity(first, point.point) - unhindered_velocity(second, point.point);
   const double still = 1e-3 * h_ * gravity_.norm() + 1e-9;
   for (const Vec3& direction : {relative, gravity_}) {
@@ -96,11 +138,10 @@ Vec3 ContactJoints::slip_direction(dBodyID first, dBodyID second, const ContactP
 }
 
 /// Of the body's material at `point` at the end of the step if nothing but gravity and applied forces acted on it.
-Vec3 ContactJoints::unhindered_velocity(dBodyID body, const Vec3& point) const {
-  if (!body) return Vec3::Zero();
-  const Vec3 arm = point - to_vec3(dBodyGetPosition(body));
-  const Vec3 now = to_vec3(dBodyGetLinearVel(body)) + to_vec3(dBodyGetAngularVel(body)).cross(arm);
-  if (!dBodyIsEnabled(body) || dBodyIsKinematic(body)) return now;
+Vec3 ContactJoints::unhindered_velocity(const ContactSide& side, const Vec3& point) const {
+  const Vec3 now = velocity_at(side, point);
+  const dBodyID body = side.body;
+  if (!body || !dBodyIsEnabled(body)) return now;
   dMass mass;
   dBodyGetMass(body, &mass);
   const Vec3 pull = dBodyGetGravityMode(body) ? gravity_ : Vec3::Zero();

@@ -1,23 +1,40 @@
 // Contact joints: what ODE's solver is told about a contact.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "reference/ode/contact_filter.h"
 #include "reference/ode/ode_world.h"
 #include "reference/ode/runtime_ode.h"
+#include "reference/state_archive.h"
 
 namespace lodestone::ode {
+
+class Touches;
 
 /// Part of the constraint force mixing that a body of `mass` (kg) is given: of much more than the inverse of its mass over the step, its contacts would be soft.
 inline double cfm_share(double mass) { return std::min(1.0, 100.0 / mass); }
 
-/// One of the two bodies at a contact; `body` null for static ground.
+/// How a surface that nothing can push moves.
+struct SurfaceMotion {
+  Vec3 center = Vec3::Zero(), velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< m, m/s and rad/s, world
+  Vec3 velocity_at(const Vec3& point) const { return velocity + angular_velocity.cross(point - center); }
+};
+
+/// One of the two bodies at a contact; `body` null for static ground, and for ground or a kinematic body that moves.
 struct ContactSide {
   dBodyID body = nullptr;
   MaterialId material = 0;
   OdeBodyId id{};  ///< null where the body is not this world's
+  std::optional<SurfaceMotion> motion = {};
+  bool moves = false;      ///< does so, or was moved before this step
+  dGeomID callers_geom = nullptr;
+  OdeGroundId ground = {};
 };
+
+/// `body` as a side: one that is kinematic is a surface that moves. ODE would else make one island of all that lies on it.
+ContactSide side_of(dBodyID body, MaterialId material, OdeBodyId id, dGeomID callers_geom = nullptr);
 
 /// The contact joints of one substep.
 class ContactJoints {
@@ -35,25 +52,36 @@ class ContactJoints {
   /// Destroys the joints; contacts() stays.
   void end() { dJointGroupEmpty(group_); }
 
+  /// Who is told of every contact; null: nobody.
+  void tell(Touches* touches) { touches_ = touches; }
+
   const Vec3& gravity() const { return gravity_; }
   ContactLaw law(MaterialId first, MaterialId second) const { return materials_->law(first, second); }
   std::span<const OdeContact> contacts() const { return contacts_; }
+  /// Bodies that touch a surface that moves, in no order.
+  std::span<const dBodyID> carried() const { return carried_; }
   std::int64_t made() const { return made_; }
+  void archive(StateArchive& a) { a(contacts_); }
 
  private:
   void add_joint(const ContactSide& first, const ContactSide& second, const ContactPoint& point);
   double depth_of(const ContactPoint& point) const;
-  Vec3 slip_direction(dBodyID first, dBodyID second, const ContactPoint& point) const;
-  Vec3 unhindered_velocity(dBodyID body, const Vec3& point) const;
+  void move_surface(const Vec3& velocity, const ContactPoint& point, bool turned);
+  double approach_of(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const;
+  Vec3 slip_direction(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const;
+  Vec3 unhindered_velocity(const ContactSide& side, const Vec3& point) const;
 
   dWorldID world_;
   dJointGroupID group_;
   const MaterialTable* materials_;
   dContact joint_{};  // what every contact has in common is filled in once
+  int mode_;          // of every contact
   double erp_, cfm_, max_correcting_velocity_, attempt_cfm_ = 0.0;
   double h_ = 0.0, deepest_ = 0.0, unevenness_ = 0.0;
   Vec3 gravity_ = Vec3::Zero();
+  Touches* touches_ = nullptr;
   std::vector<OdeContact> contacts_;
+  std::vector<dBodyID> carried_;
   std::int64_t made_ = 0;
 };
 

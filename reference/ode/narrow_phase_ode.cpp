@@ -1,5 +1,8 @@
 #include "reference/ode/narrow_phase_ode.h"
 
+#include <algorithm>
+#include <functional>
+
 #include "reference/ode/geometry_ode.h"
 
 namespace lodestone::ode {
@@ -11,6 +14,30 @@ constexpr double kWithin = 0.01;  // × size
 constexpr int kMostFiltered = 64;  // of those, well spread, are looked at twice
 
 bool is_mesh(dGeomID geom) { return dGeomGetClass(geom) == dTriMeshClass; }
+
+bool is_sphere(dGeomID geom) { return dGeomGetClass(geom) == dSphereClass; }
+
+/// ODE finds for each triangle the place nearest to the sphere's centre, but calls the triangle's normal the contact's: where an edge or a corner is nearest, that way out is
+/// not towards the centre. Of places none of which lies above another's tangent plane only the nearest touches. Returns how many contacts, put first, are left. `side`: of
+/// normals that point into the sphere.
+std::size_t mend_sphere_contacts(dGeomID sphere, double side, std::span<ContactPoint> contacts) {
+  const Vec3 center = to_vec3(dGeomGetPosition(sphere));
+  const double radius = dGeomSphereGetRadius(sphere), least = 1e-6 * radius;
+  for (ContactPoint& contact : contacts) {
+    const Vec3 out = center - contact.point;
+    const double distance = out.norm();
+    if (distance < least || out.dot(side * contact.normal) <= 0.0) continue;  // the centre is inside
+    contact.normal = side / distance * out;
+    contact.depth = radius - distance;
+  }
+  std::ranges::stable_sort(contacts, std::greater(), &ContactPoint::depth);
+  std::size_t kept = 0;
+  for (const ContactPoint& contact : contacts) {
+    const auto rises_over = [&](const ContactPoint& other) { return side * other.normal.dot(contact.point - other.point) > 1e-3 * radius; };
+    if (contact.depth >= 0.0 && std::ranges::all_of(contacts.first(kept), rises_over)) contacts[kept++] = contact;
+  }
+  return kept;
+}
 
 /// Outward.
 Vec3 face_normal(dGeomID mesh, int face) {
@@ -39,8 +66,11 @@ void NarrowPhase::find(dGeomID first, dGeomID second, double size, std::vector<C
   if (is_mesh(first) || is_mesh(second)) lock.lock();
   if (is_mesh(first) && is_mesh(second)) return find_of_meshes(first, second, size, points);
   const int count = dCollide(first, second, kMostContacts, found_.data(), sizeof(dContactGeom));
+  const std::size_t before = points.size();
   for (const dContactGeom& contact : std::span(found_).first(count))
     points.push_back({to_vec3(contact.pos), to_vec3(contact.normal), contact.depth});
+  if (is_sphere(first) && is_mesh(second)) points.resize(before + mend_sphere_contacts(first, 1.0, std::span(points).subspan(before)));
+  else if (is_mesh(first) && is_sphere(second)) points.resize(before + mend_sphere_contacts(second, -1.0, std::span(points).subspan(before)));
 }
 
 void NarrowPhase::find_of_meshes(dGeomID first, dGeomID second, double size, std::vector<ContactPoint>& points) {

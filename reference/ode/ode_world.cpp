@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <utility>
 
-#include "reference/ode/collision_ode.h"
 #include "reference/error.h"
-#include "reference/ode/islands.h"
-#include "reference/ode/sweep_ode.h"
+#include "reference/ode/world_ode.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -17,68 +15,12 @@ using namespace ode;
 
 namespace {
 
-constexpr double kUneven = 100.0;  // QuickStep's iterations carry a weight through a body a hundredth of it no more
-
-// Adds the time that it lives to a sum.
-class Timing {
- public:
-  explicit Timing(double& sum_ms) : sum_ms_(sum_ms) {}
-  ~Timing() { sum_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
-  Timing(const Timing&) = delete;
-  Timing& operator=(const Timing&) = delete;
-
- private:
-  double& sum_ms_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+void check_step(double dt, int substeps) {
+  if (!(dt > 0.0 && std::isfinite(dt) && substeps > 0))
+    throw InputError(fmt::format("a step: found {} s in {} substeps, expected a positive and finite time, one substep or more", dt, substeps));
+}
 
 }  // namespace
-
-struct OdeWorld::Impl {
-  Impl(dWorldID callers_world, dSpaceID around, const OdeSettings& s, const MaterialTable& materials)
-      : settings(s),
-        own_world(callers_world ? nullptr : dWorldCreate()),
-        world(callers_world ? callers_world : own_world),
-        joints(world, s, materials),
-        collision(around, s) {
-    if (own_world) set_up_own_world();
-  }
-  ~Impl() {
-    // Bodies, geoms and joints go before the world that holds them.
-    joints.end();
-    bodies.clear();
-    threading.reset();
-    if (own_world) dWorldDestroy(own_world);
-  }
-
-  void set_up_own_world() {
-    threading = std::make_unique<StepThreading>(world);
-    dWorldSetGravity(world, settings.gravity.x(), settings.gravity.y(), settings.gravity.z());
-    dWorldSetQuickStepNumIterations(world, settings.quick_step_iterations);
-    if (settings.cfm > 0.0) dWorldSetCFM(world, settings.cfm);  // friction's; without any its rows may come to depend on each other
-  }
-
-  bool has_work();
-  void substep(double h);
-  void push_bodies();
-  bool advance(double h);
-  void take_back_bodies();
-  void recover_bodies();
-  void count_uneven_contacts();
-  void wake_neighbors(const Body& body);
-
-  OdeSettings settings;
-  dWorldID own_world, world;
-  std::unique_ptr<StepThreading> threading;
-  ContactJoints joints;
-  Collision collision;
-  Sweep sweep;
-  TrimeshCache trimeshes;
-  Bodies bodies;
-  OdeCounters counters;
-  OdeTimes times;
-  std::uint64_t steps = 0;
-};
 
 OdeWorld::OdeWorld(const OdeSettings& settings, const MaterialTable& materials) {
   prepare();
@@ -95,144 +37,82 @@ OdeWorld::~OdeWorld() = default;
 OdeWorld::OdeWorld(OdeWorld&&) noexcept = default;
 OdeWorld& OdeWorld::operator=(OdeWorld&&) noexcept = default;
 
-void OdeWorld::add_plane(const Vec3& normal, double offset, MaterialId material) {
-  impl_->collision.add_plane(normal, offset, material);
+OdeGroundId OdeWorld::add_plane(const Vec3& normal, double offset, MaterialId material) {
+  return impl_->collision.add_plane(normal, offset, material);
 }
 
-void OdeWorld::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
-  impl_->collision.add_box(sides, position, orientation, material);
+OdeGroundId OdeWorld::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+  return impl_->collision.add_box(sides, position, orientation, material);
 }
 
-void OdeWorld::add_static_mesh(const Mesh& mesh, MaterialId material) { impl_->collision.add_mesh(mesh, material); }
+OdeGroundId OdeWorld::add_static_mesh(const Mesh& mesh, MaterialId material) { return impl_->collision.add_mesh(mesh, material); }
+void OdeWorld::move_ground(OdeGroundId ground, const RigidState& state) { impl_->collision.move_ground(ground, state, impl_->bodies); }
+void OdeWorld::remove_ground(OdeGroundId ground) { impl_->collision.remove_ground(ground, impl_->bodies); }
 
 OdeBodyId OdeWorld::add_body(const OdeBodyDefinition& definition) {
   prepare();
   if (const double cfm = impl_->settings.cfm * ode::cfm_share(definition.mass); impl_->own_world && cfm > 0.0 && cfm < dWorldGetCFM(impl_->world))
     dWorldSetCFM(impl_->world, cfm);
-  return impl_->bodies.add(impl_->world, impl_->collision.broad_phase().bodies_space(), definition, impl_->settings,
-                           impl_->trimeshes);
+  return impl_->bodies.add(impl_->world, definition, impl_->settings, impl_->trimeshes);
 }
 
 void OdeWorld::remove_body(OdeBodyId body, bool stays) {
-  if (!stays) impl_->wake_neighbors(impl_->bodies.find(body));
+  const Body& removed = impl_->bodies.find(body);
+  if (!stays) impl_->wake_neighbors(removed);
+  impl_->collision.broad_phase().forget(removed);
   impl_->bodies.remove(body);
 }
 
 void OdeWorld::step(double dt, int substeps) {
-  if (!(dt > 0.0 && std::isfinite(dt) && substeps > 0))
-    check_that(false, "a step is positive and finite, in one substep or more:", fmt::format("dt {} s, {} substeps", dt, substeps));
+  check_step(dt, substeps);
+  if (impl_->callers_step_s > 0.0) throw InputError("a step between begin_callers_step and end_callers_step");
   prepare();
   const std::int64_t messages_before = messages_of_this_thread();
-  impl_->times = {};
+  impl_->begin_step(dt / substeps);
   if (impl_->has_work()) for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
   else impl_->joints.begin(dt, 0);  // no contacts
-  for (Body& body : impl_->bodies.slots()) body.force = body.torque = Vec3::Zero();
+  impl_->end_step();
   impl_->counters.messages += messages_of_this_thread() - messages_before;
 }
 
-// Nothing moves where all sleep, save in a caller's world, whose other bodies are unknown.
-bool OdeWorld::Impl::has_work() {
-  return !own_world || std::ranges::any_of(bodies.slots(), [](const Body& body) { return body.body && dBodyIsEnabled(body.body); });
+void OdeWorld::begin_callers_step(double dt) {
+  check_step(dt, 1);
+  if (impl_->callers_step_s > 0.0) throw InputError("begin_callers_step twice, with no end_callers_step between them");
+  prepare();
+  impl_->callers_step_s = dt;
+  impl_->begin_step(dt);
+  impl_->sweep.begin(impl_->bodies);
+  impl_->begin_substep(dt, 0);
 }
 
-// ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in a message and leaving the
-// bodies without their contact forces. Such a substep is taken back and repeated with contacts a little softer and more uneven. Not in a caller's world,
-// whose other bodies cannot be taken back.
-void OdeWorld::Impl::substep(double h) {
-  constexpr int kAttempts = 3;
-  sweep.begin(bodies);
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    push_bodies();
-    joints.begin(h, attempt);
-    {
-      const Timing timing(times.collision_ms);
-      collision.collide(bodies, joints, h);
-    }
-    const bool solved = advance(h);
-    joints.end();
-    if (solved || !own_world || attempt == kAttempts - 1) break;
-    take_back_bodies();
-  }
-  recover_bodies();
-  counters.passes_prevented += sweep.stop_passing(bodies, collision.broad_phase(), joints.contacts());
+void OdeWorld::end_callers_step() {
+  if (!(impl_->callers_step_s > 0.0)) throw InputError("end_callers_step without begin_callers_step");
+  prepare();
+  impl_->end_substep(std::exchange(impl_->callers_step_s, 0.0));
+  impl_->end_step();
 }
 
-void OdeWorld::Impl::take_back_bodies() {
-  for (const Body& body : bodies.slots())
-    if (body.body) ode::set_state(body.body, body.last_good);
+void OdeWorld::look_at_callers_space() {
+  prepare();
+  impl_->look_at_callers_space();
 }
 
-void OdeWorld::Impl::push_bodies() {
-  for (const Body& body : bodies.slots()) {
-    if (!body.body || !dBodyIsEnabled(body.body)) continue;
-    if (!body.force.isZero(0.0)) dBodyAddForce(body.body, body.force.x(), body.force.y(), body.force.z());
-    if (!body.torque.isZero(0.0)) dBodyAddTorque(body.body, body.torque.x(), body.torque.y(), body.torque.z());
-  }
-}
-
-/// False where ODE had something to complain of.
-bool OdeWorld::Impl::advance(double h) {
-  const Timing timing(times.response_ms);
-  const std::int64_t messages_before = messages_of_this_thread();
-  const std::span<const OdeContact> contacts = joints.contacts();
-  const bool too_many = int(contacts.size()) > settings.direct_contacts_max && largest_island(contacts) > settings.direct_contacts_max;
-  if (settings.quick_step || too_many) {
-    ++counters.quick_steps;
-    count_uneven_contacts();
-    const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++steps);
-    dWorldQuickStep(world, h);
-  } else {
-    dWorldStep(world, h);
-  }
-  return messages_of_this_thread() == messages_before;
-}
-
-void OdeWorld::Impl::count_uneven_contacts() {
-  const auto mass_of = [this](OdeBodyId body) {
-    dMass mass;
-    dBodyGetMass(bodies.find(body).body, &mass);
-    return mass.mass;
-  };
-  for (const OdeContact& contact : joints.contacts()) {
-    if (!contact.second) continue;
-    const auto [lighter, heavier] = std::minmax({mass_of(contact.first), mass_of(contact.second)});
-    if (heavier >= kUneven * lighter) ++counters.uneven_contacts;
-  }
-}
-
-void OdeWorld::Impl::recover_bodies() {
-  for (Body& body : bodies.slots()) {
-    if (!body.body || !dBodyIsEnabled(body.body)) continue;
-    RigidState now = state_of(body.body);
-    if (is_sound(now)) {
-      if (body.impact_time) ode::set_state(body.body, now = end_of_step(body.last_good, now, *body.impact_time));
-      body.last_good = now;
-      continue;
-    }
-    body.last_good.velocity = body.last_good.angular_velocity = Vec3::Zero();
-    ode::set_state(body.body, body.last_good);
-    ++counters.states_recovered;
-  }
-}
-
-void OdeWorld::Impl::wake_neighbors(const Body& body) {
-  for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom))
-    collision.broad_phase().wake_around(geom);
-  for (int i = 0; i < dBodyGetNumJoints(body.body); ++i)
-    for (const int end : {0, 1})
-      if (const dBodyID other = dJointGetBody(dBodyGetJoint(body.body, i), end)) dBodyEnable(other);
-}
+const SpaceMirror* OdeWorld::callers_space() const { return impl_->mirror.get(); }
+void OdeWorld::include_body(dxBody* body) { impl_->held_forces.include(body); }
+void OdeWorld::exclude_body(dxBody* body) { impl_->held_forces.exclude(body); }
+void OdeWorld::repeat_callers_forces() { impl_->held_forces.give(); }
 
 RigidState OdeWorld::state(OdeBodyId body) const { return state_of(impl_->bodies.find(body).body); }
 
 void OdeWorld::set_state(OdeBodyId id, const RigidState& state) {
   Body& body = impl_->bodies.find(id);
   ode::set_state(body.body, state);
+  impl_->collision.broad_phase().forget(body);
   body.last_good = state;
 }
 
 void OdeWorld::add_force(OdeBodyId id, const Vec3& force, const Vec3& torque) {
-  check_that(force.allFinite() && torque.allFinite(), "a force is finite");
+  if (!force.allFinite() || !torque.allFinite()) throw InputError("a force on a body: found one that is not finite");
   Body& body = impl_->bodies.find(id);
   body.force += force;
   body.torque += torque;
@@ -241,13 +121,39 @@ void OdeWorld::add_force(OdeBodyId id, const Vec3& force, const Vec3& torque) {
 bool OdeWorld::asleep(OdeBodyId body) const { return !dBodyIsEnabled(impl_->bodies.find(body).body); }
 
 void OdeWorld::set_asleep(OdeBodyId id, bool asleep) {
-  const dBodyID body = impl_->bodies.find(id).body;
-  asleep ? dBodyDisable(body) : dBodyEnable(body);
+  Body& body = impl_->bodies.find(id);
+  asleep ? dBodyDisable(body.body) : dBodyEnable(body.body);
+  if (!asleep) body.to_sleep_s = impl_->sleep.law().time;
+  impl_->collision.broad_phase().note_sleep(body);
 }
+
+const BodyProperties& OdeWorld::properties(OdeBodyId body) const { return impl_->bodies.find(body).properties; }
+void OdeWorld::set_properties(OdeBodyId body, const BodyProperties& properties) { ode::set_properties(impl_->bodies.find(body), properties); }
+void OdeWorld::set_pair_filter(std::function<bool(OdeBodyId, OdeBodyId)> filter) { impl_->collision.broad_phase().set_pair_filter(std::move(filter)); }
+void OdeWorld::set_sleep_law(const SleepLaw& law) { impl_->sleep.set_law(law); }
 
 dxBody* OdeWorld::ode_body(OdeBodyId body) const { return impl_->bodies.find(body).body; }
 
+void OdeWorld::archive(StateArchive& a) {
+  prepare();
+  Impl& impl = *impl_;
+  if (a.reading())
+    for (const Body& body : impl.bodies.slots())
+      if (body.body) impl.collision.broad_phase().forget(body);
+  impl.bodies.archive(a, impl.world, impl.settings, impl.trimeshes);
+  if (a.reading())
+    for (const Body& body : impl.bodies.slots())
+      if (body.body) impl.collision.broad_phase().note_sleep(body);
+  a(impl.joints, impl.quick_steps);
+  double cfm = dWorldGetCFM(impl.world);
+  a(cfm);
+  if (impl.own_world) dWorldSetCFM(impl.world, cfm);
+}
+
 std::span<const OdeContact> OdeWorld::contacts() const { return impl_->joints.contacts(); }
+
+void OdeWorld::record_touches(bool on) { impl_->records_touches = on; }
+std::span<const OdeTouch> OdeWorld::touches() const { return impl_->touches.all(); }
 
 const OdeCounters& OdeWorld::counters() const {
   OdeCounters& counters = impl_->counters;

@@ -2,30 +2,44 @@
 // ODE stays behind this file. Pitfalls that it takes care of: trimesh–trimesh contacts are filtered (contact_filter.h), plane
 // contacts come from hull vertices, messages are counted and not printed, QuickStep's global generator is seeded from
 // (seed, step), sleeping neighbours wake on removal, bodies faster than they are thick stop at what they would have passed through (sweep_ode.h), every
-// value is checked before ODE could abort on it.
+// value is checked before ODE could abort on it. What a caller passes wrongly throws InputError and changes nothing.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "reference/body_properties.h"
 #include "reference/geometry.h"
 #include "reference/material.h"
+#include "reference/ode/space_mirror.h"
 #include "reference/shape.h"
 #include "reference/mesh/simplified_shapes.h"
 
 struct dxWorld;  // ODE's own types (dWorldID is dxWorld*), so that no header includes ODE
 struct dxSpace;
 struct dxBody;
+struct dxGeom;
 
 namespace lodestone {
+
+class StateArchive;
 
 /// How two trimeshes meet.
 enum class MeshContacts {
   plain,     ///< as ODE's dCollide finds them
   filtered,  ///< as it finds them, made believable (contact_filter.h)
   exact,     ///< two convex bodies by their hulls (hull_manifold.h), which bound the same solids; others filtered
+};
+
+/// ODE's own, for bodies that something holds: one slower than this for long enough is put to rest.
+struct SleepLaw {
+  double speed = 0.05;          ///< m/s, of its centre of mass
+  double turning_speed = 0.05;  ///< m/s, of its farthest point about that
+  double time = 0.5;            ///< s
 };
 
 struct OdeSettings {
@@ -49,7 +63,8 @@ struct OdeSettings {
   double timed_contacts_above = 1e9, timed_contacts_up_to = 0.01;
   bool gyroscopic = true;
   bool hash_space = false;              ///< ODE's hash space as the broad phase instead of sweep and prune
-  bool auto_disable = false;            ///< ODE's sleeping: below .05 m/s and .05/R rad/s for .5 s
+  bool auto_disable = false;            ///< bodies at rest fall asleep
+  SleepLaw sleep = {};
 };
 
 /// What a body is to ODE's collision detection. `hull` is a trimesh of the hull: ODE's own dConvex gives one contact a pair, on which nothing stacks.
@@ -70,6 +85,7 @@ struct OdeBodyDefinition {
   RigidState state{};
   OdeGeometry geometry = OdeGeometry::trimesh;
   std::span<const Sphere> spheres = {};  ///< for OdeGeometry::spheres, about the centre of mass
+  BodyProperties properties = {};
 };
 
 /// Since the world was made.
@@ -79,6 +95,9 @@ struct OdeCounters {
   std::int64_t passes_prevented = 0;  ///< times that a body would have gone through another, or through ground, within a substep
   std::int64_t uneven_contacts = 0;   ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: it lets the heavy one sink in
 };
+
+/// What ODE said last on the calling thread, at most 255 characters; empty where it has said nothing. Until its next message.
+std::string_view last_ode_message();
 
 /// Wall time of the last step(), all its substeps, ms.
 struct OdeTimes {
@@ -93,40 +112,93 @@ struct OdeContact {
   double depth;        ///< m, ≥ 0
 };
 
+/// Ground of an OdeWorld; stays valid until removed. Zero is null.
+struct OdeGroundId {
+  std::uint32_t value = 0;
+  explicit operator bool() const { return value != 0; }
+  friend bool operator==(OdeGroundId, OdeGroundId) = default;
+};
+
+/// A body of this world's, and what it touched in the last step: another (`second`), ground of this world's, or a geom of the caller's.
+struct OdeTouch {
+  OdeBodyId first, second = {};
+  OdeGroundId ground = {};
+  dxGeom* callers_geom = nullptr;
+  MaterialId first_material = 0, second_material = 0;
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< m and unit, world, where it was hardest; the normal points into `first`
+  double impulse = 0.0;   ///< N s, along the normals, all contacts and substeps together
+  double approach = 0.0;  ///< m/s, the greatest along a normal before a substep; 0 where they only parted
+  bool at_end = true;     ///< in the last substep, too
+};
+
 class OdeWorld {
  public:
   /// A world of its own. `materials` must outlive it.
   OdeWorld(const OdeSettings& settings, const MaterialTable& materials);
   /// Joins the caller's world and space (dWorldID, dSpaceID), both of which must outlive it. Static geoms and other bodies there are met, with
-  /// material 0, and stepped; their contacts with each other remain the caller's to make, before step(), and last all its substeps. Of `settings` those of
-  /// a whole world (gravity, QuickStep's iterations) are left as the caller has them. Our geoms are in a space of their own within his,
-  /// hidden from his dSpaceCollide (cast rays into ode_space() to meet them); the caller must not collide trimeshes on another thread meanwhile.
+  /// material 0, and stepped; their contacts with each other remain the caller's to make, before step(), and last all its substeps. So do forces that he gives
+  /// his bodies (see include_body). Of `settings` those of a whole world (gravity, QuickStep's iterations) are left as the caller has them. His space may be of
+  /// any type and change at any time between steps. Our geoms are in a space of their own that his knows nothing of (cast rays into ode_space() to meet them);
+  /// the caller must not collide trimeshes on another thread meanwhile.
   OdeWorld(dxWorld* world, dxSpace* space, const OdeSettings& settings, const MaterialTable& materials);
   ~OdeWorld();
   OdeWorld(OdeWorld&&) noexcept;
   OdeWorld& operator=(OdeWorld&&) noexcept;
 
-  void add_plane(const Vec3& normal, double offset, MaterialId material);  ///< normal·x = offset, normal of unit length
-  void add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
-  void add_static_mesh(const Mesh& mesh, MaterialId material);
+  /// Ground that nothing pushes. Each throws InputError where it cannot be.
+  OdeGroundId add_plane(const Vec3& normal, double offset, MaterialId material);  ///< normal·x = offset, normal of unit length
+  OdeGroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
+  OdeGroundId add_static_mesh(const Mesh& mesh, MaterialId material);
+  /// A box's or mesh's (which begins at the origin, unturned); wakes what is near where it was and where it is. With a velocity (m/s and rad/s, world) it carries what
+  /// touches it, but goes on only as it is moved, by the caller, before each step. A plane cannot be moved.
+  void move_ground(OdeGroundId ground, const RigidState& state);
+  void remove_ground(OdeGroundId ground);  ///< wakes what is near it
 
-  /// Aborts where mass ≤ 0 or the state is not finite or beyond 1e8 m. The first body of a shape builds its trimesh data, shared by the rest.
+  /// Throws InputError where mass ≤ 0 or the state is not finite or beyond 1e8 m. The first body of a shape builds its trimesh data, shared by the rest.
   OdeBodyId add_body(const OdeBodyDefinition& definition);
-  /// Wakes what touched it, the caller's bodies too, unless it `stays` where it is, as something else.
+  /// Wakes what touched it (the caller's bodies, too, in the next step), unless it `stays` where it is, as something else.
   void remove_body(OdeBodyId body, bool stays = false);
 
   /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). Nearly free while all bodies sleep. A body whose state stops being finite is
   /// put back to its last good pose at rest, and counted. A substep that ODE's solver gives up on is repeated a little softer (not in a caller's world).
   void step(double dt, int substeps = 1);
 
+  /// For a caller who keeps a loop of his own. Before his dWorldStep or dWorldQuickStep of `dt` seconds: makes the contacts of this world's bodies, as joints in his world;
+  /// and after it: removes them, and does what else step() does after a substep. Between the two he destroys neither bodies nor geoms, and steps once.
+  void begin_callers_step(double dt);
+  void end_callers_step();
+
+  /// Looks at what the caller's space holds, unless that was done since the last step; each step does so first.
+  void look_at_callers_space();
+  /// As seen then; null in a world of its own.
+  const SpaceMirror* callers_space() const;
+  /// Forces that the caller gives a body (dBodyAddForce, dBodyAddTorque, the motors of joints) act for the whole of the next step(), as gravity does, if its geoms are
+  /// in his space, or if joints tie it, through others too, to a body whose are or to one of ours. Any other is to be named here, until it is destroyed.
+  void include_body(dxBody* body);
+  void exclude_body(dxBody* body);
+  /// The caller's forces of the last step() act in the next one, too, for one that is done in parts.
+  void repeat_callers_forces();
+
   RigidState state(OdeBodyId body) const;
   void set_state(OdeBodyId body, const RigidState& state);  ///< leaves sleep as it is
   void add_force(OdeBodyId body, const Vec3& force, const Vec3& torque);  ///< N and N m, over the whole of the next step(); does not wake
   bool asleep(OdeBodyId body) const;
   void set_asleep(OdeBodyId body, bool asleep);
+  const BodyProperties& properties(OdeBodyId body) const;
+  void set_properties(OdeBodyId body, const BodyProperties& properties);  ///< does not wake
+  void set_sleep_law(const SleepLaw& law);
+  /// Whether two bodies of this world's may meet, beside what their bits say; empty: always. Asked in each substep of each two that come near each other.
+  void set_pair_filter(std::function<bool(OdeBodyId, OdeBodyId)> filter);
   dxBody* ode_body(OdeBodyId body) const;                    ///< dBodyID, for joints and the like
 
+  /// All that the next steps depend on, save ground and settings. Where it reads, bodies are kept if the writer had the very same ones; else all are made anew, with another dBodyID.
+  /// Throws InputError, and nothing has changed, where one of those has a joint.
+  void archive(StateArchive& a);
+
   std::span<const OdeContact> contacts() const;              ///< of the last substep
+  /// From the next step on; costs a little for each contact.
+  void record_touches(bool on);
+  std::span<const OdeTouch> touches() const;                 ///< of the last step; none unless they are recorded
   const OdeCounters& counters() const;
   const OdeTimes& times() const;
   dxWorld* ode_world() const;                                ///< an own world is stepped only while a body of this OdeWorld's is awake

@@ -15,6 +15,8 @@ struct Plane {
   double offset;         ///< m
   MaterialId material;
   dGeomID geom;
+  unsigned category = ~0u, collide = ~0u;  ///< bits
+  OdeGroundId id{};                        ///< null: the caller's
 };
 
 /// The step to come.

@@ -4,11 +4,13 @@
 #include <cstdio>
 
 #include "reference/error.h"
+#include "reference/ode/ode_world.h"
 
 namespace lodestone::ode {
 namespace {
 
 thread_local std::int64_t messages = 0;
+thread_local char last_message[256] = "";
 thread_local bool recoverable = false;
 // What the caller had set before ODE was prepared; null where ODE would have printed.
 dMessageFunction* callers_message_handler = nullptr;
@@ -17,6 +19,10 @@ dMessageFunction* callers_debug_handler = nullptr;
 
 void count_message(int number, const char* message, va_list arguments) {
   ++messages;
+  va_list copy;
+  va_copy(copy, arguments);
+  std::vsnprintf(last_message, sizeof last_message, message, copy);
+  va_end(copy);
   if (callers_message_handler) callers_message_handler(number, message, arguments);
 }
 
@@ -104,3 +110,7 @@ StepThreading::~StepThreading() {
 }
 
 }  // namespace lodestone::ode
+
+namespace lodestone {
+std::string_view last_ode_message() { return ode::last_message; }
+}  // namespace lodestone

@@ -14,7 +14,7 @@ constexpr int kRingRays = 6;
 Vec3 position_of(const Body& body) { return to_vec3(dBodyGetPosition(body.body)); }
 
 bool is_fast(const Body& body) {
-  if (!body.body || !dBodyIsEnabled(body.body)) return false;
+  if (!body.body || !dBodyIsEnabled(body.body) || dBodyIsKinematic(body.body)) return false;
   return (position_of(body) - body.before).squaredNorm() > body.thickness * body.thickness && dBodyGetNumJoints(body.body) == 0;
 }
 
@@ -85,13 +85,13 @@ double Sweep::free_part(Body& body, BroadPhase& broad_phase, std::span<const Ode
   double part = 1.0;
   const Reach own = reach_of(body);
   for (auto it = std::ranges::lower_bound(reaches_, own.from - longest_, {}, &Reach::from); it != reaches_.end() && it->from <= own.to; ++it)
-    if (it->body != &body && it->to >= own.from) part = std::min(part, free_part(body, *it->body, contacts));
+    if (it->body != &body && it->to >= own.from && broad_phase.lets_meet(body, *it->body)) part = std::min(part, free_part(body, *it->body, contacts));
 
   const Vec3 end = position_of(body), whole = end - body.before;
   const Way way{body.before, whole.normalized(), whole.norm(), body.thickness, touch(contacts, body.id, {})};
   Eigen::AlignedBox3d swept(body.before.cwiseMin(end), body.before.cwiseMax(end));
   swept.extend(swept.min() - Vec3::Constant(way.thickness)).extend(swept.max() + Vec3::Constant(way.thickness));
-  for (const dGeomID geom : broad_phase.find_others(swept)) part = std::min(part, free_part(way, geom));
+  for (const dGeomID geom : broad_phase.find_others(swept, body.properties)) part = std::min(part, free_part(way, geom));
   return part;
 }
 

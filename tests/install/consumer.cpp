@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 #include <ode/ode.h>
-#include "lod/manager.h"
+#include <lodestone/lodestone.h>
 
 using namespace lodestone;
 

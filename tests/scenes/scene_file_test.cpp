@@ -89,6 +89,31 @@ TEST_F(SceneFile, GroundAndViewpointsArrive) {
   EXPECT_EQ(scene.viewpoints[0].position_at(1.0), Vec3(0, 0, 2));
 }
 
+TEST_F(SceneFile, TerrainAndStairsArrive) {
+  const Scene scene = load(R"(version: 1
+materials: {ice: {friction: 0}}
+shapes: {ball: {sphere_m: 0.1}}
+ground:
+  - {terrain: {cells: [1, 2], size_m: [4, 8], position_m: [0, 0, 1], heights_m: [[0, 0], [1, 1], [0, 0]]}, material: ice}
+  - {terrain: {cells: [1, 1], size_m: [2, 2], position_m: [50, 0, 0], hills: [{height_m: 3, length_m: [1, 1]}]}}
+  - {stairs: {steps: 4, rise_m: 0.2, run_m: 0.3, width_m: 1, position_m: [10, 0, 0], turn_deg: 90}, material: ice}
+bodies:
+  - {shape: ball, scatter: {count: 40, on_ground: true, box_m: [[-1.9, -3.9, 0], [1.9, 3.9, 0]]}}
+)");
+  ASSERT_EQ(scene.ground.size(), 6u);
+  EXPECT_EQ(std::get<GroundMesh>(scene.ground[0]).mesh.vertices[2], Vec3(-2, 0, 2));
+  EXPECT_EQ(std::get<GroundMesh>(scene.ground[0]).material, 1);
+  EXPECT_EQ(std::get<GroundMesh>(scene.ground[1]).mesh.vertices[0], Vec3(49, -1, 3));
+  EXPECT_NEAR(std::get<GroundBox>(scene.ground[5]).sides_m.z(), 0.8, 1e-12);
+  EXPECT_EQ(std::get<GroundBox>(scene.ground[5]).material, 1);
+  for (const SceneBody& body : scene.bodies) {
+    const Vec3& p = body.definition.state.position;
+    const double ground_z = 2 - std::abs(p.y()) / 4;
+    EXPECT_GE(p.z() - 0.1, ground_z - 1e-12);
+    EXPECT_LE(p.z() - 0.1, ground_z + 0.1 / 4 + 1e-12) << "no higher than the roof's slope makes of its radius";
+  }
+}
+
 TEST_F(SceneFile, BodiesArriveInOrder) {
   write(tetrahedron_obj(), "rock.obj");
   const Scene scene = load(kEveryKey);
@@ -132,6 +157,18 @@ TEST_F(SceneFile, PoliciesArrive) {
   EXPECT_EQ(far.support_within, 7);
   EXPECT_EQ(std::get<DistancePolicy>(lod_of("full_within_m: 2, support_within_m: 2").lod.policy).support_within, 2);
   EXPECT_EQ(std::get<WorkPolicy>(lod_of("policy: budget, budget_work: 2000").lod.policy).budget_work, 2000);
+  const auto size = std::get<ProjectedSizePolicy>(lod_of("policy: projected_size, full_above_px: 80, support_above_px: 9").lod.policy);
+  EXPECT_EQ(size.full_above_px, 80);
+  EXPECT_EQ(size.support_above_px, 9);
+  const auto error = std::get<ErrorBudgetPolicy>(lod_of("policy: error_budget, budget_ms: 6").lod.policy);
+  EXPECT_EQ(error.budget_ms, 6);
+  EXPECT_FALSE(error.budget_work);
+  EXPECT_EQ(std::get<ErrorBudgetPolicy>(lod_of("policy: error_budget, budget_work: 900").lod.policy).budget_work, 900);
+  const Scene all = lod_of("out_of_view_factor: 4, look_ahead_s: 0.5, contact_groups_together: true, audit_ms: 0.3");
+  EXPECT_EQ(all.lod.out_of_view_factor, 4);
+  EXPECT_EQ(all.lod.look_ahead_s, 0.5);
+  EXPECT_TRUE(all.lod.contact_groups_together);
+  EXPECT_EQ(all.audit_ms, 0.3);
   EXPECT_EQ(lod_of("model: auto").model, std::nullopt);
   EXPECT_EQ(lod_of("model: support").model, StatisticalModel::support);
 }
@@ -187,7 +224,7 @@ TEST_F(SceneFile, TopLevelErrors) {
       {"step: 3", "s.yaml:4: step: found 3, expected a map"},
       {"step: {seed: -1}", "s.yaml:4: step.seed: found -1, expected"},
       {"version: 1", "s.yaml:4: version: found the key a second time"},
-      {"lod: {policy: budgte}", "s.yaml:4: lod.policy: found budgte, expected one of distance, budget (did you mean \"budget\"?)"},
+      {"lod: {policy: budgte}", "s.yaml:4: lod.policy: found budgte, expected one of distance, budget, projected_size, error_budget (did you mean \"budget\"?)"},
       {"lod: {policy: budget, full_within_m: 3}", "s.yaml:4: lod.full_within_m: found full_within_m with policy budget, expected budget_ms or budget_work"},
       {"lod: {policy: budget, support_within_m: 3}", "s.yaml:4: lod.support_within_m: found support_within_m with policy budget, expected budget_ms or budget_work"},
       {"lod: {policy: budget}", "s.yaml:4: lod: found none, expected one of budget_ms, budget_work"},
@@ -195,6 +232,9 @@ TEST_F(SceneFile, TopLevelErrors) {
       {"lod: {policy: budget, budget_ms: -1}", "s.yaml:4: lod.budget_ms: found -1, expected a number in [0,"},
       {"lod: {policy: budget, budget_work: .inf}", "s.yaml:4: lod.budget_work: found .inf, expected a number in [0,"},
       {"lod: {budget_ms: 3}", "s.yaml:4: lod.budget_ms: found budget_ms with policy distance, expected full_within_m and support_within_m"},
+      {"lod: {policy: projected_size, full_within_m: 3}", "s.yaml:4: lod.full_within_m: found full_within_m with policy projected_size, expected full_above_px and support_above_px"},
+      {"lod: {policy: projected_size, full_above_px: 3, support_above_px: 4}", "s.yaml:4: lod.support_above_px: found 4, expected at most full_above_px (3)"},
+      {"lod: {policy: error_budget, full_above_px: 3}", "s.yaml:4: lod.full_above_px: found full_above_px with policy error_budget, expected budget_ms or budget_work"},
       {"lod: {policy: distance, budget_work: 3}", "s.yaml:4: lod.budget_work: found budget_work with policy distance, expected"},
       {"lod: {full_within_m: 3, support_within_m: 2.5}", "s.yaml:4: lod.support_within_m: found 2.5, expected at least full_within_m (3)"},
       {"lod: {support_within_m: 2.5}", "s.yaml:4: lod.support_within_m: found 2.5, expected at least full_within_m (4)"},
@@ -277,6 +317,10 @@ TEST_F(SceneFile, BodyErrors) {
       {"{shape: crate, scatter: {count: 3}}", "s.yaml:3: bodies[0].scatter: found none, expected one of box_m, cylinder"},
       {"{shape: crate, scatter: {count: 3, box_m: [[0, 0, 1], [1, 1, 0]]}}", "s.yaml:3: bodies[0].scatter.box_m: found a second corner below"},
       {"{shape: crate, scatter: {count: 99, box_m: [[0, 0, 0], [1, 1, 1]]}}", "s.yaml:3: bodies[0].scatter: found 99 bodies of radius 0.866 m, expected"},
+      {"{shape: crate, scatter: {count: 1, on_ground: yes, box_m: [[0, 0, 0], [1, 1, 1]]}}", "s.yaml:3: bodies[0].scatter.on_ground: found yes, expected one of false, true"},
+      {"{shape: crate, scatter: {count: 1, on_ground: true, box_m: [[0, 0, 0], [1, 1, 1]]}}", "s.yaml:3: bodies[0].scatter: found 1 bodies of radius 0.866 m, expected at most the 0"},
+      {"{shape: crate, scatter: {count: 1, on_ground: true, lying: true, box_m: [[0, 0, 0], [1, 1, 1]]}}", "s.yaml:3: bodies[0].scatter.lying: found lying beside on_ground, expected one of them"},
+      {"{shape: crate, asleep: 1, position_m: [0, 0, 1]}", "s.yaml:3: bodies[0].asleep: found 1, expected one of false, true"},
       {"{shape: crate, scatter: {count: 3000000, box_m: [[0, 0, 0], [1, 1, 1]]}}", "s.yaml:3: bodies[0].scatter.count: found 3000000, expected"},
   };
   for (const BadScene& c : cases) {
@@ -296,7 +340,7 @@ TEST_F(SceneFile, MissingSectionsAndFiles) {
   EXPECT_EQ(error_of("version: 2\nbodies: []\n"), "s.yaml:1: version: found 2, expected a whole number from 1 to 1");
   EXPECT_EQ(error_of("version: 1\n"), "s.yaml:1: bodies: found no such key, expected it to be given");
   EXPECT_EQ(error_of("just text"), "s.yaml:1: scene: found just text, expected a map with version, step, materials, contacts, shapes, "
-                                   "ground, bodies, viewpoints, lod, output, check");
+                                   "ground, bodies, ragdolls, joints, viewpoints, lod, output, check");
   EXPECT_THROW(load_scene(folder() / "none.yaml"), InputError);
   EXPECT_THROW(load_scene(folder()), InputError);
 }
@@ -308,6 +352,14 @@ TEST_F(SceneFile, GroundErrors) {
       {"ground: [{plane: {}, size_m: 1}]", "s.yaml:4: ground[0].size_m: found an unknown key"},
       {"ground: [{box: {sides_m: [1, -1, 1]}}]", "s.yaml:4: ground[0].box.sides_m[1]: found -1, expected"},
       {"ground: [{mesh: ../x.obj}]", "s.yaml:4: ground[0].mesh: found ../x.obj, a path out of the scene's folder"},
+      {"ground: [{terrain: {cells: [1, 1], size_m: [2, 2]}}]", "s.yaml:4: ground[0].terrain: found none, expected one of hills, heights_m"},
+      {"ground: [{terrain: {cells: [0, 1], size_m: [2, 2], hills: []}}]", "s.yaml:4: ground[0].terrain.cells[0]: found 0, expected a whole number from 1 to 1000"},
+      {"ground: [{terrain: {cells: [1, 1], size_m: [2, 2], heights_m: [[0, 0], [0]]}}]", "s.yaml:4: ground[0].terrain.heights_m[1]: found a list of 1, expected a list of 2"},
+      {"ground: [{terrain: {cells: [1, 1], size_m: [2, 2], heights_m: [[0, 0]]}}]", "s.yaml:4: ground[0].terrain.heights_m: found a list of 1, expected a list of 2"},
+      {"ground: [{terrain: {cells: [1, 1], size_m: [2, 2], hills: [{height_m: 1, length_m: [0, 1]}]}}]", "s.yaml:4: ground[0].terrain.hills[0].length_m[0]: found 0, expected"},
+      {"ground: [{stairs: {steps: 0, rise_m: 1, run_m: 1, width_m: 1}}]", "s.yaml:4: ground[0].stairs.steps: found 0, expected a whole number from 1"},
+      {"ground: [{stairs: {steps: 3, rise_m: 1, run_m: 1}}]", "s.yaml:4: ground[0].stairs.width_m: found no such key"},
+      {"ground: [{stairs: {steps: 3, rise_m: 1, run_m: 1, width_m: 1}, size_m: 2}]", "s.yaml:4: ground[0].size_m: found an unknown key"},
       {"ground: {}", "s.yaml:4: ground: found a map, expected a list"},
   };
   for (const BadScene& c : cases) EXPECT_TRUE(error_of(scene_with(c.text)).starts_with(c.message)) << error_of(scene_with(c.text)) << "\n" << c.message;

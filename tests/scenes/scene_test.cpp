@@ -5,15 +5,15 @@
 namespace lodestone {
 namespace {
 
-TEST(Viewpoint, StandsWithoutAPath) {
-  Viewpoint viewpoint;
+TEST(SceneViewpoint, StandsWithoutAPath) {
+  SceneViewpoint viewpoint;
   viewpoint.position_m = {1, 2, 3};
   EXPECT_EQ(viewpoint.position_at(0), Vec3(1, 2, 3));
   EXPECT_EQ(viewpoint.position_at(1e6), Vec3(1, 2, 3));
 }
 
-TEST(Viewpoint, MovesLinearlyBetweenCorners) {
-  Viewpoint viewpoint;
+TEST(SceneViewpoint, MovesLinearlyBetweenCorners) {
+  SceneViewpoint viewpoint;
   viewpoint.path = {{1, {0, 0, 0}}, {2, {4, 0, 0}}, {4, {4, 2, 0}}};
   EXPECT_EQ(viewpoint.position_at(0), Vec3(0, 0, 0));
   EXPECT_EQ(viewpoint.position_at(1), Vec3(0, 0, 0));

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <numeric>
+#include <set>
 
 #include "reference/error.h"
 #include "scenes/camera.h"
+#include "scenes/ground_heights.h"
 #include "scenes/scene_file.h"
 
 namespace lodestone {
@@ -57,6 +59,26 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
                                          Shipped{"side_by_side", 100}, Shipped{"ten_thousand", 10000}, Shipped{"forced", 1000}, Shipped{"heap", 2000}),
                          [](const auto& test) { return test.param.name; });
 
+TEST(ShippedScenes, TheCityHasTenThousandBodiesOfFiveShapesAndFourRagdolls) {
+  const Scene scene = load("city");
+  EXPECT_EQ(scene.bodies.size(), 10000u);
+  EXPECT_EQ(scene.groups.size(), 4u);
+  EXPECT_EQ(std::get<BudgetPolicy>(scene.lod.policy).budget_ms, 8.0);
+  Scene strewn = scene;  // the limbs of a ragdoll are nearer to each other than their bounding spheres
+  std::erase_if(strewn.bodies, [](const SceneBody& body) { return body.definition.level == LevelChoice::full; });
+  EXPECT_EQ(strewn.bodies.size(), 9975u);
+  EXPECT_EQ(count_overlaps(strewn), 0);
+  std::set<const Shape*> shapes;
+  for (const SceneBody& body : strewn.bodies) shapes.insert(body.definition.shape.get());
+  EXPECT_EQ(shapes.size(), 5u);
+  const GroundHeights heights(scene.ground);
+  for (const SceneBody& body : strewn.bodies) {
+    const Vec3& place = body.definition.state.position;
+    if (body.asleep) EXPECT_GT(place.z(), *heights.highest_under(place, 0));
+    else EXPECT_GE(place.z() - body.definition.shape->radius, *heights.highest_under(place, 0) - 1e-9);
+  }
+}
+
 TEST(ShippedScenes, NoneIsLeftOut) {
   for (const fs::directory_entry& entry : fs::directory_iterator(kFolder)) {
     if (entry.path().extension() != ".yaml" || entry.path().stem() == "armadillo") continue;
@@ -78,7 +100,7 @@ TEST(ShippedScenes, SidesAreAlike) {
 // Where the bodies start and where they land: the camera sees those that are nearest to it, which are full.
 TEST(ShippedScenes, TheBunniesNearestToTheViewpointAreInItsPicture) {
   const Scene scene = load("bunnies");
-  const Viewpoint& viewpoint = scene.viewpoints.at(0);
+  const SceneViewpoint& viewpoint = scene.viewpoints.at(0);
   for (const double time : {0.0, 0.5, 5.0, 10.0}) {
     const Vec3 eye = viewpoint.position_at(time);
     std::vector<Vec3> places;
@@ -97,7 +119,7 @@ TEST(ShippedScenes, TheBunniesNearestToTheViewpointAreInItsPicture) {
 TEST(ShippedScenes, TheHeapsViewpointJumps) {
   const Scene scene = load("heap");
   EXPECT_EQ(std::get<BudgetPolicy>(scene.lod.policy).budget_ms, 8.0);
-  const Viewpoint& viewpoint = scene.viewpoints.at(0);
+  const SceneViewpoint& viewpoint = scene.viewpoints.at(0);
   for (double time = 0.0; time < 9.0; time += 2.0) {
     EXPECT_EQ(viewpoint.position_at(time), viewpoint.position_at(time + 1.98)) << time;
     const double jump = (viewpoint.position_at(time + 2.0) - viewpoint.position_at(time)).norm();

@@ -24,7 +24,7 @@ Scene small_scene() {
   scene.bodies[0].name = "hero";
   scene.bodies[0].definition.shape = scene.bodies[1].definition.shape = box;
   scene.bodies[2].definition.shape = ball;
-  Viewpoint viewpoint;
+  SceneViewpoint viewpoint;
   viewpoint.path = {{0, {0, -5, 1}}, {1, {5, 0, 1}}};
   scene.viewpoints = {viewpoint};
   return scene;

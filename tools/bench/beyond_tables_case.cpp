@@ -70,8 +70,8 @@ Fate drop_spinners(const std::shared_ptr<const Shape>& shape, StatisticalModel m
 Fate spoil_heap(const std::shared_ptr<const Shape>& shape, StatisticalModel model, const std::shared_ptr<const Signature>& signature) {
   Fate fate;
   const MaterialTable materials;
-  StaticGround ground;
-  ground.planes.push_back({});
+  Ground ground;
+  ground.add_plane({});
   for (int spoilt = 0; spoilt < 6; ++spoilt) {
     StatisticalLevel level({.tables = {}}, ground, materials);
     std::vector<StatisticalPlace> places;

@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
 
+#include "tools/bench/command_bench_attached.h"
 #include "tools/bench/command_bench_broad_phase.h"
 #include "tools/bench/command_bench_budget.h"
+#include "tools/bench/command_bench_churn.h"
 #include "tools/bench/command_bench_full_level.h"
 #include "tools/bench/command_bench_hard_cases.h"
 #include "tools/bench/command_bench_rungs.h"
@@ -20,6 +22,8 @@ void add_bench_command(CLI::App& program, ExitCode& exit_code) {
   add_bench_settled_command(*bench, exit_code);
   add_bench_budget_command(*bench, exit_code);
   add_bench_rungs_command(*bench, exit_code);
+  add_bench_attached_command(*bench, exit_code);
+  add_bench_churn_command(*bench, exit_code);
 }
 
 }  // namespace lodestone

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "lod/ground/ground.h"
 #include "lod/support/support_model.h"
 #include "lod/tables/tables_model.h"
 #include "reference/free_rotation.h"
@@ -17,12 +18,12 @@ namespace {
 /// What hits are made of: a box, its signature and a plane, without gravity.
 struct HitWorld {
   explicit HitWorld(const ContactLaw& law) : law_(law), materials_(materials_of(law.restitution, law.friction)) {
-    ground_.planes.push_back({});
+    ground_.add_plane({});
     const auto box = box_of({0.2, 0.3, 0.4});
     kind_ = make_body_kind(box, find_case_signature(*box));
   }
 
-  StepWorld world() const { return {.gravity = Vec3::Zero(), .ground = &ground_, .materials = &materials_, .seed = 1}; }
+  StepWorld world() const { return {.gravity = Vec3::Zero(), .planes = ground_.planes(), .materials = &materials_, .seed = 1}; }
 
   /// A body that touches the plane, in any orientation, falling at up to 10 m/s and spinning at up to 60 rad/s.
   StatisticalBody make_body(std::uint32_t hit) const {
@@ -39,7 +40,7 @@ struct HitWorld {
 
   ContactLaw law_;
   MaterialTable materials_;
-  StaticGround ground_;
+  Ground ground_;
   BodyKind kind_;
 };
 

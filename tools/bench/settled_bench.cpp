@@ -20,14 +20,6 @@ constexpr int kSettlingMost = 600;                 // steps
 constexpr double kHeight = 5.0, kSearched = 30.0;  // m: of the viewpoint, a little farther than anyone becomes full; about where a body falls, in which those woken are looked for
 const Vec3 kSides(0.2, 0.3, 0.24);                 // m, of a crate
 
-// Coarse, as nothing here depends on how a crate bounces.
-std::shared_ptr<const Signature> make_signature(const Shape& shape) {
-  SignatureSettings settings;
-  settings.n_theta = 4, settings.n_phi = 4, settings.n_alpha = 6, settings.trials_per_cell = 16;
-  settings.height_trials = 200, settings.settling_trials = 60, settings.clips = 30;
-  return std::make_shared<const Signature>(measure_signature(shape, settings, 0));
-}
-
 class SettledWorld {
  public:
   SettledWorld(const SettledSettings& settings, StatisticalModel model, std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature)
@@ -141,9 +133,16 @@ class SettledWorld {
 
 }  // namespace
 
+std::shared_ptr<const Signature> make_coarse_signature(const Shape& shape) {
+  SignatureSettings settings;
+  settings.n_theta = 4, settings.n_phi = 4, settings.n_alpha = 6, settings.trials_per_cell = 16;
+  settings.height_trials = 200, settings.settling_trials = 60, settings.clips = 30;
+  return std::make_shared<const Signature>(measure_signature(shape, settings, 0));
+}
+
 std::vector<SettledRow> bench_settled(const SettledSettings& settings) {
   const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box(kSides)));
-  const auto signature = make_signature(*shape);
+  const auto signature = make_coarse_signature(*shape);
   std::vector<SettledRow> rows;
   for (const StatisticalModel model : settings.models) rows.push_back(SettledWorld(settings, model, shape, signature).measure());
   return rows;

@@ -1,6 +1,7 @@
 // What a scene costs in which everything sleeps, and what a body that falls into it wakes.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct SettledRow {
   int disturbed_steps = 0;        ///< until all sleep again; at most `steps`
   double disturbed_us = 0.0, disturbed_most_us = 0.0;  ///< median and longest of these steps
 };
+
+/// Coarse, where nothing depends on how a body bounces.
+std::shared_ptr<const Signature> make_coarse_signature(const Shape& shape);
 
 std::vector<SettledRow> bench_settled(const SettledSettings& settings);
 

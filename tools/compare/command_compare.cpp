@@ -2,7 +2,9 @@
 
 #include "tools/commands.h"
 #include "tools/compare/command_compare_drop.h"
+#include "tools/compare/command_compare_errors.h"
 #include "tools/compare/command_compare_pile.h"
+#include "tools/compare/command_compare_return.h"
 #include "tools/compare/command_compare_series.h"
 
 namespace lodestone {
@@ -12,6 +14,8 @@ void add_compare_command(CLI::App& program, ExitCode& exit_code) {
   compare->require_subcommand(1);
   add_compare_drop_command(*compare, exit_code);
   add_compare_pile_command(*compare, exit_code);
+  add_compare_return_command(*compare, exit_code);
+  add_compare_errors_command(*compare, exit_code);
   add_compare_shapes_command(*compare, exit_code);
   add_compare_conditions_command(*compare, exit_code);
 }

@@ -39,6 +39,7 @@ void DropObserver::sample(double time_s, const RigidState& state) {
   if (energy > kRestEnergy * scale_) rest_time_ = time_s;
   if (energy > kSettledEnergy * scale_) last_stir_time_ = time_s;
   keep_energy(time_s, float(energy));
+  if (time_s <= std::sqrt(scale_) + 1e-9) after_a_second_ = state.position;
   last_time_ = time_s;
   last_ = state;
 }
@@ -76,6 +77,7 @@ DropObservation DropObserver::result() const {
   drop.first_rebound_m = rebound_;
   drop.first_impact = first_impact_;
   drop.at_rest = last_time_ - rest_time_ >= kRestDuration * std::sqrt(scale_);
+  drop.after_a_second = after_a_second_;
   drop.up_in_body = last_.orientation.conjugate() * normal_;
   drop.kinetic_energy = kinetic_energy_;
   drop.kinetic_energy.resize(kKineticEnergySamples, kinetic_energy_.back());

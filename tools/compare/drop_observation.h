@@ -30,6 +30,7 @@ struct DropObservation {
   std::optional<FirstImpact> first_impact = {};  ///< none without a bounce
   bool at_rest = false;        ///< below 2e-3 J/kg for the last quarter of a second
   std::int64_t table_extrapolations = 0;  ///< look-ups of the statistical level outside of what its signature was measured for
+  Vec3 after_a_second = Vec3::Zero();  ///< m, where its centre of mass is then
   Vec3 up_in_body = Vec3::UnitZ();    ///< the plane's normal in body axes at the end
   std::vector<float> kinetic_energy;  ///< per mass, J/kg, kKineticEnergySamples values; the last state's goes on where a drop ends earlier
 };
@@ -61,6 +62,7 @@ class DropObserver {
   double gravity_, gravity_along_normal_;
   double scale_;  // of lengths, ≥ 1
   RigidState start_, last_;
+  Vec3 after_a_second_ = Vec3::Zero();
   double last_time_ = 0, last_stir_time_ = 0, rest_time_ = 0, rebound_ = 0;
   int samples_ = 0, bounces_ = 0;
   std::optional<FirstImpact> first_impact_;

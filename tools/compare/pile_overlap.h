@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "lod/ground/static_ground.h"
+#include "lod/ground/ground.h"
 #include "tools/compare/depth_grid.h"
 
 #include "reference/shape.h"

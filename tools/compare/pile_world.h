@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "lod/ground/static_ground.h"
+#include "lod/ground/ground.h"
 #include "tools/compare/drop_method.h"
 
 namespace lodestone {

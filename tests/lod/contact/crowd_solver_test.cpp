@@ -145,5 +145,47 @@ TEST(CrowdSolver, HoldsUpABodyOnAHundredContacts) {
   EXPECT_NEAR(crowd.bodies[0].velocity.z(), 0.0, 1e-6);
 }
 
+// On the ground, with nothing known from a step before.
+TEST(CrowdSolver, CarriesAWeightThroughALightBody) {
+  for (const double ratio : {100.0, 1e3, 1e4}) {
+    Crowd crowd;
+    for (const double mass : {1.0, ratio}) {
+      SolverBody body;
+      body.inverse_mass = 1.0 / mass;
+      body.inverse_inertia = Mat3::Identity() * (10.0 / mass);
+      body.velocity = Vec3(0, 0, -9.81 * kStep);
+      crowd.bodies.push_back(body);
+    }
+    crowd.manifolds.push_back({0, -1, Vec3::UnitZ(), {.restitution = 0.0, .friction = 0.5}, 0, 1});
+    crowd.manifolds.push_back({1, 0, Vec3::UnitZ(), {.restitution = 0.0, .friction = 0.5}, 1, 1});
+    crowd.points.resize(2);
+    crowd.points[0].arm_first = crowd.points[1].arm_first = Vec3(0, 0, -0.1);
+    crowd.points[1].arm_second = Vec3(0, 0, 0.1);
+    solve(crowd, find_simd(), 1, {.fall = Vec3(0, 0, -9.81 * kStep)});
+    const double left = -crowd.bodies[1].velocity.z() / (9.81 * kStep);
+    EXPECT_LT(left, 0.02) << "of the weight's fall in a step, ratio " << ratio;
+    EXPECT_GT(left, -0.02) << "ratio " << ratio;
+  }
+}
+
+// What does not hang together with a weight is solved as without it.
+TEST(CrowdSolver, AWeightChangesNothingElsewhere) {
+  Crowd plain = make_crowd(40, 90, true);
+  Crowd beside = plain;
+  SolverBody light, heavy;
+  light.inverse_mass = 1.0, heavy.inverse_mass = 1e-3;
+  light.inverse_inertia = heavy.inverse_inertia = Mat3::Identity();
+  heavy.velocity = Vec3(0, 0, -1);
+  const auto number = std::int32_t(beside.bodies.size());
+  beside.bodies.push_back(light), beside.bodies.push_back(heavy);
+  beside.manifolds.push_back({number + 1, number, Vec3::UnitZ(), {.restitution = 0.0, .friction = 0.5}, std::uint32_t(beside.points.size()), 1});
+  beside.points.emplace_back();
+  const ContactSolverSettings settings{.sweeps = 10, .tolerance = 0.0};
+  solve(plain, find_simd(), 1, settings);
+  solve(beside, find_simd(), 1, settings);
+  for (std::size_t i = 0; i < plain.bodies.size(); ++i) EXPECT_EQ(plain.bodies[i].velocity, beside.bodies[i].velocity) << i;
+  EXPECT_GT(beside.bodies[std::size_t(number) + 1].velocity.z(), -1.0);
+}
+
 }  // namespace
 }  // namespace lodestone

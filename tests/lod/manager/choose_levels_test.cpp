@@ -48,13 +48,13 @@ TEST(DistancePolicy, PromotesNearAndDemotesFar) {
   const auto decision = choose({at(1), at(9), at(1, Rung::full), at(9, Rung::full)}, by_distance());
   EXPECT_EQ(who(decision.promote), Indices{0});
   EXPECT_EQ(who(decision.demote), Indices{3});
-  EXPECT_EQ(decision.reasons, (std::vector{LevelReason::near, LevelReason::far, LevelReason::near, LevelReason::far}));
+  EXPECT_EQ(decision.reasons, (std::vector{Rule::near, Rule::far, Rule::near, Rule::far}));
 }
 
 TEST(DistancePolicy, BodyBetweenTheTwoLimitsKeepsItsLevel) {
   const auto decision = choose({at(4.2), at(4.2, Rung::full)}, by_distance());
   EXPECT_TRUE(decision.promote.empty() && decision.demote.empty());
-  EXPECT_EQ(decision.reasons[1], LevelReason::within_hysteresis);
+  EXPECT_EQ(decision.reasons[1], Rule::within_hysteresis);
 }
 
 TEST(DistancePolicy, MeasuresToTheSurfaceAndScalesByImportance) {
@@ -80,7 +80,7 @@ TEST(Policy, DwellKeepsANewLevel) {
   candidates[0].frames_since_change = candidates[1].frames_since_change = 29;
   const auto held = choose(candidates, by_distance());
   EXPECT_TRUE(held.promote.empty() && held.demote.empty());
-  EXPECT_EQ(held.reasons, (std::vector{LevelReason::dwell, LevelReason::dwell}));
+  EXPECT_EQ(held.reasons, (std::vector{Rule::dwell, Rule::dwell}));
   candidates[0].frames_since_change = candidates[1].frames_since_change = 30;
   const auto free = choose(candidates, by_distance());
   EXPECT_EQ(who(free.promote), Indices{0});
@@ -90,8 +90,8 @@ TEST(Policy, DwellKeepsANewLevel) {
 TEST(Policy, T8CapTakesTheNearestFirstAndQueuesTheRest) {
   const auto decision = choose({at(3), at(1), at(2), at(2), at(0.5), at(3.5)}, by_distance());
   EXPECT_EQ(who(decision.promote), (Indices{4, 1, 2, 3}));
-  EXPECT_EQ(decision.reasons[0], LevelReason::queued);
-  EXPECT_EQ(decision.reasons[5], LevelReason::queued);
+  EXPECT_EQ(decision.reasons[0], Rule::queued);
+  EXPECT_EQ(decision.reasons[5], Rule::queued);
 }
 
 TEST(Policy, T8PromotionsAndDemotionsShareTheCapByTurns) {
@@ -120,7 +120,7 @@ TEST(Policy, ForcedBodiesWaitForNothing) {
     const auto decision = choose(candidates, settings);
     EXPECT_EQ(decision.promote.size(), 10u);
     EXPECT_EQ(who(decision.demote), Indices{10});
-    EXPECT_EQ(decision.reasons[3], LevelReason::forced);
+    EXPECT_EQ(decision.reasons[3], Rule::forced);
   }
 }
 
@@ -135,7 +135,7 @@ TEST(Policy, PutOffBodyWaitsAndLeavesItsTurnToOthers) {
   candidates[0].put_off = true;
   const auto decision = choose(candidates, by_distance());
   EXPECT_EQ(who(decision.promote), (Indices{1, 2, 3, 4}));
-  EXPECT_EQ(decision.reasons[0], LevelReason::overlap_put_off);
+  EXPECT_EQ(decision.reasons[0], Rule::overlap_put_off);
 }
 
 TEST(Policy, T7CameraAboutTheThresholdChangesNothingOrOnceADwell) {
@@ -161,8 +161,8 @@ TEST(BudgetPolicy, KeepsTheNearestThatFitBesidesTheStatisticalLevel) {
   for (int i = 0; i < 20; ++i) candidates.push_back(at(20 - i));
   const auto decision = choose(candidates, by_budget(7.0), 2.0);  // 5 fit; 4 leave a tenth of it free
   EXPECT_EQ(who(decision.promote), (Indices{19, 18, 17, 16}));
-  EXPECT_EQ(decision.reasons[19], LevelReason::in_budget);
-  EXPECT_EQ(decision.reasons[0], LevelReason::over_budget);
+  EXPECT_EQ(decision.reasons[19], Rule::in_budget);
+  EXPECT_EQ(decision.reasons[0], Rule::over_budget);
 }
 
 TEST(BudgetPolicy, ForcedFullBodiesUseUpTheBudgetFirst) {
@@ -220,7 +220,7 @@ TEST(BudgetPolicy, T11EveryBodyHasItsTurnAsTheViewpointMoves) {
 }
 
 TEST(Policy, EveryReasonHasWords) {
-  for (int reason = 0; reason <= int(LevelReason::signature_pending); ++reason) EXPECT_FALSE(text_of(LevelReason(reason)).empty());
+  for (int reason = 0; reason <= int(Rule::joined); ++reason) EXPECT_FALSE(text_of(Rule(reason)).empty());
 }
 
 TEST(DistancePolicy, EachRungHasItsDistanceAndItsHysteresis) {
@@ -228,7 +228,7 @@ TEST(DistancePolicy, EachRungHasItsDistanceAndItsHysteresis) {
   const auto decision = choose({on_ladder(3), on_ladder(11), on_ladder(13), on_ladder(13, Rung::support), on_ladder(14, Rung::support), on_ladder(5, Rung::full)}, settings);
   EXPECT_EQ(decision.promote, (std::vector<LevelDecision::Change>{{0, Rung::full}, {1, Rung::support}}));
   EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{4, Rung::tables}, {5, Rung::support}}));
-  EXPECT_EQ(decision.reasons, (std::vector{LevelReason::near, LevelReason::near, LevelReason::far, LevelReason::within_hysteresis, LevelReason::far, LevelReason::near}));
+  EXPECT_EQ(decision.reasons, (std::vector{Rule::near, Rule::near, Rule::far, Rule::within_hysteresis, Rule::far, Rule::near}));
 }
 
 TEST(DistancePolicy, AClosedRungIsPassedOver) {
@@ -275,7 +275,7 @@ TEST(Policy, MostOnARungIsNeverExceededAndTheNearestAreThere) {
     }
     EXPECT_EQ(count_on(Rung::full, candidates), 5);
     EXPECT_EQ(candidates[29].rung, Rung::full);
-    EXPECT_EQ(choose(candidates, settings).reasons[0], LevelReason::most_reached);
+    EXPECT_EQ(choose(candidates, settings).reasons[0], Rule::most_reached);
   }
 }
 
@@ -359,7 +359,7 @@ TEST(BudgetPolicy, ABodyThatIsPutOffGivesItsRoomToTheNext) {
   candidates[0].put_off = true;
   const auto decision = choose(candidates, by_budget(2.4));
   EXPECT_EQ(who(decision.promote), (Indices{1, 2}));
-  EXPECT_EQ(decision.reasons[0], LevelReason::overlap_put_off);
+  EXPECT_EQ(decision.reasons[0], Rule::overlap_put_off);
 }
 
 TEST(BudgetPolicy, ReachOfFullIsWhereItsRoomEnds) {

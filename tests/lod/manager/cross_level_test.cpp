@@ -15,8 +15,9 @@ constexpr auto kFull = LevelChoice::full, kStatistical = LevelChoice::statistica
 constexpr double kSide = 0.4;
 
 // The rest poses of a cube: what its statistical contacts need to know of it.
-std::shared_ptr<const Signature> cube_signature(const Shape&, const ContactLaw&) {
+std::shared_ptr<const Signature> cube_signature(const Shape& shape, const ContactLaw&) {
   auto signature = std::make_shared<Signature>();
+  signature->shape_hash = shape.content_hash;
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0}) signature->rest_poses.push_back({side * Vec3::Unit(axis), 1.0 / std::sqrt(3.0), 1.0 / 6.0});
   return signature;

@@ -1,4 +1,4 @@
-// Signatures that take their time: the bodies that need them are full meanwhile.
+// Signatures that take their time: the bodies that need them are at `support` without settling clips meanwhile.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -14,17 +14,25 @@
 namespace lodestone::testing {
 namespace {
 
-// A source that is slow until it is let go.
+std::shared_ptr<const Signature> empty_signature(const Shape& shape) {
+  Signature signature;
+  signature.shape_hash = shape.content_hash;
+  signature.mesh_vertices = std::uint32_t(shape.mesh.vertices.size()), signature.mesh_faces = std::uint32_t(shape.mesh.faces.size());
+  return std::make_shared<const Signature>(std::move(signature));
+}
+
+// Until it is let go.
 struct SlowSource {
+  bool measured = false;  // else an empty one: no clips, and nothing that `tables` could use
   std::atomic<bool> done = false;
   std::atomic<int> asked = 0;
-  std::atomic<std::thread::id> thread;
+  std::atomic<std::thread::id> thread = {};
   SignatureFunction function() {
-    return [this](const Shape&, const ContactLaw&) -> std::shared_ptr<const Signature> {
+    return [this](const Shape& shape, const ContactLaw& law) -> std::shared_ptr<const Signature> {
       thread = std::this_thread::get_id();
       ++asked;
       while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      return std::make_shared<const Signature>();
+      return measured ? coarse_signature(shape, law) : empty_signature(shape);
     };
   }
 };
@@ -39,44 +47,72 @@ void step_until_loaded(Manager& manager) {
   }
 }
 
-TEST(SignatureTiming, BodiesAreFullUntilTheThreadIsDone) {
-  SlowSource source;
+TEST(SignatureTiming, BodiesAreAtSupportUntilTheThreadIsDone) {
+  SlowSource source{.measured = true};
   Manager manager = on_floor(with(source, SignatureTiming::in_background));
   const auto box = box_shape({0.2, 0.3, 0.4});
-  const BodyId far = add(manager, box, at({0, 0, 1})), forced = add(manager, box, at({3, 0, 1}), LevelChoice::statistical);
-  const BodyId overlapping = add(manager, box, at({0.01, 0, 1}));
+  const BodyId far = add(manager, box, at({0, 0, 1})), forced = add(manager, box, at({3, 0, 1}), LevelChoice::tables);
   run(manager, 0.1);  // returns, though the source does not
-  for (const BodyId body : {far, forced, overlapping}) {
-    EXPECT_EQ(manager.level(body), Level::full);
-    EXPECT_EQ(manager.why(body), "full: its signature is still being measured");
-  }
+  for (const BodyId body : {far, forced}) EXPECT_EQ(manager.rung(body), Rung::support);
+  EXPECT_EQ(manager.why(forced), "support: its signature is still being measured");
   while (source.asked == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the thread may only just have begun
   EXPECT_EQ(source.asked, 1);
   EXPECT_NE(source.thread.load(), std::this_thread::get_id());
   source.done = true;
   step_until_loaded(manager);
   run(manager, 0.1);
-  EXPECT_EQ(manager.level(forced), Level::statistical);
-  EXPECT_EQ(manager.level(far), Level::statistical);
+  EXPECT_EQ(manager.rung(far), Rung::support);
+  EXPECT_EQ(manager.rung(forced), Rung::tables);
   EXPECT_EQ(source.asked, 1);
   const BodyId late = add(manager, box, at({6, 0, 1}));
   manager.step(kFrame);
   EXPECT_EQ(manager.level(late), Level::statistical);
 }
 
-TEST(SignatureTiming, ABodyThatWasFullForGoodWaitsToo) {
+TEST(SignatureTiming, ANearBodyIsFullAllTheSame) {
   SlowSource source;
+  Manager manager = on_floor(with(source, SignatureTiming::in_background));
+  view_from(manager, Vec3::Zero());
+  const BodyId near = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}));
+  run(manager, 0.1);
+  EXPECT_EQ(manager.level(near), Level::full);
+  source.done = true;
+}
+
+// Nothing of a body changes when its signature comes: it moves as if it had waited on.
+TEST(SignatureTiming, ASignatureThatComesMovesNoBody) {
+  SlowSource source;
+  Manager waits = on_floor(with(source, SignatureTiming::in_background)), never = on_floor();
+  const auto box = box_shape({0.2, 0.3, 0.4});
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 200; ++i) {
+    const RigidState state = at({2.0 * i, 0, 1.0 + 0.01 * i});
+    bodies.push_back(add(waits, box, state)), add(never, box, state);
+  }
+  run(waits, 0.5), run(never, 0.5);
+  source.done = true;
+  while (waits.report().counters.signatures_loaded == 0) {
+    waits.step(kFrame), never.step(kFrame);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  waits.step(kFrame), never.step(kFrame);  // the source's signature has no clips
+  for (const BodyId body : bodies) ASSERT_EQ(waits.state(body).position, never.state(body).position);
+  EXPECT_EQ(waits.report().promotions + waits.report().demotions, 0);
+}
+
+TEST(SignatureTiming, ABodyThatWasFullForGoodWaitsToo) {
+  SlowSource source{.measured = true};
   Manager manager = on_floor(with(source, SignatureTiming::in_background));
   const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}), LevelChoice::full);
   run(manager, 0.1);
   EXPECT_EQ(source.asked, 0);
-  manager.set_level(body, LevelChoice::statistical);
+  manager.set_level(body, LevelChoice::tables);
   run(manager, 0.1);
-  EXPECT_EQ(manager.level(body), Level::full);
+  EXPECT_EQ(manager.rung(body), Rung::support);
   source.done = true;
   step_until_loaded(manager);
   run(manager, 0.1);
-  EXPECT_EQ(manager.level(body), Level::statistical);
+  EXPECT_EQ(manager.rung(body), Rung::tables);
 }
 
 TEST(SignatureTiming, InStepTheStepWaits) {
@@ -115,8 +151,7 @@ TEST(SignatureTiming, AManagerDoesNotWaitForWhatItMeasures) {
     Manager manager = on_floor({});
     const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}));
     manager.step(kFrame);
-    EXPECT_EQ(manager.why(body), "full: its signature is still being measured");
-    EXPECT_EQ(manager.level(body), Level::full);
+    EXPECT_EQ(manager.rung(body), Rung::support);
   }
   for (const auto& entry : std::filesystem::recursive_directory_iterator(cache)) EXPECT_NE(entry.path().extension(), ".sig");
   std::filesystem::remove_all(cache);

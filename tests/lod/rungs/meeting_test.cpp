@@ -78,9 +78,9 @@ class Meeting : public ::testing::Test {
     settings.gravity.setZero();
     return settings;
   }();
-  StaticGround none_, floor_ = [] {
-    StaticGround ground;
-    ground.planes.push_back({});
+  Ground none_, floor_ = [] {
+    Ground ground;
+    ground.add_plane({});
     return ground;
   }();
   MaterialTable materials_;

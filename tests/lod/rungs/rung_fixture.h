@@ -23,7 +23,7 @@ inline std::shared_ptr<const Signature> box_signature() {
 
 class OneRung {
  public:
-  OneRung(StatisticalModel model, const StatisticalSettings& settings, const StaticGround& ground, const MaterialTable& materials)
+  OneRung(StatisticalModel model, const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials)
       : model_(model), level_(settings, ground, materials) {}
 
   int add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state, bool asleep,

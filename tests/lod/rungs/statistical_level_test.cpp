@@ -13,7 +13,7 @@ using testing::box, testing::box_signature, testing::OneRung;
 
 class Statistical : public ::testing::TestWithParam<StatisticalModel> {
  protected:
-  Statistical() { ground_.planes.push_back({}); }
+  Statistical() { ground_.add_plane({}); }
 
   OneRung make_level(int threads = 1) {
     StatisticalSettings settings;
@@ -41,7 +41,7 @@ class Statistical : public ::testing::TestWithParam<StatisticalModel> {
     return states;
   }
 
-  StaticGround ground_;
+  Ground ground_;
   MaterialTable materials_;
   TablesOptions tables_;
 };
@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(Models, Statistical, ::testing::Values(StatisticalModel
 // The paper's rule for pairs (3.3.2) gains energy, which is why it is an option; the default does not.
 TEST(PairRule, OnlyThePapersGainsEnergy) {
   const auto energy_ratio = [](bool paper_rule) {
-    StaticGround none;
+    Ground none;
     MaterialTable materials;
     StatisticalSettings settings;
     settings.tables.paper_pair_rule = paper_rule;
@@ -220,10 +220,10 @@ TEST(PairRule, OnlyThePapersGainsEnergy) {
 // S5, on random hits over the whole table.
 TEST(Tables, ResponsesAddNoEnergyAndLeaveThePlane) {
   MaterialTable materials;
-  StaticGround ground;
-  ground.planes.push_back({});
+  Ground ground;
+  ground.add_plane({});
   const BodyKind kind = make_body_kind(box(), box_signature());
-  const StepWorld world{.gravity = Vec3(0, 0, -9.81), .ground = &ground, .materials = &materials, .seed = 1};
+  const StepWorld world{.gravity = Vec3(0, 0, -9.81), .planes = ground.planes(), .materials = &materials, .seed = 1};
   for (std::uint32_t trial = 0; trial < 100'000; ++trial) {
     RandomStream random(6, trial, 0);
     StatisticalBody body;

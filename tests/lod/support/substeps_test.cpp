@@ -12,7 +12,7 @@ namespace {
 class Bin : public ::testing::Test {
  protected:
   void fill(int bodies) {
-    for (const HalfSpace& plane : make_bin(kSide).planes) ground_.planes.push_back(plane);
+    for (const HalfSpace& plane : make_bin(kSide).planes) ground_.add_plane(plane);
     level_.emplace(StatisticalModel::support, StatisticalSettings{}, ground_, materials_);
     for (const RigidState& start : make_pile_start(*shape_, {.bodies = bodies, .side = kSide}, 1))
       level_->add(std::uint32_t(level_->size()), shape_, 1000.0 * shape_->volume, 0, start, false, nullptr);
@@ -25,7 +25,7 @@ class Bin : public ::testing::Test {
 
   static constexpr double kSide = 1.2;
   std::shared_ptr<const Shape> shape_ = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
-  StaticGround ground_;
+  Ground ground_;
   MaterialTable materials_;
   std::optional<testing::OneRung> level_;
 };
@@ -33,7 +33,7 @@ class Bin : public ::testing::Test {
 // Forty boxes in ten layers, which arrive at up to 11 m/s.
 TEST_F(Bin, APileOfBoxesSleepsWithoutSinkingIntoItself) {
   fill(40);
-  const PileOverlap overlap(*shape_, ground_.planes);
+  const PileOverlap overlap(*shape_, {ground_.planes().begin(), ground_.planes().end()});
   StepReport report;
   double deepest = 0.0;
   for (int i = 0; i < 360; ++i) {

@@ -15,7 +15,7 @@ constexpr double kFrame = 1.0 / 60;
 
 class SphereLevel : public ::testing::Test {
  protected:
-  SphereLevel() { ground_.planes.push_back({}); }
+  SphereLevel() { ground_.add_plane({}); }
   testing::OneRung make(Simd simd = find_simd()) const {
     StatisticalSettings settings = settings_;
     settings.simd = simd;
@@ -54,7 +54,7 @@ class SphereLevel : public ::testing::Test {
   }
 
   StatisticalSettings settings_;
-  StaticGround ground_;
+  Ground ground_;
   MaterialTable materials_;
 };
 
@@ -107,7 +107,7 @@ TEST_F(SphereLevel, HoldsLittleForABody) {
 }
 
 TEST_F(SphereLevel, ContactsKeepMomentum) {
-  ground_.planes.clear();
+  ground_ = Ground();
   settings_.gravity.setZero();
   testing::OneRung level = make();
   Vec3 before = Vec3::Zero();

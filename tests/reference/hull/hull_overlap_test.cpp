@@ -22,6 +22,22 @@ TEST(HullOverlap, IsZeroApart) {
   EXPECT_EQ(measure_hull_overlap(*box, at({0, 0, 0}), *box, at({3, 0, 0})), 0.0);
 }
 
+// A crate that stands on a slab to the bit, anywhere on it, or sinks in by a little.
+TEST(HullOverlap, TouchingIsNoOverlapWhereverItIs) {
+  const auto crate = box_shape({0.4, 0.4, 0.4});
+  for (const Vec3& sides : {Vec3(4, 4, 0.2), Vec3(1, 1, 1), Vec3(60, 20, 0.5)}) {
+    const auto slab = box_shape(sides);
+    for (int i = 0; i < 400; ++i) {
+      const double x = (i % 20 - 9.5) / 20 * sides.x(), y = (i / 20 - 9.5) / 20 * sides.y();
+      for (const double depth : {0.0, 1e-12, 1e-6, 1e-2}) {
+        const double found = measure_hull_overlap(*crate, at({x, y, 0.2 - depth}), *slab, at({0, 0, -sides.z() / 2}));
+        EXPECT_LE(found, depth + 1e-12) << x << " " << y << " on " << sides.transpose();
+        EXPECT_LE(measure_hull_overlap(*slab, at({0, 0, -sides.z() / 2}), *crate, at({x, y, 0.2 - depth})), depth + 1e-12);
+      }
+    }
+  }
+}
+
 TEST(HullOverlap, T2HullWhollyInsideAnotherOverlaps) {
   const auto large = box_shape({2, 2, 2}), small = box_shape({0.1, 0.1, 0.1});
   EXPECT_GE(measure_hull_overlap(*large, at({0, 0, 0}), *small, at({0.3, 0, 0})), 0.75);

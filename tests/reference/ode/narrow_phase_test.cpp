@@ -80,5 +80,21 @@ TEST_P(BoxOracle, ContactsAreNoDeeperThanTheTruth) {
 
 INSTANTIATE_TEST_SUITE_P(NarrowPhase, BoxOracle, ::testing::Values(1e-4, 1e-3, 5e-3));
 
+// Over an edge ODE calls a triangle's normal the contact's.
+TEST(NarrowPhase, ABallOverAnEdgeIsPushedToItsCentre) {
+  const MaterialTable materials;
+  OdeWorld world({.gravity = Vec3::Zero()}, materials);
+  const auto cube = std::make_shared<const Shape>(make_shape("cube", make_box(Vec3::Constant(0.3))));
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.5));
+  const Vec3 out = Vec3(-0.9, 0.0, 0.4).normalized();
+  world.add_body({.shape = ball, .mass = 2000.0, .state = {.position = Vec3(-0.15, 0.02, 0.15) + 0.499 * out}});
+  world.add_body({.shape = cube, .mass = 10.0});
+  world.step(1e-5);
+  ASSERT_EQ(world.contacts().size(), 1u);
+  const OdeContact& contact = world.contacts().front();
+  EXPECT_GT(std::abs(contact.normal.dot(out)), 0.9999);
+  EXPECT_NEAR(contact.depth, 1e-3, 1e-4);
+}
+
 }  // namespace
 }  // namespace lodestone

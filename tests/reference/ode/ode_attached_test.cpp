@@ -130,6 +130,7 @@ TEST_F(AttachedOdeWorld, RemovalWakesHisBody) {
   const dBodyID far = add_sphere(0.1, 4.0, {9, 0, 0.499});
   dBodyDisable(ball), dBodyDisable(far);
   ours.remove_body(box);
+  ours.step(1.0 / 60);
   EXPECT_TRUE(dBodyIsEnabled(ball));
   EXPECT_FALSE(dBodyIsEnabled(far));
 }

@@ -1,0 +1,178 @@
+#include "lod/callers/callers_bodies.h"
+
+#include <algorithm>
+
+#include "lod/callers/geom_solids.h"
+#include "lod/contact/hull_contacts.h"
+#include "lod/contact/pair_contacts.h"
+#include "reference/ode/callers_bodies.h"
+
+namespace lodestone {
+namespace {
+
+constexpr std::uint32_t kFirstOwner = 0x40000000;  // above every body of the manager's
+constexpr double kTouching = 0.02;                 // over R: so near it is held up
+
+// What contacts need of a body's shape, or of a convex piece of it, about `center`.
+Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {
+  Shape shape;
+  shape.name = "a body of the caller's";
+  std::vector<Vec3> around;
+  for (const Vec3& p : points) around.push_back(p - center);
+  shape.hull = make_hull(around);
+  shape.support_map = SupportMap(shape.hull, 8);
+  shape.center_of_mass_in_mesh = center;
+  shape.convex = true;
+  for (const Vec3& v : shape.hull.vertices) shape.radius = std::max(shape.radius, v.norm());
+  return shape;
+}
+
+bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impulse.angular.isZero(0.0); }
+
+}  // namespace
+
+void CallersBodies::follow(const SpaceMirror& mirror) {
+  const std::span<const MirroredGeom> geoms = mirror.geoms();
+  body_of_slot_.resize(geoms.size(), nullptr);
+  const auto entry_of = [&](dxBody* body) { return std::ranges::find(bodies_, body, &Entry::body); };
+  for (const std::uint32_t slot : mirror.removed()) {
+    if (!body_of_slot_[slot]) continue;
+    const auto entry = entry_of(body_of_slot_[slot]);
+    body_of_slot_[slot] = nullptr;
+    std::erase(entry->slots, slot);
+    entry->stale = true;
+    if (entry->slots.empty()) bodies_.erase(entry);
+  }
+  for (const std::uint32_t slot : mirror.added()) {
+    if (!geoms[slot].dynamic) continue;
+    auto entry = entry_of(geoms[slot].body);
+    if (entry == bodies_.end()) {
+      Entry& added = bodies_.emplace_back();
+      added.body = geoms[slot].body;
+      added.owner = kFirstOwner + owners_++;
+      entry = bodies_.end() - 1;
+    }
+    body_of_slot_[slot] = geoms[slot].body;
+    entry->slots.insert(std::ranges::lower_bound(entry->slots, slot), slot);
+    entry->stale = true;
+  }
+  for (Entry& entry : bodies_)
+    if (entry.stale) make_shape(mirror, entry);
+}
+
+// Each geom a convex piece, or several; of a trimesh that has no pieces, its hull.
+void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) const {
+  entry.stale = false;
+  entry.shape = nullptr;
+  const RigidState at = callers::state(entry.body);
+  std::vector<std::vector<Vec3>> pieces;
+  std::optional<double> sphere;  // m, where it is just that
+  for (const std::uint32_t slot : entry.slots) {
+    const MirroredGeom& geom = mirror.geoms()[slot];
+    const GeomShape read = read_geom(geom.geom);
+    const auto in_body = [&](const Vec3& p) { return Vec3(at.orientation.conjugate() * (geom.position + geom.orientation * p - at.position)); };
+    const GroundSolids solids = solids_of(read);
+    const bool surface = solids.size() > 0 && solids[0].surface;
+    if (read.kind == GeomKind::sphere) {
+      if (entry.slots.size() == 1 && (geom.position - at.position).norm() < 1e-9 * read.radius) sphere = read.radius;
+      std::vector<Vec3>& piece = pieces.emplace_back();
+      for (const Vec3& corner : corners_of(read)) piece.push_back(in_body(corner));
+      continue;
+    }
+    std::vector<Vec3> all;
+    if (surface) for (const Vec3& v : read.vertices) all.push_back(in_body(v));
+    for (int i = 0; !surface && i < int(solids.size()); ++i) {
+      std::vector<Vec3>& piece = pieces.emplace_back();
+      for (const Vec3& v : solids[i].shape->hull.vertices) piece.push_back(in_body(solids[i].center + v));
+    }
+    if (surface) pieces.push_back(std::move(all));
+  }
+  if (pieces.empty()) return;
+  std::vector<Vec3> points;
+  for (const auto& piece : pieces) points.insert(points.end(), piece.begin(), piece.end());
+  Shape shape = make_contact_shape(points, Vec3::Zero());
+  if (pieces.size() > 1) {
+    shape.convex = false;
+    for (const auto& piece : pieces) {
+      Vec3 middle = Vec3::Zero();
+      for (const Vec3& p : piece) middle += p / double(piece.size());
+      shape.pieces.push_back(make_contact_shape(piece, middle));
+    }
+  }
+  if (sphere) shape.sphere_radius = shape.radius = *sphere;
+  const double mass = callers::mass(entry.body);
+  shape.inverse_inertia_per_mass = callers::inverse_inertia(entry.body) * mass;
+  shape.inertia_per_mass = shape.inverse_inertia_per_mass.inverse();
+  entry.shape = std::make_shared<const Shape>(std::move(shape));
+}
+
+// What holds them up: the ground below, which the caller's own contacts act against.
+void add_ground_contacts(const Ground& ground, const FullNeighbor& body, std::int32_t index, std::vector<FullContact>& contacts) {
+  const Shape& shape = *body.shape;
+  const double margin = kTouching * shape.radius;
+  const auto add = [&](const Vec3& point, const Vec3& normal, double gap) { contacts.push_back({index, -1, point, normal, gap}); };
+  for (const HalfSpace& plane : ground.planes()) {
+    const double height = plane.height_of(body.state.position);
+    if (height > shape.radius + margin) continue;
+    std::int32_t hint = 0;
+    const HullContacts low = find_hull_contacts(shape, body.state.orientation, plane.normal, height, margin, hint);
+    for (int i = 0; i < low.count; ++i)
+      if (low.contact[std::size_t(i)].gap < margin) add(body.state.position + low.contact[std::size_t(i)].arm, plane.normal, low.contact[std::size_t(i)].gap);
+  }
+  if (!ground.has_parts()) return;
+  std::vector<const GroundPart*> parts;
+  std::vector<PlacedSolid> near;
+  ground.find_parts(body.state.position, shape.radius + margin, parts);
+  for (const GroundPart* part : parts) find_solids(*part, body.state.position, shape.radius + margin, 0.0, near);
+  const PairBody self{&shape, body.state.position, body.state.orientation};
+  for (const PlacedSolid& solid : near)
+    if (const auto contact = find_hull_contact(self, {solid.solid->shape.get(), solid.position, solid.orientation}, margin))
+      for (int i = 0; i < contact->manifold.count; ++i) add(contact->manifold.points[std::size_t(i)].point, contact->normal, contact->manifold.points[std::size_t(i)].gap);
+}
+
+void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vector<FullNeighbor>& neighbors, std::vector<FullContact>& contacts) const {
+  for (const Entry& entry : bodies_) {
+    if (!entry.shape) continue;
+    FullNeighbor neighbor;
+    neighbor.owner = entry.owner;
+    neighbor.shape = entry.shape.get();
+    neighbor.mass = callers::mass(entry.body);
+    neighbor.state = callers::state(entry.body);
+    neighbor.force = callers::force(entry.body);
+    if (!callers::has_gravity(entry.body)) neighbor.force -= neighbor.mass * gravity;
+    neighbor.asleep = !callers::is_enabled(entry.body);
+    const auto index = std::int32_t(neighbors.size());
+    neighbors.push_back(neighbor);
+    if (!neighbor.asleep) add_ground_contacts(ground, neighbor, index, contacts);
+  }
+}
+
+void CallersBodies::hand_over(std::span<const FullNeighbor> neighbors, double dt) const {
+  std::size_t next = 0;
+  for (const Entry& entry : bodies_) {
+    if (!entry.shape) continue;
+    const FullNeighbor& neighbor = neighbors[next++];
+    if (neighbor.asleep) continue;
+    if (!callers::is_enabled(entry.body)) callers::set_enabled(entry.body, true);
+    if (!is_zero(neighbor.push)) callers::add_force(entry.body, neighbor.push.linear / dt, neighbor.push.angular / dt);
+    if (is_zero(neighbor.hit)) continue;
+    const Vec3 turn = inverse_inertia_world(neighbor.state.orientation, *neighbor.shape) * neighbor.hit.angular / neighbor.mass;
+    callers::set_velocity(entry.body, neighbor.state.velocity + neighbor.hit.linear / neighbor.mass, neighbor.state.angular_velocity + turn);
+  }
+}
+
+void CallersBodies::each_near(const Vec3& center, double radius, const std::function<void(const Shape&, const RigidState&)>& visit) const {
+  for (const Entry& entry : bodies_) {
+    if (!entry.shape) continue;
+    const RigidState state = callers::state(entry.body);
+    const double reach = radius + entry.shape->radius;
+    if ((state.position - center).squaredNorm() < reach * reach) visit(*entry.shape, state);
+  }
+}
+
+dxBody* CallersBodies::body_of(std::uint32_t owner) const {
+  const auto entry = std::ranges::find(bodies_, owner, &Entry::owner);
+  return entry == bodies_.end() ? nullptr : entry->body;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,110 @@
+#include "lod/callers/callers_ground.h"
+
+#include <algorithm>
+
+#include "lod/callers/geom_solids.h"
+#include "reference/ode/callers_bodies.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kLeap = 50.0;  // m/s: what seems faster was put elsewhere, and carries nothing along
+
+Eigen::AlignedBox3d in_own_frame(const MirroredGeom& geom) {
+  const Vec3 center = geom.orientation.conjugate() * (geom.bounds.center() - geom.position);
+  const Vec3 reach = geom.orientation.conjugate().toRotationMatrix().cwiseAbs() * (0.5 * geom.bounds.sizes());
+  return {center - reach, center + reach};
+}
+
+Vec3 rotation_between(const Quat& from, const Quat& to) {
+  const Eigen::AngleAxisd turn(to * from.conjugate());
+  return turn.angle() * turn.axis();
+}
+
+HalfSpace plane_of(const MirroredGeom& geom) { return {geom.normal, geom.offset, 0}; }
+
+}  // namespace
+
+void CallersGround::follow(const SpaceMirror& mirror, double dt, const std::function<void(const Eigen::AlignedBox3d&)>& disturbed) {
+  const std::span<const MirroredGeom> geoms = mirror.geoms();
+  ids_.resize(geoms.size());
+  for (const std::uint32_t slot : mirror.removed()) {
+    if (!ids_[slot]) continue;
+    if (!ground_.is_plane(ids_[slot])) disturbed(ground_.bounds(ids_[slot]));
+    else disturbed({Vec3::Constant(-1e9), Vec3::Constant(1e9)});
+    remove(slot);
+  }
+  for (const std::uint32_t slot : mirror.added()) {
+    if (geoms[slot].dynamic) continue;
+    add(geoms[slot], slot, dt);
+    if (!ground_.is_plane(ids_[slot])) disturbed(geoms[slot].bounds);
+  }
+  for (const std::uint32_t slot : moving_)
+    if (ids_[slot]) ground_.move_part(ids_[slot], pose_of(geoms[slot], false, dt));
+  moving_.clear();
+  const auto move = [&](std::uint32_t slot, bool moved) {
+    const GroundPose pose = pose_of(geoms[slot], moved, dt);
+    ground_.move_part(ids_[slot], pose);
+    if (!ground_.part(ids_[slot]).moves() && !moved) return;
+    moving_.push_back(slot);
+    disturbed(geoms[slot].bounds.merged(geoms[slot].previous_bounds));
+  };
+  for (const std::uint32_t slot : mirror.moved()) {
+    if (!ids_[slot]) continue;
+    if (!ground_.is_plane(ids_[slot])) move(slot, true);
+    else ground_.move_plane(ids_[slot], plane_of(geoms[slot])), disturbed({Vec3::Constant(-1e9), Vec3::Constant(1e9)});
+  }
+  for (const std::uint32_t slot : carried_)
+    if (!std::ranges::binary_search(mirror.moved(), slot)) move(slot, false);
+}
+
+void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt) {
+  if (geom.kind == GeomKind::plane) {
+    ids_[slot] = ground_.add_plane(plane_of(geom));
+  } else {
+    GroundShape shape{.bounds = in_own_frame(geom)};
+    if (geom.kind == GeomKind::height_field || geom.kind == GeomKind::other) {
+      shape.probe = [probe = probe_, own = geom.geom](const Vec3& from, const Vec3& direction, double length) -> std::optional<GroundHit> {
+        const std::optional<RayHit> hit = probe->cast(own, from, direction, length);
+        return hit ? std::optional(GroundHit{hit->point, hit->normal, hit->distance}) : std::nullopt;
+      };
+      shape.up = geom.kind == GeomKind::height_field ? Vec3(Vec3::UnitY()) : Vec3(geom.orientation.conjugate() * Vec3::UnitZ());
+    } else {
+      shape.make = [own = geom.geom] { return solids_of(read_geom(own)); };
+    }
+    ids_[slot] = ground_.add_part(shape, pose_of(geom, false, dt), 0);
+    if (geom.body) carried_.insert(std::ranges::lower_bound(carried_, slot), slot);
+  }
+  const GroundId id = ids_[slot];
+  geoms_.resize(std::max(geoms_.size(), std::size_t(id.index) + 1), nullptr);
+  geoms_[id.index] = geom.geom;
+}
+
+void CallersGround::remove(std::uint32_t slot) {
+  geoms_[ids_[slot].index] = nullptr;
+  ground_.remove(ids_[slot]);
+  ids_[slot] = {};
+  std::erase(carried_, slot);
+  std::erase(moving_, slot);
+}
+
+// One that a kinematic body carries moves as that does; one that was put elsewhere since the last step came from there.
+GroundPose CallersGround::pose_of(const MirroredGeom& geom, bool moved, double dt) const {
+  GroundPose pose{geom.position, geom.orientation};
+  if (geom.body) {
+    const RigidState body = callers::state(geom.body);
+    pose.velocity = body.velocity + body.angular_velocity.cross(geom.position - body.position);
+    pose.angular_velocity = body.angular_velocity;
+    pose.goes_on_s = pose.velocity.isZero(0.0) && pose.angular_velocity.isZero(0.0) ? 0.0 : dt;
+  }
+  if (pose.goes_on_s > 0.0 || !moved) return pose;
+  const Vec3 velocity = (geom.position - geom.previous_position) / dt;
+  if (velocity.norm() > kLeap) return pose;
+  pose.velocity = velocity;
+  pose.angular_velocity = rotation_between(geom.previous_orientation, geom.orientation) / dt;
+  return pose;
+}
+
+dxGeom* CallersGround::geom_of(GroundId id) const { return ground_.valid(id) && id.index < geoms_.size() ? geoms_[id.index] : nullptr; }
+
+}  // namespace lodestone

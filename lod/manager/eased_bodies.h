@@ -1,0 +1,36 @@
+// Bodies that lay among others on a statistical rung, on hulls or spheres, and are full now: their meshes leave gaps there. Once they are awake they sink into these no faster than
+// bodies part that overlap (parting.h), for as long; what is moved in earnest is let go at once.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "reference/ode/ode_world.h"
+#include "reference/state_archive.h"
+
+namespace lodestone {
+
+struct Levels;
+
+class EasedBodies {
+ public:
+  /// `body`: the manager's index; it has just become full.
+  void add(std::uint32_t body, OdeBodyId ode);
+  /// Somebody moves it on purpose.
+  void forget(std::uint32_t body) {
+    std::erase_if(bodies_, [body](const Eased& eased) { return eased.body == body; });
+  }
+  /// Holds those back that sink, by forces over the full level's step of `dt` seconds, which is to follow.
+  void hold_back(Levels& levels, double dt);
+  void archive(StateArchive& a) { a(bodies_); }
+
+ private:
+  struct Eased {
+    std::uint32_t body;
+    OdeBodyId ode;  // another once it has left the full level
+    double left_s;  // awake
+  };
+  std::vector<Eased> bodies_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,88 @@
+// What stands behind a Manager: the bodies and the stages of a step, in their order.
+#pragma once
+
+#include <algorithm>
+
+#include "lod/manager.h"
+#include "lod/manager/audit.h"
+#include "lod/manager/checks.h"
+#include "lod/manager/choose.h"
+#include "lod/manager/contact_events.h"
+#include "lod/manager/cost_model.h"
+#include "lod/manager/full_contacts.h"
+#include "lod/manager/levels.h"
+#include "lod/manager/move_bodies.h"
+#include "lod/manager/query_scene.h"
+#include "lod/manager/recorder.h"
+#include "lod/manager/step_changes.h"
+#include "lod/manager/step_log.h"
+#include "lod/manager/step_levels.h"
+#include "lod/timing/thread_clock.h"
+#include "reference/state_archive.h"
+
+namespace lodestone {
+
+struct Manager::Impl {
+  explicit Impl(const ManagerSettings& settings);
+  Impl(dxWorld* world, dxSpace* space, const ManagerSettings& settings);
+
+  std::shared_ptr<JobRunner> jobs;  // behind the one that the levels have, so that it can be changed
+  bool own_jobs = true;             // not the caller's
+  Levels levels;
+  CostModel costs;
+  Choose choose;
+  Audit audit;
+  MoveBodies move_bodies{levels, choose, audit};
+  StepLevels step_levels{levels};
+  StepChanges changes{levels};
+  ContactEvents events;
+  QueryScene queries{levels};
+  StepReport report;
+  StepLog step_log;
+  Recorder recorder;
+  ProfileHooks profile;
+  /// A step that has begun.
+  struct Underway {
+    double dt = 0.0;
+    ThreadLaps laps;
+    StepMeasurement measured = {};
+  };
+  std::optional<Underway> underway;
+  bool waits_for_world_step = false;  // between before_world_step and after_world_step
+  dxWorld* callers_world = nullptr;
+
+  void set_up(const ManagerSettings& settings);
+  /// All that the next steps depend on.
+  void archive(StateArchive& a);
+  /// Does what a chunk of a recording tells, but for steps.
+  void do_call(Manager& manager, Call call, StateArchive& chunk, std::span<const std::shared_ptr<const Shape>> shapes);
+  std::uint32_t index_of(BodyId body) const { return levels.bodies.index_of(body); }
+  /// The caller may have changed it in a world of his.
+  void follow_gravity();
+  void step_divided(double dt, int parts);
+  /// Stages 1 to 5, for at most .1 s.
+  void step(double dt);
+  /// Where `stages` throw, nothing has moved, and the report is that of the step before.
+  template <class Stages>
+  void guarded(const Stages& stages) {
+    const StepReport before = report;
+    try {
+      stages();
+    } catch (...) {
+      report = before;
+      levels.now = report.step;
+      for (std::uint32_t body = 0; body < levels.bodies.indices(); ++body)  // in the step to come they are looked at anew
+        levels.bodies.level(body).looked_at = std::min(levels.bodies.level(body).looked_at, report.step);
+      throw;
+    }
+  }
+  void do_stages(double dt);
+  void begin_stages(double dt);
+  void end_stages();
+  void begin_lists();
+  const StepReport& finish_lists(double dt);
+  void disturb(const Eigen::AlignedBox3d& box);
+  void find_signatures(const RungChanges& changes);
+};
+
+}  // namespace lodestone

@@ -1,0 +1,54 @@
+// All bodies where they are now, for queries: nothing is kept of them until somebody asks, and from then on a step costs in proportion to those that moved.
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lod/manager/levels.h"
+#include "lod/manager/query_ground.h"
+#include "lod/queries/body_grid.h"
+
+namespace lodestone {
+
+class QueryScene {
+ public:
+  explicit QueryScene(const Levels& levels) : levels_(levels), ground_(levels.ground, levels.callers.ground) {}
+
+  /// Something moved, came or went.
+  void touch() { stale_ = true; }
+  /// Forgets all that it knows, to look anew at every body.
+  void clear() { grid_.clear(), slept_.clear(), in_use_ = false, stale_ = true; }
+  void forget(std::uint32_t body) { grid_.forget(body), stale_ = true; }
+  /// A step is over in which these moved that sleep now.
+  void finish(std::span<const BodyId> fell_asleep, std::span<const BodyId> moved_and_slept);
+
+  /// All may be elsewhere.
+  void forget_all() { grid_.clear(), slept_.clear(), in_use_ = false, stale_ = true; }
+
+  // Each is told of the bodies and pieces of ground that are met, each once, in no order. From any thread.
+  using Found = std::function<void(const QueryHit&)>;
+  /// Once, before any number of questions.
+  void prepare();
+  std::optional<QueryHit> first(const Sweep& sweep, const QueryFilter& filter);
+  void all(const Sweep& sweep, const QueryFilter& filter, std::vector<QueryHit>& hits);
+  void overlaps(const Volume& volume, const QueryFilter& filter, std::vector<QueryHit>& hits);
+
+ private:
+  bool passes(std::uint32_t body, const QueryFilter& filter) const;
+  PosedSurface surface_of(std::uint32_t body, const Vec3& position, const Quat& orientation);
+  std::optional<QueryHit> meet_body(std::uint32_t body, const Sweep& sweep);
+  std::optional<QueryHit> overlap_body(std::uint32_t body, const Volume& volume);
+  void put(std::uint32_t body);
+
+  const Levels& levels_;
+  QueryGround ground_;
+  ShapeTrees trees_;
+  BodyGrid grid_;
+  bool in_use_ = false, stale_ = true;
+  std::vector<std::uint32_t> slept_;  // fell asleep since the grid was last brought up to date
+  std::mutex access_;
+};
+
+}  // namespace lodestone

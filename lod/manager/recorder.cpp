@@ -1,0 +1,41 @@
+#include "lod/manager/recorder.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+
+namespace lodestone {
+
+std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given, const BodyTable& bodies) {
+  for (const std::shared_ptr<const Shape>& shape : given)
+    if (shape && name_of(*shape) == name) return shape;
+  for (std::uint32_t i = 0; i < bodies.indices(); ++i)
+    if (bodies.alive(i) && name_of(*bodies.shape(i)) == name) return bodies.shape(i);
+  return nullptr;
+}
+
+std::vector<std::uint32_t> body_hashes(const Levels& levels) {
+  std::vector<std::uint32_t> hashes;
+  for (const std::uint32_t body : levels.bodies.in_order_of_creation()) {
+    const auto [x, q, v, w] = levels.state(body);
+    const std::array<double, 15> numbers{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), double(bool(levels.bodies[body].ode)), double(levels.asleep(body))};
+    hashes.push_back(std::uint32_t(XXH64(numbers.data(), sizeof numbers, 0)));
+  }
+  return hashes;
+}
+
+void Recorder::set(RecordFunction write, std::vector<std::byte> snapshot) {
+  write_ = std::move(write);
+  if (!write_) return;
+  write_(std::as_bytes(std::span(kRecordingMagic)));
+  note(Call::begin, snapshot);
+}
+
+// Its length first.
+void Recorder::put(const std::vector<std::byte>& chunk) const {
+  const auto length = std::uint64_t(chunk.size());
+  write_(std::as_bytes(std::span(&length, 1)));
+  write_(chunk);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,61 @@
+// A recording: first the snapshot that it begins with, then one chunk for each call that changed the manager, in order, and for each step what came of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lod/manager/levels.h"
+#include "lod/record.h"
+#include "reference/state_archive.h"
+
+namespace lodestone {
+
+enum class Call : std::uint8_t {
+  begin,  ///< a snapshot
+  step, add_plane, add_static_mesh, add_static_box, move_ground, remove_ground, add_body, remove_body, set_level, set_importance, set_state, set_user_data, set_body_events, set_properties, add_force, add_impulse,
+  sleep, wake, set_positions, set_viewpoints, set_rung_range,
+  make_group,  ///< without the functions for its joints
+  dissolve_group, set_gravity, set_full_substeps,
+  set_policy,  ///< without the policy, which may hold functions
+};
+inline constexpr auto kLastCall = Call::set_policy;
+
+/// What a recording starts with.
+inline constexpr std::array<char, 8> kRecordingMagic = {'L', 'O', 'D', 'E', 'R', 'E', 'C', '1'};
+
+/// What a shape is told by, wherever it was made.
+struct ShapeName {
+  std::uint64_t content_hash = 0;
+  double radius = 0.0;  // m
+  friend bool operator==(const ShapeName&, const ShapeName&) = default;
+};
+inline ShapeName name_of(const Shape& shape) { return {shape.content_hash, shape.radius}; }
+/// Among those given and those of bodies; null where there is none.
+std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given, const BodyTable& bodies);
+
+/// Of each body's state, whether it sleeps and is full, in order of creation.
+std::vector<std::uint32_t> body_hashes(const Levels& levels);
+
+class Recorder {
+ public:
+  /// Begins with `snapshot`; empty `write`: ends.
+  void set(RecordFunction write, std::vector<std::byte> snapshot);
+  bool on() const { return bool(write_); }
+
+  template <class... T>
+  void note(Call call, const T&... values) const {
+    if (!write_) return;
+    StateArchive chunk;
+    chunk(call, const_cast<T&>(values)...);  // which changes nothing where it writes
+    put(chunk.bytes());
+  }
+
+ private:
+  void put(const std::vector<std::byte>& chunk) const;
+
+  RecordFunction write_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,66 @@
+#include "lod/manager/step_changes.h"
+
+#include <algorithm>
+
+namespace lodestone {
+
+void StepChanges::begin() {
+  levels_.rung_changes.clear();
+  fell_asleep_.clear();
+  woke_.clear();
+  moved_.clear();
+  moved_and_slept_.clear();
+  settled_.clear();
+  moved_known_ = true;
+}
+
+void StepChanges::add(std::uint32_t body) {
+  if (slept_.size() <= body) slept_.resize(std::size_t(body) + 1, 0);
+  slept_[body] = 0;
+}
+
+void StepChanges::take_part() {
+  noted_.insert(noted_.end(), levels_.woken.begin(), levels_.woken.end());
+  levels_.woken.clear();
+  if (!levels_.statistical) return;
+  levels_.statistical->take_woke(noted_);
+  for (const std::uint32_t body : levels_.statistical->fell_asleep()) settled_.push_back(body);
+}
+
+void StepChanges::finish() {
+  for (const FullLevel::Member& member : levels_.full.members()) noted_.push_back(member.owner);
+  noted_.insert(noted_.end(), settled_.begin(), settled_.end());
+  std::ranges::sort(noted_);
+  noted_.erase(std::ranges::unique(noted_).begin(), noted_.end());
+  std::ranges::sort(settled_);
+  for (const std::uint32_t body : noted_) {
+    if (!levels_.bodies.alive(body)) continue;
+    const bool before = slept_[body], now = levels_.asleep(body);
+    if (now && !before) fell_asleep_.push_back(levels_.bodies.id(body));
+    else if (before && !now) woke_.push_back(levels_.bodies.id(body));
+    else if (now && std::ranges::binary_search(settled_, body)) moved_and_slept_.push_back(levels_.bodies.id(body));
+    slept_[body] = now;
+  }
+  noted_.clear();
+  moved_known_ = false;
+}
+
+std::span<const BodyId> StepChanges::moved() const {
+  const std::lock_guard lock(access_);
+  if (!moved_known_) find_moved();
+  moved_known_ = true;
+  return moved_;
+}
+
+void StepChanges::find_moved() const {
+  moved_.clear();
+  for (const FullLevel::Member& member : levels_.full.members())
+    if (!levels_.full.world()->asleep(member.id)) moved_.push_back(levels_.bodies.id(member.owner));
+  std::vector<std::uint32_t> awake;
+  if (levels_.statistical) levels_.statistical->find_awake(awake);
+  for (const std::uint32_t body : awake) moved_.push_back(levels_.bodies.id(body));
+  moved_.insert(moved_.end(), fell_asleep_.begin(), fell_asleep_.end());
+  moved_.insert(moved_.end(), moved_and_slept_.begin(), moved_and_slept_.end());
+}
+
+}  // namespace lodestone

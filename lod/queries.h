@@ -1,0 +1,49 @@
+// What a game asks of the bodies and the ground where they are now: rays, swept spheres, spheres and boxes.
+//
+// Bodies are met by their meshes on every rung (spheres as such), so that an answer does not change with a body's rung; ground, the caller's too, by its planes and solids, a height
+// field by rays, and by what moves along them as by its plane where the ray meets it. Not met: the caller's dynamic bodies, which his own space answers for. All lengths in m.
+#pragma once
+
+#include <limits>
+
+#include "lod/events.h"
+
+namespace lodestone {
+
+struct QueryFilter {
+  unsigned categories = ~0u;   ///< bodies are met whose category (BodyProperties) has one of these bits
+  bool bodies = true, ground = true;
+  BodyId except = {};          ///< this body is not met: the one that asks
+};
+
+/// From `from` along `direction` (of any length but zero), `length` m (≥ 0, may be infinite). Surfaces are met from outside: what a ray begins in it does not meet.
+struct Ray {
+  Vec3 from = Vec3::Zero(), direction = -Vec3::UnitZ();
+  double length = std::numeric_limits<double>::infinity();
+};
+
+/// A sphere that moves along a ray. What it overlaps at its start it meets at once.
+struct SphereSweep {
+  Ray ray;
+  double radius = 0.5;  ///< > 0
+};
+
+struct SphereVolume {
+  Vec3 center = Vec3::Zero();
+  double radius = 0.5;  ///< > 0
+};
+
+struct BoxVolume {
+  Vec3 sides = Vec3::Ones();  ///< full ones, > 0
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+};
+
+struct QueryHit {
+  ContactSide who;
+  Vec3 point = Vec3::Zero();    ///< world, on the surface that is met; of an overlap with a box: the body's position
+  Vec3 normal = Vec3::UnitZ();  ///< of that surface, outward; of an overlap with a box: none known, z
+  double distance = 0.0;        ///< along the ray; 0 of an overlap
+};
+
+}  // namespace lodestone

@@ -1,0 +1,51 @@
+#include "reference/ode/sleep_ode.h"
+
+namespace lodestone::ode {
+namespace {
+
+double square(double x) { return x * x; }
+
+// Summed as ODE does.
+double squared_norm(const dReal* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+
+void put_to_rest(dBodyID body) {
+  dBodyDisable(body);
+  dBodySetLinearVel(body, 0, 0, 0);
+  dBodySetAngularVel(body, 0, 0, 0);
+}
+
+}  // namespace
+
+void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
+  if (!on_) return;
+  find_carried(carried);
+  for (Body& body : bodies.slots()) {
+    if (!body.body || !dBodyIsEnabled(body.body)) continue;
+    // Woken from outside, and not by ODE's own step with those that it hangs together with.
+    if (!body.was_enabled) body.to_sleep_s = law_.time;
+    body.was_enabled = true;
+    if (dBodyGetNumJoints(body.body) == 0 || !body.properties.allow_sleep || body.properties.kinematic) continue;
+    body.to_sleep_s = is_still(body) ? body.to_sleep_s - h : law_.time;
+    if (body.to_sleep_s <= 0.0) put_to_rest(body.body);
+  }
+}
+
+bool Sleep::is_still(const Body& body) const {
+  if (carried_.contains(body.body)) return false;
+  return squared_norm(dBodyGetLinearVel(body.body)) <= square(law_.speed) && squared_norm(dBodyGetAngularVel(body.body)) <= square(law_.turning_speed / body.reach);
+}
+
+void Sleep::find_carried(std::span<const dBodyID> carried) {
+  carried_.clear();
+  waiting_.assign(carried.begin(), carried.end());
+  while (!waiting_.empty()) {
+    const dBodyID body = waiting_.back();
+    waiting_.pop_back();
+    if (dBodyIsKinematic(body) || !carried_.insert(body).second) continue;
+    for (int i = 0; i < dBodyGetNumJoints(body); ++i)
+      for (const int end : {0, 1})
+        if (const dBodyID other = dJointGetBody(dBodyGetJoint(body, i), end)) waiting_.push_back(other);
+  }
+}
+
+}  // namespace lodestone::ode

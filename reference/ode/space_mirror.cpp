@@ -1,0 +1,333 @@
+#include "reference/ode/space_mirror.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <unordered_map>
+
+#include "reference/ode/box_tree.h"
+#include "reference/ode/geometry_ode.h"
+
+namespace lodestone {
+
+using namespace ode;
+
+namespace {
+
+constexpr double kEverywhere = 1e30;  // m
+
+/// What tells one geom from another, in ODE's own numbers.
+struct Identity {
+  dGeomID geom = nullptr;
+  dBodyID body = nullptr;
+  int geom_class = 0;
+  bool dynamic = false;
+  unsigned category = 0, collide = 0;
+  std::array<dReal, 4> sizes{};  // m; of a plane, its parameters
+  const void* data = nullptr;    // of a trimesh
+  friend bool operator==(const Identity&, const Identity&) = default;
+};
+
+struct Pose {
+  std::array<dReal, 3> position{};
+  std::array<dReal, 6> bounds{};
+  std::uint64_t rotation = 0;  // a sum over the matrix's bits: a cache line less for each geom
+  friend bool operator==(const Pose&, const Pose&) = default;
+};
+
+struct Seen {
+  Identity identity;
+  Pose pose;
+  std::uint64_t at = 0;      // the refresh that saw it last
+  std::uint32_t place = 0;   // in the order in which the space gave its geoms out
+};
+
+std::array<dReal, 4> sizes_of(dGeomID geom, int geom_class) {
+  std::array<dReal, 4> sizes{};
+  switch (geom_class) {
+    case dSphereClass: sizes[0] = dGeomSphereGetRadius(geom); break;
+    case dBoxClass: dGeomBoxGetLengths(geom, sizes.data()); break;
+    case dCapsuleClass: dGeomCapsuleGetParams(geom, &sizes[0], &sizes[1]); break;
+    case dCylinderClass: dGeomCylinderGetParams(geom, &sizes[0], &sizes[1]); break;
+    case dPlaneClass: dGeomPlaneGetParams(geom, sizes.data()); break;
+    default: break;
+  }
+  sizes[3] = geom_class == dPlaneClass ? sizes[3] : 0.0;  // a box's fourth is ODE's padding
+  return sizes;
+}
+
+Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
+  const dBodyID body = dGeomGetBody(geom);
+  return {.geom = geom,
+          .body = body,
+          .geom_class = geom_class,
+          .dynamic = body && !dBodyIsKinematic(body),
+          .category = category,
+          .collide = collide,
+          .sizes = sizes_of(geom, geom_class),
+          .data = geom_class == dTriMeshClass ? dGeomTriMeshGetData(geom) : nullptr};
+}
+
+std::uint64_t sum_of(const dReal* rotation) {
+  std::uint64_t sum = 0;
+  for (const int i : {0, 1, 2, 4, 5, 6, 8, 9, 10}) sum = std::rotl(sum, 7) * 0x9e3779b97f4a7c15u + std::bit_cast<std::uint64_t>(rotation[i]);
+  return sum;
+}
+
+Pose pose_of(dGeomID geom, int geom_class) {
+  Pose pose;
+  dGeomGetAABB(geom, pose.bounds.data());
+  if (geom_class == dPlaneClass) return pose;  // which has none
+  std::copy_n(dGeomGetPosition(geom), 3, pose.position.begin());
+  pose.rotation = sum_of(dGeomGetRotation(geom));
+  return pose;
+}
+
+bool is_space(int geom_class) { return geom_class >= dFirstSpaceClass && geom_class <= dLastSpaceClass; }
+
+Eigen::AlignedBox3d box_of(const std::array<dReal, 6>& b) { return {Vec3(b[0], b[2], b[4]), Vec3(b[1], b[3], b[5])}; }
+
+void place(const Seen& seen, MirroredGeom& geom) {
+  geom.bounds = box_of(seen.pose.bounds);
+  if (geom.kind == GeomKind::plane) return;
+  geom.position = to_vec3(seen.pose.position.data());
+  dQuaternion q;
+  dGeomGetQuaternion(seen.identity.geom, q);
+  geom.orientation = to_quat(q);
+}
+
+MirroredGeom mirror(const Seen& seen) {
+  const Identity& is = seen.identity;
+  MirroredGeom geom;
+  geom.geom = is.geom, geom.body = is.body, geom.dynamic = is.dynamic;
+  geom.kind = kind_of(is.geom);
+  geom.category = is.category, geom.collide = is.collide;
+  if (geom.kind == GeomKind::plane) geom.normal = to_vec3(is.sizes.data()), geom.offset = is.sizes[3];
+  place(seen, geom);
+  geom.previous_position = geom.position, geom.previous_orientation = geom.orientation, geom.previous_bounds = geom.bounds;
+  return geom;
+}
+
+}  // namespace
+
+struct SpaceMirror::Impl {
+  explicit Impl(dSpaceID callers) : space(callers), probe(dCreateBox(nullptr, kEverywhere, kEverywhere, kEverywhere)) {}
+  ~Impl() { dGeomDestroy(probe); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void forget_moves();
+  void look_into(dSpaceID in, unsigned category, unsigned collide);
+  void look_at(dGeomID geom, unsigned category, unsigned collide);
+  std::uint32_t expected_slot(dGeomID geom);
+  void note(std::uint32_t slot);
+  void add(const Seen& found);
+  void drop_unseen();
+  void update_tree();
+  void note_disturbed();
+  void update_bodied();
+  void follow(std::size_t index);
+
+  dSpaceID space;
+  dGeomID probe;  // meets everything
+  std::vector<dSpaceID> excluded;
+  std::vector<MirroredGeom> geoms;
+  std::vector<Seen> seen;  // one of each slot
+  std::unordered_map<dGeomID, std::uint32_t> slots;
+  std::vector<std::uint32_t> order, last_order;  // slots, as the space gives its geoms out
+  std::size_t cursor = 0;                        // in last_order: which is expected next
+  std::vector<std::uint32_t> added, removed, moved, planes, bodied, free;
+  std::vector<Eigen::AlignedBox3d> followed;     // one of each in bodied
+  std::vector<Eigen::AlignedBox3d> disturbed;
+  BoxTree tree;
+  std::uint64_t refreshes = 0;
+};
+
+SpaceMirror::SpaceMirror(dxSpace* callers) {
+  prepare();
+  impl_ = std::make_unique<Impl>(callers);
+}
+
+SpaceMirror::~SpaceMirror() = default;
+
+void SpaceMirror::exclude(dxSpace* space) { impl_->excluded.push_back(space); }
+
+void SpaceMirror::refresh() {
+  prepare();
+  impl_->forget_moves();
+  impl_->look_into(impl_->space, ~0u, ~0u);
+  impl_->drop_unseen();
+  impl_->note_disturbed();
+  impl_->update_tree();
+  impl_->update_bodied();
+}
+
+void SpaceMirror::Impl::forget_moves() {
+  for (const std::uint32_t slot : moved) {
+    MirroredGeom& geom = geoms[slot];
+    geom.previous_position = geom.position, geom.previous_orientation = geom.orientation, geom.previous_bounds = geom.bounds;
+  }
+  free.insert(free.end(), removed.rbegin(), removed.rend());
+  added.clear(), removed.clear(), moved.clear();
+  std::swap(order, last_order);
+  order.clear();
+  cursor = 0;
+  ++refreshes;
+}
+
+// dSpaceGetGeom fails an assertion on a quadtree; what a box without end meets there is all that a body could.
+void SpaceMirror::Impl::look_into(dSpaceID in, unsigned category, unsigned collide) {
+  if (std::ranges::find(excluded, in) != excluded.end()) return;
+  const auto geom = reinterpret_cast<dGeomID>(in);
+  category &= unsigned(dGeomGetCategoryBits(geom)), collide &= unsigned(dGeomGetCollideBits(geom));
+  if (in != space && (!dGeomIsEnabled(geom) || (category | collide) == 0)) return;
+  if (dSpaceGetClass(in) != dQuadTreeSpaceClass) {
+    for (int i = 0; i < dSpaceGetNumGeoms(in); ++i) look_at(dSpaceGetGeom(in, i), category, collide);
+    return;
+  }
+  struct Found {
+    dGeomID probe;
+    std::vector<dGeomID> geoms;
+  } found{probe, {}};
+  dSpaceCollide2(geom, probe, &found, [](void* data, dGeomID a, dGeomID b) {
+    auto& all = *static_cast<Found*>(data);
+    all.geoms.push_back(a == all.probe ? b : a);
+  });
+  for (const dGeomID met : found.geoms) look_at(met, category, collide);
+}
+
+void SpaceMirror::Impl::look_at(dGeomID geom, unsigned category, unsigned collide) {
+  const int geom_class = dGeomGetClass(geom);
+  if (is_space(geom_class)) return look_into(reinterpret_cast<dSpaceID>(geom), category, collide);
+  category &= unsigned(dGeomGetCategoryBits(geom)), collide &= unsigned(dGeomGetCollideBits(geom));
+  if (geom_class == dRayClass || !dGeomIsEnabled(geom) || (category | collide) == 0) return;
+
+  const Seen found{identity_of(geom, geom_class, category, collide), pose_of(geom, geom_class)};
+  const std::uint32_t slot = expected_slot(geom);
+  if (slot == seen.size() || seen[slot].identity != found.identity) return add(found);
+  note(slot);
+  if (seen[slot].pose == found.pose) return;
+  seen[slot].pose = found.pose;
+  lodestone::place(seen[slot], geoms[slot]);
+  moved.push_back(slot);
+}
+
+// A space mostly gives its geoms out in the same order as the last time; one that was moved or is new may come earlier.
+std::uint32_t SpaceMirror::Impl::expected_slot(dGeomID geom) {
+  if (cursor < last_order.size() && seen[last_order[cursor]].identity.geom == geom) return last_order[cursor++];
+  const auto found = slots.find(geom);
+  if (found == slots.end()) return std::uint32_t(seen.size());
+  cursor = seen[found->second].place + 1;
+  return found->second;
+}
+
+void SpaceMirror::Impl::note(std::uint32_t slot) {
+  seen[slot].at = refreshes;
+  seen[slot].place = std::uint32_t(order.size());
+  order.push_back(slot);
+}
+
+void SpaceMirror::Impl::add(const Seen& found) {
+  std::uint32_t slot = std::uint32_t(seen.size());
+  if (free.empty()) {
+    seen.emplace_back();
+    geoms.emplace_back();
+  } else {
+    slot = free.back();
+    free.pop_back();
+  }
+  seen[slot] = found;
+  geoms[slot] = mirror(found);
+  slots[found.identity.geom] = slot;
+  note(slot);
+  added.push_back(slot);
+}
+
+void SpaceMirror::Impl::drop_unseen() {
+  for (const std::uint32_t slot : last_order) {
+    if (seen[slot].at == refreshes) continue;
+    const auto entry = slots.find(seen[slot].identity.geom);
+    if (entry->second == slot) slots.erase(entry);  // else another has its address
+    seen[slot].identity.geom = geoms[slot].geom = nullptr;
+    geoms[slot].body = nullptr;
+    removed.push_back(slot);
+  }
+  std::ranges::sort(added), std::ranges::sort(removed), std::ranges::sort(moved);
+}
+
+// What has a body and is where the world's step left it was not disturbed.
+void SpaceMirror::Impl::note_disturbed() {
+  disturbed.clear();
+  const auto last_known = [this](std::uint32_t slot) {
+    const auto found = std::ranges::lower_bound(bodied, slot);
+    return found != bodied.end() && *found == slot ? followed[std::size_t(found - bodied.begin())] : geoms[slot].previous_bounds;
+  };
+  for (const std::uint32_t slot : added) disturbed.push_back(geoms[slot].bounds);
+  for (const std::uint32_t slot : removed) disturbed.push_back(last_known(slot));
+  for (const std::uint32_t slot : moved) {
+    const Eigen::AlignedBox3d before = last_known(slot), &now = geoms[slot].bounds;
+    if (geoms[slot].body && before.min() == now.min() && before.max() == now.max()) continue;
+    disturbed.insert(disturbed.end(), {before, now});
+  }
+}
+
+void SpaceMirror::Impl::update_bodied() {
+  if (!added.empty() || !removed.empty()) {
+    std::erase_if(bodied, [this](std::uint32_t slot) { return !geoms[slot].geom; });
+    for (const std::uint32_t slot : added)
+      if (geoms[slot].body) bodied.push_back(slot);
+    std::ranges::sort(bodied);
+  }
+  followed.resize(bodied.size());
+  for (std::size_t i = 0; i < bodied.size(); ++i) followed[i] = geoms[bodied[i]].bounds;
+}
+
+void SpaceMirror::Impl::update_tree() {
+  const auto is_plane = [this](std::uint32_t slot) { return geoms[slot].kind == GeomKind::plane; };
+  std::vector<BoxTree::Entry> entries;
+  for (const std::uint32_t slot : removed) {
+    if (is_plane(slot)) std::erase(planes, slot);
+    else tree.remove(slot);
+  }
+  for (const std::uint32_t slot : added) {
+    if (is_plane(slot)) planes.push_back(slot);
+    else entries.push_back({slot, geoms[slot].bounds});
+  }
+  std::ranges::sort(planes);
+  if (!entries.empty()) tree.add(entries);
+  for (const std::uint32_t slot : moved)
+    if (!is_plane(slot)) tree.move(slot, geoms[slot].previous_bounds, geoms[slot].bounds);
+}
+
+std::span<const MirroredGeom> SpaceMirror::geoms() const { return impl_->geoms; }
+std::span<const std::uint32_t> SpaceMirror::added() const { return impl_->added; }
+std::span<const std::uint32_t> SpaceMirror::removed() const { return impl_->removed; }
+std::span<const std::uint32_t> SpaceMirror::moved() const { return impl_->moved; }
+std::span<const std::uint32_t> SpaceMirror::planes() const { return impl_->planes; }
+std::span<const std::uint32_t> SpaceMirror::bodied() const { return impl_->bodied; }
+std::span<const Eigen::AlignedBox3d> SpaceMirror::disturbed() const { return impl_->disturbed; }
+
+void SpaceMirror::follow() {
+  for (std::size_t i = 0; i < impl_->bodied.size(); ++i)
+    if (dBodyIsEnabled(impl_->geoms[impl_->bodied[i]].body)) impl_->follow(i);
+}
+
+void SpaceMirror::Impl::follow(std::size_t index) {
+  const std::uint32_t slot = bodied[index];
+  std::array<dReal, 6> bounds;
+  dGeomGetAABB(geoms[slot].geom, bounds.data());
+  const Eigen::AlignedBox3d now = box_of(bounds);
+  if (geoms[slot].kind != GeomKind::plane) tree.move(slot, followed[index], now);
+  followed[index] = now;
+}
+
+void SpaceMirror::find_followed(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const { impl_->tree.find(box, found); }
+
+void SpaceMirror::find_near(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const {
+  found.clear();
+  impl_->tree.find(box, found);
+  std::erase_if(found, [&](std::uint32_t slot) { return !impl_->geoms[slot].bounds.intersects(box); });
+  std::ranges::sort(found);
+}
+
+}  // namespace lodestone

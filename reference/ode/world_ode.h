@@ -1,0 +1,62 @@
+// What stands behind an OdeWorld, and how it steps.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "reference/ode/collision_ode.h"
+#include "reference/ode/held_forces_ode.h"
+#include "reference/ode/ode_world.h"
+#include "reference/ode/sleep_ode.h"
+#include "reference/ode/sweep_ode.h"
+#include "reference/ode/touches_ode.h"
+
+namespace lodestone {
+
+struct OdeWorld::Impl {
+  /// `callers_world` and `callers_space` are null in a world of its own.
+  Impl(dWorldID callers_world, dSpaceID callers_space, const OdeSettings& s, const MaterialTable& materials);
+  ~Impl();
+
+  void set_up_own_world();
+  bool has_work();
+
+  // A step: what comes before its substeps, each substep, and what comes after them.
+  void begin_step(double h);
+  void substep(double h);
+  void end_step();
+
+  // A substep: contacts, ODE's own step (or the caller's), and putting right what came of it.
+  void begin_substep(double h, int attempt);
+  bool advance(double h);
+  void end_substep(double h);
+
+  void look_at_callers_space();
+  void push_bodies();
+  void take_back_bodies();
+  void recover_bodies();
+  void count_uneven_contacts();
+  void wake_neighbors(const ode::Body& body);
+
+  OdeSettings settings;
+  std::unique_ptr<SpaceMirror> mirror;  // of the caller's space; else null
+  dWorldID own_world, world;
+  std::unique_ptr<ode::StepThreading> threading;
+  ode::ContactJoints joints;
+  ode::Collision collision;
+  ode::Touches touches;
+  bool records_touches = false;
+  ode::Sweep sweep;
+  ode::Sleep sleep;
+  ode::TrimeshCache trimeshes;
+  ode::Bodies bodies;
+  ode::HeldForces held_forces;
+  OdeCounters counters;
+  OdeTimes times;
+  std::uint64_t quick_steps = 0;
+  bool has_looked = false;           // since the last step
+  double callers_step_s = 0.0;          // between begin_callers_step and end_callers_step; else 0
+  std::vector<Eigen::AlignedBox3d> vacated;  // m, by bodies that were removed between steps: the caller's near there wake once they are known again
+};
+
+}  // namespace lodestone

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <chrono>
+
+#include "reference/ode/islands.h"
+#include "reference/ode/world_ode.h"
+
+namespace lodestone {
+
+using namespace ode;
+
+namespace {
+
+constexpr double kUneven = 100.0;  // QuickStep's iterations carry a weight through a body a hundredth of it no more
+
+// Adds the time that it lives to a sum.
+class Timing {
+ public:
+  explicit Timing(double& sum_ms) : sum_ms_(sum_ms) {}
+  ~Timing() { sum_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+  Timing(const Timing&) = delete;
+  Timing& operator=(const Timing&) = delete;
+
+ private:
+  double& sum_ms_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+OdeWorld::Impl::Impl(dWorldID callers_world, dSpaceID callers_space, const OdeSettings& s, const MaterialTable& materials)
+    : settings(s),
+      mirror(callers_space ? std::make_unique<SpaceMirror>(callers_space) : nullptr),
+      own_world(callers_world ? nullptr : dWorldCreate()),
+      world(callers_world ? callers_world : own_world),
+      joints(world, s, materials),
+      collision(mirror.get(), s),
+      sleep(s),
+      bodies(collision.broad_phase().bodies_space()) {
+  if (own_world) set_up_own_world();
+}
+
+OdeWorld::Impl::~Impl() {
+  // Bodies, geoms and joints go before the world that holds them.
+  joints.end();
+  bodies.clear();
+  threading.reset();
+  if (own_world) dWorldDestroy(own_world);
+}
+
+void OdeWorld::Impl::set_up_own_world() {
+  threading = std::make_unique<StepThreading>(world);
+  dWorldSetGravity(world, settings.gravity.x(), settings.gravity.y(), settings.gravity.z());
+  dWorldSetQuickStepNumIterations(world, settings.quick_step_iterations);
+  if (settings.cfm > 0.0) dWorldSetCFM(world, settings.cfm);  // friction's; without any its rows may come to depend on each other
+}
+
+// Nothing moves where all sleep, save in a caller's world, whose other bodies are unknown.
+bool OdeWorld::Impl::has_work() {
+  return !own_world || std::ranges::any_of(bodies.slots(), [](const Body& body) { return body.body && dBodyIsEnabled(body.body); });
+}
+
+void OdeWorld::Impl::look_at_callers_space() {
+  if (!mirror || has_looked) return;
+  mirror->refresh();
+  collision.note_changes(bodies);
+  for (const Eigen::AlignedBox3d& box : vacated) collision.broad_phase().wake_callers(box);
+  vacated.clear();
+  has_looked = true;
+}
+
+void OdeWorld::Impl::begin_step(double h) {
+  look_at_callers_space();
+  times = {};
+  touches.begin_step();
+  joints.tell(records_touches ? &touches : nullptr);
+  held_forces.note(world, bodies, mirror.get());
+  for (Body& body : bodies.slots())
+    if (body.body) set_damping(body, h);
+}
+
+void OdeWorld::Impl::end_step() {
+  for (Body& body : bodies.slots()) body.force = body.torque = Vec3::Zero();
+  collision.end_step();
+  has_looked = false;
+}
+
+// ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in a message and leaving the
+// bodies without their contact forces. Such a substep is taken back and repeated with contacts a little softer and more uneven. Not in a caller's world,
+// whose other bodies cannot be taken back.
+void OdeWorld::Impl::substep(double h) {
+  constexpr int kAttempts = 3;
+  sweep.begin(bodies);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    held_forces.give();
+    begin_substep(h, attempt);
+    const bool solved = advance(h);
+    if (solved || !own_world || attempt == kAttempts - 1) break;
+    joints.end();
+    take_back_bodies();
+  }
+  end_substep(h);
+}
+
+void OdeWorld::Impl::begin_substep(double h, int attempt) {
+  push_bodies();
+  joints.begin(h, attempt);
+  {
+    const Timing timing(times.collision_ms);
+    collision.collide(bodies, joints, h);
+  }
+  sleep.run(bodies, joints.carried(), h);
+}
+
+void OdeWorld::Impl::end_substep(double h) {
+  if (records_touches) touches.end_substep(h);
+  joints.end();
+  recover_bodies();
+  if (mirror) mirror->follow();
+  counters.passes_prevented += sweep.stop_passing(bodies, collision.broad_phase(), joints.contacts());
+}
+
+void OdeWorld::Impl::take_back_bodies() {
+  for (const Body& body : bodies.slots())
+    if (body.body) ode::set_state(body.body, body.last_good);
+}
+
+void OdeWorld::Impl::push_bodies() {
+  for (const Body& body : bodies.slots()) {
+    if (!body.body || !dBodyIsEnabled(body.body)) continue;
+    if (!body.force.isZero(0.0)) dBodyAddForce(body.body, body.force.x(), body.force.y(), body.force.z());
+    if (!body.torque.isZero(0.0)) dBodyAddTorque(body.body, body.torque.x(), body.torque.y(), body.torque.z());
+  }
+}
+
+/// False where ODE had something to complain of.
+bool OdeWorld::Impl::advance(double h) {
+  const Timing timing(times.response_ms);
+  const std::int64_t messages_before = messages_of_this_thread();
+  const std::span<const OdeContact> contacts = joints.contacts();
+  const bool too_many = int(contacts.size()) > settings.direct_contacts_max && largest_island(contacts) > settings.direct_contacts_max;
+  if (settings.quick_step || too_many) {
+    ++counters.quick_steps;
+    count_uneven_contacts();
+    const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++quick_steps);
+    dWorldQuickStep(world, h);
+  } else {
+    dWorldStep(world, h);
+  }
+  return messages_of_this_thread() == messages_before;
+}
+
+void OdeWorld::Impl::count_uneven_contacts() {
+  const auto mass_of = [this](OdeBodyId body) {
+    dMass mass;
+    dBodyGetMass(bodies.find(body).body, &mass);
+    return mass.mass;
+  };
+  for (const OdeContact& contact : joints.contacts()) {
+    if (!contact.second) continue;
+    const auto [lighter, heavier] = std::minmax({mass_of(contact.first), mass_of(contact.second)});
+    if (heavier >= kUneven * lighter) ++counters.uneven_contacts;
+  }
+}
+
+void OdeWorld::Impl::recover_bodies() {
+  for (Body& body : bodies.slots()) {
+    if (!body.body) continue;
+    body.was_enabled = dBodyIsEnabled(body.body);
+    collision.broad_phase().note_sleep(body);
+    if (!body.was_enabled) continue;
+    RigidState now = state_of(body.body);
+    if (is_sound(now)) {
+      if (body.impact_time) ode::set_state(body.body, now = end_of_step(body.last_good, now, *body.impact_time));
+      body.last_good = now;
+      continue;
+    }
+    body.last_good.velocity = body.last_good.angular_velocity = Vec3::Zero();
+    ode::set_state(body.body, body.last_good);
+    ++counters.states_recovered;
+  }
+}
+
+// The caller's are known within a step alone: between two of them he may have destroyed any.
+void OdeWorld::Impl::wake_neighbors(const Body& body) {
+  const Eigen::AlignedBox3d box = bounds_of(body);
+  collision.broad_phase().wake_ours(bodies, box);
+  if (mirror && has_looked) collision.broad_phase().wake_callers(box);
+  else if (mirror) vacated.push_back(box);
+  for (int i = 0; i < dBodyGetNumJoints(body.body); ++i)
+    for (const int end : {0, 1})
+      if (const dBodyID other = dJointGetBody(dBodyGetJoint(body.body, i), end)) dBodyEnable(other);
+}
+
+}  // namespace lodestone

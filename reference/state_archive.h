@@ -1,0 +1,119 @@
+// The state of a running simulation as bytes, and back to the bit. Each owner of state names what it holds once, in a function `archive(StateArchive&)` beside its members, for
+// both ways. Values go as they lie in memory: only the build that wrote them reads them (see snapshot.h, which checks that).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "reference/error.h"
+#include "reference/shape.h"
+
+namespace lodestone {
+
+class StateArchive;
+
+template <class T>
+concept ArchivesItself = requires(T& value, StateArchive& archive) { value.archive(archive); };
+/// Holds no memory of its own. Pointers are no values.
+template <class T>
+concept PlainState = std::is_trivially_destructible_v<T> && !std::is_pointer_v<T> && !ArchivesItself<T>;
+
+class StateArchive {
+ public:
+  /// Writes.
+  StateArchive() = default;
+  /// Reads; `shapes` are those of the writer, in its order.
+  StateArchive(std::span<const std::byte> bytes, std::vector<std::shared_ptr<const Shape>> shapes) : reading_(true), left_(bytes), shapes_(std::move(shapes)) {}
+
+  bool reading() const { return reading_; }
+  template <class... T>
+  void operator()(T&... values) { (take(values), ...); }
+
+  const std::vector<std::byte>& bytes() const { return bytes_; }                           ///< written
+  bool at_end() const { return left_.empty(); }                                            ///< of what is read
+  const std::vector<std::shared_ptr<const Shape>>& shapes() const { return shapes_; }      ///< that were met
+
+ private:
+  void take_bytes(void* at, std::size_t count) {
+    if (!reading_) {
+      const std::size_t before = bytes_.size();
+      bytes_.resize(before + count);
+      if (count > 0) std::memcpy(bytes_.data() + before, at, count);
+      return;
+    }
+    if (count > left_.size()) throw InputError("a snapshot ends early");
+    if (count > 0) std::memcpy(at, left_.data(), count);
+    left_ = left_.subspan(count);
+  }
+  std::size_t take_count(std::size_t count) {
+    auto wide = std::uint64_t(count);
+    take_bytes(&wide, sizeof wide);
+    if (reading_ && wide > left_.size()) throw InputError("a snapshot has a list that is longer than it");
+    return std::size_t(wide);
+  }
+
+  template <PlainState T>
+  void take(T& value) { take_bytes(static_cast<void*>(&value), sizeof(T)); }
+  template <ArchivesItself T>
+  void take(T& value) { value.archive(*this); }
+  template <class T>
+  void take(std::vector<T>& values) {
+    const std::size_t count = take_count(values.size());
+    if (reading_) values.resize(count);
+    if constexpr (PlainState<T>) take_bytes(static_cast<void*>(values.data()), count * sizeof(T));
+    else for (T& value : values) take(value);
+  }
+  /// Maps, the values of a hash map in the order of the keys.
+  template <class Map>
+    requires requires { typename Map::mapped_type; }
+  void take(Map& map) {
+    const std::size_t count = take_count(map.size());
+    if (reading_) {
+      map.clear();
+      for (std::size_t i = 0; i < count; ++i) {
+        typename Map::key_type key{};
+        take(key);
+        take(map[key]);
+      }
+      return;
+    }
+    std::vector<typename Map::key_type> keys;
+    for (const auto& entry : map) keys.push_back(entry.first);
+    std::ranges::sort(keys);
+    for (auto& key : keys) take(key), take(map.find(key)->second);
+  }
+  /// Hash sets, in order.
+  template <class Set>
+    requires(requires { typename Set::hasher; } && !requires { typename Set::mapped_type; })
+  void take(Set& set) {
+    std::vector<typename Set::key_type> keys(set.begin(), set.end());
+    std::ranges::sort(keys);
+    take(keys);
+    if (reading_) set = Set(keys.begin(), keys.end());
+  }
+  void take(std::shared_ptr<const Shape>& shape) {
+    auto number = std::uint32_t(0);  // 0: none
+    if (!reading_ && shape) {
+      const auto known = std::ranges::find(shapes_, shape);
+      number = std::uint32_t(known - shapes_.begin()) + 1;
+      if (known == shapes_.end()) shapes_.push_back(shape);
+    }
+    take(number);
+    if (number > shapes_.size()) throw InputError("a snapshot names a shape that it has not");
+    if (reading_) shape = number == 0 ? nullptr : shapes_[number - 1];
+  }
+
+  bool reading_ = false;
+  std::vector<std::byte> bytes_;
+  std::span<const std::byte> left_;
+  std::vector<std::shared_ptr<const Shape>> shapes_;
+};
+
+}  // namespace lodestone

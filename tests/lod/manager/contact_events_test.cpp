@@ -1,0 +1,121 @@
+// Contact events of bodies that sleep, wake, change rung and are removed: said once, and nothing said of what did not change.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <tuple>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+const Vec3 kSides{0.3, 0.3, 0.3};
+
+ManagerSettings telling(const PolicySettings& policy = {}) {
+  ManagerSettings settings = unmeasured(policy);
+  settings.events.all_bodies = true;
+  return settings;
+}
+
+// Who touches whom, as the events say; and that they say nothing twice.
+class Touching {
+ public:
+  void take(const Manager& manager) {
+    for (const ContactEvent& event : manager.contact_events()) {
+      const auto key = std::tuple(event.first.body.index, event.second.kind, event.second.body.index, event.second.ground.index);
+      bool& touches = touching_[key];
+      EXPECT_EQ(touches, event.phase != ContactPhase::begin) << "begins twice, or ends or hits without a beginning";
+      touches = event.phase != ContactPhase::end;
+      begins_ += event.phase == ContactPhase::begin, ends_ += event.phase == ContactPhase::end;
+    }
+  }
+  void run(Manager& manager, double seconds) {
+    for (int i = 0; i < int(std::lround(seconds / kFrame)); ++i) {
+      manager.step(kFrame);
+      take(manager);
+    }
+  }
+  int pairs() const { return int(std::ranges::count_if(touching_, [](const auto& pair) { return pair.second; })); }
+  int begins() const { return begins_; }
+  int ends() const { return ends_; }
+
+ private:
+  std::map<std::tuple<std::uint32_t, ContactSide::Kind, std::uint32_t, std::uint32_t>, bool> touching_;
+  int begins_ = 0, ends_ = 0;
+};
+
+class ContactEventsOnRungs : public ::testing::TestWithParam<LevelChoice> {};
+
+// A pile of three, asleep: three pairs. Its top is thrown off, then its middle one is removed.
+TEST_P(ContactEventsOnRungs, PileSleepsWakesAndIsTakenApart) {
+  Manager manager = on_floor(telling());
+  const auto box = box_shape(kSides);
+  std::vector<BodyId> pile;
+  for (int i = 0; i < 3; ++i) pile.push_back(add(manager, box, at({0, 0, 0.15 + 0.3005 * i}), GetParam()));
+  Touching touching;
+  touching.run(manager, 6.0);
+  ASSERT_EQ(manager.report().asleep, 3);
+  EXPECT_EQ(touching.pairs(), 3);
+  EXPECT_EQ(touching.ends(), touching.begins() - 3);
+  const int told = touching.begins() + touching.ends();
+  touching.run(manager, 1.0);
+  for (const BodyId body : pile) manager.wake(body);
+  touching.run(manager, 3.0);
+  EXPECT_EQ(touching.begins() + touching.ends(), told) << "asleep or awake, they touch";
+  RigidState thrown = at({5, 0, 2});
+  manager.set_state(pile[2], thrown);
+  touching.run(manager, 0.3);
+  EXPECT_EQ(touching.pairs(), 2);
+  manager.remove_body(pile[1]);
+  touching.run(manager, 3.0);
+  EXPECT_EQ(touching.pairs(), 2);  // two lie on the ground
+  EXPECT_EQ(touching.ends(), touching.begins() - 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rungs, ContactEventsOnRungs, ::testing::Values(LevelChoice::full, LevelChoice::support));
+
+// The camera comes and goes: nobody begins to touch what he lay on all along.
+TEST(ContactEvents, ChangesOfRungAreNoEvents) {
+  Manager manager = on_floor(telling({.policy = DistancePolicy{.full_within = 2.0}, .min_dwell_frames = 5}));
+  const BodyId body = add(manager, box_shape(kSides), at({0, 0, 0.151}));
+  Touching touching;
+  view_from(manager, {50, 0, 1});
+  touching.run(manager, 2.0);
+  ASSERT_EQ(touching.pairs(), 1);
+  for (int visit = 0; visit < 3; ++visit) {
+    view_from(manager, {0, 0, 1});
+    touching.run(manager, 1.0);
+    EXPECT_EQ(manager.rung(body), Rung::full);
+    manager.wake(body);
+    touching.run(manager, 1.0);
+    view_from(manager, {50, 0, 1});
+    touching.run(manager, 1.0);
+    EXPECT_EQ(manager.rung(body), Rung::support);
+    manager.wake(body);
+    touching.run(manager, 1.0);
+  }
+  EXPECT_EQ(touching.begins(), 1);
+  EXPECT_EQ(touching.ends(), 0);
+}
+
+TEST(ContactEvents, NothingIsSaidUnlessAskedFor) {
+  Manager manager = on_floor(unmeasured());
+  const BodyId body = add(manager, box_shape(kSides), at({0, 0, 0.5}));
+  for (int i = 0; i < 60; ++i) {
+    manager.step(kFrame);
+    EXPECT_TRUE(manager.contact_events().empty());
+  }
+  manager.set_events(body, true);
+  manager.set_state(body, at({0, 0, 0.5}));
+  std::size_t told = 0;
+  for (int i = 0; i < 60; ++i) {
+    manager.step(kFrame);
+    told += manager.contact_events().size();
+  }
+  EXPECT_GT(told, 0u);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,43 @@
+// `lodestone run --record` and `lodestone replay`, as a user calls them.
+#include <fstream>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace lodestone::testing {
+namespace {
+
+class ReplayTest : public CliTest {
+ protected:
+  ReplayTest() {
+    std::ofstream(at("scene.yaml")) << R"(version: 1
+step: {dt_s: 0.016667, seed: 7, steps: 60}
+shapes: {crate: {box_m: [0.2, 0.3, 0.4]}}
+ground: [{plane: {normal: [0, 0, 1], offset_m: 0}}]
+bodies: [{shape: crate, scatter: {count: 20, box_m: [[-1, -1, 0.5], [1, 1, 2]], seed: 3}}]
+viewpoints: [{position_m: [0, -2, 1], look_at_m: [0, 0, 0]}]
+lod: {policy: distance, full_within_m: 2, support_within_m: 3}
+)";
+  }
+};
+
+TEST_F(ReplayTest, WhatWasRecordedIsDoneAgain) {
+  const Ended recorded = run("run " + name("scene.yaml") + " --record " + name("run.rec"));
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.out;
+  const Ended replayed = run("replay " + name("run.rec") + " " + name("scene.yaml") + " --threads 2");
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
+  EXPECT_NE(replayed.out.find("all 60 steps are as they were recorded"), std::string::npos) << replayed.out;
+}
+
+TEST_F(ReplayTest, WhatComesOutOtherwiseIsNamed) {
+  ASSERT_EQ(run("run " + name("scene.yaml") + " --record " + name("run.rec")).exit_code, 0);
+  const Ended replayed = run("replay " + name("run.rec") + " " + name("scene.yaml") + " --level support");
+  EXPECT_EQ(replayed.exit_code, 0) << "bodies have the level that they were recorded with: " << replayed.out;
+  const Ended other = run("replay " + name("run.rec") + " " + name("scene.yaml") + " --budget-work 1");
+  EXPECT_EQ(other.exit_code, 1) << other.out;
+  EXPECT_NE(other.out.find("(crate) is not as it was recorded"), std::string::npos) << other.out;
+  EXPECT_EQ(run("replay " + name("scene.yaml") + " " + name("scene.yaml")).exit_code, 3);
+  EXPECT_EQ(run("replay " + name("run.rec") + " " + name("scene.yaml") + " --seed 8").exit_code, 3);
+}
+
+}  // namespace
+}  // namespace lodestone::testing
