@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lod/contact/contact_impulse.h"
 #include "lod/statistical/flight.h"
+#include "lod/statistical/parting.h"
 #include "reference/random.h"
 #include "signature/response_lookup.h"
 
@@ -99,6 +101,12 @@ void rub(StatisticalBody& body, const Shape& shape, const Vec3& normal, double f
   body.spin -= std::copysign(std::min(std::abs(pivot), kFootprint * shape.radius * available), pivot) * normal;
 }
 
+// A sphere that has sunk or grown into the ground comes out of it gradually, by `farthest` m at most.
+void rise(StatisticalBody& body, std::span<const HalfSpace> planes, double farthest) {
+  for (const HalfSpace& plane : planes)
+    if (const double gap = plane.height_of(body.position) - double(body.sphere_radius); gap < 0.0) body.position += std::min(-0.25 * gap, farthest) * plane.normal;
+}
+
 // The rest of a step on the ground: no normal motion, friction on the slip.
 void slide(StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, const StepWorld& world, double friction, double time) {
   const double pressure = std::max(0.0, -world.gravity.dot(plane.normal));
@@ -107,9 +115,7 @@ void slide(StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, 
   body.velocity += along * time;
   rub(body, *kind.shape, plane.normal, friction, pressure, time);
   body.position += body.velocity * time;
-  // The sphere may have grown into the plane: it comes out gradually.
-  const double gap = plane.height_of(body.position) - body.sphere_radius;
-  if (gap < 0.0) body.position -= 0.25 * gap * plane.normal;
+  rise(body, {&plane, 1}, std::numeric_limits<double>::infinity());
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
 }
 
@@ -183,7 +189,10 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
       if (const auto t = find_touch(body, world.planes[i], world.gravity, touch); t && (touched < 0 || *t < touch)) touched = i, touch = *t;
     advance_flight(body, kind, world.gravity, touch);
     left -= touch;
-    if (touched < 0) return tally;
+    if (touched < 0) {
+      if (hit > 0) rise(body, world.planes, parting_speed(shape.radius, world.gravity_strength()) * time);
+      return tally;
+    }
 
     const HalfSpace& plane = world.planes[touched];
     const ContactLaw law = world.law(kind, plane);

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "lod/manager.h"
+#include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
 namespace {
@@ -47,6 +48,25 @@ Mesh terrain(int n, const std::function<double(double, double)>& height) {
       mesh.faces.push_back({a, d, c});
     }
   return mesh;
+}
+
+// A ball has no pose to rest in, and hops by what gravity adds in a step.
+TEST(Ground, BallsAtTablesDoNotSink) {
+  ManagerSettings settings;
+  settings.signatures = testing::coarse_signature;
+  Manager manager(settings);
+  manager.add_plane(Vec3::UnitZ(), 0.0);
+  manager.add_static_box({2, 2, 0.1}, {0, 0, 1}, Quat::Identity());
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.18));
+  const auto add_ball = [&](const Vec3& position) {
+    RigidState state;
+    state.position = position;
+    return manager.add_body({.shape = ball, .state = state, .level = LevelChoice::tables});
+  };
+  const BodyId on_plane = add_ball({5, 0, 0.5}), on_box = add_ball({0, 0, 1.5});
+  run(manager, 15.0);
+  EXPECT_NEAR(manager.state(on_plane).position.z(), 0.18, 0.005);
+  EXPECT_NEAR(manager.state(on_box).position.z(), 1.23, 0.005);
 }
 
 TEST(Ground, SupportRestsOnABoxAndSleeps) {
