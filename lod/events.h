@@ -30,7 +30,7 @@ struct ContactSide {
   Kind kind = Kind::ground;
   BodyId body = {};         ///< of the manager's own; at the end of a contact perhaps removed
   GroundId ground = {};     ///< of the manager's ground; null where it is not known which piece
-  dxGeom* geom = nullptr;   ///< dGeomID, of the caller's ground; null for a body of his
+  dxGeom* geom = nullptr;   ///< dGeomID, of the caller's ground, and of his bodies where a query meets them; at a contact null for a body of his
   dxBody* callers = nullptr;  ///< dBodyID, of a dynamic body of the caller's
   MaterialId material = 0;
 };

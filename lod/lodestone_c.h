@@ -21,6 +21,7 @@ struct dxGeom;
 
 typedef struct lodestone_manager lodestone_manager;
 typedef struct lodestone_shape lodestone_shape;
+typedef struct lodestone_signature lodestone_signature;
 
 typedef enum lodestone_result { LODESTONE_OK = 0, LODESTONE_BAD_INPUT = 1, LODESTONE_OUT_OF_MEMORY = 2, LODESTONE_FAILED = 3 } lodestone_result;
 
@@ -28,6 +29,8 @@ typedef enum lodestone_result { LODESTONE_OK = 0, LODESTONE_BAD_INPUT = 1, LODES
 const char* lodestone_error(void);
 /* Of the library, LODESTONE_VERSION_STRING of <lodestone/lod/version.h>. */
 const char* lodestone_version(void);
+/* Is called with the message of a bug of the library's before the process aborts, on the thread that met it. Null: none. */
+void lodestone_set_assertion_handler(void (*handler)(void* context, const char* message), void* context);
 
 /* ---- Values ---- */
 
@@ -57,6 +60,15 @@ lodestone_result lodestone_make_mesh(const char* name, const lodestone_vec3* ver
 lodestone_result lodestone_load_mesh(const char* file, double size, lodestone_shape** shape);
 void lodestone_release_shape(lodestone_shape* shape); /* null too; bodies keep what they need */
 
+/* ---- Signatures: what the statistical rungs know of a shape under a contact law ---- */
+
+/* A file of `lodestone sign`, or its bytes. */
+lodestone_result lodestone_load_signature(const char* file, lodestone_signature** signature);
+lodestone_result lodestone_read_signature(const void* bytes, size_t size, lodestone_signature** signature);
+/* From the cache, or measured, which takes seconds, and cached; `threads` 0: all cores. */
+lodestone_result lodestone_find_or_measure_signature(const lodestone_shape* shape, double restitution, double friction, int32_t threads, lodestone_signature** signature);
+void lodestone_release_signature(lodestone_signature* signature); /* null too; managers keep what they need */
+
 /* ---- Settings ---- */
 
 typedef enum lodestone_policy_kind {
@@ -85,6 +97,13 @@ typedef enum lodestone_signature_timing { LODESTONE_SIGNATURES_AUTOMATIC = 0, LO
 typedef void (*lodestone_task)(const void* task_context, int64_t index);
 typedef void (*lodestone_run_jobs)(void* context, int64_t count, lodestone_task task, const void* task_context);
 
+/* Options of `tables`; see TablesOptions. */
+typedef struct lodestone_tables_options {
+  bool interpolate, draw_height;
+  int32_t radius_update_interval;
+  bool nearest_rest_pose, paper_pair_rule;
+} lodestone_tables_options;
+
 typedef struct lodestone_event_settings {
   bool all_bodies;
   double least_speed, least_impulse;
@@ -97,6 +116,11 @@ typedef struct lodestone_settings {
   bool sleeping;
   double sleep_speed, sleep_time;
   lodestone_model model;
+  lodestone_tables_options tables;
+  /* Null: found in the cache or measured. Else asked when a first body of a shape and law needs its signature, which is lent until it returns; null: there is none, and a step in
+   * which a body of the shape would be at `tables` is LODESTONE_BAD_INPUT. See ManagerSettings::signatures. */
+  const lodestone_signature* (*signatures)(void* context, const char* shape_name, double restitution, double friction);
+  void* signatures_context;
   lodestone_signature_timing signature_timing;
   lodestone_policy policy;
   double audit_ms;
@@ -129,6 +153,7 @@ lodestone_result lodestone_add_static_mesh(lodestone_manager* manager, const lod
                                            lodestone_ground* ground);
 lodestone_result lodestone_move_ground(lodestone_manager* manager, lodestone_ground ground, const lodestone_state* state);
 lodestone_result lodestone_remove_ground(lodestone_manager* manager, lodestone_ground ground);
+bool lodestone_is_valid_ground(const lodestone_manager* manager, lodestone_ground ground); /* of a null manager none is */
 
 lodestone_result lodestone_set_policy(lodestone_manager* manager, const lodestone_policy* policy);
 typedef struct lodestone_viewpoint {
@@ -138,6 +163,7 @@ typedef struct lodestone_viewpoint {
 lodestone_viewpoint lodestone_default_viewpoint(lodestone_vec3 position);
 lodestone_result lodestone_set_viewpoints(lodestone_manager* manager, const lodestone_viewpoint* viewpoints, size_t count);
 lodestone_result lodestone_set_gravity(lodestone_manager* manager, lodestone_vec3 gravity);
+lodestone_result lodestone_get_gravity(const lodestone_manager* manager, lodestone_vec3* gravity);
 lodestone_result lodestone_set_full_substeps(lodestone_manager* manager, int32_t substeps);
 lodestone_result lodestone_set_threads(lodestone_manager* manager, int32_t threads);
 lodestone_result lodestone_set_event_settings(lodestone_manager* manager, const lodestone_event_settings* settings);
@@ -197,9 +223,17 @@ lodestone_result lodestone_get_rung(const lodestone_manager* manager, lodestone_
 lodestone_result lodestone_is_asleep(const lodestone_manager* manager, lodestone_body body, bool* asleep);
 /* Null unless it is full. */
 lodestone_result lodestone_get_ode_body(const lodestone_manager* manager, lodestone_body body, struct dxBody** ode_body);
+/* What decided a body's rung; see Rule. */
+typedef enum lodestone_rule {
+  LODESTONE_RULE_FORCED = 0, LODESTONE_RULE_NEAR = 1, LODESTONE_RULE_FAR = 2, LODESTONE_RULE_WITHIN_HYSTERESIS = 3, LODESTONE_RULE_DWELL = 4, LODESTONE_RULE_QUEUED = 5,
+  LODESTONE_RULE_OVER_BUDGET = 6, LODESTONE_RULE_IN_BUDGET = 7, LODESTONE_RULE_MOST_REACHED = 8, LODESTONE_RULE_OVERLAP_PUT_OFF = 9, LODESTONE_RULE_SIGNATURE_PENDING = 10,
+  LODESTONE_RULE_RUNG_RANGE = 11, LODESTONE_RULE_OUT_OF_VIEW = 12, LODESTONE_RULE_LOOK_AHEAD = 13, LODESTONE_RULE_JOINED = 14
+} lodestone_rule;
+
 /* Why it has its rung; see Why. `in_view` and what is about pictures is as without viewpoints where there is none. */
 typedef struct lodestone_reason {
   lodestone_rung rung;
+  lodestone_rule rule;
   bool placed, in_view;
   double distance_m, pixels, predicted_error, predicted_error_pixels, cost_work, cost_ms;
   int32_t dwell_left_frames;
@@ -215,18 +249,47 @@ lodestone_result lodestone_read_poses(const lodestone_manager* manager, const lo
 
 /* ---- A step ---- */
 
+/* Wall time of the stages of the last step, ms; see StageTimes. */
+typedef struct lodestone_stage_times {
+  double choose_ms, transfer_ms, flight_ms, broad_phase_ms, pairs_ms, crowd_ms, rest_ms, cross_level_ms, full_ms, total_ms;
+} lodestone_stage_times;
+
+/* Since the manager was made; see Counters. */
+typedef struct lodestone_counters {
+  int64_t ode_bodies_created, trimeshes_built, signatures_loaded, pair_phases, ode_messages, contacts_dropped, states_recovered, full_quick_steps, full_swallowed, full_passes_prevented,
+      full_uneven_contacts, energy_clamps, table_extrapolations, levels_considered, promotions_put_off, divided_steps;
+} lodestone_counters;
+
+typedef struct lodestone_rung_cost {
+  double predicted_ms, measured_ms, work;
+} lodestone_rung_cost;
+
 typedef struct lodestone_report {
   int64_t step;
-  double dt_s, total_ms, measured_ms, predicted_ms;
+  double dt_s;
   int32_t full, support, tables, asleep, promotions, demotions, contacts;
-  int64_t ode_messages, contacts_dropped, states_recovered, promotions_put_off, divided_steps;
+  lodestone_stage_times times;
+  lodestone_rung_cost cost[3]; /* by lodestone_rung */
+  double predicted_ms, measured_ms, predicted_error_pixels;
+  lodestone_counters counters;
 } lodestone_report;
+
+/* What the audit has found since the manager was made (lodestone_settings.audit_ms); see AuditReport. Intervals are of 95 %. */
+typedef struct lodestone_audit_figure {
+  double full, demoted, deviation, difference_least, difference_most;
+} lodestone_audit_figure;
+typedef struct lodestone_audit {
+  int32_t bodies, watched, left_out;
+  lodestone_audit_figure rest_time_s, distance_m, rest_height;
+  double drift, drift_least, drift_most, spent_ms;
+} lodestone_audit;
 
 lodestone_result lodestone_step(lodestone_manager* manager, double dt, lodestone_report* report);
 /* Around the caller's own dWorldStep, on his world alone; both in place of lodestone_step. */
 lodestone_result lodestone_before_world_step(lodestone_manager* manager, double dt);
 lodestone_result lodestone_after_world_step(lodestone_manager* manager, lodestone_report* report);
 lodestone_result lodestone_get_report(const lodestone_manager* manager, lodestone_report* report);
+lodestone_result lodestone_get_audit(const lodestone_manager* manager, lodestone_audit* audit);
 lodestone_result lodestone_body_count(const lodestone_manager* manager, size_t* count);
 lodestone_result lodestone_state_hash(const lodestone_manager* manager, uint64_t* hash);
 
@@ -242,7 +305,7 @@ typedef struct lodestone_contact_side {
   lodestone_contact_kind kind;
   lodestone_body body;
   lodestone_ground ground;
-  struct dxGeom* geom;    /* of the caller's ground */
+  struct dxGeom* geom;    /* of the caller's ground; of his bodies where a query meets them */
   struct dxBody* callers; /* a dynamic body of the caller's */
   int32_t material;
 } lodestone_contact_side;
@@ -265,7 +328,7 @@ lodestone_result lodestone_contact_events(lodestone_manager* manager, const lode
 
 typedef struct lodestone_query_filter {
   uint32_t categories;
-  bool bodies, ground;
+  bool bodies, ground, callers; /* the manager's, ground, dynamic bodies of the caller's */
   lodestone_body except;
 } lodestone_query_filter;
 
@@ -290,6 +353,9 @@ typedef struct lodestone_hit {
 lodestone_query_filter lodestone_default_filter(void);
 /* Of each ray or sphere the nearest: `met[i]` says whether there is one, `hits[i]` what. Null filter: the default. */
 lodestone_result lodestone_cast_rays(const lodestone_manager* manager, const lodestone_ray* rays, size_t count, const lodestone_query_filter* filter, bool* met, lodestone_hit* hits);
+/* Calls `found` with all that each ray or sphere meets, by distance, ray by ray. */
+lodestone_result lodestone_cast_rays_through(const lodestone_manager* manager, const lodestone_ray* rays, size_t count, const lodestone_query_filter* filter,
+                                             void (*found)(void* context, size_t ray, const lodestone_hit* hit), void* context);
 /* Calls `found` with each body and piece of ground that the volumes touch, volume by volume. */
 lodestone_result lodestone_overlap(const lodestone_manager* manager, const lodestone_volume* volumes, size_t count, const lodestone_query_filter* filter,
                                    void (*found)(void* context, size_t volume, const lodestone_hit* hit), void* context);
@@ -306,6 +372,7 @@ typedef struct lodestone_replay_result {
   int32_t steps;
   bool same;
   lodestone_body body;
+  const char* text; /* the same in words, until the manager's next replay */
 } lodestone_replay_result;
 lodestone_result lodestone_replay(lodestone_manager* manager, const void* recording, size_t size, const lodestone_shape* const* shapes, size_t shape_count, lodestone_replay_result* result);
 
@@ -317,8 +384,17 @@ typedef struct lodestone_color { float red, green, blue; } lodestone_color;
 /* Null function: none. The text lasts during the call. */
 lodestone_result lodestone_set_log(lodestone_manager* manager, void (*log)(void* context, lodestone_log_level level, const char* text), void* context);
 lodestone_result lodestone_set_profile(lodestone_manager* manager, void (*begin)(void* context, const char* zone), void (*end)(void* context, const char* zone), void* context);
+
+typedef struct lodestone_draw_settings {
+  bool bodies, contacts, bounds;
+  lodestone_color colors[3]; /* by lodestone_rung */
+  lodestone_color contact_color, bounds_color;
+  double normal_length;
+} lodestone_draw_settings;
+lodestone_draw_settings lodestone_default_draw_settings(void);
+/* Null functions: these are left out. Null settings: the defaults. */
 lodestone_result lodestone_draw(const lodestone_manager* manager, void (*line)(void* context, lodestone_vec3 from, lodestone_vec3 to, lodestone_color color),
-                                void (*point)(void* context, lodestone_vec3 at, lodestone_color color), void* context, bool bounds);
+                                void (*point)(void* context, lodestone_vec3 at, lodestone_color color), void* context, const lodestone_draw_settings* settings);
 
 #ifdef __cplusplus
 }

@@ -85,6 +85,10 @@ class Manager {
   void move_ground(GroundId ground, const RigidState& state);
   void remove_ground(GroundId ground);                          ///< wakes what lies on it; its id is never valid again
   bool valid(GroundId ground) const;
+  /// In a caller's world. Forces that the caller gives a body of his own (dBodyAddForce, joint motors) act for the whole of a step if its geoms are in his space, or if joints tie it,
+  /// through others too, to one whose are or to a full body. Any other dBodyID is named here, until it is destroyed. Throws InputError for null and for a world of the manager's own.
+  void include_body(dxBody* body);
+  void exclude_body(dxBody* body);                              ///< before it is destroyed; nothing for one that was not named
 
   /// The state must be finite, within 1e8 m of the origin, its orientation within 1e-3 of unit length (it is normalised); velocities beyond 1e6 m/s or rad/s are taken as these.
   /// Mass and importance are positive, the material known. A body that is forced full is so at once. Any other gets its level in its next step, whatever the dwell
@@ -170,6 +174,7 @@ class Manager {
   Level level(BodyId body) const;
   Rung rung(BodyId body) const;                                 ///< `support` for a body that waits for its first step
   bool asleep(BodyId body) const;
+  double collision_radius(BodyId body) const;                   ///< m, of the sphere by which it collides at `tables`; 0 on other rungs
   Why explain(BodyId body) const;                               ///< the rule that decided the level, and the figures behind it
   std::string why(BodyId body) const;                           ///< the same in a sentence
   dxBody* ode_body(BodyId body) const;                          ///< dBodyID while full, else null
@@ -187,11 +192,11 @@ class Manager {
   void restore(std::span<const std::byte> snapshot, std::span<const std::shared_ptr<const Shape>> shapes = {});
 
   /// From now on every call that changes the manager, and what each step came to, goes to `write`: first a snapshot, then each call as it is made. Empty: no more. What is done to the
-  /// caller's own bodies and through ode_body() is not seen, nor are materials; set_policy is noted, but not what it is given.
+  /// caller's own bodies and through ode_body() is not seen, nor are materials; of a policy's functions only whether there are any.
   void set_record(RecordFunction write);
   /// Does again what a recording tells, from its snapshot on (see restore, also for `shapes`, which must have those of bodies that it adds), up to the first step that comes out otherwise
   /// than recorded, in the state of any body to the bit. Under a budget of milliseconds that is no fault, as rungs follow the clock. Throws InputError for what is no recording,
-  /// where restore does, and where it has a call of set_policy.
+  /// where restore does, and where it sets a policy with a function that the policy here lacks, whose functions are used.
   ReplayResult replay(std::span<const std::byte> recording, std::span<const std::shared_ptr<const Shape>> shapes = {});
 
   void set_log(LogFunction log);                                ///< empty: none; what happens is counted in the report all the same
@@ -200,8 +205,9 @@ class Manager {
 
   std::uint64_t state_hash() const;                             ///< of every body's state and level, in order of creation
 
-  // ---- Queries (queries.h), of bodies and ground as they are now ----
+  // ---- Queries (queries.h), of bodies and ground as they are now, and of the caller's bodies ----
   // Many at once go to the threads. The first one after a step, or after something was moved, costs in proportion to what is awake; the very first, to all bodies.
+  // Where the caller has dynamic bodies, each call walks through his space, unless its filter leaves them out.
 
   std::optional<QueryHit> cast_ray(const Ray& ray, const QueryFilter& filter = {}) const;                 ///< the nearest; none: nothing is met
   std::optional<QueryHit> sweep_sphere(const SphereSweep& sphere, const QueryFilter& filter = {}) const;
@@ -211,7 +217,7 @@ class Manager {
   /// Of each one all that it meets, by distance: each body and piece of ground once. The lists are emptied before, and keep their room.
   void cast_rays_through(std::span<const Ray> rays, std::span<std::vector<QueryHit>> hits, const QueryFilter& filter = {}) const;
   void sweep_spheres_through(std::span<const SphereSweep> spheres, std::span<std::vector<QueryHit>> hits, const QueryFilter& filter = {}) const;
-  /// Of each one all that it touches or contains or lies in: bodies by index, then ground.
+  /// Of each one all that it touches or contains or lies in: bodies by index, then ground, then what is the caller's.
   void overlap_spheres(std::span<const SphereVolume> spheres, std::span<std::vector<QueryHit>> hits, const QueryFilter& filter = {}) const;
   void overlap_boxes(std::span<const BoxVolume> boxes, std::span<std::vector<QueryHit>> hits, const QueryFilter& filter = {}) const;
 

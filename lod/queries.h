@@ -1,7 +1,9 @@
 // What a game asks of the bodies and the ground where they are now: rays, swept spheres, spheres and boxes.
 //
 // Bodies are met by their meshes on every rung (spheres as such), so that an answer does not change with a body's rung; ground, the caller's too, by its planes and solids, a height
-// field by rays, and by what moves along them as by its plane where the ray meets it. Not met: the caller's dynamic bodies, which his own space answers for. All lengths in m.
+// field by rays, and by what moves along them as by its plane where the ray meets it. The caller's dynamic bodies are met by the solids of their geoms, round ones but spheres by
+// polyhedra of 32 sides: where they are now, though he moved or destroyed them since the last step; what he added or made another shape since is met as it is from the next step
+// on. Where he has any, each call looks through his space once, however many questions it has: many belong in one call. All lengths in m.
 #pragma once
 
 #include <limits>
@@ -11,8 +13,8 @@
 namespace lodestone {
 
 struct QueryFilter {
-  unsigned categories = ~0u;   ///< bodies are met whose category (BodyProperties) has one of these bits
-  bool bodies = true, ground = true;
+  unsigned categories = ~0u;   ///< bodies are met whose category (BodyProperties; of the caller's: of the geom) has one of these bits
+  bool bodies = true, ground = true, callers = true;  ///< the manager's, ground, the caller's dynamic ones
   BodyId except = {};          ///< this body is not met: the one that asks
 };
 

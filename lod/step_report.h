@@ -30,7 +30,9 @@ struct StageTimes {
 /// Counts since the manager was made: what the scene needed, and trouble that was met and mended.
 struct Counters {
   std::int64_t ode_bodies_created = 0, trimeshes_built = 0, signatures_loaded = 0, pair_phases = 0;
-  std::int64_t ode_messages = 0, contacts_dropped = 0, states_recovered = 0;
+  std::int64_t ode_messages = 0;
+  std::int64_t contacts_dropped = 0;     ///< points at which two full bodies touch beyond eight of a pair: the deepest and those farthest apart stay, so that the pair is held
+  std::int64_t states_recovered = 0;
   std::int64_t full_quick_steps = 0;     ///< substeps of the full level whose largest pile was too much for dWorldStep
   std::int64_t full_swallowed = 0;       ///< times that a full body was wholly inside another in a substep
   std::int64_t full_passes_prevented = 0;///< times that a full body, faster than it is thick in a substep, was stopped at what it would have gone through

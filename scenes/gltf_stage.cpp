@@ -13,6 +13,7 @@ using Color = std::array<double, 3>;  // linear
 constexpr Color kGroundColor{0.72, 0.72, 0.70};
 // Orange while full, blue at `support`, a dark green at `tables`: apart for the colour-blind too, by their lightness.
 constexpr std::array<Color, kRungs> kRungColors{{{0.10, 0.27, 0.20}, {0.35, 0.55, 0.85}, {0.95, 0.50, 0.12}}};
+constexpr double kAsleepShade = 0.45;
 constexpr std::size_t kSmoothFaces = 200;  // coarser meshes have real edges and stay flat
 
 /// Normals of vertices: the sum of their faces' normals, weighted by area.
@@ -29,6 +30,8 @@ std::vector<std::array<float, 3>> smooth_normals(const Mesh& mesh) {
   }
   return normals;
 }
+
+std::string name_of(BodyLook look) { return fmt::format("{}{}", lodestone::name_of(look.rung), look.asleep ? " asleep" : ""); }
 
 Mesh square(double half_side) {
   const double s = half_side;
@@ -50,7 +53,11 @@ GltfStage::GltfStage(tinygltf::Model& model, GltfBuffer& buffer) : model_(model)
   model_.defaultScene = 0;
   ground_material_ = add_material("ground", kGroundColor);
   for (const Rung rung : {Rung::full, Rung::support, Rung::tables})
-    rung_materials_[std::size_t(rung)] = add_material(std::string(name_of(rung)), kRungColors[std::size_t(rung)]);
+    for (const bool asleep : {false, true}) {
+      Color color = kRungColors[std::size_t(rung)];
+      for (double& part : color) part *= asleep ? kAsleepShade : 1.0;
+      materials_[{rung, asleep}] = add_material(name_of(BodyLook{rung, asleep}), color);
+    }
 }
 
 int GltfStage::add_node(tinygltf::Node node) { return add_child(0, std::move(node)); }
@@ -100,13 +107,13 @@ int GltfStage::add_mesh(const Arrays& arrays, int material, const std::string& n
   return int(model_.meshes.size()) - 1;
 }
 
-int GltfStage::body_mesh(const Shape& shape, Rung rung) {
-  const auto known = meshes_.find({&shape, rung});
+int GltfStage::body_mesh(const Shape& shape, BodyLook look) {
+  const auto known = meshes_.find({&shape, look});
   if (known != meshes_.end()) return known->second;
   const bool smooth = shape.sphere_radius || shape.mesh.faces.size() >= kSmoothFaces;
   if (!arrays_.contains(&shape)) arrays_[&shape] = add_arrays(shape.mesh, smooth);
-  const int mesh = add_mesh(arrays_[&shape], rung_materials_[std::size_t(rung)], fmt::format("{} {}", shape.name, name_of(rung)));
-  return meshes_[{&shape, rung}] = mesh;
+  const int mesh = add_mesh(arrays_[&shape], materials_.at(look), shape.name + ' ' + name_of(look));
+  return meshes_[{&shape, look}] = mesh;
 }
 
 void GltfStage::add_ground(const SceneGround& ground, double extent_m) {

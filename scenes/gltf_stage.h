@@ -2,12 +2,20 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <map>
 
 #include "scenes/gltf_buffer.h"
 #include "scenes/scene.h"
 
 namespace lodestone {
+
+/// What tells bodies apart besides their shape: each look has a material of its own.
+struct BodyLook {
+  Rung rung = Rung::support;
+  bool asleep = false;
+  auto operator<=>(const BodyLook&) const = default;
+};
 
 /// Adds to `model` under one root node, which turns the scene's z upwards into glTF's y upwards.
 class GltfStage {
@@ -16,7 +24,7 @@ class GltfStage {
 
   int add_node(tinygltf::Node node);                      ///< under the root
   int add_child(int parent, tinygltf::Node node);
-  int body_mesh(const Shape& shape, Rung rung);           ///< made once for each shape and rung; the rungs share their arrays
+  int body_mesh(const Shape& shape, BodyLook look);       ///< made once for each shape and look; the looks share their arrays
   void add_ground(const SceneGround& ground, double extent_m); ///< planes are drawn `extent_m` to each side
   int add_camera(const SceneViewpoint& viewpoint);        ///< returns its node
 
@@ -29,9 +37,9 @@ class GltfStage {
   tinygltf::Model& model_;
   GltfBuffer& buffer_;
   std::map<const Shape*, Arrays> arrays_;
-  std::map<std::pair<const Shape*, Rung>, int> meshes_;
+  std::map<std::pair<const Shape*, BodyLook>, int> meshes_;
   int ground_material_;
-  std::array<int, kRungs> rung_materials_;
+  std::map<BodyLook, int> materials_;
 };
 
 /// As glTF writes them: x, y, z and x, y, z, w.

@@ -11,6 +11,7 @@
 #include "lod/timing/thread_clock.h"
 #include "reference/error.h"
 #include "scenes/camera.h"
+#include "scenes/playback.h"
 #include "scenes/run_sample.h"
 #include "scenes/step_csv.h"
 #include "scenes/trajectory.h"
@@ -32,8 +33,16 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
   if (!settings.record.empty() && !scene.joints.empty()) fail(fmt::format("{}: found joints in a scene to be recorded, expected none: a recording knows nothing of them", scene.file.string()));
   if (settings.full_within_m && (settings.budget_ms || settings.budget_work)) fail("full_within_m: found it beside a budget, expected one of them");
   if (settings.full_within_m && !(*settings.full_within_m >= 0)) fail(fmt::format("full_within_m: found {}, expected a number from 0 on", *settings.full_within_m));
+  if (settings.fork_step) {
+    const auto fail_fork = [&](const std::string& found, const std::string& expected) { fail(fmt::format("fork: found {}, expected {}", found, expected)); };
+    if (*settings.fork_step < 1 || *settings.fork_step >= steps) fail_fork(std::to_string(*settings.fork_step), fmt::format("a step from 1 to {}, before the run's last", steps - 1));
+    if (!scene.joints.empty()) fail_fork("a scene with joints", "none: a snapshot knows nothing of them");
+    if (!settings.record.empty()) fail_fork("a recording beside it", "one of them");
+    if (settings.level == LevelChoice::automatic && !settings.model && !settings.budget_ms && !settings.budget_work && !settings.full_within_m)
+      fail_fork("nothing that the second future has otherwise", "a level, a model, a budget or full_within_m");
+  }
   const int frames = steps / scene.output.every_n_steps + 1, most = max_trajectory_frames(int(scene.bodies.size()));
-  if (!settings.out.empty() && !scene.output.trajectory.empty() && frames > most)
+  if (!settings.out.empty() && frames > most)
     fail(fmt::format("{}: output.every_n_steps: found {} ({} frames of {} bodies), expected at least {} (a .glb holds 4 GB)", scene.file.string(),
                      scene.output.every_n_steps, frames, scene.bodies.size(), steps / std::max(1, most - 1) + 1));
 }
@@ -79,6 +88,19 @@ std::vector<std::byte> bytes_of(const fs::path& file) {
   return {bytes.begin(), bytes.end()};
 }
 
+/// What of the levels is not the scene's own choice, in words.
+std::string text_of_choice(const RunSettings& settings) {
+  std::vector<std::string> parts;
+  static constexpr std::pair<LevelChoice, const char*> kLevels[] = {{LevelChoice::full, "full"}, {LevelChoice::statistical, "statistical"}, {LevelChoice::support, "support"}, {LevelChoice::tables, "tables"}};
+  for (const auto& [level, name] : kLevels)
+    if (settings.level == level) parts.push_back(fmt::format("level {}", name));
+  if (settings.model) parts.push_back(fmt::format("model {}", name_of(rung_of(*settings.model))));
+  if (settings.budget_ms) parts.push_back(fmt::format("a budget of {:g} ms", *settings.budget_ms));
+  if (settings.budget_work) parts.push_back(fmt::format("a budget of {:g} work units", *settings.budget_work));
+  if (settings.full_within_m) parts.push_back(fmt::format("full within {:g} m", *settings.full_within_m));
+  return parts.empty() ? "as the scene says" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
 /// One run, step by step.
 class Run {
  public:
@@ -96,6 +118,27 @@ class Run {
     record(0);
   }
 
+  /// Goes on from where `other`, a run of the same scene, is after `step` steps, with settings of its own.
+  void fork_from(const Run& other, int step) {
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (const SceneBody& body : scene_.bodies) shapes.push_back(body.definition.shape);
+    manager_.restore(other.manager_.snapshot(), shapes);
+    manager_.set_policy(policy_of(scene_, settings_));
+    for (const BodyId body : bodies_) manager_.set_level(body, settings_.level);
+    trajectory_ = Trajectory(int(scene_.bodies.size()));
+    from_step_ = step;
+    observe();
+    result_.energy_start_j = result_.energy_max_j = sample_.energy_j;
+    record(step);
+  }
+
+  /// Of the bodies here from those there, mean.
+  double mean_distance_m(const Run& other) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < sample_.states.size(); ++i) sum += (sample_.states[i].position - other.sample_.states[i].position).norm();
+    return sample_.states.empty() ? 0.0 : sum / double(sample_.states.size());
+  }
+
   bool goes_on(int step) const { return step < steps_ && result_.finite; }
 
   void advance(int step) {
@@ -104,28 +147,34 @@ class Run {
     const double signatures_before = result_.signature_seconds;
     const double thread_start = stepping_ms();
     const StepReport report = manager_.step(dt_s_);
-    processor_ms_.push_back(stepping_ms() - thread_start);
+    result_.step_processor_ms.push_back(stepping_ms() - thread_start);
     times_ms_.push_back(1e3 * (seconds_since(start) - (result_.signature_seconds - signatures_before)));
     result_.reports.push_back(report);
     result_.promotions += report.promotions;
     result_.transitions += report.promotions + report.demotions;
     if (report.asleep < result_.bodies) last_awake_s_ = (step + 1) * dt_s_;
+    if (settings_.watch) before_ = sample_;
     observe();
+    if (settings_.watch) settings_.watch({manager_, bodies_, before_, sample_, step * dt_s_, dt_s_});
     look(step);
     record(step + 1);
     if (csv_) csv_->add(report, (step + 1) * dt_s_, sample_.energy_j, std::max(sample_.max_tables_penetration_m, sample_.max_other_penetration_m));
-    if (settings_.progress) settings_.progress(step + 1, steps_);
+    if (settings_.progress)
+      settings_.progress({.step = step + 1, .steps = steps_, .full = report.full, .support = report.support, .tables = report.tables, .asleep = report.asleep});
   }
 
   RunResult finish() {
     result_.steps = int(result_.reports.size());
     result_.state_hash = manager_.state_hash();
     result_.step_ms = summarize(times_ms_);
-    result_.processor_ms = summarize(processor_ms_);
-    result_.budget = find_budget_figures(policy_of(scene_, settings_), result_.reports, processor_ms_);
+    result_.processor_ms = summarize(result_.step_processor_ms);
+    result_.budget = find_budget_figures(policy_of(scene_, settings_), result_.reports, result_.step_processor_ms);
     result_.states = sample_.states;
     check_penetration();
     if (scene_.checks.all_asleep_by_s) result_.checks.push_back(asleep_check(*scene_.checks.all_asleep_by_s));
+    if (!result_.playback.empty())
+      save_playback(result_.playback, trajectory_, scene_,
+                    {.label = fmt::format("{}: {}", scene_.file.stem().string(), text_of_choice(settings_)), .from_step = from_step_, .step_ms = result_.step_processor_ms, .dt_s = dt_s_});
     if (!result_.trajectory.empty()) save_trajectory(result_.trajectory, trajectory_, scene_);
     return std::move(result_);
   }
@@ -173,6 +222,8 @@ class Run {
     if (settings_.out.empty()) return;
     std::error_code error;
     fs::create_directories(settings_.out, error);
+    result_.playback = settings_.out / (settings_.fork_step ? "fork.play" : "run.play");
+    if (settings_.fork_step) return;
     result_.csv = settings_.out / "steps.csv";
     csv_.emplace(result_.csv);
     if (!scene_.output.trajectory.empty()) result_.trajectory = settings_.out / scene_.output.trajectory;
@@ -208,8 +259,11 @@ class Run {
   }
 
   void record(int step) {
-    if (result_.trajectory.empty() || step % scene_.output.every_n_steps != 0 || !sample_.finite) return;
-    trajectory_.add_frame(step * dt_s_, sample_.states, sample_.rungs);
+    if (result_.playback.empty() || (step - from_step_) % scene_.output.every_n_steps != 0 || !sample_.finite) return;
+    statuses_.clear();
+    for (const BodyId body : bodies_)
+      statuses_.push_back({.rung = manager_.rung(body), .asleep = manager_.asleep(body), .rule = manager_.explain(body).rule, .collision_radius_m = float(manager_.collision_radius(body))});
+    trajectory_.add_frame(step * dt_s_, sample_.states, statuses_);
   }
 
   void check_penetration() {
@@ -237,20 +291,47 @@ class Run {
   Manager manager_;
   std::vector<BodyId> bodies_;
   Trajectory trajectory_;
+  std::vector<BodyStatus> statuses_;  // of a frame
   std::optional<StepCsv> csv_;
-  RunSample sample_;
-  std::vector<double> times_ms_, processor_ms_;
+  RunSample sample_, before_;  // the second for settings_.watch alone
+  std::vector<double> times_ms_;
   double signature_thread_ms_ = 0;
-  int pictures_ = 0;
+  int pictures_ = 0, from_step_ = 0;
   double last_awake_s_ = 0, max_other_penetration_m_ = 0;
 };
 
+RunResult run_forked(const Scene& scene, const RunSettings& settings, int steps, double dt_s) {
+  RunSettings as_scene = settings;
+  as_scene.fork_step.reset(), as_scene.model.reset(), as_scene.budget_ms.reset(), as_scene.budget_work.reset(), as_scene.full_within_m.reset();
+  as_scene.level = LevelChoice::automatic;
+  const int at = *settings.fork_step;
+  Run first(scene, as_scene, steps, dt_s), second(scene, settings, steps, dt_s);
+  int step = 0;
+  for (; step < at && first.goes_on(step); ++step) first.advance(step);
+  const auto forked = std::make_shared<ForkedRun>();
+  forked->step = step;
+  if (first.goes_on(step)) second.fork_from(first, step);
+  for (; first.goes_on(step) && second.goes_on(step); ++step) {
+    first.advance(step);
+    second.advance(step);
+    forked->mean_distance_m.push_back(second.mean_distance_m(first));
+  }
+  RunResult result = first.finish();
+  if (forked->mean_distance_m.empty()) return result;  // it diverged before
+  forked->result = second.finish();
+  result.fork = forked;
+  return result;
+}
+
 }  // namespace
+
+std::string text_of(const RunProgress& p) { return fmt::format("step {} of {}: {} full, {} support, {} tables, {} asleep", p.step, p.steps, p.full, p.support, p.tables, p.asleep); }
 
 RunResult run_scene(const Scene& scene, const RunSettings& settings) {
   const int steps = settings.steps.value_or(scene.default_steps);
   const double dt_s = settings.dt_s.value_or(scene.step.dt_s);
   check_settings(scene, steps, dt_s, settings);
+  if (settings.fork_step) return run_forked(scene, settings, steps, dt_s);
   Run run(scene, settings, steps, dt_s);
   for (int step = 0; run.goes_on(step); ++step) run.advance(step);
   return run.finish();

@@ -3,15 +3,33 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scenes/budget_figures.h"
+#include "scenes/run_sample.h"
 #include "scenes/scene.h"
 #include "scenes/time_summary.h"
 
 namespace lodestone {
+
+/// How far a run is.
+struct RunProgress {
+  int step = 0, steps = 0;
+  int full = 0, support = 0, tables = 0, asleep = 0;  ///< bodies after that step; the sleepers are among the others
+};
+/// "step 120 of 600: 20 full, 300 support, 680 tables, 12 asleep"
+std::string text_of(const RunProgress& progress);
+
+/// A step of a run that has just ended.
+struct WatchedStep {
+  const Manager& manager;
+  std::span<const BodyId> bodies;        ///< in the scene's order, as the samples
+  const RunSample &before, &after;       ///< the step
+  double start_s = 0, dt_s = 0;
+};
 
 struct RunSettings {
   std::optional<int> steps = {};               ///< else the scene's
@@ -22,10 +40,14 @@ struct RunSettings {
   std::optional<double> full_within_m = {};    ///< else the scene's policy; instead of a budget, ≥ 0: policy distance with it
   std::optional<double> audit_ms = {};         ///< else the scene's
   int threads = 1;
-  std::filesystem::path out = {};              ///< folder for the trajectory and steps.csv; empty: write nothing
+  /// From the end of this step on the world goes on twice: as the scene says all through, and once more with level, model, budget and full_within_m of these settings, which are for this
+  /// second future alone.
+  std::optional<int> fork_step = {};
+  std::filesystem::path out = {};              ///< folder for run.play (scenes/playback.h; fork.play beside it), the trajectory and steps.csv; empty: write nothing
   std::filesystem::path record = {};           ///< file for a recording (lod/record.h) of what is done to the bodies; empty: none
   SignatureFunction signatures = {};
-  std::function<void(int step, int steps)> progress = {};
+  std::function<void(const RunProgress&)> progress = {};
+  std::function<void(const WatchedStep&)> watch = {};  ///< of each step, outside of its times
 };
 
 /// One of the scene's `check:` lines, evaluated.
@@ -40,6 +62,8 @@ struct CheckResult {
 /// after the start or later.
 struct PictureFigures { int min_full = 0; double mean_full = 0; };
 
+struct ForkedRun;
+
 struct RunResult {
   int steps = 0, bodies = 0;
   std::uint64_t state_hash = 0;
@@ -47,6 +71,7 @@ struct RunResult {
   TimeSummary processor_ms;                    ///< the same in processor time of the calling thread
   double signature_seconds = 0;                ///< spent on loading or measuring signatures when bodies first needed them
   std::vector<StepReport> reports;             ///< one per step
+  std::vector<double> step_processor_ms;       ///< of each of them
   std::optional<BudgetFigures> budget;         ///< none without a budget
   std::optional<PictureFigures> in_picture;    ///< none without a viewpoint, or where the run ended before
   std::int64_t transitions = 0, promotions = 0;
@@ -56,8 +81,16 @@ struct RunResult {
   bool finite = true;                          ///< no NaN or infinity at any step; the run ends at the first
   std::vector<RigidState> states;              ///< at the end, in the scene's order
   std::vector<CheckResult> checks;
-  std::filesystem::path trajectory, csv;       ///< written files, or empty
+  std::filesystem::path playback, trajectory, csv;  ///< written files, or empty
+  std::shared_ptr<const ForkedRun> fork;       ///< null without fork_step
   const StepReport& last() const { return reports.back(); }
+};
+
+/// The second future of a world.
+struct ForkedRun {
+  int step = 0;                                ///< after which the two differ
+  RunResult result;                            ///< from there on
+  std::vector<double> mean_distance_m;         ///< of each step from there on: from where a body is in one future to where it is in the other, mean over the bodies
 };
 
 /// Runs at least one step. Throws InputError for settings out of range or an `out` that cannot be written, before anything is simulated.

@@ -133,10 +133,11 @@ void load_limits(const YamlCursor& section, PolicySettings& lod) {
 
 TablesOptions load_tables_options(const YamlCursor& section) {
   TablesOptions options;
-  section.expect_keys({"interpolate", "draw_height", "radius_update_interval", "nearest_rest_pose", "paper_pair_rule"});
+  section.expect_keys({"interpolate", "draw_height", "radius_update_interval", "rest_poses", "nearest_rest_pose", "paper_pair_rule"});
   if (auto key = section.find("interpolate")) options.interpolate = key->truth();
   if (auto key = section.find("draw_height")) options.draw_height = key->truth();
   if (auto key = section.find("radius_update_interval")) options.radius_update_interval = int(key->integer(1, 1000));
+  if (auto key = section.find("rest_poses")) options.rest_poses = key->truth();
   if (auto key = section.find("nearest_rest_pose")) options.nearest_rest_pose = key->truth();
   if (auto key = section.find("paper_pair_rule")) options.paper_pair_rule = key->truth();
   return options;

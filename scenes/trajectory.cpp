@@ -26,8 +26,8 @@ Trajectory::Orientation with_sign_of(Trajectory::Orientation q, const Trajectory
 
 }  // namespace
 
-void Trajectory::add_frame(double time_s, std::span<const RigidState> states, std::span<const Rung> rungs) {
-  check_that(int(states.size()) == bodies_ && int(rungs.size()) == bodies_, "one state and rung for each body");
+void Trajectory::add_frame(double time_s, std::span<const RigidState> states, std::span<const BodyStatus> statuses) {
+  check_that(int(states.size()) == bodies_ && int(statuses.size()) == bodies_, "one state and status for each body");
   if (!times_.empty() && float(time_s) <= times_.back()) return;
   times_.push_back(float(time_s));
   for (int body = 0; body < bodies_; ++body) {
@@ -36,7 +36,7 @@ void Trajectory::add_frame(double time_s, std::span<const RigidState> states, st
     const Orientation q = packed(state.orientation);
     orientations_.push_back(frames() == 1 ? q : with_sign_of(q, orientation(frames() - 2, body)));
   }
-  rungs_.insert(rungs_.end(), rungs.begin(), rungs.end());
+  statuses_.insert(statuses_.end(), statuses.begin(), statuses.end());
 }
 
 int Trajectory::moving_frames(int body) const {

@@ -1,13 +1,15 @@
-// save_trajectory: motion as one glTF animation. A body that changes its rung has a mesh for each below its node, all but one of them at the
+// save_trajectory: motion as one glTF animation. A body that changes its rung or falls asleep has a mesh for each below its node, all but one of them at the
 // scale 0 (STEP keys), since glTF 2.0 cannot animate colours.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "reference/error.h"
 #include "scenes/camera.h"
+#include "scenes/framing.h"
 #include "scenes/gltf_stage.h"
 #include "scenes/trajectory.h"
 
@@ -27,7 +29,7 @@ class TrajectoryWriter {
     for (const SceneGround& ground : scene_.ground) stage_.add_ground(ground, extent());
     add_views();
     for (int body = 0; body < trajectory_.bodies(); ++body) add_body(body);
-    if (!scene_.viewpoints.empty()) add_viewpoint(scene_.viewpoints[0]);
+    add_viewpoint(scene_.viewpoints.empty() ? frame_bodies(trajectory_, scene_) : scene_.viewpoints[0]);
     // glTF allows neither an empty animation nor an empty buffer.
     if (model_.animations[0].channels.empty()) model_.animations.clear();
     if (model_.buffers[0].data.empty()) model_.buffers.clear();
@@ -93,14 +95,20 @@ class TrajectoryWriter {
     const Trajectory::Orientation& q = trajectory_.orientation(0, body);
     node.translation = {p[0], p[1], p[2]};
     node.rotation = gltf_rotation(Quat(q[3], q[0], q[1], q[2]).normalized());
-    const std::vector<int> changes = rung_changes(body);
+    const std::vector<int> changes = look_changes(body);
     const Shape& shape = *given.definition.shape;
-    if (changes.empty()) node.mesh = stage_.body_mesh(shape, trajectory_.rung(0, body));
+    if (changes.empty()) node.mesh = stage_.body_mesh(shape, look(0, body));
     const int index = stage_.add_node(std::move(node));
     add_tracks(body, index);
     if (changes.empty()) return;
-    for (const Rung rung : {Rung::full, Rung::support, Rung::tables})
-      if (has_rung(body, rung, changes)) add_part(body, index, rung, changes);
+    std::set<BodyLook> looks{look(0, body)};
+    for (const int frame : changes) looks.insert(look(frame, body));
+    for (const BodyLook part : looks) add_part(body, index, part, changes);
+  }
+
+  BodyLook look(int frame, int body) const {
+    const BodyStatus& status = trajectory_.status(frame, body);
+    return {status.rung, status.asleep};
   }
 
   void add_tracks(int body, int node) {
@@ -114,30 +122,25 @@ class TrajectoryWriter {
                                      TINYGLTF_COMPONENT_TYPE_SHORT, true));
   }
 
-  std::vector<int> rung_changes(int body) const {
+  std::vector<int> look_changes(int body) const {
     std::vector<int> frames;
     for (int frame = 1; frame < trajectory_.frames(); ++frame)
-      if (trajectory_.rung(frame, body) != trajectory_.rung(frame - 1, body)) frames.push_back(frame);
+      if (look(frame, body) != look(frame - 1, body)) frames.push_back(frame);
     return frames;
   }
 
-  /// At the start or from one of its changes on.
-  bool has_rung(int body, Rung rung, const std::vector<int>& changes) const {
-    return trajectory_.rung(0, body) == rung || std::ranges::any_of(changes, [&](int frame) { return trajectory_.rung(frame, body) == rung; });
-  }
-
-  /// The mesh that shows `rung`, visible while the body has it.
-  void add_part(int body, int parent, Rung rung, const std::vector<int>& changes) {
+  /// The mesh that shows `part`, visible while the body looks so.
+  void add_part(int body, int parent, BodyLook part, const std::vector<int>& changes) {
     std::vector<float> times{trajectory_.times_s()[0]};
     std::vector<std::array<float, 3>> scales;
-    const auto scale_at = [&](int frame) { return trajectory_.rung(frame, body) == rung ? 1.0f : 0.0f; };
+    const auto scale_at = [&](int frame) { return look(frame, body) == part ? 1.0f : 0.0f; };
     scales.push_back({scale_at(0), scale_at(0), scale_at(0)});
     for (int frame : changes) {
       times.push_back(trajectory_.times_s()[std::size_t(frame)]);
       scales.push_back({scale_at(frame), scale_at(frame), scale_at(frame)});
     }
     tinygltf::Node node;
-    node.mesh = stage_.body_mesh(*scene_.bodies[std::size_t(body)].definition.shape, rung);
+    node.mesh = stage_.body_mesh(*scene_.bodies[std::size_t(body)].definition.shape, part);
     node.scale = {scales[0][0], scales[0][1], scales[0][2]};
     const int index = stage_.add_child(parent, std::move(node));
     add_channel(index, "scale", buffer_.add_scalars(times), buffer_.add_vectors(scales, 0), "STEP");

@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tools/commands.h"
 #include "tools/run_arguments.h"
 
@@ -10,6 +12,7 @@ namespace {
 struct Arguments {
   RunArguments run;
   std::filesystem::path recording;
+  bool json = false;
 };
 
 ExitCode replay(const Arguments& arguments) {
@@ -19,7 +22,8 @@ ExitCode replay(const Arguments& arguments) {
     ProgressLine line;
     result = replay_scene(scene, run_settings(arguments.run, line), arguments.recording);
   }
-  fmt::print("{}: {}\n", arguments.recording.string(), result.text);
+  if (arguments.json) fmt::print("{}\n", nlohmann::ordered_json{{"steps", result.steps}, {"same", result.same}, {"text", result.text}}.dump(2));
+  else fmt::print("{}: {}\n", arguments.recording.string(), result.text);
   return result.same ? ExitCode::done : ExitCode::check_failed;
 }
 
@@ -31,6 +35,7 @@ void add_replay_command(CLI::App& program, ExitCode& exit_code) {
   command->add_option("FILE", arguments->recording, "a recording")->required();
   command->add_option("SCENE", arguments->run.scene, "the YAML file that it was made with; the options are those of that run, too")->required();
   add_run_arguments(*command, arguments->run);
+  command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
 }
 

@@ -35,7 +35,8 @@ void add_run_command(CLI::App& program, ExitCode& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("SCENE", arguments->run.scene, "a YAML file")->required();
   add_run_arguments(*command, arguments->run);
-  command->add_option("--out", arguments->run.running.out, "folder for the trajectory (.glb) and the report of each step (.csv)");
+  command->add_option("--out", arguments->run.running.out, "folder for run.play, which `lodestone view` plays, the trajectory (.glb) and the report of each step (.csv)");
+  command->add_option("--fork", arguments->run.running.fork_step, "after this step the world goes on twice: as the scene says, and with --level, --model, --budget-… or --full-within-m, which are then for this second future alone");
   command->add_option("--record", arguments->run.running.record, "file for a recording, which `lodestone replay` does again");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -12,6 +12,7 @@ enum class ExitCode { done = 0, check_failed = 1, usage = 2, bad_input = 3, dive
 
 /// `exit_code` receives how the chosen command ended; it outlives the program's parsing. InputError passes through.
 void add_run_command(CLI::App& program, ExitCode& exit_code);
+void add_view_command(CLI::App& program, ExitCode& exit_code);
 void add_replay_command(CLI::App& program, ExitCode& exit_code);
 void add_sign_command(CLI::App& program, ExitCode& exit_code);
 void add_merge_command(CLI::App& program, ExitCode& exit_code);
@@ -19,6 +20,7 @@ void add_inspect_command(CLI::App& program, ExitCode& exit_code);
 void add_compare_command(CLI::App& program, ExitCode& exit_code);
 void add_demo_command(CLI::App& program, ExitCode& exit_code);
 void add_bench_command(CLI::App& program, ExitCode& exit_code);
+void add_report_command(CLI::App& program, ExitCode& exit_code);
 
 /// The whole program: parses the arguments, runs one command and says on stderr what went wrong.
 ExitCode run_lodestone(int argc, char** argv);

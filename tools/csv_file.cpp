@@ -13,9 +13,15 @@ namespace {
 
 using nlohmann::ordered_json;
 
+std::string quoted(const std::string& text) {
+  std::string cell = "\"";
+  for (const char c : text) cell.append(c == '"' ? 2 : 1, c);
+  return cell + '"';
+}
+
 std::string cell_of(const ordered_json& value) {
   if (value.is_null()) return "";
-  if (value.is_string()) return fmt::format("\"{}\"", value.get<std::string>());
+  if (value.is_string()) return quoted(value.get<std::string>());
   if (!value.is_array()) return value.dump();
   std::vector<std::string> elements;
   for (const ordered_json& element : value) elements.push_back(element.dump());

@@ -1,7 +1,8 @@
-// The median of what was measured.
+// The median and other percentiles of what was measured.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace lodestone {
@@ -11,6 +12,11 @@ inline double median_of(std::vector<double> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
+}
+
+/// The least of `sorted` that so large a part (0 < part ≤ 1) of them does not exceed; 0 for none.
+inline double percentile_of(const std::vector<double>& sorted, double part) {
+  return sorted.empty() ? 0.0 : sorted[std::size_t(std::ceil(part * double(sorted.size()))) - 1];
 }
 
 }  // namespace lodestone

@@ -26,7 +26,8 @@ ExitCode run_lodestone(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(kExitCodes);
   ExitCode exit_code = ExitCode::done;
-  for (const auto add : {add_run_command, add_replay_command, add_compare_command, add_sign_command, add_merge_command, add_inspect_command, add_demo_command, add_bench_command})
+  for (const auto add : {add_run_command, add_view_command, add_replay_command, add_compare_command, add_sign_command, add_merge_command, add_inspect_command, add_demo_command, add_bench_command,
+                         add_report_command})
     add(program, exit_code);
   try {
     program.parse(argc, argv);

@@ -8,7 +8,7 @@
 
 namespace lodestone {
 
-/// One line, rewritten at most ten times a second and cleared at the end. Writes nothing where stderr is no terminal.
+/// One line with a bar and, once it can be told, the time left; rewritten at most ten times a second, cut to the terminal's width and cleared at the end. Writes nothing where stderr is no terminal.
 /// May be called from several threads.
 class ProgressLine {
  public:
@@ -28,6 +28,7 @@ class ProgressLine {
   std::mutex mutex_;
   bool shown_ = false;
   double next_s_ = 0.0;  // monotonic time before which nothing is written
+  double start_s_ = 0.0, last_fraction_ = 2.0;  // of what counts from 0 to 1 now
 };
 
 }  // namespace lodestone

@@ -56,7 +56,7 @@ RunSettings run_settings(const RunArguments& arguments, ProgressLine& line) {
   RunSettings settings = arguments.running;
   settings.threads = threads_of(arguments.running.threads);
   if (!arguments.step.empty()) settings.dt_s = step_of(arguments.step);
-  settings.progress = [&line](int step, int steps) { line.show(fmt::format("step {} of {}", step, steps), double(step) / steps); };
+  settings.progress = [&line](const RunProgress& run) { line.show(text_of(run), double(run.step) / run.steps); };
   settings.signatures = make_signature_function(line);
   return settings;
 }

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "tools/terminal.h"
+
 namespace lodestone {
 namespace {
 
@@ -52,6 +54,9 @@ double mean_stage_ms(const RunResult& result, double StageTimes::*stage) {
 
 ordered_json number_or_null(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
 
+// Three digits at least, however short.
+std::string short_ms(double ms) { return ms >= 0.1 ? fmt::format("{:.3f}", ms) : fmt::format("{:.3g}", ms); }
+
 std::string text_of_stages(const RunResult& result) {
   std::string text;
   for (const auto& [name, stage] : kStages)
@@ -89,7 +94,13 @@ std::string text_of(const AuditReport& audit) {
 }
 
 std::string text_of(const CheckResult& check) {
-  return fmt::format("check        {} {}: {:.4g}, bound {:.4g}\n", !check.decided ? "open:  " : check.pass ? "holds: " : "FAILED:", check.name, check.value, check.bound);
+  return fmt::format("check        {} {}: {:.4g}, bound {:.4g}\n", !check.decided ? "open:  " : check.pass ? styled("holds: ", Style::good) : styled("FAILED:", Style::bad), check.name, check.value, check.bound);
+}
+
+std::string text_of(const ForkedRun& fork) {
+  const StepReport& last = fork.result.last();
+  return fmt::format("fork         after step {}: {} full, {} support, {} tables, {} asleep at the end; bodies on average {:.4g} m from where they are else; processor ms median {}; state hash {:016x}\n",
+                     fork.step, last.full, last.support, last.tables, last.asleep, fork.mean_distance_m.back(), short_ms(fork.result.processor_ms.p50), fork.result.state_hash);
 }
 
 ordered_json json_of(const TimeSummary& ms) { return {{"p50", ms.p50}, {"p95", ms.p95}, {"p99", ms.p99}, {"mean", ms.mean}, {"max", ms.max}}; }
@@ -100,8 +111,8 @@ std::string text_of(const RunResult& result) {
   const StepReport& last = result.last();
   const TimeSummary &ms = result.step_ms, &processor = result.processor_ms;
   std::string text;
-  text += fmt::format("step         median {:.3f} ms, 95 % {:.3f}, 99 % {:.3f}, longest {:.3f}\n", ms.p50, ms.p95, ms.p99, ms.max);
-  text += fmt::format("processor    median {:.3f} ms, 95 % {:.3f}, 99 % {:.3f}, longest {:.3f}\n", processor.p50, processor.p95, processor.p99, processor.max);
+  for (const auto& [name, times] : {std::pair("step", ms), {"processor", processor}})
+    text += fmt::format("{:<12} median {} ms, 95 % {}, 99 % {}, longest {}\n", name, short_ms(times.p50), short_ms(times.p95), short_ms(times.p99), short_ms(times.max));
   text += fmt::format("stages       mean ms: {}\n", text_of_stages(result));
   text += fmt::format("at the end   {} full, {} statistical, {} of all asleep\n", last.full, last.statistical, last.asleep);
   text += fmt::format("rungs        {} full, {} support, {} tables\n", last.full, last.support, last.tables);
@@ -115,7 +126,8 @@ std::string text_of(const RunResult& result) {
   text += fmt::format("counters     {}\n", text_of_counters(last.counters));
   for (const CheckResult& check : result.checks) text += text_of(check);
   if (!result.finite) text += "DIVERGED: a state was not finite\n";
-  for (const auto& file : {result.trajectory, result.csv})
+  if (result.fork) text += text_of(*result.fork);
+  for (const auto& file : {result.playback, result.fork ? result.fork->result.playback : std::filesystem::path(), result.trajectory, result.csv})
     if (!file.empty()) text += fmt::format("written      {}\n", file.string());
   text += fmt::format("state hash   {:016x}\n", result.state_hash);
   return text;
@@ -173,6 +185,9 @@ ordered_json json_of(const RunResult& result) {
   json["checks"] = ordered_json::array();
   for (const CheckResult& check : result.checks)
     json["checks"].push_back({{"name", check.name}, {"value", number_or_null(check.value)}, {"bound", check.bound}, {"pass", check.pass}, {"decided", check.decided}});
+  if (result.fork)
+    json["fork"] = {{"step", result.fork->step}, {"mean_distance_m", result.fork->mean_distance_m}, {"run", json_of(result.fork->result)}};
+  json["playback"] = result.playback.empty() ? ordered_json(nullptr) : ordered_json(result.playback.string());
   json["trajectory"] = result.trajectory.empty() ? ordered_json(nullptr) : ordered_json(result.trajectory.string());
   return json;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "tools/terminal.h"
+
 namespace lodestone {
 namespace {
 
@@ -31,7 +33,7 @@ std::string TextTable::text() const {
     for (std::size_t i = 0; i < row.size(); ++i)
       line += is_numeric(i) ? fmt::format("{:>{}}  ", row[i], widths[i]) : fmt::format("{:<{}}  ", row[i], widths[i]);
     line.erase(line.find_last_not_of(' ') + 1);
-    text += line + '\n';
+    text += (&row == &rows_.front() ? styled(line, Style::heading) : line) + '\n';
     if (&row == &rows_.front()) {
       std::size_t width = 0;
       for (const std::size_t w : widths) width += w + 2;

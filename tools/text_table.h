@@ -12,7 +12,7 @@ class TextTable {
   explicit TextTable(std::vector<std::string> heading) : rows_{std::move(heading)} {}
   void add_row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
 
-  /// One line for each row, with a rule under the heading. Cells are ASCII.
+  /// One line for each row, with a rule under the heading, which is bold on a terminal. Cells are ASCII.
   std::string text() const;
 
  private:

@@ -6,7 +6,8 @@
 using namespace lodestone;
 using namespace lodestone::c;
 
-// Lists of ids are handed over as they are.
+// The rules have the same numbers, and lists of ids are handed over as they are.
+static_assert(int(Rule::joined) == LODESTONE_RULE_JOINED && int(Rule::overlap_put_off) == LODESTONE_RULE_OVERLAP_PUT_OFF && int(Rule::dwell) == LODESTONE_RULE_DWELL);
 static_assert(sizeof(BodyId) == sizeof(lodestone_body) && alignof(BodyId) == alignof(lodestone_body) && offsetof(BodyId, generation) == offsetof(lodestone_body, generation));
 
 namespace {
@@ -76,7 +77,7 @@ lodestone_result lodestone_dissolve_group(lodestone_manager* manager, lodestone_
 lodestone_result lodestone_explain(const lodestone_manager* manager, lodestone_body id, lodestone_reason* reason) {
   return guarded([&] {
     const Why why = of(manager).explain(body(id));
-    give(reason, lodestone_reason{lodestone_rung(why.rung), why.placed, why.in_view, why.distance_m, why.pixels, why.predicted_error, why.predicted_error_pixels, why.cost_work, why.cost_ms,
+    give(reason, lodestone_reason{lodestone_rung(why.rung), lodestone_rule(why.rule), why.placed, why.in_view, why.distance_m, why.pixels, why.predicted_error, why.predicted_error_pixels, why.cost_work, why.cost_ms,
                                   why.dwell_left_frames, {why.group.index, why.group.generation}});
   });
 }

@@ -47,17 +47,46 @@ ManagerSettings settings_of(const lodestone_settings* given) {
   settings.signature_timing = enumerator(s.signature_timing, SignatureTiming::in_background, "signature_timing");
   settings.policy = policy_of(s.policy);
   settings.audit_ms = s.audit_ms;
+  settings.tables = {s.tables.interpolate, s.tables.draw_height, s.tables.radius_update_interval, s.tables.nearest_rest_pose, s.tables.paper_pair_rule};
+  if (s.signatures)
+    settings.signatures = [s](const Shape& shape, const ContactLaw& law) {
+      const lodestone_signature* found = s.signatures(s.signatures_context, shape.name.c_str(), law.restitution, law.friction);
+      return found ? found->signature : nullptr;
+    };
   settings.events = events_of(s.events);
   if (s.jobs) settings.jobs = [s](std::int64_t count, TaskRef task) { s.jobs(s.jobs_context, count, do_task, &task); };
   if (s.pair_filter) settings.pair_filter = [s](BodyId first, BodyId second) { return s.pair_filter(s.pair_filter_context, body(first), body(second)); };
   return settings;
 }
 
+lodestone_stage_times times_of(const StageTimes& t) {
+  return {t.choose_ms, t.transfer_ms, t.flight_ms, t.broad_phase_ms, t.pairs_ms, t.crowd_ms, t.rest_ms, t.cross_level_ms, t.full_ms, t.total_ms};
+}
+
+lodestone_counters counters_of(const Counters& c) {
+  return {c.ode_bodies_created, c.trimeshes_built, c.signatures_loaded, c.pair_phases, c.ode_messages, c.contacts_dropped, c.states_recovered, c.full_quick_steps, c.full_swallowed,
+          c.full_passes_prevented, c.full_uneven_contacts, c.energy_clamps, c.table_extrapolations, c.levels_considered, c.promotions_put_off, c.divided_steps};
+}
+
 lodestone_report report_of(const StepReport& r) {
-  const Counters& c = r.counters;
-  return {.step = r.step, .dt_s = r.dt_s, .total_ms = r.times.total_ms, .measured_ms = r.measured_ms, .predicted_ms = r.predicted_ms, .full = r.full, .support = r.support, .tables = r.tables,
-          .asleep = r.asleep, .promotions = r.promotions, .demotions = r.demotions, .contacts = r.contacts, .ode_messages = c.ode_messages, .contacts_dropped = c.contacts_dropped,
-          .states_recovered = c.states_recovered, .promotions_put_off = c.promotions_put_off, .divided_steps = c.divided_steps};
+  lodestone_report report{.step = r.step, .dt_s = r.dt_s, .full = r.full, .support = r.support, .tables = r.tables, .asleep = r.asleep, .promotions = r.promotions, .demotions = r.demotions,
+                          .contacts = r.contacts, .times = times_of(r.times), .cost = {}, .predicted_ms = r.predicted_ms, .measured_ms = r.measured_ms,
+                          .predicted_error_pixels = r.predicted_error_pixels, .counters = counters_of(r.counters)};
+  for (std::size_t rung = 0; rung < kRungs; ++rung) report.cost[rung] = {r.cost[rung].predicted_ms, r.cost[rung].measured_ms, r.cost[rung].work};
+  return report;
+}
+
+lodestone_audit_figure figure_of(const AuditFigure& f) { return {f.full, f.demoted, f.deviation, f.difference[0], f.difference[1]}; }
+
+lodestone_audit audit_of(const AuditReport& a) {
+  return {a.bodies, a.watched, a.left_out, figure_of(a.rest_time_s), figure_of(a.distance_m), figure_of(a.rest_height), a.drift, a.drift_interval[0], a.drift_interval[1], a.spent_ms};
+}
+
+DrawSettings drawing_of(const lodestone_draw_settings* given) {
+  if (!given) return {};
+  const lodestone_draw_settings& s = *given;
+  return {.bodies = s.bodies, .contacts = s.contacts, .bounds = s.bounds, .colors = {color(s.colors[0]), color(s.colors[1]), color(s.colors[2])}, .contact_color = color(s.contact_color),
+          .bounds_color = color(s.bounds_color), .normal_length = s.normal_length};
 }
 
 }  // namespace
@@ -88,6 +117,7 @@ lodestone_settings lodestone_default_settings(void) {
   settings.full_substeps = s.full_substeps;
   settings.sleeping = s.sleeping;
   settings.sleep_speed = s.sleep.speed, settings.sleep_time = s.sleep.time;
+  settings.tables = {s.tables.interpolate, s.tables.draw_height, s.tables.radius_update_interval, s.tables.nearest_rest_pose, s.tables.paper_pair_rule};
   settings.policy = lodestone_default_policy();
   settings.audit_ms = s.audit_ms;
   settings.events = {s.events.all_bodies, s.events.least_speed, s.events.least_impulse};
@@ -95,11 +125,11 @@ lodestone_settings lodestone_default_settings(void) {
 }
 
 lodestone_result lodestone_create(const lodestone_settings* settings, lodestone_manager** manager) {
-  return guarded([&] { need(manager, "where the manager shall go") = new lodestone_manager{Manager(settings_of(settings)), {}, {}}; });
+  return make_handle(manager, [&] { return Manager(settings_of(settings)); });
 }
 
 lodestone_result lodestone_create_in(dxWorld* world, dxSpace* space, const lodestone_settings* settings, lodestone_manager** manager) {
-  return guarded([&] { need(manager, "where the manager shall go") = new lodestone_manager{Manager(world, space, settings_of(settings)), {}, {}}; });
+  return make_handle(manager, [&] { return Manager(world, space, settings_of(settings)); });
 }
 
 void lodestone_destroy(lodestone_manager* manager) { delete manager; }
@@ -138,6 +168,8 @@ lodestone_result lodestone_remove_ground(lodestone_manager* manager, lodestone_g
   return guarded([&] { of(manager).remove_ground(ground(id)); });
 }
 
+bool lodestone_is_valid_ground(const lodestone_manager* manager, lodestone_ground id) { return manager && manager->manager.valid(ground(id)); }
+
 lodestone_result lodestone_set_policy(lodestone_manager* manager, const lodestone_policy* policy) {
   return guarded([&] { of(manager).set_policy(policy_of(need(policy, "policy"))); });
 }
@@ -161,6 +193,10 @@ lodestone_result lodestone_set_viewpoints(lodestone_manager* manager, const lode
 
 lodestone_result lodestone_set_gravity(lodestone_manager* manager, lodestone_vec3 gravity) {
   return guarded([&] { of(manager).set_gravity(vec3(gravity)); });
+}
+
+lodestone_result lodestone_get_gravity(const lodestone_manager* manager, lodestone_vec3* gravity) {
+  return guarded([&] { give(gravity, vec3(of(manager).gravity())); });
 }
 
 lodestone_result lodestone_set_full_substeps(lodestone_manager* manager, int32_t substeps) {
@@ -189,6 +225,10 @@ lodestone_result lodestone_after_world_step(lodestone_manager* manager, lodeston
 
 lodestone_result lodestone_get_report(const lodestone_manager* manager, lodestone_report* report) {
   return guarded([&] { give(report, report_of(of(manager).report())); });
+}
+
+lodestone_result lodestone_get_audit(const lodestone_manager* manager, lodestone_audit* audit) {
+  return guarded([&] { give(audit, audit_of(of(manager).report().audit)); });
 }
 
 lodestone_result lodestone_body_count(const lodestone_manager* manager, size_t* count) {
@@ -224,7 +264,8 @@ lodestone_result lodestone_set_record(lodestone_manager* manager, void (*write)(
 lodestone_result lodestone_replay(lodestone_manager* manager, const void* recording, size_t size, const lodestone_shape* const* given, size_t shape_count, lodestone_replay_result* result) {
   return guarded([&] {
     const ReplayResult replayed = of(manager).replay(list(static_cast<const std::byte*>(recording), size, "recording"), shapes(given, shape_count));
-    give(result, lodestone_replay_result{replayed.steps, replayed.same, body(replayed.body)});
+    manager->replayed = replayed.text;
+    give(result, lodestone_replay_result{replayed.steps, replayed.same, body(replayed.body), manager->replayed.c_str()});
   });
 }
 
@@ -244,15 +285,17 @@ lodestone_result lodestone_set_profile(lodestone_manager* manager, void (*begin)
   });
 }
 
+lodestone_draw_settings lodestone_default_draw_settings(void) {
+  const DrawSettings s;
+  return {s.bodies, s.contacts, s.bounds, {color(s.colors[0]), color(s.colors[1]), color(s.colors[2])}, color(s.contact_color), color(s.bounds_color), s.normal_length};
+}
+
 lodestone_result lodestone_draw(const lodestone_manager* manager, void (*line)(void* context, lodestone_vec3 from, lodestone_vec3 to, lodestone_color color),
-                                void (*point)(void* context, lodestone_vec3 at, lodestone_color color), void* context, bool bounds) {
+                                void (*point)(void* context, lodestone_vec3 at, lodestone_color color), void* context, const lodestone_draw_settings* settings) {
   return guarded([&] {
-    const auto color_of = [](DebugColor color) { return lodestone_color{color.red, color.green, color.blue}; };
     DebugDrawer drawer;
-    if (line) drawer.line = [&](const Vec3& from, const Vec3& to, DebugColor color) { line(context, vec3(from), vec3(to), color_of(color)); };
-    if (point) drawer.point = [&](const Vec3& at, DebugColor color) { point(context, vec3(at), color_of(color)); };
-    DrawSettings settings;
-    settings.bounds = bounds;
-    of(manager).draw(drawer, settings);
+    if (line) drawer.line = [&](const Vec3& from, const Vec3& to, DebugColor of_line) { line(context, vec3(from), vec3(to), color(of_line)); };
+    if (point) drawer.point = [&](const Vec3& at, DebugColor of_point) { point(context, vec3(at), color(of_point)); };
+    of(manager).draw(drawer, drawing_of(settings));
   });
 }

@@ -10,11 +10,13 @@ namespace {
 
 QueryFilter filter_of(const lodestone_query_filter* filter) {
   if (!filter) return {};
-  return {.categories = filter->categories, .bodies = filter->bodies, .ground = filter->ground, .except = body(filter->except)};
+  return {.categories = filter->categories, .bodies = filter->bodies, .ground = filter->ground, .callers = filter->callers, .except = body(filter->except)};
 }
 
 Ray ray_of(const lodestone_ray& ray) { return {vec3(ray.from), vec3(ray.direction), ray.length}; }
+SphereSweep sweep_of(const lodestone_ray& ray) { return {ray_of(ray), ray.radius}; }
 bool is_thin(const lodestone_ray& ray) { return ray.radius == 0.0; }
+bool is_thick(const lodestone_ray& ray) { return !is_thin(ray); }
 bool is_sphere(const lodestone_volume& volume) { return volume.sides.x == 0.0 && volume.sides.y == 0.0 && volume.sides.z == 0.0; }
 lodestone_hit hit_of(const QueryHit& hit) { return {side(hit.who), vec3(hit.point), vec3(hit.normal), hit.distance}; }
 
@@ -28,6 +30,14 @@ void ask_some(std::span<const Given> all, const Select& select, const Make& make
   std::vector<Answer> answers(questions.size());
   if (!questions.empty()) ask(questions, answers);
   for (std::size_t i = 0; i < places.size(); ++i) take(places[i], answers[i]);
+}
+
+void tell(std::span<const std::vector<QueryHit>> hits, void (*found)(void* context, std::size_t question, const lodestone_hit* hit), void* context) {
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    for (const QueryHit& hit : hits[i]) {
+      const lodestone_hit as_c = hit_of(hit);
+      found(context, i, &as_c);
+    }
 }
 
 }  // namespace
@@ -55,7 +65,7 @@ lodestone_result lodestone_contact_events(lodestone_manager* manager, const lode
 
 lodestone_query_filter lodestone_default_filter(void) {
   const QueryFilter filter;
-  return {filter.categories, filter.bodies, filter.ground, body(filter.except)};
+  return {filter.categories, filter.bodies, filter.ground, filter.callers, body(filter.except)};
 }
 
 lodestone_result lodestone_cast_rays(const lodestone_manager* manager, const lodestone_ray* rays, size_t count, const lodestone_query_filter* filter, bool* met, lodestone_hit* hits) {
@@ -66,8 +76,7 @@ lodestone_result lodestone_cast_rays(const lodestone_manager* manager, const lod
     const QueryFilter passes = filter_of(filter);
     const auto take = [&](std::size_t place, const std::optional<QueryHit>& hit) { firsts[place] = hit; };
     ask_some<Ray, std::optional<QueryHit>>(all, is_thin, ray_of, [&](const auto& questions, auto& answers) { asked.cast_rays(questions, answers, passes); }, take);
-    ask_some<SphereSweep, std::optional<QueryHit>>(all, [](const lodestone_ray& ray) { return !is_thin(ray); }, [](const lodestone_ray& ray) { return SphereSweep{ray_of(ray), ray.radius}; },
-                                                   [&](const auto& questions, auto& answers) { asked.sweep_spheres(questions, answers, passes); }, take);
+    ask_some<SphereSweep, std::optional<QueryHit>>(all, is_thick, sweep_of, [&](const auto& questions, auto& answers) { asked.sweep_spheres(questions, answers, passes); }, take);
     for (std::size_t i = 0; i < count; ++i) {
       if (met) met[i] = firsts[i].has_value();
       if (hits && firsts[i]) hits[i] = hit_of(*firsts[i]);
@@ -75,11 +84,26 @@ lodestone_result lodestone_cast_rays(const lodestone_manager* manager, const lod
   });
 }
 
+lodestone_result lodestone_cast_rays_through(const lodestone_manager* manager, const lodestone_ray* rays, size_t count, const lodestone_query_filter* filter,
+                                             void (*found)(void* context, size_t ray, const lodestone_hit* hit), void* context) {
+  return guarded([&] {
+    const Manager& asked = of(manager);
+    need(found, "found");
+    const std::span<const lodestone_ray> all = list(rays, count, "rays");
+    std::vector<std::vector<QueryHit>> hits(count);
+    const QueryFilter passes = filter_of(filter);
+    const auto take = [&](std::size_t place, std::vector<QueryHit>& of_one) { hits[place] = std::move(of_one); };
+    ask_some<Ray, std::vector<QueryHit>>(all, is_thin, ray_of, [&](const auto& questions, auto& answers) { asked.cast_rays_through(questions, answers, passes); }, take);
+    ask_some<SphereSweep, std::vector<QueryHit>>(all, is_thick, sweep_of, [&](const auto& questions, auto& answers) { asked.sweep_spheres_through(questions, answers, passes); }, take);
+    tell(hits, found, context);
+  });
+}
+
 lodestone_result lodestone_overlap(const lodestone_manager* manager, const lodestone_volume* volumes, size_t count, const lodestone_query_filter* filter,
                                    void (*found)(void* context, size_t volume, const lodestone_hit* hit), void* context) {
   return guarded([&] {
     const Manager& asked = of(manager);
-    if (!found) throw InputError("found: found null, expected a function");
+    need(found, "found");
     const std::span<const lodestone_volume> all = list(volumes, count, "volumes");
     std::vector<std::vector<QueryHit>> hits(count);
     const QueryFilter passes = filter_of(filter);
@@ -88,10 +112,6 @@ lodestone_result lodestone_overlap(const lodestone_manager* manager, const lodes
                                                   [&](const auto& questions, auto& answers) { asked.overlap_spheres(questions, answers, passes); }, take);
     ask_some<BoxVolume, std::vector<QueryHit>>(all, [](const lodestone_volume& v) { return !is_sphere(v); }, [](const lodestone_volume& v) { return BoxVolume{vec3(v.sides), vec3(v.position), quat(v.orientation)}; },
                                                [&](const auto& questions, auto& answers) { asked.overlap_boxes(questions, answers, passes); }, take);
-    for (std::size_t i = 0; i < count; ++i)
-      for (const QueryHit& hit : hits[i]) {
-        const lodestone_hit as_c = hit_of(hit);
-        found(context, i, &as_c);
-      }
+    tell(hits, found, context);
   });
 }

@@ -1,6 +1,10 @@
 #include "lod/c_interface/c_values.h"
 
+#include <filesystem>
+
 #include "lod/version.h"
+#include "signature/signature_file.h"
+#include "signature/signature_source.h"
 
 namespace lodestone::c {
 namespace {
@@ -29,6 +33,9 @@ lodestone_properties properties(const BodyProperties& p) {
   return {p.category, p.collide, p.gravity, p.kinematic, p.allow_sleep, p.linear_damping, p.angular_damping, p.max_angular_speed};
 }
 
+lodestone_color color(const DebugColor& color) { return {color.red, color.green, color.blue}; }
+DebugColor color(const lodestone_color& color) { return {color.red, color.green, color.blue}; }
+
 lodestone_contact_side side(const ContactSide& side) {
   return {lodestone_contact_kind(side.kind), body(side.body), ground(side.ground), side.geom, side.callers, side.material};
 }
@@ -55,10 +62,15 @@ using namespace lodestone::c;
 const char* lodestone_error(void) { return error_text().c_str(); }
 const char* lodestone_version(void) { return LODESTONE_VERSION_STRING; }
 
+void lodestone_set_assertion_handler(void (*handler)(void* context, const char* message), void* context) {
+  if (handler) set_assertion_handler([=](std::string_view message) { handler(context, std::string(message).c_str()); });
+  else set_assertion_handler({});
+}
+
 namespace {
 
 lodestone_result make(lodestone_shape** to, const auto& make_it) {
-  return guarded([&] { need(to, "where the shape shall go") = new lodestone_shape{std::make_shared<const Shape>(make_it())}; });
+  return make_handle(to, [&] { return std::make_shared<const Shape>(make_it()); });
 }
 
 }  // namespace
@@ -83,3 +95,22 @@ lodestone_result lodestone_load_mesh(const char* file, double size, lodestone_sh
 }
 
 void lodestone_release_shape(lodestone_shape* shape) { delete shape; }
+
+lodestone_result lodestone_load_signature(const char* file, lodestone_signature** signature) {
+  return make_handle(signature, [&] { return std::make_shared<const Signature>(load_signature(std::filesystem::path(&need(file, "file")))); });
+}
+
+lodestone_result lodestone_read_signature(const void* bytes, size_t size, lodestone_signature** signature) {
+  return make_handle(signature, [&] { return std::make_shared<const Signature>(load_signature(list(static_cast<const std::byte*>(bytes), size, "bytes"))); });
+}
+
+lodestone_result lodestone_find_or_measure_signature(const lodestone_shape* shape, double restitution, double friction, int32_t threads, lodestone_signature** signature) {
+  return make_handle(signature, [&] {
+    if (threads < 0) throw InputError("threads: found " + std::to_string(threads) + ", expected 0 or more");
+    SignatureSourceSettings settings;
+    settings.threads = threads;
+    return find_or_measure_signature(*need(shape, "shape").shape, {restitution, friction}, settings).signature;
+  });
+}
+
+void lodestone_release_signature(lodestone_signature* signature) { delete signature; }

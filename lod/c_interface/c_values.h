@@ -13,10 +13,15 @@ struct lodestone_shape {
   std::shared_ptr<const lodestone::Shape> shape;
 };
 
+struct lodestone_signature {
+  std::shared_ptr<const lodestone::Signature> signature;
+};
+
 struct lodestone_manager {
   lodestone::Manager manager;
-  std::vector<lodestone_rung_change> rung_changes;  // of the last step, once asked for
-  std::vector<lodestone_contact_event> contact_events;
+  std::vector<lodestone_rung_change> rung_changes = {};  // of the last step, once asked for
+  std::vector<lodestone_contact_event> contact_events = {};
+  std::string replayed = {};  // of the last replay, in words
 };
 
 namespace lodestone::c {
@@ -62,6 +67,15 @@ void give(T* to, const T& value) {
   if (to) *to = value;
 }
 
+/// Makes a handle, once it is known where to put it.
+template <class Handle, class Make>
+lodestone_result make_handle(Handle** to, const Make& make) noexcept {
+  return guarded([&] {
+    Handle*& handle = need(to, "where the handle shall go");
+    handle = new Handle{make()};
+  });
+}
+
 /// An enumerator of C's as ours, which have the same numbers.
 template <class Ours, class Theirs>
 Ours enumerator(Theirs value, Ours last, const char* what) {
@@ -81,6 +95,8 @@ inline RigidState state(const lodestone_state& s) { return {vec3(s.position), qu
 inline lodestone_state state(const RigidState& s) { return {vec3(s.position), quat(s.orientation), vec3(s.velocity), vec3(s.angular_velocity)}; }
 BodyProperties properties(const lodestone_properties& p);
 lodestone_properties properties(const BodyProperties& p);
+lodestone_color color(const DebugColor& color);
+DebugColor color(const lodestone_color& color);
 lodestone_contact_side side(const ContactSide& side);
 Mesh mesh(const lodestone_vec3* vertices, std::size_t vertex_count, const std::int32_t* faces, std::size_t face_count);
 std::vector<std::shared_ptr<const Shape>> shapes(const lodestone_shape* const* shapes, std::size_t count);

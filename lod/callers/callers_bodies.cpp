@@ -5,6 +5,7 @@
 #include "lod/callers/geom_solids.h"
 #include "lod/contact/hull_contacts.h"
 #include "lod/contact/pair_contacts.h"
+#include "reference/error.h"
 #include "reference/ode/callers_bodies.h"
 
 namespace lodestone {
@@ -56,22 +57,31 @@ void CallersBodies::follow(const SpaceMirror& mirror) {
     entry->slots.insert(std::ranges::lower_bound(entry->slots, slot), slot);
     entry->stale = true;
   }
-  for (Entry& entry : bodies_)
-    if (entry.stale) make_shape(mirror, entry);
+  for (Entry& entry : bodies_) {
+    if (!entry.stale) continue;
+    entry.stale = false;
+    entry.shape = nullptr;
+    entry.solids.assign(entry.slots.size(), nullptr);
+    try {
+      make_shape(mirror, entry);
+    } catch (const InputError&) {
+      continue;  // flat: nothing that a solid could be
+    }
+  }
 }
 
 // Each geom a convex piece, or several; of a trimesh that has no pieces, its hull.
-void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) const {
-  entry.stale = false;
-  entry.shape = nullptr;
+void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
   const RigidState at = callers::state(entry.body);
   std::vector<std::vector<Vec3>> pieces;
   std::optional<double> sphere;  // m, where it is just that
-  for (const std::uint32_t slot : entry.slots) {
-    const MirroredGeom& geom = mirror.geoms()[slot];
+  for (std::size_t at_slot = 0; at_slot < entry.slots.size(); ++at_slot) {
+    const MirroredGeom& geom = mirror.geoms()[entry.slots[at_slot]];
     const GeomShape read = read_geom(geom.geom);
     const auto in_body = [&](const Vec3& p) { return Vec3(at.orientation.conjugate() * (geom.position + geom.orientation * p - at.position)); };
-    const GroundSolids solids = solids_of(read);
+    const auto made = std::make_shared<const GroundSolids>(solids_of(read));
+    const GroundSolids& solids = *made;
+    if (solids.size() > 0) entry.solids[at_slot] = made;
     const bool surface = solids.size() > 0 && solids[0].surface;
     if (read.kind == GeomKind::sphere) {
       if (entry.slots.size() == 1 && (geom.position - at.position).norm() < 1e-9 * read.radius) sphere = read.radius;
@@ -168,6 +178,20 @@ void CallersBodies::each_near(const Vec3& center, double radius, const std::func
     const double reach = radius + entry.shape->radius;
     if ((state.position - center).squaredNorm() < reach * reach) visit(*entry.shape, state);
   }
+}
+
+std::vector<CallersPart> CallersBodies::find_parts(const SpaceMirror& mirror) const {
+  std::vector<CallersPart> parts;
+  if (bodies_.empty()) return parts;
+  std::vector<std::uint32_t> held;
+  mirror.find_bodied_now(held);
+  for (const Entry& entry : bodies_)
+    for (std::size_t i = 0; i < entry.slots.size(); ++i) {
+      if (!entry.solids[i] || !std::ranges::binary_search(held, entry.slots[i])) continue;
+      const MirroredGeom& geom = mirror.geoms()[entry.slots[i]];
+      parts.push_back({entry.body, geom.geom, geom.category, entry.solids[i], callers::position(geom.geom), callers::orientation(geom.geom)});
+    }
+  return parts;
 }
 
 dxBody* CallersBodies::body_of(std::uint32_t owner) const {

@@ -12,6 +12,16 @@
 
 namespace lodestone {
 
+/// A geom of one of them that is made of solids, where it is.
+struct CallersPart {
+  dxBody* body = nullptr;
+  dxGeom* geom = nullptr;
+  unsigned category = 0;
+  std::shared_ptr<const GroundSolids> solids;  ///< in the geom's frame
+  Vec3 position = Vec3::Zero();                ///< m, world
+  Quat orientation = Quat::Identity();
+};
+
 class CallersBodies {
  public:
   /// Takes in what the mirror saw in its last refresh.
@@ -24,6 +34,8 @@ class CallersBodies {
   void hand_over(std::span<const FullNeighbor> neighbors, double dt) const;
   /// Calls visit(shape, state) for each whose ball meets that of `radius` m about `center`.
   void each_near(const Vec3& center, double radius, const std::function<void(const Shape&, const RigidState&)>& visit) const;
+  /// Their geoms as they are now, at any time; of those that the mirror saw in its last refresh.
+  std::vector<CallersPart> find_parts(const SpaceMirror& mirror) const;
   /// The body that a neighbour's owner names (FullNeighbor::owner); null where it is none of the caller's.
   dxBody* body_of(std::uint32_t owner) const;
 
@@ -31,11 +43,12 @@ class CallersBodies {
   struct Entry {
     dxBody* body = nullptr;
     std::vector<std::uint32_t> slots;  // of its geoms in the mirror, ascending
+    std::vector<std::shared_ptr<const GroundSolids>> solids;  // of each geom; null: it has none
     std::shared_ptr<const Shape> shape;  // null: to be made anew, or none of its geoms is a solid
     std::uint32_t owner = 0;
     bool stale = true;
   };
-  void make_shape(const SpaceMirror& mirror, Entry& entry) const;
+  static void make_shape(const SpaceMirror& mirror, Entry& entry);
 
   std::vector<Entry> bodies_;            // in the order in which they came
   std::vector<dxBody*> body_of_slot_;

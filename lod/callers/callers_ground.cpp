@@ -11,8 +11,10 @@ namespace {
 constexpr double kLeap = 50.0;  // m/s: what seems faster was put elsewhere, and carries nothing along
 
 Eigen::AlignedBox3d in_own_frame(const MirroredGeom& geom) {
-  const Vec3 center = geom.orientation.conjugate() * (geom.bounds.center() - geom.position);
-  const Vec3 reach = geom.orientation.conjugate().toRotationMatrix().cwiseAbs() * (0.5 * geom.bounds.sizes());
+  // A height field that repeats itself has no bounds.
+  const Eigen::AlignedBox3d bounds(geom.bounds.min().cwiseMax(-kStateLimit), geom.bounds.max().cwiseMin(kStateLimit));
+  const Vec3 center = geom.orientation.conjugate() * (bounds.center() - geom.position);
+  const Vec3 reach = geom.orientation.conjugate().toRotationMatrix().cwiseAbs() * (0.5 * bounds.sizes());
   return {center - reach, center + reach};
 }
 

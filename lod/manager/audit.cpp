@@ -65,6 +65,12 @@ bool Audit::still_watched(const Watched& w) const {
   return levels_.statistical->activity(levels_.bodies[w.body].statistical) != Activity::crowded;
 }
 
+void Audit::forget_watched() {
+  left_out_ += int(watched_.size());
+  watched_.clear();
+  way_.reset();
+}
+
 void Audit::begin_step() {
   if (!on()) return;
   const auto disturbed = [this](const Watched& w) {

@@ -54,6 +54,8 @@ class Audit {
   bool on() const { return audit_ms_ > 0.0; }
   /// A body that has just gone down, with the state that it had.
   void watch(std::uint32_t body, const RigidState& state);
+  /// All bodies may be others, or elsewhere: those not yet compared are left out.
+  void forget_watched();
   /// Before a step: what the caller pushed or moved is left out.
   void begin_step();
   /// After a step of `dt` seconds: looks at those watched, and goes on with the one that is simulated.

@@ -60,6 +60,8 @@ void BodyTable::remove(BodyId id) {
 void BodyTable::archive(StateArchive& a) {
   a(records_, levels_, free_, shapes_, free_shapes_, newcomers_, forces_, pushed_, rare_, properties_, births_, counts_, greatest_importance_);
   if (!a.reading()) return;
+  newcomers_gone_ = 0;
+  for (std::size_t i = 0; i < newcomers_.size(); ++i) newcomers_gone_ += !waits_at(i);
   number_of_shape_.clear();
   for (std::size_t i = 0; i < shapes_.size(); ++i)
     if (shapes_[i].shape) number_of_shape_[shapes_[i].shape.get()] = std::uint32_t(i);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "lod/manager/full_pairs.h"
 #include "lod/timing/stage_timer.h"
 
 namespace lodestone {
@@ -45,8 +46,6 @@ std::optional<RungChanges> Choose::run(StepReport& report, CostModel& costs) {
   const StageTimer timer(report.times.choose_ms);
   costs_ = &costs;
   costs.set_unit(budgeted() && !counts_work(policy_) ? CostModel::Unit::milliseconds : CostModel::Unit::work);
-  if (budgeted())
-    for (std::size_t activity = 0; activity < kActivities; ++activity) cost_of_[activity] = costs.cost_of(Activity(activity));
   look_at_those_concerned(report);
   if (budgeted() && !by_error() && !views_.empty()) look_at_nearest(report);
   turned_ = false;
@@ -76,6 +75,8 @@ void Choose::look_at_those_concerned(StepReport& report) {
   candidates_.clear();
   activities_.clear();
   counts_ = {};
+  full_in_crowd_ = 0.0;
+  counts_.added = int(levels_.bodies.newcomers().size());
   BodyTable& bodies = levels_.bodies;
   std::vector<std::uint32_t> some = std::exchange(wishing_, {});
   for (const std::uint32_t body : std::exchange(support_sleepers_, {})) some.push_back(body);
@@ -109,7 +110,8 @@ void Choose::look_at_nearest(StepReport& report) {
   std::vector<std::uint32_t> next;
   for (std::size_t known = candidates_.size();; known = candidates_.size()) {
     const double least = (far_.next_due() - traveled_) / levels_.bodies.greatest_importance();  // of those that are left
-    if (far_.next_due() > 1e299 || reach_of_full(candidates_, views_, policy_, costs_->overhead(counts_)) < least) return;
+    counts_.asked = int(asked_.size());
+    if (far_.next_due() > 1e299 || reach_of_full(make_units(), views_, policy_, costs_->overhead(counts_)) < least) return;
     // Some more each time: what is known is ranked anew.
     while (candidates_.size() < known + known / 4 + 16 && far_.next_due() < 1e299) {
       next.clear();
@@ -135,7 +137,10 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   const bool pinned = level.rung == Rung::full && !level.newcomer && groups_.pinned(body);
   const RungSet open = pinned ? RungSet{Rung::full} : open_to(level, does == Activity::asleep);
   if (does == Activity::asleep || unseen) level.woke_at = report.step;
-  if (budgeted()) count(level.newcomer ? open.lowest() : level.rung, does, arrives(level, does), 1.0);
+  const bool held = pinned && does != Activity::asleep;
+  const float mesh = budgeted() ? mesh_weight(*levels_.bodies.shape(body)) : 0.0f;
+  if (budgeted() && held) count_held(does, costs_->full_share(mesh));
+  else if (budgeted()) count(level.newcomer ? open.lowest() : level.rung, does, arrives(level, does), mesh, 1.0);
   const bool settled = open.one() && open.has(level.rung) && !level.newcomer && level.rung != Rung::full;
   if (settled && !budgeted() && !group) {
     level.reason = Rule::forced;
@@ -143,10 +148,12 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   }
   LevelCandidate candidate = make_candidate(body, open, does == Activity::asleep);
   if (pinned) candidate.decided_by = Rule::joined;
-  candidate.cost = cost_of_[std::size_t(does)];
+  candidate.mesh = mesh;
+  if (budgeted()) candidate.cost = costs_->cost_of(does, costs_->full_share(mesh));
+  if (budgeted() && open.one() && open.has(Rung::full) && !level.newcomer) candidate.cost[std::size_t(Rung::full)] = float(costs_->cost_of_forced_full(does, held, costs_->full_share(mesh)));
   if (does == Activity::asleep && !open.has(Rung::tables)) candidate.cost[std::size_t(Rung::support)] = 0.0f;  // not all of them are looked at
   if (budgeted() && does == Activity::asleep && level.rung == Rung::support && open.has(Rung::tables)) support_sleepers_.push_back(body);
-  if (budgeted() && arrives(level, does)) candidate.cost[std::size_t(level.rung)] += float(costs_->cost_of_arriving(level.rung));
+  if (budgeted() && !held && arrives(level, does)) candidate.cost[std::size_t(level.rung)] += float(costs_->cost_of_arriving(level.rung) * (level.rung == Rung::full ? costs_->full_share(mesh) : 1.0));
   const bool limited = policy_.most_full < kUnlimited || policy_.most_support < kUnlimited;
   const bool may_hit = candidate.ahead.squaredNorm() > candidate.radius * candidate.radius;
   if (limits_ && !level.newcomer && !limited && !may_hit && !group && !policy_.contact_groups_together && stays_put(candidate, views_, *limits_)) {
@@ -164,11 +171,35 @@ bool Choose::arrives(const BodyLevel& level, Activity does) const {
 }
 
 void Choose::count_meetings() {
-  counts_.rungs[std::size_t(Rung::full)][kOfFull] = levels_.full_pairs().awake;
-  counts_.rungs[std::size_t(Rung::support)][kOfFull] = counts_.at(Rung::full, Activity::crowded);
+  counts_.rungs[std::size_t(Rung::full)][kOfFull] = awake_pairs();
+  counts_.rungs[std::size_t(Rung::support)][kOfFull] = full_in_crowd_;
 }
 
-void Choose::count(Rung rung, Activity does, bool arriving, double bodies) {
+// Within a group that joints hold most are too near each other to be a pair: they cost what the joints do.
+double Choose::awake_pairs() const {
+  const std::span<const FullLevel::Member> members = levels_.full.members();
+  double most_radius = 0.0, awake = 0.0;
+  for (const FullLevel::Member& member : members) most_radius = std::max(most_radius, levels_.bodies.shape(member.owner)->radius);
+  FullPairs pairs(most_radius);
+  for (const FullLevel::Member& member : members) {
+    const Shape& shape = *levels_.bodies.shape(member.owner);
+    const OdeWorld& world = *levels_.full.world();
+    FullPairs::Body body{world.state(member.id).position, shape.radius, mesh_weight(shape), world.asleep(member.id)};
+    if (groups_.of(member.owner) && groups_.joined(member.owner)) body.joined = groups_.of(member.owner).index;
+    awake += pairs.meet(body).awake;
+    pairs.add(body);
+  }
+  return awake;
+}
+
+void Choose::count_held(Activity does, double share) {
+  counts_.rungs[std::size_t(Rung::full)][kJoined] += share;
+  full_in_crowd_ += does == Activity::crowded;
+}
+
+void Choose::count(Rung rung, Activity does, bool arriving, float mesh, double bodies) {
+  if (rung == Rung::full && does == Activity::crowded) full_in_crowd_ += bodies;
+  if (rung == Rung::full) bodies *= costs_->full_share(mesh);
   counts_.at(rung, does) += bodies;
   if (arriving) counts_.rungs[std::size_t(rung)][kArriving] += bodies;
 }
@@ -238,8 +269,8 @@ void Choose::count_changes(const RungChanges& changes) {
   for (const auto* list : {&changes.demote, &changes.promote})
     for (const RungChanges::Change& change : *list) {
       const auto i = std::size_t(std::ranges::lower_bound(asked_, change.body) - asked_.begin());
-      count(candidates_[i].present(), activities_[i], arrives(levels_.bodies.level(change.body), activities_[i]), -1.0);
-      count(change.to, activities_[i], activities_[i] == Activity::crowded && !candidates_[i].newcomer, 1.0);
+      count(candidates_[i].present(), activities_[i], arrives(levels_.bodies.level(change.body), activities_[i]), candidates_[i].mesh, -1.0);
+      count(change.to, activities_[i], activities_[i] == Activity::crowded && !candidates_[i].newcomer, candidates_[i].mesh, 1.0);
       ++counts_.changes[std::size_t(change.to)];
     }
 }

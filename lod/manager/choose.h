@@ -84,12 +84,16 @@ class Choose {
   void look_ahead(LevelCandidate& candidate, std::span<const std::size_t> full) const;
   double significance(std::uint32_t body) const;
   void predict_errors(std::uint32_t body, LevelCandidate& candidate) const;
-  void count(Rung rung, Activity does, bool arriving, double bodies);
+  void count(Rung rung, Activity does, bool arriving, float mesh, double bodies);
+  void count_held(Activity does, double share);
   bool arrives(const BodyLevel& level, Activity does) const;
+  double awake_pairs() const;
   void ask_for_tables(std::uint32_t body);
   void note_waiting(std::uint32_t body);
   void put_far(std::uint32_t body, const LevelCandidate& candidate);
   void put_in_order();
+  std::span<const LevelCandidate> make_units();
+  void count_pairs_within();
   LevelDecision decide();
   LevelDecision tell_members(const LevelDecision& of_all);
   RungChanges take_answers(const LevelDecision& decision);
@@ -118,8 +122,8 @@ class Choose {
   std::vector<std::int32_t> unit_of_;               // of each candidate: what it changes rung with, below; empty: each is alone
   std::vector<LevelCandidate> units_;
   std::vector<Activity> activities_;                // of the candidates, under a budget
-  std::array<std::array<float, kRungs>, kActivities> cost_of_{};  // of one body, under a budget
   StepCounts counts_;
+  double full_in_crowd_ = 0.0;                      // bodies
   double predicted_error_ = 0.0;                    // px
   CostModel* costs_ = nullptr;                      // of this step
 };

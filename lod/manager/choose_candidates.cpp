@@ -63,7 +63,6 @@ LevelCandidate Choose::make_candidate(std::uint32_t body, RungSet open, bool asl
   const BodyRecord& record = levels_.bodies[body];
   LevelCandidate candidate{.radius = levels_.bodies.shape(body)->radius,
                            .importance = level.importance * significance(body),
-                           .mesh = budgeted() ? mesh_weight(*levels_.bodies.shape(body)) : 0.0f,
                            .asleep = asleep,
                            .rung = level.rung,
                            .open = open,

@@ -261,7 +261,11 @@ class Chooser {
   /// Lets wishes come true, as long as there is room, and no more changes than the cap; the rest are queued.
   void grant() {
     std::ranges::sort(promote_at_once_, nearer);
-    std::ranges::sort(demote_at_once_, farther);
+    // Of a sleeper most of what it is charged is a reserve: its going down frees hardly any time.
+    std::ranges::sort(demote_at_once_, [this](const Ranked& a, const Ranked& b) {
+      const bool sleeps = candidate(a).asleep, other_sleeps = candidate(b).asleep;
+      return sleeps != other_sleeps ? other_sleeps : farther(a, b);
+    });
     for (Ranked& wish : demote_at_once_) {
       if (room_ >= 0.0 && places_[std::size_t(candidate(wish).rung)] >= 0) {  // enough went down
         hold_or_queue(wish, demote_);

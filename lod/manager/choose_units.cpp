@@ -60,7 +60,7 @@ void add(const LevelCandidate& member, const Views& views, Measure measure, Leve
     unit.ahead = member.ahead, unit.no_farther_than = member.no_farther_than, unit.motion = member.motion;
   }
   for (std::size_t rung = 0; rung < kRungs; ++rung) unit.cost[rung] += member.cost[rung], unit.error[rung] += member.error[rung];
-  unit.mesh += member.mesh;
+  unit.mesh = std::max(unit.mesh, member.mesh);  // one of them meets what is outside
   unit.asleep &= member.asleep;
   unit.frames_since_change = std::min(unit.frames_since_change, member.frames_since_change);
   if (unit.newcomer == member.newcomer) unit.rung = std::max(unit.rung, member.rung);
@@ -75,10 +75,9 @@ void add(const LevelCandidate& member, const Views& views, Measure measure, Leve
 
 }  // namespace
 
-LevelDecision Choose::decide() {
+std::span<const LevelCandidate> Choose::make_units() {
   unit_of_.clear();
-  const StepOverhead overhead = costs_->overhead(counts_);
-  if (groups_.empty() && !policy_.contact_groups_together) return choose_levels(candidates_, views_, policy_, overhead);
+  if (groups_.empty() && !policy_.contact_groups_together) return candidates_;
   Units units(candidates_.size());
   join_groups(groups_, asked_, units);
   if (policy_.contact_groups_together) join_touching(candidates_, activities_, units);
@@ -90,7 +89,32 @@ LevelDecision Choose::decide() {
     if (root == i) units_.push_back(candidates_[i]);
     else add(candidates_[i], views_, limits_ ? limits_->measure : Measure::distance, units_[std::size_t(unit_of_[i])]);
   }
-  return tell_members(choose_levels(units_, views_, policy_, overhead));
+  if (budgeted()) count_pairs_within();
+  return units_;
+}
+
+// Joints hold most of their bodies too near each other to be a pair.
+void Choose::count_pairs_within() {
+  std::vector<std::vector<std::size_t>> members(units_.size());
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    if (LevelCandidate& unit = units_[std::size_t(unit_of_[i])]; unit.bodies > 1 && unit.decided_by != Rule::joined) members[std::size_t(unit_of_[i])].push_back(i);
+  for (std::size_t unit = 0; unit < units_.size(); ++unit) {
+    double most_radius = 0.0;
+    for (const std::size_t i : members[unit]) most_radius = std::max(most_radius, candidates_[i].radius);
+    if (members[unit].empty()) continue;
+    FullPairs pairs(most_radius);
+    for (const std::size_t i : members[unit]) {
+      const LevelCandidate& c = candidates_[i];
+      const FullPairs::Body body{c.position, c.radius, c.mesh, c.asleep, c.motion};
+      units_[unit].pairs_within += pairs.meet(body);
+      pairs.add(body);
+    }
+  }
+}
+
+LevelDecision Choose::decide() {
+  const LevelDecision decision = choose_levels(make_units(), views_, policy_, costs_->overhead(counts_));
+  return unit_of_.empty() ? decision : tell_members(decision);
 }
 
 // A member that is not where the others are, since it has just come to them, follows in any case.

@@ -13,8 +13,9 @@
 namespace lodestone {
 
 /// What a rung is charged for in a step: bodies asleep, alone and in a crowd, as Activity has them; those of the crowd that came to it or woke lately, besides; and what
-/// full bodies do there: at the full level the pairs that they make (full_pairs.h), at `support` their contacts with statistical bodies, one for each that touches any.
-inline constexpr std::size_t kArriving = kActivities, kOfFull = kActivities + 1, kCharges = kActivities + 2;
+/// full bodies do there: at the full level the pairs that they make (full_pairs.h), at `support` their contacts with statistical bodies, one for each that touches any; at the
+/// full level those awake that joints hold, which are neither alone nor in a crowd.
+inline constexpr std::size_t kArriving = kActivities, kOfFull = kActivities + 1, kJoined = kActivities + 2, kCharges = kActivities + 3;
 using Charges = std::array<double, kCharges>;
 
 /// Steps in which a body counts as arriving.
@@ -23,6 +24,7 @@ inline constexpr int kArrivalSteps = 16;
 struct StepCounts {
   std::array<Charges, kRungs> rungs{};
   std::array<int, kRungs> changes{};  ///< made in this step, to each rung
+  int added = 0;                      ///< bodies that take their first rung
   int asked = 0;                      ///< bodies that the policy was asked about
 
   double& at(Rung rung, Activity activity) { return rungs[std::size_t(rung)][std::size_t(activity)]; }
@@ -43,8 +45,13 @@ class CostModel {
   enum class Unit : std::uint8_t { work, milliseconds };
   void set_unit(Unit unit) { unit_ = unit; }
 
+  /// What a body of this mesh (full_pairs.h) is charged at the full level, of what one of 4,698 faces is: in work units the same.
+  double full_share(float mesh_weight) const;
   /// Of one more body that does this, at each rung, but for the pairs that it makes there. One that touches nothing is charged for the crowd that it may be in soon, too.
-  std::array<float, kRungs> cost_of(Activity activity) const;
+  /// `share`: see full_share.
+  std::array<float, kRungs> cost_of(Activity activity, double share = 1.0) const;
+  /// Of one that must be full, so that nothing is gained by a reserve for what it may come to do; `held`: awake, by joints.
+  double cost_of_forced_full(Activity activity, bool held, double share) const;
   /// Besides, of one that came to the rung lately and is in a crowd.
   double cost_of_arriving(Rung rung) const { return price(rung, kArriving); }
   /// Besides the bodies.
@@ -57,17 +64,20 @@ class CostModel {
   /// Of one body, whatever the unit.
   double ms_of_one(Rung rung, std::size_t charge) const;
   double margin() const { return margin_; }
-  void archive(StateArchive& a) { a(unit_, factors_, others_factor_, margin_); }
+  void archive(StateArchive& a) { a(unit_, factors_, last_error_, others_factor_, changes_factor_, margin_); }
 
  private:
   double price(Rung rung, std::size_t charge) const;
   double ms_of(const StepCounts& counts, Rung rung) const;
+  double others_ms(const StepCounts& counts) const;
+  double changes_ms(const StepCounts& counts) const;
   void learn_rung(std::size_t rung, const Charges& charges, double measured_ms);
 
   Unit unit_ = Unit::work;
-  std::array<Charges, kRungs> factors_{{{1, 1, 1, 1, 1}, {1, 1, 1, 1, 1}, {1, 1, 1, 1, 1}}};
-  double others_factor_ = 1.0;
-  double margin_ = 0.3;  // by which a step may exceed its prediction, as a part of it
+  std::array<Charges, kRungs> factors_{{{1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1}}};
+  std::array<double, kRungs> last_error_{};  // of a rung's prediction, as a part of it
+  double others_factor_ = 1.0, changes_factor_ = 1.0;
+  double margin_ = 0.2;  // by which a step may exceed its prediction, as a part of it
 };
 
 /// Work units, µs, of one on a rung.

@@ -8,9 +8,9 @@
 namespace lodestone {
 namespace {
 
-constexpr double kInEarnest = 3.0;  // × the speed of parting
+constexpr double kInEarnest = 6.0;  // × the speed of parting
 constexpr double kSinks = 0.5;      // × that speed: what is as fast has not come down yet …
-constexpr double kPatience = 4.0;   // … and is held back so many times as long
+constexpr double kPatience = 8.0;   // … and is held back so many times as long
 
 }  // namespace
 

@@ -2,19 +2,27 @@
 
 #include <algorithm>
 
+#include "reference/ode/body_joints.h"
+
 namespace lodestone {
 namespace {
 
 /// What full bodies do now, and what the statistical ones did in the step; who arrived, and the pairs, as the step had them.
-StepCounts count_activities(const Levels& levels, StepCounts counts) {
+StepCounts count_activities(const Levels& levels, const CostModel& costs, StepCounts counts) {
   const auto set = [&](Rung rung, const auto& bodies) { std::ranges::copy(bodies, counts.rungs[std::size_t(rung)].begin()); };
-  std::array<int, kActivities> full{};
+  std::array<double, kActivities> full{};
+  double held = 0.0;
+  int touching = 0;
   for (const FullLevel::Member& member : levels.full.members()) {
-    const bool asleep = levels.full.world()->asleep(member.id);
-    ++full[std::size_t(asleep ? Activity::asleep : levels.full.touches(member.id) ? Activity::crowded : Activity::alone)];
+    const bool asleep = levels.full.world()->asleep(member.id), touches = !asleep && levels.full.touches(member.id);
+    const double share = costs.full_share(mesh_weight(*levels.bodies.shape(member.owner)));
+    touching += touches;
+    if (!asleep && has_joints(levels.full.world()->ode_body(member.id))) held += share;
+    else full[std::size_t(asleep ? Activity::asleep : touches ? Activity::crowded : Activity::alone)] += share;
   }
   set(Rung::full, full);
-  counts.rungs[std::size_t(Rung::support)][kOfFull] = full[std::size_t(Activity::crowded)];
+  counts.rungs[std::size_t(Rung::full)][kJoined] = held;
+  counts.rungs[std::size_t(Rung::support)][kOfFull] = touching;
   set(Rung::tables, levels.statistical ? levels.statistical->cost().tables : std::array<int, kActivities>{});
   set(Rung::support, levels.statistical ? levels.statistical->cost().support : std::array<int, kActivities>{});
   return counts;
@@ -39,7 +47,7 @@ void report_cost(const Levels& levels, const StepCounts& counts, const StepMeasu
   if (!budget_ms) return;
   for (std::size_t rung = 0; rung < kRungs; ++rung) report.cost[rung].measured_ms = measured.rungs_ms[rung];
   report.measured_ms = measured.total_ms();
-  costs.learn(*budget_ms, report.predicted_ms, count_activities(levels, counts), measured);
+  costs.learn(*budget_ms, report.predicted_ms, count_activities(levels, costs, counts), measured);
 }
 
 }  // namespace lodestone

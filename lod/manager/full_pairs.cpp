@@ -12,6 +12,8 @@ namespace {
 constexpr double kFaces = 4698.0;
 // Of a convex body, and of the simplest meshes: their hulls meet, or a few faces.
 constexpr double kLeastWeight = 0.15;
+// A pair of two such counts so much; for rounding, a little more.
+constexpr double kOfSimplest = 1.001 * kLeastWeight * kLeastWeight;
 // Bounding spheres meet before what is in them: within the first part of the sum of both radii bodies begin to be a pair, within the second they are a whole one.
 constexpr double kMeetWithin = 1.0, kWholeWithin = 0.6;
 
@@ -22,6 +24,11 @@ double least_squared_distance(const FullPairs::Body& a, const FullPairs::Body& b
 }
 
 }  // namespace
+
+PairWeights& PairWeights::operator+=(const PairWeights& more) {
+  awake += more.awake, asleep += more.asleep, dearest = std::max(dearest, more.dearest);
+  return *this;
+}
 
 float mesh_weight(const Shape& shape) {
   return float(shape.convex ? kLeastWeight : std::max(kLeastWeight, std::sqrt(double(shape.mesh.faces.size()) / kFaces)));
@@ -44,12 +51,13 @@ PairWeights FullPairs::meet(const Body& body) const {
     if (first_[buckets[i]] < 0 || std::find(buckets.begin(), buckets.begin() + std::ptrdiff_t(i), buckets[i]) != buckets.begin() + std::ptrdiff_t(i)) continue;
     for (std::int32_t other = first_[buckets[i]]; other >= 0; other = next_[std::size_t(other)]) {
       const Body& there = bodies_[std::size_t(other)];
+      if (body.joined >= 0 && body.joined == there.joined) continue;
       const double reach = body.radius + there.radius, squared = least_squared_distance(there, body);
       if (squared >= kMeetWithin * kMeetWithin * reach * reach) continue;
       const double depth = (kMeetWithin - std::sqrt(squared) / reach) / (kMeetWithin - kWholeWithin);
-      const double weight = std::min(1.0, depth) * double(body.mesh) * double(there.mesh);
+      const double meshes = double(body.mesh) * double(there.mesh), weight = std::min(1.0, depth) * meshes;
       (body.asleep && there.asleep ? pairs.asleep : pairs.awake) += weight;
-      if (!body.asleep || !there.asleep) pairs.dearest = std::max(pairs.dearest, weight);
+      if ((!body.asleep || !there.asleep) && meshes > kOfSimplest) pairs.dearest = std::max(pairs.dearest, weight);
     }
   }
   return pairs;

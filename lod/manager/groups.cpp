@@ -74,10 +74,12 @@ void Groups::wake_together(std::vector<GroupId>& woken) {
 }
 
 bool Groups::joined(const Group& group) const {
-  return std::ranges::any_of(group.members, [this](std::uint32_t body) {
-    const OdeBodyId ode = levels_.bodies[body].ode;
-    return ode && has_joints(levels_.full.world()->ode_body(ode));
-  });
+  return std::ranges::any_of(group.members, [this](std::uint32_t body) { return joined(body); });
+}
+
+bool Groups::joined(std::uint32_t body) const {
+  const OdeBodyId ode = levels_.bodies[body].ode;
+  return ode && has_joints(levels_.full.world()->ode_body(ode));
 }
 
 bool Groups::joined_outside(const Group& group, std::uint32_t body) const {
@@ -92,8 +94,7 @@ bool Groups::joined_outside(const Group& group, std::uint32_t body) const {
 
 // A joint to a body outside of the group would hold what is gone.
 bool Groups::pinned(std::uint32_t body) const {
-  const OdeBodyId ode = levels_.bodies[body].ode;
-  if (!ode || !has_joints(levels_.full.world()->ode_body(ode))) return false;
+  if (!joined(body)) return false;
   const auto found = group_of_.find(body);
   if (found == group_of_.end()) return true;
   const Group& group = groups_[found->second];

@@ -33,6 +33,8 @@ class Groups {
   /// Who wakes wakes the others. Adds those of groups whose joints are off, which must be full at once, to `woken`.
   void wake_together(std::vector<GroupId>& woken);
 
+  /// Whether a body is full and on joints.
+  bool joined(std::uint32_t body) const;
   /// Whether joints hold a body at the full level.
   bool pinned(std::uint32_t body) const;
   /// Has the caller take the joints off, where there are any; whether the group may leave the full level.

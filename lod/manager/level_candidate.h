@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "lod/manager/full_pairs.h"
 #include "lod/manager/rung_set.h"
 #include "lod/why.h"
 
@@ -16,6 +17,7 @@ struct LevelCandidate {
   double importance = 1.0;
   std::array<float, kRungs> cost{};  ///< predicted for a step at each rung, in the unit of the budget; at the full level without pairs
   float mesh = 0.0f;              ///< weight of its mesh in pairs of full bodies (full_pairs.h)
+  PairWeights pairs_within = {};  ///< of one that stands for several, when they are full
   bool asleep = false;
   Vec3 motion = Vec3::Zero();     ///< m, of a full body in the next frame
   std::int32_t frames_since_change = 1 << 30;

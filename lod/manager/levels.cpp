@@ -90,6 +90,11 @@ void Levels::follow_callers_space(double dt) {
   callers.bodies.follow(*mirror);
 }
 
+std::vector<CallersPart> Levels::callers_parts() const {
+  const SpaceMirror* mirror = full.world() ? full.world()->callers_space() : nullptr;
+  return mirror ? callers.bodies.find_parts(*mirror) : std::vector<CallersPart>{};
+}
+
 void Levels::wake_in(const Eigen::AlignedBox3d& box) {
   if (!statistical || statistical->asleep_count() == 0) return;
   std::vector<std::uint32_t> near;
@@ -140,21 +145,6 @@ const NearFull& Levels::near_full() const {
   for (const FullLevel::Member& member : full.members())
     near_full_.add(member.owner, full.world()->state(member.id).position, (1.0 + kTouchMargin) * bodies.shape(member.owner)->radius);
   return near_full_;
-}
-
-PairWeights Levels::full_pairs() const {
-  PairWeights all;
-  double most_radius = 0.0;
-  for (const FullLevel::Member& member : full.members()) most_radius = std::max(most_radius, bodies.shape(member.owner)->radius);
-  FullPairs pairs(most_radius);
-  for (const FullLevel::Member& member : full.members()) {
-    const Shape& shape = *bodies.shape(member.owner);
-    const FullPairs::Body body{full.world()->state(member.id).position, shape.radius, mesh_weight(shape), full.world()->asleep(member.id)};
-    const PairWeights met = pairs.meet(body);
-    all.awake += met.awake, all.asleep += met.asleep, all.dearest = std::max(all.dearest, met.dearest);
-    pairs.add(body);
-  }
-  return all;
 }
 
 void Levels::give_forces() {

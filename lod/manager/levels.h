@@ -8,7 +8,6 @@
 #include "lod/full/full_level.h"
 #include "lod/manager/body_table.h"
 #include "lod/manager/eased_bodies.h"
-#include "lod/manager/full_pairs.h"
 #include "lod/manager/near_full.h"
 #include "lod/manager/signature_store.h"
 #include "lod/rungs/statistical_level.h"
@@ -57,14 +56,14 @@ struct Levels {
   void set_gravity(const Vec3& gravity);
   /// Brings ground and bodies to what the caller's space holds now, before a step of `dt` s; what lay on ground that came, went or moved wakes.
   void follow_callers_space(double dt);
+  /// The geoms of the caller's dynamic bodies as they are now, at any time.
+  std::vector<CallersPart> callers_parts() const;
   /// Wakes the statistical bodies whose bounding spheres meet `box`.
   void wake_in(const Eigen::AlignedBox3d& box);
   /// Wakes every other body of `level` whose bounding sphere meets that of `body`.
   void wake_near(std::uint32_t body, Level level);
   /// Adds the other bodies of `level`, or those of them that sleep, whose bounding sphere meets that of `body`, both `factor` times as large.
   void find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near, bool asleep_only) const;
-  /// That the full bodies make as they are.
-  PairWeights full_pairs() const;
   /// A body has become full, or was moved there.
   void note_full(std::uint32_t body);
   /// The full level has moved its bodies.

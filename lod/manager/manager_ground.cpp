@@ -12,6 +12,11 @@ void check_valid(const Ground& ground, GroundId id) {
   if (!ground.valid(id)) throw_input_error("ground", fmt::format("the id {{{}, {}}}", id.index, id.generation), "that of ground of this manager which was not removed");
 }
 
+void check_callers(const dxWorld* callers_world, const dxBody* body) {
+  if (!callers_world) throw_input_error("world", "the manager's own", "the caller's");
+  if (!body) throw_input_error("body", "a null one", "the caller's own");
+}
+
 }  // namespace
 
 MaterialTable& Manager::materials() { return impl_->levels.materials; }
@@ -77,6 +82,16 @@ bool Manager::valid(GroundId id) const { return impl_->levels.ground.valid(id); 
 void Manager::Impl::disturb(const Eigen::AlignedBox3d& box) {
   levels.wake_in(box);
   queries.touch();
+}
+
+void Manager::include_body(dxBody* body) {
+  check_callers(impl_->callers_world, body);
+  impl_->levels.full.world()->include_body(body);
+}
+
+void Manager::exclude_body(dxBody* body) {
+  check_callers(impl_->callers_world, body);
+  impl_->levels.full.world()->exclude_body(body);
 }
 
 }  // namespace lodestone

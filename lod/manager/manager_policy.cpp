@@ -14,7 +14,7 @@ PolicySettings::~PolicySettings() = default;
 void Manager::set_policy(const PolicySettings& policy) {
   check_policy(policy);
   impl_->choose.set_policy(policy);
-  impl_->recorder.note(Call::set_policy);
+  if (impl_->recorder.on()) impl_->recorder.note(Call::set_policy, RecordedPolicy{policy, bool(policy.visible), bool(policy.significance)});
 }
 
 void Manager::set_viewpoints(std::span<const Vec3> positions) {

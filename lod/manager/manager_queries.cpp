@@ -43,20 +43,20 @@ auto each_of(std::span<const Question> questions, const Make& make) {
 
 void find_firsts(QueryScene& scene, const JobRunner& jobs, std::span<const Sweep> sweeps, std::span<std::optional<QueryHit>> firsts, const QueryFilter& filter) {
   if (firsts.size() != sweeps.size()) throw_input_error("hits", fmt::format("room for {}", firsts.size()), fmt::to_string(sweeps.size()));
-  scene.prepare();
+  const QueryScene::Asked asked = scene.prepare(filter);
   run_in_pieces(jobs, std::int64_t(sweeps.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) firsts[std::size_t(i)] = scene.first(sweeps[std::size_t(i)], filter);
+    for (std::int64_t i = begin; i < end; ++i) firsts[std::size_t(i)] = scene.first(sweeps[std::size_t(i)], asked);
   });
 }
 
 template <class Question, class Ask>
-void find_lists(QueryScene& scene, const JobRunner& jobs, std::span<const Question> questions, std::span<std::vector<QueryHit>> lists, const Ask& ask) {
+void find_lists(QueryScene& scene, const JobRunner& jobs, std::span<const Question> questions, std::span<std::vector<QueryHit>> lists, const QueryFilter& filter, const Ask& ask) {
   if (lists.size() != questions.size()) throw_input_error("lists of hits", fmt::format("room for {}", lists.size()), fmt::to_string(questions.size()));
-  scene.prepare();
+  const QueryScene::Asked asked = scene.prepare(filter);
   run_in_pieces(jobs, std::int64_t(questions.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       lists[std::size_t(i)].clear();
-      ask(questions[std::size_t(i)], lists[std::size_t(i)]);
+      (scene.*ask)(questions[std::size_t(i)], asked, lists[std::size_t(i)]);
     }
   });
 }
@@ -65,14 +65,12 @@ void find_lists(QueryScene& scene, const JobRunner& jobs, std::span<const Questi
 
 std::optional<QueryHit> Manager::cast_ray(const Ray& ray, const QueryFilter& filter) const {
   const Sweep sweep = sweep_of(ray);
-  impl_->queries.prepare();
-  return impl_->queries.first(sweep, filter);
+  return impl_->queries.first(sweep, impl_->queries.prepare(filter));
 }
 
 std::optional<QueryHit> Manager::sweep_sphere(const SphereSweep& sphere, const QueryFilter& filter) const {
   const Sweep sweep = sweep_of(sphere);
-  impl_->queries.prepare();
-  return impl_->queries.first(sweep, filter);
+  return impl_->queries.first(sweep, impl_->queries.prepare(filter));
 }
 
 void Manager::cast_rays(std::span<const Ray> rays, std::span<std::optional<QueryHit>> firsts, const QueryFilter& filter) const {
@@ -85,22 +83,22 @@ void Manager::sweep_spheres(std::span<const SphereSweep> spheres, std::span<std:
 
 void Manager::cast_rays_through(std::span<const Ray> rays, std::span<std::vector<QueryHit>> hits, const QueryFilter& filter) const {
   const std::vector<Sweep> sweeps = each_of(rays, [](const Ray& ray) { return sweep_of(ray); });
-  find_lists(impl_->queries, *impl_->jobs, std::span<const Sweep>(sweeps), hits, [&](const Sweep& sweep, std::vector<QueryHit>& list) { impl_->queries.all(sweep, filter, list); });
+  find_lists(impl_->queries, *impl_->jobs, std::span<const Sweep>(sweeps), hits, filter, &QueryScene::all);
 }
 
 void Manager::sweep_spheres_through(std::span<const SphereSweep> spheres, std::span<std::vector<QueryHit>> hits, const QueryFilter& filter) const {
   const std::vector<Sweep> sweeps = each_of(spheres, [](const SphereSweep& sphere) { return sweep_of(sphere); });
-  find_lists(impl_->queries, *impl_->jobs, std::span<const Sweep>(sweeps), hits, [&](const Sweep& sweep, std::vector<QueryHit>& list) { impl_->queries.all(sweep, filter, list); });
+  find_lists(impl_->queries, *impl_->jobs, std::span<const Sweep>(sweeps), hits, filter, &QueryScene::all);
 }
 
 void Manager::overlap_spheres(std::span<const SphereVolume> spheres, std::span<std::vector<QueryHit>> hits, const QueryFilter& filter) const {
   const std::vector<Volume> volumes = each_of(spheres, [](const SphereVolume& sphere) { return volume_of(sphere); });
-  find_lists(impl_->queries, *impl_->jobs, std::span<const Volume>(volumes), hits, [&](const Volume& volume, std::vector<QueryHit>& list) { impl_->queries.overlaps(volume, filter, list); });
+  find_lists(impl_->queries, *impl_->jobs, std::span<const Volume>(volumes), hits, filter, &QueryScene::overlaps);
 }
 
 void Manager::overlap_boxes(std::span<const BoxVolume> boxes, std::span<std::vector<QueryHit>> hits, const QueryFilter& filter) const {
   const std::vector<Volume> volumes = each_of(boxes, [](const BoxVolume& box) { return volume_of(box); });
-  find_lists(impl_->queries, *impl_->jobs, std::span<const Volume>(volumes), hits, [&](const Volume& volume, std::vector<QueryHit>& list) { impl_->queries.overlaps(volume, filter, list); });
+  find_lists(impl_->queries, *impl_->jobs, std::span<const Volume>(volumes), hits, filter, &QueryScene::overlaps);
 }
 
 }  // namespace lodestone

@@ -28,6 +28,10 @@ const Shape& Manager::shape(BodyId body) const {
 Level Manager::level(BodyId body) const { return level_of(rung(body)); }
 Rung Manager::rung(BodyId body) const { return impl_->levels.bodies.level(impl_->index_of(body)).rung; }
 bool Manager::asleep(BodyId body) const { return impl_->levels.asleep(impl_->index_of(body)); }
+double Manager::collision_radius(BodyId body) const {
+  const StatisticalPlace place = impl_->levels.bodies[impl_->index_of(body)].statistical;
+  return place ? impl_->levels.statistical->sphere_radius(place) : 0.0;
+}
 dxBody* Manager::ode_body(BodyId body) const {
   const BodyRecord& record = impl_->levels.bodies[impl_->index_of(body)];
   return record.ode ? impl_->levels.full.world()->ode_body(record.ode) : nullptr;

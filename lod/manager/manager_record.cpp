@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <string_view>
+#include <variant>
 
 #include "lod/manager/manager_impl.h"
 #include "reference/error.h"
@@ -37,6 +39,20 @@ std::tuple<T...> read(StateArchive& chunk) {
   return values;
 }
 
+// With the reader's own functions, where the recorded one had any.
+PolicySettings read_policy(StateArchive& chunk, const PolicySettings& readers) {
+  RecordedPolicy recorded;
+  chunk(recorded);
+  PolicySettings& policy = recorded.settings;
+  if (policy.policy.index() >= std::variant_size_v<decltype(policy.policy)>) throw InputError("the recording is damaged");
+  const auto check = [](bool has, std::string_view what) {
+    if (!has) throw InputError(fmt::format("the recording sets a policy with a function for `{}`: expected one in the manager's own", what));
+  };
+  if (recorded.visible) check(bool(policy.visible = readers.visible), "visible");
+  if (recorded.significance) check(bool(policy.significance = readers.significance), "significance");
+  return policy;
+}
+
 // One that is null, or where one body's state is not as recorded.
 std::optional<BodyId> find_other(const Levels& levels, const std::vector<std::uint32_t>& recorded) {
   const std::vector<std::uint32_t> now = body_hashes(levels), order = levels.bodies.in_order_of_creation();
@@ -53,7 +69,7 @@ void Manager::set_record(RecordFunction write) {
 }
 
 void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk, std::span<const std::shared_ptr<const Shape>> shapes) {
-  const auto with = [&]<class... T>(void (Manager::*function)(T...)) {
+  const auto with = [&]<class Result, class... T>(Result (Manager::*function)(T...)) {
     std::apply([&](auto&&... values) { (manager.*function)(values...); }, read<std::remove_cvref_t<T>...>(chunk));
   };
   switch (call) {
@@ -71,19 +87,9 @@ void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk, st
       manager.add_body(definition);
       return;
     }
-    case Call::add_plane: {
-      const auto [normal, offset, material] = read<Vec3, double, MaterialId>(chunk);
-      manager.add_plane(normal, offset, material);
-      return;
-    }
     case Call::add_static_mesh: {
       const auto [vertices, faces, material] = read<std::vector<Vec3>, std::vector<std::array<int, 3>>, MaterialId>(chunk);
       manager.add_static_mesh({vertices, faces}, material);
-      return;
-    }
-    case Call::add_static_box: {
-      const auto [sides, position, orientation, material] = read<Vec3, Vec3, Quat, MaterialId>(chunk);
-      manager.add_static_box(sides, position, orientation, material);
       return;
     }
     case Call::set_positions: {
@@ -99,6 +105,8 @@ void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk, st
       manager.make_group(bodies);
       return;
     }
+    case Call::add_plane: return with(&Manager::add_plane);
+    case Call::add_static_box: return with(&Manager::add_static_box);
     case Call::set_rung_range: return with(&Manager::set_rung_range);
     case Call::dissolve_group: return with(&Manager::dissolve_group);
     case Call::move_ground: return with(&Manager::move_ground);
@@ -116,7 +124,7 @@ void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk, st
     case Call::wake: return with(&Manager::wake);
     case Call::set_gravity: return with(&Manager::set_gravity);
     case Call::set_full_substeps: return with(&Manager::set_full_substeps);
-    case Call::set_policy: throw InputError("the recording was made while set_policy was called: record again from there");
+    case Call::set_policy: return manager.set_policy(read_policy(chunk, choose.policy()));
     case Call::step: break;
   }
 }

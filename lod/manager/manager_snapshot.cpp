@@ -102,7 +102,7 @@ void append(std::vector<std::byte>& bytes, const void* from, std::size_t count) 
 // The full level first: it refuses what does not fit before anything has changed.
 void Manager::Impl::archive(StateArchive& a) {
   a(levels.full, levels.ground, levels.bodies, levels.now, levels.woken, levels.eased, report, costs, choose, move_bodies, step_levels, changes, events);
-  if (a.reading()) queries.forget_all();
+  if (a.reading()) queries.forget_all(), levels.forget_places(), audit.forget_watched();
   bool has_statistical = levels.statistical != nullptr;
   a(has_statistical);
   if (!has_statistical) return levels.statistical.reset();

@@ -95,7 +95,7 @@ std::vector<PlacedSolid> QueryGround::find_near(const Vec3& center, double reach
   const std::lock_guard lock(access_);
   ground_.find_parts(center, reach, parts);
   for (const GroundPart* part : parts) {
-    if (part->shape.make) find_solids(*part, center, reach, 0.0, solids);
+    if (part->shape.make) find_solids(*part, center, reach, part->pose.goes_on_s, solids);
     else if (part->shape.probe) probed.push_back(part);
   }
   return solids;

@@ -49,8 +49,15 @@ void QueryScene::put(std::uint32_t body) {
   if (levels_.bodies.alive(body)) grid_.put(body, levels_.state(body).position, levels_.bodies.shape(body)->radius);
 }
 
-void QueryScene::prepare() {
-  const std::lock_guard lock(access_);
+QueryScene::Asked QueryScene::prepare(const QueryFilter& filter) {
+  const std::lock_guard lock(access_);  // also to the caller's space, in which a look at its geoms keeps its place
+  update_grid();
+  Asked asked{.filter = filter, .callers = {}};
+  if (filter.callers) asked.callers = levels_.callers_parts();
+  return asked;
+}
+
+void QueryScene::update_grid() {
   if (!stale_) return;
   if (in_use_) {
     std::vector<std::uint32_t> moved = std::move(slept_);
@@ -94,30 +101,32 @@ std::optional<QueryHit> QueryScene::overlap_body(std::uint32_t body, const Volum
   return hit_of({.kind = ContactSide::Kind::body, .body = levels_.bodies.id(body), .material = levels_.bodies[body].material}, *hit);
 }
 
-std::optional<QueryHit> QueryScene::first(const Sweep& sweep, const QueryFilter& filter) {
+std::optional<QueryHit> QueryScene::first(const Sweep& sweep, const Asked& asked) {
   std::optional<QueryHit> nearest;
   Sweep left = sweep;
   const auto take = [&](const QueryHit& hit) {
     if (!nearest || comes_before(hit, *nearest)) nearest = hit, left.length = hit.distance;
   };
-  if (filter.ground) ground_.meet(sweep, take);
-  if (!filter.bodies) return nearest;
+  if (asked.filter.ground) ground_.meet(sweep, take);
+  callers_.meet(asked.callers, asked.filter.categories, left, take);
+  if (!asked.filter.bodies) return nearest;
   Seen seen(levels_.bodies.indices());
   grid_.find_along(sweep.from, sweep.direction, left.length, sweep.radius, [&](std::uint32_t body) {
-    if (seen.first_time(body) && passes(body, filter))
+    if (seen.first_time(body) && passes(body, asked.filter))
       if (const auto hit = meet_body(body, left)) take(*hit);
     return left.length;
   });
   return nearest;
 }
 
-void QueryScene::all(const Sweep& sweep, const QueryFilter& filter, std::vector<QueryHit>& hits) {
+void QueryScene::all(const Sweep& sweep, const Asked& asked, std::vector<QueryHit>& hits) {
   const auto before = std::ptrdiff_t(hits.size());
-  if (filter.ground) ground_.meet(sweep, [&](const QueryHit& hit) { hits.push_back(hit); });
-  if (filter.bodies) {
+  if (asked.filter.ground) ground_.meet(sweep, [&](const QueryHit& hit) { hits.push_back(hit); });
+  callers_.meet(asked.callers, asked.filter.categories, sweep, [&](const QueryHit& hit) { hits.push_back(hit); });
+  if (asked.filter.bodies) {
     Seen seen(levels_.bodies.indices());
     grid_.find_along(sweep.from, sweep.direction, sweep.length, sweep.radius, [&](std::uint32_t body) {
-      if (seen.first_time(body) && passes(body, filter))
+      if (seen.first_time(body) && passes(body, asked.filter))
         if (const auto hit = meet_body(body, sweep)) hits.push_back(*hit);
       return sweep.length;
     });
@@ -125,14 +134,15 @@ void QueryScene::all(const Sweep& sweep, const QueryFilter& filter, std::vector<
   std::sort(hits.begin() + before, hits.end(), comes_before);
 }
 
-void QueryScene::overlaps(const Volume& volume, const QueryFilter& filter, std::vector<QueryHit>& hits) {
+void QueryScene::overlaps(const Volume& volume, const Asked& asked, std::vector<QueryHit>& hits) {
   const auto before = std::ptrdiff_t(hits.size());
-  if (filter.ground) ground_.overlap(volume, [&](const QueryHit& hit) { hits.push_back(hit); });
-  if (filter.bodies) {
+  if (asked.filter.ground) ground_.overlap(volume, [&](const QueryHit& hit) { hits.push_back(hit); });
+  callers_.overlap(asked.callers, asked.filter.categories, volume, [&](const QueryHit& hit) { hits.push_back(hit); });
+  if (asked.filter.bodies) {
     Seen seen(levels_.bodies.indices());
     const Vec3 reach = Vec3::Constant(volume.reach);
     grid_.find_near({volume.center - reach, volume.center + reach}, [&](std::uint32_t body) {
-      if (seen.first_time(body) && passes(body, filter))
+      if (seen.first_time(body) && passes(body, asked.filter))
         if (const auto hit = overlap_body(body, volume)) hits.push_back(*hit);
     });
   }

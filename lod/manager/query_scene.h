@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lod/manager/levels.h"
+#include "lod/manager/query_callers.h"
 #include "lod/manager/query_ground.h"
 #include "lod/queries/body_grid.h"
 
@@ -18,24 +19,26 @@ class QueryScene {
 
   /// Something moved, came or went.
   void touch() { stale_ = true; }
-  /// Forgets all that it knows, to look anew at every body.
-  void clear() { grid_.clear(), slept_.clear(), in_use_ = false, stale_ = true; }
   void forget(std::uint32_t body) { grid_.forget(body), stale_ = true; }
   /// A step is over in which these moved that sleep now.
   void finish(std::span<const BodyId> fell_asleep, std::span<const BodyId> moved_and_slept);
-
   /// All may be elsewhere.
   void forget_all() { grid_.clear(), slept_.clear(), in_use_ = false, stale_ = true; }
 
-  // Each is told of the bodies and pieces of ground that are met, each once, in no order. From any thread.
-  using Found = std::function<void(const QueryHit&)>;
-  /// Once, before any number of questions.
-  void prepare();
-  std::optional<QueryHit> first(const Sweep& sweep, const QueryFilter& filter);
-  void all(const Sweep& sweep, const QueryFilter& filter, std::vector<QueryHit>& hits);
-  void overlaps(const Volume& volume, const QueryFilter& filter, std::vector<QueryHit>& hits);
+  /// What some questions are asked of. The caller's bodies may go any time, so it is made anew for each call.
+  struct Asked {
+    QueryFilter filter;
+    std::vector<CallersPart> callers;
+  };
+  /// Before any number of questions.
+  Asked prepare(const QueryFilter& filter);
+  // From any thread. Lists are appended to.
+  std::optional<QueryHit> first(const Sweep& sweep, const Asked& asked);
+  void all(const Sweep& sweep, const Asked& asked, std::vector<QueryHit>& hits);
+  void overlaps(const Volume& volume, const Asked& asked, std::vector<QueryHit>& hits);
 
  private:
+  void update_grid();
   bool passes(std::uint32_t body, const QueryFilter& filter) const;
   PosedSurface surface_of(std::uint32_t body, const Vec3& position, const Quat& orientation);
   std::optional<QueryHit> meet_body(std::uint32_t body, const Sweep& sweep);
@@ -44,6 +47,7 @@ class QueryScene {
 
   const Levels& levels_;
   QueryGround ground_;
+  QueryCallers callers_;
   ShapeTrees trees_;
   BodyGrid grid_;
   bool in_use_ = false, stale_ = true;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lod/manager/levels.h"
+#include "lod/policy.h"
 #include "lod/record.h"
 #include "reference/state_archive.h"
 
@@ -18,12 +19,12 @@ enum class Call : std::uint8_t {
   sleep, wake, set_positions, set_viewpoints, set_rung_range,
   make_group,  ///< without the functions for its joints
   dissolve_group, set_gravity, set_full_substeps,
-  set_policy,  ///< without the policy, which may hold functions
+  set_policy,  ///< without its functions
 };
 inline constexpr auto kLastCall = Call::set_policy;
 
 /// What a recording starts with.
-inline constexpr std::array<char, 8> kRecordingMagic = {'L', 'O', 'D', 'E', 'R', 'E', 'C', '1'};
+inline constexpr std::array<char, 8> kRecordingMagic = {'L', 'O', 'D', 'E', 'R', 'E', 'C', '2'};
 
 /// What a shape is told by, wherever it was made.
 struct ShapeName {
@@ -37,6 +38,16 @@ std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::sha
 
 /// Of each body's state, whether it sleeps and is full, in order of creation.
 std::vector<std::uint32_t> body_hashes(const Levels& levels);
+
+/// A policy as it is recorded: of its functions only whether there were any.
+struct RecordedPolicy {
+  PolicySettings settings;
+  bool visible = false, significance = false;
+  void archive(StateArchive& a) {
+    a(settings.policy, settings.hysteresis, settings.min_dwell_frames, settings.max_transitions_per_frame, settings.most_full, settings.most_support, settings.out_of_view_factor);
+    a(settings.look_ahead_s, settings.contact_groups_together, visible, significance);
+  }
+};
 
 class Recorder {
  public:

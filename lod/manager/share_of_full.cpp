@@ -25,10 +25,15 @@ double FullBill::price_of(const PairWeights& pairs) const {
   return overhead_->pair * (pairs.awake + kChargeOfSleepers * pairs.asleep) + overhead_->spike * std::max(0.0, pairs.dearest - dearest_);
 }
 
-double FullBill::price_of_pairs(const LevelCandidate& candidate) const { return price_of(pairs_.meet(body_of(candidate))); }
+PairWeights FullBill::pairs_of(const LevelCandidate& candidate) const {
+  PairWeights pairs = pairs_.meet(body_of(candidate));
+  return pairs += candidate.pairs_within;
+}
+
+double FullBill::price_of_pairs(const LevelCandidate& candidate) const { return price_of(pairs_of(candidate)); }
 
 void FullBill::add(const LevelCandidate& candidate) {
-  const PairWeights met = pairs_.meet(body_of(candidate));
+  const PairWeights met = pairs_of(candidate);
   total_ += raise(candidate, Rung::full) + price_of(met);
   dearest_ = std::max(dearest_, met.dearest);
   pairs_.add(body_of(candidate));

@@ -35,13 +35,14 @@ inline bool may_be_full_now(const LevelCandidate& c, int min_dwell_frames) {
 class FullBill {
  public:
   FullBill(std::span<const LevelCandidate> candidates, const StepOverhead& overhead);
-  /// Of the pairs that one more makes.
+  /// Of the pairs that one more makes, with those so far and within it.
   double price_of_pairs(const LevelCandidate& candidate) const;
   void add(const LevelCandidate& candidate);
   double total() const { return total_; }
 
  private:
   double price_of(const PairWeights& pairs) const;
+  PairWeights pairs_of(const LevelCandidate& candidate) const;
 
   const StepOverhead* overhead_;
   FullPairs pairs_;

@@ -80,7 +80,7 @@ double measure_overlap(const Shape& first, const RigidState& at_first, const Sha
 // Whether it leans on others there, or may do so, and hardly moves.
 bool lies_among_others(const Levels& levels, std::uint32_t body, const RigidState& state) {
   const Activity does = levels.statistical->activity(levels.bodies[body].statistical);
-  const double radius = levels.bodies.shape(body)->radius, slow = 2.0 * parting_speed(radius, levels.statistical_settings.gravity.norm());
+  const double radius = levels.bodies.shape(body)->radius, slow = 4.0 * parting_speed(radius, levels.statistical_settings.gravity.norm());
   return does != Activity::alone && state.velocity.norm() <= slow && state.angular_velocity.norm() * radius <= slow;
 }
 

@@ -2,9 +2,19 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lodestone {
+namespace {
+
+// However it moves, it collides nearly as high as its bounding sphere would.
+bool is_round(const Shape& shape, const Signature* signature) {
+  constexpr double kRound = 0.95;  // over R
+  return shape.sphere_radius || (signature && !signature->collision_heights.mean.empty() && std::ranges::min(signature->collision_heights.mean) > kRound);
+}
+
+}  // namespace
 
 BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature, MaterialId material) {
   BodyKind kind;
@@ -15,6 +25,7 @@ BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<cons
   kind.along_principal_axes = std::abs(kind.principal_axes.w()) > 1.0 - 1e-15;
   kind.inverse_moments = principal.eigenvalues();
   kind.isotropic = kind.inverse_moments[2] - kind.inverse_moments[0] < 1e-9 * kind.inverse_moments[2];
+  kind.round = is_round(*shape, signature.get());
   kind.shape = std::move(shape);
   kind.signature = std::move(signature);
   kind.material = material;

@@ -23,6 +23,7 @@ struct BodyKind {
   std::shared_ptr<const RestingFaces> faces;   ///< on which it can stand (tables model); none for a sphere
   MaterialId material = 0;
   bool isotropic = false;                      ///< a sphere or a cube: rotates steadily
+  bool round = false;                          ///< a sphere or nearly one: rolls down a slope (tables model)
   Quat principal_axes = Quat::Identity();      ///< take principal axes of inertia to body axes
   bool along_principal_axes = true;            ///< body axes are these very axes
   Vec3 inverse_moments = Vec3::Ones();         ///< along them, over mass, 1/m²: ascending

@@ -69,7 +69,7 @@ struct SphereContactSettings {
   int sweeps = 2;
   float touching = 0.01f;                // m over R: gaps up to it are contacts
   float slop = 0.002f, push_out = 0.5f;  // overlap that stays, over R; part of the rest that is undone in a step
-  float parting = 0.2f;                  // over √(g R): no faster than so where one of them is eased (parting.h), as spheres may overlap where hulls did not
+  float parting = 0.1f;                  // over √(g R): no faster than so where one of them is eased (parting.h), as spheres may overlap where hulls did not
 };
 
 class SphereContacts {

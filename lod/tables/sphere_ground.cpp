@@ -56,7 +56,7 @@ struct SortLoop {
     const float* held = spheres.held.data();
     const float* size = kinds.radius.data();
     const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *pressure = ground.pressure.data();
-    const std::uint8_t* horizontal = ground.horizontal.data();
+    const float* slope = ground.slope.data();
     const std::uint32_t* kind = spheres.kind.data();
     const auto* motion = reinterpret_cast<const std::uint8_t*>(spheres.motion.data());
     const std::int32_t* plane = step.plane.data();
@@ -71,9 +71,9 @@ struct SortLoop {
       const float touching = start[i].w, moving = s[i].x + s[i].y + s[i].z + s[i].w, threshold = c.resting_energy * c.gravity * size[k];
       const float kept = held[i], weight = pressure[p] * c.time;
       // Masks: 0 or −1.
-      const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce), others = -int(touching > 0.0f);
-      const int settling = -int(moves == int(Motion::settling)) & -int(moving <= 2.0f * threshold);
-      const int settles = -int(moves == int(Motion::dynamic)) & -int(int(horizontal[p]) > 0) & -int(moving < threshold);
+      const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce), others = -int(touching > 0.0f), level = -int(slope[p] == 0.0f);
+      const int settling = -int(moves == int(Motion::settling)) & level & -int(moving <= 2.0f * threshold);
+      const int settles = (-int(moves == int(Motion::dynamic)) | ~level) & -int(moving < threshold);
       const int lies = near & presses & (others | settling), among = lies & others;
       const float known = select(among, kept, 0.0f);
       start[i].x += known * n.x, start[i].y += known * n.y, start[i].z += known * n.z, start[i].w = touching + select(among, 1.0f, 0.0f);
@@ -162,7 +162,7 @@ struct LieLoop {
     const std::int32_t* first_pose = kinds.first_pose.data();
     const Tensors soft{kinds.ixx.data(), kinds.iyy.data(), kinds.izz.data(), kinds.ixy.data(), kinds.ixz.data(), kinds.iyz.data()};
     const Tensors hard{kinds.jxx.data(), kinds.jyy.data(), kinds.jzz.data(), kinds.jxy.data(), kinds.jxz.data(), kinds.jyz.data()};
-    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *friction = ground.friction.data();
+    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *slope = ground.slope.data(), *friction = ground.friction.data();
     const std::int32_t* row = ground.row.data();
     const int kind_count = int(ground.kinds);
     const Row* begun = step.p.data() + begin;
@@ -194,7 +194,8 @@ struct LieLoop {
       spin = choose(rests, scale * ask_spin, spin);
 
       // Friction of the lowest point, and of the footprint against pivoting.
-      const F3 omega = in_world(soft, k, q, spin), arm = -r * n, touching = v + cross(omega, arm), slip = touching - dot(touching, n) * n;
+      const bool on_face = rests & (slope[p] > 0.0f);  // which does not roll
+      const F3 omega = in_world(soft, k, q, spin), arm = choose(on_face, 0.0f, -r) * n, touching = v + cross(omega, arm), slip = touching - dot(touching, n) * n;
       const float speed = length(slip), available = friction[row[p] * kind_count + k] * given_speed;
       const F3 direction = 1.0f / most(speed, 1e-12f) * slip, lever = cross(arm, direction);
       const float needed = speed / (1.0f + dot(lever, in_world(soft, k, q, lever)));
@@ -230,8 +231,7 @@ void choose_loop(const StepConstants& constants, const SphereGround& ground, con
 }  // namespace
 
 void SphereGround::clear(std::size_t kinds_now) {
-  for (auto* array : {&nx, &ny, &nz, &pressure, &friction}) array->clear();
-  horizontal.clear();
+  for (auto* array : {&nx, &ny, &nz, &pressure, &slope, &friction}) array->clear();
   row.clear();
   row_of_material.clear();
   kinds = kinds_now;
@@ -240,7 +240,7 @@ void SphereGround::clear(std::size_t kinds_now) {
 std::int32_t SphereGround::add(const HalfSpace& plane, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity) {
   nx.push_back(float(plane.normal.x())), ny.push_back(float(plane.normal.y())), nz.push_back(float(plane.normal.z()));
   pressure.push_back(float(std::max(0.0, -gravity.dot(plane.normal))));
-  horizontal.push_back(-plane.normal.dot(gravity) > 0.9999 * gravity.norm() && gravity.norm() > 0.0);
+  slope.push_back(StepWorld{.gravity = gravity}.is_horizontal(plane) ? 0.0f : 1.0f);
   row_of_material.resize(std::max(row_of_material.size(), std::size_t(plane.material) + 1), -1);
   std::int32_t& own_row = row_of_material[std::size_t(plane.material)];
   if (own_row < 0) {

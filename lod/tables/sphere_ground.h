@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lod/ground/ground.h"
+#include "lod/statistical/step_world.h"
 #include "lod/tables/sphere_motion.h"
 
 namespace lodestone {
@@ -11,7 +12,7 @@ namespace lodestone {
 struct SphereGround {
   std::vector<float> nx, ny, nz;      // normals
   std::vector<float> pressure;        // m/s²: of gravity onto the plane
-  std::vector<std::uint8_t> horizontal;
+  std::vector<float> slope;           // 0: gravity presses straight onto it; 1: not so, and not every rest pose holds there
   std::vector<std::int32_t> row;      // of each plane's material in `friction`
   std::vector<float> friction;        // of kind k with a material at row · kinds + k
   std::size_t kinds = 0;
@@ -28,7 +29,8 @@ void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::int32
                       std::int64_t end, SphereStep& step);
 
 /// Of those near: GroundState::lies where it presses on the ground, with what the ground gave in the last step if it has contacts with others, which the ground
-/// then adds one to; approaches slower than `bounce_velocity` are no impacts; GroundState::settles where it must choose a rest pose first; the rest stays near, for an impact.
+/// then adds one to; approaches slower than `bounce_velocity` are no impacts; GroundState::settles where it must choose a rest pose first, or, on a slope, look whether its own
+/// still holds it; the rest stays near, for an impact.
 /// Clears what contacts add, as clear_added.
 void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
                       float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);

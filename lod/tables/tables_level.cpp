@@ -405,12 +405,15 @@ void TablesLevel::sort_ground() {
   });
 }
 
-// The rest pose that needs the smallest rotation (3.4).
+// The rest pose that needs the smallest rotation (3.4), unless it has one that holds it.
 void TablesLevel::choose_rest_pose(std::int64_t i) {
-  const RestingRecord resting = find_resting(spheres_.orientation(i), kind_of(i), plane(step_.plane[i]), settings_.tables);
-  if (resting.pose < 0) return;
-  spheres_.pose[i] = std::int16_t(resting.pose);
-  spheres_.motion[i] = Motion::settling;
+  const Quat orientation = spheres_.orientation(i);
+  const BodyKind& kind = kind_of(i);
+  const HalfSpace& under = plane(step_.plane[i]);
+  if (spheres_.motion[i] == Motion::settling && holds_pose(orientation, kind, spheres_.pose[i], under, world())) return;
+  const RestingRecord resting = find_resting(orientation, kind, under, world(), settings_.tables);
+  spheres_.motion[i] = resting.pose < 0 ? Motion::dynamic : Motion::settling;
+  if (resting.pose >= 0) spheres_.pose[i] = std::int16_t(resting.pose);
 }
 
 // Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts, motion.

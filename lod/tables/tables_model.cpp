@@ -44,9 +44,10 @@ double kinetic_energy(const Velocities& v, const StatisticalBody& body, const Sh
 
 // Earliest time in [0, left] at which the sphere, falling towards the plane, touches it; none if it does not.
 std::optional<double> find_touch(const StatisticalBody& body, const HalfSpace& plane, const Vec3& gravity, double left) {
+  constexpr double kRounding = 1e-9;  // m/s: what slides on a slope leaves it no faster
   const double gap = plane.height_of(body.position) - body.sphere_radius;
   const double speed = body.velocity.dot(plane.normal), acceleration = gravity.dot(plane.normal);
-  if (gap <= 0.0) return speed < 0.0 || (speed == 0.0 && acceleration < 0.0) ? std::optional(0.0) : std::nullopt;
+  if (gap <= 0.0) return speed < 0.0 || (speed < kRounding && acceleration < 0.0) ? std::optional(0.0) : std::nullopt;
   if (gap + speed * left + 0.5 * acceleration * left * left > 0.0 && (acceleration <= 0.0 || speed >= 0.0)) return {};
   const double root = speed * speed - 2.0 * acceleration * gap;
   if (root < 0.0) return {};
@@ -65,6 +66,26 @@ int find_nearest_rest_pose(const Signature& signature, const Vec3& normal_in_bod
   return best;
 }
 
+// Along which a body that lies on `plane` presses on it: gravity's way, where that leaves the friction cone the nearest one in it. Zero where nothing presses.
+Vec3 pressing_direction(const HalfSpace& plane, const Vec3& gravity, double friction) {
+  const double pressure = -gravity.dot(plane.normal);
+  if (pressure <= 0.0) return Vec3::Zero();
+  const Vec3 along = gravity + pressure * plane.normal;
+  const double slope = along.norm() / pressure;
+  return (slope > friction ? friction / slope : 1.0) * along - pressure * plane.normal;
+}
+
+// On a slope: of the poses in which the body stays there, the one that needs the smallest rotation.
+int find_pose_on_slope(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, const StepWorld& world) {
+  const Vec3 up = orientation.conjugate() * plane.normal;
+  const std::vector<RestPose>& poses = kind.signature->rest_poses;
+  int best = -1;
+  double best_cosine = -2.0;
+  for (int i = 0; i < int(poses.size()); ++i)
+    if (const double cosine = poses[std::size_t(i)].normal.dot(up); cosine > best_cosine && holds_pose(orientation, kind, i, plane, world)) best_cosine = cosine, best = i;
+  return best;
+}
+
 // The rotation, as a vector in world axes, that takes the body into rest pose `pose` on `plane`.
 Vec3 rotation_to_rest(const StatisticalBody& body, const BodyKind& kind, int pose, const HalfSpace& plane) {
   const Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(body.orientation * kind.signature->rest_poses[pose].normal, plane.normal));
@@ -80,6 +101,12 @@ void turn_to_rest(StatisticalBody& body, const BodyKind& kind, int pose, const H
   const double slowest = 0.25 / time_left;  // rad/s: always enough to finish the turn
   if (rotational > budget) omega *= std::max(std::sqrt(budget / rotational), std::min(1.0, slowest / omega.norm()));
   body.spin = spin_of(body.orientation, omega, *kind.shape);
+}
+
+// Coulomb friction of the face that it lies on, for `time` seconds under `pressure` (m/s²): a face does not roll.
+void drag(StatisticalBody& body, const Vec3& normal, double friction, double pressure, double time) {
+  const Vec3 slip = body.velocity - body.velocity.dot(normal) * normal;
+  if (const double speed = slip.norm(); speed > 0.0) body.velocity -= std::min(1.0, friction * pressure * time / speed) * slip;
 }
 
 // Coulomb friction of the sphere's lowest point for `time` seconds under `pressure` (m/s²), and of its footprint against pivoting.
@@ -107,13 +134,14 @@ void rise(StatisticalBody& body, std::span<const HalfSpace> planes, double farth
     if (const double gap = plane.height_of(body.position) - double(body.sphere_radius); gap < 0.0) body.position += std::min(-0.25 * gap, farthest) * plane.normal;
 }
 
-// The rest of a step on the ground: no normal motion, friction on the slip.
-void slide(StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, const StepWorld& world, double friction, double time) {
+// The rest of a step on the ground: no normal motion, friction on the slip. `on_face`: lying on a face rather than rolling.
+void slide(StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane, const StepWorld& world, double friction, double time, bool on_face) {
   const double pressure = std::max(0.0, -world.gravity.dot(plane.normal));
   const Vec3 along = world.gravity - world.gravity.dot(plane.normal) * plane.normal;
   body.velocity -= body.velocity.dot(plane.normal) * plane.normal;
   body.velocity += along * time;
-  rub(body, *kind.shape, plane.normal, friction, pressure, time);
+  if (on_face) drag(body, plane.normal, friction, pressure, time);
+  else rub(body, *kind.shape, plane.normal, friction, pressure, time);
   body.position += body.velocity * time;
   rise(body, {&plane, 1}, std::numeric_limits<double>::infinity());
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
@@ -169,7 +197,17 @@ void respond_pair_as_paper(StatisticalBody& first, const BodyKind& first_kind, S
   second.velocity += first_velocity;
 }
 
-RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, const TablesOptions& options) {
+bool holds_pose(const Quat& orientation, const BodyKind& kind, int pose, const HalfSpace& plane, const StepWorld& world) {
+  if (pose < 0 || world.is_horizontal(plane)) return pose >= 0;
+  if (!kind.faces) return false;  // a sphere
+  const Vec3 &lying = kind.signature->rest_poses[std::size_t(pose)].normal, up = orientation.conjugate() * plane.normal;
+  const Vec3 down = orientation.conjugate() * pressing_direction(plane, world.gravity, world.law(kind, plane).friction);
+  return kind.faces->holds(lying, Eigen::Quaterniond::FromTwoVectors(up, lying) * down);
+}
+
+RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, const StepWorld& world, const TablesOptions& options) {
+  if (!options.rest_poses) return {};
+  if (!world.is_horizontal(plane)) return {find_pose_on_slope(orientation, kind, plane, world)};
   Vec3 up = orientation.conjugate() * plane.normal;
   if (kind.faces && !options.nearest_rest_pose) up = kind.faces->faces()[std::size_t(kind.faces->find_quasistatic(up))].normal;
   return {find_nearest_rest_pose(*kind.signature, up)};
@@ -190,7 +228,7 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
     advance_flight(body, kind, world.gravity, touch);
     left -= touch;
     if (touched < 0) {
-      if (hit > 0) rise(body, world.planes, parting_speed(shape.radius, world.gravity_strength()) * time);
+      if (hit > 0) rise(body, world.planes, 2.0 * parting_speed(shape.radius, world.gravity_strength()) * time);
       return tally;
     }
 
@@ -200,18 +238,21 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
     const double energy_before = kinetic_energy(body, shape);
     const double approach = -body.velocity.dot(plane.normal);
     const bool presses = approach < world.bounce_velocity + world.gravity_strength() * time;  // no impact: what gravity adds in a step
-    if (body.motion != Motion::settling || !presses) respond_from_tables(body, kind, plane.normal, world, law, settings.options, tally);
+    const bool sloped = !world.is_horizontal(plane);
+    if (sloped && body.motion == Motion::settling && !holds_pose(body.orientation, kind, resting.pose, plane, world)) body.motion = Motion::dynamic;
+    const bool rolls = sloped && kind.round && presses && body.motion == Motion::dynamic;
+    if (!rolls && (body.motion != Motion::settling || !presses)) respond_from_tables(body, kind, plane.normal, world, law, settings.options, tally);
     if (world.log)
       world.log->add({.first = body.owner, .ground = plane.id, .ground_material = plane.material, .point = body.position - body.sphere_radius * plane.normal, .normal = plane.normal,
                       .impulse = body.mass * std::max(0.0, approach + body.velocity.dot(plane.normal)), .approach = std::max(0.0, approach)});
-    if (body.motion == Motion::dynamic && world.is_horizontal(plane) && energy_before < settings.resting_energy * energy_unit) {
-      resting = find_resting(body.orientation, kind, plane, settings.options);
+    if (body.motion == Motion::dynamic && energy_before < settings.resting_energy * energy_unit) {
+      resting = find_resting(body.orientation, kind, plane, world, settings.options);
       if (resting.pose >= 0) body.motion = Motion::settling;
     }
     if (body.motion == Motion::settling && energy_before > 2.0 * settings.resting_energy * energy_unit) body.motion = Motion::dynamic;
     if (body.motion == Motion::settling) turn_to_rest(body, kind, resting.pose, plane, energy_before, blend, std::max(left, 1e-3));
-    if (approach < world.bounce_velocity || (presses && body.motion == Motion::settling) || hit + 1 >= settings.max_impacts) {
-      slide(body, kind, plane, world, law.friction, left);
+    if (approach < world.bounce_velocity || (presses && (rolls || body.motion == Motion::settling)) || hit + 1 >= settings.max_impacts) {
+      slide(body, kind, plane, world, law.friction, left, sloped && body.motion == Motion::settling);
       return tally;
     }
   }

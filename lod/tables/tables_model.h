@@ -36,7 +36,10 @@ void respond_pair_as_paper(StatisticalBody& first, const BodyKind& first_kind, S
 ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, const BodyKind& kind, const StepWorld& world, double time,
                               const TablesSettings& settings);
 
-/// The resting condition's pose on `plane`: the one that needs the smallest rotation (3.4); −1 where the signature has none.
-RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, const TablesOptions& options);
+/// The resting condition's pose on `plane`: the one that needs the smallest rotation (3.4), on a slope of those in which the body stays there; −1 where there is none.
+RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane, const StepWorld& world, const TablesOptions& options);
+
+/// Whether a body led to that pose stays in it on `plane`: always on a horizontal one; on a slope where it does not tip over the edge of the face that it lies on.
+bool holds_pose(const Quat& orientation, const BodyKind& kind, int pose, const HalfSpace& plane, const StepWorld& world);
 
 }  // namespace lodestone

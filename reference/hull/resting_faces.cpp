@@ -10,6 +10,7 @@ namespace lodestone {
 namespace {
 
 constexpr double kSameHeight = 1e-9;  // × size
+constexpr double kSameFace = 0.998;   // cosine between a normal that was measured and the face's own
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::acos(std::clamp(a.dot(b), -1.0, 1.0)); }
 
@@ -129,6 +130,16 @@ int RestingFaces::find_certain(const Vec3& normal, double energy_height, double 
 int RestingFaces::find_quasistatic(const Vec3& normal) const {
   const int triangle = roll(tip(normal));
   return face_of_[parts_[part_below(triangle, triangles_[triangle].height + slack_)].lowest];
+}
+
+bool RestingFaces::holds(const Vec3& normal, const Vec3& down) const {
+  const Triangle* through = nullptr;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : triangles_) {
+    const double speed = -t.normal.dot(down);
+    if (speed > 0.0 && t.height < nearest * speed) nearest = t.height / speed, through = &t;
+  }
+  return through && through->normal.dot(normal) > kSameFace;
 }
 
 // Over the vertex that it stands on until an edge, over that until a face.

@@ -33,6 +33,10 @@ class RestingFaces {
   /// leaves faces more than `same_angle` (rad) apart.
   int find_certain(const Vec3& normal, double energy_height, double same_angle) const;
 
+  /// Whether a body that lies on the face with `normal` stays there while it is pulled along `down` (of any length): from the centre of mass that leads through the face. Both in
+  /// body axes; of whatever size the body is.
+  bool holds(const Vec3& normal, const Vec3& down) const;
+
  private:
   struct Triangle {
     std::array<int, 3> corner, across;  // `across[i]`: the triangle beyond the edge from corner i to the next

@@ -15,6 +15,12 @@ dxBody* body_of(dxGeom* geom) { return dGeomGetBody(geom); }
 void set_gravity(dxWorld* world, const Vec3& gravity) { dWorldSetGravity(world, gravity.x(), gravity.y(), gravity.z()); }
 
 RigidState state(dxBody* body) { return state_of(body); }
+Vec3 position(dxGeom* geom) { return to_vec3(dGeomGetPosition(geom)); }
+Quat orientation(dxGeom* geom) {
+  dQuaternion q;
+  dGeomGetQuaternion(geom, q);
+  return to_quat(q);
+}
 
 double mass(dxBody* body) {
   dMass mass;

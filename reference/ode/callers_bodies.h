@@ -14,6 +14,8 @@ void set_gravity(dxWorld* world, const Vec3& gravity);
 
 dxBody* body_of(dxGeom* geom);        ///< null: static
 RigidState state(dxBody* body);
+Vec3 position(dxGeom* geom);          ///< m, world; of one that is no plane
+Quat orientation(dxGeom* geom);
 double mass(dxBody* body);            ///< kg
 Mat3 inverse_inertia(dxBody* body);   ///< 1/(kg m²), about the centre of mass, in the body's axes
 Vec3 force(dxBody* body);             ///< N, gathered since its last step

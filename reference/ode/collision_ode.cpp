@@ -206,6 +206,10 @@ void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> ca
 
 void Collision::find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts) {
   const double size = other ? std::min(body.reach, other->reach) : body.reach;
+  if (!other && settings_.mesh_contacts != MeshContacts::plain && dGeomGetClass(parts[0].second) == dHeightfieldClass) {
+    height_field_contacts_.find(body, parts[0].second, points_);
+    return drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
+  }
   const bool exact = settings_.mesh_contacts == MeshContacts::exact;
   const Pieces first = pieces_of(body), second = exact && !first.empty() ? pieces_of_other(parts[0], other) : Pieces{};
   if (exact && !first.empty() && !second.empty())

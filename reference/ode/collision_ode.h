@@ -8,6 +8,7 @@
 #include "reference/ode/bodies_ode.h"
 #include "reference/ode/broad_phase_ode.h"
 #include "reference/ode/callers_shapes_ode.h"
+#include "reference/ode/height_field_contacts.h"
 #include "reference/ode/joints_ode.h"
 #include "reference/ode/narrow_phase_ode.h"
 #include "reference/ode/plane_phase_ode.h"
@@ -70,6 +71,7 @@ class Collision {
   BroadPhase broad_phase_;
   NarrowPhase narrow_phase_;
   PlanePhase plane_phase_;
+  HeightFieldContacts height_field_contacts_;
   std::vector<Plane> planes_;
   std::vector<Plane> callers_planes_;
   std::vector<Ground> ground_;                // by the ground geom's number (dGeomGetData)

@@ -35,6 +35,13 @@ struct Pose {
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
+// In the order in which the space gives its geoms out.
+struct Given {
+  dGeomID geom = nullptr;
+  dBodyID body = nullptr;
+  std::uint32_t slot = 0;
+};
+
 struct Seen {
   Identity identity;
   Pose pose;
@@ -117,8 +124,9 @@ struct SpaceMirror::Impl {
   Impl& operator=(const Impl&) = delete;
 
   void forget_moves();
-  void look_into(dSpaceID in, unsigned category, unsigned collide);
-  void look_at(dGeomID geom, unsigned category, unsigned collide);
+  template <class Visit>
+  void walk(dSpaceID in, unsigned category, unsigned collide, const Visit& visit) const;
+  void look_at(dGeomID geom, int geom_class, unsigned category, unsigned collide);
   std::uint32_t expected_slot(dGeomID geom);
   void note(std::uint32_t slot);
   void add(const Seen& found);
@@ -134,7 +142,7 @@ struct SpaceMirror::Impl {
   std::vector<MirroredGeom> geoms;
   std::vector<Seen> seen;  // one of each slot
   std::unordered_map<dGeomID, std::uint32_t> slots;
-  std::vector<std::uint32_t> order, last_order;  // slots, as the space gives its geoms out
+  std::vector<Given> order, last_order;
   std::size_t cursor = 0;                        // in last_order: which is expected next
   std::vector<std::uint32_t> added, removed, moved, planes, bodied, free;
   std::vector<Eigen::AlignedBox3d> followed;     // one of each in bodied
@@ -155,7 +163,7 @@ void SpaceMirror::exclude(dxSpace* space) { impl_->excluded.push_back(space); }
 void SpaceMirror::refresh() {
   prepare();
   impl_->forget_moves();
-  impl_->look_into(impl_->space, ~0u, ~0u);
+  impl_->walk(impl_->space, ~0u, ~0u, [this](dGeomID geom, int geom_class, unsigned category, unsigned collide) { impl_->look_at(geom, geom_class, category, collide); });
   impl_->drop_unseen();
   impl_->note_disturbed();
   impl_->update_tree();
@@ -175,33 +183,37 @@ void SpaceMirror::Impl::forget_moves() {
   ++refreshes;
 }
 
+// Visits every geom that may meet another, with its bits less those that the spaces around it lack.
 // dSpaceGetGeom fails an assertion on a quadtree; what a box without end meets there is all that a body could.
-void SpaceMirror::Impl::look_into(dSpaceID in, unsigned category, unsigned collide) {
+template <class Visit>
+void SpaceMirror::Impl::walk(dSpaceID in, unsigned category, unsigned collide, const Visit& visit) const {
   if (std::ranges::find(excluded, in) != excluded.end()) return;
-  const auto geom = reinterpret_cast<dGeomID>(in);
-  category &= unsigned(dGeomGetCategoryBits(geom)), collide &= unsigned(dGeomGetCollideBits(geom));
-  if (in != space && (!dGeomIsEnabled(geom) || (category | collide) == 0)) return;
+  const auto self = reinterpret_cast<dGeomID>(in);
+  category &= unsigned(dGeomGetCategoryBits(self)), collide &= unsigned(dGeomGetCollideBits(self));
+  if (in != space && (!dGeomIsEnabled(self) || (category | collide) == 0)) return;
+  const auto enter = [&](dGeomID geom) {
+    const int geom_class = dGeomGetClass(geom);
+    if (is_space(geom_class)) return walk(reinterpret_cast<dSpaceID>(geom), category, collide, visit);
+    const unsigned own_category = category & unsigned(dGeomGetCategoryBits(geom)), own_collide = collide & unsigned(dGeomGetCollideBits(geom));
+    if (geom_class != dRayClass && dGeomIsEnabled(geom) && (own_category | own_collide) != 0) visit(geom, geom_class, own_category, own_collide);
+  };
   if (dSpaceGetClass(in) != dQuadTreeSpaceClass) {
-    for (int i = 0; i < dSpaceGetNumGeoms(in); ++i) look_at(dSpaceGetGeom(in, i), category, collide);
+    const int count = dSpaceGetNumGeoms(in);
+    for (int i = 0; i < count; ++i) enter(dSpaceGetGeom(in, i));
     return;
   }
   struct Found {
     dGeomID probe;
     std::vector<dGeomID> geoms;
   } found{probe, {}};
-  dSpaceCollide2(geom, probe, &found, [](void* data, dGeomID a, dGeomID b) {
+  dSpaceCollide2(self, probe, &found, [](void* data, dGeomID a, dGeomID b) {
     auto& all = *static_cast<Found*>(data);
     all.geoms.push_back(a == all.probe ? b : a);
   });
-  for (const dGeomID met : found.geoms) look_at(met, category, collide);
+  for (const dGeomID met : found.geoms) enter(met);
 }
 
-void SpaceMirror::Impl::look_at(dGeomID geom, unsigned category, unsigned collide) {
-  const int geom_class = dGeomGetClass(geom);
-  if (is_space(geom_class)) return look_into(reinterpret_cast<dSpaceID>(geom), category, collide);
-  category &= unsigned(dGeomGetCategoryBits(geom)), collide &= unsigned(dGeomGetCollideBits(geom));
-  if (geom_class == dRayClass || !dGeomIsEnabled(geom) || (category | collide) == 0) return;
-
+void SpaceMirror::Impl::look_at(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
   const Seen found{identity_of(geom, geom_class, category, collide), pose_of(geom, geom_class)};
   const std::uint32_t slot = expected_slot(geom);
   if (slot == seen.size() || seen[slot].identity != found.identity) return add(found);
@@ -214,7 +226,7 @@ void SpaceMirror::Impl::look_at(dGeomID geom, unsigned category, unsigned collid
 
 // A space mostly gives its geoms out in the same order as the last time; one that was moved or is new may come earlier.
 std::uint32_t SpaceMirror::Impl::expected_slot(dGeomID geom) {
-  if (cursor < last_order.size() && seen[last_order[cursor]].identity.geom == geom) return last_order[cursor++];
+  if (cursor < last_order.size() && last_order[cursor].geom == geom) return last_order[cursor++].slot;
   const auto found = slots.find(geom);
   if (found == slots.end()) return std::uint32_t(seen.size());
   cursor = seen[found->second].place + 1;
@@ -224,7 +236,7 @@ std::uint32_t SpaceMirror::Impl::expected_slot(dGeomID geom) {
 void SpaceMirror::Impl::note(std::uint32_t slot) {
   seen[slot].at = refreshes;
   seen[slot].place = std::uint32_t(order.size());
-  order.push_back(slot);
+  order.push_back({seen[slot].identity.geom, seen[slot].identity.body, slot});
 }
 
 void SpaceMirror::Impl::add(const Seen& found) {
@@ -244,9 +256,9 @@ void SpaceMirror::Impl::add(const Seen& found) {
 }
 
 void SpaceMirror::Impl::drop_unseen() {
-  for (const std::uint32_t slot : last_order) {
+  for (const auto& [geom, body, slot] : last_order) {
     if (seen[slot].at == refreshes) continue;
-    const auto entry = slots.find(seen[slot].identity.geom);
+    const auto entry = slots.find(geom);
     if (entry->second == slot) slots.erase(entry);  // else another has its address
     seen[slot].identity.geom = geoms[slot].geom = nullptr;
     geoms[slot].body = nullptr;
@@ -319,6 +331,21 @@ void SpaceMirror::Impl::follow(std::size_t index) {
   const Eigen::AlignedBox3d now = box_of(bounds);
   if (geoms[slot].kind != GeomKind::plane) tree.move(slot, followed[index], now);
   followed[index] = now;
+}
+
+void SpaceMirror::find_bodied_now(std::vector<std::uint32_t>& slots) const {
+  const Impl& all = *impl_;
+  std::size_t cursor = 0;
+  all.walk(all.space, ~0u, ~0u, [&](dGeomID geom, int, unsigned, unsigned) {
+    if (cursor == all.order.size() || all.order[cursor].geom != geom) {
+      const auto known = all.slots.find(geom);
+      if (known == all.slots.end()) return;
+      cursor = all.seen[known->second].place;
+    }
+    const Given& given = all.order[cursor++];
+    if (given.body && dGeomGetBody(geom) == given.body) slots.push_back(given.slot);
+  });
+  std::ranges::sort(slots);
 }
 
 void SpaceMirror::find_followed(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const { impl_->tree.find(box, found); }

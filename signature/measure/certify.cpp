@@ -57,9 +57,25 @@ double squared_error_of_mean(std::span<const Response> trials, const Response& m
 }
 
 void add_held_out(std::span<const HeldOutUnit> units, TableKind kind, const Signature& signature, TableCertificate& c) {
+  HeldOutComparison compared = compare_held_out(units, kind, signature);
+  c.held_out = compared.held_out[0].size();
+  c.held_out_error = compared.error_of_mean;
+  for (std::size_t k = 0; k < 3; ++k) c.held_out_ks = std::max(c.held_out_ks, kolmogorov_smirnov(std::move(compared.drawn[k]), std::move(compared.held_out[k])));
+}
+
+}  // namespace
+
+TableCertificate certify_table(const TableUnits& units, TableKind kind, const Signature& signature) {
+  TableCertificate certificate;
+  add_trials(units.cells, certificate);
+  add_held_out(units.held_out, kind, signature, certificate);
+  return certificate;
+}
+
+HeldOutComparison compare_held_out(std::span<const HeldOutUnit> units, TableKind kind, const Signature& signature) {
   const double bounce_velocity = kind == TableKind::non_bouncing ? 1e300 : 0.0;
   const double restitution = kind == TableKind::non_bouncing ? 0.0 : signature.settings.law.restitution;
-  std::array<std::vector<double>, 3> drawn, held_out;
+  HeldOutComparison compared;
   double squared_errors = 0.0;
   int conditions = 0;
   for (std::size_t i = 0; i < units.size(); ++i) {
@@ -72,21 +88,11 @@ void add_held_out(std::span<const HeldOutUnit> units, TableKind kind, const Sign
     for (const Response& response : unit.responses) {
       const auto truth = measures_of(velocities_of(response, unit.configuration, restitution));
       const auto draw = measures_of(draw_response(found, unit.configuration, restitution, signature.settings.draw, random));
-      for (std::size_t k = 0; k < 3; ++k) held_out[k].push_back(truth[k]), drawn[k].push_back(draw[k]);
+      for (std::size_t k = 0; k < 3; ++k) compared.held_out[k].push_back(truth[k]), compared.drawn[k].push_back(draw[k]);
     }
   }
-  c.held_out = held_out[0].size();
-  c.held_out_error = conditions ? std::sqrt(std::max(0.0, squared_errors / conditions)) : 0.0;
-  for (std::size_t k = 0; k < 3; ++k) c.held_out_ks = std::max(c.held_out_ks, kolmogorov_smirnov(std::move(drawn[k]), std::move(held_out[k])));
-}
-
-}  // namespace
-
-TableCertificate certify_table(const TableUnits& units, TableKind kind, const Signature& signature) {
-  TableCertificate certificate;
-  add_trials(units.cells, certificate);
-  add_held_out(units.held_out, kind, signature, certificate);
-  return certificate;
+  compared.error_of_mean = conditions ? std::sqrt(std::max(0.0, squared_errors / conditions)) : 0.0;
+  return compared;
 }
 
 double kolmogorov_smirnov(std::vector<double> a, std::vector<double> b) {

@@ -37,6 +37,11 @@ static void refused(lodestone_result result, const char* because, const char* wh
 
 /* ---- What the library calls ---- */
 
+static void count_ground(void* context, size_t ray, const lodestone_hit* hit) {
+  (void)ray;
+  *(int*)context += hit->who.kind == LODESTONE_SIDE_GROUND;
+}
+
 static int jobs_run = 0;
 static void run_jobs(void* context, int64_t count, lodestone_task task, const void* task_context) {
   ++*(int*)context;
@@ -66,6 +71,12 @@ static void append(void* context, const void* bytes, size_t size) {
 
 static void count_found(void* context, size_t volume, const lodestone_hit* hit) {
   if (hit->who.kind == LODESTONE_SIDE_BODY) ++((int*)context)[volume];
+}
+
+static int signatures_asked = 0;
+static const lodestone_signature* lend_signature(void* context, const char* shape_name, double restitution, double friction) {
+  signatures_asked += !strcmp(shape_name, "crate") && restitution >= 0 && friction >= 0;
+  return context;
 }
 
 /* ---- A world of the manager's own ---- */
@@ -165,12 +176,14 @@ static void check_a_heap(void) {
   }
   that(full == report.full && with_ode == full, "full bodies have a dBodyID");
   DO(lodestone_why(manager, bodies[7], why, sizeof why, &length));
+  that(report.times.total_ms > 0 && report.counters.ode_bodies_created >= report.full && report.counters.signatures_loaded >= 1, "times and counters of the last step");
   that(length > sizeof why && strlen(why) == sizeof why - 1, "a text that is cut has its zero");
 
   lodestone_reason reason;
   DO(lodestone_explain(manager, bodies[7], &reason));
   DO(lodestone_get_rung(manager, bodies[7], &rung));
   that(reason.placed && reason.rung == rung && reason.group.generation == 0, "why a body has its rung, as a structure");
+  that(reason.rule == LODESTONE_RULE_FAR || reason.rule == LODESTONE_RULE_WITHIN_HYSTERESIS, "far from the viewpoint, it says");
   within(reason.distance_m, 3.0, 5.0, "its distance from the viewpoint, m");
   lodestone_group group;
   DO(lodestone_make_group(manager, bodies, 3, NULL, NULL, NULL, &group));
@@ -188,6 +201,12 @@ static void check_a_heap(void) {
   DO(lodestone_cast_rays(manager, rays, 3, NULL, met, hits));
   that(met[0] && met[1] && !met[2] && hits[0].who.kind == LODESTONE_SIDE_BODY, "rays and spheres from above meet a body, one elsewhere nothing");
   within(hits[0].distance - hits[1].distance, 0.0, 0.2, "the sphere meets it first, by, m");
+  int through[3] = {0, 0, 0}, ground_through = 0;
+  DO(lodestone_cast_rays_through(manager, rays, 3, NULL, count_found, through));
+  that(through[0] >= 1 && through[1] >= through[0] && through[2] == 0, "rays and spheres through all that they meet");
+  DO(lodestone_cast_rays_through(manager, rays, 1, NULL, count_ground, &ground_through));
+  within(ground_through, 1, 1, "the plane under it, too");
+  refused(lodestone_cast_rays_through(manager, rays, 1, NULL, NULL, NULL), "found", "nobody to tell");
   lodestone_volume volumes[2] = {{.radius = 0.01, .position = state.position}, {.sides = {100, 100, 100}, .orientation = {1, 0, 0, 0}}};
   int found[2] = {0, 0};
   DO(lodestone_overlap(manager, volumes, 2, NULL, count_found, found));
@@ -241,9 +260,9 @@ static void check_a_heap(void) {
   for (int i = 0; i < 30; ++i) DO(lodestone_step(other, 1.0 / 60.0, NULL));
   DO(lodestone_state_hash(other, &again));
   that(after == again, "thirty steps from a snapshot give the same hash in another manager");
-  lodestone_replay_result replayed = {0, false, {0, 0}};
+  lodestone_replay_result replayed = {0, false, {0, 0}, NULL};
   DO(lodestone_replay(other, recording.bytes, recording.size, shapes, 1, &replayed));
-  that(replayed.same && replayed.steps == 30, "and so does a recording");
+  that(replayed.same && replayed.steps == 30 && strstr(replayed.text, "30 steps"), "and so does a recording");
   ((unsigned char*)kept)[size / 2] ^= 1;
   refused(lodestone_restore(other, kept, size, shapes, 1), "checksum", "a damaged snapshot");
   free(kept);
@@ -252,8 +271,14 @@ static void check_a_heap(void) {
 
   /* Hooks. */
   int lines = 0;
-  DO(lodestone_draw(manager, count_line, NULL, &lines, true));
+  lodestone_draw_settings drawing = lodestone_default_draw_settings();
+  drawing.bounds = true;
+  DO(lodestone_draw(manager, count_line, NULL, &lines, &drawing));
   within(lines, 18 * BODIES, 1e9, "lines drawn");
+  drawing.bodies = drawing.contacts = drawing.bounds = false;
+  const int drawn = lines;
+  DO(lodestone_draw(manager, count_line, NULL, &lines, &drawing));
+  within(lines - drawn, 0, 0, "lines where nothing is to be drawn");
   DO(lodestone_set_profile(manager, begin_zone, end_zone, NULL));
   DO(lodestone_step(manager, 1.0 / 60.0, NULL));
   DO(lodestone_set_profile(manager, NULL, NULL, NULL));
@@ -268,7 +293,12 @@ static void check_a_heap(void) {
   DO(lodestone_cast_rays(manager, &onto_box, 1, NULL, met, hits));
   within(hits[0].distance, 3.9 - 1e-6, 3.9 + 1e-6, "way down to a box that was moved, m");
   that(met[0] && hits[0].who.kind == LODESTONE_SIDE_GROUND && hits[0].who.ground.index == box.index, "it is named");
+  that(lodestone_is_valid_ground(manager, box), "ground that is there is valid");
   DO(lodestone_remove_ground(manager, box));
+  that(!lodestone_is_valid_ground(manager, box), "removed, it is not");
+  lodestone_vec3 gravity = none;
+  DO(lodestone_get_gravity(manager, &gravity));
+  within(gravity.z, -9.81, -9.81, "gravity, m/s2");
   refused(lodestone_remove_ground(manager, box), "", "ground that was removed");
 
   /* Failures. */
@@ -284,10 +314,65 @@ static void check_a_heap(void) {
   refused(lodestone_set_level(manager, bodies[6], (lodestone_level_choice)9), "level", "a level that there is not");
   refused(lodestone_add_force(manager, bodies[6], (lodestone_vec3){INFINITY, 0, 0}, none), "force", "an infinite force");
   refused(lodestone_make_box("flat", (lodestone_vec3){1, 1, 0}, &crate), "", "a box without height");
+  refused(lodestone_make_box("lost", (lodestone_vec3){1, 1, 1}, NULL), "handle", "a shape that goes nowhere");
   refused(lodestone_load_mesh("/nowhere.obj", 1.0, &crate), "/nowhere.obj", "a file that is not there");
   DO(lodestone_state_hash(manager, &again));
   that(before == again, "nothing has changed by any of them");
   lodestone_destroy(manager);
+  lodestone_release_shape(crate);
+}
+
+/* ---- Signatures of the caller's, and the audit ---- */
+
+static void check_signatures_and_audit(void) {
+  lodestone_shape* crate = NULL;
+  lodestone_signature *signature = NULL, *read = NULL;
+  const lodestone_vec3 sides = {0.2, 0.3, 0.4};
+  DO(lodestone_make_box("crate", sides, &crate));
+  DO(lodestone_find_or_measure_signature(crate, 0.4, 0.5, 0, &signature));
+  refused(lodestone_load_signature("/nowhere.sig", &read), "/nowhere.sig", "a signature's file that is not there");
+  refused(lodestone_read_signature("none", 4, &read), "", "bytes that are no signature");
+  lodestone_settings settings = lodestone_default_settings();
+  settings.signatures = lend_signature;
+  settings.signatures_context = signature;
+  settings.audit_ms = 5.0;
+  settings.policy.full_within = 10.0;
+  lodestone_manager* manager = NULL;
+  DO(lodestone_create(&settings, &manager));
+  DO(lodestone_replace_material(manager, 0, 0.4, 0.5, 1000.0));
+  DO(lodestone_add_plane(manager, (lodestone_vec3){0, 0, 1}, 0.0, 0, NULL));
+  for (int i = 0; i < 8; ++i) {
+    lodestone_body_definition definition = lodestone_default_body(crate);
+    definition.state.position = (lodestone_vec3){2.0 * i, 0.0, 1.0 + 0.1 * i};
+    definition.state.angular_velocity = (lodestone_vec3){1.0, 0.5 * i, 0.3};
+    DO(lodestone_add_body(manager, &definition, NULL));
+  }
+  look_from(manager, 0.0);
+  for (int i = 0; i < 10; ++i) DO(lodestone_step(manager, 1.0 / 60.0, NULL));
+  look_from(manager, 1e4);
+  for (int i = 0; i < 400; ++i) DO(lodestone_step(manager, 1.0 / 60.0, NULL));
+  lodestone_report report;
+  lodestone_audit audit;
+  DO(lodestone_get_report(manager, &report));
+  DO(lodestone_get_audit(manager, &audit));
+  within(report.full, 0, 0, "bodies full, far from the viewpoint");
+  within(signatures_asked, 1, 100, "times that the caller's signatures were asked for");
+  within(audit.bodies, 1, 8, "bodies that the audit compared");
+  within(audit.bodies + audit.watched + audit.left_out, 1, 8, "with those that it still watches, and left out");
+  that(audit.rest_time_s.full > 0 && audit.rest_time_s.difference_least <= audit.rest_time_s.difference_most && audit.drift_least <= audit.drift_most, "its figures and intervals");
+  lodestone_destroy(manager);
+
+  settings.signatures_context = NULL;
+  DO(lodestone_create(&settings, &manager));
+  lodestone_body_definition definition = lodestone_default_body(crate);
+  definition.level = LODESTONE_CHOOSE_TABLES;
+  lodestone_body body;
+  DO(lodestone_add_body(manager, &definition, &body));
+  refused(lodestone_step(manager, 1.0 / 60.0, NULL), "tables", "a body at tables without a signature");
+  DO(lodestone_set_level(manager, body, LODESTONE_CHOOSE_SUPPORT));
+  DO(lodestone_step(manager, 1.0 / 60.0, NULL));
+  lodestone_destroy(manager);
+  lodestone_release_signature(signature);
   lodestone_release_shape(crate);
 }
 
@@ -336,6 +421,7 @@ static void check_callers_world(void) {
 int main(void) {
   that(strlen(lodestone_version()) >= 5, "a version");
   check_a_heap();
+  check_signatures_and_audit();
   check_callers_world();
   return failures > 0;
 }

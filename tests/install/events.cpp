@@ -6,15 +6,11 @@
 #include <ode/ode.h>
 
 #include "check.h"
-#include "lod/manager.h"
+#include "crate.h"
 
 using namespace lodestone;
 
-constexpr double kFrame = 1.0 / 60.0;
-
-const auto crate = std::make_shared<const Shape>(make_shape("crate", make_box({0.3, 0.3, 0.3})));
 const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.15));
-RigidState at(double x, double z) { return {Vec3(x, 0, z), Quat::Identity(), Vec3::Zero(), Vec3::Zero()}; }
 
 struct Told {
   int begins = 0, hits = 0, ends = 0;

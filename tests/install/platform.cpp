@@ -1,9 +1,7 @@
 // A moving platform of the game's own carries what lies on it, as plain ODE does.
-#include <ode/ode.h>
-
-#include <cmath>
 #include <memory>
 
+#include "callers_world.h"
 #include "check.h"
 #include "lod/manager.h"
 
@@ -13,9 +11,8 @@ namespace {
 
 constexpr double kStep = 1.0 / 60.0, kSpeed = 0.5;
 
-struct Game {
+struct Game : CallersWorld {
   Game() {
-    dWorldSetGravity(world, 0, 0, -9.81);
     dMass mass;
     dMassSetBoxTotal(&mass, 100.0, 4, 4, 0.2);
     dBodySetMass(platform, &mass);
@@ -23,14 +20,6 @@ struct Game {
     dGeomSetBody(dCreateBox(space, 4, 4, 0.2), platform);
     dBodySetKinematic(platform);
   }
-  ~Game() {
-    dJointGroupDestroy(contacts);
-    dSpaceDestroy(space);
-    dWorldDestroy(world);
-  }
-  dWorldID world = dWorldCreate();
-  dSpaceID space = dHashSpaceCreate(nullptr);
-  dJointGroupID contacts = dJointGroupCreate(0);
   dBodyID platform = dBodyCreate(world);
 };
 
@@ -81,7 +70,6 @@ double carried_by_plain_ode() {
 }  // namespace
 
 int main() {
-  dInitODE2(0);
   const double plain = carried_by_plain_ode();
   std::printf("plain ODE carries a crate %.4f m of .5 m\n", plain);
   check::within(carried_by_manager(LevelChoice::full), plain - 0.02, 0.5 + 1e-3, "m that a full crate that slept is carried, of .5 m");

@@ -5,15 +5,11 @@
 #include <ode/ode.h>
 
 #include "check.h"
-#include "lod/manager.h"
+#include "crate.h"
 
 using namespace lodestone;
 
-constexpr double kFrame = 1.0 / 60.0;
-
-const auto crate = std::make_shared<const Shape>(make_shape("crate", make_box({0.3, 0.3, 0.3})));
 const auto platform = std::make_shared<const Shape>(make_shape("platform", make_box({2, 2, 0.2})));
-RigidState at(double x, double z) { return {Vec3(x, 0, z), Quat::Identity(), Vec3::Zero(), Vec3::Zero()}; }
 ManagerSettings unmeasured() { return {.signatures = [](const Shape&, const ContactLaw&) { return nullptr; }}; }
 ManagerSettings measured() { return {.signature_timing = SignatureTiming::in_step}; }
 

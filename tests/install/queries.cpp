@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <vector>
 #include <ode/ode.h>
@@ -135,10 +136,134 @@ void many() {
   std::printf("     %.2f us a ray of 100 m among 3,000 bodies\n", us / 30);
 }
 
+// A caller's own dynamic bodies, in a space of any type: a box, a capsule with an offset, a convex and a concave mesh.
+struct Callers {
+  dWorldID world = dWorldCreate();
+  dSpaceID space;
+  std::unique_ptr<Manager> manager;
+  dBodyID box, capsule, convex, angle;
+  dGeomID box_geom;
+  Mesh mesh = make_l(0.4, 0.4, 0.2, 0.2);
+  std::vector<double> corners;
+  std::vector<dTriIndex> faces;
+  dTriMeshDataID data = dGeomTriMeshDataCreate();
+
+  explicit Callers(bool quadtree) {
+    const dVector3 center = {0, 0, 0}, half = {50, 50, 50};
+    space = quadtree ? dQuadTreeSpaceCreate(nullptr, center, half, 5) : dHashSpaceCreate(nullptr);
+    for (int i = 0; i < 30; ++i) dGeomSetPosition(dCreateBox(space, 1, 1, 1), i, 10, 0);
+    box = add(box_geom = dCreateBox(space, 0.4, 0.4, 0.4), {0, 0, 1});
+    const dGeomID rod = dCreateCapsule(space, 0.1, 0.6);
+    capsule = add(rod, {2, 0, 1});
+    dGeomSetOffsetPosition(rod, 0, 0, 0.5);
+    // An octahedron of .3 m.
+    static const dReal points[] = {0.3, 0, 0, -0.3, 0, 0, 0, 0.3, 0, 0, -0.3, 0, 0, 0, 0.3, 0, 0, -0.3};
+    static dReal planes[32];
+    static const unsigned polygons[] = {3, 0, 2, 4, 3, 2, 1, 4, 3, 1, 3, 4, 3, 3, 0, 4, 3, 2, 0, 5, 3, 1, 2, 5, 3, 3, 1, 5, 3, 0, 3, 5};
+    const double part = std::sqrt(1.0 / 3.0);
+    for (int i = 0; i < 8; ++i) {
+      dReal* plane = planes + 4 * i;
+      const unsigned* corner = polygons + 4 * i + 1;
+      Vec3 normal = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) normal += Vec3(points[3 * corner[k]], points[3 * corner[k] + 1], points[3 * corner[k] + 2]);
+      normal.normalize();
+      for (int a = 0; a < 3; ++a) plane[a] = normal[a];
+      plane[3] = 0.3 * part;
+    }
+    convex = add(dCreateConvex(space, planes, 8, points, 6, polygons), {4, 0, 1});
+    for (const Vec3& v : mesh.vertices) corners.insert(corners.end(), {v.x(), v.y(), v.z()});
+    for (const auto& face : mesh.faces) faces.insert(faces.end(), {dTriIndex(face[0]), dTriIndex(face[1]), dTriIndex(face[2])});
+    dGeomTriMeshDataBuildDouble(data, corners.data(), 3 * sizeof(double), int(mesh.vertices.size()), faces.data(), int(faces.size()), 3 * sizeof(dTriIndex));
+    angle = add(dCreateTriMesh(space, data, nullptr, nullptr, nullptr), {6, 0, 1});
+    manager = std::make_unique<Manager>(world, space);
+    manager->step(1.0 / 60.0);
+  }
+  ~Callers() {
+    manager.reset();
+    dSpaceDestroy(space);
+    dWorldDestroy(world);
+    dGeomTriMeshDataDestroy(data);
+  }
+  dBodyID add(dGeomID geom, const Vec3& place) {
+    const dBodyID body = dBodyCreate(world);
+    dMass mass;
+    dMassSetSphereTotal(&mass, 5, 0.2);
+    dBodySetMass(body, &mass);
+    dGeomSetBody(geom, body);
+    dBodySetPosition(body, place.x(), place.y(), place.z());
+    return body;
+  }
+};
+
+bool is(const std::optional<QueryHit>& hit, dBodyID body) { return hit && hit->who.kind == ContactSide::Kind::callers && hit->who.callers == body && dGeomGetBody(hit->who.geom) == body; }
+
+void callers_bodies(bool quadtree) {
+  const auto callers_body = [](const QueryHit& hit) { return hit.who.callers; };
+  Callers c(quadtree);
+  Manager& m = *c.manager;
+  const auto down = [&](double x, double y = 0) { return m.cast_ray({.from = {x, y, 5}, .length = 8}); };
+  const auto meets = [&](const std::optional<QueryHit>& hit, dBodyID body, double distance, const char* what) {
+    check::that(is(hit, body), what);
+    check::within(hit ? hit->distance : 0, distance - 1e-6, distance + 1e-6, "m to it");
+  };
+  meets(down(0.1, 0.05), c.box, 3.8, "a ray meets a box of the caller's");
+  check::that(down(0)->who.geom == c.box_geom, "and names its geom");
+  meets(down(2), c.capsule, 5 - 1.9 - 0.1 * (2 / (1 + std::cos(std::numbers::pi / 32)) - 1), "a ray meets a capsule that has an offset");
+  meets(down(4), c.convex, 3.7, "a ray meets a convex");
+  meets(down(4.1, 0.1), c.convex, 3.9, "and its slanted face");
+  const Eigen::AlignedBox3d bounds_of_l = [&] {
+    Eigen::AlignedBox3d bounds;
+    for (const Vec3& v : c.mesh.vertices) bounds.extend(v);
+    return bounds;
+  }();
+  int through = 0, met = 0;
+  const Vec3 size = bounds_of_l.sizes();
+  for (double x : {0.25, 0.75})
+    for (double y : {0.25, 0.75}) {
+      const Vec3 from = Vec3(6, 0, 1) + bounds_of_l.min() + Vec3(x * size.x(), y * size.y(), 2);
+      (is(m.cast_ray({.from = from, .length = 4}), c.angle) ? met : through)++;
+    }
+  check::within(met, 3, 3, "of four rays at the quarters of a concave mesh that meet it");
+  check::within(through, 1, 1, "that pass through its notch");
+  meets(m.sweep_sphere({{.from = {0, 0, 5}}, 0.5}), c.box, 3.3, "a sphere that falls meets the box");
+  meets(m.sweep_sphere({{.from = {4, 0, 5}}, 0.5}), c.convex, 3.2, "and the convex");
+  std::vector<QueryHit> list[1];
+  const SphereVolume small[1] = {{{0, 0, 1.5}, 0.31}};
+  m.overlap_spheres(small, list);
+  check::that(list[0].size() == 1 && list[0][0].who.callers == c.box, "a sphere over it overlaps it");
+  const BoxVolume beam[1] = {{.sides = {10, 0.1, 0.1}, .position = {3, 0, 1.27}}};
+  m.overlap_boxes(beam, list);
+  check::that(list[0].size() == 2 && std::ranges::count(list[0], c.capsule, callers_body) == 1 && std::ranges::count(list[0], c.convex, callers_body) == 1, "a beam overlaps what reaches so high, each once");
+  check::that(!m.cast_ray({.from = {0, 0, 5}, .length = 8}, {.callers = false}), "not where the filter leaves them out");
+  dGeomSetCategoryBits(c.box_geom, 4);
+  m.step(1.0 / 60.0);
+  check::that(!m.cast_ray({.from = {0, 0, 5}, .length = 8}, {.categories = 2}), "nor where it leaves out the geom's category");
+
+  dBodySetPosition(c.box, -3, 0, 2);
+  check::that(!down(0), "nothing is where it was before it was moved");
+  meets(down(-3.1), c.box, 2.8, "it is where it was moved, without a step");
+  m.step(1.0 / 60.0);
+  meets(down(-3.1), c.box, 2.8, "and after one");
+  dBodySetLinearVel(c.box, 6, 0, 0);
+  m.step(1.0 / 60.0);
+  const auto side = m.cast_ray({.from = {-8, 0, 2}, .direction = {1, 0, 0}});
+  meets(side, c.box, 5 - 0.2 + 0.1, "one that flies is where the step took it");
+
+  dGeomDestroy(c.box_geom), dBodyDestroy(c.box);
+  check::that(!m.cast_ray({.from = {-8, 0, 2}, .direction = {1, 0, 0}, .length = 8}), "a destroyed one is met no more, without a step");
+  meets(down(4), c.convex, 3.7, "others are");
+  const dGeomID added = dCreateSphere(c.space, 0.25);
+  const dBodyID late = c.add(added, {-3, 0, 1});
+  m.step(1.0 / 60.0);
+  meets(down(-3), late, 3.75, "one that came is, a step later");
+}
+
 int main() {
   Scene scene;
   rays(scene);
   volumes(scene);
   many();
+  dInitODE2(0);
+  for (const bool quadtree : {false, true}) callers_bodies(quadtree);
   return check::result();
 }

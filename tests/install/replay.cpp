@@ -43,6 +43,7 @@ void play(Manager& manager, const Shapes& shapes) {
     if (i == 50) manager.add_body({.shape = shapes[1], .state = {.position = Vec3(0, 0, 2)}, .mass = 5.0});
     if (i == 60) manager.remove_body(bodies.back()), bodies.pop_back();
     if (i == 70) manager.sleep(body);
+    if (i == 75) manager.set_policy({.policy = DistancePolicy{.full_within = 0.9, .support_within = 1.8}, .max_transitions_per_frame = 8});
     if (i == 80) manager.wake(body);
     if (i == 90) manager.set_full_substeps(3);
     if (i == 95) manager.set_importance(body, 3.0);
@@ -88,10 +89,21 @@ int main() {
   check::that(!differs.same && differs.body, "where it comes out otherwise a body is named");
   check::within(differs.steps, 1, 40, "the step at which the first body is on another rung");
 
-  for (const auto& [bytes, because] : {std::pair(Bytes(20), "it begins otherwise"), {Bytes(recording.begin(), recording.begin() + 8), "no beginning"}}) {
+  // A policy with a function, which the reader must bring.
+  Bytes with_function;
+  const PolicySettings significant = {.policy = DistancePolicy{.full_within = 1.0}, .significance = [](BodyId) { return 0.5; }};
+  manager.set_record([&](std::span<const std::byte> bytes) { with_function.insert(with_function.end(), bytes.begin(), bytes.end()); });
+  manager.set_policy(significant);
+  for (int i = 0; i < 10; ++i) manager.step(kStep);
+  manager.set_record({});
+  again.set_policy(significant);
+  check::that(again.replay(with_function, own).same, "the function is the reader's");
+  again.set_policy({});
+
+  for (const auto& [bytes, because] : {std::pair(with_function, "a function for `significance`"), std::pair(Bytes(20), "it begins otherwise"), {Bytes(recording.begin(), recording.begin() + 8), "no beginning"}}) {
     std::string said;
     try {
-      other.replay(bytes, own);
+      again.replay(bytes, own);
     } catch (const InputError& error) {
       said = error.what();
     }

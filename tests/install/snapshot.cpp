@@ -85,6 +85,82 @@ void check_heap(const char* name, const Shapes& shapes, int count, int before, i
   repeats(fresh, std::string(name) + ", another manager, on two threads");
 }
 
+// Bodies that a ray of their own height, from above, finds where they are.
+int found_where_they_are(const Manager& manager, const std::vector<BodyId>& bodies) {
+  int found = 0;
+  for (const BodyId body : bodies) {
+    const Vec3 above = manager.state(body).position + Vec3(0, 0, 0.25);
+    std::vector<QueryHit> hits[1];
+    const Ray ray{.from = above, .length = 0.5};
+    manager.cast_rays_through({&ray, 1}, hits);
+    for (const QueryHit& hit : hits[0]) found += hit.who.body == body;
+  }
+  return found;
+}
+
+// What is kept of places for later questions must not outlive the places.
+void check_places(const Shapes& shapes) {
+  Manager manager({.policy = {.policy = DistancePolicy{.full_within = 1e3}}, .signature_timing = SignatureTiming::in_step});
+  manager.add_plane(Vec3::UnitZ(), 0.0);
+  const Vec3 camera(0, 0, 1);
+  manager.set_viewpoints({&camera, 1});
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 50; ++i) {
+    const LevelChoice level = i < 40 ? LevelChoice::full : i < 45 ? LevelChoice::support : LevelChoice::tables;
+    bodies.push_back(manager.add_body({.shape = shapes[0], .state = {.position = Vec3((i < 40 ? 0.3 : 2.0) * i, 0.0, 0.2)}, .level = level}));
+  }
+  manager.step(kStep);
+  for (const BodyId body : bodies) manager.sleep(body);
+  manager.step(kStep);
+  check::within(found_where_they_are(manager, bodies), 50, 50, "bodies met where they are");
+  const std::vector<std::byte> kept = manager.snapshot();
+  for (const BodyId body : bodies) {
+    RigidState there = manager.state(body);
+    there.position += Vec3(0.5, 40.0, 1.0);
+    manager.set_state(body, there);
+  }
+  manager.add_body({.shape = shapes[0], .state = {.position = Vec3(0.0, 80.0, 5.0)}});
+  manager.step(kStep);
+  manager.step(kStep);
+  check::that(manager.moved().size() == 51, "they fall");
+  check::within(found_where_they_are(manager, bodies), 50, 50, "bodies met where they fall");
+  manager.set_state(bodies[0], manager.state(bodies[0]));
+  manager.restore(kept);
+  check::that(manager.moved().empty() && manager.woke().empty() && manager.fell_asleep().empty() && manager.rung_changes().empty(), "a restored manager tells of no step");
+  check::within(found_where_they_are(manager, bodies), 50, 50, "bodies met where they are again");
+  const Ray across{.from = {-5, 40, 1.2}, .direction = {1, 0, 0}, .length = 200};
+  check::that(!manager.cast_ray(across), "none where they fell");
+  check::that(manager.asleep(bodies[1]), "a restored sleeper sleeps");
+  RigidState away = manager.state(bodies[0]);
+  away.position.z() += 3.0;
+  manager.set_state(bodies[0], away);
+  check::that(!manager.asleep(bodies[1]), "it wakes when what was beside it is taken away");
+  manager.step(kStep);
+  check::that(manager.woke().size() == 2 && manager.fell_asleep().empty(), "both are told of, nobody else");
+}
+
+// Those whose way to rest is compared are of the world that was left.
+void check_audit(const Shapes& shapes) {
+  ManagerSettings settings = settings_of(DistancePolicy{.full_within = 1.2}, 1);
+  settings.audit_ms = 0.01;
+  Manager manager(settings);
+  manager.add_plane(Vec3::UnitZ(), 0.0);
+  const std::vector<std::byte> kept = manager.snapshot();
+  Vec3 camera(0, 0, 0.5);
+  manager.set_viewpoints({&camera, 1});
+  for (int i = 0; i < 20; ++i) manager.add_body({.shape = shapes[0], .state = {.position = Vec3(0.5 * (i % 5) - 1.0, 0.5 * (i / 5) - 0.75, 1.0)}});
+  for (int i = 0; i < 20; ++i) manager.step(kStep);
+  camera = Vec3(100, 0, 0.5);
+  manager.set_viewpoints({&camera, 1});
+  for (int i = 0; i < 20; ++i) manager.step(kStep);
+  const int watched = manager.report().audit.watched, left_out = manager.report().audit.left_out;
+  check::that(watched > 0, "some are watched on their way to rest");
+  manager.restore(kept);
+  manager.step(kStep);
+  check::within(manager.report().audit.watched, 0, 0, "watched of a world that was left");
+  check::within(manager.report().audit.left_out, left_out + watched, left_out + watched, "left out of the comparison");
+}
+
 bool refuses(Manager& manager, std::span<const std::byte> bytes, const char* because) {
   const std::uint64_t before = manager.state_hash();
   try {
@@ -169,5 +245,7 @@ int main() {
   dSpaceDestroy(space);
   dWorldDestroy(world);
   check_refusals(shapes);
+  check_places(shapes);
+  check_audit(shapes);
   return check::result();
 }

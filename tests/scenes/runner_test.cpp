@@ -164,7 +164,7 @@ lod: {full_within_m: 2, min_dwell_frames: 5}
 
 TEST_F(Runner, FollowsProgress) {
   std::vector<int> steps;
-  run_scene(load(kFalling), {.steps = 4, .progress = [&](int step, int) { steps.push_back(step); }});
+  run_scene(load(kFalling), {.steps = 4, .progress = [&](const RunProgress& run) { steps.push_back(run.step); }});
   EXPECT_EQ(steps, (std::vector{1, 2, 3, 4}));
 }
 

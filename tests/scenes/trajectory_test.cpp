@@ -52,7 +52,7 @@ Trajectory record() {
   for (int frame = 0; frame < kFrames; ++frame) {
     std::vector<RigidState> states;
     for (int body = 0; body < 3; ++body) states.push_back(pose(frame, body));
-    trajectory.add_frame(frame / 30.0, states, std::vector{rung_of_hero(frame), Rung::full, Rung::tables});
+    trajectory.add_frame(frame / 30.0, states, std::vector<BodyStatus>{{.rung = rung_of_hero(frame)}, {.rung = Rung::full, .asleep = frame >= 10}, {.rung = Rung::tables}});
   }
   return trajectory;
 }
@@ -149,7 +149,11 @@ TEST_F(SavedTrajectory, ShowsRungs) {
     const auto& mesh = loaded.model.meshes.at(std::size_t(loaded.model.nodes.at(std::size_t(node)).mesh));
     return loaded.model.materials.at(std::size_t(mesh.primitives[0].material)).name;
   };
-  EXPECT_EQ(material_of(loaded.node("body 1")), "full");
+  const tinygltf::Node& sleeper = loaded.model.nodes[std::size_t(loaded.node("body 1"))];
+  ASSERT_EQ(sleeper.children.size(), 2u);
+  EXPECT_EQ(material_of(sleeper.children[0]), "full");
+  EXPECT_EQ(material_of(sleeper.children[1]), "full asleep");
+  EXPECT_FLOAT_EQ(loaded.numbers<float>(loaded.sampler(sleeper.children[1], "scale")->input)[1], float(10 / 30.0));
   EXPECT_EQ(material_of(loaded.node("body 2")), "tables");
   const tinygltf::Node& hero = loaded.model.nodes[std::size_t(loaded.node("hero"))];
   EXPECT_EQ(hero.mesh, -1);
@@ -180,9 +184,8 @@ TEST_F(SavedTrajectory, SharesArraysOfAShape) {
       ++boxes;
       positions.push_back(mesh.primitives[0].attributes.at("POSITION"));
     }
-  ASSERT_EQ(boxes, 3);
-  EXPECT_EQ(positions[0], positions[1]);
-  EXPECT_EQ(positions[0], positions[2]);
+  ASSERT_EQ(boxes, 4);  // on three rungs, and full asleep
+  for (const int position : positions) EXPECT_EQ(position, positions[0]);
 }
 
 // To those who lack a kind of cone, by Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color vision deficiency (2009), table 1:
@@ -206,19 +209,23 @@ Vec3 lab_of(const Vec3& rgb) {
 
 TEST_F(SavedTrajectory, RungsAreToldApartWhateverConesOneHas) {
   const Loaded loaded(folder() / "run.glb");
-  std::vector<Vec3> colors;
+  std::vector<Vec3> awake, asleep;  // the ground among those awake
   for (const tinygltf::Material& material : loaded.model.materials) {
     const std::vector<double>& rgba = material.pbrMetallicRoughness.baseColorFactor;
-    colors.emplace_back(rgba[0], rgba[1], rgba[2]);
+    (material.name.ends_with("asleep") ? asleep : awake).emplace_back(rgba[0], rgba[1], rgba[2]);
   }
-  ASSERT_EQ(colors.size(), 4u);  // of the ground and of three rungs
-  const auto nearest_two = [&](int lacking) {
+  ASSERT_EQ(awake.size(), 4u);
+  ASSERT_EQ(asleep.size(), 3u);
+  const auto nearest_two = [&](const std::vector<Vec3>& colors, int lacking) {
     double least = 1e9;
     for (std::size_t i = 0; i < colors.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) least = std::min(least, (lab_of(seen_color(colors[i], lacking)) - lab_of(seen_color(colors[j], lacking))).norm());
     return least;
   };
-  for (int lacking = 0; lacking < 4; ++lacking) EXPECT_GT(nearest_two(lacking), 15.0) << lacking;
+  for (int lacking = 0; lacking < 4; ++lacking) {
+    EXPECT_GT(nearest_two(awake, lacking), 15.0) << lacking;
+    EXPECT_GT(nearest_two(asleep, lacking), 10.0) << lacking;
+  }
 }
 
 TEST_F(SavedTrajectory, HasGroundAndCamera) {

@@ -27,9 +27,12 @@ TEST(DemoBudgets, AreThreeOfOneScene) {
   const auto budgets = run_budgets(two_crates(), settings, {});
   ASSERT_EQ(budgets.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(budgets[i].budget_ms, kDemoBudgets[i]);
-    EXPECT_EQ(budgets[i].steps, 16);
-    EXPECT_EQ(budgets[i].mean_bodies[std::size_t(Rung::full)], 2.0);
+    const BudgetFigures& figures = budgets[i].budget.value();
+    EXPECT_EQ(figures.budget_ms, kDemoBudgets[i]);
+    EXPECT_EQ(figures.steps, 16);
+    EXPECT_EQ(figures.mean_bodies[std::size_t(Rung::full)], 2.0);
+    EXPECT_EQ(budgets[i].step_processor_ms.size(), 25u);
+    EXPECT_EQ(summarize(budgets[i].step_processor_ms).max, budgets[i].processor_ms.max);
   }
 }
 
@@ -41,7 +44,8 @@ TEST(DemoReport, ShowsBudgetsAndThePictureWhereThereAreAny) {
   EXPECT_EQ(text_of(result).find("What a budget buys"), std::string::npos);
   EXPECT_EQ(text_of(result).find("in the picture"), std::string::npos);
   result.budget_scene = "heap.yaml";
-  result.budgets = {{.budget_ms = 4.0, .budget_work = std::nullopt, .steps = 591, .over = 7, .step_ms = {.p50 = 1.25, .p99 = 3.5, .max = 4.75}, .mean_bodies = {70.0, 20.0, 10.0}}};
+  result.budgets.resize(1);
+  result.budgets[0].budget = BudgetFigures{.budget_ms = 4.0, .budget_work = std::nullopt, .steps = 591, .over = 7, .step_ms = {.p50 = 1.25, .p99 = 3.5, .max = 4.75}, .mean_bodies = {70.0, 20.0, 10.0}};
   result.mixed.in_picture = {.min_full = 8, .mean_full = 9.5};
   const std::string text = text_of(result);
   EXPECT_NE(text.find("What a budget buys: heap.yaml, processor time of 591 steps from step 10 on"), std::string::npos) << text;
@@ -50,6 +54,26 @@ TEST(DemoReport, ShowsBudgetsAndThePictureWhereThereAreAny) {
   EXPECT_EQ(json["budgets"][0]["over"], 7);
   EXPECT_EQ(json["budgets"][0]["mean_full"], 10.0);
   EXPECT_EQ(json["mixed"]["in_picture"]["min_full"], 8);
+}
+
+TEST(DemoReport, HasARowForEachStepOfEachRun) {
+  DemoResult result;
+  result.scene = "scenes/bunnies.yaml", result.budget_scene = "heap.yaml", result.dt_s = 0.01;
+  result.mixed.reports.resize(2);
+  StepReport& first = result.mixed.reports[0];
+  first.full = 1, first.asleep = 3, first.support = 2, first.tables = 4;
+  result.mixed.step_processor_ms = {0.5, 0.25};
+  result.budgets.resize(1);
+  result.budgets[0].reports.resize(1);
+  result.budgets[0].reports[0].dt_s = 0.02;
+  result.budgets[0].step_processor_ms = {0.125};
+  result.budgets[0].budget = BudgetFigures{.budget_ms = 4.0, .budget_work = std::nullopt, .over = 0};
+  const auto rows = step_rows_of(result);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0], (nlohmann::ordered_json{{"scene", "bunnies.yaml"}, {"budget_ms", nullptr}, {"dt_s", 0.01}, {"step", 1}, {"full", 1}, {"support", 2}, {"tables", 4}, {"asleep", 3}, {"processor_ms", 0.5}}));
+  EXPECT_EQ(rows[1]["step"], 2);
+  EXPECT_EQ(rows[2]["budget_ms"], 4.0);
+  EXPECT_EQ(rows[2]["dt_s"], 0.02);
 }
 
 }  // namespace

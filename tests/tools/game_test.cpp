@@ -56,13 +56,13 @@ class Game : public testing::CliTest {
 #endif
   }
 #ifdef LODESTONE_GAME
-  testing::Ended play(const std::string& arguments) const {
-    return testing::run_shell("XDG_CACHE_HOME=" + testing::quoted(at("cache").string()) + " LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s '-screen 0 1280x720x24' " + testing::quoted(LODESTONE_GAME) + ' ' +
-                              arguments + " 2>&1");
+  testing::Ended start(const std::string& how, const std::string& arguments) const {
+    return testing::run_shell("XDG_CACHE_HOME=" + testing::quoted(at("cache").string()) + ' ' + how + ' ' + testing::quoted(LODESTONE_GAME) + ' ' + arguments + " 2>&1");
   }
 #else
-  testing::Ended play(const std::string&) const { return {}; }
+  testing::Ended start(const std::string&, const std::string&) const { return {}; }
 #endif
+  testing::Ended play(const std::string& arguments) const { return start("LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -f " + name("xauthority") + " -s '-screen 0 1280x720x24'", arguments); }  // with a file of its own it has none to fail at removing
 };
 
 TEST_F(Game, RunsOnAVirtualDisplayAndShowsItsWorld) {
@@ -94,6 +94,16 @@ TEST_F(Game, SaysWhatItCannotDo) {
   const testing::Ended unwritten = play("--frames 1 --screenshot " + name("no such folder/picture.bmp"));
   EXPECT_EQ(unwritten.exit_code, 3);
   EXPECT_NE(unwritten.out.find("no such folder"), std::string::npos) << unwritten.out;
+  const testing::Ended unseen = start("env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER", "--frames 1");
+  EXPECT_EQ(unseen.exit_code, 3);
+  EXPECT_NE(unseen.out.find("no display"), std::string::npos) << unseen.out;
+}
+
+TEST_F(Game, TellsHowItIsUsedWithoutADisplay) {
+  const testing::Ended help = start("env -u DISPLAY -u WAYLAND_DISPLAY", "--help");
+  EXPECT_EQ(help.exit_code, 0) << help.out;
+  EXPECT_TRUE(help.out.starts_with("usage: lodestone_game")) << help.out;
+  EXPECT_EQ(start("env -u DISPLAY -u WAYLAND_DISPLAY", "--frames 0").exit_code, 2);
 }
 
 }  // namespace

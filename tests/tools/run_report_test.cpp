@@ -38,6 +38,25 @@ TEST(RunReport, RungsAddUp) {
   EXPECT_NE(text_of(three_steps()).find("rungs        4 full, 5 support, 1 tables\n"), std::string::npos) << text_of(three_steps());
 }
 
+TEST(RunReport, TheAuditIsThereOnceItHasABody) {
+  RunResult result = three_steps();
+  EXPECT_FALSE(json_of(result).contains("audit"));
+  AuditReport& audit = result.reports.back().audit;
+  audit.watched = 2;
+  EXPECT_EQ(json_of(result)["audit"]["watched"], 2);
+  EXPECT_EQ(text_of(result).find("audit"), std::string::npos) << "nothing was compared yet";
+  audit.bodies = 5, audit.left_out = 1;
+  audit.rest_time_s = {.full = 0.9, .demoted = 1.0, .deviation = 0.2, .difference = {0.05, 0.15}};
+  audit.drift = 0.3, audit.drift_interval = {0.2, 0.4};
+  const auto json = json_of(result)["audit"];
+  EXPECT_EQ(json["bodies"], 5);
+  EXPECT_EQ(json["left_out"], 1);
+  EXPECT_EQ(json["rest_time_s"]["full"], 0.9);
+  EXPECT_EQ(json["rest_time_s"]["demoted"], 1.0);
+  EXPECT_EQ(json["drift_interval"][1], 0.4);
+  EXPECT_NE(text_of(result).find("audit        5 demoted bodies beside themselves in full"), std::string::npos) << text_of(result);
+}
+
 TEST(RunReport, ABudgetHasItsFiguresAndAnotherPolicyNone) {
   RunResult result = three_steps();
   EXPECT_FALSE(json_of(result).contains("budget"));

@@ -9,6 +9,7 @@
 #include "tools/bench/command_bench_rungs.h"
 #include "tools/bench/command_bench_settled.h"
 #include "tools/bench/command_bench_table1.h"
+#include "tools/bench/command_bench_transitions.h"
 
 namespace lodestone {
 
@@ -22,6 +23,7 @@ void add_bench_command(CLI::App& program, ExitCode& exit_code) {
   add_bench_settled_command(*bench, exit_code);
   add_bench_budget_command(*bench, exit_code);
   add_bench_rungs_command(*bench, exit_code);
+  add_bench_transitions_command(*bench, exit_code);
   add_bench_attached_command(*bench, exit_code);
   add_bench_churn_command(*bench, exit_code);
 }

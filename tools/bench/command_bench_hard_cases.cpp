@@ -11,6 +11,7 @@ namespace {
 
 struct Arguments {
   HardCaseRunSettings running;
+  std::filesystem::path csv;
   bool json = false;
 };
 
@@ -28,6 +29,7 @@ ExitCode bench_hard_cases(const Arguments& arguments) {
     settings.progress = line.function();
     results = run_hard_cases(settings);
   }
+  if (!arguments.csv.empty()) save_csv(results, arguments.csv);
   if (arguments.json) fmt::print("{}\n", json_of(results).dump(2));
   else fmt::print("{}", text_of(results));
   return exit_code_of(results);
@@ -41,6 +43,7 @@ void add_bench_hard_cases_command(CLI::App& bench, ExitCode& exit_code) {
   command->add_option("--only", arguments->running.only, "some of the cases, with commas")->delimiter(',')->allow_extra_args(false)->check(CLI::IsMember(ids()));
   command->add_option("--threads", arguments->running.threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
   command->add_flag("--quick", arguments->running.cases.quick, "shorten the long ones");
+  command->add_option("--csv", arguments->csv, "file for the table, one line a figure");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->footer("Exit code 1 where a figure fails for another reason than ODE's own.");
   command->callback([arguments, &exit_code] { exit_code = bench_hard_cases(*arguments); });

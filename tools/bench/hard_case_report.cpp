@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tools/csv_file.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -54,6 +55,8 @@ ordered_json json_of(std::span<const HardCaseResult> results) {
     for (const HardCaseRow& row : result.rows) json["cases"].push_back(json_of(result.id, row));
   return json;
 }
+
+void save_csv(std::span<const HardCaseResult> results, const std::filesystem::path& file) { save_csv(json_of(results)["cases"], json_of("", HardCaseRow{}), file); }
 
 ExitCode exit_code_of(std::span<const HardCaseResult> results) {
   for (const HardCaseResult& result : results)

@@ -1,6 +1,7 @@
 // Hard cases as a table for people and as JSON for programs.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tools/bench/hard_case_run.h"
@@ -13,6 +14,9 @@ std::string text_of(std::span<const HardCaseResult> results);
 
 /// Keys as README lists them.
 nlohmann::ordered_json json_of(std::span<const HardCaseResult> results);
+
+/// One line for each figure, with the keys of the JSON. Throws InputError where the file cannot be written.
+void save_csv(std::span<const HardCaseResult> results, const std::filesystem::path& file);
 
 /// check_failed where a figure fails that ODE is not to blame for.
 ExitCode exit_code_of(std::span<const HardCaseResult> results);

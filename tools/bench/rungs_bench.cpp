@@ -12,6 +12,7 @@
 #include "scenes/shape_source.h"
 #include "tools/bench/falling_heap.h"
 #include "tools/bench/statistical_case_parts.h"
+#include "tools/median.h"
 
 namespace lodestone {
 namespace {
@@ -20,10 +21,7 @@ constexpr int kSettlingMost = 1'800, kSettlingAwake = 60;  // steps
 
 /// m, of a move in one frame: beyond what gravity can have added, from a velocity at its start that was v0, or any between v0 and v1.
 double move_beyond(const Vec3& moved, const Vec3& v0, const Vec3& v1) {
-  const Vec3 from = kCaseStep * v0, way = kCaseStep * (v1 - v0);
-  const double length = way.squaredNorm();
-  const double part = length > 0.0 ? std::clamp((moved - from).dot(way) / length, 0.0, 1.0) : 0.0;
-  return std::max(0.0, (moved - from - part * way).norm() - 0.5 * kCaseGravity * kCaseStep * kCaseStep);
+  return std::max(0.0, distance_beyond(moved, kCaseStep * v0, kCaseStep * v1) - 0.5 * kCaseGravity * kCaseStep * kCaseStep);
 }
 double move_beyond(const Vec3& moved, const Vec3& velocity) { return move_beyond(moved, velocity, velocity); }
 
@@ -40,18 +38,14 @@ struct Samples {
   RungsRow row = {};
 };
 
-double percentile(const std::vector<double>& sorted, double part) {
-  return sorted.empty() ? 0.0 : sorted[std::size_t(std::ceil(part * double(sorted.size()))) - 1];
-}
-
 RungsRow row_of(const std::string& name, Samples samples) {
   std::ranges::sort(samples.moves);
   std::ranges::sort(samples.unexplained);
   RungsRow row = samples.row;
   row.change = name, row.changes = std::int64_t(samples.moves.size());
-  row.p50_mm = 1e3 * percentile(samples.moves, 0.5), row.p99_mm = 1e3 * percentile(samples.moves, 0.99);
-  row.p999_mm = 1e3 * percentile(samples.moves, 0.999), row.max_mm = 1e3 * percentile(samples.moves, 1.0);
-  row.unexplained_p999_mm = 1e3 * percentile(samples.unexplained, 0.999), row.unexplained_max_mm = 1e3 * percentile(samples.unexplained, 1.0);
+  row.p50_mm = 1e3 * percentile_of(samples.moves, 0.5), row.p99_mm = 1e3 * percentile_of(samples.moves, 0.99);
+  row.p999_mm = 1e3 * percentile_of(samples.moves, 0.999), row.max_mm = 1e3 * percentile_of(samples.moves, 1.0);
+  row.unexplained_p999_mm = 1e3 * percentile_of(samples.unexplained, 0.999), row.unexplained_max_mm = 1e3 * percentile_of(samples.unexplained, 1.0);
   return row;
 }
 
@@ -206,6 +200,13 @@ class RungsRun {
 };
 
 }  // namespace
+
+double distance_beyond(const Vec3& moved, const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  const double length = way.squaredNorm();
+  const double part = length > 0.0 ? std::clamp((moved - from).dot(way) / length, 0.0, 1.0) : 0.0;
+  return (moved - from - part * way).norm();
+}
 
 bool is_unseen(const RungsRow& row) { return row.p999_mm <= 5.0 && row.max_mm <= 20.0; }
 

@@ -18,7 +18,8 @@ struct Table1WorldSettings {
   std::uint64_t seed = 1;
 };
 
-/// Wall time of a step, ms. The stages only where the method tells them apart; they are not all of a step.
+/// Of a step, ms: on one thread processor time, which other work on the machine does not lengthen (wall time where that is less: reading its clock costs some .2 us); on several, wall time.
+/// The stages, in wall time, only where the method tells them apart; they are not all of a step.
 struct StepMs {
   double step = 0.0;
   double bytes_moved = 0.0;   ///< where the method counts them

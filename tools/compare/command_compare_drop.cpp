@@ -17,7 +17,7 @@ struct Arguments {
   ShapeArguments shape;
   ComparisonArguments comparison;
   double speed_scale = 1.0, slope_deg = 0.0;
-  std::filesystem::path out;
+  std::filesystem::path out, csv;
   bool json = false;
 };
 
@@ -40,6 +40,7 @@ void compare_drop(const Arguments& arguments) {
     comparison = compare_drops(job, settings);
   }
   if (!arguments.out.empty()) save_drops(comparison, arguments.out);
+  if (!arguments.csv.empty()) save_scores(comparison, arguments.csv);
   if (arguments.json) fmt::print("{}\n", json_of(comparison).dump(2));
   else fmt::print("{}", text_of(job, comparison));
 }
@@ -54,6 +55,7 @@ void add_compare_drop_command(CLI::App& compare, ExitCode& exit_code) {
   drop->add_option("--speed-scale", arguments->speed_scale, "multiplies the starting speeds")->check(CLI::Range(0.0, 1e3))->capture_default_str();
   drop->add_option("--slope-deg", arguments->slope_deg, "of the plane")->check(CLI::Range(0.0, 80.0))->capture_default_str();
   drop->add_option("--out", arguments->out, "folder for drops.csv, one line a drop");
+  drop->add_option("--csv", arguments->csv, "file for the scores, one line a row");
   drop->add_flag("--json", arguments->json, "one JSON object on stdout");
   drop->callback([arguments, &exit_code] {
     compare_drop(*arguments);

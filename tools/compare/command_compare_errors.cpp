@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tools/compare/comparison_arguments.h"
 #include "tools/compare/rung_error_measure.h"
 #include "tools/progress.h"
 #include "tools/shape_arguments.h"
@@ -59,8 +60,7 @@ void add_compare_errors_command(CLI::App& compare, ExitCode& exit_code) {
   add_shape_arguments(*errors, arguments->shape);
   add_signature_arguments(*errors, arguments->signature);
   errors->add_option("--trials", arguments->comparison.trials, "drops of each batch")->check(CLI::Range(2, 1'000'000))->capture_default_str();
-  errors->add_option("--seed", arguments->comparison.seed, "of the starts")->capture_default_str();
-  errors->add_option("--threads", arguments->comparison.threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
+  add_starts_arguments(*errors, arguments->comparison.seed, arguments->comparison.threads);
   errors->add_flag("--keep", arguments->keep, "in the cache, beside the signature, where managers find them");
   errors->add_flag("--json", arguments->json, "one JSON object on stdout");
   errors->callback([arguments, &exit_code] {

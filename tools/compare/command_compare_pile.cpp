@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "tools/compare/comparison_arguments.h"
 #include "tools/compare/method_argument.h"
 #include "tools/compare/pile_report.h"
 #include "tools/progress.h"
@@ -52,8 +53,7 @@ void add_compare_pile_command(CLI::App& compare, ExitCode& exit_code) {
   pile->add_option("--dt", arguments->steps, "steps of the methods, s: 0.01 or 1/60, several with commas")
       ->delimiter(',')->allow_extra_args(false)->check(find_step_fault, "SECONDS")->capture_default_str();
   add_methods_argument(*pile, comparison.methods);
-  pile->add_option("--seed", comparison.seed, "of the starts")->capture_default_str();
-  pile->add_option("--threads", comparison.threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
+  add_starts_arguments(*pile, comparison.seed, comparison.threads);
   pile->add_option("--out", arguments->out, "folder for piles.csv, one line a pile, and pile_energy.csv");
   pile->add_flag("--json", arguments->json, "one JSON object on stdout");
   pile->callback([arguments, &exit_code] {

@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tools/compare/comparison_arguments.h"
 #include "tools/compare/return_comparison.h"
 #include "tools/progress.h"
 #include "tools/shape_arguments.h"
@@ -48,7 +48,7 @@ void run_comparison(const Arguments& arguments) {
   const DropJob job{.shape = make_shape_from_arguments(arguments.shape), .conditions = {}, .material = arguments.shape.material};
   ReturnSettings settings = arguments.returning;
   settings.measuring = arguments.signature.measuring();
-  if (arguments.rung == "support") settings.support_within_m = std::numeric_limits<double>::infinity();
+  settings.away = arguments.rung == "tables" ? StatisticalModel::tables : StatisticalModel::support;
   ReturnComparison found;
   {
     ProgressLine line;
@@ -71,8 +71,7 @@ void add_compare_return_command(CLI::App& compare, ExitCode& exit_code) {
   command->add_option("--leave", returning.leave_s, "when the viewpoint goes, s")->check(CLI::Range(0.0, 10.0))->capture_default_str();
   command->add_option("--away", returning.away_s, "how long it stays away, s")->check(CLI::Range(0.0, 10.0))->capture_default_str();
   command->add_option("--rung", arguments->rung, "of the body meanwhile")->check(CLI::IsMember({"support", "tables"}))->capture_default_str();
-  command->add_option("--seed", returning.seed, "of the starts")->capture_default_str();
-  command->add_option("--threads", returning.threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
+  add_starts_arguments(*command, returning.seed, returning.threads);
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->callback([arguments, &exit_code] {
     run_comparison(*arguments);

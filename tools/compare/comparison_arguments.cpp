@@ -6,11 +6,17 @@
 #include "tools/step_argument.h"
 
 namespace lodestone {
+
 DropComparisonSettings ComparisonArguments::settings() const {
   DropComparisonSettings settings = comparison;
   settings.measuring = signature.measuring();
   settings.dt_s = steps_of(steps);
   return settings;
+}
+
+void add_starts_arguments(CLI::App& command, std::uint64_t& seed, int& threads) {
+  command.add_option("--seed", seed, "of the starts")->capture_default_str();
+  command.add_option("--threads", threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
 }
 
 void add_comparison_arguments(CLI::App& command, ComparisonArguments& arguments) {
@@ -20,8 +26,7 @@ void add_comparison_arguments(CLI::App& command, ComparisonArguments& arguments)
       ->delimiter(',')->allow_extra_args(false)->check(find_step_fault, "SECONDS")->capture_default_str();
   command.add_option("--trials", comparison.trials, "drops of each")->check(CLI::Range(2, 1'000'000))->capture_default_str();
   add_methods_argument(command, comparison.methods);
-  command.add_option("--seed", comparison.seed, "of the starts")->capture_default_str();
-  command.add_option("--threads", comparison.threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
+  add_starts_arguments(command, comparison.seed, comparison.threads);
 }
 
 }  // namespace lodestone

@@ -56,7 +56,7 @@ struct NamedMaker {
   Maker make;
 };
 
-constexpr std::array<NamedMaker, 9> kEngineMethods = {{
+constexpr std::array<NamedMaker, 10> kEngineMethods = {{
     {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.settings = plain_settings()}); }},
     {"full", [](const DropJob& job) { return make_full("full", job, ManagerSettings{}.full_substeps); }},
     {"full_1", [](const DropJob& job) { return make_ode("full_1", job, {}); }},
@@ -68,6 +68,7 @@ constexpr std::array<NamedMaker, 9> kEngineMethods = {{
     {"hull", [](const DropJob& job) { return make_ode("hull", job, {.settings = plain_settings(), .geometry = OdeGeometry::hull}); }},
     {"bullet_hull", [](const DropJob&) { return make_bullet("bullet_hull", BulletGeometry::hull); }},
     {"bullet_sphere", [](const DropJob&) { return make_bullet("bullet_sphere", BulletGeometry::sphere); }},
+    {"waiting", [](const DropJob&) { return DropMethod{"waiting", StatisticalMethod{}, ""}; }},
 }};
 
 /// full_2 … full_64: the full level at that many substeps.

@@ -34,7 +34,7 @@ struct OdeMethod {
 /// The statistical level.
 struct StatisticalMethod {
   StatisticalModel model = StatisticalModel::support;
-  std::shared_ptr<const Signature> signature;
+  std::shared_ptr<const Signature> signature = {};   ///< none: as a body is that waits for its first one, at `support`
 };
 
 /// Bullet, where Lodestone is built with it.
@@ -58,7 +58,8 @@ DropMethod make_truth(const DropJob& job);
 /// Whether `make_drop_methods` knows it: one of drop_method_names(), or full_2 to full_64, the full level at that many substeps.
 bool is_drop_method(const std::string& name);
 
-/// The names without a number of substeps. `full` is the full level with its default substeps, `full_1` ODE itself in one step.
+/// The names without a number of substeps. `full` is the full level with its default substeps, `full_1` ODE itself in one step,
+/// `waiting` is `support` while the shape's signature is being measured.
 std::vector<std::string> drop_method_names();
 
 /// The methods of these names; `statistical` gives one for each model, with a signature from the cache or measured now as `measuring` says on `threads`

@@ -8,6 +8,7 @@
 
 #include "reference/error.h"
 #include "tools/compare/drop_row_report.h"
+#include "tools/csv_file.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -37,6 +38,15 @@ std::string table_of(const DropComparison& comparison) {
   return table.text() + left_out;
 }
 
+ordered_json score_row_of(const DropComparison& comparison, const std::string& method, const std::string& model, double dt_s, int substeps, const std::optional<ScoreWithInterval>& score) {
+  ordered_json row = {{"shape", comparison.shape}, {"trials", comparison.trials}, {"method", method}, {"model", model.empty() ? ordered_json(nullptr) : ordered_json(model)}, {"dt_s", dt_s}, {"substeps", substeps}};
+  row["score"] = score ? ordered_json(score->value.score) : ordered_json(nullptr);
+  row["score_from"] = score ? ordered_json(score->interval[0]) : ordered_json(nullptr);
+  row["score_to"] = score ? ordered_json(score->interval[1]) : ordered_json(nullptr);
+  add_parts(row, score.value_or(ScoreWithInterval{}).value);
+  return row;
+}
+
 }  // namespace
 
 std::string text_of(const DropJob& job, const DropComparison& comparison) {
@@ -57,6 +67,23 @@ ordered_json json_of(const DropComparison& comparison) {
   json["rows"] = ordered_json::array();
   for (const DropRow& row : comparison.rows) json["rows"].push_back(json_of(row, comparison.floor));
   return json;
+}
+
+ordered_json score_rows_of(const DropComparison& comparison) {
+  ordered_json rows = ordered_json::array();
+  const auto add = [&](ordered_json row, const std::optional<double>& ns, const std::string& reason) {
+    row["ns_per_body_step"] = ns ? ordered_json(*ns) : ordered_json(nullptr);
+    row["reason"] = reason.empty() ? ordered_json(nullptr) : ordered_json(reason);
+    rows.push_back(std::move(row));
+  };
+  add(score_row_of(comparison, "noise_floor", "", kObservationStep / comparison.truth_substeps, 1, comparison.floor), std::nullopt, "");
+  for (const DropRow& row : comparison.rows) add(score_row_of(comparison, row.method, row.model, row.dt_s, row.substeps, row.score), row.ns_per_body_step, row.reason);
+  return rows;
+}
+
+void save_scores(const DropComparison& comparison, const std::filesystem::path& file) {
+  const ordered_json rows = score_rows_of(comparison);
+  save_csv(rows, rows.front(), file);
 }
 
 void save_drops(const DropComparison& comparison, const std::filesystem::path& folder) {

@@ -7,13 +7,27 @@
 namespace lodestone {
 namespace {
 
-RigidState state_of_piece(const Shape& piece, const RigidState& body) {
-  RigidState state = body;
-  state.position += body.orientation * piece.center_of_mass_in_mesh;
-  return state;
+template <class Visit>
+void each_piece(const Shape& shape, const RigidState& state, const Visit& visit) {
+  if (shape.pieces.empty()) return visit(shape, state);
+  for (const Shape& piece : shape.pieces) {
+    RigidState at = state;
+    at.position += state.orientation * piece.center_of_mass_in_mesh;
+    visit(piece, at);
+  }
 }
 
 }  // namespace
+
+double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state) {
+  const double of_hulls = measure_hull_overlap(first, first_state, second, second_state);
+  if (of_hulls == 0.0 || (first.pieces.empty() && second.pieces.empty())) return of_hulls;
+  double depth = 0.0;
+  each_piece(first, first_state, [&](const Shape& a, const RigidState& at_a) {
+    each_piece(second, second_state, [&](const Shape& b, const RigidState& at_b) { depth = std::max(depth, measure_hull_overlap(a, at_a, b, at_b)); });
+  });
+  return depth;
+}
 
 PileOverlap::PileOverlap(const Shape& shape, std::vector<HalfSpace> planes) : shape_(shape), planes_(std::move(planes)) {
   if (!shape.convex && !shape.sphere_radius && shape.pieces.empty()) grid_ = DepthGrid(shape.mesh);
@@ -21,14 +35,9 @@ PileOverlap::PileOverlap(const Shape& shape, std::vector<HalfSpace> planes) : sh
 
 double PileOverlap::depth_of_pair(const RigidState& first, const RigidState& second) const {
   if ((first.position - second.position).norm() >= 2.0 * shape_.radius) return 0.0;
-  const double of_hulls = measure_hull_overlap(shape_, first, shape_, second);
-  if (shape_.convex || shape_.sphere_radius || of_hulls == 0.0) return of_hulls;
-  if (shape_.pieces.empty()) return std::max(depth_of_vertices(first, second), depth_of_vertices(second, first));
-  double depth = 0.0;
-  for (const Shape& a : shape_.pieces)
-    for (const Shape& b : shape_.pieces)
-      depth = std::max(depth, measure_hull_overlap(a, state_of_piece(a, first), b, state_of_piece(b, second)));
-  return depth;
+  const double depth = measure_pair_overlap(shape_, first, shape_, second);
+  const bool of_vertices = !shape_.convex && !shape_.sphere_radius && shape_.pieces.empty() && depth > 0.0;
+  return of_vertices ? std::max(depth_of_vertices(first, second), depth_of_vertices(second, first)) : depth;
 }
 
 double PileOverlap::depth_of_vertices(const RigidState& of, const RigidState& in) const {

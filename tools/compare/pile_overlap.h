@@ -13,6 +13,9 @@
 
 namespace lodestone {
 
+/// m, of two bodies' hulls, or of their convex pieces where a concave one has some (Shape::pieces); 0 where they are apart.
+double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state);
+
 class PileOverlap {
  public:
   /// Of bodies of `shape`, which must outlive it, among `planes`.

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "reference/error.h"
+#include "signature/measure/certify.h"
 #include "tools/compare/fidelity.h"
 #include "tools/compare/method_bodies.h"
 #include "tools/compare/rest_classes.h"
@@ -40,7 +42,8 @@ class Returning {
   Visit observe(bool leaves, std::uint64_t seed, std::uint32_t trial) const {
     ManagerSettings settings = manager_settings_of({.signature = signature_}, seed + 7919 * trial);
     settings.model = {};
-    settings.policy = {.policy = DistancePolicy{.full_within = 1e3, .support_within = 1e3 + settings_.support_within_m}, .min_dwell_frames = 0};
+    const double support_within = settings_.away == StatisticalModel::support ? std::numeric_limits<double>::infinity() : 1e3;
+    settings.policy = {.policy = DistancePolicy{.full_within = 1e3, .support_within = support_within}, .min_dwell_frames = 0};
     Manager manager(settings);
     manager.materials().replace(0, job_.material);
     manager.add_plane(drop_plane_normal(job_.conditions), 0.0);
@@ -69,17 +72,6 @@ class Returning {
   const ReturnSettings& settings_;
   std::shared_ptr<const Signature> signature_;
 };
-
-double kolmogorov_smirnov(std::vector<double> a, std::vector<double> b) {
-  std::ranges::sort(a), std::ranges::sort(b);
-  double greatest = 0.0;
-  for (const auto* sample : {&a, &b})
-    for (const double x : *sample) {
-      const auto below = [x](const std::vector<double>& s) { return double(std::ranges::upper_bound(s, x) - s.begin()) / double(s.size()); };
-      greatest = std::max(greatest, std::abs(below(a) - below(b)));
-    }
-  return greatest;
-}
 
 double mean_of(const std::vector<double>& values) {
   double sum = 0.0;

@@ -12,7 +12,7 @@ struct ReturnSettings {
   int runs = 100;              ///< of each ensemble, ≥ 2
   double leave_s = 0.2;        ///< when the viewpoint goes
   double away_s = 0.8;         ///< and how long it stays away
-  double support_within_m = 10.0;  ///< the rung while it is away: `support` where it is infinite, else `tables`
+  StatisticalModel away = StatisticalModel::support;  ///< the body's rung meanwhile
   SignatureSettings measuring = {};  ///< its law is the job's
   std::uint64_t seed = 1;
   int threads = 0;             ///< 0: all cores

@@ -2,7 +2,12 @@
 #include <fmt/format.h>
 
 #include "tools/commands.h"
+#include "tools/compare/drop_report.h"
+#include "tools/csv_file.h"
 #include "tools/demo/demo.h"
+#include "tools/pages/page.h"
+#include "tools/report/machine.h"
+#include "tools/report/report.h"
 #include "tools/run_arguments.h"
 #include "tools/run_report.h"
 
@@ -11,10 +16,23 @@ namespace {
 
 struct Arguments {
   RunArguments run;
-  std::filesystem::path budget_scene;
+  std::filesystem::path budget_scene, steps_csv, report;
   int trials = 300;
   bool json = false;
 };
+
+Provenance provenance_of(const Arguments& arguments) {
+  const std::string budgets = arguments.budget_scene.empty() ? "" : fmt::format(" --budget-scene {}", arguments.budget_scene.string());
+  return {.commands = {fmt::format("build/lodestone demo {}{} --trials {}", arguments.run.scene.string(), budgets, arguments.trials)},
+          .commit = program_commit(), .machine = describe_machine(), .date = today(), .fresh = true};
+}
+
+void save_report(const DemoResult& result, const Arguments& arguments, const Progress& progress) {
+  const Provenance made = provenance_of(arguments);
+  const Material& material = result.drop.material;
+  const FreshResults fresh = {.material = fmt::format("restitution {:g}, friction {:g}", material.restitution, material.friction), .scores = {made, score_rows_of(result.errors)}, .steps = {made, step_rows_of(result)}, .levels = {made, level_rows_of(result)}};
+  save_page(arguments.report, make_report(gather_report({.threads = arguments.run.running.threads, .progress = progress, .fresh = fresh})));
+}
 
 ExitCode demo(const Arguments& arguments) {
   const Scene scene = load_scene(arguments.run.scene, arguments.run.loading);
@@ -25,11 +43,27 @@ ExitCode demo(const Arguments& arguments) {
     ProgressLine line;
     const RunSettings settings = run_settings(arguments.run, line);
     result = run_demo(scene, settings, arguments.trials, line.function());
+    result.scene = arguments.run.scene.string();
     result.budget_scene = arguments.budget_scene.string();
     if (budget_scene) result.budgets = run_budgets(*budget_scene, settings, line.function());
   }
-  if (arguments.json) fmt::print("{}\n", json_of(result).dump(2));
-  else fmt::print("{}: {}", arguments.run.scene.string(), text_of(result));
+  if (!arguments.steps_csv.empty()) {
+    const auto rows = step_rows_of(result);
+    save_csv(rows, rows.front(), arguments.steps_csv);
+  }
+  if (arguments.json) {
+    auto json = json_of(result);
+    json["report"] = arguments.report.string();
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("{}: {}", arguments.run.scene.string(), text_of(result));
+  }
+  std::fflush(stdout);  // results first: a report that cannot be written must not take them along
+  {
+    ProgressLine line;
+    save_report(result, arguments, line.function());
+  }
+  if (!arguments.json) fmt::print("The report is in {}, for any browser\n", arguments.report.string());
   return exit_code_of(result.mixed);
 }
 
@@ -44,8 +78,13 @@ void add_demo_command(CLI::App& program, ExitCode& exit_code) {
   command->add_option("--trials", arguments->trials, "single drops for the accuracy")->check(CLI::Range(2, 1'000'000))->capture_default_str();
   command->add_option("--budget-scene", arguments->budget_scene, "another YAML file, run under budgets of 4, 8 and 16 ms, such as scenes/heap.yaml");
   command->add_option("--out", arguments->run.running.out, "folder for the trajectory")->capture_default_str();
+  command->add_option("--steps-csv", arguments->steps_csv, "file for every step of the mixed run and of those under a budget");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
-  command->callback([arguments, &exit_code] { exit_code = demo(*arguments); });
+  command->add_option("--report", arguments->report, "file for the page of HTML; else report.html beside the trajectory");
+  command->callback([arguments, &exit_code] {
+    if (arguments->report.empty()) arguments->report = arguments->run.running.out / "report.html";
+    exit_code = demo(*arguments);
+  });
 }
 
 }  // namespace lodestone

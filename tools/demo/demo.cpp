@@ -57,7 +57,7 @@ class Demo {
   }
 
   RunSettings reporting(RunSettings settings, const std::string& name) const {
-    settings.progress = [this, name](int step, int steps) { if (progress_) progress_(name, double(step) / steps); };
+    settings.progress = [this, name](const RunProgress& run) { if (progress_) progress_(fmt::format("{}, {}", name, text_of(run)), double(run.step) / run.steps); };
     return settings;
   }
 
@@ -120,15 +120,15 @@ DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials,
   return Demo(scene, settings, progress).run(trials);
 }
 
-std::vector<BudgetFigures> run_budgets(const Scene& scene, RunSettings settings, const Progress& progress) {
+std::vector<RunResult> run_budgets(const Scene& scene, RunSettings settings, const Progress& progress) {
   fetch_signatures(scene, settings);
   settings.out.clear();
   settings.budget_work.reset();
-  std::vector<BudgetFigures> budgets;
+  std::vector<RunResult> budgets;
   for (const double ms : kDemoBudgets) {
     settings.budget_ms = ms;
-    settings.progress = [&](int step, int steps) { if (progress) progress(fmt::format("a budget of {:g} ms", ms), double(step) / steps); };
-    budgets.push_back(run_scene(scene, settings).budget.value());
+    settings.progress = [&](const RunProgress& run) { if (progress) progress(fmt::format("a budget of {:g} ms, {}", ms, text_of(run)), double(run.step) / run.steps); };
+    budgets.push_back(run_scene(scene, settings));
   }
   return budgets;
 }

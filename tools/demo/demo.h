@@ -22,6 +22,7 @@ struct DemoRow {
 };
 
 struct DemoResult {
+  std::string scene;                    ///< its file
   double dt_s = 0.0;
   int busy_step = 0, busy_steps = 0;    ///< where the window of the most contacts begins, and its length
   std::vector<DemoRow> rows;
@@ -29,7 +30,7 @@ struct DemoResult {
   DropJob drop;                         ///< the scene's first shape, dropped alone
   DropComparison errors;
   std::string budget_scene;             ///< run under each of kDemoBudgets; empty: none
-  std::vector<BudgetFigures> budgets;
+  std::vector<RunResult> budgets;       ///< with their figures
 };
 
 inline constexpr std::array kDemoBudgets = {4.0, 8.0, 16.0};  ///< ms
@@ -38,10 +39,15 @@ inline constexpr std::array kDemoBudgets = {4.0, 8.0, 16.0};  ///< ms
 /// compares `trials` single drops of its first body's shape with the truth.
 DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials, const Progress& progress);
 
-/// Runs `scene` under each of kDemoBudgets.
-std::vector<BudgetFigures> run_budgets(const Scene& scene, RunSettings settings, const Progress& progress);
+/// Runs `scene` under each of kDemoBudgets; the results have figures of it.
+std::vector<RunResult> run_budgets(const Scene& scene, RunSettings settings, const Progress& progress);
 
 std::string text_of(const DemoResult& result);
 nlohmann::ordered_json json_of(const DemoResult& result);
+
+/// What every step of the mixed run and of those under a budget did, as flat rows: bodies on each rung and asleep at its end, and its processor time.
+nlohmann::ordered_json step_rows_of(const DemoResult& result);
+/// What a step costs at each level, as flat rows.
+nlohmann::ordered_json level_rows_of(const DemoResult& result);
 
 }  // namespace lodestone

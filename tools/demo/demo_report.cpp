@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include "scenes/camera.h"
@@ -32,9 +34,10 @@ std::string text_of_times(const DemoResult& result) {
   return table.text();
 }
 
-std::string text_of_budgets(std::span<const BudgetFigures> budgets) {
+std::string text_of_budgets(std::span<const RunResult> runs) {
   TextTable table({"budget ms", "median ms", "99 % ms", "longest ms", "steps over", "mean full", "mean support", "mean tables"});
-  for (const BudgetFigures& budget : budgets) {
+  for (const RunResult& run : runs) {
+    const BudgetFigures& budget = run.budget.value();
     const auto bodies = [&](Rung rung) { return fmt::format("{:.1f}", budget.mean_bodies[std::size_t(rung)]); };
     table.add_row({fmt::format("{:g}", *budget.budget_ms), text_of(budget.step_ms.p50), text_of(budget.step_ms.p99), text_of(budget.step_ms.max),
                    fmt::format("{}", *budget.over), bodies(Rung::full), bodies(Rung::support), bodies(Rung::tables)});
@@ -51,6 +54,8 @@ std::string text_of_failed_checks(const RunResult& run) {
 
 ordered_json json_or_null(std::optional<double> value) { return value ? ordered_json(*value) : ordered_json(nullptr); }
 
+double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
+
 ordered_json json_of(const DemoRow& row) {
   return {{"level", row.name},
           {"p50_ms", json_or_null(part_of(row.whole_ms, &TimeSummary::p50))},
@@ -58,6 +63,15 @@ ordered_json json_of(const DemoRow& row) {
           {"p99_processor_ms", json_or_null(part_of(row.processor_ms, &TimeSummary::p99))},
           {"busy_p50_ms", row.busy_ms.p50},
           {"most_full", row.most_full}};
+}
+
+void add_step_rows(ordered_json& rows, const std::string& scene, const RunResult& run, double dt_s) {
+  const ordered_json budget_ms = run.budget ? json_or_null(run.budget->budget_ms) : ordered_json(nullptr);
+  for (std::size_t i = 0; i < run.reports.size(); ++i) {
+    const StepReport& report = run.reports[i];
+    rows.push_back({{"scene", std::filesystem::path(scene).filename().string()}, {"budget_ms", budget_ms}, {"dt_s", rounded(dt_s, 1e6)}, {"step", i + 1}, {"full", report.full}, {"support", report.support},
+                    {"tables", report.tables}, {"asleep", report.asleep}, {"processor_ms", rounded(run.step_processor_ms[i], 1e4)}});
+  }
 }
 
 }  // namespace
@@ -73,7 +87,7 @@ std::string text_of(const DemoResult& result) {
                         picture->min_full, kFieldOfView * 180.0 / std::numbers::pi, picture->mean_full);
   text += "What that costs in accuracy\n\n" + text_of(result.drop, result.errors) + '\n';
   if (!result.budgets.empty())
-    text += fmt::format("What a budget buys: {}, processor time of {} steps from step {} on\n\n{}\n", result.budget_scene, result.budgets.front().steps, kFirstBudgetStep,
+    text += fmt::format("What a budget buys: {}, processor time of {} steps from step {} on\n\n{}\n", result.budget_scene, result.budgets.front().budget.value().steps, kFirstBudgetStep,
                         text_of_budgets(result.budgets));
   text += text_of_failed_checks(result.mixed);
   if (!result.mixed.trajectory.empty())
@@ -85,13 +99,25 @@ ordered_json json_of(const DemoResult& result) {
   ordered_json json;
   json["busy_step"] = result.busy_step;
   json["busy_steps"] = result.busy_steps;
-  json["levels"] = ordered_json::array();
-  for (const DemoRow& row : result.rows) json["levels"].push_back(json_of(row));
+  json["levels"] = level_rows_of(result);
   json["mixed"] = json_of(result.mixed);
   json["errors"] = json_of(result.errors);
   json["budgets"] = ordered_json::array();
-  for (const BudgetFigures& budget : result.budgets) json["budgets"].push_back(json_of(budget));
+  for (const RunResult& run : result.budgets) json["budgets"].push_back(json_of(run.budget.value()));
   return json;
+}
+
+ordered_json level_rows_of(const DemoResult& result) {
+  ordered_json rows = ordered_json::array();
+  for (const DemoRow& row : result.rows) rows.push_back(json_of(row));
+  return rows;
+}
+
+ordered_json step_rows_of(const DemoResult& result) {
+  ordered_json rows = ordered_json::array();
+  add_step_rows(rows, result.scene, result.mixed, result.dt_s);
+  for (const RunResult& run : result.budgets) add_step_rows(rows, result.budget_scene, run, run.reports.front().dt_s);
+  return rows;
 }
 
 }  // namespace lodestone

@@ -57,8 +57,15 @@ std::optional<Arguments> parse(int argc, char** argv) {
   return arguments;
 }
 
+bool asks_for_help(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const std::string& argument) { return argument == "--help" || argument == "-h"; });
+}
+
 /// An InputError with SDL's own words.
 [[noreturn]] void throw_sdl_error(const std::string& what) { throw InputError("lodestone_game: " + what + ": " + SDL_GetError()); }
+
+/// Where there is no display, SDL falls back on drivers that show nothing to anybody, unless it was asked for one of them by name.
+bool shows_nothing(const std::string& driver) { return !SDL_getenv("SDL_VIDEODRIVER") && (driver == "offscreen" || driver == "dummy" || driver == "evdev"); }
 
 struct Window {
   SDL_Window* window = nullptr;
@@ -67,6 +74,7 @@ struct Window {
 
   explicit Window(bool wait_for_screen) {
     if (SDL_Init(SDL_INIT_VIDEO) != 0) throw_sdl_error("no display");
+    if (shows_nothing(SDL_GetCurrentVideoDriver())) throw InputError("lodestone_game: no display");
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 2);
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 1);
     SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
@@ -235,6 +243,10 @@ int run(const Arguments& arguments) {
 }  // namespace game
 
 int main(int argc, char** argv) {
+  if (game::asks_for_help(argc, argv)) {
+    std::fputs(game::kUsageText, stdout);
+    return game::kDone;
+  }
   const auto arguments = game::parse(argc, argv);
   if (!arguments) {
     std::fputs(game::kUsageText, stderr);

@@ -354,6 +354,21 @@ TEST(BudgetPolicy, OnlyAsManyGoDownAtOnceAsMust) {
   EXPECT_EQ(who(choose(candidates, settings).demote), (Indices{0, 1}));
 }
 
+TEST(BudgetPolicy, OverItThoseAwakeGoDownBeforeTheSleepers) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 20; ++i) {
+    candidates.push_back(at(1 + i, Rung::full));
+    candidates.back().asleep = i % 2 == 1;
+    candidates.back().frames_since_change = 0;
+    if (candidates.back().asleep) candidates.back().cost[std::size_t(Rung::full)] = 0.5f;  // a reserve
+  }
+  PolicySettings settings = by_budget(12.6);
+  settings.max_transitions_per_frame = 0;
+  EXPECT_EQ(who(choose(candidates, settings).demote), (Indices{18, 16, 19}));  // of the four that do not fit, as many as must
+  settings.policy = BudgetPolicy{3.3};
+  EXPECT_EQ(who(choose(candidates, settings).demote), (Indices{18, 16, 14, 12, 10, 8, 6, 4, 19, 17, 15, 13, 11, 9, 7, 5}));
+}
+
 TEST(BudgetPolicy, ABodyThatIsPutOffGivesItsRoomToTheNext) {
   std::vector<LevelCandidate> candidates{at(1), at(2), at(3)};
   candidates[0].put_off = true;

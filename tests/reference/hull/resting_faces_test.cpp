@@ -65,5 +65,22 @@ TEST(RestingFaces, LStandsOnTheSlantedSideOfItsHull) {
   EXPECT_EQ(resting.faces().size(), 6u);
 }
 
+// On its small face (.2 × .3 m, .2 m below its centre) the box stands on slopes of 26.6° and 36.9°, across its sides.
+TEST(RestingFaces, AFaceHoldsWhatPullsWithinItsEdges) {
+  const RestingFaces resting(box().hull);
+  const Vec3 up = Vec3::UnitZ();
+  const auto pull = [](double degrees, const Vec3& towards) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    return Vec3(std::sin(angle) * towards - std::cos(angle) * Vec3::UnitZ());
+  };
+  EXPECT_TRUE(resting.holds(up, pull(0.0, Vec3::UnitX())));
+  EXPECT_TRUE(resting.holds(up, 3.0 * pull(26.0, Vec3::UnitX())));
+  EXPECT_FALSE(resting.holds(up, pull(27.0, Vec3::UnitX())));
+  EXPECT_TRUE(resting.holds(up, pull(36.0, Vec3::UnitY())));
+  EXPECT_FALSE(resting.holds(up, pull(38.0, Vec3::UnitY())));
+  EXPECT_FALSE(resting.holds(up, -pull(0.0, Vec3::UnitX())));
+  EXPECT_FALSE(resting.holds(up, Vec3::Zero()));
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -6,6 +6,7 @@
 
 #include "reference/error.h"
 #include "tests/reference/ode/ode_fixture.h"
+#include "tests/reference/ode/space_fixture.h"
 
 namespace lodestone {
 namespace {
@@ -13,18 +14,6 @@ namespace {
 using namespace testing;
 
 constexpr double kFrame = 1.0 / 60;
-
-enum class SpaceType { simple, hash, sweep, quadtree };
-
-dSpaceID make_space(SpaceType type, dSpaceID in = nullptr) {
-  const dVector3 center = {0, 0, 0}, half = {50, 50, 50};
-  switch (type) {
-    case SpaceType::simple: return dSimpleSpaceCreate(in);
-    case SpaceType::hash: return dHashSpaceCreate(in);
-    case SpaceType::sweep: return dSweepAndPruneSpaceCreate(in, dSAP_AXES_XYZ);
-    default: return dQuadTreeSpaceCreate(in, center, half, 4);
-  }
-}
 
 struct His {
   explicit His(SpaceType type = SpaceType::hash) {

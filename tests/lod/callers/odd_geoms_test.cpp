@@ -1,0 +1,83 @@
+// Geoms of a caller's that have no bounds, or no volume.
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include <cmath>
+#include <memory>
+
+#include "lod/manager.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kFrame = 1.0 / 60;
+
+class OddGeoms : public ::testing::Test {
+ protected:
+  OddGeoms() {
+    dInitODE2(0);
+    dAllocateODEDataForThread(dAllocateMaskAll);
+    world_ = dWorldCreate();
+    space_ = dHashSpaceCreate(nullptr);
+    dWorldSetGravity(world_, 0, 0, -9.81);
+  }
+  ~OddGeoms() override {
+    manager_.reset();
+    dSpaceDestroy(space_);
+    dWorldDestroy(world_);
+  }
+  Manager& start() {
+    manager_ = std::make_unique<Manager>(world_, space_, ManagerSettings{.signature_timing = SignatureTiming::in_step});
+    return *manager_;
+  }
+  BodyId add_box(const Vec3& position, LevelChoice level) {
+    static const auto box = std::make_shared<const Shape>(make_shape("box", make_box({0.3, 0.3, 0.3})));
+    RigidState s;
+    s.position = position;
+    return manager_->add_body({.shape = box, .state = s, .level = level});
+  }
+
+  dWorldID world_;
+  dSpaceID space_;
+  std::unique_ptr<Manager> manager_;
+};
+
+dReal flat(void*, int, int) { return 0.0; }
+
+TEST_F(OddGeoms, AHeightFieldThatRepeatsItselfIsGroundFarOutToo) {
+  const dHeightfieldDataID data = dGeomHeightfieldDataCreate();
+  dGeomHeightfieldDataBuildCallback(data, nullptr, flat, 4, 4, 9, 9, 1, 0, 1, 1);
+  const dQuaternion up = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
+  dGeomSetQuaternion(dCreateHeightfield(space_, data, 1), up);
+  for (int i = 0; i < 40; ++i) dGeomSetPosition(dCreateBox(space_, 0.5, 0.5, 0.5), i - 20.0, 9.0, 0.2);  // so many that they are looked up in a tree
+  Manager& manager = start();
+  std::vector<BodyId> boxes;
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) boxes.push_back(add_box({30.0 + 2.0 * double(boxes.size()), 5.1, 0.6}, level));
+  for (int i = 0; i < 240; ++i) manager.step(kFrame);
+  for (const BodyId body : boxes) EXPECT_NEAR(manager.state(body).position.z(), 0.15, 0.01);
+  manager_.reset();
+  dGeomHeightfieldDataDestroy(data);
+}
+
+TEST_F(OddGeoms, ABodyWithAFlatTrimeshIsNoError) {
+  static const float corners[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  static const dTriIndex faces[] = {0, 1, 2, 0, 2, 3};
+  const dTriMeshDataID data = dGeomTriMeshDataCreate();
+  dGeomTriMeshDataBuildSingle(data, corners, 3 * sizeof(float), 4, faces, 6, 3 * sizeof(dTriIndex));
+  const dBodyID sheet = dBodyCreate(world_);
+  dGeomSetBody(dCreateTriMesh(space_, data, nullptr, nullptr, nullptr), sheet);
+  dBodySetPosition(sheet, 0, 0, 3);
+  Manager& manager = start();
+  manager.add_plane(Vec3::UnitZ(), 0.0);
+  const BodyId box = add_box({5, 0, 0.6}, LevelChoice::support);
+  for (int i = 0; i < 120; ++i) ASSERT_NO_THROW(manager.step(kFrame));
+  EXPECT_NEAR(manager.state(box).position.z(), 0.15, 0.01);
+  EXPECT_LT(dBodyGetPosition(sheet)[2], 3.0);
+  manager_.reset();
+  dGeomDestroy(dBodyGetFirstGeom(sheet));
+  dBodyDestroy(sheet);
+  dGeomTriMeshDataDestroy(data);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,54 @@
+// The paper's figure 7: with rest poses a body ends on a face and its sphere fits it, without it ends as it came down.
+#include <gtest/gtest.h>
+
+#include "reference/random.h"
+#include "tests/lod/rungs/rung_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using testing::box, testing::box_signature;
+
+// Of boxes that have come down for six seconds: how far the least tilted axis is from upright, and how far the sphere from the height of a face; means, of 1 and of the box's radius.
+struct Ended { double tilt = 0, misfit = 0; };
+
+Ended end_of_falls(bool rest_poses) {
+  constexpr int kBoxes = 20;
+  Ground ground;
+  ground.add_plane({.normal = Vec3::UnitZ()});
+  const MaterialTable materials;
+  StatisticalSettings settings;
+  settings.tables.rest_poses = rest_poses;
+  testing::OneRung level(StatisticalModel::tables, settings, ground, materials);
+  for (int i = 0; i < kBoxes; ++i) {
+    RandomStream random(5, std::uint64_t(i), 0);
+    RigidState state;
+    state.position = Vec3(2.0 * i, 0, 0.8);
+    state.orientation = random.orientation();
+    level.add(std::uint32_t(i), box(), 24.0, 0, state, false, box_signature());
+  }
+  for (int step = 0; step < 360; ++step) {
+    StepReport report;
+    level.step(1.0 / 60, {}, report);
+  }
+  Ended ended;
+  for (int i = 0; i < kBoxes; ++i) {
+    const Vec3 up = level.state(i).orientation.conjugate() * Vec3::UnitZ();
+    double misfit = 1e9;
+    for (const RestPose& pose : box_signature()->rest_poses) misfit = std::min(misfit, std::abs(level.sphere_radius(i) / box()->radius - pose.height));
+    ended.tilt += (1.0 - up.cwiseAbs().maxCoeff()) / kBoxes;
+    ended.misfit += misfit / kBoxes;
+  }
+  return ended;
+}
+
+TEST(RestPoses, BodiesLieOnFacesWithThemAndAskewWithout) {
+  const Ended with = end_of_falls(true), without = end_of_falls(false);
+  EXPECT_LT(with.tilt, 0.01);
+  EXPECT_LT(with.misfit, 0.01);
+  EXPECT_GT(without.tilt, 0.05);
+  EXPECT_GT(without.misfit, 0.02);
+}
+
+}  // namespace
+}  // namespace lodestone

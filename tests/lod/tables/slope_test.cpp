@@ -1,0 +1,146 @@
+// The tables model on slopes: what friction and its own face hold comes to rest, what does not slides, and balls roll down.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "reference/random.h"
+#include "tests/lod/rungs/rung_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using testing::box, testing::box_signature;
+
+constexpr double kFrame = 1.0 / 60, kGravity = 9.81;
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+std::shared_ptr<const Shape> ball() {
+  static const auto shape = std::make_shared<const Shape>(make_sphere_shape(0.15));
+  return shape;
+}
+
+std::shared_ptr<const Signature> ball_signature() {
+  static const auto signature = [] {
+    SignatureSettings settings;
+    settings.n_theta = 3, settings.n_phi = 3, settings.n_alpha = 4, settings.trials_per_cell = 8;
+    settings.height_trials = 60, settings.settling_trials = 20, settings.clips = 4;
+    return std::make_shared<const Signature>(measure_signature(*ball(), settings, 2));
+  }();
+  return signature;
+}
+
+class Slope : public ::testing::Test {
+ protected:
+  enum class Made { plane, box };
+
+  void tilt(double degrees, Made made = Made::plane) {
+    turn_ = Quat(Eigen::AngleAxisd(radians(degrees), Vec3::UnitY()));
+    if (made == Made::plane) ground_.add_plane({.normal = turn_ * Vec3::UnitZ()});
+    else ground_.add_box({60.0, 60.0, 2.0}, turn_ * Vec3(0, 0, -1), turn_, 0);
+  }
+  testing::OneRung make(Simd simd = find_simd()) const {
+    StatisticalSettings settings = settings_;
+    settings.simd = simd;
+    return {StatisticalModel::tables, settings, ground_, materials_};
+  }
+  void add_boxes(testing::OneRung& level, int count, double apart) const {
+    for (int i = 0; i < count; ++i) {
+      RandomStream random(3, std::uint64_t(i), 0);
+      RigidState s;
+      s.position = turn_ * Vec3(apart * (i % 5 - 2), apart * (i / 5 % 5 - 2), 0.6 + 0.5 * (i / 25));
+      s.orientation = random.orientation();
+      level.add(std::uint32_t(i), box(), 24.0, 0, s, false, box_signature());
+    }
+  }
+  static void run(testing::OneRung& level, double seconds) {
+    for (int i = 0; i < int(std::lround(seconds / kFrame)); ++i) {
+      StepReport report;
+      level.step(kFrame, {}, report);
+    }
+  }
+  // Whether a face of the box lies on the slope.
+  bool lies(const RigidState& s) const { return (s.orientation.conjugate() * turn_ * Vec3::UnitZ()).cwiseAbs().maxCoeff() > std::cos(radians(2.0)); }
+
+  StatisticalSettings settings_;
+  Ground ground_;
+  MaterialTable materials_;
+  Quat turn_ = Quat::Identity();
+};
+
+// ODE's boxes have been asleep for four seconds by then.
+TEST_F(Slope, BoxesThatFrictionHoldsComeToRestOnAFace) {
+  for (const Made made : {Made::plane, Made::box}) {
+    ground_ = Ground();
+    tilt(10.0, made);
+    testing::OneRung level = make();
+    add_boxes(level, 25, 2.0);
+    run(level, 6.0);
+    EXPECT_EQ(level.asleep_count(), level.size());
+    for (int slot = 0; slot < level.size(); ++slot) EXPECT_TRUE(lies(level.state(slot))) << slot;
+  }
+}
+
+TEST_F(Slope, AHeapComesToRest) {
+  tilt(10.0);
+  testing::OneRung level = make();
+  add_boxes(level, 100, 0.5);
+  run(level, 20.0);
+  EXPECT_EQ(level.asleep_count(), level.size());
+}
+
+// tan 15° = .27: above the friction.
+TEST_F(Slope, BoxesThatFrictionDoesNotHoldSlideOn) {
+  materials_.replace(0, {.friction = 0.1});
+  tilt(15.0);
+  testing::OneRung level = make();
+  add_boxes(level, 25, 2.0);
+  run(level, 6.0);
+  EXPECT_EQ(level.asleep_count(), 0);
+}
+
+// On its small face (.2 × .3 × .4 m, the short side down the slope) the box tips at 26.6°.
+TEST_F(Slope, ABoxStandsOnAFaceUntilItTipsOff) {
+  materials_.replace(0, {.friction = 3.0});
+  for (const double degrees : {20.0, 33.0}) {
+    ground_ = Ground();
+    tilt(degrees);
+    testing::OneRung level = make();
+    RigidState s;
+    s.position = turn_ * Vec3(0, 0, 0.2);
+    s.orientation = turn_;
+    level.add(0, box(), 24.0, 0, s, false, box_signature());
+    run(level, 5.0);
+    const double standing = std::abs((level.state(0).orientation.conjugate() * turn_ * Vec3::UnitZ()).z());
+    EXPECT_NEAR(standing, degrees < 26.0 ? 1.0 : 0.0, 0.01) << degrees;
+    EXPECT_TRUE(level.asleep(0)) << degrees;
+  }
+}
+
+// A ball without slip: 5/7 g sin θ.
+TEST_F(Slope, ABallRollsDown) {
+  tilt(10.0);
+  testing::OneRung level = make();
+  RigidState s;
+  s.position = turn_ * Vec3(0, 0, 0.15);
+  level.add(0, ball(), 14.0, 0, s, false, ball_signature());
+  run(level, 3.0);
+  const double expected = 5.0 / 7.0 * kGravity * std::sin(radians(10.0)) * 3.0;
+  EXPECT_NEAR((turn_.conjugate() * level.state(0).velocity).x(), expected, 0.03 * expected);
+}
+
+TEST_F(Slope, EveryInstructionSetGivesTheSameBits) {
+  tilt(10.0);
+  testing::OneRung portable = make(Simd::portable), wide = make();
+  for (testing::OneRung* level : {&portable, &wide}) {
+    add_boxes(*level, 100, 0.5);
+    run(*level, 3.0);
+  }
+  for (int slot = 0; slot < portable.size(); ++slot) {
+    ASSERT_EQ(portable.state(slot).position, wide.state(slot).position) << slot;
+    ASSERT_EQ(portable.state(slot).orientation.coeffs(), wide.state(slot).orientation.coeffs()) << slot;
+  }
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,118 @@
+#include "scenes/playback.h"
+
+#include <zlib.h>
+
+#include <fstream>
+
+#include "scenes/runner.h"
+#include "tests/scenes/scene_fixture.h"
+
+namespace lodestone {
+namespace {
+
+// Two of three bodies full, which need no signature.
+const char* const kFalling = R"(version: 1
+step: {dt_s: 0.01, steps: 40, full_substeps: 2}
+shapes: {ball: {sphere_m: 0.1}, crate: {box_m: [0.2, 0.2, 0.2]}}
+ground: [{plane: {normal: [0, 0, 1], offset_m: 0}}, {box: {sides_m: [1, 1, 0.1], position_m: [5, 0, 0]}}]
+bodies:
+  - {shape: ball, position_m: [0, 0, 0.5], level: full, name: ball}
+  - {shape: crate, position_m: [3, 0, 0.5], velocity_m_per_s: [1, 0, 0], angular_velocity_rad_per_s: [9, 2, 1], level: full}
+output: {every_n_steps: 2}
+)";
+
+class SavedPlayback : public SceneFixture {
+ protected:
+  RunResult run() { return run_scene(load(kFalling), {.out = folder() / "out"}); }
+  std::filesystem::path file() const { return folder() / "out/run.play"; }
+  std::string error_of_loading() const {
+    try {
+      load_playback(file());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+};
+
+std::vector<std::uint8_t> inflated(const Playback& playback, const char* name) {
+  const auto& place = playback.header["blobs"][name];
+  std::vector<std::uint8_t> raw(place["raw_bytes"].get<std::size_t>());
+  uLongf size = raw.size();
+  EXPECT_EQ(uncompress(raw.data(), &size, reinterpret_cast<const Bytef*>(playback.blobs.data()) + place["offset"].get<std::size_t>(), place["bytes"].get<uLong>()), Z_OK);
+  return raw;
+}
+
+TEST_F(SavedPlayback, HoldsEveryFrameOfEveryBody) {
+  const RunResult result = run();
+  ASSERT_EQ(result.playback, file());
+  const Playback playback = load_playback(file());
+  const auto& header = playback.header;
+  EXPECT_EQ(header["bodies"], 2);
+  EXPECT_EQ(header["times_s"].size(), 21u);
+  EXPECT_EQ(header["step_ms"].size(), 40u);
+  EXPECT_EQ(header["label"], "s: as the scene says");
+  EXPECT_EQ(header["names"]["0"], "ball");
+  EXPECT_EQ(header["shapes"].size(), 2u);
+  EXPECT_EQ(header["ground"].size(), 2u);
+  EXPECT_EQ(header["rules"].size(), std::size_t(Rule::joined) + 1);
+  // Positions add up, frame after frame, to where the crate is at the end.
+  const std::vector<std::uint8_t> raw = inflated(playback, "poses");
+  ASSERT_EQ(raw.size(), 21u * 20 * 2);
+  std::int32_t last = 0, before = 0;
+  for (std::size_t frame = 0; frame < 21; ++frame) {
+    std::uint32_t difference = 0;
+    for (std::size_t byte = 0; byte < 4; ++byte) difference |= std::uint32_t(raw[frame * 40 + 2 * byte + 1]) << (8 * byte);  // x of the second body
+    const auto now = std::int32_t(difference) + (frame == 0 ? 0 : frame == 1 ? last : 2 * last - before);
+    before = last, last = now;
+  }
+  EXPECT_NEAR(last * header["unit_m"].get<double>(), result.states[1].position.x(), header["unit_m"].get<double>());
+}
+
+TEST_F(SavedPlayback, SceneWithoutViewpointIsFramed) {
+  run();
+  const auto header = load_playback(file()).header;
+  EXPECT_EQ(header["has_viewpoint"], false);
+  ASSERT_EQ(header["viewpoints"].size(), 1u);
+  EXPECT_GT(header["viewpoints"][0]["position_m"][2].get<double>(), 0.5);
+}
+
+TEST_F(SavedPlayback, WhatIsNoneIsRefused) {
+  run();
+  std::filesystem::resize_file(file(), std::filesystem::file_size(file()) - 9);
+  EXPECT_NE(error_of_loading().find("found a playback file cut short"), std::string::npos) << error_of_loading();
+  std::ofstream(file()) << "something else";
+  EXPECT_NE(error_of_loading().find("found no playback file, expected what `lodestone run SCENE --out DIR` writes"), std::string::npos) << error_of_loading();
+  std::filesystem::remove(file());
+  EXPECT_NE(error_of_loading(), "no error");
+}
+
+TEST_F(SavedPlayback, TwoFuturesAreOneUntilTheFork) {
+  const Scene scene = load(R"(version: 1
+step: {dt_s: 0.01, steps: 60, full_substeps: 2}
+shapes: {crate: {box_m: [0.2, 0.3, 0.2]}}
+ground: [{plane: {normal: [0, 0, 1], offset_m: 0}}]
+bodies: [{shape: crate, position_m: [0, 0, 0.4], angular_velocity_rad_per_s: [3, 1, 0]}, {shape: crate, position_m: [1, 0, 0.6]}]
+viewpoints: [{position_m: [0, -2, 1]}]
+lod: {policy: distance, full_within_m: 100}
+output: {every_n_steps: 1}
+)");
+  const RunResult plain = run_scene(scene), same = run_scene(scene, {.level = LevelChoice::full, .fork_step = 10}),
+                  other = run_scene(scene, {.level = LevelChoice::support, .fork_step = 10, .out = folder() / "out"});
+  ASSERT_TRUE(same.fork && other.fork);
+  EXPECT_EQ(same.state_hash, plain.state_hash);
+  EXPECT_EQ(other.state_hash, plain.state_hash);  // the first future knows nothing of the second
+  EXPECT_EQ(same.fork->mean_distance_m.size(), 50u);
+  EXPECT_EQ(same.fork->mean_distance_m.back(), 0.0);
+  EXPECT_EQ(other.fork->step, 10);
+  EXPECT_LT(other.fork->mean_distance_m.front(), 1e-3);
+  EXPECT_GT(other.fork->mean_distance_m.back(), 0.0);
+  EXPECT_EQ(other.fork->result.last().support, 2);
+  EXPECT_EQ(load_playback(folder() / "out/fork.play").header["times_s"][0], 0.1);
+  EXPECT_EQ(load_playback(folder() / "out/fork.play").header["label"], "s: level support");
+  EXPECT_THROW(run_scene(scene, {.level = LevelChoice::full, .fork_step = 60}), InputError);
+  EXPECT_THROW(run_scene(scene, {.fork_step = 10}), InputError);
+}
+
+}  // namespace
+}  // namespace lodestone
