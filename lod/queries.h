@@ -3,7 +3,7 @@
 // Bodies are met by their meshes on every rung (spheres as such), so that an answer does not change with a body's rung; ground, the caller's too, by its planes and solids, a height
 // field by rays, and by what moves along them as by its plane where the ray meets it. The caller's dynamic bodies are met by the solids of their geoms, round ones but spheres by
 // polyhedra of 32 sides: where they are now, though he moved or destroyed them since the last step; what he added or made another shape since is met as it is from the next step
-// on. Where he has any, each call looks through his space once, however many questions it has: many belong in one call. All lengths in m.
+// on. His ground is as the last step saw it: where he destroys a geom of it, questions wait for the next step. Where he has any, each call looks through his space once, however many questions it has: many belong in one call. All lengths in m.
 #pragma once
 
 #include <limits>

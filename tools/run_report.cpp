@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "tools/duration_text.h"
 #include "tools/terminal.h"
 
 namespace lodestone {
@@ -54,9 +55,6 @@ double mean_stage_ms(const RunResult& result, double StageTimes::*stage) {
 
 ordered_json number_or_null(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
 
-// Three digits at least, however short.
-std::string short_ms(double ms) { return ms >= 0.1 ? fmt::format("{:.3f}", ms) : fmt::format("{:.3g}", ms); }
-
 std::string text_of_stages(const RunResult& result) {
   std::string text;
   for (const auto& [name, stage] : kStages)
@@ -100,7 +98,7 @@ std::string text_of(const CheckResult& check) {
 std::string text_of(const ForkedRun& fork) {
   const StepReport& last = fork.result.last();
   return fmt::format("fork         after step {}: {} full, {} support, {} tables, {} asleep at the end; bodies on average {:.4g} m from where they are else; processor ms median {}; state hash {:016x}\n",
-                     fork.step, last.full, last.support, last.tables, last.asleep, fork.mean_distance_m.back(), short_ms(fork.result.processor_ms.p50), fork.result.state_hash);
+                     fork.step, last.full, last.support, last.tables, last.asleep, fork.mean_distance_m.back(), text_of_ms(fork.result.processor_ms.p50), fork.result.state_hash);
 }
 
 ordered_json json_of(const TimeSummary& ms) { return {{"p50", ms.p50}, {"p95", ms.p95}, {"p99", ms.p99}, {"mean", ms.mean}, {"max", ms.max}}; }
@@ -112,7 +110,7 @@ std::string text_of(const RunResult& result) {
   const TimeSummary &ms = result.step_ms, &processor = result.processor_ms;
   std::string text;
   for (const auto& [name, times] : {std::pair("step", ms), {"processor", processor}})
-    text += fmt::format("{:<12} median {} ms, 95 % {}, 99 % {}, longest {}\n", name, short_ms(times.p50), short_ms(times.p95), short_ms(times.p99), short_ms(times.max));
+    text += fmt::format("{:<12} median {} ms, 95 % {}, 99 % {}, longest {}\n", name, text_of_ms(times.p50), text_of_ms(times.p95), text_of_ms(times.p99), text_of_ms(times.max));
   text += fmt::format("stages       mean ms: {}\n", text_of_stages(result));
   text += fmt::format("at the end   {} full, {} statistical, {} of all asleep\n", last.full, last.statistical, last.asleep);
   text += fmt::format("rungs        {} full, {} support, {} tables\n", last.full, last.support, last.tables);

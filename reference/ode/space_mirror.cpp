@@ -31,7 +31,7 @@ struct Identity {
 struct Pose {
   std::array<dReal, 3> position{};
   std::array<dReal, 6> bounds{};
-  std::uint64_t rotation = 0;  // a sum over the matrix's bits: a cache line less for each geom
+  std::array<dReal, 12> rotation{};
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
@@ -39,14 +39,39 @@ struct Pose {
 struct Given {
   dGeomID geom = nullptr;
   dBodyID body = nullptr;
+  std::uint64_t print = 0;  // of all that tells whether it changed
   std::uint32_t slot = 0;
 };
 
 struct Seen {
   Identity identity;
   Pose pose;
-  std::uint64_t at = 0;      // the refresh that saw it last
-  std::uint32_t place = 0;   // in the order in which the space gave its geoms out
+};
+
+struct Sight {
+  std::uint64_t at = 0;     // the refresh that saw it last
+  std::uint32_t place = 0;  // in the order in which the space gave its geoms out
+};
+
+/// Four sums side by side, as each waits for its last product. A change of one word always changes it.
+class Print {
+ public:
+  void add(std::uint64_t word) {
+    std::uint64_t& sum = sums_[next_++ % sums_.size()];
+    sum = std::rotl((sum ^ word) * kOdd, 29);
+  }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  void add(const void* pointer) { add(std::uint64_t(reinterpret_cast<std::uintptr_t>(pointer))); }
+  std::uint64_t value() const {
+    std::uint64_t all = 0;
+    for (const std::uint64_t sum : sums_) all = std::rotl((all ^ sum) * kOdd, 29);
+    return all;
+  }
+
+ private:
+  static constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15u;
+  std::array<std::uint64_t, 4> sums_{1, 2, 3, 4};
+  unsigned next_ = 0;
 };
 
 std::array<dReal, 4> sizes_of(dGeomID geom, int geom_class) {
@@ -75,19 +100,41 @@ Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned c
           .data = geom_class == dTriMeshClass ? dGeomTriMeshGetData(geom) : nullptr};
 }
 
-std::uint64_t sum_of(const dReal* rotation) {
-  std::uint64_t sum = 0;
-  for (const int i : {0, 1, 2, 4, 5, 6, 8, 9, 10}) sum = std::rotl(sum, 7) * 0x9e3779b97f4a7c15u + std::bit_cast<std::uint64_t>(rotation[i]);
-  return sum;
-}
-
 Pose pose_of(dGeomID geom, int geom_class) {
   Pose pose;
   dGeomGetAABB(geom, pose.bounds.data());
   if (geom_class == dPlaneClass) return pose;  // which has none
   std::copy_n(dGeomGetPosition(geom), 3, pose.position.begin());
-  pose.rotation = sum_of(dGeomGetRotation(geom));
+  std::copy_n(dGeomGetRotation(geom), 12, pose.rotation.begin());
   return pose;
+}
+
+// The bounds of the first few follow from their place and sizes.
+std::uint64_t print_of(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
+  Print print;
+  const dBodyID body = dGeomGetBody(geom);
+  print.add(body);
+  print.add(std::uint64_t(geom_class) << 1 | (body && !dBodyIsKinematic(body)));
+  print.add(std::uint64_t(category) << 32 | collide);
+  for (const dReal size : sizes_of(geom, geom_class)) print.add(size);
+  if (geom_class == dPlaneClass) return print.value();
+  const dReal *position = dGeomGetPosition(geom), *rotation = dGeomGetRotation(geom);
+  for (const int i : {0, 1, 2}) print.add(position[i]);
+  for (const int i : {0, 1, 2, 4, 5, 6, 8, 9, 10}) print.add(rotation[i]);
+  if (geom_class == dSphereClass || geom_class == dBoxClass || geom_class == dCapsuleClass || geom_class == dCylinderClass) return print.value();
+  if (geom_class == dTriMeshClass) print.add(dGeomTriMeshGetData(geom));
+  std::array<dReal, 6> bounds;
+  dGeomGetAABB(geom, bounds.data());
+  for (const dReal side : bounds) print.add(side);
+  return print.value();
+}
+
+constexpr std::size_t kAhead = 4;  // so many geoms before one is looked at, its memory is asked for
+
+// What ODE has of a geom and of its place beside it. Of one that is gone it does nothing.
+void fetch(dGeomID geom) {
+  const char* const at = reinterpret_cast<const char*>(geom);
+  for (int line = 0; line < 6; ++line) __builtin_prefetch(at + 64 * line);
 }
 
 bool is_space(int geom_class) { return geom_class >= dFirstSpaceClass && geom_class <= dLastSpaceClass; }
@@ -125,11 +172,11 @@ struct SpaceMirror::Impl {
 
   void forget_moves();
   template <class Visit>
-  void walk(dSpaceID in, unsigned category, unsigned collide, const Visit& visit) const;
+  bool walk(dSpaceID in, unsigned category, unsigned collide, const Visit& visit) const;
   void look_at(dGeomID geom, int geom_class, unsigned category, unsigned collide);
-  std::uint32_t expected_slot(dGeomID geom);
-  void note(std::uint32_t slot);
-  void add(const Seen& found);
+  const Given* find_last(dGeomID geom);
+  void note(const Given& given);
+  void add(const Seen& found, std::uint64_t print);
   void drop_unseen();
   void update_tree();
   void note_disturbed();
@@ -140,7 +187,8 @@ struct SpaceMirror::Impl {
   dGeomID probe;  // meets everything
   std::vector<dSpaceID> excluded;
   std::vector<MirroredGeom> geoms;
-  std::vector<Seen> seen;  // one of each slot
+  std::vector<Seen> seen;      // one of each slot
+  std::vector<Sight> sights;   // likewise
   std::unordered_map<dGeomID, std::uint32_t> slots;
   std::vector<Given> order, last_order;
   std::size_t cursor = 0;                        // in last_order: which is expected next
@@ -163,7 +211,7 @@ void SpaceMirror::exclude(dxSpace* space) { impl_->excluded.push_back(space); }
 void SpaceMirror::refresh() {
   prepare();
   impl_->forget_moves();
-  impl_->walk(impl_->space, ~0u, ~0u, [this](dGeomID geom, int geom_class, unsigned category, unsigned collide) { impl_->look_at(geom, geom_class, category, collide); });
+  impl_->walk(impl_->space, ~0u, ~0u, [this](dGeomID geom, int geom_class, unsigned category, unsigned collide) { return impl_->look_at(geom, geom_class, category, collide), true; });
   impl_->drop_unseen();
   impl_->note_disturbed();
   impl_->update_tree();
@@ -183,24 +231,25 @@ void SpaceMirror::Impl::forget_moves() {
   ++refreshes;
 }
 
-// Visits every geom that may meet another, with its bits less those that the spaces around it lack.
+// Visits every geom that may meet another, with its bits less those that the spaces around it lack, until a visit returns false.
 // dSpaceGetGeom fails an assertion on a quadtree; what a box without end meets there is all that a body could.
 template <class Visit>
-void SpaceMirror::Impl::walk(dSpaceID in, unsigned category, unsigned collide, const Visit& visit) const {
-  if (std::ranges::find(excluded, in) != excluded.end()) return;
+bool SpaceMirror::Impl::walk(dSpaceID in, unsigned category, unsigned collide, const Visit& visit) const {
+  if (std::ranges::find(excluded, in) != excluded.end()) return true;
   const auto self = reinterpret_cast<dGeomID>(in);
   category &= unsigned(dGeomGetCategoryBits(self)), collide &= unsigned(dGeomGetCollideBits(self));
-  if (in != space && (!dGeomIsEnabled(self) || (category | collide) == 0)) return;
+  if (in != space && (!dGeomIsEnabled(self) || (category | collide) == 0)) return true;
   const auto enter = [&](dGeomID geom) {
     const int geom_class = dGeomGetClass(geom);
     if (is_space(geom_class)) return walk(reinterpret_cast<dSpaceID>(geom), category, collide, visit);
     const unsigned own_category = category & unsigned(dGeomGetCategoryBits(geom)), own_collide = collide & unsigned(dGeomGetCollideBits(geom));
-    if (geom_class != dRayClass && dGeomIsEnabled(geom) && (own_category | own_collide) != 0) visit(geom, geom_class, own_category, own_collide);
+    return geom_class == dRayClass || !dGeomIsEnabled(geom) || (own_category | own_collide) == 0 || visit(geom, geom_class, own_category, own_collide);
   };
   if (dSpaceGetClass(in) != dQuadTreeSpaceClass) {
     const int count = dSpaceGetNumGeoms(in);
-    for (int i = 0; i < count; ++i) enter(dSpaceGetGeom(in, i));
-    return;
+    for (int i = 0; i < count; ++i)
+      if (!enter(dSpaceGetGeom(in, i))) return false;
+    return true;
   }
   struct Found {
     dGeomID probe;
@@ -210,39 +259,44 @@ void SpaceMirror::Impl::walk(dSpaceID in, unsigned category, unsigned collide, c
     auto& all = *static_cast<Found*>(data);
     all.geoms.push_back(a == all.probe ? b : a);
   });
-  for (const dGeomID met : found.geoms) enter(met);
+  return std::ranges::all_of(found.geoms, enter);
 }
 
 void SpaceMirror::Impl::look_at(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
+  if (cursor + kAhead < last_order.size()) fetch(last_order[cursor + kAhead].geom);
+  const std::uint64_t print = print_of(geom, geom_class, category, collide);
+  const Given* last = find_last(geom);
+  if (last && last->print == print) return note(*last);
   const Seen found{identity_of(geom, geom_class, category, collide), pose_of(geom, geom_class)};
-  const std::uint32_t slot = expected_slot(geom);
-  if (slot == seen.size() || seen[slot].identity != found.identity) return add(found);
-  note(slot);
+  if (!last || seen[last->slot].identity != found.identity) return add(found, print);
+  const std::uint32_t slot = last->slot;
+  note({geom, last->body, print, slot});
   if (seen[slot].pose == found.pose) return;
   seen[slot].pose = found.pose;
   lodestone::place(seen[slot], geoms[slot]);
   moved.push_back(slot);
 }
 
-// A space mostly gives its geoms out in the same order as the last time; one that was moved or is new may come earlier.
-std::uint32_t SpaceMirror::Impl::expected_slot(dGeomID geom) {
-  if (cursor < last_order.size() && last_order[cursor].geom == geom) return last_order[cursor++].slot;
-  const auto found = slots.find(geom);
-  if (found == slots.end()) return std::uint32_t(seen.size());
-  cursor = seen[found->second].place + 1;
-  return found->second;
+// As it was given out the last time; null: it was not. A space mostly gives its geoms out in the same order; one that was moved or is new may come earlier.
+const Given* SpaceMirror::Impl::find_last(dGeomID geom) {
+  if (cursor == last_order.size() || last_order[cursor].geom != geom) {
+    const auto found = slots.find(geom);
+    if (found == slots.end() || sights[found->second].at == refreshes) return nullptr;
+    cursor = sights[found->second].place;
+  }
+  return &last_order[cursor++];
 }
 
-void SpaceMirror::Impl::note(std::uint32_t slot) {
-  seen[slot].at = refreshes;
-  seen[slot].place = std::uint32_t(order.size());
-  order.push_back({seen[slot].identity.geom, seen[slot].identity.body, slot});
+void SpaceMirror::Impl::note(const Given& given) {
+  sights[given.slot] = {refreshes, std::uint32_t(order.size())};
+  order.push_back(given);
 }
 
-void SpaceMirror::Impl::add(const Seen& found) {
+void SpaceMirror::Impl::add(const Seen& found, std::uint64_t print) {
   std::uint32_t slot = std::uint32_t(seen.size());
   if (free.empty()) {
     seen.emplace_back();
+    sights.emplace_back();
     geoms.emplace_back();
   } else {
     slot = free.back();
@@ -251,13 +305,15 @@ void SpaceMirror::Impl::add(const Seen& found) {
   seen[slot] = found;
   geoms[slot] = mirror(found);
   slots[found.identity.geom] = slot;
-  note(slot);
+  note({found.identity.geom, found.identity.body, print, slot});
   added.push_back(slot);
 }
 
 void SpaceMirror::Impl::drop_unseen() {
-  for (const auto& [geom, body, slot] : last_order) {
-    if (seen[slot].at == refreshes) continue;
+  const bool all_seen = added.empty() && order.size() == last_order.size();
+  for (const auto& [geom, body, print, slot] : last_order) {
+    if (all_seen) break;
+    if (sights[slot].at == refreshes) continue;
     const auto entry = slots.find(geom);
     if (entry->second == slot) slots.erase(entry);  // else another has its address
     seen[slot].identity.geom = geoms[slot].geom = nullptr;
@@ -335,15 +391,16 @@ void SpaceMirror::Impl::follow(std::size_t index) {
 
 void SpaceMirror::find_bodied_now(std::vector<std::uint32_t>& slots) const {
   const Impl& all = *impl_;
-  std::size_t cursor = 0;
-  all.walk(all.space, ~0u, ~0u, [&](dGeomID geom, int, unsigned, unsigned) {
+  std::size_t cursor = 0, left = all.bodied.size();  // these are mostly the first that a space gives out, as they came last or move
+  if (left > 0) all.walk(all.space, ~0u, ~0u, [&](dGeomID geom, int, unsigned, unsigned) {
     if (cursor == all.order.size() || all.order[cursor].geom != geom) {
       const auto known = all.slots.find(geom);
-      if (known == all.slots.end()) return;
-      cursor = all.seen[known->second].place;
+      if (known == all.slots.end()) return true;
+      cursor = all.sights[known->second].place;
     }
     const Given& given = all.order[cursor++];
-    if (given.body && dGeomGetBody(geom) == given.body) slots.push_back(given.slot);
+    if (given.body && dGeomGetBody(geom) == given.body) slots.push_back(given.slot), --left;
+    return left > 0;
   });
   std::ranges::sort(slots);
 }

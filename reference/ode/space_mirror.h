@@ -61,7 +61,7 @@ class SpaceMirror {
   /// Slots, ascending, of the geoms, save planes, whose bounds meet `box` (m).
   void find_near(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const;
 
-  /// Appends the slots, ascending, of those of bodied() that the space holds now, at any time; nothing else changes. Costs a walk over the space's geoms.
+  /// Appends the slots, ascending, of those of bodied() that the space holds now, at any time; nothing else changes. Costs a walk over the space's geoms, until all of them are found.
   void find_bodied_now(std::vector<std::uint32_t>& slots) const;
 
   /// Looks where the world's step took the geoms of bodies; geoms() and moved() stay as of the last refresh.

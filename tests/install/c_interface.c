@@ -402,6 +402,23 @@ static void check_callers_world(void) {
   struct dxBody* ode_body = NULL;
   DO(lodestone_get_ode_body(manager, body, &ode_body));
   that(ode_body && dBodyGetWorld(ode_body) == world, "its dBodyID is in the caller's world");
+  /* A body of his own, asked for. */
+  const dBodyID his = dBodyCreate(world);
+  const dGeomID box = dCreateBox(space, 1, 1, 1);
+  dGeomSetBody(box, his);
+  dBodySetPosition(his, 5, 0, 0.5);
+  DO(lodestone_step(manager, 1.0 / 60.0, NULL));
+  const lodestone_ray ray = {{5, 0, 5}, {0, 0, -1}, 10.0, 0.0};
+  bool met = false;
+  lodestone_hit hit;
+  DO(lodestone_cast_rays(manager, &ray, 1, NULL, &met, &hit));
+  that(met && hit.who.kind == LODESTONE_SIDE_CALLERS && hit.who.callers == his && hit.who.geom == box, "a ray meets a body of the caller's");
+  lodestone_query_filter without = lodestone_default_filter();
+  without.callers = false;
+  DO(lodestone_cast_rays(manager, &ray, 1, &without, &met, &hit));
+  that(met && hit.who.callers == NULL && hit.who.geom != box, "and the ground below where they are left out");
+  dGeomDestroy(box);
+  dBodyDestroy(his);
   /* His own loop. */
   lodestone_report report;
   DO(lodestone_set_state(manager, body, &(lodestone_state){{0, 0, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}}));

@@ -9,6 +9,7 @@
 
 #include "tools/bench/budget_bench.h"
 #include "tools/csv_file.h"
+#include "tools/duration_text.h"
 #include "tools/progress.h"
 #include "tools/text_table.h"
 
@@ -34,8 +35,8 @@ std::string text_of(const std::vector<BudgetBenchRow>& rows) {
                    "nearest full %", "once settled %", "foretold ms", "measured ms", "apart ms", "state hash"});
   for (const BudgetBenchRow& row : rows) {
     const BudgetFigures& f = row.figures;
-    std::vector<std::string> cells = {name_of(f), fmt::format("{}", row.threads), fmt::format("{:.2f}", f.step_ms.p50), fmt::format("{:.2f}", f.step_ms.p99),
-                                      fmt::format("{:.2f}", f.step_ms.max)};
+    std::vector<std::string> cells = {name_of(f), fmt::format("{}", row.threads), text_of_ms(f.step_ms.p50), text_of_ms(f.step_ms.p99),
+                                      text_of_ms(f.step_ms.max)};
     if (f.over) cells.insert(cells.end(), {fmt::format("{}", *f.over), fmt::format("{:.2f}", over_percent(f)), is_kept(f) ? "yes" : "NO"});
     else cells.insert(cells.end(), {"-", "-", "-"});
     for (const Rung rung : kFromTheTop) {

@@ -7,6 +7,7 @@
 #include "scenes/camera.h"
 #include "tools/compare/drop_report.h"
 #include "tools/demo/demo.h"
+#include "tools/duration_text.h"
 #include "tools/run_report.h"
 #include "tools/text_table.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string text_of(std::optional<double> ms) { return ms ? fmt::format("{:.2f}", *ms) : "-"; }
+std::string text_of(std::optional<double> ms) { return ms ? text_of_ms(*ms) : "-"; }
 
 std::optional<double> part_of(const std::optional<TimeSummary>& ms, double TimeSummary::*part) {
   if (!ms) return std::nullopt;
