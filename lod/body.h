@@ -29,13 +29,16 @@ struct GroupId {
 
 enum class Level : std::uint8_t { statistical, full };
 
-/// How a statistical body meets contacts: the paper's sphere with drawn responses, or ours with the exact support height and impulse.
+/// How a statistical body meets contacts: the paper's sphere with drawn responses, or ours with the exact
+/// support height and impulse.
 enum class StatisticalModel : std::uint8_t { tables, support };
 
 /// Where a body is on the ladder, from the cheapest to the truest: both statistical models, then ODE.
 enum class Rung : std::uint8_t { tables, support, full };
 inline constexpr std::size_t kRungs = 3;
-inline constexpr Rung rung_of(StatisticalModel model) { return model == StatisticalModel::tables ? Rung::tables : Rung::support; }
+inline constexpr Rung rung_of(StatisticalModel model) {
+  return model == StatisticalModel::tables ? Rung::tables : Rung::support;
+}
 inline constexpr Level level_of(Rung rung) { return rung == Rung::full ? Level::full : Level::statistical; }
 std::string_view name_of(Rung rung);  ///< "tables", "support", "full"
 
@@ -46,13 +49,16 @@ struct RungChange {
   friend bool operator==(const RungChange&, const RungChange&) = default;
 };
 
-/// Who decides a body's rung: the policy, or the caller for good. `statistical`: whichever of the two statistical rungs the policy finds.
+/// Who decides a body's rung: the policy, or the caller for good. `statistical`: whichever of the two
+/// statistical rungs the policy finds.
 enum class LevelChoice : std::uint8_t { automatic, full, statistical, support, tables };
 
 /// When a body at rest falls asleep.
 struct SleepThresholds {
-  double speed = 0.05;  ///< m/s, > 0: slower is still; on the statistical rungs for a body with a bounding sphere of .2 m radius, of others in proportion to its square root
-  double time = 0.1;    ///< s, ≥ 0: so long it must be still among other bodies; alone, or full, five times as long
+  double speed = 0.05;  ///< m/s, > 0: slower is still; on the statistical rungs for a body with a bounding
+                        ///< sphere of .2 m radius, of others in proportion to its square root
+  double time =
+      0.1;  ///< s, ≥ 0: so long it must be still among other bodies; alone, or full, five times as long
 };
 
 struct BodyDefinition {
@@ -61,11 +67,12 @@ struct BodyDefinition {
   MaterialId material = 0;
   std::optional<double> mass = {};  ///< kg; else the material's density times the shape's volume
   LevelChoice level = LevelChoice::automatic;
-  double importance = 1.0;     ///< > 0, scales the distance within which the policy makes it full
-  Rung least_rung = Rung::tables, greatest_rung = Rung::full;  ///< between which it is kept, unless its level is forced
-  BodyProperties properties = {};     ///< what it meets and what acts on it
-  std::uintptr_t user_data = 0;       ///< the caller's own: a pointer or a number
-  bool events = false;                ///< its contacts make events, see events.h
+  double importance = 1.0;  ///< > 0, scales the distance within which the policy makes it full
+  Rung least_rung = Rung::tables,
+       greatest_rung = Rung::full;  ///< between which it is kept, unless its level is forced
+  BodyProperties properties = {};   ///< what it meets and what acts on it
+  std::uintptr_t user_data = 0;     ///< the caller's own: a pointer or a number
+  bool events = false;              ///< its contacts make events, see events.h
 };
 
 }  // namespace lodestone

@@ -1,4 +1,5 @@
-// What a program may watch a Manager by: its log, the stages of a step as zones of a profiler, and lines and points to draw.
+// What a program may watch a Manager by: its log, the stages of a step as zones of a profiler, and lines and
+// points to draw.
 #pragma once
 
 #include <array>
@@ -20,8 +21,10 @@ enum class LogLevel : std::uint8_t {
 /// Called on the thread that steps, within step(), with one line of text. It must not change the manager.
 using LogFunction = std::function<void(LogLevel, std::string_view)>;
 
-/// Zones of a profiler, called on the thread that steps; they must not throw. `zone` is "step" for a call of step(), before_world_step() or after_world_step() and else the stage of StageTimes without its "_ms": "choose", "transfer",
-/// "flight", "broad_phase", "pairs", "crowd", "rest", "cross_level", "full"; the text lasts. Zones lie within each other as calls do; a stage may come more than once a step.
+/// Zones of a profiler, called on the thread that steps; they must not throw. `zone` is "step" for a call of
+/// step(), before_world_step() or after_world_step() and else the stage of StageTimes without its "_ms":
+/// "choose", "transfer", "flight", "broad_phase", "pairs", "crowd", "rest", "cross_level", "full"; the text
+/// lasts. Zones lie within each other as calls do; a stage may come more than once a step.
 struct ProfileHooks {
   std::function<void(std::string_view zone)> begin = {}, end = {};
 };
@@ -37,10 +40,13 @@ struct DebugDrawer {
 };
 
 struct DrawSettings {
-  bool bodies = true;    ///< as their rung has them: hulls, and for `tables` the colliding sphere, as three circles
-  bool contacts = true;  ///< between bodies, and of full ones with the ground, in the last step: a point, and a line along the normal; not those between two spheres
+  bool bodies =
+      true;  ///< as their rung has them: hulls, and for `tables` the colliding sphere, as three circles
+  bool contacts = true;  ///< between bodies, and of full ones with the ground, in the last step: a point, and
+                         ///< a line along the normal; not those between two spheres
   bool bounds = false;   ///< axis-aligned boxes around the hulls
-  std::array<DebugColor, kRungs> colors{{{0.0f, 0.45f, 0.3f}, {0.35f, 0.7f, 0.9f}, {0.9f, 0.6f, 0.0f}}};  ///< by Rung; half as bright asleep
+  std::array<DebugColor, kRungs> colors{
+      {{0.0f, 0.45f, 0.3f}, {0.35f, 0.7f, 0.9f}, {0.9f, 0.6f, 0.0f}}};  ///< by Rung; half as bright asleep
   DebugColor contact_color{0.9f, 0.2f, 0.2f}, bounds_color{0.5f, 0.5f, 0.5f};
   double normal_length = 0.1;  ///< m
 };

@@ -1,4 +1,5 @@
-// All of the engine in one include, installed as <lodestone/lodestone.h>. <lodestone/lod/manager.h> and the others serve alone, too.
+// All of the engine in one include, installed as <lodestone/lodestone.h>. <lodestone/lod/manager.h> and the
+// others serve alone, too.
 #pragma once
 
 // IWYU pragma: begin_exports

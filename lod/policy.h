@@ -1,4 +1,5 @@
-// Which rung each body should have: by distance from the viewpoints, by size in their pictures, or by what a step may cost.
+// Which rung each body should have: by distance from the viewpoints, by size in their pictures, or by what a
+// step may cost.
 #pragma once
 
 #include <functional>
@@ -10,33 +11,39 @@
 
 namespace lodestone {
 
-/// Full within `full_within` metres (times importance) of the nearest viewpoint, `support` within `support_within`, `tables` beyond; a lower rung again only beyond
-/// the distance times (1 + hysteresis).
+/// Full within `full_within` metres (times importance) of the nearest viewpoint, `support` within
+/// `support_within`, `tables` beyond; a lower rung again only beyond the distance times (1 + hysteresis).
 struct DistancePolicy {
-  double full_within = 4.0;  ///< m
+  double full_within = 4.0;                                         ///< m
   double support_within = std::numeric_limits<double>::infinity();  ///< m
 };
 
-/// By the diameter of a body's bounding sphere in the picture of the viewpoint where it is largest, times importance: full above `full_above_px`, `support` above
-/// `support_above_px`, `tables` below; a lower rung again only below the size over (1 + hysteresis).
+/// By the diameter of a body's bounding sphere in the picture of the viewpoint where it is largest, times
+/// importance: full above `full_above_px`, `support` above `support_above_px`, `tables` below; a lower rung
+/// again only below the size over (1 + hysteresis).
 struct ProjectedSizePolicy {
   double full_above_px = 50.0;
   double support_above_px = 0.0;  ///< 0: no body is on a lower rung
 };
 
-/// What a whole step may cost, in processor time of the calling thread: choice, transfer, all three rungs and what they have to do with each other. The nearest bodies
-/// are full, the next ones `support`, the others `tables`, as many as are predicted to fit; the prediction is learnt from measured steps, so the levels differ from run to run.
+/// What a whole step may cost, in processor time of the calling thread: choice, transfer, all three rungs and
+/// what they have to do with each other. The nearest bodies are full, the next ones `support`, the others
+/// `tables`, as many as are predicted to fit; the prediction is learnt from measured steps, so the levels
+/// differ from run to run.
 struct BudgetPolicy {
   double budget_ms = 4.0;
 };
 
-/// The same with work that is counted, not timed: the same levels in every run and on every machine. A unit is about a microsecond (see RungCost::work).
+/// The same with work that is counted, not timed: the same levels in every run and on every machine. A unit
+/// is about a microsecond (see RungCost::work).
 struct WorkPolicy {
   double budget_work = 4000.0;
 };
 
-/// A budget that is spent where it buys most: a higher rung goes to those bodies first whose error in the picture (Why::predicted_error_pixels, times importance) it lessens most for
-/// what it costs. A rung's error comes with the shape's signature where it was measured (`lodestone compare errors SHAPE --keep`), else it is an average (RungErrors).
+/// A budget that is spent where it buys most: a higher rung goes to those bodies first whose error in the
+/// picture (Why::predicted_error_pixels, times importance) it lessens most for what it costs. A rung's error
+/// comes with the shape's signature where it was measured (`lodestone compare errors SHAPE --keep`), else it
+/// is an average (RungErrors).
 struct ErrorBudgetPolicy {
   double budget_ms = 4.0;
   std::optional<double> budget_work = {};  ///< in its place: counted, not timed
@@ -51,15 +58,20 @@ struct PolicySettings {
   int max_transitions_per_frame = 4;  ///< nearest first; the rest wait their turn
   int most_full = kUnlimited;         ///< bodies that the policy makes full, at any time: the nearest
   int most_support = kUnlimited;      ///< and `support`
-  /// ≥ 1: a body in no viewpoint's picture counts as so many times as far; infinity: it goes to the least rung that it may have.
+  /// ≥ 1: a body in no viewpoint's picture counts as so many times as far; infinity: it goes to the least
+  /// rung that it may have.
   double out_of_view_factor = 1.0;
-  /// Whether a sphere is in view (m, world); empty: whether it meets the frustum of any viewpoint. It is asked in every step about each body for which that makes a difference.
+  /// Whether a sphere is in view (m, world); empty: whether it meets the frustum of any viewpoint. It is
+  /// asked in every step about each body for which that makes a difference.
   std::function<bool(const Vec3& center, double radius)> visible = {};
-  /// Times a body's importance, in (0, 1], to which it is cut. It is asked about the bodies that a step looks at: those that are full or awake, and a sleeper now and then.
+  /// Times a body's importance, in (0, 1], to which it is cut. It is asked about the bodies that a step looks
+  /// at: those that are full or awake, and a sleeper now and then.
   std::function<double(BodyId)> significance = {};
-  /// s, ≥ 0: a body that moves farther than its radius in this time counts as near as it will come meanwhile, and as what it will hit, where that is full: so it goes up before.
+  /// s, ≥ 0: a body that moves farther than its radius in this time counts as near as it will come meanwhile,
+  /// and as what it will hit, where that is full: so it goes up before.
   double look_ahead_s = 0.0;
-  /// Awake bodies that touch each other change rung together, all of a contact group or none, as the nearest of them.
+  /// Awake bodies that touch each other change rung together, all of a contact group or none, as the nearest
+  /// of them.
   bool contact_groups_together = false;
 
   ~PolicySettings();  // not inline: GCC 12 at -O3 warns of its functions in settings that do not name them

@@ -1,4 +1,5 @@
-// What is done to a manager, written down as it happens, and done again to see where it first comes out otherwise.
+// What is done to a manager, written down as it happens, and done again to see where it first comes out
+// otherwise.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +16,11 @@ namespace lodestone {
 using RecordFunction = std::function<void(std::span<const std::byte>)>;
 
 struct ReplayResult {
-  int steps = 0;             ///< that were done again, up to the first that came out otherwise
-  bool same = true;          ///< all did as recorded
-  BodyId body = {};          ///< where not: the first body, in order of creation, that is otherwise after that step; null where one is missing
-  std::string text = {};     ///< the same in words
+  int steps = 0;     ///< that were done again, up to the first that came out otherwise
+  bool same = true;  ///< all did as recorded
+  BodyId body = {};  ///< where not: the first body, in order of creation, that is otherwise after that step;
+                     ///< null where one is missing
+  std::string text = {};  ///< the same in words
 };
 
 }  // namespace lodestone

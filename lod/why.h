@@ -12,33 +12,41 @@ namespace lodestone {
 
 /// What decided.
 enum class Rule : std::uint8_t {
-  forced,             ///< the caller's LevelChoice
-  near, far,          ///< of the viewpoints, or large and small in their pictures
+  forced,  ///< the caller's LevelChoice
+  near,
+  far,  ///< of the viewpoints, or large and small in their pictures
   within_hysteresis,
-  dwell,              ///< the policy wants another rung, and it changed too recently
-  queued,             ///< … and max_transitions_per_frame others go first
-  over_budget, in_budget,
-  most_reached,       ///< most_full or most_support
+  dwell,   ///< the policy wants another rung, and it changed too recently
+  queued,  ///< … and max_transitions_per_frame others go first
+  over_budget,
+  in_budget,
+  most_reached,  ///< most_full or most_support
   overlap_put_off,
   signature_pending,
-  rung_range,         ///< the caller left one rung
+  rung_range,  ///< the caller left one rung
   out_of_view,
   look_ahead,
-  joined,             ///< joints of the caller's on its ODE body
+  joined,  ///< joints of the caller's on its ODE body
 };
 std::string_view text_of(Rule rule);
 
 struct Why {
   Rung rung = Rung::support;
   Rule rule = Rule::forced;
-  bool placed = false;        ///< false: it was added since the last step, which gives it a rung; rung and rule say nothing yet
-  double distance_m = std::numeric_limits<double>::infinity();  ///< from the nearest viewpoint to its bounding sphere; infinite without viewpoints
-  double pixels = 0.0;        ///< diameter of its bounding sphere in the picture where it is largest, as if it were in view; 0 without viewpoints
+  bool placed = false;  ///< false: it was added since the last step, which gives it a rung; rung and rule say
+                        ///< nothing yet
+  double distance_m =
+      std::numeric_limits<double>::infinity();  ///< from the nearest viewpoint to its bounding sphere;
+                                                ///< infinite without viewpoints
+  double pixels = 0.0;  ///< diameter of its bounding sphere in the picture where it is largest, as if it were
+                        ///< in view; 0 without viewpoints
   bool in_view = true;
-  double predicted_error = 0.0;         ///< score of its rung for its shape (see RungErrors); 0 while it sleeps
-  double predicted_error_pixels = 0.0;  ///< how far it drifts in a second (RungError::drift) × pixels; over out_of_view_factor where it is not in view; 0 while it sleeps
-  double cost_work = 0.0;     ///< of a step on its rung as it is now, in work units (see RungCost::work), without pairs of full bodies
-  double cost_ms = 0.0;       ///< the same as learnt from measured steps; 0 unless the budget is in milliseconds
+  double predicted_error = 0.0;  ///< score of its rung for its shape (see RungErrors); 0 while it sleeps
+  double predicted_error_pixels = 0.0;  ///< how far it drifts in a second (RungError::drift) × pixels; over
+                                        ///< out_of_view_factor where it is not in view; 0 while it sleeps
+  double cost_work = 0.0;  ///< of a step on its rung as it is now, in work units (see RungCost::work),
+                           ///< without pairs of full bodies
+  double cost_ms = 0.0;    ///< the same as learnt from measured steps; 0 unless the budget is in milliseconds
   int dwell_left_frames = 0;  ///< until it may change again
   GroupId group = {};         ///< that it is a member of; null: of none
 };

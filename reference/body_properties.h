@@ -6,11 +6,12 @@
 namespace lodestone {
 
 struct BodyProperties {
-  unsigned category = ~0u, collide = ~0u;  ///< bits, as ODE's: two meet where either's category is among what the other collides with
+  unsigned category = ~0u, collide = ~0u;  ///< bits, as ODE's: two meet where either's category is among what
+                                           ///< the other collides with
   bool gravity = true;
   double linear_damping = 0.0, angular_damping = 0.0;  ///< 1/s, ≥ 0: a velocity falls as exp(−damping · t)
   double max_angular_speed = std::numeric_limits<double>::infinity();  ///< rad/s, > 0
-  bool kinematic = false;                  ///< goes where its velocity takes it, whatever it meets
+  bool kinematic = false;  ///< goes where its velocity takes it, whatever it meets
   bool allow_sleep = true;
   friend bool operator==(const BodyProperties&, const BodyProperties&) = default;
 };

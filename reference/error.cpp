@@ -26,9 +26,9 @@ void throw_input_error(std::string_view what, std::string_view found, std::strin
   throw InputError(fmt::format("{}: found {}, expected {}", what, found, expected));
 }
 
-void check_that(bool holds, std::string_view contract, std::string_view values, std::source_location place) {
+void check_that(bool holds, std::string_view contract, std::string_view values, const char* file, int line) {
   if (holds) return;
-  const std::string message = fmt::format("{}:{}: contract broken: {} {}", place.file_name(), place.line(), contract, values);
+  const std::string message = fmt::format("{}:{}: contract broken: {} {}", file, line, contract, values);
   std::fprintf(stderr, "%s\n", message.c_str());
   std::unique_lock lock(assertion_handler().access);
   const std::function<void(std::string_view)> handler = assertion_handler().call;

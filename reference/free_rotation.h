@@ -1,5 +1,6 @@
-// Torque-free rotation of a rigid body. The spin (angular momentum over mass, world axes) is the state, so it is conserved exactly; the
-// orientation follows by the explicit midpoint rule on the rotation group (second order).
+// Torque-free rotation of a rigid body. The spin (angular momentum over mass, world axes) is the state, so it
+// is conserved exactly; the orientation follows by the explicit midpoint rule on the rotation group (second
+// order).
 #pragma once
 
 #include "reference/shape.h"
@@ -25,7 +26,8 @@ inline Mat3 inverse_inertia_world(const Quat& orientation, const Shape& shape) {
 
 /// Kinetic energy over mass, J/kg.
 inline double kinetic_energy(const Shape& shape, const RigidState& s) {
-  return 0.5 * (s.velocity.squaredNorm() + s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, shape)));
+  return 0.5 * (s.velocity.squaredNorm() +
+                s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, shape)));
 }
 
 /// The orientation `time` seconds later.

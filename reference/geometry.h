@@ -1,4 +1,5 @@
-// The vector types used throughout. World frame right-handed, SI units; quaternions map body axes to world axes.
+// The vector types used throughout. World frame right-handed, SI units; quaternions map body axes to world
+// axes.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,11 +11,13 @@ namespace lodestone {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-// Unaligned, so that a class holding one has the same layout whatever vector instructions its user compiles for.
+// Unaligned, so that a class holding one has the same layout whatever vector instructions its user compiles
+// for.
 using Quat = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 /// Where a body is and how it moves. `position` is the centre of mass in the world (m); `orientation` takes
-/// body axes to world axes (unit norm); `velocity` of the centre of mass (m/s) and `angular_velocity` (rad/s) are in the world frame.
+/// body axes to world axes (unit norm); `velocity` of the centre of mass (m/s) and `angular_velocity` (rad/s)
+/// are in the world frame.
 struct RigidState {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
@@ -34,18 +37,25 @@ inline bool is_within_limit(const Vec3& v) {
 inline constexpr double kSmallAngle = 0.25;
 /// sin x / x and cos x for x² = `square`, |x| below kSmallAngle.
 inline double small_sine_over_angle(double square) {
-  return 1.0 - square * (1.0 / 6.0) * (1.0 - square * (1.0 / 20.0) * (1.0 - square * (1.0 / 42.0) * (1.0 - square * (1.0 / 72.0) * (1.0 - square * (1.0 / 110.0)))));
+  return 1.0 - square * (1.0 / 6.0) *
+                   (1.0 - square * (1.0 / 20.0) *
+                              (1.0 - square * (1.0 / 42.0) *
+                                         (1.0 - square * (1.0 / 72.0) * (1.0 - square * (1.0 / 110.0)))));
 }
 inline double small_cosine(double square) {
-  return 1.0 - square * 0.5 * (1.0 - square * (1.0 / 12.0) * (1.0 - square * (1.0 / 30.0) * (1.0 - square * (1.0 / 56.0) * (1.0 - square * (1.0 / 90.0)))));
+  return 1.0 - square * 0.5 *
+                   (1.0 - square * (1.0 / 12.0) *
+                              (1.0 - square * (1.0 / 30.0) *
+                                         (1.0 - square * (1.0 / 56.0) * (1.0 - square * (1.0 / 90.0)))));
 }
 inline std::pair<double, double> sine_and_cosine(double angle) {
-  if (std::abs(angle) < kSmallAngle) return {angle * small_sine_over_angle(angle * angle), small_cosine(angle * angle)};
+  if (std::abs(angle) < kSmallAngle)
+    return {angle * small_sine_over_angle(angle * angle), small_cosine(angle * angle)};
   return {std::sin(angle), std::cos(angle)};
 }
 
-
-/// The rotation by `v` radians about v's own direction (exponential map). Below half a radian, as in most steps, by Taylor series, exact to rounding.
+/// The rotation by `v` radians about v's own direction (exponential map). Below half a radian, as in most
+/// steps, by Taylor series, exact to rounding.
 inline Quat rotation_from_vector(const Vec3& v) {
   const double h2 = 0.25 * v.squaredNorm();  // of half the angle
   if (h2 < kSmallAngle * kSmallAngle) {

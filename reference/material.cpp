@@ -11,13 +11,16 @@ namespace lodestone {
 namespace {
 
 void check_contact(double restitution, double friction) {
-  if (!(restitution >= 0.0 && restitution <= 1.0)) throw_input_error("restitution", fmt::to_string(restitution), "0 … 1");
-  if (!(friction >= 0.0 && std::isfinite(friction))) throw_input_error("friction", fmt::to_string(friction), "a finite number of 0 or more");
+  if (!(restitution >= 0.0 && restitution <= 1.0))
+    throw_input_error("restitution", fmt::to_string(restitution), "0 … 1");
+  if (!(friction >= 0.0 && std::isfinite(friction)))
+    throw_input_error("friction", fmt::to_string(friction), "a finite number of 0 or more");
 }
 
 void check(const Material& material) {
   check_contact(material.restitution, material.friction);
-  if (!(material.density > 0.0 && std::isfinite(material.density))) throw_input_error("density", fmt::format("{} kg/m³", material.density), "a positive, finite number");
+  if (!(material.density > 0.0 && std::isfinite(material.density)))
+    throw_input_error("density", fmt::format("{} kg/m³", material.density), "a positive, finite number");
 }
 
 }  // namespace
@@ -44,7 +47,9 @@ void MaterialTable::set_law(MaterialId a, MaterialId b, const ContactLaw& law) {
 }
 
 void MaterialTable::check_known(MaterialId id) const {
-  if (!has(id)) throw_input_error("material", fmt::to_string(id), fmt::format("0 … {}, as many as were added", size() - 1));
+  if (!has(id))
+    throw_input_error("material", fmt::to_string(id),
+                      fmt::format("0 … {}, as many as were added", size() - 1));
 }
 
 void MaterialTable::rebuild() {

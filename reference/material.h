@@ -20,8 +20,9 @@ struct ContactLaw {
 
 using MaterialId = int;  ///< index into a MaterialTable; 0 is the default material
 
-/// The materials of a scene. A pair takes the lower restitution and √(μ₁ μ₂) unless it is listed. What adds to it throws InputError, and changes nothing, for numbers out of
-/// the ranges above or not finite, and for materials that it does not have.
+/// The materials of a scene. A pair takes the lower restitution and √(μ₁ μ₂) unless it is listed. What adds
+/// to it throws InputError, and changes nothing, for numbers out of the ranges above or not finite, and for
+/// materials that it does not have.
 class MaterialTable {
  public:
   MaterialTable() { add(Material{}); }
@@ -35,7 +36,10 @@ class MaterialTable {
   void check_known(MaterialId id) const;  ///< throws InputError where it has none of that id
 
  private:
-  struct Listed { MaterialId a, b; ContactLaw law; };
+  struct Listed {
+    MaterialId a, b;
+    ContactLaw law;
+  };
   void rebuild();
   std::vector<Material> materials_;
   std::vector<Listed> listed_;

@@ -1,5 +1,6 @@
-// Counter-based random numbers (Philox4x32-10; Salmon et al., Parallel random numbers: as easy as 1, 2, 3, 2011).
-// A draw depends on its key only, never on call order, so any thread count and any split of work gives the same values.
+// Counter-based random numbers (Philox4x32-10; Salmon et al., Parallel random numbers: as easy as 1, 2, 3,
+// 2011). A draw depends on its key only, never on call order, so any thread count and any split of work gives
+// the same values.
 #pragma once
 
 #include <Random123/philox.h>
@@ -15,7 +16,8 @@ namespace lodestone {
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t a, std::uint32_t b)
-      : counter_{{std::uint32_t(a), std::uint32_t(a >> 32), b, 0}}, key_{{std::uint32_t(seed), std::uint32_t(seed >> 32)}} {}
+      : counter_{{std::uint32_t(a), std::uint32_t(a >> 32), b, 0}},
+        key_{{std::uint32_t(seed), std::uint32_t(seed >> 32)}} {}
 
   /// Uniform in (0, 1), both ends left out.
   double uniform() {
@@ -39,7 +41,8 @@ class RandomStream {
 
   /// Uniform over rotations (Shoemake, Uniform random rotations, 1992).
   Quat orientation() {
-    const double u = uniform(), a = uniform(0.0, 2.0 * std::numbers::pi), b = uniform(0.0, 2.0 * std::numbers::pi);
+    const double u = uniform(), a = uniform(0.0, 2.0 * std::numbers::pi),
+                 b = uniform(0.0, 2.0 * std::numbers::pi);
     const double r = std::sqrt(1.0 - u), s = std::sqrt(u);
     return Quat(s * std::cos(b), r * std::sin(a), r * std::cos(a), s * std::sin(b));
   }

@@ -154,7 +154,8 @@ Shape make_sphere_shape(double radius_m) {
 }
 
 Shape scale_shape(const Shape& shape, double factor) {
-  if (!(factor > 0.0 && std::isfinite(factor))) throw_input_error("scale factor", fmt::to_string(factor), "a positive, finite number");
+  if (!(factor > 0.0 && std::isfinite(factor)))
+    throw_input_error("scale factor", fmt::to_string(factor), "a positive, finite number");
   Shape scaled = shape;
   for (Vec3& vertex : scaled.mesh.vertices) vertex *= factor;
   for (Vec3& vertex : scaled.hull.vertices) vertex *= factor;

@@ -1,5 +1,6 @@
-// The state of a running simulation as bytes, and back to the bit. Each owner of state names what it holds once, in a function `archive(StateArchive&)` beside its members, for
-// both ways. Values go as they lie in memory: only the build that wrote them reads them (see snapshot.h, which checks that).
+// The state of a running simulation as bytes, and back to the bit. Each owner of state names what it holds
+// once, in a function `archive(StateArchive&)` beside its members, for both ways. Values go as they lie in
+// memory: only the build that wrote them reads them (see snapshot.h, which checks that).
 #pragma once
 
 #include <algorithm>
@@ -20,7 +21,9 @@ namespace lodestone {
 class StateArchive;
 
 template <class T>
-concept ArchivesItself = requires(T& value, StateArchive& archive) { value.archive(archive); };
+concept ArchivesItself = requires(T& value, StateArchive& archive) {
+  value.archive(archive);
+};
 /// Holds no memory of its own. Pointers are no values.
 template <class T>
 concept PlainState = std::is_trivially_destructible_v<T> && !std::is_pointer_v<T> && !ArchivesItself<T>;
@@ -30,15 +33,18 @@ class StateArchive {
   /// Writes.
   StateArchive() = default;
   /// Reads; `shapes` are those of the writer, in its order.
-  StateArchive(std::span<const std::byte> bytes, std::vector<std::shared_ptr<const Shape>> shapes) : reading_(true), left_(bytes), shapes_(std::move(shapes)) {}
+  StateArchive(std::span<const std::byte> bytes, std::vector<std::shared_ptr<const Shape>> shapes)
+      : reading_(true), left_(bytes), shapes_(std::move(shapes)) {}
 
   bool reading() const { return reading_; }
   template <class... T>
-  void operator()(T&... values) { (take(values), ...); }
+  void operator()(T&... values) {
+    (take(values), ...);
+  }
 
-  const std::vector<std::byte>& bytes() const { return bytes_; }                           ///< written
-  bool at_end() const { return left_.empty(); }                                            ///< of what is read
-  const std::vector<std::shared_ptr<const Shape>>& shapes() const { return shapes_; }      ///< that were met
+  const std::vector<std::byte>& bytes() const { return bytes_; }                       ///< written
+  bool at_end() const { return left_.empty(); }                                        ///< of what is read
+  const std::vector<std::shared_ptr<const Shape>>& shapes() const { return shapes_; }  ///< that were met
 
  private:
   void take_bytes(void* at, std::size_t count) {
@@ -60,19 +66,25 @@ class StateArchive {
   }
 
   template <PlainState T>
-  void take(T& value) { take_bytes(static_cast<void*>(&value), sizeof(T)); }
+  void take(T& value) {
+    take_bytes(static_cast<void*>(&value), sizeof(T));
+  }
   template <ArchivesItself T>
-  void take(T& value) { value.archive(*this); }
+  void take(T& value) {
+    value.archive(*this);
+  }
   template <class T>
   void take(std::vector<T>& values) {
     const std::size_t count = take_count(values.size());
     if (reading_) values.resize(count);
-    if constexpr (PlainState<T>) take_bytes(static_cast<void*>(values.data()), count * sizeof(T));
-    else for (T& value : values) take(value);
+    if constexpr (PlainState<T>)
+      take_bytes(static_cast<void*>(values.data()), count * sizeof(T));
+    else
+      for (T& value : values) take(value);
   }
   /// Maps, the values of a hash map in the order of the keys.
   template <class Map>
-    requires requires { typename Map::mapped_type; }
+  requires requires { typename Map::mapped_type; }
   void take(Map& map) {
     const std::size_t count = take_count(map.size());
     if (reading_) {
@@ -91,8 +103,8 @@ class StateArchive {
   }
   /// Hash sets, in order.
   template <class Set>
-    requires(requires { typename Set::hasher; } && !requires { typename Set::mapped_type; })
-  void take(Set& set) {
+  requires(
+      requires { typename Set::hasher; } && !requires { typename Set::mapped_type; }) void take(Set& set) {
     std::vector<typename Set::key_type> keys(set.begin(), set.end());
     std::ranges::sort(keys);
     take(keys);

@@ -1,5 +1,5 @@
-// Experiments with one body and ODE as the ground truth: drops to rest for comparison, single collisions and settles for signatures
-// (the paper's sections 3.2.1–3.2.3).
+// Experiments with one body and ODE as the ground truth: drops to rest for comparison, single collisions and
+// settles for signatures (the paper's sections 3.2.1–3.2.3).
 #pragma once
 
 #include <functional>
@@ -8,9 +8,11 @@
 
 namespace lodestone {
 
-inline constexpr double kObservationStep = 1.0 / 60.0;  ///< s: every method is observed at these instants, whatever its own step
+inline constexpr double kObservationStep =
+    1.0 / 60.0;  ///< s: every method is observed at these instants, whatever its own step
 
-/// Ranges of a drop's start for a body of .2–.4 m; other sizes scale lengths by λ and times by √λ (see `drop_scale`).
+/// Ranges of a drop's start for a body of .2–.4 m; other sizes scale lengths by λ and times by √λ (see
+/// `drop_scale`).
 struct DropConditions {
   double lowest_point_min = 0.3, lowest_point_max = 0.8;  ///< m above the plane
   double horizontal_speed = 1.0;                          ///< m/s, each of x and y uniform within ±
@@ -24,7 +26,8 @@ struct DropConditions {
 double drop_scale(const Shape& shape);
 
 /// The start of drop number `trial`: a function of (seed, trial) alone.
-RigidState drop_state(const Shape& shape, const DropConditions& conditions, std::uint64_t seed, std::uint32_t trial);
+RigidState drop_state(const Shape& shape, const DropConditions& conditions, std::uint64_t seed,
+                      std::uint32_t trial);
 
 /// The plane that drops fall on: through the origin, tilted by the slope about y.
 Vec3 drop_plane_normal(const DropConditions& conditions);
@@ -33,6 +36,7 @@ Vec3 drop_plane_normal(const DropConditions& conditions);
 using DropObserverFunction = std::function<bool(double time, const RigidState& state)>;
 
 /// One body falling on a plane under ODE, stepped by 1/60/`substeps` s, for `horizon` seconds.
-void simulate_drop(OdeWorld& world, OdeBodyId body, double horizon, int substeps, const DropObserverFunction& observe);
+void simulate_drop(OdeWorld& world, OdeBodyId body, double horizon, int substeps,
+                   const DropObserverFunction& observe);
 
 }  // namespace lodestone

@@ -28,7 +28,8 @@ struct BodyEntry {
 
 LevelChoice load_level(const YamlCursor& key) {
   static const std::array<std::string, 5> kNames{"auto", "full", "statistical", "support", "tables"};
-  return std::array{LevelChoice::automatic, LevelChoice::full, LevelChoice::statistical, LevelChoice::support, LevelChoice::tables}[key.choice(kNames)];
+  return std::array{LevelChoice::automatic, LevelChoice::full, LevelChoice::statistical, LevelChoice::support,
+                    LevelChoice::tables}[key.choice(kNames)];
 }
 
 Rung load_rung(const YamlCursor& key) {
@@ -41,21 +42,25 @@ ScatterRegion load_region(const YamlCursor& scatter) {
     const YamlCursor key = scatter.at("box_m");
     const std::vector<YamlCursor> corners = key.items(2);
     const ScatterBox box{corners[0].vector(), corners[1].vector()};
-    if ((box.high.array() < box.low.array()).any()) key.fail("a second corner below the first", "[[low x, y, z], [high x, y, z]]");
+    if ((box.high.array() < box.low.array()).any())
+      key.fail("a second corner below the first", "[[low x, y, z], [high x, y, z]]");
     return box;
   }
   const YamlCursor key = scatter.at("cylinder");
   key.expect_keys({"base_m", "radius_m", "height_m"});
-  return ScatterCylinder{key.at("base_m").vector(), key.at("radius_m").number(kNotNegative), key.at("height_m").number(kNotNegative)};
+  return ScatterCylinder{key.at("base_m").vector(), key.at("radius_m").number(kNotNegative),
+                         key.at("height_m").number(kNotNegative)};
 }
 
-Scatter load_scatter(const YamlCursor& place, std::uint64_t otherwise_seed, const SceneLoadSettings& settings) {
+Scatter load_scatter(const YamlCursor& place, std::uint64_t otherwise_seed,
+                     const SceneLoadSettings& settings) {
   place.expect_keys({"count", "box_m", "cylinder", "seed", "spacing_m", "on_ground", "lying"});
   Scatter scatter{.region = load_region(place), .seed = otherwise_seed};
   scatter.count = int(place.at("count").integer(1, settings.max_bodies));
   if (auto key = place.find("seed")) {
     // Added to the run's seed, not replaced by it, so that scatters given the same seed stay alike.
-    scatter.seed = std::uint64_t(key->integer(0, std::numeric_limits<std::int64_t>::max())) + settings.seed.value_or(0);
+    scatter.seed =
+        std::uint64_t(key->integer(0, std::numeric_limits<std::int64_t>::max())) + settings.seed.value_or(0);
   }
   if (auto key = place.find("spacing_m")) scatter.spacing_m = key->number(kNotNegative);
   return scatter;
@@ -78,10 +83,11 @@ void load_motion(const YamlCursor& place, BodyEntry& entry) {
   if (auto key = place.find("angular_velocity_rad_per_s")) state.angular_velocity = key->vector(kSpeed);
 }
 
-BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
-                     const SceneLoadSettings& settings) {
-  place.expect_keys({"shape", "position_m", "orientation", "velocity_m_per_s", "angular_velocity_rad_per_s", "scatter", "level", "name",
-                     "material", "mass_kg", "importance", "asleep", "least_rung", "greatest_rung"});
+BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene,
+                     const std::map<std::string, SceneShape>& shapes, const SceneLoadSettings& settings) {
+  place.expect_keys({"shape", "position_m", "orientation", "velocity_m_per_s", "angular_velocity_rad_per_s",
+                     "scatter", "level", "name", "material", "mass_kg", "importance", "asleep", "least_rung",
+                     "greatest_rung"});
   place.one_key_of({"position_m", "scatter"});
   const SceneShape& shape = find_shape(place.at("shape"), shapes);
   BodyEntry entry{.place = place};
@@ -96,7 +102,8 @@ BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene, con
   if (auto key = place.find("least_rung")) body.least_rung = load_rung(*key);
   if (auto key = place.find("greatest_rung")) {
     body.greatest_rung = load_rung(*key);
-    if (body.greatest_rung < body.least_rung) key->fail(key->found(), fmt::format("at least least_rung ({})", name_of(body.least_rung)));
+    if (body.greatest_rung < body.least_rung)
+      key->fail(key->found(), fmt::format("at least least_rung ({})", name_of(body.least_rung)));
   }
   if (auto key = place.find("name")) entry.body.name = key->text();
   if (auto key = place.find("asleep")) entry.body.asleep = key->truth();
@@ -109,19 +116,22 @@ BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene, con
   return entry;
 }
 
-std::vector<BodyEntry> load_entries(const YamlCursor& list, const Scene& scene, const std::map<std::string, SceneShape>& shapes,
+std::vector<BodyEntry> load_entries(const YamlCursor& list, const Scene& scene,
+                                    const std::map<std::string, SceneShape>& shapes,
                                     const SceneLoadSettings& settings) {
   std::vector<BodyEntry> entries;
   std::int64_t bodies = std::int64_t(scene.bodies.size());
   for (const YamlCursor& place : list.items()) {
     entries.push_back(load_entry(place, int(entries.size()), scene, shapes, settings));
     bodies += entries.back().count();
-    if (bodies > settings.max_bodies) place.fail(fmt::format("{} bodies", bodies), fmt::format("at most {}", settings.max_bodies));
+    if (bodies > settings.max_bodies)
+      place.fail(fmt::format("{} bodies", bodies), fmt::format("at most {}", settings.max_bodies));
   }
   return entries;
 }
 
-std::optional<RigidState> lay(const GroundHeights& heights, const BodyEntry& entry, int index, const Vec3& center) {
+std::optional<RigidState> lay(const GroundHeights& heights, const BodyEntry& entry, int index,
+                              const Vec3& center) {
   const BodyDefinition& body = entry.body.definition;
   return heights.lay(*body.shape, body.state.orientation, scatter_turn(*entry.scatter, index), center);
 }
@@ -141,18 +151,24 @@ PutOnGround put_on(const GroundHeights& heights, const BodyEntry& entry) {
   };
 }
 
-void expand_scatter(const BodyEntry& entry, std::span<const KeepAbove> planes, const GroundHeights& heights, PlacedSpheres& placed, std::vector<SceneBody>& bodies) {
+void expand_scatter(const BodyEntry& entry, std::span<const KeepAbove> planes, const GroundHeights& heights,
+                    PlacedSpheres& placed, std::vector<SceneBody>& bodies) {
   const Scatter& scatter = *entry.scatter;
-  const std::vector<Vec3> centers = place_scatter(scatter, entry.radius(), planes, placed, put_on(heights, entry));
+  const std::vector<Vec3> centers =
+      place_scatter(scatter, entry.radius(), planes, placed, put_on(heights, entry));
   if (int(centers.size()) < scatter.count)
-    entry.place.at("scatter").fail(fmt::format("{} bodies of radius {:.3g} m", scatter.count, entry.radius()),
-                                   fmt::format("at most the {} that found room without overlap (a larger region, or fewer)", centers.size()));
+    entry.place.at("scatter").fail(
+        fmt::format("{} bodies of radius {:.3g} m", scatter.count, entry.radius()),
+        fmt::format("at most the {} that found room without overlap (a larger region, or fewer)",
+                    centers.size()));
   for (int i = 0; i < scatter.count; ++i) {
     SceneBody body = entry.body;
     RigidState& state = body.definition.state;
     state.position = centers[std::size_t(i)];
-    if (entry.lying) state.orientation = lay(heights, entry, i, state.position)->orientation;
-    else if (!entry.has_orientation) state.orientation = scatter_orientation(scatter, i);
+    if (entry.lying)
+      state.orientation = lay(heights, entry, i, state.position)->orientation;
+    else if (!entry.has_orientation)
+      state.orientation = scatter_orientation(scatter, i);
     if (!body.name.empty()) body.name += fmt::format("[{}]", i);
     bodies.push_back(std::move(body));
   }
@@ -161,26 +177,31 @@ void expand_scatter(const BodyEntry& entry, std::span<const KeepAbove> planes, c
 std::vector<KeepAbove> planes_of(const Scene& scene) {
   std::vector<KeepAbove> planes;
   for (const SceneGround& ground : scene.ground)
-    if (const auto* plane = std::get_if<GroundPlane>(&ground)) planes.push_back({plane->normal, plane->offset_m});
+    if (const auto* plane = std::get_if<GroundPlane>(&ground))
+      planes.push_back({plane->normal, plane->offset_m});
   return planes;
 }
 
 }  // namespace
 
-void add_bodies(const YamlCursor& root, Scene& scene, const std::map<std::string, SceneShape>& shapes, const SceneLoadSettings& settings) {
+void add_bodies(const YamlCursor& root, Scene& scene, const std::map<std::string, SceneShape>& shapes,
+                const SceneLoadSettings& settings) {
   const std::vector<BodyEntry> entries = load_entries(root.at("bodies"), scene, shapes, settings);
   double largest = 1e-4;
   for (const BodyEntry& entry : entries) largest = std::max(largest, entry.radius());
   for (const SceneBody& body : scene.bodies) largest = std::max(largest, body.definition.shape->radius);
   PlacedSpheres placed(largest);
-  for (const SceneBody& body : scene.bodies) placed.add(body.definition.state.position, body.definition.shape->radius);
+  for (const SceneBody& body : scene.bodies)
+    placed.add(body.definition.state.position, body.definition.shape->radius);
   for (const BodyEntry& entry : entries)
     if (!entry.scatter) placed.add(entry.body.definition.state.position, entry.radius());
   const std::vector<KeepAbove> planes = planes_of(scene);
   const GroundHeights heights(scene.ground);
   for (const BodyEntry& entry : entries) {
-    if (entry.scatter) expand_scatter(entry, planes, heights, placed, scene.bodies);
-    else scene.bodies.push_back(entry.body);
+    if (entry.scatter)
+      expand_scatter(entry, planes, heights, placed, scene.bodies);
+    else
+      scene.bodies.push_back(entry.body);
   }
 }
 

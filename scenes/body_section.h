@@ -9,8 +9,10 @@
 
 namespace lodestone {
 
-/// To `scene.bodies`, in the file's order. Scatters keep clear of the bodies placed one by one (wherever in the list these are), of those that `scene` has, of earlier
-/// scatters and of the ground planes in `scene.ground`.
-void add_bodies(const YamlCursor& root, Scene& scene, const std::map<std::string, SceneShape>& shapes, const SceneLoadSettings& settings);
+/// To `scene.bodies`, in the file's order. Scatters keep clear of the bodies placed one by one (wherever in
+/// the list these are), of those that `scene` has, of earlier scatters and of the ground planes in
+/// `scene.ground`.
+void add_bodies(const YamlCursor& root, Scene& scene, const std::map<std::string, SceneShape>& shapes,
+                const SceneLoadSettings& settings);
 
 }  // namespace lodestone

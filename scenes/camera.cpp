@@ -17,7 +17,8 @@ Quat camera_rotation(const Vec3& position, const Vec3& target) {
 bool Camera::sees(const Vec3& point) const {
   const Vec3 seen = to_camera_ * (point - position_);  // z backwards
   const double half_height = -seen.z() * std::tan(0.5 * kFieldOfView);
-  return seen.z() < 0.0 && std::abs(seen.y()) <= half_height && std::abs(seen.x()) <= kAspectRatio * half_height;
+  return seen.z() < 0.0 && std::abs(seen.y()) <= half_height &&
+         std::abs(seen.x()) <= kAspectRatio * half_height;
 }
 
 }  // namespace lodestone

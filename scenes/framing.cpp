@@ -8,8 +8,8 @@
 namespace lodestone {
 namespace {
 
-constexpr int kFrames = 8;          // looked at, evenly over the trajectory
-constexpr double kFarthest = 0.01;  // of the bodies: they may be outside
+constexpr int kFrames = 8;         // looked at, evenly over the trajectory
+constexpr double kOutside = 0.01;  // of the bodies: they may be outside
 
 Vec3 position_of(const Trajectory& trajectory, int frame, int body) {
   const Trajectory::Position& p = trajectory.position(frame, body);
@@ -19,7 +19,8 @@ Vec3 position_of(const Trajectory& trajectory, int frame, int body) {
 std::vector<Vec3> sample_positions(const Trajectory& trajectory) {
   std::vector<Vec3> positions;
   for (int i = 0; i < kFrames; ++i)
-    for (int body = 0; body < trajectory.bodies(); ++body) positions.push_back(position_of(trajectory, i * (trajectory.frames() - 1) / (kFrames - 1), body));
+    for (int body = 0; body < trajectory.bodies(); ++body)
+      positions.push_back(position_of(trajectory, i * (trajectory.frames() - 1) / (kFrames - 1), body));
   std::erase_if(positions, [](const Vec3& p) { return !p.allFinite(); });
   return positions;
 }
@@ -40,14 +41,15 @@ SceneViewpoint frame_bodies(const Trajectory& trajectory, const Scene& scene) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const Vec3& p : positions) values.push_back(p[axis]);
-    viewpoint.look_at_m[axis] = 0.5 * (quantile(values, kFarthest) + quantile(values, 1 - kFarthest));
+    viewpoint.look_at_m[axis] = 0.5 * (quantile(values, kOutside) + quantile(values, 1 - kOutside));
   }
   std::vector<double> distances;
   for (const Vec3& p : positions) distances.push_back((p - viewpoint.look_at_m).norm());
   double radius = 0;
   for (const SceneBody& body : scene.bodies) radius = std::max(radius, body.definition.shape->radius);
-  const double to_see_m = quantile(distances, 1 - kFarthest) + radius;
-  viewpoint.position_m = viewpoint.look_at_m + to_see_m / std::sin(0.5 * kFieldOfView) * Vec3(-0.5, -0.75, 0.45).normalized();
+  const double to_see_m = quantile(distances, 1 - kOutside) + radius;
+  viewpoint.position_m =
+      viewpoint.look_at_m + to_see_m / std::sin(0.5 * kFieldOfView) * Vec3(-0.5, -0.75, 0.45).normalized();
   return viewpoint;
 }
 

@@ -5,7 +5,8 @@
 
 namespace lodestone {
 
-/// Stands still, obliquely above, and has nearly all bodies (all but the farthest hundredth) in its picture over the whole trajectory.
+/// Stands still, obliquely above, and has nearly all bodies (all but the farthest hundredth) in its picture
+/// over the whole trajectory.
 SceneViewpoint frame_bodies(const Trajectory& trajectory, const Scene& scene);
 
 }  // namespace lodestone

@@ -18,7 +18,8 @@ int GltfBuffer::add_view(std::span<const std::byte> bytes, int target) {
   return int(model_.bufferViews.size()) - 1;
 }
 
-int GltfBuffer::add_accessor(int view, std::size_t byte_offset, std::size_t count, int type, int component, bool normalized) {
+int GltfBuffer::add_accessor(int view, std::size_t byte_offset, std::size_t count, int type, int component,
+                             bool normalized) {
   tinygltf::Accessor accessor;
   accessor.bufferView = view;
   accessor.byteOffset = byte_offset;
@@ -48,7 +49,9 @@ int GltfBuffer::add_bounded(std::span<const Value> values, int components, int t
   return accessor;
 }
 
-int GltfBuffer::add_scalars(std::span<const float> values) { return add_bounded(values, 1, TINYGLTF_TYPE_SCALAR, 0); }
+int GltfBuffer::add_scalars(std::span<const float> values) {
+  return add_bounded(values, 1, TINYGLTF_TYPE_SCALAR, 0);
+}
 
 int GltfBuffer::add_vectors(std::span<const std::array<float, 3>> values, int target) {
   return add_bounded(values, 3, TINYGLTF_TYPE_VEC3, target);

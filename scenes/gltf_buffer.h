@@ -15,13 +15,17 @@ class GltfBuffer {
  public:
   explicit GltfBuffer(tinygltf::Model& model) : model_(model) { model_.buffers.resize(1); }
 
-  /// A view on bytes that are appended now; `target`: what a graphics card does with it, 0 for animation data.
+  /// A view on bytes that are appended now; `target`: what a graphics card does with it, 0 for animation
+  /// data.
   int add_view(std::span<const std::byte> bytes, int target = 0);
-  /// `count` values of `type` (TINYGLTF_TYPE_…) made of `component` (TINYGLTF_COMPONENT_TYPE_…) from `byte_offset` of a view on.
-  int add_accessor(int view, std::size_t byte_offset, std::size_t count, int type, int component, bool normalized = false);
+  /// `count` values of `type` (TINYGLTF_TYPE_…) made of `component` (TINYGLTF_COMPONENT_TYPE_…) from
+  /// `byte_offset` of a view on.
+  int add_accessor(int view, std::size_t byte_offset, std::size_t count, int type, int component,
+                   bool normalized = false);
 
-  int add_scalars(std::span<const float> values);                              ///< with the bounds that key times need
-  int add_vectors(std::span<const std::array<float, 3>> values, int target);  ///< with the bounds that positions need
+  int add_scalars(std::span<const float> values);  ///< with the bounds that key times need
+  int add_vectors(std::span<const std::array<float, 3>> values,
+                  int target);  ///< with the bounds that positions need
   int add_indices(std::span<const std::uint32_t> values);
 
  private:

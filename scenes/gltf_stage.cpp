@@ -11,7 +11,8 @@ namespace {
 
 using Color = std::array<double, 3>;  // linear
 constexpr Color kGroundColor{0.72, 0.72, 0.70};
-// Orange while full, blue at `support`, a dark green at `tables`: apart for the colour-blind too, by their lightness.
+// Orange while full, blue at `support`, a dark green at `tables`: apart for the colour-blind too, by their
+// lightness.
 constexpr std::array<Color, kRungs> kRungColors{{{0.10, 0.27, 0.20}, {0.35, 0.55, 0.85}, {0.95, 0.50, 0.12}}};
 constexpr double kAsleepShade = 0.45;
 constexpr std::size_t kSmoothFaces = 200;  // coarser meshes have real edges and stay flat
@@ -20,7 +21,8 @@ constexpr std::size_t kSmoothFaces = 200;  // coarser meshes have real edges and
 std::vector<std::array<float, 3>> smooth_normals(const Mesh& mesh) {
   std::vector<Vec3> sums(mesh.vertices.size(), Vec3::Zero());
   for (const std::array<int, 3>& face : mesh.faces) {
-    const Vec3 &a = mesh.vertices[std::size_t(face[0])], &b = mesh.vertices[std::size_t(face[1])], &c = mesh.vertices[std::size_t(face[2])];
+    const Vec3 &a = mesh.vertices[std::size_t(face[0])], &b = mesh.vertices[std::size_t(face[1])],
+               &c = mesh.vertices[std::size_t(face[2])];
     for (int corner : face) sums[std::size_t(corner)] += (b - a).cross(c - a);
   }
   std::vector<std::array<float, 3>> normals;
@@ -31,7 +33,9 @@ std::vector<std::array<float, 3>> smooth_normals(const Mesh& mesh) {
   return normals;
 }
 
-std::string name_of(BodyLook look) { return fmt::format("{}{}", lodestone::name_of(look.rung), look.asleep ? " asleep" : ""); }
+std::string name_of(BodyLook look) {
+  return fmt::format("{}{}", lodestone::name_of(look.rung), look.asleep ? " asleep" : "");
+}
 
 Mesh square(double half_side) {
   const double s = half_side;

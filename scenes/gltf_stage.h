@@ -22,14 +22,17 @@ class GltfStage {
  public:
   GltfStage(tinygltf::Model& model, GltfBuffer& buffer);
 
-  int add_node(tinygltf::Node node);                      ///< under the root
+  int add_node(tinygltf::Node node);  ///< under the root
   int add_child(int parent, tinygltf::Node node);
-  int body_mesh(const Shape& shape, BodyLook look);       ///< made once for each shape and look; the looks share their arrays
-  void add_ground(const SceneGround& ground, double extent_m); ///< planes are drawn `extent_m` to each side
-  int add_camera(const SceneViewpoint& viewpoint);        ///< returns its node
+  int body_mesh(const Shape& shape,
+                BodyLook look);  ///< made once for each shape and look; the looks share their arrays
+  void add_ground(const SceneGround& ground, double extent_m);  ///< planes are drawn `extent_m` to each side
+  int add_camera(const SceneViewpoint& viewpoint);              ///< returns its node
 
  private:
-  struct Arrays { int positions = -1, normals = -1, indices = -1; };
+  struct Arrays {
+    int positions = -1, normals = -1, indices = -1;
+  };
   Arrays add_arrays(const Mesh& mesh, bool smooth);
   int add_mesh(const Arrays& arrays, int material, const std::string& name);
   int add_material(const std::string& name, std::array<double, 3> color);

@@ -18,7 +18,7 @@ GroundMesh load_ground_mesh(const YamlCursor& place, const ShapeOptions& search)
   const std::optional<double> size_m = size ? std::optional(size->number(kLength)) : std::nullopt;
   const Vec3 position_m = position ? position->vector() : Vec3::Zero();
   try {
-    GroundMesh ground{.mesh = load_mesh(find_mesh_file(name, search))};
+    GroundMesh ground{.mesh = load_mesh(find_mesh_file(name, search), {.untrusted = search.untrusted})};
     if (size_m) ground.mesh = scale_to_size(std::move(ground.mesh), *size_m);
     for (Vec3& vertex : ground.mesh.vertices) vertex += position_m;
     return ground;
@@ -37,7 +37,9 @@ GroundPlane load_ground_plane(const YamlCursor& plane) {
 
 GroundBox load_ground_box(const YamlCursor& box) {
   box.expect_keys({"sides_m", "position_m", "orientation"});
-  GroundBox ground{.sides_m = box.at("sides_m").vector(kPositive), .position_m = Vec3::Zero(), .orientation = Quat::Identity()};
+  GroundBox ground{.sides_m = box.at("sides_m").vector(kPositive),
+                   .position_m = Vec3::Zero(),
+                   .orientation = Quat::Identity()};
   if (auto key = box.find("position_m")) ground.position_m = key->vector();
   if (auto key = box.find("orientation")) ground.orientation = key->rotation();
   return ground;
@@ -72,7 +74,9 @@ GroundMesh load_terrain(const YamlCursor& place) {
   const std::vector<double> size = place.at("size_m").numbers(2, {1e-2, 1e5});
   grid.size_m = {size[0], size[1]};
   if (auto key = place.find("position_m")) grid.middle_m = key->vector();
-  if (place.one_key_of({"hills", "heights_m"}) == "heights_m") return {.mesh = make_terrain(grid, load_heights(place.at("heights_m"), grid.cells[0] + 1, grid.cells[1] + 1))};
+  if (place.one_key_of({"hills", "heights_m"}) == "heights_m")
+    return {.mesh = make_terrain(grid,
+                                 load_heights(place.at("heights_m"), grid.cells[0] + 1, grid.cells[1] + 1))};
   std::vector<Hill> hills;
   for (const YamlCursor& hill : place.at("hills").items()) hills.push_back(load_hill(hill));
   return {.mesh = make_terrain(grid, heights_of(grid, hills))};
@@ -91,17 +95,24 @@ std::vector<GroundBox> load_stairs(const YamlCursor& place) {
 }
 
 /// Stairs are several parts, all else is one.
-std::vector<SceneGround> load_ground_parts(const YamlCursor& place, const Scene& scene, const ShapeOptions& search) {
+std::vector<SceneGround> load_ground_parts(const YamlCursor& place, const Scene& scene,
+                                           const ShapeOptions& search) {
   place.expect_keys({"plane", "box", "mesh", "terrain", "stairs", "size_m", "position_m", "material"});
   const std::string_view kind = place.one_key_of({"plane", "box", "mesh", "terrain", "stairs"});
   if (kind != "mesh") place.expect_keys({kind, "material"});
   std::vector<SceneGround> parts;
-  if (kind == "plane") parts.push_back(load_ground_plane(place.at(kind)));
-  else if (kind == "box") parts.push_back(load_ground_box(place.at(kind)));
-  else if (kind == "terrain") parts.push_back(load_terrain(place.at(kind)));
-  else if (kind == "mesh") parts.push_back(load_ground_mesh(place, search));
-  else for (const GroundBox& step : load_stairs(place.at(kind))) parts.push_back(step);
-  for (SceneGround& ground : parts) std::visit([&](auto& part) { part.material = load_material_id(place, scene); }, ground);
+  if (kind == "plane")
+    parts.push_back(load_ground_plane(place.at(kind)));
+  else if (kind == "box")
+    parts.push_back(load_ground_box(place.at(kind)));
+  else if (kind == "terrain")
+    parts.push_back(load_terrain(place.at(kind)));
+  else if (kind == "mesh")
+    parts.push_back(load_ground_mesh(place, search));
+  else
+    for (const GroundBox& step : load_stairs(place.at(kind))) parts.push_back(step);
+  for (SceneGround& ground : parts)
+    std::visit([&](auto& part) { part.material = load_material_id(place, scene); }, ground);
   return parts;
 }
 
@@ -110,7 +121,8 @@ std::vector<SceneGround> load_ground_parts(const YamlCursor& place, const Scene&
 std::vector<SceneGround> load_ground(const YamlCursor& root, const Scene& scene, const ShapeOptions& search) {
   std::vector<SceneGround> ground;
   if (auto section = root.find("ground"))
-    for (const YamlCursor& place : section->items()) std::ranges::move(load_ground_parts(place, scene, search), std::back_inserter(ground));
+    for (const YamlCursor& place : section->items())
+      std::ranges::move(load_ground_parts(place, scene, search), std::back_inserter(ground));
   return ground;
 }
 

@@ -34,7 +34,8 @@ int find_body(const YamlCursor& key, const Names& names) {
 
 void make_full(const YamlCursor& key, SceneBody& body) {
   LevelChoice& level = body.definition.level;
-  if (level != LevelChoice::automatic && level != LevelChoice::full) key.fail(body.name + ", whose level is another", "a body that may be full, as joints need it");
+  if (level != LevelChoice::automatic && level != LevelChoice::full)
+    key.fail(body.name + ", whose level is another", "a body that may be full, as joints need it");
   level = LevelChoice::full;
 }
 
@@ -44,15 +45,18 @@ SceneJoint load_joint(const YamlCursor& place, Scene& scene, const Names& names)
   SceneJoint joint{.kind = kind == "ball" ? JointKind::ball : JointKind::hinge};
   const YamlCursor key = place.at(kind);
   const std::vector<YamlCursor> bodies = key.items();
-  if (bodies.empty() || bodies.size() > 2) key.fail(key.found(), "the names of two bodies, or of one that is joined to the world");
+  if (bodies.empty() || bodies.size() > 2)
+    key.fail(key.found(), "the names of two bodies, or of one that is joined to the world");
   joint.first = find_body(bodies[0], names);
   if (bodies.size() == 2) joint.second = find_body(bodies[1], names);
   if (joint.first == joint.second) bodies[1].fail(bodies[1].text() + " a second time", "another body");
   make_full(bodies[0], scene.bodies[std::size_t(joint.first)]);
   if (bodies.size() == 2) make_full(bodies[1], scene.bodies[std::size_t(joint.second)]);
   joint.anchor_m = place.at("at_m").vector();
-  if (joint.kind == JointKind::hinge) joint.axis = place.at("axis").direction();
-  else if (auto axis = place.find("axis")) axis->fail("the axis of a ball joint", "none");
+  if (joint.kind == JointKind::hinge)
+    joint.axis = place.at("axis").direction();
+  else if (auto axis = place.find("axis"))
+    axis->fail("the axis of a ball joint", "none");
   return joint;
 }
 

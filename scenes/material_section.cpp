@@ -18,7 +18,8 @@ Material load_material(const YamlCursor& place, Material material) {
 void load_contact(const YamlCursor& place, Scene& scene) {
   place.expect_keys({"between", "restitution", "friction"});
   const std::vector<YamlCursor> pair = place.at("between").items(2);
-  const MaterialId a = int(pair[0].choice(scene.material_names)), b = int(pair[1].choice(scene.material_names));
+  const MaterialId a = int(pair[0].choice(scene.material_names)),
+                   b = int(pair[1].choice(scene.material_names));
   ContactLaw law = scene.materials.law(a, b);
   if (auto key = place.find("restitution")) law.restitution = key->number(kFraction);
   if (auto key = place.find("friction")) law.friction = key->number(kNotNegative);
@@ -33,7 +34,8 @@ void load_materials(const YamlCursor& root, Scene& scene) {
     if (auto key = section->find("default")) scene.materials.replace(0, load_material(*key, {}));
     for (const auto& [name, place] : section->entries()) {
       if (name == "default") continue;
-      if (scene.materials.size() == kMaxMaterials) place.fail("one more material", fmt::format("at most {}", kMaxMaterials));
+      if (scene.materials.size() == kMaxMaterials)
+        place.fail("one more material", fmt::format("at most {}", kMaxMaterials));
       scene.materials.add(load_material(place, scene.materials[0]));
       scene.material_names.push_back(name);
     }

@@ -6,7 +6,8 @@
 
 namespace lodestone {
 
-/// Fills `scene.materials` and `material_names` (0 is `default`; what a material leaves out is as in `default`).
+/// Fills `scene.materials` and `material_names` (0 is `default`; what a material leaves out is as in
+/// `default`).
 void load_materials(const YamlCursor& root, Scene& scene);
 
 /// The material that `place` names, or 0 where there is no `material:` key beside it.

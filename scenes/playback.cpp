@@ -36,7 +36,8 @@ class Blobs {
     uLongf size = compressBound(uLong(raw.size()));
     const std::size_t offset = bytes_.size();
     bytes_.resize(offset + size);
-    const int result = compress2(reinterpret_cast<Bytef*>(bytes_.data() + offset), &size, reinterpret_cast<const Bytef*>(raw.data()), uLong(raw.size()), 6);
+    const int result = compress2(reinterpret_cast<Bytef*>(bytes_.data() + offset), &size,
+                                 reinterpret_cast<const Bytef*>(raw.data()), uLong(raw.size()), 6);
     check_that(result == Z_OK, "room for what is deflated");
     bytes_.resize(offset + size);
     places_[name] = {{"offset", offset}, {"bytes", std::size_t(size)}, {"raw_bytes", raw.size()}};
@@ -49,7 +50,8 @@ class Blobs {
   std::vector<std::byte> bytes_;
 };
 
-// Numbers of all bodies over the frames, as differences to what the two frames before let expect, byte planes apart.
+// Numbers of all bodies over the frames, as differences to what the two frames before let expect, byte planes
+// apart.
 template <class Unsigned>
 class Predicted {
  public:
@@ -86,7 +88,8 @@ std::vector<std::byte> encode_poses(const Trajectory& trajectory, double unit_m)
       positions[axis].add_frame(lengths, frame == 0, planes);
     }
     for (std::size_t part = 0; part < 4; ++part) {
-      for (std::size_t body = 0; body < bodies; ++body) parts[body] = std::uint16_t(trajectory.orientation(frame, int(body))[part]);
+      for (std::size_t body = 0; body < bodies; ++body)
+        parts[body] = std::uint16_t(trajectory.orientation(frame, int(body))[part]);
       orientations[part].add_frame(parts, frame == 0, planes);
     }
   }
@@ -100,20 +103,26 @@ std::vector<std::byte> encode_bytes(const Trajectory& trajectory, const Function
   bytes.reserve(std::size_t(trajectory.frames()) * std::size_t(trajectory.bodies()));
   for (int frame = 0; frame < trajectory.frames(); ++frame)
     for (int body = 0; body < trajectory.bodies(); ++body) {
-      const std::uint8_t now = byte_of(frame, body), before = frame > 0 ? byte_of(frame - 1, body) : std::uint8_t(0);
+      const std::uint8_t now = byte_of(frame, body),
+                         before = frame > 0 ? byte_of(frame - 1, body) : std::uint8_t(0);
       bytes.push_back(std::byte(now ^ before));
     }
   return bytes;
 }
 
-std::uint8_t status_byte(const BodyStatus& status) { return std::uint8_t(int(status.rung) + 4 * int(status.asleep) + 8 * int(status.rule)); }
+std::uint8_t status_byte(const BodyStatus& status) {
+  return std::uint8_t(int(status.rung) + 4 * int(status.asleep) + 8 * int(status.rule));
+}
 static_assert(kLastRule < 32, "a rule has five bits");
 
 // Meshes one after the other.
 class Meshes {
  public:
   ordered_json add(const Mesh& mesh) {
-    const ordered_json place{{"first_vertex", vertices_.size() / 3}, {"vertices", mesh.vertices.size()}, {"first_face", corners_.size() / 3}, {"faces", mesh.faces.size()}};
+    const ordered_json place{{"first_vertex", vertices_.size() / 3},
+                             {"vertices", mesh.vertices.size()},
+                             {"first_face", corners_.size() / 3},
+                             {"faces", mesh.faces.size()}};
     for (const Vec3& v : mesh.vertices)
       for (const double x : v) vertices_.push_back(float(x));
     for (const std::array<int, 3>& face : mesh.faces)
@@ -121,8 +130,10 @@ class Meshes {
     return place;
   }
   std::vector<std::byte> bytes() const {
-    std::vector<std::byte> bytes(std::as_bytes(std::span(vertices_)).begin(), std::as_bytes(std::span(vertices_)).end());
-    bytes.insert(bytes.end(), std::as_bytes(std::span(corners_)).begin(), std::as_bytes(std::span(corners_)).end());
+    std::vector<std::byte> bytes(std::as_bytes(std::span(vertices_)).begin(),
+                                 std::as_bytes(std::span(vertices_)).end());
+    bytes.insert(bytes.end(), std::as_bytes(std::span(corners_)).begin(),
+                 std::as_bytes(std::span(corners_)).end());
     return bytes;
   }
   std::size_t vertices() const { return vertices_.size() / 3; }
@@ -157,7 +168,8 @@ std::vector<double> numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 class Header {
  public:
-  Header(const Trajectory& trajectory, const Scene& scene, const PlaybackTitle& title, Meshes& meshes) : trajectory_(trajectory), scene_(scene), meshes_(meshes) {
+  Header(const Trajectory& trajectory, const Scene& scene, const PlaybackTitle& title, Meshes& meshes)
+      : trajectory_(trajectory), scene_(scene), meshes_(meshes) {
     json_["version"] = kPlaybackVersion;
     json_["label"] = title.label;
     json_["from_step"] = title.from_step;
@@ -195,7 +207,10 @@ class Header {
       const Shape& shape = *body.definition.shape;
       const auto [known, is_new] = index.emplace(&shape, int(index.size()));
       if (is_new)
-        json_["shapes"].push_back({{"name", shape.name}, {"radius_m", shape.radius}, {"mesh", meshes_.add(drawn_mesh(shape.mesh, faces))}, {"hull", meshes_.add(drawn_mesh(hull_mesh(shape), 200))}});
+        json_["shapes"].push_back({{"name", shape.name},
+                                   {"radius_m", shape.radius},
+                                   {"mesh", meshes_.add(drawn_mesh(shape.mesh, faces))},
+                                   {"hull", meshes_.add(drawn_mesh(hull_mesh(shape), 200))}});
       shape_of.push_back(known->second);
     }
     json_["shape_of"] = shape_of;
@@ -210,8 +225,11 @@ class Header {
   void add_ground() {
     json_["ground"] = ordered_json::array();
     for (const SceneGround& ground : scene_.ground) {
-      if (const auto* plane = std::get_if<GroundPlane>(&ground)) json_["ground"].push_back({{"plane", {{"normal", numbers(plane->normal)}, {"offset_m", plane->offset_m}}}});
-      else json_["ground"].push_back({{"mesh", meshes_.add(mesh_of(ground))}});
+      if (const auto* plane = std::get_if<GroundPlane>(&ground))
+        json_["ground"].push_back(
+            {{"plane", {{"normal", numbers(plane->normal)}, {"offset_m", plane->offset_m}}}});
+      else
+        json_["ground"].push_back({{"mesh", meshes_.add(mesh_of(ground))}});
     }
   }
 
@@ -230,8 +248,11 @@ class Header {
     json_["viewpoints"] = ordered_json::array();
     for (const SceneViewpoint& viewpoint : viewpoints) {
       ordered_json path = ordered_json::array();
-      for (const SceneViewpoint::Key& key : viewpoint.path) path.push_back({{"time_s", key.time_s}, {"position_m", numbers(key.position_m)}});
-      json_["viewpoints"].push_back({{"position_m", numbers(viewpoint.position_at(0))}, {"look_at_m", numbers(viewpoint.look_at_m)}, {"path", path}});
+      for (const SceneViewpoint::Key& key : viewpoint.path)
+        path.push_back({{"time_s", key.time_s}, {"position_m", numbers(key.position_m)}});
+      json_["viewpoints"].push_back({{"position_m", numbers(viewpoint.position_at(0))},
+                                     {"look_at_m", numbers(viewpoint.look_at_m)},
+                                     {"path", path}});
     }
   }
 
@@ -249,15 +270,19 @@ void append(std::vector<std::byte>& bytes, const Values& values) {
 
 }  // namespace
 
-void save_playback(const fs::path& file, const Trajectory& trajectory, const Scene& scene, const PlaybackTitle& title) {
+void save_playback(const fs::path& file, const Trajectory& trajectory, const Scene& scene,
+                   const PlaybackTitle& title) {
   check_that(trajectory.bodies() == int(scene.bodies.size()), "a trajectory of this scene");
   Meshes meshes;
   Header header(trajectory, scene, title, meshes);
   Blobs blobs;
   blobs.add("poses", encode_poses(trajectory, header.unit_m()));
-  blobs.add("status", encode_bytes(trajectory, [&](int frame, int body) { return status_byte(trajectory.status(frame, body)); }));
+  blobs.add("status", encode_bytes(trajectory, [&](int frame, int body) {
+              return status_byte(trajectory.status(frame, body));
+            }));
   blobs.add("spheres", encode_bytes(trajectory, [&](int frame, int body) {
-              const double share = double(trajectory.status(frame, body).collision_radius_m) / scene.bodies[std::size_t(body)].definition.shape->radius;
+              const double share = double(trajectory.status(frame, body).collision_radius_m) /
+                                   scene.bodies[std::size_t(body)].definition.shape->radius;
               return std::uint8_t(std::clamp(std::lround(255 * share), 0L, 255L));
             }));
   blobs.add("meshes", meshes.bytes());
@@ -277,12 +302,17 @@ void save_playback(const fs::path& file, const Trajectory& trajectory, const Sce
 Playback load_playback(const fs::path& file) {
   const MappedFile mapped(file, "a recorded run");
   const std::span<const std::byte> bytes = mapped.bytes();
-  const auto fail = [&](const std::string& found) { throw InputError(fmt::format("{}: found {}, expected what `lodestone run SCENE --out DIR` writes", file.string(), found)); };
+  const auto fail = [&](const std::string& found) {
+    throw InputError(fmt::format("{}: found {}, expected what `lodestone run SCENE --out DIR` writes",
+                                 file.string(), found));
+  };
   std::array<std::uint32_t, 2> sizes{};
   const std::size_t head = kMagic.size() + sizeof(sizes);
-  if (bytes.size() < head || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) fail("no playback file");
+  if (bytes.size() < head || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
+    fail("no playback file");
   std::memcpy(sizes.data(), bytes.data() + kMagic.size(), sizeof(sizes));
-  if (sizes[0] != std::uint32_t(kPlaybackVersion)) fail(fmt::format("a playback file of version {}, not {}", sizes[0], kPlaybackVersion));
+  if (sizes[0] != std::uint32_t(kPlaybackVersion))
+    fail(fmt::format("a playback file of version {}, not {}", sizes[0], kPlaybackVersion));
   if (bytes.size() - head < sizes[1]) fail("a playback file cut short");
   Playback playback;
   const char* text = reinterpret_cast<const char*>(bytes.data() + head);
@@ -290,7 +320,8 @@ Playback load_playback(const fs::path& file) {
   if (playback.header.is_discarded() || !playback.header.contains("blobs")) fail("a damaged playback file");
   playback.blobs.assign(bytes.begin() + std::ptrdiff_t(head + sizes[1]), bytes.end());
   for (const auto& [name, place] : playback.header["blobs"].items())
-    if (place.value("offset", std::size_t(0)) + place.value("bytes", std::size_t(0)) > playback.blobs.size()) fail("a playback file cut short");
+    if (place.value("offset", std::size_t(0)) + place.value("bytes", std::size_t(0)) > playback.blobs.size())
+      fail("a playback file cut short");
   return playback;
 }
 

@@ -6,7 +6,8 @@
 
 namespace lodestone {
 
-/// Adds each ragdoll's bodies, which are full throughout, its joints and its group to `scene`. Its bodies are called `NAME torso`, `head`, `left arm`, `right arm`, `left leg`, `right leg`.
+/// Adds each ragdoll's bodies, which are full throughout, its joints and its group to `scene`. Its bodies are
+/// called `NAME torso`, `head`, `left arm`, `right arm`, `left leg`, `right leg`.
 void load_ragdolls(const YamlCursor& root, Scene& scene);
 
 }  // namespace lodestone

@@ -1,4 +1,5 @@
-// What is observed of one body of a running scene: energy, penetration and whether its numbers are still finite.
+// What is observed of one body of a running scene: energy, penetration and whether its numbers are still
+// finite.
 #pragma once
 
 #include "reference/shape.h"
@@ -8,7 +9,8 @@ namespace lodestone {
 /// ½ m v² + ½ ωᵀ I ω, J, with the shape's true inertia.
 double kinetic_energy(const Shape& shape, double mass, const RigidState& state);
 
-/// How far the deepest vertex lies below the plane normal·x = offset (normal of unit length), m; negative above it.
+/// How far the deepest vertex lies below the plane normal·x = offset (normal of unit length), m; negative
+/// above it.
 double depth_below(const Shape& shape, const RigidState& state, const Vec3& normal, double offset);
 
 bool is_finite(const RigidState& state);

@@ -6,7 +6,8 @@
 
 namespace lodestone {
 
-void read_sample(const Manager& manager, std::span<const BodyId> bodies, const Scene& scene, RunSample& sample) {
+void read_sample(const Manager& manager, std::span<const BodyId> bodies, const Scene& scene,
+                 RunSample& sample) {
   sample.states.resize(bodies.size());
   sample.rungs.resize(bodies.size());
   sample.awake_since_tables.resize(bodies.size(), kSinking);
@@ -21,19 +22,25 @@ void read_sample(const Manager& manager, std::span<const BodyId> bodies, const S
     }
     const Shape& shape = *scene.bodies[i].definition.shape;
     const double mass = manager.mass(bodies[i]);
-    sample.energy_j += kinetic_energy(shape, mass, state) - mass * scene.step.gravity_m_per_s2.dot(state.position);
+    sample.energy_j +=
+        kinetic_energy(shape, mass, state) - mass * scene.step.gravity_m_per_s2.dot(state.position);
     int& awake_since_tables = sample.awake_since_tables[i];
-    if (sample.rungs[i] == Rung::tables) awake_since_tables = 0;
-    else if (!manager.asleep(bodies[i])) awake_since_tables = std::min(awake_since_tables + 1, kSinking);
-    double& deepest = awake_since_tables < kSinking ? sample.max_tables_penetration_m : sample.max_other_penetration_m;
+    if (sample.rungs[i] == Rung::tables)
+      awake_since_tables = 0;
+    else if (!manager.asleep(bodies[i]))
+      awake_since_tables = std::min(awake_since_tables + 1, kSinking);
+    double& deepest =
+        awake_since_tables < kSinking ? sample.max_tables_penetration_m : sample.max_other_penetration_m;
     for (const SceneGround& ground : scene.ground)
-      if (const auto* plane = std::get_if<GroundPlane>(&ground)) deepest = std::max(deepest, depth_below(shape, state, plane->normal, plane->offset_m));
+      if (const auto* plane = std::get_if<GroundPlane>(&ground))
+        deepest = std::max(deepest, depth_below(shape, state, plane->normal, plane->offset_m));
   }
 }
 
 int count_full_in_picture(const RunSample& sample, const Camera& camera) {
   int count = 0;
-  for (std::size_t i = 0; i < sample.states.size(); ++i) count += sample.rungs[i] == Rung::full && camera.sees(sample.states[i].position);
+  for (std::size_t i = 0; i < sample.states.size(); ++i)
+    count += sample.rungs[i] == Rung::full && camera.sees(sample.states[i].position);
   return count;
 }
 

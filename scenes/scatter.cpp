@@ -1,5 +1,5 @@
-// Dart throwing: draw until there is room (Cook, Stochastic sampling in computer graphics, 1986). Simple, and quick while the spheres fill
-// less than about a quarter of the region.
+// Dart throwing: draw until there is room (Cook, Stochastic sampling in computer graphics, 1986). Simple, and
+// quick while the spheres fill less than about a quarter of the region.
 #include "scenes/scatter.h"
 
 #include <algorithm>
@@ -33,22 +33,28 @@ Vec3 origin_of(const ScatterRegion& region) {
 }  // namespace
 
 std::uint64_t PlacedSpheres::key_of(const Vec3& point, int dx, int dy, int dz) const {
-  const auto cell = [&](int axis, int shift) { return std::uint64_t(std::int64_t(std::floor(point[axis] / cell_)) + shift); };
+  const auto cell = [&](int axis, int shift) {
+    return std::uint64_t(std::int64_t(std::floor(point[axis] / cell_)) + shift);
+  };
   return cell(0, dx) * 73856093 ^ cell(1, dy) * 19349663 ^ cell(2, dz) * 83492791;
 }
 
-void PlacedSpheres::add(const Vec3& center, double radius) { cells_.emplace(key_of(center, 0, 0, 0), Sphere{center, radius}); }
+void PlacedSpheres::add(const Vec3& center, double radius) {
+  cells_.emplace(key_of(center, 0, 0, 0), Sphere{center, radius});
+}
 
 bool PlacedSpheres::overlaps(const Vec3& center, double radius) const {
   for (int shift = 0; shift < 27; ++shift) {
-    const auto [begin, end] = cells_.equal_range(key_of(center, shift % 3 - 1, shift / 3 % 3 - 1, shift / 9 - 1));
+    const auto [begin, end] =
+        cells_.equal_range(key_of(center, shift % 3 - 1, shift / 3 % 3 - 1, shift / 9 - 1));
     for (auto near = begin; near != end; ++near)
       if ((near->second.center - center).norm() < radius + near->second.radius) return true;
   }
   return false;
 }
 
-std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span<const KeepAbove> grounds, PlacedSpheres& placed, const PutOnGround& put) {
+std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span<const KeepAbove> grounds,
+                                PlacedSpheres& placed, const PutOnGround& put) {
   const double own_radius = std::max(radius, 0.5 * scatter.spacing_m);
   PlacedSpheres own(own_radius);  // apart from `placed`, since the spacing holds within this scatter only
   std::vector<Vec3> centers;
@@ -56,15 +62,19 @@ std::vector<Vec3> place_scatter(const Scatter& scatter, double radius, std::span
     RandomStream stream(scatter.seed, std::uint64_t(i), kPlaceStream);
     bool found = false;
     for (int draw = 0; draw < kDraws && !found; ++draw) {
-      Vec3 local = std::visit([&](const auto& region) { return draw_within(region, stream); }, scatter.region);
+      Vec3 local =
+          std::visit([&](const auto& region) { return draw_within(region, stream); }, scatter.region);
       if (put) {
         const std::optional<Vec3> start = put(i, origin_of(scatter.region) + local);
         if (!start) continue;
         local = *start - origin_of(scatter.region);
       }
       const Vec3 center = origin_of(scatter.region) + local;
-      const auto is_above = [&](const KeepAbove& ground) { return ground.normal.dot(center) - ground.offset >= radius; };
-      found = (put || std::ranges::all_of(grounds, is_above)) && !own.overlaps(local, own_radius) && !placed.overlaps(center, radius);
+      const auto is_above = [&](const KeepAbove& ground) {
+        return ground.normal.dot(center) - ground.offset >= radius;
+      };
+      found = (put || std::ranges::all_of(grounds, is_above)) && !own.overlaps(local, own_radius) &&
+              !placed.overlaps(center, radius);
       if (!found) continue;
       own.add(local, own_radius);
       centers.push_back(center);
@@ -80,7 +90,8 @@ Quat scatter_orientation(const Scatter& scatter, int index) {
 }
 
 double scatter_turn(const Scatter& scatter, int index) {
-  return RandomStream(scatter.seed, std::uint64_t(index), kOrientationStream).uniform(0.0, 2.0 * std::numbers::pi);
+  return RandomStream(scatter.seed, std::uint64_t(index), kOrientationStream)
+      .uniform(0.0, 2.0 * std::numbers::pi);
 }
 
 }  // namespace lodestone

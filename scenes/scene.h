@@ -21,9 +21,21 @@ struct SceneStep {
   std::uint64_t seed = 1;
 };
 
-struct GroundPlane { Vec3 normal = Vec3::UnitZ(); double offset_m = 0; MaterialId material = 0; };
-struct GroundBox { Vec3 sides_m; Vec3 position_m; Quat orientation; MaterialId material = 0; };
-struct GroundMesh { Mesh mesh; MaterialId material = 0; };
+struct GroundPlane {
+  Vec3 normal = Vec3::UnitZ();
+  double offset_m = 0;
+  MaterialId material = 0;
+};
+struct GroundBox {
+  Vec3 sides_m;
+  Vec3 position_m;
+  Quat orientation;
+  MaterialId material = 0;
+};
+struct GroundMesh {
+  Mesh mesh;
+  MaterialId material = 0;
+};
 using SceneGround = std::variant<GroundPlane, GroundBox, GroundMesh>;
 
 struct SceneBody {
@@ -35,7 +47,7 @@ struct SceneBody {
 /// Between two bodies, or a body and the world. Those that it holds are full throughout.
 struct SceneJoint {
   JointKind kind = JointKind::ball;
-  int first = 0;            ///< of Scene::bodies
+  int first = 0;  ///< of Scene::bodies
   int second = kWorld;
   Vec3 anchor_m = Vec3::Zero(), axis = Vec3::UnitZ();  ///< world, as the bodies start
   static constexpr int kWorld = -1;
@@ -43,7 +55,10 @@ struct SceneJoint {
 
 /// A camera, standing or moving along `path` (piecewise linear in time).
 struct SceneViewpoint {
-  struct Key { double time_s; Vec3 position_m; };
+  struct Key {
+    double time_s;
+    Vec3 position_m;
+  };
   Vec3 position_m = Vec3::Zero();
   Vec3 look_at_m = Vec3::Zero();
   std::vector<Key> path;
@@ -58,8 +73,9 @@ struct SceneOutput {
 
 /// What the run must show; each absent unless given.
 struct SceneChecks {
-  std::optional<double> max_penetration_m;         ///< of all bodies, or where the next is given too, of all others
-  /// Of those at `tables`, whose spheres sink in by their nature, and of those that came from there and were not awake for 30 steps since.
+  std::optional<double> max_penetration_m;  ///< of all bodies, or where the next is given too, of all others
+  /// Of those at `tables`, whose spheres sink in by their nature, and of those that came from there and were
+  /// not awake for 30 steps since.
   std::optional<double> max_tables_penetration_m;
   std::optional<double> all_asleep_by_s;
 };
@@ -76,12 +92,12 @@ struct Scene {
   std::vector<std::vector<int>> groups;  ///< of `bodies`, each a ragdoll
   std::vector<SceneViewpoint> viewpoints;
   PolicySettings lod;
-  double audit_ms = 0;            ///< of each step, for the audit
+  double audit_ms = 0;                    ///< of each step, for the audit
   std::optional<StatisticalModel> model;  ///< that all statistical bodies have; none: what the policy finds
   TablesOptions tables;
   SceneOutput output;
   SceneChecks checks;
-  int default_steps = 600;        ///< `step: {steps: …}`
+  int default_steps = 600;  ///< `step: {steps: …}`
 };
 
 }  // namespace lodestone

@@ -27,7 +27,8 @@ SceneStep load_step(const YamlCursor& root, const SceneLoadSettings& settings, i
     if (auto key = section->find("steps")) steps = int(key->integer(1, 100'000'000));
     if (auto key = section->find("full_substeps")) step.full_substeps = int(key->integer(1, 1000));
     if (auto key = section->find("gravity_m_per_s2")) step.gravity_m_per_s2 = key->vector({-1e4, 1e4});
-    if (auto key = section->find("seed")) step.seed = std::uint64_t(key->integer(0, std::numeric_limits<std::int64_t>::max()));
+    if (auto key = section->find("seed"))
+      step.seed = std::uint64_t(key->integer(0, std::numeric_limits<std::int64_t>::max()));
   }
   step.seed = settings.seed.value_or(step.seed);
   return step;
@@ -42,13 +43,16 @@ SceneViewpoint load_viewpoint(const YamlCursor& place) {
     for (const YamlCursor& corner : key->items()) {
       corner.expect_keys({"time_s", "position_m"});
       const double after = viewpoint.path.empty() ? 0.0 : viewpoint.path.back().time_s;
-      viewpoint.path.push_back({corner.at("time_s").number({after, 1e6, !viewpoint.path.empty()}), corner.at("position_m").vector()});
+      viewpoint.path.push_back({corner.at("time_s").number({after, 1e6, !viewpoint.path.empty()}),
+                                corner.at("position_m").vector()});
     }
     if (viewpoint.path.empty()) key->fail("an empty list", "a list of {time_s, position_m}");
     viewpoint.position_m = viewpoint.path.front().position_m;
   }
-  if (auto key = place.find("position_m")) viewpoint.position_m = key->vector();
-  else if (viewpoint.path.empty()) place.at("position_m");
+  if (auto key = place.find("position_m"))
+    viewpoint.position_m = key->vector();
+  else if (viewpoint.path.empty())
+    place.at("position_m");
   return viewpoint;
 }
 
@@ -64,7 +68,8 @@ DistancePolicy load_distances(const YamlCursor& section) {
   if (auto key = section.find("full_within_m")) policy.full_within = key->number(kNotNegative);
   if (auto key = section.find("support_within_m")) {
     policy.support_within = key->number(kNotNegative);
-    if (policy.support_within < policy.full_within) key->fail(key->found(), fmt::format("at least full_within_m ({:g})", policy.full_within));
+    if (policy.support_within < policy.full_within)
+      key->fail(key->found(), fmt::format("at least full_within_m ({:g})", policy.full_within));
   }
   return policy;
 }
@@ -74,7 +79,8 @@ ProjectedSizePolicy load_sizes(const YamlCursor& section) {
   if (auto key = section.find("full_above_px")) policy.full_above_px = key->number(kNotNegative);
   if (auto key = section.find("support_above_px")) {
     policy.support_above_px = key->number(kNotNegative);
-    if (policy.support_above_px > policy.full_above_px) key->fail(key->found(), fmt::format("at most full_above_px ({:g})", policy.full_above_px));
+    if (policy.support_above_px > policy.full_above_px)
+      key->fail(key->found(), fmt::format("at most full_above_px ({:g})", policy.full_above_px));
   }
   return policy;
 }
@@ -84,12 +90,16 @@ void load_budget(const YamlCursor& section, bool by_error, PolicySettings& lod) 
   constexpr NumberRange kTime{0, 1e6}, kWork{0, 1e9};
   if (section.one_key_of({"budget_ms", "budget_work"}) == "budget_ms") {
     const double ms = section.at("budget_ms").number(kTime);
-    if (by_error) lod.policy = ErrorBudgetPolicy{.budget_ms = ms};
-    else lod.policy = BudgetPolicy{ms};
+    if (by_error)
+      lod.policy = ErrorBudgetPolicy{.budget_ms = ms};
+    else
+      lod.policy = BudgetPolicy{ms};
   } else {
     const double work = section.at("budget_work").number(kWork);
-    if (by_error) lod.policy = ErrorBudgetPolicy{.budget_work = work};
-    else lod.policy = WorkPolicy{work};
+    if (by_error)
+      lod.policy = ErrorBudgetPolicy{.budget_work = work};
+    else
+      lod.policy = WorkPolicy{work};
   }
 }
 
@@ -99,13 +109,16 @@ void refuse_keys_of_others(const YamlCursor& section, const std::string& policy)
     std::vector<std::string> policies, keys;
     std::string expected;
   };
-  static const std::vector<Keys> kKeys{{{"distance"}, {"full_within_m", "support_within_m"}, "full_within_m and support_within_m"},
-                                       {{"projected_size"}, {"full_above_px", "support_above_px"}, "full_above_px and support_above_px"},
-                                       {{"budget", "error_budget"}, {"budget_ms", "budget_work"}, "budget_ms or budget_work"}};
-  const auto own = std::ranges::find_if(kKeys, [&](const Keys& k) { return std::ranges::count(k.policies, policy) > 0; });
+  static const std::vector<Keys> kKeys{
+      {{"distance"}, {"full_within_m", "support_within_m"}, "full_within_m and support_within_m"},
+      {{"projected_size"}, {"full_above_px", "support_above_px"}, "full_above_px and support_above_px"},
+      {{"budget", "error_budget"}, {"budget_ms", "budget_work"}, "budget_ms or budget_work"}};
+  const auto own =
+      std::ranges::find_if(kKeys, [&](const Keys& k) { return std::ranges::count(k.policies, policy) > 0; });
   for (const Keys& others : kKeys)
     for (const std::string& key : others.keys)
-      if (auto found = section.find(key); found && &others != &*own) found->fail(fmt::format("{} with policy {}", key, policy), own->expected);
+      if (auto found = section.find(key); found && &others != &*own)
+        found->fail(fmt::format("{} with policy {}", key, policy), own->expected);
 }
 
 void load_policy(const YamlCursor& section, PolicySettings& lod) {
@@ -113,9 +126,12 @@ void load_policy(const YamlCursor& section, PolicySettings& lod) {
   const auto key = section.find("policy");
   const std::string& policy = kPolicies[key ? key->choice(kPolicies) : 0];
   refuse_keys_of_others(section, policy);
-  if (policy == "distance") lod.policy = load_distances(section);
-  else if (policy == "projected_size") lod.policy = load_sizes(section);
-  else load_budget(section, policy == "error_budget", lod);
+  if (policy == "distance")
+    lod.policy = load_distances(section);
+  else if (policy == "projected_size")
+    lod.policy = load_sizes(section);
+  else
+    load_budget(section, policy == "error_budget", lod);
 }
 
 /// What every policy has.
@@ -125,7 +141,8 @@ void load_limits(const YamlCursor& section, PolicySettings& lod) {
   if (auto key = section.find("most_support")) lod.most_support = int(key->integer(0, kMost));
   if (auto key = section.find("hysteresis")) lod.hysteresis = key->number({0, 10});
   if (auto key = section.find("min_dwell_frames")) lod.min_dwell_frames = int(key->integer(0, 1'000'000));
-  if (auto key = section.find("max_transitions_per_frame")) lod.max_transitions_per_frame = int(key->integer(1, 1'000'000));
+  if (auto key = section.find("max_transitions_per_frame"))
+    lod.max_transitions_per_frame = int(key->integer(1, 1'000'000));
   if (auto key = section.find("out_of_view_factor")) lod.out_of_view_factor = key->number({1, 1e9});
   if (auto key = section.find("look_ahead_s")) lod.look_ahead_s = key->number({0, 10});
   if (auto key = section.find("contact_groups_together")) lod.contact_groups_together = key->truth();
@@ -133,10 +150,13 @@ void load_limits(const YamlCursor& section, PolicySettings& lod) {
 
 TablesOptions load_tables_options(const YamlCursor& section) {
   TablesOptions options;
-  section.expect_keys({"interpolate", "draw_height", "radius_update_interval", "rest_poses", "nearest_rest_pose", "paper_pair_rule"});
+  section.expect_keys({"published", "interpolate", "draw_height", "radius_update_interval", "rest_poses",
+                       "nearest_rest_pose", "paper_pair_rule"});
+  if (auto key = section.find("published")) options.published = key->truth();
   if (auto key = section.find("interpolate")) options.interpolate = key->truth();
   if (auto key = section.find("draw_height")) options.draw_height = key->truth();
-  if (auto key = section.find("radius_update_interval")) options.radius_update_interval = int(key->integer(1, 1000));
+  if (auto key = section.find("radius_update_interval"))
+    options.radius_update_interval = int(key->integer(1, 1000));
   if (auto key = section.find("rest_poses")) options.rest_poses = key->truth();
   if (auto key = section.find("nearest_rest_pose")) options.nearest_rest_pose = key->truth();
   if (auto key = section.find("paper_pair_rule")) options.paper_pair_rule = key->truth();
@@ -145,14 +165,17 @@ TablesOptions load_tables_options(const YamlCursor& section) {
 
 std::optional<StatisticalModel> load_model(const YamlCursor& key) {
   static const std::array<std::string, 3> kModels{"auto", "support", "tables"};
-  return std::array<std::optional<StatisticalModel>, 3>{std::nullopt, StatisticalModel::support, StatisticalModel::tables}[key.choice(kModels)];
+  return std::array<std::optional<StatisticalModel>, 3>{std::nullopt, StatisticalModel::support,
+                                                        StatisticalModel::tables}[key.choice(kModels)];
 }
 
 void load_lod(const YamlCursor& root, Scene& scene) {
   const auto section = root.find("lod");
   if (!section) return;
-  section->expect_keys({"policy", "full_within_m", "support_within_m", "full_above_px", "support_above_px", "budget_ms", "budget_work", "most_full", "most_support", "hysteresis",
-                        "min_dwell_frames", "max_transitions_per_frame", "out_of_view_factor", "look_ahead_s", "contact_groups_together", "audit_ms", "model", "tables"});
+  section->expect_keys({"policy", "full_within_m", "support_within_m", "full_above_px", "support_above_px",
+                        "budget_ms", "budget_work", "most_full", "most_support", "hysteresis",
+                        "min_dwell_frames", "max_transitions_per_frame", "out_of_view_factor", "look_ahead_s",
+                        "contact_groups_together", "audit_ms", "model", "tables"});
   load_policy(*section, scene.lod);
   load_limits(*section, scene.lod);
   if (auto key = section->find("audit_ms")) scene.audit_ms = key->number({0, 1e6});
@@ -168,7 +191,8 @@ SceneOutput load_output(const YamlCursor& root) {
   if (auto key = section->find("trajectory")) {
     output.trajectory = key->text();
     const fs::path file = output.trajectory;
-    if (file.has_parent_path() || file.extension() != ".glb") key->fail(output.trajectory, "a file name that ends in .glb, without folders");
+    if (file.has_parent_path() || file.extension() != ".glb")
+      key->fail(output.trajectory, "a file name that ends in .glb, without folders");
   }
   if (auto key = section->find("every_n_steps")) output.every_n_steps = int(key->integer(1, 1'000'000));
   return output;
@@ -180,13 +204,14 @@ SceneChecks load_checks(const YamlCursor& root) {
   if (!section) return checks;
   section->expect_keys({"max_penetration_m", "max_tables_penetration_m", "all_asleep_by_s"});
   if (auto key = section->find("max_penetration_m")) checks.max_penetration_m = key->number(kNotNegative);
-  if (auto key = section->find("max_tables_penetration_m")) checks.max_tables_penetration_m = key->number(kNotNegative);
+  if (auto key = section->find("max_tables_penetration_m"))
+    checks.max_tables_penetration_m = key->number(kNotNegative);
   if (auto key = section->find("all_asleep_by_s")) checks.all_asleep_by_s = key->number(kPositive);
   return checks;
 }
 
 ShapeOptions search_of(const fs::path& file, const SceneLoadSettings& settings) {
-  ShapeOptions options{.stay_in_search = true};
+  ShapeOptions options{.stay_in_search = true, .untrusted = settings.untrusted};
   options.search.push_back(file.has_parent_path() ? file.parent_path() : fs::path("."));
   options.search.insert(options.search.end(), settings.mesh_paths.begin(), settings.mesh_paths.end());
   return options;
@@ -198,7 +223,8 @@ Scene load_scene(const fs::path& file, const SceneLoadSettings& settings) {
   const YamlValue document = load_yaml(file);
   const std::string name = file.string();
   const YamlCursor root(document, name);
-  root.expect_keys({"version", "step", "materials", "contacts", "shapes", "ground", "bodies", "ragdolls", "joints", "viewpoints", "lod", "output", "check"});
+  root.expect_keys({"version", "step", "materials", "contacts", "shapes", "ground", "bodies", "ragdolls",
+                    "joints", "viewpoints", "lod", "output", "check"});
   root.at("version").integer(1, 1);
   const ShapeOptions search = search_of(file, settings);
 

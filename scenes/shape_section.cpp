@@ -36,14 +36,17 @@ MassOverride load_mass_override(const YamlCursor& place, const std::optional<dou
   if (auto key = place.find("inertia")) {
     if (!mass) key->fail("an inertia without a mass", "mass_kg beside it");
     const Mat3 inertia = load_inertia(*key) / *mass;
-    if (!is_possible_inertia(inertia)) key->fail("an impossible inertia", "a symmetric, positive one with I1 + I2 ≥ I3 (kg m²)");
+    if (!is_possible_inertia(inertia))
+      key->fail("an impossible inertia", "a symmetric, positive one with I1 + I2 ≥ I3 (kg m²)");
     result.inertia_per_mass_m2 = inertia;
   }
   return result;
 }
 
-Shape load_mesh_shape(const YamlCursor& place, ShapeOptions options, const MassOverride& mass, bool has_mass) {
-  place.expect_keys({"mesh", "size_m", "faces", "obtain", "material", "mass_kg", "inertia", "center_of_mass_m"});
+Shape load_mesh_shape(const YamlCursor& place, ShapeOptions options, const MassOverride& mass,
+                      bool has_mass) {
+  place.expect_keys(
+      {"mesh", "size_m", "faces", "obtain", "material", "mass_kg", "inertia", "center_of_mass_m"});
   const YamlCursor mesh = place.at("mesh");
   const std::string name = mesh.text();
   if (auto key = place.find("size_m")) options.size_m = key->number(kLength);
@@ -57,7 +60,8 @@ Shape load_mesh_shape(const YamlCursor& place, ShapeOptions options, const MassO
   } catch (const InputError& error) {
     fail_at(mesh, error, hint);
   }
-  place.fail(fmt::format("a mesh with {} open edges and no mass", report.open_edges), "a closed mesh, or mass_kg");
+  place.fail(fmt::format("a mesh with {} open edges and no mass", report.open_edges),
+             "a closed mesh, or mass_kg");
 }
 
 /// The solid that `place` describes with a key such as `box_m`; none where it names a mesh.
@@ -66,8 +70,9 @@ std::optional<Shape> load_solid(const YamlCursor& place, const MassOverride& mas
     const auto key = place.find(form.scene_key);
     if (!key) continue;
     place.expect_keys({form.scene_key, "material", "mass_kg", "inertia", "center_of_mass_m"});
-    const std::vector<double> lengths =
-        form.length_count == 1 ? std::vector{key->number(kPositive)} : key->numbers(std::size_t(form.length_count), kPositive);
+    const std::vector<double> lengths = form.length_count == 1
+                                            ? std::vector{key->number(kPositive)}
+                                            : key->numbers(std::size_t(form.length_count), kPositive);
     try {
       return make_solid(form.kind, lengths, mass);
     } catch (const InputError& error) {
@@ -77,9 +82,10 @@ std::optional<Shape> load_solid(const YamlCursor& place, const MassOverride& mas
   return std::nullopt;
 }
 
-SceneShape load_shape(const std::string& name, const YamlCursor& place, const Scene& scene, const ShapeOptions& search) {
-  place.expect_keys({"mesh", "box_m", "sphere_m", "l_m", "plate_m", "needle_m", "size_m", "faces", "obtain", "material", "mass_kg",
-                     "inertia", "center_of_mass_m"});
+SceneShape load_shape(const std::string& name, const YamlCursor& place, const Scene& scene,
+                      const ShapeOptions& search) {
+  place.expect_keys({"mesh", "box_m", "sphere_m", "l_m", "plate_m", "needle_m", "size_m", "faces", "obtain",
+                     "material", "mass_kg", "inertia", "center_of_mass_m"});
   place.one_key_of({"mesh", "box_m", "sphere_m", "l_m", "plate_m", "needle_m"});
   SceneShape result{.material = load_material_id(place, scene)};
   if (auto key = place.find("mass_kg")) result.mass = key->number(kPositive);
@@ -93,10 +99,12 @@ SceneShape load_shape(const std::string& name, const YamlCursor& place, const Sc
 
 }  // namespace
 
-std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scene& scene, const ShapeOptions& search) {
+std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scene& scene,
+                                              const ShapeOptions& search) {
   std::map<std::string, SceneShape> shapes;
   if (auto section = root.find("shapes"))
-    for (const auto& [name, place] : section->entries()) shapes.emplace(name, load_shape(name, place, scene, search));
+    for (const auto& [name, place] : section->entries())
+      shapes.emplace(name, load_shape(name, place, scene, search));
   return shapes;
 }
 

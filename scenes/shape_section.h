@@ -20,7 +20,8 @@ struct SceneShape {
 };
 
 /// By name. `search`: the scene's folder, then the mesh paths.
-std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scene& scene, const ShapeOptions& search);
+std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scene& scene,
+                                              const ShapeOptions& search);
 
 /// Puts what a mesh's maker found (`name: found …, expected …`) where the scene asked for the mesh.
 [[noreturn]] void fail_at(const YamlCursor& place, const InputError& error, const std::string& hint = "");

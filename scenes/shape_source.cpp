@@ -15,8 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kForms{SolidForm{SolidKind::box, "box", "box_m", "X,Y,Z", 3}, SolidForm{SolidKind::sphere, "sphere", "sphere_m", "R", 1},
-                            SolidForm{SolidKind::l, "l", "l_m", "A,B,W,T", 4}, SolidForm{SolidKind::plate, "plate", "plate_m", "X,Y,Z", 3},
+constexpr std::array kForms{SolidForm{SolidKind::box, "box", "box_m", "X,Y,Z", 3},
+                            SolidForm{SolidKind::sphere, "sphere", "sphere_m", "R", 1},
+                            SolidForm{SolidKind::l, "l", "l_m", "A,B,W,T", 4},
+                            SolidForm{SolidKind::plate, "plate", "plate_m", "X,Y,Z", 3},
                             SolidForm{SolidKind::needle, "needle", "needle_m", "L,R", 2}};
 
 std::string all_forms() {
@@ -48,7 +50,8 @@ void check_lengths(SolidKind kind, std::span<const double> m) {
   const auto fail = [&](const std::string& expected) {
     throw InputError(fmt::format("{}: found {}, expected {}", form.name, fmt::join(m, ", "), expected));
   };
-  if (int(m.size()) != form.length_count) fail(fmt::format("{} lengths ({})", form.length_count, form.lengths));
+  if (int(m.size()) != form.length_count)
+    fail(fmt::format("{} lengths ({})", form.length_count, form.lengths));
   for (double length : m)
     if (!(length >= 1e-5 && length <= 1e4)) fail("every length in [0.00001, 10000] m");
   if (kind == SolidKind::l && (m[2] >= m[0] || m[2] >= m[1])) fail("a bar width W below both legs A and B");
@@ -56,11 +59,15 @@ void check_lengths(SolidKind kind, std::span<const double> m) {
 
 Mesh make_solid_mesh(SolidKind kind, std::span<const double> m) {
   switch (kind) {
-    case SolidKind::sphere: return make_sphere(m[0]);
-    case SolidKind::l: return make_l(m[0], m[1], m[2], m[3]);
-    case SolidKind::needle: return make_needle(m[0], m[1]);
+    case SolidKind::sphere:
+      return make_sphere(m[0]);
+    case SolidKind::l:
+      return make_l(m[0], m[1], m[2], m[3]);
+    case SolidKind::needle:
+      return make_needle(m[0], m[1]);
     case SolidKind::box:
-    case SolidKind::plate: break;
+    case SolidKind::plate:
+      break;
   }
   return make_box({m[0], m[1], m[2]});
 }
@@ -94,7 +101,8 @@ Shape make_solid(SolidKind kind, std::span<const double> lengths_m, const MassOv
   check_lengths(kind, lengths_m);
   if (kind == SolidKind::sphere && !has_override(mass)) return make_sphere_shape(lengths_m[0]);
   const SolidForm& form = kForms[std::size_t(kind)];
-  return make_shape(fmt::format("{}:{}", form.name, fmt::join(lengths_m, ",")), make_solid_mesh(kind, lengths_m), mass);
+  return make_shape(fmt::format("{}:{}", form.name, fmt::join(lengths_m, ",")),
+                    make_solid_mesh(kind, lengths_m), mass);
 }
 
 fs::path find_mesh_file(const std::string& name, const ShapeOptions& options) {
@@ -102,20 +110,27 @@ fs::path find_mesh_file(const std::string& name, const ShapeOptions& options) {
   std::error_code error;
   for (const fs::path& folder : folders) {
     const fs::path file = folder / name;
-    if (options.stay_in_search && std::ranges::none_of(folders, [&](const fs::path& f) { return lies_in(file, f); }))
-      throw InputError(fmt::format("found {}, a path out of the scene's folder, expected a file in the folder or in a mesh path", name));
-    if (fs::is_directory(file, error)) throw InputError(fmt::format("found {}, a folder, expected a mesh file", name));
+    if (options.stay_in_search &&
+        std::ranges::none_of(folders, [&](const fs::path& f) { return lies_in(file, f); }))
+      throw InputError(fmt::format(
+          "found {}, a path out of the scene's folder, expected a file in the folder or in a mesh path",
+          name));
+    if (fs::is_directory(file, error))
+      throw InputError(fmt::format("found {}, a folder, expected a mesh file", name));
     if (fs::is_regular_file(file, error)) return file;
   }
   std::vector<std::string> shown;
   for (const fs::path& folder : folders) shown.push_back(folder.empty() ? "." : folder.string());
-  throw InputError(fmt::format("found no {} in {}, expected a mesh file there (--mesh-path DIR adds a folder)", name, fmt::join(shown, ", ")));
+  throw InputError(
+      fmt::format("found no {} in {}, expected a mesh file there (--mesh-path DIR adds a folder)", name,
+                  fmt::join(shown, ", ")));
 }
 
-Shape make_mesh_shape(const std::string& name, const ShapeOptions& options, const MassOverride& mass, MeshReport* report) {
+Shape make_mesh_shape(const std::string& name, const ShapeOptions& options, const MassOverride& mass,
+                      MeshReport* report) {
   if (name == "bunny") return make_bunny(options, mass);
   const fs::path file = find_mesh_file(name, options);
-  Mesh mesh = load_mesh(file);
+  Mesh mesh = load_mesh(file, {.untrusted = options.untrusted});
   // Scaled before the repair, which judges extents; simplified after it, which needs the faces joined.
   if (options.size_m) mesh = scale_to_size(std::move(mesh), *options.size_m);
   MeshReport first_report;
@@ -127,10 +142,13 @@ Shape make_mesh_shape(const std::string& name, const ShapeOptions& options, cons
   return make_shape(file.filename().string(), std::move(mesh), mass);
 }
 
-Shape make_shape_from_text(const std::string& text, const ShapeOptions& options, const MassOverride& mass, MeshReport* report) {
+Shape make_shape_from_text(const std::string& text, const ShapeOptions& options, const MassOverride& mass,
+                           MeshReport* report) {
   for (const SolidForm& form : kForms)
-    if (text.starts_with(fmt::format("{}:", form.name))) return make_solid(form.kind, parse_lengths(text, form), mass);
-  const bool is_form_without_lengths = std::ranges::any_of(kForms, [&](const SolidForm& form) { return form.name == text; });
+    if (text.starts_with(fmt::format("{}:", form.name)))
+      return make_solid(form.kind, parse_lengths(text, form), mass);
+  const bool is_form_without_lengths =
+      std::ranges::any_of(kForms, [&](const SolidForm& form) { return form.name == text; });
   if (text.empty() || is_form_without_lengths || (text.find(':') != text.npos && !fs::exists(text)))
     throw InputError(fmt::format("shape: found \"{}\", expected {}", text, all_forms()));
   return make_mesh_shape(text, options, mass, report);

@@ -1,5 +1,5 @@
-// A shape by description, as the command line and scenes give it: `box:X,Y,Z`, `sphere:R`, `l:A,B,W,T`, `plate:X,Y,Z`, `needle:L,R`,
-// `bunny` or a mesh file.
+// A shape by description, as the command line and scenes give it: `box:X,Y,Z`, `sphere:R`, `l:A,B,W,T`,
+// `plate:X,Y,Z`, `needle:L,R`, `bunny` or a mesh file.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +14,12 @@
 namespace lodestone {
 
 struct ShapeOptions {
-  std::optional<double> size_m = {};  ///< longest side of the bounding box (meshes; bunny: .2)
-  std::optional<int> faces = {};      ///< simplify to this many (meshes; bunny: 4,698)
+  std::optional<double> size_m = {};               ///< longest side of the bounding box (meshes; bunny: .2)
+  std::optional<int> faces = {};                   ///< simplify to this many (meshes; bunny: 4,698)
   std::vector<std::filesystem::path> search = {};  ///< folders that a mesh file is looked up in, in order
-  bool stay_in_search = false;   ///< refuse a mesh file outside those folders (scenes, which may come from strangers)
+  bool stay_in_search =
+      false;  ///< refuse a mesh file outside those folders (scenes, which may come from strangers)
+  bool untrusted = false;  ///< read mesh files in a child process with limits
 };
 
 /// A solid given by a few lengths (m).
@@ -35,14 +37,16 @@ std::span<const SolidForm> solid_forms();
 Shape make_solid(SolidKind kind, std::span<const double> lengths_m, const MassOverride& mass = {});
 
 /// `bunny`, or a mesh file found by find_mesh_file. `report`, when given, says what was mended.
-Shape make_mesh_shape(const std::string& mesh, const ShapeOptions& options, const MassOverride& mass = {}, MeshReport* report = nullptr);
+Shape make_mesh_shape(const std::string& mesh, const ShapeOptions& options, const MassOverride& mass = {},
+                      MeshReport* report = nullptr);
 
-/// Where `name` is, in the first of `options.search` that has it (no folders: the working folder). Throws InputError saying where it was
-/// looked for, or that it leaves the folders.
+/// Where `name` is, in the first of `options.search` that has it (no folders: the working folder). Throws
+/// InputError saying where it was looked for, or that it leaves the folders.
 std::filesystem::path find_mesh_file(const std::string& name, const ShapeOptions& options);
 
-/// Throws InputError saying what was found and which forms there are; for a missing mesh, where it was looked for.
-Shape make_shape_from_text(const std::string& text, const ShapeOptions& options = {}, const MassOverride& mass = {},
-                           MeshReport* report = nullptr);
+/// Throws InputError saying what was found and which forms there are; for a missing mesh, where it was looked
+/// for.
+Shape make_shape_from_text(const std::string& text, const ShapeOptions& options = {},
+                           const MassOverride& mass = {}, MeshReport* report = nullptr);
 
 }  // namespace lodestone

@@ -16,7 +16,8 @@ struct TerrainGrid {
   Vec3 middle_m = Vec3::Zero();
 };
 
-/// height · cos(2π (x − crest x) / length x) · cos(2π (y − crest y) / length y): between −height and height; x and y from the middle of the terrain.
+/// height · cos(2π (x − crest x) / length x) · cos(2π (y − crest y) / length y): between −height and height;
+/// x and y from the middle of the terrain.
 struct Hill {
   double height_m = 0;
   std::array<double, 2> length_m{1, 1}, crest_m{0, 0};
@@ -28,7 +29,8 @@ std::vector<double> heights_of(const TerrainGrid& grid, std::span<const Hill> hi
 /// Two triangles a cell, normals upwards. `heights` (m) as heights_of has them.
 Mesh make_terrain(const TerrainGrid& grid, std::span<const double> heights);
 
-/// They go up along x, before they are turned about the vertical through `position_m`, which is the middle of the first step's lower front edge.
+/// They go up along x, before they are turned about the vertical through `position_m`, which is the middle of
+/// the first step's lower front edge.
 struct Stairs {
   int steps = 1;
   double rise_m = 0.2, run_m = 0.3, width_m = 1;

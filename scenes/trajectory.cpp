@@ -8,7 +8,9 @@
 namespace lodestone {
 namespace {
 
-Trajectory::Position packed(const Vec3& position) { return {float(position.x()), float(position.y()), float(position.z())}; }
+Trajectory::Position packed(const Vec3& position) {
+  return {float(position.x()), float(position.y()), float(position.z())};
+}
 
 Trajectory::Orientation packed(const Quat& q) {
   const auto pack = [](double x) { return std::int16_t(std::lround(std::clamp(x, -1.0, 1.0) * 32767.0)); };
@@ -26,8 +28,10 @@ Trajectory::Orientation with_sign_of(Trajectory::Orientation q, const Trajectory
 
 }  // namespace
 
-void Trajectory::add_frame(double time_s, std::span<const RigidState> states, std::span<const BodyStatus> statuses) {
-  check_that(int(states.size()) == bodies_ && int(statuses.size()) == bodies_, "one state and status for each body");
+void Trajectory::add_frame(double time_s, std::span<const RigidState> states,
+                           std::span<const BodyStatus> statuses) {
+  check_that(int(states.size()) == bodies_ && int(statuses.size()) == bodies_,
+             "one state and status for each body");
   if (!times_.empty() && float(time_s) <= times_.back()) return;
   times_.push_back(float(time_s));
   for (int body = 0; body < bodies_; ++body) {
@@ -41,12 +45,15 @@ void Trajectory::add_frame(double time_s, std::span<const RigidState> states, st
 
 int Trajectory::moving_frames(int body) const {
   int last = frames() - 1;
-  while (last > 0 && position(last, body) == position(last - 1, body) && orientation(last, body) == orientation(last - 1, body)) --last;
+  while (last > 0 && position(last, body) == position(last - 1, body) &&
+         orientation(last, body) == orientation(last - 1, body))
+    --last;
   return last + 1;
 }
 
 int max_trajectory_frames(int bodies) {
-  constexpr double kBytes = 3.5e9, kBytesOfABodyAndFrame = sizeof(Trajectory::Position) + sizeof(Trajectory::Orientation);
+  constexpr double kBytes = 3.5e9,
+                   kBytesOfABodyAndFrame = sizeof(Trajectory::Position) + sizeof(Trajectory::Orientation);
   return int(std::clamp(kBytes / (kBytesOfABodyAndFrame * std::max(bodies, 1)), 1.0, 1e9));
 }
 

@@ -20,14 +20,16 @@ struct BodyStatus {
   float collision_radius_m = 0.0f;  ///< of its sphere at `tables`; 0 on other rungs
 };
 
-/// Poses and statuses of a fixed number of bodies over time; 28 bytes a body and frame. Frames are kept as they come, body after body.
+/// Poses and statuses of a fixed number of bodies over time; 28 bytes a body and frame. Frames are kept as
+/// they come, body after body.
 class Trajectory {
  public:
-  using Position = std::array<float, 3>;         ///< m
+  using Position = std::array<float, 3>;            ///< m
   using Orientation = std::array<std::int16_t, 4>;  ///< x, y, z, w of 32767
 
   explicit Trajectory(int bodies) : bodies_(bodies) {}
-  /// One state and status for each body. A frame that is not later than the last by a float's precision is left out.
+  /// One state and status for each body. A frame that is not later than the last by a float's precision is
+  /// left out.
   void add_frame(double time_s, std::span<const RigidState> states, std::span<const BodyStatus> statuses);
 
   int bodies() const { return bodies_; }
@@ -40,7 +42,9 @@ class Trajectory {
   int moving_frames(int body) const;
 
  private:
-  std::size_t index(int frame, int body) const { return std::size_t(frame) * std::size_t(bodies_) + std::size_t(body); }
+  std::size_t index(int frame, int body) const {
+    return std::size_t(frame) * std::size_t(bodies_) + std::size_t(body);
+  }
   int bodies_ = 0;
   std::vector<float> times_;
   std::vector<Position> positions_;
@@ -51,9 +55,10 @@ class Trajectory {
 /// A .glb holds 4 GB: the most frames that may be recorded of so many bodies.
 int max_trajectory_frames(int bodies);
 
-/// Writes `file` (through a temporary file beside it): one mesh for each shape and rung, awake and asleep, one node for each body, orange while full, blue
-/// at `support` and dark green at `tables`, darker asleep, the ground, and a camera: the first viewpoint, or where there is none one that has all bodies in its picture. Bodies are those of `scene`, in its order. Throws InputError where the
-/// file cannot be written.
+/// Writes `file` (through a temporary file beside it): one mesh for each shape and rung, awake and asleep,
+/// one node for each body, orange while full, blue at `support` and dark green at `tables`, darker asleep,
+/// the ground, and a camera: the first viewpoint, or where there is none one that has all bodies in its
+/// picture. Bodies are those of `scene`, in its order. Throws InputError where the file cannot be written.
 void save_trajectory(const std::filesystem::path& file, const Trajectory& trajectory, const Scene& scene);
 
 }  // namespace lodestone

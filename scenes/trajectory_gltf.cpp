@@ -1,13 +1,15 @@
-// save_trajectory: motion as one glTF animation. A body that changes its rung or falls asleep has a mesh for each below its node, all but one of them at the
-// scale 0 (STEP keys), since glTF 2.0 cannot animate colours.
+// save_trajectory: motion as one glTF animation. A body that changes its rung or falls asleep has a mesh for
+// each below its node, all but one of them at the scale 0 (STEP keys), since glTF 2.0 cannot animate colours.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <map>
 #include <set>
 
 #include "reference/error.h"
+#include "reference/output_file.h"
 #include "scenes/camera.h"
 #include "scenes/framing.h"
 #include "scenes/gltf_stage.h"
@@ -40,11 +42,13 @@ class TrajectoryWriter {
   /// How far the ground is drawn: well beyond where the bodies start.
   double extent() const {
     double farthest = 5.0;
-    for (const SceneBody& body : scene_.bodies) farthest = std::max(farthest, body.definition.state.position.norm());
+    for (const SceneBody& body : scene_.bodies)
+      farthest = std::max(farthest, body.definition.state.position.norm());
     return 3.0 * farthest;
   }
 
-  /// One view for all positions and one for all orientations, track after track; and one on the times, which tracks of any length share.
+  /// One view for all positions and one for all orientations, track after track; and one on the times, which
+  /// tracks of any length share.
   void add_views() {
     std::vector<Trajectory::Position> positions;
     std::vector<Trajectory::Orientation> orientations;
@@ -67,7 +71,8 @@ class TrajectoryWriter {
   int time_accessor(std::size_t count) {
     const auto known = time_accessors_.find(count);
     if (known != time_accessors_.end()) return known->second;
-    const int accessor = buffer_.add_accessor(time_view_, 0, count, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT);
+    const int accessor =
+        buffer_.add_accessor(time_view_, 0, count, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT);
     model_.accessors.back().minValues = {trajectory_.times_s().front()};
     model_.accessors.back().maxValues = {trajectory_.times_s()[count - 1]};
     return time_accessors_[count] = accessor;
@@ -116,10 +121,11 @@ class TrajectoryWriter {
     if (keys == 0) return;
     const int times = time_accessor(keys);
     add_channel(node, "translation", times,
-                buffer_.add_accessor(position_view_, first * sizeof(Trajectory::Position), keys, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT));
+                buffer_.add_accessor(position_view_, first * sizeof(Trajectory::Position), keys,
+                                     TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT));
     add_channel(node, "rotation", times,
-                buffer_.add_accessor(orientation_view_, first * sizeof(Trajectory::Orientation), keys, TINYGLTF_TYPE_VEC4,
-                                     TINYGLTF_COMPONENT_TYPE_SHORT, true));
+                buffer_.add_accessor(orientation_view_, first * sizeof(Trajectory::Orientation), keys,
+                                     TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_SHORT, true));
   }
 
   std::vector<int> look_changes(int body) const {
@@ -160,7 +166,9 @@ class TrajectoryWriter {
     const int times = buffer_.add_scalars(trajectory_.times_s());
     add_channel(node, "translation", times, buffer_.add_vectors(positions, 0));
     const int view = buffer_.add_view(std::as_bytes(std::span(rotations)));
-    add_channel(node, "rotation", times, buffer_.add_accessor(view, 0, rotations.size(), TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_FLOAT));
+    add_channel(
+        node, "rotation", times,
+        buffer_.add_accessor(view, 0, rotations.size(), TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_FLOAT));
   }
 
   const Trajectory& trajectory_;
@@ -176,17 +184,22 @@ class TrajectoryWriter {
 }  // namespace
 
 void save_trajectory(const fs::path& file, const Trajectory& trajectory, const Scene& scene) {
-  check_that(trajectory.frames() > 0 && trajectory.bodies() == int(scene.bodies.size()), "a recorded trajectory of this scene");
+  check_that(trajectory.frames() > 0 && trajectory.bodies() == int(scene.bodies.size()),
+             "a recorded trajectory of this scene");
   const TrajectoryWriter writer(trajectory, scene);
   const fs::path part = file.string() + ".part";
+  errno = 0;
   std::ofstream out(part, std::ios::binary);
-  const bool written = out && tinygltf::TinyGLTF().WriteGltfSceneToStream(&writer.model(), out, false, true) && out.flush();
+  const bool written =
+      out && tinygltf::TinyGLTF().WriteGltfSceneToStream(&writer.model(), out, false, true) && out.flush();
+  const int reason = written || errno == 0 ? EIO : errno;
   out.close();
   std::error_code error;
   if (written) fs::rename(part, file, error);
   if (written && !error) return;
+  const int found = error ? error.value() : reason;
   fs::remove(part, error);
-  throw InputError(fmt::format("{}: found a place that cannot be written to, expected room for the trajectory", file.string()));
+  throw_file_error(file, found, "room for the trajectory");
 }
 
 }  // namespace lodestone

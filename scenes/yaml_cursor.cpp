@@ -24,7 +24,8 @@ int edit_distance(std::string_view a, std::string_view b) {
     row[0] = int(i);
     for (std::size_t j = 1; j <= b.size(); ++j) {
       row[j] = std::min({previous[j] + 1, row[j - 1] + 1, previous[j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
     }
   }
   return row.back();
@@ -38,7 +39,8 @@ bool has_leading_zero(std::string_view text) {
 
 template <class Number>
 std::optional<Number> parse(const YamlValue& value) {
-  if (value.kind != YamlValue::Kind::scalar || value.quoted || has_leading_zero(value.text)) return std::nullopt;
+  if (value.kind != YamlValue::Kind::scalar || value.quoted || has_leading_zero(value.text))
+    return std::nullopt;
   const char* begin = value.text.data();
   const char* end = begin + value.text.size();
   if (begin != end && *begin == '+') ++begin;
@@ -49,7 +51,8 @@ std::optional<Number> parse(const YamlValue& value) {
 }
 
 std::string text_of(const NumberRange& range) {
-  if (range.low_excluded && range.high == kFarthest) return fmt::format("a number above {} (at most {})", range.low, range.high);
+  if (range.low_excluded && range.high == kFarthest)
+    return fmt::format("a number above {} (at most {})", range.low, range.high);
   return fmt::format("a number in {}{}, {}]", range.low_excluded ? '(' : '[', range.low, range.high);
 }
 
@@ -57,7 +60,9 @@ bool contains(const NumberRange& range, double x) {
   return std::isfinite(x) && x <= range.high && (range.low_excluded ? x > range.low : x >= range.low);
 }
 
-std::vector<std::string> strings(std::initializer_list<std::string_view> views) { return {views.begin(), views.end()}; }
+std::vector<std::string> strings(std::initializer_list<std::string_view> views) {
+  return {views.begin(), views.end()};
+}
 
 }  // namespace
 
@@ -67,21 +72,28 @@ std::string suggestion(std::string_view word, std::span<const std::string> known
   if (nearest == known.end()) return "";
   // A forgotten or doubled unit (`mass` for `mass_kg`) counts as near, whatever its length.
   const bool is_part = word.size() > 1 && (nearest->starts_with(word) || word.starts_with(*nearest));
-  const auto longer = std::ranges::find_if(known, [&](const std::string& k) { return word.size() > 2 && k.starts_with(word); });
-  if (is_part || distance(*nearest) <= std::max<int>(1, int(word.size()) / 3)) return fmt::format(" (did you mean \"{}\"?)", *nearest);
+  const auto longer = std::ranges::find_if(
+      known, [&](const std::string& k) { return word.size() > 2 && k.starts_with(word); });
+  if (is_part || distance(*nearest) <= std::max<int>(1, int(word.size()) / 3))
+    return fmt::format(" (did you mean \"{}\"?)", *nearest);
   return longer == known.end() ? "" : fmt::format(" (did you mean \"{}\"?)", *longer);
 }
 
 void YamlCursor::fail(std::string_view found, std::string_view expected) const {
-  throw InputError(fmt::format("{}:{}: {}: found {}, expected {}", *file_, value_->line, key_.empty() ? "scene" : key_, found, expected));
+  throw InputError(fmt::format("{}:{}: {}: found {}, expected {}", *file_, value_->line,
+                               key_.empty() ? "scene" : key_, found, expected));
 }
 
 std::string YamlCursor::found() const {
   switch (value_->kind) {
-    case YamlValue::Kind::null: return "nothing";
-    case YamlValue::Kind::sequence: return fmt::format("a list of {}", value_->items.size());
-    case YamlValue::Kind::map: return "a map";
-    case YamlValue::Kind::scalar: break;
+    case YamlValue::Kind::null:
+      return "nothing";
+    case YamlValue::Kind::sequence:
+      return fmt::format("a list of {}", value_->items.size());
+    case YamlValue::Kind::map:
+      return "a map";
+    case YamlValue::Kind::scalar:
+      break;
   }
   std::string shown = value_->text.substr(0, 60) + (value_->text.size() > 60 ? "…" : "");
   return value_->quoted ? fmt::format("the text \"{}\"", shown) : shown;
@@ -95,7 +107,8 @@ void YamlCursor::expect_keys(std::initializer_list<std::string_view> known) cons
     place.line = entry.line;
     const std::vector<std::string> names = strings(known);
     inner(place, key_.empty() ? entry.key : key_ + "." + entry.key)
-        .fail("an unknown key", fmt::format("one of {}{}", fmt::join(known, ", "), suggestion(entry.key, names)));
+        .fail("an unknown key",
+              fmt::format("one of {}{}", fmt::join(known, ", "), suggestion(entry.key, names)));
   }
 }
 
@@ -118,18 +131,21 @@ std::optional<YamlCursor> YamlCursor::find(std::string_view name) const {
 
 YamlCursor YamlCursor::at(std::string_view name) const {
   if (auto cursor = find(name)) return *cursor;
-  inner(*value_, key_.empty() ? std::string(name) : fmt::format("{}.{}", key_, name)).fail("no such key", "it to be given");
+  inner(*value_, key_.empty() ? std::string(name) : fmt::format("{}.{}", key_, name))
+      .fail("no such key", "it to be given");
 }
 
 std::vector<YamlCursor> YamlCursor::items() const {
   if (value_->kind != YamlValue::Kind::sequence) fail(found(), "a list");
   std::vector<YamlCursor> cursors;
-  for (const YamlValue& item : value_->items) cursors.push_back(inner(item, fmt::format("{}[{}]", key_, cursors.size())));
+  for (const YamlValue& item : value_->items)
+    cursors.push_back(inner(item, fmt::format("{}[{}]", key_, cursors.size())));
   return cursors;
 }
 
 std::vector<YamlCursor> YamlCursor::items(std::size_t count) const {
-  if (value_->kind != YamlValue::Kind::sequence || value_->items.size() != count) fail(found(), fmt::format("a list of {}", count));
+  if (value_->kind != YamlValue::Kind::sequence || value_->items.size() != count)
+    fail(found(), fmt::format("a list of {}", count));
   return items();
 }
 
@@ -154,7 +170,8 @@ double YamlCursor::number(const NumberRange& range) const {
 
 std::int64_t YamlCursor::integer(std::int64_t low, std::int64_t high) const {
   const std::optional<std::int64_t> number = parse<std::int64_t>(*value_);
-  if (!number || *number < low || *number > high) fail(found(), fmt::format("a whole number from {} to {}", low, high));
+  if (!number || *number < low || *number > high)
+    fail(found(), fmt::format("a whole number from {} to {}", low, high));
   return *number;
 }
 
@@ -190,7 +207,8 @@ bool YamlCursor::truth() const {
 std::size_t YamlCursor::choice(std::span<const std::string> names) const {
   const std::string word = text();
   const auto place = std::ranges::find(names, word);
-  if (place == names.end()) fail(word, fmt::format("one of {}{}", fmt::join(names, ", "), suggestion(word, names)));
+  if (place == names.end())
+    fail(word, fmt::format("one of {}{}", fmt::join(names, ", "), suggestion(word, names)));
   return std::size_t(place - names.begin());
 }
 

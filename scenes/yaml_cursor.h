@@ -1,4 +1,5 @@
-// Typed, checked reading of a YamlValue. Every failure throws InputError as `file:line: key: found …, expected …`.
+// Typed, checked reading of a YamlValue. Every failure throws InputError as `file:line: key: found …,
+// expected …`.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,8 @@
 
 namespace lodestone {
 
-inline constexpr double kFarthest = 1e8;  ///< m, m/s, …: the largest magnitude of any number in a scene (beyond it ODE's hash space fails)
+inline constexpr double kFarthest =
+    1e8;  ///< m, m/s, …: the largest magnitude of any number in a scene (beyond it ODE's hash space fails)
 
 /// Which numbers are accepted.
 struct NumberRange {
@@ -26,10 +28,12 @@ inline constexpr NumberRange kNotNegative{0, kFarthest};
 inline constexpr NumberRange kFraction{0, 1};
 inline constexpr NumberRange kLength{1e-4, 1e4};  ///< m: the sizes a shape may have
 
-/// A value, and the dotted key that led to it (`bodies[2].scatter.count`). Refers to the tree and the file name: both must outlive it.
+/// A value, and the dotted key that led to it (`bodies[2].scatter.count`). Refers to the tree and the file
+/// name: both must outlive it.
 class YamlCursor {
  public:
-  YamlCursor(const YamlValue& value, const std::string& file, std::string key = "") : value_(&value), file_(&file), key_(std::move(key)) {}
+  YamlCursor(const YamlValue& value, const std::string& file, std::string key = "")
+      : value_(&value), file_(&file), key_(std::move(key)) {}
 
   [[noreturn]] void fail(std::string_view found, std::string_view expected) const;
   std::string found() const;  ///< what is here, as a message says it
@@ -51,7 +55,7 @@ class YamlCursor {
   std::string text() const;
   double number(const NumberRange& range = {}) const;
   std::int64_t integer(std::int64_t low, std::int64_t high) const;
-  bool truth() const;      ///< false or true
+  bool truth() const;  ///< false or true
   Vec3 vector(const NumberRange& range = {}) const;
   Vec3 direction() const;  ///< of any length but 0; normalised
   Quat rotation() const;   ///< w, x, y, z of any length but 0; normalised

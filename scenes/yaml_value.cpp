@@ -13,6 +13,7 @@
 #include <unordered_map>
 
 #include "reference/error.h"
+#include "reference/output_file.h"
 
 namespace lodestone {
 namespace {
@@ -22,7 +23,9 @@ namespace fs = std::filesystem;
 int line_of(const YAML::Mark& mark) { return std::max(mark.line, 0) + 1; }
 
 /// How many values a tree holds, and how deep it goes.
-struct TreeSize { int values = 1, depth = 1; };
+struct TreeSize {
+  int values = 1, depth = 1;
+};
 
 TreeSize size_of(const YamlValue& value) {
   TreeSize size;
@@ -49,18 +52,23 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnDocumentEnd() override {}
 
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add({.line = line_of(mark)}, mark, anchor); }
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    add({.line = line_of(mark)}, mark, anchor);
+  }
 
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& text) override {
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& text) override {
     refuse_tag(mark, tag);
-    add({.kind = YamlValue::Kind::scalar, .line = line_of(mark), .quoted = tag == "!", .text = text}, mark, anchor);
+    add({.kind = YamlValue::Kind::scalar, .line = line_of(mark), .quoted = tag == "!", .text = text}, mark,
+        anchor);
   }
 
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
     open({.kind = YamlValue::Kind::sequence, .line = line_of(mark)}, mark, tag, anchor);
   }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
     open({.kind = YamlValue::Kind::map, .line = line_of(mark)}, mark, tag, anchor);
   }
   void OnSequenceEnd() override { close(); }
@@ -68,7 +76,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) fail(mark, "alias", "an alias inside what it stands for", "no cycle of aliases");
+    if (found == anchors_.end())
+      fail(mark, "alias", "an alias inside what it stands for", "no cycle of aliases");
     const TreeSize size = size_of(found->second);
     if (int(open_.size()) + size.depth > limits_.max_depth) fail_depth(mark);
     count(mark, size.values);
@@ -79,12 +88,15 @@ class TreeBuilder : public YAML::EventHandler {
   struct Open {
     YamlValue value;
     YAML::anchor_t anchor = 0;
-    std::optional<std::pair<std::string, int>> key = {};  // a map's key that waits for its value, and its line
+    std::optional<std::pair<std::string, int>> key =
+        {};  // a map's key that waits for its value, and its line
     std::unordered_map<std::string, int> key_lines = {};
   };
 
-  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what, const std::string& found, const std::string& expected) {
-    throw InputError(fmt::format("{}:{}: {}: found {}, expected {}", file_, line_of(mark), what, found, expected));
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what, const std::string& found,
+                         const std::string& expected) {
+    throw InputError(
+        fmt::format("{}:{}: {}: found {}, expected {}", file_, line_of(mark), what, found, expected));
   }
   [[noreturn]] void fail_depth(const YAML::Mark& mark) {
     fail(mark, "nesting", "more levels", fmt::format("at most {}", limits_.max_depth));
@@ -96,14 +108,16 @@ class TreeBuilder : public YAML::EventHandler {
 
   void count(const YAML::Mark& mark, int values) {
     values_ += values;
-    if (values_ > limits_.max_values) fail(mark, "size", "more values", fmt::format("at most {}", limits_.max_values));
+    if (values_ > limits_.max_values)
+      fail(mark, "size", "more values", fmt::format("at most {}", limits_.max_values));
   }
 
   void open(YamlValue value, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     refuse_tag(mark, tag);
     if (int(open_.size()) >= limits_.max_depth) fail_depth(mark);
     count(mark, 1);
-    if (!open_.empty() && open_.back().value.kind == YamlValue::Kind::map && !open_.back().key) fail_key(mark);
+    if (!open_.empty() && open_.back().value.kind == YamlValue::Kind::map && !open_.back().key)
+      fail_key(mark);
     open_.push_back({std::move(value), anchor});
     open_marks_.push_back(mark);
   }
@@ -143,7 +157,8 @@ class TreeBuilder : public YAML::EventHandler {
   void begin_entry(Open& map, const YamlValue& key, const YAML::Mark& mark) {
     if (key.kind != YamlValue::Kind::scalar) fail_key(mark);
     const auto [first, is_new] = map.key_lines.emplace(key.text, line_of(mark));
-    if (!is_new) fail(mark, key.text, "the key a second time", fmt::format("it once (first in line {})", first->second));
+    if (!is_new)
+      fail(mark, key.text, "the key a second time", fmt::format("it once (first in line {})", first->second));
     map.key.emplace(key.text, line_of(mark));
   }
 
@@ -160,10 +175,12 @@ class TreeBuilder : public YAML::EventHandler {
 
 std::string read_text(const fs::path& file, const YamlLimits& limits) {
   const auto fail = [&](const std::string& found) {
-    throw InputError(fmt::format("{}:1: file: found {}, expected a readable scene file", file.string(), found));
+    throw InputError(
+        fmt::format("{}:1: file: found {}, expected a readable scene file", file.string(), found));
   };
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::none) fail(find_reading_fault(file));
   if (!fs::exists(status)) fail("nothing of that name");
   if (fs::is_directory(status)) fail("a folder");
   if (!fs::is_regular_file(status)) fail("a special file");
@@ -171,6 +188,7 @@ std::string read_text(const fs::path& file, const YamlLimits& limits) {
   if (error || bytes > limits.max_bytes) fail(fmt::format("a size beyond {} bytes", limits.max_bytes));
   std::ifstream in(file, std::ios::binary);
   std::string text(bytes, '\0');
+  if (const std::string fault = find_reading_fault(file); !fault.empty()) fail(fault);
   if (!in.read(text.data(), std::streamsize(bytes))) fail("a file that cannot be read");
   return text;
 }
@@ -182,11 +200,14 @@ YamlValue make_yaml(const std::string& text, const std::string& name, const Yaml
   std::istringstream in(text);
   try {
     YAML::Parser parser(in);
-    while (parser.HandleNextDocument(builder)) {}
+    while (parser.HandleNextDocument(builder)) {
+    }
   } catch (const YAML::Exception& e) {
-    throw InputError(fmt::format("{}:{}: syntax: found an error ({}), expected YAML", name, line_of(e.mark), e.msg));
+    throw InputError(
+        fmt::format("{}:{}: syntax: found an error ({}), expected YAML", name, line_of(e.mark), e.msg));
   }
-  if (!builder.complete()) throw InputError(fmt::format("{}:1: document: found an empty file, expected a scene", name));
+  if (!builder.complete())
+    throw InputError(fmt::format("{}:1: document: found an empty file, expected a scene", name));
   return builder.take();
 }
 

@@ -1,5 +1,6 @@
-// A YAML file as a plain value in which everything knows its line. Built from yaml-cpp's events and not from its nodes, which hide
-// duplicate keys, drop further documents, recurse for ever on an alias cycle and give no line for what is missing.
+// A YAML file as a plain value in which everything knows its line. Built from yaml-cpp's events and not from
+// its nodes, which hide duplicate keys, drop further documents, recurse for ever on an alias cycle and give
+// no line for what is missing.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +14,8 @@ struct YamlEntry;
 struct YamlValue {
   enum class Kind { null, scalar, sequence, map };
   Kind kind = Kind::null;
-  int line = 1;                    ///< counted from 1
-  bool quoted = false;             ///< "1" is text, 1 is a number
+  int line = 1;                         ///< counted from 1
+  bool quoted = false;                  ///< "1" is text, 1 is a number
   std::string text = {};                ///< of a scalar
   std::vector<YamlValue> items = {};    ///< of a sequence
   std::vector<YamlEntry> entries = {};  ///< of a map, in the file's order, no key twice
@@ -32,8 +33,9 @@ struct YamlLimits {
   int max_values = 2'000'000;  ///< after aliases are expanded
 };
 
-/// Reads the one document of a file. Throws InputError, `file:line: …`, for anything else: a missing file or folder, bad syntax, a
-/// duplicate key, a second document, an alias cycle, a tag, nesting or size beyond the limits.
+/// Reads the one document of a file. Throws InputError, `file:line: …`, for anything else: a missing file or
+/// folder, bad syntax, a duplicate key, a second document, an alias cycle, a tag, nesting or size beyond the
+/// limits.
 YamlValue load_yaml(const std::filesystem::path& file, const YamlLimits& limits = {});
 
 /// The same from text; `name` stands for the file in messages.

@@ -1,4 +1,5 @@
-// Values as little-endian bytes, one after the other, and back. A struct takes part by `archive(a, value)`, which names its fields once for both ways.
+// Values as little-endian bytes, one after the other, and back. A struct takes part by `archive(a, value)`,
+// which names its fields once for both ways.
 #pragma once
 
 #include <array>
@@ -14,7 +15,8 @@
 
 #include "reference/geometry.h"
 
-static_assert(std::endian::native == std::endian::little, "files are little-endian: add byte swapping for other machines");
+static_assert(std::endian::native == std::endian::little,
+              "files are little-endian: add byte swapping for other machines");
 
 namespace lodestone {
 
@@ -28,7 +30,9 @@ concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 class ByteWriter {
  public:
   template <class... T>
-  void operator()(const T&... values) { (put(values), ...); }
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
   std::vector<std::byte> bytes;
 
  private:
@@ -37,12 +41,18 @@ class ByteWriter {
     bytes.insert(bytes.end(), first, first + count);
   }
   template <Plain T>
-  void put(const T& value) { put_bytes(&value, sizeof(T)); }
+  void put(const T& value) {
+    put_bytes(&value, sizeof(T));
+  }
   template <class Scalar, int Rows, int Columns>
-  void put(const Eigen::Matrix<Scalar, Rows, Columns>& m) { put_bytes(m.data(), sizeof(Scalar) * Rows * Columns); }
+  void put(const Eigen::Matrix<Scalar, Rows, Columns>& m) {
+    put_bytes(m.data(), sizeof(Scalar) * Rows * Columns);
+  }
   void put(const Quat& q) { (*this)(q.w(), q.x(), q.y(), q.z()); }
   template <class T, std::size_t N>
-  void put(const std::array<T, N>& values) { for (const T& value : values) put(value); }
+  void put(const std::array<T, N>& values) {
+    for (const T& value : values) put(value);
+  }
   template <class T>
   void put(const std::optional<T>& value) {
     put(value.has_value());
@@ -58,16 +68,19 @@ class ByteWriter {
     for (const T& value : values) put(value);
   }
   template <class T>
-    requires std::is_class_v<T>
+  requires std::is_class_v<T>
   void put(const T& value) { archive(*this, value); }
 };
 
-/// Reads what a ByteWriter wrote. Past the end, or where a list is longer than the bytes left, it gives zeros and nothing is allocated; `whole()` tells.
+/// Reads what a ByteWriter wrote. Past the end, or where a list is longer than the bytes left, it gives zeros
+/// and nothing is allocated; `whole()` tells.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
   template <class... T>
-  void operator()(T&... values) { (get(values), ...); }
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
   /// Whether there was a byte for everything asked for, and none is left.
   bool whole() const { return !short_ && bytes_.empty(); }
   /// Whether there was a byte for everything asked for so far.
@@ -103,7 +116,9 @@ class ByteReader {
     q = Quat(w, x, y, z);
   }
   template <class T, std::size_t N>
-  void get(std::array<T, N>& values) { for (T& value : values) get(value); }
+  void get(std::array<T, N>& values) {
+    for (T& value : values) get(value);
+  }
   template <class T>
   void get(std::optional<T>& value) {
     bool there = false;
@@ -128,7 +143,7 @@ class ByteReader {
     for (std::size_t left = get_count(); left > 0 && !short_; --left) get(values.emplace_back());
   }
   template <class T>
-    requires std::is_class_v<T>
+  requires std::is_class_v<T>
   void get(T& value) { archive(*this, value); }
 
   std::span<const std::byte> bytes_;

@@ -5,9 +5,10 @@
 
 namespace lodestone {
 
-/// Collision height over α: sampled evenly in α from 0 to π/2, so closely at small ‖ω‖/‖v‖ and sparsely at large.
+/// Collision height over α: sampled evenly in α from 0 to π/2, so closely at small ‖ω‖/‖v‖ and sparsely at
+/// large.
 struct CollisionHeights {
-  std::vector<float> mean;       ///< height of the centre of mass over the plane at contact, over R
+  std::vector<float> mean;  ///< height of the centre of mass over the plane at contact, over R
   std::vector<float> deviation;
 };
 
@@ -16,6 +17,7 @@ struct HeightStatistics {
 };
 
 /// At α = atan(R‖ω‖/‖v‖), linear between samples (nearest where `interpolate` is off).
-HeightStatistics find_collision_height(const CollisionHeights& heights, double alpha, bool interpolate = true);
+HeightStatistics find_collision_height(const CollisionHeights& heights, double alpha,
+                                       bool interpolate = true);
 
 }  // namespace lodestone

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "reference/error.h"
+#include "reference/output_file.h"
 
 namespace lodestone {
 namespace {
@@ -22,29 +23,56 @@ std::filesystem::path temporary_beside(const std::filesystem::path& file) {
   return temporary;
 }
 
+[[noreturn]] void throw_unreadable(const std::filesystem::path& file, const std::string& what) {
+  const std::string fault = find_reading_fault(file);
+  throw_input_error(file.string(), fault.empty() ? "a file that cannot be read" : fault, what);
+}
+
+void check_is_file(const std::filesystem::path& file, const std::string& what) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error)) return;
+  const bool is_missing =
+      !error || error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  throw_input_error(file.string(), is_missing ? "no such file" : find_reading_fault(file), what);
+}
+
+// Something that bytes go through, such as a pipe or /dev/stdout: nothing may be put in its place.
+bool is_special(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error) &&
+         !std::filesystem::is_directory(file, error);
+}
+
+void write_to(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+  OutputFile out(file, "a place with room for it");
+  out.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  out.close();
+}
+
 }  // namespace
 
 std::vector<std::byte> read_file(const std::filesystem::path& file, const std::string& what) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) throw InputError(fmt::format("{}: found no such file, expected {}", file.string(), what));
+  check_is_file(file, what);
   std::vector<std::byte> bytes(std::filesystem::file_size(file, error));
   std::ifstream in(file, std::ios::binary);
   if (error || !in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
-    throw InputError(fmt::format("{}: found a file that cannot be read, expected {}", file.string(), what));
+    throw_unreadable(file, what);
   return bytes;
 }
 
 MappedFile::MappedFile(const std::filesystem::path& file, const std::string& what) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) throw InputError(fmt::format("{}: found no such file, expected {}", file.string(), what));
+  check_is_file(file, what);
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat status{};
+  struct stat status {};
   void* mapped = MAP_FAILED;
   if (descriptor >= 0 && ::fstat(descriptor, &status) == 0 && status.st_size > 0)
     mapped = ::mmap(nullptr, std::size_t(status.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
   if (descriptor >= 0) ::close(descriptor);
-  if (mapped != MAP_FAILED) bytes_ = {static_cast<const std::byte*>(mapped), std::size_t(status.st_size)};
-  else if (descriptor < 0 || status.st_size > 0) throw InputError(fmt::format("{}: found a file that cannot be read, expected {}", file.string(), what));
+  if (mapped != MAP_FAILED)
+    bytes_ = {static_cast<const std::byte*>(mapped), std::size_t(status.st_size)};
+  else if (descriptor < 0 || status.st_size > 0)
+    throw_unreadable(file, what);
 }
 
 MappedFile::~MappedFile() {
@@ -52,17 +80,21 @@ MappedFile::~MappedFile() {
 }
 
 void write_atomically(std::span<const std::byte> bytes, const std::filesystem::path& file) {
-  std::error_code error;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
+  if (is_special(file)) return write_to(file, bytes);
   const std::filesystem::path temporary = temporary_beside(file);
-  std::ofstream out(temporary, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-  out.close();
-  if (out) std::filesystem::rename(temporary, file, error);
-  if (!out || error) {
+  std::error_code error;
+  try {
+    write_to(temporary, bytes);
+  } catch (const InputError& fault) {
     std::filesystem::remove(temporary, error);
-    throw InputError(fmt::format("{}: found a place that cannot be written, expected a writable folder", file.string()));
+    const std::string message = fault.what(), name = temporary.string();
+    throw InputError(message.starts_with(name) ? file.string() + message.substr(name.size()) : message);
   }
+  std::filesystem::rename(temporary, file, error);
+  if (!error) return;
+  const int reason = error.value();
+  std::filesystem::remove(temporary, error);
+  throw_file_error(file, reason, "a place that can be written");
 }
 
 }  // namespace lodestone

@@ -26,7 +26,8 @@ class MappedFile {
   std::span<const std::byte> bytes_;
 };
 
-/// Written to a temporary file beside `file` and renamed: readers see the old file or the new one, whole. Throws InputError where it cannot be written.
+/// Written to a temporary file beside `file` and renamed: readers see the old file or the new one, whole.
+/// Straight to what is no file, such as a pipe. Throws InputError where it cannot be written.
 void write_atomically(std::span<const std::byte> bytes, const std::filesystem::path& file);
 
 }  // namespace lodestone

@@ -1,8 +1,10 @@
-// What a collision with a plane does to a body (section 3.2.2): the configuration before it, the response, and tables of responses.
+// What a collision with a plane does to a body (section 3.2.2): the configuration before it, the response,
+// and tables of responses.
 //
-// Symbols: n collision plane normal, V⁻ Ω⁻ velocities before the collision, e1 = n, e3 = n × V⁻ normalised (the working plane's normal),
-// e2 = e3 × e1; θ = ∠(V⁻, −n), φ = ∠(V⁻, Ω⁻), ψ the azimuth of Ω⁻ about V⁻ (0 on the side of e3 × V⁻, in the sampling plane),
-// s = √(V² + R²Ω²), α = atan(R‖Ω⁻‖ / ‖V⁻‖); V_particle = V⁻ − (1 + e)(V⁻·n) n.
+// Symbols: n collision plane normal, V⁻ Ω⁻ velocities before the collision, e1 = n, e3 = n × V⁻ normalised
+// (the working plane's normal), e2 = e3 × e1; θ = ∠(V⁻, −n), φ = ∠(V⁻, Ω⁻), ψ the azimuth of Ω⁻ about V⁻ (0
+// on the side of e3 × V⁻, in the sampling plane), s = √(V² + R²Ω²), α = atan(R‖Ω⁻‖ / ‖V⁻‖); V_particle = V⁻ −
+// (1 + e)(V⁻·n) n.
 #pragma once
 
 #include <array>
@@ -36,7 +38,8 @@ enum class ResponseDraw : std::uint8_t {
   empirical,    ///< one of the trials themselves
 };
 
-/// The approach of the contact point towards the plane over s: whether a collision is faster than ODE's bounce_vel.
+/// The approach of the contact point towards the plane over s: whether a collision is faster than ODE's
+/// bounce_vel.
 struct Approach {
   float mean = 0.0f, deviation = 0.0f;
 };
@@ -47,37 +50,44 @@ struct ResponseSample {
   std::uint16_t approach;                ///< over s, over 2; of 65535
 };
 
-/// What the trials of each cell of a table gave. `factor` only for correlated draws, `first_sample` and `sample` only for empirical ones.
+/// What the trials of each cell of a table gave. `factor` only for correlated draws, `first_sample` and
+/// `sample` only for empirical ones.
 struct ResponseCells {
   std::vector<Response> mean, deviation;
-  std::vector<std::uint32_t> trials;         ///< behind each cell
+  std::vector<std::uint32_t> trials;  ///< behind each cell
   std::vector<Approach> approach;
   std::vector<ResponseFactor> factor;
-  std::vector<std::uint32_t> first_sample;   ///< of each cell's run of `sample`; one more than there are cells
+  std::vector<std::uint32_t> first_sample;  ///< of each cell's run of `sample`; one more than there are cells
   std::vector<ResponseSample> sample;
   float sample_range = 1.0f;
 };
 
-/// Responses over (θ, φ, α, ψ). ODE's impact law is the same at every speed above its bounce_vel, and so is it below: ‖V⁻‖ and ‖Ω⁻‖ enter through their
-/// ratio alone. Cell centres: θ = (i + ½)π/(2 n_theta), φ = (j + ½)π/n_phi, α = (k + ½)π/(2 n_alpha), ψ = 2π l/n_psi; cell index
+/// Responses over (θ, φ, α, ψ). ODE's impact law is the same at every speed above its bounce_vel, and so is
+/// it below: ‖V⁻‖ and ‖Ω⁻‖ enter through their ratio alone. Cell centres: θ = (i + ½)π/(2 n_theta), φ = (j +
+/// ½)π/n_phi, α = (k + ½)π/(2 n_alpha), ψ = 2π l/n_psi; cell index
 /// ((i n_phi + j) n_alpha + k) n_psi + l. With n_psi = 1 a cell holds every ψ, as the paper's do.
 struct ResponseTable {
   int n_theta = 0, n_phi = 0, n_alpha = 0, n_psi = 1;
   ResponseCells cells;
   std::int64_t size() const { return std::int64_t(n_theta) * n_phi * n_alpha * n_psi; }
   CollisionConfiguration center(std::int64_t cell) const;  ///< at a speed unit of 1 m/s
-  std::int64_t find_cell(const CollisionConfiguration& c) const;  ///< whose centre is nearest along every axis
+  std::int64_t find_cell(
+      const CollisionConfiguration& c) const;  ///< whose centre is nearest along every axis
 };
 
-/// The paper's own table: responses over (θ, φ, ‖V⁻‖, ‖Ω⁻‖), on both sides of bounce_vel. Cell index ((i n_phi + j) speeds + k) spins + l.
+/// The paper's own table: responses over (θ, φ, ‖V⁻‖, ‖Ω⁻‖), on both sides of bounce_vel. Cell index ((i
+/// n_phi + j) speeds + k) spins + l.
 struct SpeedTable {
   int n_theta = 0, n_phi = 0;
   std::vector<float> speeds;  ///< ‖V⁻‖, m/s, rising
   std::vector<float> spins;   ///< R‖Ω⁻‖, m/s, rising from 0
   ResponseCells cells;
-  std::int64_t size() const { return std::int64_t(n_theta) * n_phi * std::int64_t(speeds.size() * spins.size()); }
+  std::int64_t size() const {
+    return std::int64_t(n_theta) * n_phi * std::int64_t(speeds.size() * spins.size());
+  }
   CollisionConfiguration center(std::int64_t cell) const;
-  std::int64_t find_cell(const CollisionConfiguration& c) const;  ///< whose centre is nearest along every axis
+  std::int64_t find_cell(
+      const CollisionConfiguration& c) const;  ///< whose centre is nearest along every axis
 };
 
 }  // namespace lodestone

@@ -1,5 +1,5 @@
-// Settling clips: recorded ends of ODE drops, which hold what no single response captures: how a body rocks and rolls to rest.
-// Dimensionless as the rest of the signature, so they serve every size.
+// Settling clips: recorded ends of ODE drops, which hold what no single response captures: how a body rocks
+// and rolls to rest. Dimensionless as the rest of the signature, so they serve every size.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ namespace lodestone {
 inline constexpr float kClipHeightRange = 4.0f;  ///< over R
 inline constexpr float kClipSpeedRange = 4.0f;   ///< over √(gR), and times √(R/g)
 
-/// State in a clip: position over R relative to the clip's start (z over the plane), orientation up to the yaw that the player adds, velocities over
-/// √(gR) and √(g/R).
+/// State in a clip: position over R relative to the clip's start (z over the plane), orientation up to the
+/// yaw that the player adds, velocities over √(gR) and √(g/R).
 struct ClipState {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
@@ -24,15 +24,15 @@ struct ClipState {
 ClipFrame encode_frame(const ClipState& state, float extent);
 ClipState decode_frame(const ClipFrame& frame, float extent);
 
-/// State in `clip` at `frame` (fractional, clamped to the clip). Between frames poses are interpolated; velocities stay those of the frame before, for
-/// they change at impacts, which must stay sudden.
+/// State in `clip` at `frame` (fractional, clamped to the clip). Between frames poses are interpolated;
+/// velocities stay those of the frame before, for they change at impacts, which must stay sudden.
 ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, double frame);
 
 /// How a body moves at a contact, dimensionless and in body axes, so that yaw does not matter.
 struct SettlingKey {
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< of the plane
   Eigen::Vector3f velocity = Eigen::Vector3f::Zero(), angular_velocity = Eigen::Vector3f::Zero();
-  float energy = 0.0f;                                ///< kinetic and potential over m g R, height zero at the plane
+  float energy = 0.0f;  ///< kinetic and potential over m g R, height zero at the plane
 };
 
 /// The entries of a signature's clips, arranged for look-up by the plane's normal in body axes.
@@ -42,8 +42,10 @@ class ClipIndex {
   /// `inertia_per_mass`: of the shape, over R²; `max_distance`: of what find_nearest may return.
   ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance);
 
-  /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`; none beyond `distance_limit`, which is at most `max_distance`.
-  std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack, float distance_limit) const;
+  /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`;
+  /// none beyond `distance_limit`, which is at most `max_distance`.
+  std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack,
+                                        float distance_limit) const;
   bool empty() const { return near_.empty(); }
 
  private:

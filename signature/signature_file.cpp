@@ -30,7 +30,8 @@ class FileWriter {
   void add(const List& list) {
     bytes_.resize(aligned(bytes_.size()));
     const SectionEntry entry{section_, value_bytes_[section_], bytes_.size(), list.size()};
-    std::memcpy(bytes_.data() + sizeof(SignatureHeader) + section_ * sizeof(SectionEntry), &entry, sizeof(entry));
+    std::memcpy(bytes_.data() + sizeof(SignatureHeader) + section_ * sizeof(SectionEntry), &entry,
+                sizeof(entry));
     append(bytes_, list);
     ++section_;
   }
@@ -81,11 +82,13 @@ Signature load_signature(const std::filesystem::path& file) {
 
 void check_measured_for(const Signature& signature, const Shape& shape, const std::string& name) {
   if (signature.shape_hash == shape.content_hash) return;
-  throw InputError(fmt::format("{}: found the signature of {} ({:016x}), expected that of {} ({:016x})", name, signature.shape_name, signature.shape_hash, shape.name,
-                               shape.content_hash));
+  throw InputError(fmt::format("{}: found the signature of {} ({:016x}), expected that of {} ({:016x})", name,
+                               signature.shape_name, signature.shape_hash, shape.name, shape.content_hash));
 }
 
-void save_signature(const Signature& signature, const std::filesystem::path& file) { write_atomically(encode_signature(signature), file); }
+void save_signature(const Signature& signature, const std::filesystem::path& file) {
+  write_atomically(encode_signature(signature), file);
+}
 
 std::vector<SectionSize> list_section_sizes(const Signature& signature) {
   std::vector<SectionSize> sizes;

@@ -1,6 +1,7 @@
-// A signature as bytes: little-endian, versioned, checksummed, laid out to be mapped. A header, a list of sections, then the sections, each of one kind of
-// value without padding, each beginning at a multiple of 64 bytes (signature_view.h, signature_sections.h). Any damage gives an InputError before anything
-// is allocated.
+// A signature as bytes: little-endian, versioned, checksummed, laid out to be mapped. A header, a list of
+// sections, then the sections, each of one kind of value without padding, each beginning at a multiple of 64
+// bytes (signature_view.h, signature_sections.h). Any damage gives an InputError before anything is
+// allocated.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +29,8 @@ Signature load_signature(const std::filesystem::path& file);
 /// Throws InputError, naming both, unless `signature` was measured for `shape` or a scaled copy of it.
 void check_measured_for(const Signature& signature, const Shape& shape, const std::string& name);
 
-/// Written to a temporary file beside `file` and renamed: readers see the old file or the new one, whole. Throws InputError where it cannot be written.
+/// Written to a temporary file beside `file` and renamed: readers see the old file or the new one, whole.
+/// Throws InputError where it cannot be written.
 void save_signature(const Signature& signature, const std::filesystem::path& file);
 
 /// Bytes of one list in the file.

@@ -1,4 +1,5 @@
-// A signature's bytes, looked at where they lie (mapped or in memory, aligned or not) and checked without any allocation.
+// A signature's bytes, looked at where they lie (mapped or in memory, aligned or not) and checked without any
+// allocation.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace lodestone {
 
-inline constexpr std::size_t kSections = 32;          ///< lists of visit_sections, and the numbers before them
+inline constexpr std::size_t kSections = 32;  ///< lists of visit_sections, and the numbers before them
 inline constexpr std::size_t kSectionAlignment = 64;  ///< of each section's start in the file
 
 /// The file's first bytes. `checksum`: XXH3 of all that follows them.
@@ -23,7 +24,8 @@ struct SignatureHeader {
 };
 static_assert(sizeof(SignatureHeader) == 64);
 
-/// Follows the header once for each section. The sections lie in this order without a gap but what aligns them.
+/// Follows the header once for each section. The sections lie in this order without a gap but what aligns
+/// them.
 struct SectionEntry {
   std::uint32_t id, value_bytes;
   std::uint64_t offset, count;
@@ -47,7 +49,8 @@ class SectionValues {
   std::span<const std::byte> bytes_;
 };
 
-/// What a file says, its lists still bytes. Made only of bytes in which every number, index and list is sound.
+/// What a file says, its lists still bytes. Made only of bytes in which every number, index and list is
+/// sound.
 class SignatureView {
  public:
   /// Throws InputError, with `name` at its head, for anything that encode_signature did not make.
@@ -65,7 +68,9 @@ class SignatureView {
 };
 
 /// Where a section that would begin at `offset` begins.
-constexpr std::uint64_t aligned(std::uint64_t offset) { return (offset + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment; }
+constexpr std::uint64_t aligned(std::uint64_t offset) {
+  return (offset + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
+}
 
 extern const std::array<char, 8> kSignatureMagic;
 /// Bytes of a value in each section.

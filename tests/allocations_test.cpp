@@ -46,7 +46,9 @@ namespace {
 
 #if !defined(__SANITIZE_ADDRESS__)
 TEST(Allocations, AreCountedAndWeighed) {
-  struct alignas(64) Wide { char bytes[640]; };
+  struct alignas(64) Wide {
+    char bytes[640];
+  };
   const std::int64_t calls_before = allocations(), held_before = bytes_held();
   auto wide = std::make_unique<Wide>();
   EXPECT_EQ(allocations() - calls_before, 1);

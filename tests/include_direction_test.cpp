@@ -1,5 +1,5 @@
-// The style guide's rules on includes: nothing includes upward, folders inside a room include each other in no circle, and no public header
-// shows ODE, assimp or yaml-cpp.
+// The style guide's rules on includes: nothing includes upward, folders inside a room include each other in
+// no circle, and no public header shows ODE, assimp or yaml-cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -80,7 +80,8 @@ bool shows_a_library(const Include& include) {
 }
 
 bool takes_ode_outside_reference(const Include& include) {
-  return include.target.starts_with("ode/") && !include.file.starts_with("reference/") && !is_of_the_game(include);
+  return include.target.starts_with("ode/") && !include.file.starts_with("reference/") &&
+         !is_of_the_game(include);
 }
 
 // A caller has the installed headers and nothing else.
@@ -92,16 +93,19 @@ bool takes_the_game_behind_the_scenes(const Include& include) {
 std::string folder_of(std::string_view path) { return std::string(path.substr(0, path.rfind('/'))); }
 std::string room_of(std::string_view path) { return std::string(path.substr(0, path.find('/'))); }
 
-// A header that everybody sees shows none of what its room keeps in folders, and nothing but headers is beside it.
+// A header that everybody sees shows none of what its room keeps in folders, and nothing but headers is
+// beside it.
 bool is_no_public_header_alone(const Include& include) {
   if (folder_of(include.file) != "lod") return false;
-  return !include.file.ends_with(".h") || (room_of(include.target) == "lod" && folder_of(include.target) != "lod");
+  return !include.file.ends_with(".h") ||
+         (room_of(include.target) == "lod" && folder_of(include.target) != "lod");
 }
 
 // Of folders, to those that they include.
 using FolderGraph = std::map<std::string, std::set<std::string>>;
 
-// The folders of one room. Its own folder is one of them only where `with_top`: headers at the top may stand below and above the rest.
+// The folders of one room. Its own folder is one of them only where `with_top`: headers at the top may stand
+// below and above the rest.
 FolderGraph folders_of(std::string_view room, const std::vector<Include>& includes, bool with_top) {
   FolderGraph graph;
   for (const Include& include : includes) {
@@ -118,8 +122,10 @@ std::string text_of_circle(const std::vector<std::string>& way, const std::strin
   return text + folder;
 }
 
-// The first circle that `folder` leads to, as a -> b -> a; empty where there is none. `way` led here; folders that lead to no circle are `clear`.
-std::string find_circle_from(const std::string& folder, const FolderGraph& graph, std::vector<std::string>& way, std::set<std::string>& clear) {
+// The first circle that `folder` leads to, as a -> b -> a; empty where there is none. `way` led here; folders
+// that lead to no circle are `clear`.
+std::string find_circle_from(const std::string& folder, const FolderGraph& graph,
+                             std::vector<std::string>& way, std::set<std::string>& clear) {
   if (clear.contains(folder)) return {};
   if (std::ranges::find(way, folder) != way.end()) return text_of_circle(way, folder);
   way.push_back(folder);
@@ -160,8 +166,11 @@ TEST(IncludeDirection, PublicHeadersOfTheEngineShowNoFolderOfIt) { expect_none(i
 TEST(IncludeDirection, FoldersOfARoomIncludeEachOtherInNoCircle) {
   const std::vector<Include> includes = includes_of_every_room();
   EXPECT_GT(folders_of("lod", includes, true).size(), 3U);
-  // At the top of the reference and of signatures are both what their folders stand on and what stands on them.
-  for (const std::string_view room : kRooms) EXPECT_EQ(find_circle(folders_of(room, includes, room != "reference" && room != "signature")), "") << room;
+  // At the top of the reference and of signatures are both what their folders stand on and what stands on
+  // them.
+  for (const std::string_view room : kRooms)
+    EXPECT_EQ(find_circle(folders_of(room, includes, room != "reference" && room != "signature")), "")
+        << room;
 }
 
 TEST(IncludeDirection, IncludesAreRead) {
@@ -188,16 +197,21 @@ TEST(IncludeDirection, EachRuleCatchesItsOffence) {
 }
 
 TEST(IncludeDirection, ACircleOfFoldersIsFoundAndNamed) {
-  const std::vector<Include> includes = {{"lod/manager/step.cpp", "lod/support/level.h"}, {"lod/support/level.h", "lod/contact/pair.h"}, {"lod/contact/pair.h", "lod/body.h"},
-                                         {"lod/contact/pair.cpp", "lod/tables/model.h"}, {"lod/tables/model.cpp", "reference/shape.h"}};
+  const std::vector<Include> includes = {{"lod/manager/step.cpp", "lod/support/level.h"},
+                                         {"lod/support/level.h", "lod/contact/pair.h"},
+                                         {"lod/contact/pair.h", "lod/body.h"},
+                                         {"lod/contact/pair.cpp", "lod/tables/model.h"},
+                                         {"lod/tables/model.cpp", "reference/shape.h"}};
   EXPECT_EQ(find_circle(folders_of("lod", includes, true)), "");
   const auto with = [&](const Include& one) {
     std::vector<Include> more = includes;
     more.push_back(one);
     return more;
   };
-  EXPECT_EQ(find_circle(folders_of("lod", with({"lod/tables/model.cpp", "lod/support/level.h"}), true)), "lod/contact -> lod/tables -> lod/support -> lod/contact");
-  EXPECT_EQ(find_circle(folders_of("lod", with({"lod/body.h", "lod/contact/pair.h"}), true)), "lod -> lod/contact -> lod");
+  EXPECT_EQ(find_circle(folders_of("lod", with({"lod/tables/model.cpp", "lod/support/level.h"}), true)),
+            "lod/contact -> lod/tables -> lod/support -> lod/contact");
+  EXPECT_EQ(find_circle(folders_of("lod", with({"lod/body.h", "lod/contact/pair.h"}), true)),
+            "lod -> lod/contact -> lod");
   EXPECT_EQ(find_circle(folders_of("lod", with({"lod/body.h", "lod/contact/pair.h"}), false)), "");
 }
 

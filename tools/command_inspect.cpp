@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "signature/file_bytes.h"
@@ -24,8 +24,10 @@ void inspect(const Arguments& arguments) {
     const std::string svg = svg_plot(signature.collision_heights, signature.shape_name);
     write_atomically(std::as_bytes(std::span(svg)), arguments.svg);
   }
-  if (arguments.json) fmt::print("{}\n", full_json_of(signature, bytes).dump(2));
-  else fmt::print("{}", page_of(signature, bytes));
+  if (arguments.json)
+    fmt::print("{}\n", full_json_of(signature, bytes).dump(2));
+  else
+    fmt::print("{}", page_of(signature, bytes));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <vector>
 
@@ -34,7 +34,8 @@ void merge(const Arguments& arguments) {
 }  // namespace
 
 void add_merge_command(CLI::App& program, ExitCode& exit_code) {
-  CLI::App* command = program.add_subcommand("merge", "make a signature out of the parts that sign --shard measured");
+  CLI::App* command =
+      program.add_subcommand("merge", "make a signature out of the parts that sign --shard measured");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("FILES", arguments->parts, "every part, in any order")->required();
   command->add_option("-o", arguments->out, "the signature's file")->required();

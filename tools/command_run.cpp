@@ -1,7 +1,11 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "tools/commands.h"
+#include "tools/interrupt.h"
+#include "tools/printable.h"
+#include "tools/results.h"
 #include "tools/run_arguments.h"
 #include "tools/run_report.h"
 #include "tools/scene_signatures.h"
@@ -15,16 +19,22 @@ struct Arguments {
 };
 
 ExitCode run(const Arguments& arguments) {
+  catch_interrupts();
   const Scene scene = load_scene(arguments.run.scene, arguments.run.loading);
   RunResult result;
   {
     ProgressLine line;
-    const RunSettings settings = run_settings(arguments.run, line);
+    RunSettings settings = run_settings(arguments.run, line);
+    settings.stop = is_interrupted;
     fetch_signatures(scene, settings);
     result = run_scene(scene, settings);
   }
-  if (arguments.json) fmt::print("{}\n", json_of(result).dump(2));
-  else fmt::print("{}: {} bodies, {} steps\n{}", arguments.run.scene.string(), result.bodies, result.steps, text_of(result));
+  if (arguments.json)
+    print_json(json_of(result));
+  else
+    fmt::print("{}: {} bodies, {} steps\n{}", arguments.run.scene.string(), result.bodies, result.steps,
+               text_of(result));
+  if (!result.write_error.empty()) fmt::print(stderr, "lodestone: {}\n", printable(result.write_error));
   return exit_code_of(result);
 }
 
@@ -35,9 +45,14 @@ void add_run_command(CLI::App& program, ExitCode& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("SCENE", arguments->run.scene, "a YAML file")->required();
   add_run_arguments(*command, arguments->run);
-  command->add_option("--out", arguments->run.running.out, "folder for run.play, which `lodestone view` plays, the trajectory (.glb) and the report of each step (.csv)");
-  command->add_option("--fork", arguments->run.running.fork_step, "after this step the world goes on twice: as the scene says, and with --level, --model, --budget-… or --full-within-m, which are then for this second future alone");
-  command->add_option("--record", arguments->run.running.record, "file for a recording, which `lodestone replay` does again");
+  command->add_option("--out", arguments->run.running.out,
+                      "folder for run.play, which `lodestone view` plays, the trajectory (.glb) and the "
+                      "report of each step (.csv)");
+  command->add_option("--fork", arguments->run.running.fork_step,
+                      "after this step the world goes on twice: as the scene says, and with --level, "
+                      "--model, --budget-… or --full-within-m, which are then for this second future alone");
+  command->add_option("--record", arguments->run.running.record,
+                      "file for a recording, which `lodestone replay` does again");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

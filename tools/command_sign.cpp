@@ -1,19 +1,25 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 
 #include "signature/measure/measurement_part.h"
 #include "signature/measure/signature_from_trials.h"
 #include "signature/signature_file.h"
 #include "signature/signature_source.h"
 #include "tools/commands.h"
+#include "tools/interrupt.h"
+#include "tools/mesh_parts.h"
 #include "tools/progress.h"
+#include "tools/results.h"
 #include "tools/shape_arguments.h"
 #include "tools/share_argument.h"
 #include "tools/signature_arguments.h"
 #include "tools/signature_report.h"
+#include "tools/warning.h"
 
 namespace lodestone {
 namespace {
@@ -34,12 +40,19 @@ SignatureSettings settings_of(const Arguments& arguments) {
   return settings;
 }
 
-SignatureSourceSettings source_settings(const Arguments& arguments, ProgressLine& line) {
+// Measuring that is interrupted stops where it is, with its units in the journal.
+SignatureSourceSettings source_settings(const Arguments& arguments, ProgressLine& line,
+                                        std::stop_source& stop) {
   SignatureSourceSettings source;
   source.measuring = arguments.signature.measuring();
   source.use_cache = !arguments.no_cache;
   source.threads = arguments.threads;
-  source.progress = line.function();
+  source.progress = [&](const std::string& stage, double fraction) {
+    line.show(stage, fraction);
+    if (is_interrupted()) stop.request_stop();
+  };
+  source.warn = warn;
+  source.stop = stop.get_token();
   return source;
 }
 
@@ -47,25 +60,66 @@ SourcedSignature sign_from_trials(const Arguments& arguments, const Shape& shape
   const MeasuredTrials trials = load_trials(arguments.from_trials);
   TrialCoverage coverage;
   ProgressLine line;
-  Signature signature = make_signature_from_trials(shape, settings_of(arguments), trials, {.threads = arguments.threads, .progress = line.function()}, &coverage);
-  fmt::print(stderr, "{} collisions fill {} of {} cells; {} left out; {} rests. The rest is ODE's.\n", coverage.collisions, coverage.measured_cells, coverage.cells,
-             coverage.left_out, coverage.rests);
+  Signature signature =
+      make_signature_from_trials(shape, settings_of(arguments), trials,
+                                 {.threads = arguments.threads, .progress = line.function()}, &coverage);
+  fmt::print(stderr, "{} collisions fill {} of {} cells; {} left out; {} rests. The rest is ODE's.\n",
+             coverage.collisions, coverage.measured_cells, coverage.cells, coverage.left_out, coverage.rests);
   return {.signature = std::make_shared<const Signature>(std::move(signature)), .file = {}};
 }
 
 SourcedSignature sign_and_export(const Arguments& arguments, const Shape& shape) {
   ProgressLine line;
   const SignatureSettings settings = settings_of(arguments);
-  const Measurement measurement = measure_units(shape, settings, {}, {.threads = arguments.threads, .progress = line.function()});
+  const Measurement measurement =
+      measure_units(shape, settings, {}, {.threads = arguments.threads, .progress = line.function()});
   save_trials(list_trials(shape, settings, measurement, arguments.threads), arguments.export_trials);
-  return {.signature = std::make_shared<const Signature>(make_signature(shape, settings, measurement)), .file = {}};
+  return {.signature = std::make_shared<const Signature>(make_signature(shape, settings, measurement)),
+          .file = {}};
 }
 
 SourcedSignature find_signature(const Arguments& arguments, const Shape& shape) {
   if (!arguments.from_trials.empty()) return sign_from_trials(arguments, shape);
   if (!arguments.export_trials.empty()) return sign_and_export(arguments, shape);
   ProgressLine line;
-  return find_or_measure_signature(shape, arguments.shape.law(), source_settings(arguments, line));
+  std::stop_source stop;
+  return find_or_measure_signature(shape, arguments.shape.law(), source_settings(arguments, line, stop));
+}
+
+// Of a mesh: what was mended in it, and what lies in it in an odd way and was left.
+struct Repairs {
+  MeshReport report;
+  MeshParts parts;
+  std::vector<std::pair<const char*, int>> counts() const {
+    return {{"vertices_welded", report.vertices_welded},
+            {"degenerate_faces_dropped", report.degenerate_faces_dropped},
+            {"duplicate_faces_dropped", report.duplicate_faces_dropped},
+            {"faces_flipped", report.faces_flipped},
+            {"unused_vertices_dropped", report.unused_vertices_dropped},
+            {"open_edges", report.open_edges},
+            {"non_manifold_edges", report.non_manifold_edges},
+            {"nested_parts", parts.nested},
+            {"overlapping_parts", parts.overlapping}};
+  }
+};
+
+nlohmann::ordered_json json_of(const Repairs& repairs) {
+  nlohmann::ordered_json json = {{"components", repairs.report.components}};
+  for (const auto& [name, count] : repairs.counts()) json[name] = count;
+  return json;
+}
+
+// A line where there is something to say; not of vertices welded, since reading a file gives each face its
+// own.
+std::string text_of(const Repairs& repairs) {
+  std::string text;
+  for (const auto& [name, count] : repairs.counts()) {
+    if (std::string_view(name) == "vertices_welded") continue;
+    std::string words = name;
+    std::ranges::replace(words, '_', ' ');
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "mesh         " : ", ", count, words);
+  }
+  return text.empty() ? "" : text + '\n';
 }
 
 // The lengths of a signature are over the radius; who signs a shape wants its own.
@@ -89,7 +143,8 @@ nlohmann::ordered_json json_of(const MeasurementPart& part, const std::filesyste
   json["trials"] = trials;
   json["seconds"] = part.seconds;
   json["cached"] = false;
-  json["trials_per_s"] = part.seconds > 0.0 ? nlohmann::ordered_json(double(trials) / part.seconds) : nlohmann::ordered_json(nullptr);
+  json["trials_per_s"] = part.seconds > 0.0 ? nlohmann::ordered_json(double(trials) / part.seconds)
+                                            : nlohmann::ordered_json(nullptr);
   json["bytes"] = std::filesystem::file_size(file);
   json["rest_poses"] = nlohmann::ordered_json::array();
   json["held_out_ks"] = nullptr;
@@ -98,47 +153,80 @@ nlohmann::ordered_json json_of(const MeasurementPart& part, const std::filesyste
   return json;
 }
 
+// Of a measurement that was interrupted; `trials` are in its journal.
+void say_incomplete(const Arguments& arguments, const Shape& shape, std::uint64_t trials) {
+  if (arguments.json)
+    print_json({{"shape", shape.name}, {"trials", trials}, {"cached", false}, {"file", ""}});
+  else
+    fmt::print("{}: {} trials are kept; the same command goes on from there\n", shape.name, trials);
+}
+
 void sign_share(const Arguments& arguments, const Shape& shape) {
   MeasurementPart part;
+  std::stop_source stop;
   {
     ProgressLine line;
-    part = measure_part(shape, arguments.shape.law(), *arguments.share, source_settings(arguments, line));
+    part =
+        measure_part(shape, arguments.shape.law(), *arguments.share, source_settings(arguments, line, stop));
   }
+  if (stop.stop_requested()) return say_incomplete(arguments, shape, part.trials_resumed + part.trials_noted);
   save_part(part, arguments.out);
-  if (arguments.json) fmt::print("{}\n", json_of(part, arguments.out).dump(2));
-  else fmt::print("part {} of {}: {} trials in {:.1f} s, in {}\n", arguments.share->index + 1, arguments.share->count, count_trials(part), part.seconds,
-                  arguments.out.string());
+  if (arguments.json)
+    print_json(json_of(part, arguments.out));
+  else
+    fmt::print("part {} of {}: {} trials in {:.1f} s, in {}\n", arguments.share->index + 1,
+               arguments.share->count, count_trials(part), part.seconds, arguments.out.string());
 }
 
 void sign(const Arguments& arguments) {
-  const auto shape = make_shape_from_arguments(arguments.shape);
+  MeshReport report;
+  const auto shape = make_shape_from_arguments(arguments.shape, &report);
+  const Repairs repairs{report, report.components > 1 ? find_mesh_parts(shape->mesh) : MeshParts{}};
   if (arguments.share) return sign_share(arguments, *shape);
   SourcedSignature sourced = find_signature(arguments, *shape);
+  if (!sourced.signature) return say_incomplete(arguments, *shape, sourced.trials_left);
   if (!arguments.out.empty()) {
     save_signature(*sourced.signature, arguments.out);
     sourced.file = arguments.out;
   }
-  if (arguments.json) fmt::print("{}\n", json_of(sourced, *shape).dump(2));
-  else fmt::print("file         {}{}\n{}", sourced.file.string(), sourced.cached ? " (cached)" : "",
-                  text_of(*sourced.signature, encode_signature(*sourced.signature).size()));
+  if (arguments.json) {
+    nlohmann::ordered_json json = json_of(sourced, *shape);
+    if (report.components > 0) json["mesh"] = json_of(repairs);
+    print_json(std::move(json));
+  } else
+    fmt::print("file         {}{}\n{}{}", sourced.file.string(), sourced.cached ? " (cached)" : "",
+               text_of(repairs), text_of(*sourced.signature, encode_signature(*sourced.signature).size()));
 }
 
 }  // namespace
 
 void add_sign_command(CLI::App& program, ExitCode& exit_code) {
-  CLI::App* command = program.add_subcommand("sign", "measure a shape's statistical signature, or find it in the cache");
+  CLI::App* command =
+      program.add_subcommand("sign", "measure a shape's statistical signature, or find it in the cache");
   const auto arguments = std::make_shared<Arguments>();
   add_shape_arguments(*command, arguments->shape);
   add_signature_arguments(*command, arguments->signature);
   CLI::Option* out = command->add_option("-o", arguments->out, "write it to this file, too");
   CLI::Option* shard = add_share_argument(*command, arguments->share)->needs(out);
-  CLI::Option* from = command->add_option("--from-trials", arguments->from_trials, "make its tables of the measured collisions and rests in this CSV file")->excludes(shard);
-  command->add_option("--export-trials", arguments->export_trials, "measure it anew and write the trials to this CSV file")->excludes(shard)->excludes(from);
-  command->add_option("--seed", arguments->signature.settings.seed, "of every random draw of the measuring")->capture_default_str();
+  CLI::Option* from =
+      command
+          ->add_option("--from-trials", arguments->from_trials,
+                       "make its tables of the measured collisions and rests in this CSV file")
+          ->excludes(shard);
+  command
+      ->add_option("--export-trials", arguments->export_trials,
+                   "measure it anew and write the trials to this CSV file")
+      ->excludes(shard)
+      ->excludes(from);
+  command->add_option("--seed", arguments->signature.settings.seed, "of every random draw of the measuring")
+      ->capture_default_str();
   command->add_flag("--no-cache", arguments->no_cache, "measure it anew and leave the cache alone");
-  command->add_option("--threads", arguments->threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
+  command->add_option("--threads", arguments->threads, "0: all cores")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->callback([arguments, &exit_code] {
+    catch_interrupts();
     sign(*arguments);
     exit_code = ExitCode::done;
   });

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "reference/error.h"
+#include "reference/output_file.h"
 
 namespace lodestone {
 namespace {
@@ -31,15 +30,16 @@ std::string cell_of(const ordered_json& value) {
 }  // namespace
 
 void save_csv(const ordered_json& rows, const ordered_json& example, const std::filesystem::path& file) {
-  std::ofstream out(file);
+  OutputFile out(file, "room for the table");
   const auto write_line = [&](const ordered_json& row, const auto& text) {
     std::vector<std::string> cells;
     for (const auto& [key, value] : row.items()) cells.push_back(text(key, value));
-    out << fmt::format("{}\n", fmt::join(cells, ","));
+    out.write(fmt::format("{}\n", fmt::join(cells, ",")));
   };
   write_line(example, [](const std::string& key, const ordered_json&) { return key; });
-  for (const ordered_json& row : rows) write_line(row, [](const std::string&, const ordered_json& value) { return cell_of(value); });
-  if (!out.flush()) throw InputError(fmt::format("{}: found a place that cannot be written to, expected a file for the table", file.string()));
+  for (const ordered_json& row : rows)
+    write_line(row, [](const std::string&, const ordered_json& value) { return cell_of(value); });
+  out.close();
 }
 
 }  // namespace lodestone

@@ -18,7 +18,8 @@ struct Tick {
   double ratio;  // R‖ω‖/‖v‖
   std::string_view text;
 };
-constexpr std::array<Tick, 6> kTicks{{{0.0, "0"}, {0.5, "0.5"}, {1.0, "1"}, {2.0, "2"}, {5.0, "5"}, {1e300, "inf"}}};
+constexpr std::array<Tick, 6> kTicks{
+    {{0.0, "0"}, {0.5, "0.5"}, {1.0, "1"}, {2.0, "2"}, {5.0, "5"}, {1e300, "inf"}}};
 
 // Of the width.
 double place_of(const Tick& tick) { return std::atan(tick.ratio) / kQuarterTurn; }
@@ -42,11 +43,13 @@ constexpr int kColumns = 64, kRows = 15;
 std::vector<std::string> draw_rows(const CollisionHeights& heights, const Range& range) {
   std::vector<std::string> rows(kRows, std::string(kColumns, ' '));
   const auto row_of = [&](double height) {
-    return std::clamp(int(std::lround((range.high - height) / (range.high - range.low) * (kRows - 1))), 0, kRows - 1);
+    return std::clamp(int(std::lround((range.high - height) / (range.high - range.low) * (kRows - 1))), 0,
+                      kRows - 1);
   };
   for (int column = 0; column < kColumns; ++column) {
     const HeightStatistics h = find_collision_height(heights, kQuarterTurn * column / (kColumns - 1));
-    for (int row = row_of(h.mean + h.deviation); row <= row_of(h.mean - h.deviation); ++row) rows[std::size_t(row)][std::size_t(column)] = ':';
+    for (int row = row_of(h.mean + h.deviation); row <= row_of(h.mean - h.deviation); ++row)
+      rows[std::size_t(row)][std::size_t(column)] = ':';
     rows[std::size_t(row_of(h.mean))][std::size_t(column)] = '*';
   }
   return rows;
@@ -55,9 +58,12 @@ std::vector<std::string> draw_rows(const CollisionHeights& heights, const Range&
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '<') out += "&lt;";
-    else if (c == '&') out += "&amp;";
-    else out += c;
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '&')
+      out += "&amp;";
+    else
+      out += c;
   }
   return out;
 }
@@ -75,7 +81,8 @@ struct Canvas {
     const int n = int(heights.mean.size());
     for (int i = 0; i < n; ++i) {
       const auto k = std::size_t(backwards ? n - 1 - i : i);
-      points += fmt::format("{:.1f},{:.1f} ", x(n > 1 ? double(k) / (n - 1) : 0.0), y(heights.mean[k] + deviations * heights.deviation[k]));
+      points += fmt::format("{:.1f},{:.1f} ", x(n > 1 ? double(k) / (n - 1) : 0.0),
+                            y(heights.mean[k] + deviations * heights.deviation[k]));
     }
     return points;
   }
@@ -83,12 +90,16 @@ struct Canvas {
   std::string axes() const {
     std::string svg;
     for (const Tick& tick : kTicks)
-      svg += fmt::format("<line x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2}' stroke='#ddd'/><text x='{0:.1f}' y='{3}' text-anchor='middle'>{4}</text>\n",
-                         x(place_of(tick)), kTop, kTop + kHeight, kTop + kHeight + 18, tick.ratio > 1e9 ? "∞" : tick.text);
+      svg += fmt::format(
+          "<line x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2}' stroke='#ddd'/><text x='{0:.1f}' y='{3}' "
+          "text-anchor='middle'>{4}</text>\n",
+          x(place_of(tick)), kTop, kTop + kHeight, kTop + kHeight + 18, tick.ratio > 1e9 ? "∞" : tick.text);
     for (int i = 0; i <= 5; ++i) {
       const double height = range.low + (range.high - range.low) * i / 5;
-      svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}' stroke='#ddd'/><text x='{3}' y='{4:.1f}' text-anchor='end'>{5:.2f}</text>\n", kLeft,
-                         kLeft + kWidth, y(height), kLeft - 8, y(height) + 4, height);
+      svg += fmt::format(
+          "<line x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}' stroke='#ddd'/><text x='{3}' y='{4:.1f}' "
+          "text-anchor='end'>{5:.2f}</text>\n",
+          kLeft, kLeft + kWidth, y(height), kLeft - 8, y(height) + 4, height);
     }
     return svg;
   }
@@ -109,19 +120,28 @@ std::string text_plot(const CollisionHeights& heights) {
   }
   text += "       +" + std::string(kColumns, '-') + "\n";
   std::string ticks(8 + kColumns + 4, ' ');
-  for (const Tick& tick : kTicks) ticks.replace(8 + std::size_t(std::lround(place_of(tick) * (kColumns - 1))), tick.text.size(), tick.text);
+  for (const Tick& tick : kTicks)
+    ticks.replace(8 + std::size_t(std::lround(place_of(tick) * (kColumns - 1))), tick.text.size(), tick.text);
   return text + ticks.substr(0, ticks.find_last_not_of(' ') + 1) + "   R x spin / speed\n";
 }
 
 std::string svg_plot(const CollisionHeights& heights, const std::string& title) {
   const Canvas canvas{range_of(heights)};
-  std::string svg = fmt::format("<svg xmlns='http://www.w3.org/2000/svg' width='640' height='400' font-family='sans-serif' font-size='13'>\n"
-                                "<rect width='640' height='400' fill='white'/>\n<text x='{}' y='24' font-size='15'>{}</text>\n", kLeft, escaped(title));
+  std::string svg = fmt::format(
+      "<svg xmlns='http://www.w3.org/2000/svg' width='640' height='400' font-family='sans-serif' "
+      "font-size='13'>\n"
+      "<rect width='640' height='400' fill='white'/>\n<text x='{}' y='24' font-size='15'>{}</text>\n",
+      kLeft, escaped(title));
   svg += canvas.axes();
-  svg += fmt::format("<polygon points='{}{}' fill='#4477aa' fill-opacity='0.25'/>\n", canvas.curve(heights, 1.0, false), canvas.curve(heights, -1.0, true));
-  svg += fmt::format("<polyline points='{}' fill='none' stroke='#4477aa' stroke-width='2'/>\n", canvas.curve(heights, 0.0, false));
+  svg += fmt::format("<polygon points='{}{}' fill='#4477aa' fill-opacity='0.25'/>\n",
+                     canvas.curve(heights, 1.0, false), canvas.curve(heights, -1.0, true));
+  svg += fmt::format("<polyline points='{}' fill='none' stroke='#4477aa' stroke-width='2'/>\n",
+                     canvas.curve(heights, 0.0, false));
   svg += fmt::format("<text x='{}' y='385' text-anchor='middle'>R‖ω‖ / ‖v‖</text>\n", kLeft + kWidth / 2);
-  svg += fmt::format("<text transform='translate(20 {}) rotate(-90)' text-anchor='middle'>collision height / R</text>\n</svg>\n", kTop + kHeight / 2);
+  svg += fmt::format(
+      "<text transform='translate(20 {}) rotate(-90)' text-anchor='middle'>collision height / "
+      "R</text>\n</svg>\n",
+      kTop + kHeight / 2);
   return svg;
 }
 

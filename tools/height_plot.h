@@ -7,7 +7,8 @@
 
 namespace lodestone {
 
-/// For a terminal: '*' the mean, ':' a deviation to both sides, over R‖ω‖/‖v‖ from 0 to infinity (evenly in its arctangent).
+/// For a terminal: '*' the mean, ':' a deviation to both sides, over R‖ω‖/‖v‖ from 0 to infinity (evenly in
+/// its arctangent).
 std::string text_plot(const CollisionHeights& heights);
 
 /// The same as an SVG document.

@@ -16,30 +16,37 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// What the paper compares a signature with: the mesh as vertices of three floats and faces of three 32-bit indices, and seven spheres of four floats.
+// What the paper compares a signature with: the mesh as vertices of three floats and faces of three 32-bit
+// indices, and seven spheres of four floats.
 std::size_t mesh_bytes(const Signature& s) { return 12 * (std::size_t(s.mesh_vertices) + s.mesh_faces); }
 constexpr std::size_t kSevenSpheresBytes = 7 * 4 * sizeof(float);
 
 std::string text_of(const std::vector<SectionSize>& sections, std::size_t bytes) {
   TextTable table({"bytes of", "part", "bytes", "%"});
   for (const SectionSize& s : sections)
-    table.add_row({s.group, s.name, fmt::format("{}", s.bytes), fmt::format("{:.1f}", 100.0 * double(s.bytes) / double(bytes))});
+    table.add_row({s.group, s.name, fmt::format("{}", s.bytes),
+                   fmt::format("{:.1f}", 100.0 * double(s.bytes) / double(bytes))});
   return table.text();
 }
 
 std::string comparison_of(const Signature& signature, std::size_t bytes) {
   TextTable table({"compared", "bytes"});
   table.add_row({"signature", fmt::format("{}", bytes)});
-  table.add_row({fmt::format("mesh of {} vertices and {} faces", signature.mesh_vertices, signature.mesh_faces), fmt::format("{}", mesh_bytes(signature))});
+  table.add_row(
+      {fmt::format("mesh of {} vertices and {} faces", signature.mesh_vertices, signature.mesh_faces),
+       fmt::format("{}", mesh_bytes(signature))});
   table.add_row({"seven spheres", fmt::format("{}", kSevenSpheresBytes)});
   return table.text();
 }
 
 ordered_json json_of(const CollisionHeights& heights) {
-  ordered_json json{{"spin_over_speed", ordered_json::array()}, {"mean", ordered_json::array()}, {"deviation", ordered_json::array()}};
+  ordered_json json{{"spin_over_speed", ordered_json::array()},
+                    {"mean", ordered_json::array()},
+                    {"deviation", ordered_json::array()}};
   for (std::size_t i = 0; i < heights.mean.size(); ++i) {
     const bool last = i + 1 == heights.mean.size();  // at infinity, which JSON does not know
-    const double alpha = heights.mean.size() > 1 ? std::numbers::pi / 2 * double(i) / double(heights.mean.size() - 1) : 0.0;
+    const double alpha =
+        heights.mean.size() > 1 ? std::numbers::pi / 2 * double(i) / double(heights.mean.size() - 1) : 0.0;
     json["spin_over_speed"].push_back(last ? ordered_json(nullptr) : ordered_json(std::tan(alpha)));
     json["mean"].push_back(heights.mean[i]);
     json["deviation"].push_back(heights.deviation[i]);
@@ -49,7 +56,8 @@ ordered_json json_of(const CollisionHeights& heights) {
 
 ordered_json json_of(const std::vector<SectionSize>& sections) {
   ordered_json json = ordered_json::array();
-  for (const SectionSize& s : sections) json.push_back({{"group", s.group}, {"part", s.name}, {"bytes", s.bytes}});
+  for (const SectionSize& s : sections)
+    json.push_back({{"group", s.group}, {"part", s.name}, {"bytes", s.bytes}});
   return json;
 }
 
@@ -69,7 +77,9 @@ ordered_json full_json_of(const Signature& signature, std::size_t bytes) {
   json["collision_heights"] = json_of(signature.collision_heights);
   json["clip_frames"] = signature.clip_frames.size();
   json["sections"] = json_of(list_section_sizes(signature));
-  json["mesh"] = {{"vertices", signature.mesh_vertices}, {"faces", signature.mesh_faces}, {"bytes", mesh_bytes(signature)}};
+  json["mesh"] = {{"vertices", signature.mesh_vertices},
+                  {"faces", signature.mesh_faces},
+                  {"bytes", mesh_bytes(signature)}};
   json["seven_spheres_bytes"] = kSevenSpheresBytes;
   return json;
 }

@@ -1,4 +1,5 @@
-// All that a signature's file says, on a page for people and as JSON for programs: the report of signature_report.h, with what the file is made of.
+// All that a signature's file says, on a page for people and as JSON for programs: the report of
+// signature_report.h, with what the file is made of.
 #pragma once
 
 #include <nlohmann/json.hpp>

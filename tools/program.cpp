@@ -1,43 +1,124 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
 #include <iostream>
+#include <new>
+#include <system_error>
 
-#include "reference/error.h"
+#include "reference/argument_error.h"
+#include "reference/output_file.h"
+#include "reference/simulation_error.h"
+#include "tools/argument_checks.h"
 #include "tools/commands.h"
+#include "tools/interrupt.h"
+#include "tools/printable.h"
+#include "tools/results.h"
 
 namespace lodestone {
 namespace {
 
 constexpr const char* kExitCodes =
     "Results go to stdout, progress and errors to stderr.\n"
-    "Exit codes: 0 done, 1 a check failed, 2 usage, 3 bad input, 4 the simulation diverged.";
+    "Exit codes: 0 done, 1 a check failed, 2 usage (the command line is wrong), 3 bad input (a shape or file "
+    "cannot be used, or not\n"
+    "written), 4 the simulation diverged, 130 interrupted, 143 terminated.";
 
-// CLI11 prints help to stdout and errors to stderr; its own exit codes are not ours.
+void complain(std::string_view message) { fmt::print(stderr, "lodestone: {}\n", printable(message)); }
+
+// CLI11's own exit codes are not ours.
 ExitCode explain(const CLI::App& program, const CLI::ParseError& error) {
-  const bool asked_for = program.exit(error, std::cout, std::cerr) == 0;
-  return asked_for ? ExitCode::done : ExitCode::usage;
+  if (error.get_exit_code() == 0) {  // help was asked for
+    program.exit(error, std::cout, std::cerr);
+    return ExitCode::done;
+  }
+  complain(error.what());
+  fmt::print(stderr, "Run with --help for more information.\n");
+  return ExitCode::usage;
+}
+
+// "Permission denied" within a sentence.
+std::string words_for(const std::error_code& error) {
+  std::string words = error.message();
+  if (!words.empty()) words[0] = char(std::tolower(static_cast<unsigned char>(words[0])));
+  return words;
+}
+
+// Names the place that `error` does not name first, as the messages of ours do.
+std::string text_of(const std::filesystem::filesystem_error& error) {
+  return fmt::format("{}: found {}, expected a file that can be used", error.path1().string(),
+                     words_for(error.code()));
+}
+
+bool wants_json(const CLI::App& command) {
+  const CLI::Option* json = command.get_option_no_throw("--json");
+  const auto chosen = command.get_subcommands();
+  return (json && json->count() > 0) ||
+         std::ranges::any_of(chosen, [](const CLI::App* inner) { return wants_json(*inner); });
+}
+
+void parse(CLI::App& program, int argc, char** argv, ExitCode& exit_code) {
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_code = explain(program, error);
+  } catch (const Interrupted&) {  // before there was any part of a result
+    if (wants_json(program)) print_json(nlohmann::ordered_json::object());
+  }
+  if (!is_interrupted()) return;
+  if (!wants_json(program)) fmt::print("INCOMPLETE: {}\n", Interrupted().what());
+  complain(Interrupted().what());
+}
+
+// What came to standard output must have got there: a full disk shows when the last of it is written.
+void check_standard_output() {
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout)
+    throw_file_error("standard output", errno != 0 ? errno : EIO, "room for the results");
 }
 
 }  // namespace
 
 ExitCode run_lodestone(int argc, char** argv) {
-  CLI::App program("Simulation level of detail for rigid bodies, on ODE", "lodestone");
-  program.require_subcommand(1);
-  program.footer(kExitCodes);
   ExitCode exit_code = ExitCode::done;
-  for (const auto add : {add_run_command, add_view_command, add_replay_command, add_compare_command, add_sign_command, add_merge_command, add_inspect_command, add_demo_command, add_bench_command,
-                         add_report_command})
-    add(program, exit_code);
   try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return explain(program, error);
-  } catch (const InputError& error) {
-    fmt::print(stderr, "lodestone: {}\n", error.what());
+    CLI::App program("Simulation level of detail for rigid bodies, on ODE", "lodestone");
+    program.require_subcommand(1);
+    program.footer(kExitCodes);
+    for (const auto add :
+         {add_run_command, add_view_command, add_replay_command, add_compare_command, add_sign_command,
+          add_merge_command, add_inspect_command, add_demo_command, add_bench_command, add_report_command})
+      add(program, exit_code);
+    check_numbers(program);
+    parse(program, argc, argv, exit_code);
+    check_standard_output();
+  } catch (const ArgumentError& error) {
+    complain(error.what());
+    return ExitCode::usage;
+  } catch (const std::filesystem::filesystem_error& error) {
+    complain(text_of(error));
+    return ExitCode::bad_input;
+  } catch (const std::system_error& error) {
+    complain(std::ferror(stdout) ? fmt::format("standard output: found {}, expected room for the results",
+                                               words_for(error.code()))
+                                 : error.what());
+    return ExitCode::bad_input;
+  } catch (const std::bad_alloc&) {
+    complain("memory: found less than this needs, expected a smaller scene, shape or number of trials");
+    return ExitCode::bad_input;
+  } catch (const SimulationError& error) {
+    complain(error.what());
+    return ExitCode::diverged;
+  } catch (const std::exception& error) {  // InputError, and what the standard library throws of itself
+    complain(error.what());
     return ExitCode::bad_input;
   }
-  return exit_code;
+  return is_interrupted() ? interrupted_exit_code() : exit_code;
 }
 
 }  // namespace lodestone

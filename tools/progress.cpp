@@ -8,6 +8,9 @@
 #include <chrono>
 #include <cstdio>
 
+#include "tools/interrupt.h"
+#include "tools/printable.h"
+
 namespace lodestone {
 namespace {
 
@@ -22,7 +25,8 @@ double monotonic_seconds() {
 std::string text_of_time_left(double fraction, double elapsed_s) {
   if (fraction <= 0.0 || fraction > 1.0 || elapsed_s < 1.0) return "";
   const double left_s = elapsed_s * (1.0 - fraction) / fraction;
-  return left_s < 90.0 ? fmt::format(", {:.0f} s left,", left_s) : fmt::format(", {:.0f} min left,", left_s / 60.0);
+  return left_s < 90.0 ? fmt::format(", {:.0f} s left,", left_s)
+                       : fmt::format(", {:.0f} min left,", left_s / 60.0);
 }
 
 std::size_t terminal_columns() {
@@ -48,13 +52,18 @@ void ProgressLine::show(const std::string& stage, double fraction) {
   next_s_ = now_s + kLeastPause;
   shown_ = true;
   const int filled = int(std::clamp(fraction, 0.0, 1.0) * kBarCells);
-  const std::string line = fmt::format("[{:=<{}}{: <{}}] {:3.0f} %{} {}", "", filled, "", kBarCells - filled, 100 * fraction, text_of_time_left(fraction, now_s - start_s_), stage);
+  const std::string line =
+      fmt::format("[{:=<{}}{: <{}}] {:3.0f} %{} {}", "", filled, "", kBarCells - filled, 100 * fraction,
+                  text_of_time_left(fraction, now_s - start_s_), printable(stage));
   fmt::print(stderr, "\r\x1b[K{}", line.substr(0, terminal_columns() - 1));
   std::fflush(stderr);
 }
 
 Progress ProgressLine::function() {
-  return [this](const std::string& stage, double fraction) { show(stage, fraction); };
+  return [this](const std::string& stage, double fraction) {
+    show(stage, fraction);
+    throw_if_interrupted();
+  };
 }
 
 }  // namespace lodestone

@@ -1,8 +1,8 @@
 #include "tools/run_arguments.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -14,50 +14,87 @@
 namespace lodestone {
 namespace {
 
-const std::map<std::string, LevelChoice> kLevels = {
-    {"auto", LevelChoice::automatic}, {"full", LevelChoice::full}, {"statistical", LevelChoice::statistical}, {"support", LevelChoice::support},
-    {"tables", LevelChoice::tables}};
-const std::map<std::string, StatisticalModel> kModels = {{"tables", StatisticalModel::tables}, {"support", StatisticalModel::support}};
+const std::map<std::string, LevelChoice> kLevels = {{"auto", LevelChoice::automatic},
+                                                    {"full", LevelChoice::full},
+                                                    {"statistical", LevelChoice::statistical},
+                                                    {"support", LevelChoice::support},
+                                                    {"tables", LevelChoice::tables}};
+const std::map<std::string, StatisticalModel> kModels = {{"tables", StatisticalModel::tables},
+                                                         {"support", StatisticalModel::support}};
 
 /// What is wrong with `text` as a budget; empty where nothing is.
 std::string find_budget_fault(const std::string& text) {
   double budget = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), budget);
   const bool is_number = error == std::errc() && end == text.data() + text.size();
-  return is_number && budget > 0.0 && std::isfinite(budget) ? "" : fmt::format("found '{}', expected a number above 0", text);
+  return is_number && budget > 0.0 && std::isfinite(budget)
+             ? ""
+             : fmt::format("found '{}', expected a number above 0", text);
 }
 
-int threads_of(int asked) { return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency())); }
+int threads_of(int asked) {
+  return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
+}
 
 }  // namespace
 
 void add_run_arguments(CLI::App& command, RunArguments& arguments) {
   RunSettings& running = arguments.running;
   command.add_option("--steps", running.steps, "instead of the scene's")->check(CLI::Range(1, 100'000'000));
-  command.add_option("--dt", arguments.step, "step, s: 0.01 or 1/60, instead of the scene's")->check(find_step_fault, "SECONDS");
+  command.add_option("--dt", arguments.step, "step, s: 0.01 or 1/60, instead of the scene's")
+      ->check(find_step_fault, "SECONDS");
   command.add_option("--seed", arguments.loading.seed, "instead of the scene's, for scatters too");
-  command.add_option("--threads", running.threads, "of the statistical level; 0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
+  command.add_option("--threads", running.threads, "of the statistical level; 0: all cores")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
   command
-      .add_option_function<std::string>("--level", [&](const std::string& name) { running.level = kLevels.at(name); },
-                                        "auto: the scene's policy; statistical: it says which of support and tables; else one rung for every body")
+      .add_option_function<std::string>(
+          "--level", [&](const std::string& name) { running.level = kLevels.at(name); },
+          "auto: the scene's policy; statistical: it says which of support and tables; else one rung for "
+          "every body")
       ->check(CLI::IsMember({"auto", "full", "support", "tables", "statistical"}));
   command
-      .add_option_function<std::string>("--model", [&](const std::string& name) { running.model = kModels.at(name); },
-                                        "of all statistical bodies, whatever the policy says")
+      .add_option_function<std::string>(
+          "--model", [&](const std::string& name) { running.model = kModels.at(name); },
+          "of all statistical bodies, whatever the policy says")
       ->check(CLI::IsMember({"tables", "support"}));
-  CLI::Option* ms = command.add_option("--budget-ms", running.budget_ms, "processor time of a step, instead of the scene's policy")->check(find_budget_fault, "MS");
-  CLI::Option* work = command.add_option("--budget-work", running.budget_work, "the same in work units, which repeat exactly")->check(find_budget_fault, "UNITS")->excludes(ms);
-  command.add_option("--full-within-m", running.full_within_m, "policy distance with this, instead of the scene's policy")->check(CLI::NonNegativeNumber)->excludes(ms)->excludes(work);
-  command.add_option("--audit-ms", running.audit_ms, "processor time of each step for simulating demoted bodies on in full, beside the world")->check(CLI::Range(0.0, 1e6));
-  command.add_option("--mesh-path", arguments.loading.mesh_paths, "folders in which mesh files are looked up")->delimiter(':')->allow_extra_args(false);
+  CLI::Option* ms = command
+                        .add_option("--budget-ms", running.budget_ms,
+                                    "processor time of a step, instead of the scene's policy")
+                        ->check(find_budget_fault, "MS");
+  CLI::Option* work =
+      command
+          .add_option("--budget-work", running.budget_work, "the same in work units, which repeat exactly")
+          ->check(find_budget_fault, "UNITS")
+          ->excludes(ms);
+  command
+      .add_option("--full-within-m", running.full_within_m,
+                  "policy distance with this, instead of the scene's policy")
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(ms)
+      ->excludes(work);
+  command
+      .add_option("--audit-ms", running.audit_ms,
+                  "processor time of each step for simulating demoted bodies on in full, beside the world")
+      ->check(CLI::Range(0.0, 1e6));
+  command
+      .add_option("--mesh-path", arguments.loading.mesh_paths, "folders in which mesh files are looked up")
+      ->delimiter(':')
+      ->allow_extra_args(false);
+  command.add_flag(
+      "--untrusted", arguments.loading.untrusted,
+      "read mesh files, which may come from strangers, in a child process with limits of memory and time");
+  command.add_flag("--no-cache", arguments.no_cache, "measure the signatures anew and leave the cache alone");
 }
 
 RunSettings run_settings(const RunArguments& arguments, ProgressLine& line) {
   RunSettings settings = arguments.running;
   settings.threads = threads_of(arguments.running.threads);
   if (!arguments.step.empty()) settings.dt_s = step_of(arguments.step);
-  settings.progress = [&line](const RunProgress& run) { line.show(text_of(run), double(run.step) / run.steps); };
-  settings.signatures = make_signature_function(line);
+  settings.progress = [&line](const RunProgress& run) {
+    line.show(text_of(run), double(run.step) / run.steps);
+  };
+  settings.signatures = make_signature_function(line, !arguments.no_cache);
   return settings;
 }
 

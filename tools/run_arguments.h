@@ -19,12 +19,15 @@ struct RunArguments {
   SceneLoadSettings loading;
   RunSettings running;
   std::string step;  ///< empty: the scene's
+  bool no_cache = false;
 };
 
-/// Adds --steps, --dt, --seed, --threads, --level, --model, --budget-ms, --budget-work, --mesh-path to `command`. `arguments` outlives the parsing.
+/// Adds --steps, --dt, --seed, --threads, --level, --model, --budget-ms, --budget-work, --mesh-path,
+/// --no-cache to `command`. `arguments` outlives the parsing.
 void add_run_arguments(CLI::App& command, RunArguments& arguments);
 
-/// The settings that the arguments ask for, with progress and the measuring of signatures shown on `line`, which outlives the run.
+/// The settings that the arguments ask for, with progress and the measuring of signatures shown on `line`,
+/// which outlives the run.
 RunSettings run_settings(const RunArguments& arguments, ProgressLine& line);
 
 }  // namespace lodestone

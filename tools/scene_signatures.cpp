@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "signature/signature_source.h"
+#include "tools/interrupt.h"
+#include "tools/warning.h"
 
 namespace lodestone {
 namespace {
@@ -15,10 +17,14 @@ namespace {
 using SignatureKey = std::tuple<std::uint64_t, double, double>;  // shape, restitution, friction
 using Memory = std::map<SignatureKey, std::shared_ptr<const Signature>>;
 
-std::shared_ptr<const Signature> find_or_measure(const Shape& shape, const ContactLaw& law, ProgressLine& line) {
+std::shared_ptr<const Signature> find_or_measure(const Shape& shape, const ContactLaw& law,
+                                                 ProgressLine& line, bool use_cache) {
   SignatureSourceSettings source;
+  source.use_cache = use_cache;
+  source.warn = warn;
   source.progress = [&](const std::string& stage, double fraction) {
     line.show(fmt::format("signature of {}: {}", shape.name, stage), fraction);
+    throw_if_interrupted();
   };
   return find_or_measure_signature(shape, law, source).signature;
 }
@@ -28,40 +34,32 @@ bool stays_full(const BodyDefinition& body, const RunSettings& settings) {
   return level == LevelChoice::full;
 }
 
-// The first plane only: what a signature is measured for.
-void add_first_plane(Manager& manager, const Scene& scene) {
+// Of what a signature is measured on: the first plane, as the manager has it.
+MaterialId ground_material(const Scene& scene) {
   for (const SceneGround& ground : scene.ground)
-    if (const auto* plane = std::get_if<GroundPlane>(&ground)) {
-      manager.add_plane(plane->normal, plane->offset_m, plane->material);
-      return;
-    }
+    if (const auto* plane = std::get_if<GroundPlane>(&ground)) return plane->material;
+  return 0;
 }
 
 }  // namespace
 
-SignatureFunction make_signature_function(ProgressLine& line) {
-  return [&line, memory = std::make_shared<Memory>()](const Shape& shape, const ContactLaw& law) {
+SignatureFunction make_signature_function(ProgressLine& line, bool use_cache) {
+  return [&line, use_cache, memory = std::make_shared<Memory>()](const Shape& shape, const ContactLaw& law) {
     auto& known = (*memory)[{shape.content_hash, law.restitution, law.friction}];
-    if (!known) known = find_or_measure(shape, law, line);
+    if (!known) known = find_or_measure(shape, law, line, use_cache);
     return known;
   };
 }
 
 void fetch_signatures(const Scene& scene, const RunSettings& settings) {
+  if (!settings.signatures) return;  // the manager finds its own, in the background
+  const MaterialId ground = ground_material(scene);
   std::set<std::pair<std::uint64_t, MaterialId>> seen;
   for (const SceneBody& body : scene.bodies) {
-    if (stays_full(body.definition, settings)) continue;
-    if (!seen.emplace(body.definition.shape->content_hash, body.definition.material).second) continue;
-    ManagerSettings alone;
-    alone.signatures = settings.signatures;
-    alone.model = settings.model ? settings.model : scene.model;
-    Manager manager(alone);
-    manager.materials() = scene.materials;
-    add_first_plane(manager, scene);
-    BodyDefinition definition = body.definition;
-    definition.level = LevelChoice::statistical;
-    manager.add_body(definition);
-    manager.step(1e-3);
+    const BodyDefinition& definition = body.definition;
+    if (stays_full(definition, settings)) continue;
+    if (seen.emplace(definition.shape->content_hash, definition.material).second)
+      settings.signatures(*definition.shape, scene.materials.law(definition.material, ground));
   }
 }
 

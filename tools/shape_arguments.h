@@ -23,10 +23,12 @@ struct ShapeArguments {
 /// Adds --restitution, --friction and --density to `command`. `material` outlives the parsing.
 void add_material_arguments(CLI::App& command, Material& material);
 
-/// Adds SHAPE, --size, --faces, --mesh-path and those of the material to `command`. `arguments` outlives the parsing.
+/// Adds SHAPE, --size, --faces, --mesh-path and those of the material to `command`. `arguments` outlives the
+/// parsing.
 void add_shape_arguments(CLI::App& command, ShapeArguments& arguments);
 
-/// Throws InputError for a shape that does not exist.
-std::shared_ptr<const Shape> make_shape_from_arguments(const ShapeArguments& arguments);
+/// Throws InputError for a shape that does not exist. `report`: what was mended of a mesh, where one is read.
+std::shared_ptr<const Shape> make_shape_from_arguments(const ShapeArguments& arguments,
+                                                       MeshReport* report = nullptr);
 
 }  // namespace lodestone

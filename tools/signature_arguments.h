@@ -14,11 +14,13 @@ namespace lodestone {
 struct SignatureArguments {
   SignatureSettings settings;
   std::optional<TrialEnd> trial_end;
-  /// The settings; trials on the paper's grid end after the first impulse, as the paper's do, unless it was said otherwise.
+  /// The settings; trials on the paper's grid end after the first impulse, as the paper's do, unless it was
+  /// said otherwise.
   SignatureSettings measuring() const;
 };
 
-/// Adds --paper-grid, --trial-end, --psi, --draw, --table-error, --cell-trials, --height-trials, --settling-trials and --clips to `command`. `arguments` outlives the parsing.
+/// Adds --paper-grid, --trial-end, --psi, --draw, --table-error, --cell-trials, --height-trials,
+/// --settling-trials and --clips to `command`. `arguments` outlives the parsing.
 void add_signature_arguments(CLI::App& command, SignatureArguments& arguments);
 
 }  // namespace lodestone

@@ -11,7 +11,8 @@ namespace lodestone {
 bool stdout_has_styles() {
   static const bool has_styles = [] {
     const char *no_color = std::getenv("NO_COLOR"), *terminal = std::getenv("TERM");
-    return isatty(STDOUT_FILENO) == 1 && (!no_color || !*no_color) && terminal && std::string_view(terminal) != "dumb";
+    return isatty(STDOUT_FILENO) == 1 && (!no_color || !*no_color) && terminal &&
+           std::string_view(terminal) != "dumb";
   }();
   return has_styles;
 }

@@ -8,7 +8,8 @@ namespace lodestone {
 
 enum class Style { heading, good, bad };
 
-/// Whether stdout is a terminal that shows styles: not in a pipe, and not where NO_COLOR is set (no-color.org) or TERM is "dumb".
+/// Whether stdout is a terminal that shows styles: not in a pipe, and not where NO_COLOR is set
+/// (no-color.org) or TERM is "dumb".
 bool stdout_has_styles();
 
 /// `text` in that style, with the terminal's codes around it; `text` itself where there are no styles.

@@ -31,7 +31,8 @@ std::string TextTable::text() const {
   for (const auto& row : rows_) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i)
-      line += is_numeric(i) ? fmt::format("{:>{}}  ", row[i], widths[i]) : fmt::format("{:<{}}  ", row[i], widths[i]);
+      line += is_numeric(i) ? fmt::format("{:>{}}  ", row[i], widths[i])
+                            : fmt::format("{:<{}}  ", row[i], widths[i]);
     line.erase(line.find_last_not_of(' ') + 1);
     text += (&row == &rows_.front() ? styled(line, Style::heading) : line) + '\n';
     if (&row == &rows_.front()) {

@@ -6,7 +6,8 @@
 
 namespace lodestone {
 
-/// Rows of cells; the first row is the heading. Columns of numbers are aligned on the right, others on the left.
+/// Rows of cells; the first row is the heading. Columns of numbers are aligned on the right, others on the
+/// left.
 class TextTable {
  public:
   explicit TextTable(std::vector<std::string> heading) : rows_{std::move(heading)} {}

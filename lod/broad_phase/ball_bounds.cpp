@@ -22,8 +22,11 @@ struct LaneBounds {
   }
   void give_to(BallBounds& bounds) const {
     for (std::size_t l = 0; l < std::size_t(kLanes); ++l) {
-      for (std::size_t a = 0; a < 3; ++a) bounds.low[a] = std::min(bounds.low[a], low[a][l]), bounds.high[a] = std::max(bounds.high[a], high[a][l]);
-      bounds.least_reach = std::min(bounds.least_reach, least[l]), bounds.most_reach = std::max(bounds.most_reach, most[l]);
+      for (std::size_t a = 0; a < 3; ++a)
+        bounds.low[a] = std::min(bounds.low[a], low[a][l]),
+        bounds.high[a] = std::max(bounds.high[a], high[a][l]);
+      bounds.least_reach = std::min(bounds.least_reach, least[l]),
+      bounds.most_reach = std::max(bounds.most_reach, most[l]);
     }
   }
 };
@@ -52,7 +55,8 @@ struct BoundsLoop {
       }
       for (std::size_t a = 0; a < 3; ++a)
         for (std::int64_t l = 0; l < kLanes; ++l) {
-          const double at = centers[a][i + l], low = OnlyWithin ? select(within[l], at, kFar) : at, high = OnlyWithin ? select(within[l], at, -kFar) : at;
+          const double at = centers[a][i + l], low = OnlyWithin ? select(within[l], at, kFar) : at,
+                       high = OnlyWithin ? select(within[l], at, -kFar) : at;
           found.low[a][l] = low < found.low[a][l] ? low : found.low[a][l];
           found.high[a][l] = high > found.high[a][l] ? high : found.high[a][l];
         }
@@ -85,7 +89,8 @@ BallBounds find_ball_bounds(const BallSpan& balls, Simd simd, std::int64_t begin
   return bounds;
 }
 
-BallBounds find_bounds_within(const BallSpan& balls, float least, float most, std::uint8_t mark, std::uint8_t* marks, Simd simd, std::int64_t begin, std::int64_t end) {
+BallBounds find_bounds_within(const BallSpan& balls, float least, float most, std::uint8_t mark,
+                              std::uint8_t* marks, Simd simd, std::int64_t begin, std::int64_t end) {
   BallBounds bounds;
   run_wide(simd, BoundsLoop<true>{balls, least, most, mark, marks, bounds}, begin, end);
   return bounds;

@@ -8,13 +8,14 @@
 namespace lodestone {
 namespace {
 
-constexpr int kBaseLevel = 16;         // of 32, each with an edge four times that of the one below
+constexpr int kBaseLevel = 16;  // of 32, each with an edge four times that of the one below
 constexpr double kLevelFactor = 4.0;
-constexpr double kFitting = 0.995;     // of all balls are at the base level or below
-constexpr double kColumnMost = 4.0;    // balls in a column of cells, up to which a layer is thin
-constexpr double kCellsMost = 2.0;     // for each ball
-constexpr std::int32_t kWrapLeast = 4; // cells: with fewer, a cell would be its neighbour's neighbour
-constexpr double kStrayFactor = 16.0;  // an axis is so many times as long as all but a few balls need: those have strayed
+constexpr double kFitting = 0.995;      // of all balls are at the base level or below
+constexpr double kColumnMost = 4.0;     // balls in a column of cells, up to which a layer is thin
+constexpr double kCellsMost = 2.0;      // for each ball
+constexpr std::int32_t kWrapLeast = 4;  // cells: with fewer, a cell would be its neighbour's neighbour
+constexpr double kStrayFactor =
+    16.0;  // an axis is so many times as long as all but a few balls need: those have strayed
 constexpr double kRounding = 4e-7;     // of a position kept as a float, over how far from the origin
 constexpr std::size_t kSample = 1000;  // balls that tell where most are
 constexpr std::int64_t kOneCell = 24;  // balls: so few are tested each with each
@@ -24,7 +25,8 @@ constexpr std::int64_t kBlock = 8192;  // balls of a job
 template <class Task>
 void each_block(const BallSpan& balls, const JobRunner& jobs, const Task& task) {
   const auto count = std::int64_t(balls.x.size());
-  jobs((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+  jobs((count + kBlock - 1) / kBlock,
+       TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
 }
 
 }  // namespace
@@ -40,12 +42,14 @@ int CellGrid::level_of(float reach) const {
 // An edge that most balls fit in, from a histogram of reaches with eight bins in an octave.
 void CellGrid::choose_edges(const BallSpan& balls, const JobRunner& jobs) {
   constexpr int kBins = 256, kFirstBin = (127 - 20) * 8;
-  constexpr std::size_t kSets = 4;  // of bins, taken in turn: most reaches fall into one, and would wait for each other there
+  constexpr std::size_t kSets =
+      4;  // of bins, taken in turn: most reaches fall into one, and would wait for each other there
   std::array<std::atomic<std::uint32_t>, kBins> bins{};
   each_block(balls, jobs, [&](std::int64_t begin, std::int64_t end) {
     std::array<std::array<std::uint32_t, kBins>, kSets> own{};
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i)
-      ++own[i % kSets][std::size_t(std::clamp(int(std::bit_cast<std::uint32_t>(balls.reach[i]) >> 20) - kFirstBin, 0, kBins - 1))];
+      ++own[i % kSets][std::size_t(
+          std::clamp(int(std::bit_cast<std::uint32_t>(balls.reach[i]) >> 20) - kFirstBin, 0, kBins - 1))];
     for (std::size_t bin = 0; bin < kBins; ++bin)
       if (const std::uint32_t sum = own[0][bin] + own[1][bin] + own[2][bin] + own[3][bin]) bins[bin] += sum;
   });
@@ -58,7 +62,9 @@ void CellGrid::choose_edges(const BallSpan& balls, const JobRunner& jobs) {
 
 BallBounds CellGrid::find_bounds(const BallSpan& balls, const JobRunner& jobs) {
   bounds_.assign(balls.x.size() / kBlock + 1, {});
-  each_block(balls, jobs, [&](std::int64_t begin, std::int64_t end) { bounds_[std::size_t(begin / kBlock)] = find_ball_bounds(balls, simd_, begin, end); });
+  each_block(balls, jobs, [&](std::int64_t begin, std::int64_t end) {
+    bounds_[std::size_t(begin / kBlock)] = find_ball_bounds(balls, simd_, begin, end);
+  });
   BallBounds all;
   for (const BallBounds& bounds : bounds_) all.add(bounds);
   return all;
@@ -79,8 +85,10 @@ void CellGrid::fill(const BallSpan& balls, const JobRunner& jobs, int shares, co
   if (!one_size) choose_edges(balls, jobs);
   others_.clear();
   usual_ = 0;
-  if (one_size || level_of(all.most_reach) == level_of(all.least_reach)) lay_out(all, one_cell ? -1 : kBaseLevel);
-  else lay_out_levels(balls, jobs);
+  if (one_size || level_of(all.most_reach) == level_of(all.least_reach))
+    lay_out(all, one_cell ? -1 : kBaseLevel);
+  else
+    lay_out_levels(balls, jobs);
   sort(balls, jobs, shares);
   make_parts();
 }
@@ -101,12 +109,14 @@ void CellGrid::lay_out_levels(const BallSpan& balls, const JobRunner& jobs) {
   const auto [least, most] = base_reaches();
   constexpr std::uint8_t kOther = 0;
   each_block(balls, jobs, [&, least = least, most = most](std::int64_t begin, std::int64_t end) {
-    bounds_[std::size_t(begin / kBlock)] = find_bounds_within(balls, least, most, kBaseLevel, level_.data(), simd_, begin, end);
+    bounds_[std::size_t(begin / kBlock)] =
+        find_bounds_within(balls, least, most, kBaseLevel, level_.data(), simd_, begin, end);
   });
   std::array<BallBounds, 32> bounds;
   for (const BallBounds& block : bounds_) bounds[kBaseLevel].add(block);
   std::uint8_t *at = level_.data(), *const last = at + count;
-  for (; at < last && (at = static_cast<std::uint8_t*>(std::memchr(at, kOther, std::size_t(last - at)))); ++at) {
+  for (; at < last && (at = static_cast<std::uint8_t*>(std::memchr(at, kOther, std::size_t(last - at))));
+       ++at) {
     const auto i = std::size_t(at - level_.data());
     others_.push_back(std::uint32_t(i));
     *at = std::uint8_t(level_of(balls.reach[i]));
@@ -133,7 +143,9 @@ CellGrid::Range CellGrid::find_usual_range(int level) const {
     for (std::size_t i = 0; i < count; i += stride)
       if (!many || level_[i] == level) sample[size++] = centers[a][i];
     if (size == 0) break;
-    const auto low = sample.begin() + std::ptrdiff_t(size / 50), high = sample.begin() + std::ptrdiff_t(size - 1 - size / 50), end = sample.begin() + std::ptrdiff_t(size);
+    const auto low = sample.begin() + std::ptrdiff_t(size / 50),
+               high = sample.begin() + std::ptrdiff_t(size - 1 - size / 50),
+               end = sample.begin() + std::ptrdiff_t(size);
     std::nth_element(sample.begin(), low, end);
     range.low[a] = *low;
     std::nth_element(low, high, end);
@@ -148,7 +160,9 @@ void CellGrid::lay_out(const BallBounds& bounds, int level) {
   std::array<double, 3> low = bounds.low, high = bounds.high;
   const auto count = double(bounds.count);
   grid.most_reach = double(bounds.most_reach);
-  grid.edge = level < 0 ? 1.0 : std::max(base_edge_ * std::pow(kLevelFactor, level - kBaseLevel), 2.0 * grid.most_reach);
+  grid.edge = level < 0
+                  ? 1.0
+                  : std::max(base_edge_ * std::pow(kLevelFactor, level - kBaseLevel), 2.0 * grid.most_reach);
   grid.inverse = 1.0 / grid.edge;
   std::array<double, 3> cells;
   for (int a = 0; a < 3; ++a) cells[a] = std::floor((high[a] - low[a]) * grid.inverse * (1.0 + 1e-12)) + 1.0;
@@ -175,18 +189,22 @@ void CellGrid::lay_out(const BallBounds& bounds, int level) {
   while (along[0] * along[1] * along[2] > limit) {
     const int longest = int(std::ranges::max_element(along) - along.begin());
     if (along[longest] < 2.0 * kWrapLeast) break;
-    along[longest] = std::max(double(kWrapLeast), std::ceil(std::min(along[longest] / 2.0, std::max(along[longest] / 4.0, 4.0 * limit))));
+    along[longest] =
+        std::max(double(kWrapLeast),
+                 std::ceil(std::min(along[longest] / 2.0, std::max(along[longest] / 4.0, 4.0 * limit))));
     grid.wraps[longest] = true;
   }
   double length = 0.0;
   for (int a = 0; a < 3; ++a) {
     grid.cells[a] = std::int32_t(along[a]);
     grid.origin[a] = low[grid.axis[a]];
-    length = std::max(length, along[a] == 1.0 ? high[grid.axis[a]] - low[grid.axis[a]] : along[a] * grid.edge);
+    length =
+        std::max(length, along[a] == 1.0 ? high[grid.axis[a]] - low[grid.axis[a]] : along[a] * grid.edge);
   }
   grid.fuzz = float(kRounding * (length + grid.edge));
   grid.first_cell = grids_.empty() ? 0 : grids_.back().end_cell;
-  grid.end_cell = grid.first_cell + std::uint32_t(grid.cells[0]) * std::uint32_t(grid.cells[1]) * std::uint32_t(grid.cells[2]);
+  grid.end_cell = grid.first_cell +
+                  std::uint32_t(grid.cells[0]) * std::uint32_t(grid.cells[1]) * std::uint32_t(grid.cells[2]);
   grids_.push_back(grid);
 }
 
@@ -197,7 +215,8 @@ void CellGrid::make_parts() {
     const std::size_t first_part = parts_.size();
     std::int32_t first_row = 0;
     for (std::int32_t row = 1; row <= grid.cells[2]; ++row) {
-      const std::int64_t balls = start_[grid.first_cell + std::uint32_t(row) * slice] - start_[grid.first_cell + std::uint32_t(first_row) * slice];
+      const std::int64_t balls = start_[grid.first_cell + std::uint32_t(row) * slice] -
+                                 start_[grid.first_cell + std::uint32_t(first_row) * slice];
       if (balls < kPartBalls && row < grid.cells[2]) continue;
       parts_.push_back({std::int32_t(g), first_row, row, std::int32_t(parts_.size() - first_part) % 2});
       first_row = row;
@@ -211,7 +230,8 @@ void CellGrid::make_parts() {
 
 std::int64_t CellGrid::used_cells() const {
   std::int64_t used = 0;
-  for (std::int64_t cell = 0; cell < cells(); ++cell) used += start_[std::size_t(cell)] < start_[std::size_t(cell) + 1];
+  for (std::int64_t cell = 0; cell < cells(); ++cell)
+    used += start_[std::size_t(cell)] < start_[std::size_t(cell) + 1];
   return used;
 }
 

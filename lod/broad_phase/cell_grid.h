@@ -1,7 +1,8 @@
-// Which of many moving balls are near each other: cells filled by one counting sort, balls of a cell together in memory, rows of cells one after
-// the other (Teschner et al., Optimized spatial hashing, 2003; Green, Particle simulation using CUDA, 2010). A thin layer has one cell across. Where balls are
-// few in much space, cells that lie a multiple of the grid's length apart share a place, and distance tells their balls apart. Balls of other sizes have grids of
-// their own, each edge four times the one before.
+// Which of many moving balls are near each other: cells filled by one counting sort, balls of a cell together
+// in memory, rows of cells one after the other (Teschner et al., Optimized spatial hashing, 2003; Green,
+// Particle simulation using CUDA, 2010). A thin layer has one cell across. Where balls are few in much space,
+// cells that lie a multiple of the grid's length apart share a place, and distance tells their balls apart.
+// Balls of other sizes have grids of their own, each edge four times the one before.
 #pragma once
 
 #include <algorithm>
@@ -13,32 +14,36 @@
 #include <utility>
 #include <vector>
 
-#include "lod/jobs.h"
 #include "lod/broad_phase/ball_bounds.h"
 #include "lod/broad_phase/ball_pairs.h"
+#include "lod/jobs.h"
 #include "reference/geometry.h"
 
 namespace lodestone {
 
 class CellGrid {
  public:
-  /// Memory that serves for other things before and after a search, aligned as floats are: 16 bytes a ball each are enough.
+  /// Memory that serves for other things before and after a search, aligned as floats are: 16 bytes a ball
+  /// each are enough.
   using Lent = std::array<std::span<std::byte>, 2>;
 
   explicit CellGrid(Simd simd = find_simd()) : simd_(simd) {}
   CellGrid(CellGrid&&) = default;
   CellGrid(const CellGrid&) = delete;  // arrays lie in memory that is lent
 
-  /// Takes the balls in. The result does not depend on `shares`, into how many the work is divided: as many as `jobs` has threads are enough.
-  /// What is lent is needed for as long as pairs or balls near a place are looked for, not for order().
-  void fill(const BallSpan& balls, const JobRunner& jobs = make_job_runner(1), int shares = 1, const Lent& lent = {});
+  /// Takes the balls in. The result does not depend on `shares`, into how many the work is divided: as many
+  /// as `jobs` has threads are enough. What is lent is needed for as long as pairs or balls near a place are
+  /// looked for, not for order().
+  void fill(const BallSpan& balls, const JobRunner& jobs = make_job_runner(1), int shares = 1,
+            const Lent& lent = {});
 
   /// Parts of the search for pairs. No two parts of one colour find pairs of the same ball.
   std::int64_t parts() const { return std::int64_t(parts_.size()); }
   int colour_of(std::int64_t part) const { return parts_[part].colour; }
   static constexpr int kColours = 4;
 
-  /// Adds each pair of `part` whose reaches meet, once, perhaps also where they miss by a rounding. The order depends on the balls alone.
+  /// Adds each pair of `part` whose reaches meet, once, perhaps also where they miss by a rounding. The order
+  /// depends on the balls alone.
   void find_pairs(std::int64_t part, BallPairs& pairs) const;
 
   /// Calls found(a) for each ball whose reach may meet a ball elsewhere, and for some a cell beyond.
@@ -63,14 +68,16 @@ class CellGrid {
     std::array<double, 3> origin{};    // m
     std::array<std::int32_t, 3> cells{1, 1, 1};
     std::array<bool, 3> wraps{};
-    double edge = 1.0, inverse = 1.0;  // m, 1/m
-    double most_reach = 0.0;           // m, of its balls
+    double edge = 1.0, inverse = 1.0;            // m, 1/m
+    double most_reach = 0.0;                     // m, of its balls
     std::uint32_t first_cell = 0, end_cell = 0;  // in start_
-    float fuzz = 0.0f;                 // m, rounding of the positions kept here
-    float stray_fuzz = 0.0f;           // over how far from the origin a ball is: where some have strayed beyond the cells, and lie in the outermost
+    float fuzz = 0.0f;                           // m, rounding of the positions kept here
+    float stray_fuzz = 0.0f;  // over how far from the origin a ball is: where some have strayed beyond the
+                              // cells, and lie in the outermost
   };
   struct Part {
-    std::int32_t grid = 0, first_row = 0, last_row = 0;  // rows along the slowest axis; grid −1: pairs of different grids
+    std::int32_t grid = 0, first_row = 0,
+                 last_row = 0;  // rows along the slowest axis; grid −1: pairs of different grids
     std::int32_t colour = 0;
   };
   /// Balls [begin, end), seen from elsewhere at where they are kept plus `shift`.
@@ -125,7 +132,8 @@ class CellGrid {
   static Neighbour neighbour(const Grid& grid, int axis, std::int32_t at);
   /// Itself, and one of each pair of opposite neighbours.
   Rows find_rows(const Grid& grid, std::int32_t slow, std::int32_t mid) const;
-  /// The cells fast − 1 … fast + 1 of each row, of the first one only those from `fast` on: one run, or two where the row wraps.
+  /// The cells fast − 1 … fast + 1 of each row, of the first one only those from `fast` on: one run, or two
+  /// where the row wraps.
   void find_runs(const Grid& grid, const Rows& rows, std::int32_t fast, Runs& found) const;
   template <Simd kSimd>
   void search(const Part& part, BallPairs& pairs) const;
@@ -141,7 +149,8 @@ class CellGrid {
    public:
     void take(Lent& lent, std::size_t count) {
       const std::size_t bytes = (count * sizeof(Value) + 3) / 4 * 4;
-      const auto place = std::ranges::find_if(lent, [&](std::span<std::byte> room) { return room.size() >= bytes; });
+      const auto place =
+          std::ranges::find_if(lent, [&](std::span<std::byte> room) { return room.size() >= bytes; });
       if (place == lent.end()) {
         own_.resize(count);
         values_ = own_;
@@ -164,20 +173,20 @@ class CellGrid {
   };
 
   Simd simd_;
-  Lent lent_;                             // what is left of it
+  Lent lent_;  // what is left of it
   std::vector<Grid> grids_;
   std::array<std::int32_t, 32> grid_of_level_{};
-  double base_edge_ = 1.0;                // m, of level kBaseLevel
+  double base_edge_ = 1.0;  // m, of level kBaseLevel
   std::vector<Part> parts_;
-  std::size_t usual_ = 0;                 // grid of the base level
-  std::vector<BallBounds> bounds_;        // of blocks of balls
-  Array<std::uint8_t> level_;             // of each ball, where they are of several
-  std::vector<std::uint32_t> others_;     // balls that are not sorted many at a time
-  Array<std::uint32_t> cell_;             // of each ball
-  Array<std::uint32_t> start_;            // of each cell, and the end of the last
-  Array<float> x_, y_, z_, reach_;        // in order; positions within the grid, along its axes
+  std::size_t usual_ = 0;              // grid of the base level
+  std::vector<BallBounds> bounds_;     // of blocks of balls
+  Array<std::uint8_t> level_;          // of each ball, where they are of several
+  std::vector<std::uint32_t> others_;  // balls that are not sorted many at a time
+  Array<std::uint32_t> cell_;          // of each ball
+  Array<std::uint32_t> start_;         // of each cell, and the end of the last
+  Array<float> x_, y_, z_, reach_;     // in order; positions within the grid, along its axes
   std::vector<std::uint32_t> index_;
-  std::vector<std::uint32_t> grid_begin_; // of each grid in the order, and the end
+  std::vector<std::uint32_t> grid_begin_;  // of each grid in the order, and the end
   BallSpan balls_;
 };
 
@@ -187,12 +196,14 @@ void CellGrid::find_in(const Grid& grid, const Vec3& center, double reach, const
   std::array<std::int64_t, 3> low{}, high{};
   for (int a = 0; a < 3; ++a) {
     const double at = center[grid.axis[a]] - grid.origin[a], span = reach + grid.most_reach;
-    const double first = std::floor((at - span) * grid.inverse), last = std::floor((at + span) * grid.inverse), n = grid.cells[a];
+    const double first = std::floor((at - span) * grid.inverse),
+                 last = std::floor((at + span) * grid.inverse), n = grid.cells[a];
     if (grid.cells[a] == 1) {
       low[a] = high[a] = 0;  // however far it reaches
     } else if (!grid.wraps[a]) {
       const double beyond = grid.stray_fuzz > 0.0f ? 0.0 : 1.0;  // where nothing lies, or strays
-      low[a] = std::int64_t(std::clamp(first, 0.0, n - 1 + beyond)), high[a] = std::int64_t(std::clamp(last, -beyond, n - 1));
+      low[a] = std::int64_t(std::clamp(first, 0.0, n - 1 + beyond)),
+      high[a] = std::int64_t(std::clamp(last, -beyond, n - 1));
     } else if (last - first >= n - 1) {
       low[a] = 0, high[a] = std::int64_t(n) - 1;
     } else {
@@ -201,12 +212,14 @@ void CellGrid::find_in(const Grid& grid, const Vec3& center, double reach, const
   }
   for (std::int64_t slow = low[2]; slow <= high[2]; ++slow)
     for (std::int64_t mid = low[1]; mid <= high[1]; ++mid) {
-      const std::int64_t row = grid.first_cell + (slow % grid.cells[2] * grid.cells[1] + mid % grid.cells[1]) * grid.cells[0];
+      const std::int64_t row =
+          grid.first_cell + (slow % grid.cells[2] * grid.cells[1] + mid % grid.cells[1]) * grid.cells[0];
       const std::int64_t last = std::min<std::int64_t>(high[0], grid.cells[0] - 1);
       if (low[0] <= last)
         for (std::uint32_t i = start_[row + low[0]]; i < start_[row + last + 1]; ++i) found(index_[i]);
       if (high[0] > last)  // round the end of the row
-        for (std::uint32_t i = start_[row]; i < start_[row + high[0] - grid.cells[0] + 1]; ++i) found(index_[i]);
+        for (std::uint32_t i = start_[row]; i < start_[row + high[0] - grid.cells[0] + 1]; ++i)
+          found(index_[i]);
     }
 }
 

@@ -1,4 +1,5 @@
-// The pairs that CellGrid finds: row by row, each cell's balls against those that follow in its row and in half of the rows around.
+// The pairs that CellGrid finds: row by row, each cell's balls against those that follow in its row and in
+// half of the rows around.
 #include "lod/broad_phase/cell_grid.h"
 
 namespace lodestone {
@@ -13,7 +14,8 @@ CellGrid::Neighbour CellGrid::neighbour(const Grid& grid, int axis, std::int32_t
 CellGrid::Rows CellGrid::find_rows(const Grid& grid, std::int32_t slow, std::int32_t mid) const {
   Rows found;
   const auto add = [&](std::int32_t s, std::int32_t m, float shift_m, float shift_s) {
-    const std::uint32_t cell = grid.first_cell + std::uint32_t(s * grid.cells[1] + m) * std::uint32_t(grid.cells[0]);
+    const std::uint32_t cell =
+        grid.first_cell + std::uint32_t(s * grid.cells[1] + m) * std::uint32_t(grid.cells[0]);
     found.rows[std::size_t(found.count++)] = {cell, {0.0f, shift_m, shift_s}};
   };
   add(slow, mid, 0.0f, 0.0f);
@@ -25,13 +27,16 @@ CellGrid::Rows CellGrid::find_rows(const Grid& grid, std::int32_t slow, std::int
   return found;
 }
 
-LODESTONE_INLINE void CellGrid::find_runs(const Grid& grid, const Rows& rows, std::int32_t fast, Runs& found) const {
+LODESTONE_INLINE void CellGrid::find_runs(const Grid& grid, const Rows& rows, std::int32_t fast,
+                                          Runs& found) const {
   found.count = 0;
   const std::int32_t n = grid.cells[0];
   const float length = float(n * grid.edge);
   const auto add = [&](const Row& row, std::int32_t first, std::int32_t last, float shift) {
-    const std::uint32_t begin = start_[row.first_cell + std::uint32_t(first)], end = start_[row.first_cell + std::uint32_t(last) + 1];
-    if (begin < end) found.runs[std::size_t(found.count++)] = {begin, end, {shift, row.shift[1], row.shift[2]}};
+    const std::uint32_t begin = start_[row.first_cell + std::uint32_t(first)],
+                        end = start_[row.first_cell + std::uint32_t(last) + 1];
+    if (begin < end)
+      found.runs[std::size_t(found.count++)] = {begin, end, {shift, row.shift[1], row.shift[2]}};
   };
   for (int i = 0; i < rows.count; ++i) {
     const Row& row = rows.rows[std::size_t(i)];
@@ -60,15 +65,18 @@ LODESTONE_INLINE void CellGrid::search(const Part& part, BallPairs& pairs) const
         if (begin == end) continue;
         find_runs(grid, rows, fast, near);
         std::int64_t most = 0;
-        for (int i = 0; i < near.count; ++i) most += near.runs[std::size_t(i)].end - near.runs[std::size_t(i)].begin;
+        for (int i = 0; i < near.count; ++i)
+          most += near.runs[std::size_t(i)].end - near.runs[std::size_t(i)].begin;
         pairs.make_room(most * (end - begin));
         std::uint32_t *first = pairs.end_first(), *second = pairs.end_second(), count = 0;
         for (std::uint32_t ball = begin; ball < end; ++ball) {
           near.runs[0].begin = ball + 1;  // its own cell: those after it
-          const NearBall here{balls.x[ball], balls.y[ball], balls.z[ball], balls.reach[ball], balls.index[ball]};
+          const NearBall here{balls.x[ball], balls.y[ball], balls.z[ball], balls.reach[ball],
+                              balls.index[ball]};
           for (int i = 0; i < near.count; ++i) {
             const Run& run = near.runs[std::size_t(i)];
-            const NearBall seen{here.x - run.shift[0], here.y - run.shift[1], here.z - run.shift[2], here.reach, here.index};
+            const NearBall seen{here.x - run.shift[0], here.y - run.shift[1], here.z - run.shift[2],
+                                here.reach, here.index};
             count += find_near_balls<kSimd>(balls, seen, run.begin, run.end, first + count, second + count);
           }
         }
@@ -89,8 +97,10 @@ void CellGrid::find_pairs(std::int64_t number, BallPairs& pairs) const {
   const Part& part = parts_[std::size_t(number)];
   if (part.grid < 0) return find_across(pairs);
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (simd_ == Simd::avx512) run_avx512(Search<Simd::avx512>{*this, part, pairs}, 0, 0);
-  else if (simd_ == Simd::avx2) run_avx2(Search<Simd::avx2>{*this, part, pairs}, 0, 0);
+  if (simd_ == Simd::avx512)
+    run_avx512(Search<Simd::avx512>{*this, part, pairs}, 0, 0);
+  else if (simd_ == Simd::avx2)
+    run_avx2(Search<Simd::avx2>{*this, part, pairs}, 0, 0);
   else
 #endif
     search<Simd::portable>(part, pairs);
@@ -98,12 +108,13 @@ void CellGrid::find_pairs(std::int64_t number, BallPairs& pairs) const {
   if (!grid.wraps[0] && !grid.wraps[1] && !grid.wraps[2]) return;
   pairs.filter([&](std::uint32_t a, std::uint32_t b) {  // balls that only share a place
     const double limit = double(balls_.reach[a]) + double(balls_.reach[b]);
-    return Vec3(balls_.x[a] - balls_.x[b], balls_.y[a] - balls_.y[b], balls_.z[a] - balls_.z[b]).squaredNorm() < limit * limit;
+    return Vec3(balls_.x[a] - balls_.x[b], balls_.y[a] - balls_.y[b], balls_.z[a] - balls_.z[b])
+               .squaredNorm() < limit * limit;
   });
 }
 
-// Pairs of different sizes: those of the coarser grid look into the finer one, whose cells they know to be many but whose balls they would have to be tested with
-// in any case.
+// Pairs of different sizes: those of the coarser grid look into the finer one, whose cells they know to be
+// many but whose balls they would have to be tested with in any case.
 void CellGrid::find_across(BallPairs& pairs) const {
   for (std::size_t coarse = 1; coarse < grids_.size(); ++coarse)
     for (std::size_t fine = 0; fine < coarse; ++fine)
@@ -112,7 +123,9 @@ void CellGrid::find_across(BallPairs& pairs) const {
         const Vec3 center(balls_.x[ball], balls_.y[ball], balls_.z[ball]);
         find_in(grids_[fine], center, balls_.reach[ball], [&](std::uint32_t other) {
           const double limit = double(balls_.reach[ball]) + double(balls_.reach[other]);
-          if ((Vec3(balls_.x[other], balls_.y[other], balls_.z[other]) - center).squaredNorm() < limit * limit) pairs.add(ball, other);
+          if ((Vec3(balls_.x[other], balls_.y[other], balls_.z[other]) - center).squaredNorm() <
+              limit * limit)
+            pairs.add(ball, other);
         });
       }
 }

@@ -1,9 +1,10 @@
-// How CellGrid sorts its balls: counts of each cell, their sums, then each ball to its place. Several at a time, and on several threads, for the grid of the
-// usual size; one by one for the few balls of other sizes, and for grids that wrap.
-#include "lod/broad_phase/cell_grid.h"
-
+// How CellGrid sorts its balls: counts of each cell, their sums, then each ball to its place. Several at a
+// time, and on several threads, for the grid of the usual size; one by one for the few balls of other sizes,
+// and for grids that wrap.
 #include <algorithm>
 #include <cmath>
+
+#include "lod/broad_phase/cell_grid.h"
 
 namespace lodestone {
 namespace {
@@ -33,7 +34,8 @@ struct CellLoop {
         const double below = a < last ? a : last;
         return std::int32_t(below > 0.0 ? below : 0.0);
       };
-      out[i] = first + std::uint32_t((within(az, last_z) * ny + within(ay, last_y)) * nx + within(ax, last_x));
+      out[i] =
+          first + std::uint32_t((within(az, last_z) * ny + within(ay, last_y)) * nx + within(ax, last_x));
     }
   }
 };
@@ -75,28 +77,34 @@ void CellGrid::sort(const BallSpan& balls, const JobRunner& jobs, int shares) {
 
 std::array<std::span<const double>, 3> CellGrid::along_axes(const Grid& grid, const BallSpan& balls) {
   const std::array<std::span<const double>, 3> centers = {balls.x, balls.y, balls.z};
-  return {centers[std::size_t(grid.axis[0])], centers[std::size_t(grid.axis[1])], centers[std::size_t(grid.axis[2])]};
+  return {centers[std::size_t(grid.axis[0])], centers[std::size_t(grid.axis[1])],
+          centers[std::size_t(grid.axis[2])]};
 }
 
 void CellGrid::find_usual_cells(const BallSpan& balls, const JobRunner& jobs) {
   const Grid& grid = grids_[usual_];
   const auto [x, y, z] = along_axes(grid, balls);
-  const CellLoop loop{{x.data(), y.data(), z.data()}, grid.origin, grid.cells, grid.inverse, grid.first_cell, cell_.data()};
+  const CellLoop loop{
+      {x.data(), y.data(), z.data()}, grid.origin, grid.cells, grid.inverse, grid.first_cell, cell_.data()};
   const auto count = std::int64_t(x.size());
-  jobs((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) { run_wide(simd_, loop, block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+  jobs((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) {
+         run_wide(simd_, loop, block * kBlock, std::min(count, (block + 1) * kBlock));
+       }));
 }
 
-// Each share of the work has cells of its own, and looks at all balls for those that lie there: mostly they follow each other already.
+// Each share of the work has cells of its own, and looks at all balls for those that lie there: mostly they
+// follow each other already.
 template <class Visit>
 void CellGrid::each_usual(const JobRunner& jobs, std::int64_t shares, const Visit& visit) const {
   const Grid& grid = grids_[usual_];
   const auto count = std::int64_t(cell_.size());
   const std::uint32_t *cell = cell_.data(), cells = grid.end_cell - grid.first_cell;
   jobs(shares, TaskRef([&](std::int64_t share) {
-    const auto first = grid.first_cell + std::uint32_t(cells * share / shares), last = grid.first_cell + std::uint32_t(cells * (share + 1) / shares);
-    for (std::int64_t i = 0; i < count; ++i)
-      if (cell[i] - first < last - first) visit(i);
-  }));
+         const auto first = grid.first_cell + std::uint32_t(cells * share / shares),
+                    last = grid.first_cell + std::uint32_t(cells * (share + 1) / shares);
+         for (std::int64_t i = 0; i < count; ++i)
+           if (cell[i] - first < last - first) visit(i);
+       }));
 }
 
 void CellGrid::count_usual(const JobRunner& jobs, std::int64_t shares) {
@@ -108,7 +116,8 @@ void CellGrid::count_usual(const JobRunner& jobs, std::int64_t shares) {
 void CellGrid::place_usual(const BallSpan& balls, const JobRunner& jobs, std::int64_t shares) {
   const Grid& grid = grids_[usual_];
   const auto [x, y, z] = along_axes(grid, balls);
-  const double *at_x = x.data(), *at_y = y.data(), *at_z = z.data(), ox = grid.origin[0], oy = grid.origin[1], oz = grid.origin[2];
+  const double *at_x = x.data(), *at_y = y.data(), *at_z = z.data(), ox = grid.origin[0], oy = grid.origin[1],
+               oz = grid.origin[2];
   const std::uint32_t* cell = cell_.data();
   std::uint32_t *start = start_.data(), *index = index_.data();
   float *to_x = x_.data(), *to_y = y_.data(), *to_z = z_.data(), *to_reach = reach_.data();
@@ -117,7 +126,8 @@ void CellGrid::place_usual(const BallSpan& balls, const JobRunner& jobs, std::in
     const std::uint32_t at = start[cell[i] + 1]++;
     const auto within_x = float(at_x[i] - ox), within_y = float(at_y[i] - oy), within_z = float(at_z[i] - oz);
     to_x[at] = within_x, to_y[at] = within_y, to_z[at] = within_z;
-    to_reach[at] = reach[i] + (fuzz + stray_fuzz * (std::abs(within_x) + std::abs(within_y) + std::abs(within_z)));
+    to_reach[at] =
+        reach[i] + (fuzz + stray_fuzz * (std::abs(within_x) + std::abs(within_y) + std::abs(within_z)));
     index[at] = std::uint32_t(i);
   });
 }
@@ -156,7 +166,8 @@ void CellGrid::place_others(const BallSpan& balls, bool all) {
     x_[at] = float(find_cell(grid, 0, x[i] - grid.origin[0], cell));
     y_[at] = float(find_cell(grid, 1, y[i] - grid.origin[1], cell));
     z_[at] = float(find_cell(grid, 2, z[i] - grid.origin[2], cell));
-    reach_[at] = balls.reach[i] + (grid.fuzz + grid.stray_fuzz * (std::abs(x_[at]) + std::abs(y_[at]) + std::abs(z_[at])));
+    reach_[at] = balls.reach[i] +
+                 (grid.fuzz + grid.stray_fuzz * (std::abs(x_[at]) + std::abs(y_[at]) + std::abs(z_[at])));
     index_[at] = i;
   });
 }

@@ -25,32 +25,48 @@ void set_error(std::string_view text) {
 }
 
 BodyProperties properties(const lodestone_properties& p) {
-  return {.category = p.category, .collide = p.collide, .gravity = p.gravity, .linear_damping = p.linear_damping, .angular_damping = p.angular_damping,
-          .max_angular_speed = p.max_angular_speed, .kinematic = p.kinematic, .allow_sleep = p.allow_sleep};
+  return {.category = p.category,
+          .collide = p.collide,
+          .gravity = p.gravity,
+          .linear_damping = p.linear_damping,
+          .angular_damping = p.angular_damping,
+          .max_angular_speed = p.max_angular_speed,
+          .kinematic = p.kinematic,
+          .allow_sleep = p.allow_sleep};
 }
 
 lodestone_properties properties(const BodyProperties& p) {
-  return {p.category, p.collide, p.gravity, p.kinematic, p.allow_sleep, p.linear_damping, p.angular_damping, p.max_angular_speed};
+  return {p.category,    p.collide,        p.gravity,         p.kinematic,
+          p.allow_sleep, p.linear_damping, p.angular_damping, p.max_angular_speed};
 }
 
 lodestone_color color(const DebugColor& color) { return {color.red, color.green, color.blue}; }
 DebugColor color(const lodestone_color& color) { return {color.red, color.green, color.blue}; }
 
 lodestone_contact_side side(const ContactSide& side) {
-  return {lodestone_contact_kind(side.kind), body(side.body), ground(side.ground), side.geom, side.callers, side.material};
+  return {lodestone_contact_kind(side.kind),
+          body(side.body),
+          ground(side.ground),
+          side.geom,
+          side.callers,
+          side.material};
 }
 
-Mesh mesh(const lodestone_vec3* vertices, std::size_t vertex_count, const std::int32_t* faces, std::size_t face_count) {
+Mesh mesh(const lodestone_vec3* vertices, std::size_t vertex_count, const std::int32_t* faces,
+          std::size_t face_count) {
   Mesh mesh;
-  for (const lodestone_vec3& vertex : list(vertices, vertex_count, "vertices")) mesh.vertices.push_back(vec3(vertex));
+  for (const lodestone_vec3& vertex : list(vertices, vertex_count, "vertices"))
+    mesh.vertices.push_back(vec3(vertex));
   const std::span<const std::int32_t> corners = list(faces, 3 * face_count, "faces");
-  for (std::size_t i = 0; i < face_count; ++i) mesh.faces.push_back({corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]});
+  for (std::size_t i = 0; i < face_count; ++i)
+    mesh.faces.push_back({corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]});
   return mesh;
 }
 
 std::vector<std::shared_ptr<const Shape>> shapes(const lodestone_shape* const* given, std::size_t count) {
   std::vector<std::shared_ptr<const Shape>> found;
-  for (const lodestone_shape* shape : list(given, count, "shapes")) found.push_back(need(shape, "a shape").shape);
+  for (const lodestone_shape* shape : list(given, count, "shapes"))
+    found.push_back(need(shape, "a shape").shape);
   return found;
 }
 
@@ -63,8 +79,10 @@ const char* lodestone_error(void) { return error_text().c_str(); }
 const char* lodestone_version(void) { return LODESTONE_VERSION_STRING; }
 
 void lodestone_set_assertion_handler(void (*handler)(void* context, const char* message), void* context) {
-  if (handler) set_assertion_handler([=](std::string_view message) { handler(context, std::string(message).c_str()); });
-  else set_assertion_handler({});
+  if (handler)
+    set_assertion_handler([=](std::string_view message) { handler(context, std::string(message).c_str()); });
+  else
+    set_assertion_handler({});
 }
 
 namespace {
@@ -83,8 +101,11 @@ lodestone_result lodestone_make_sphere(double radius, lodestone_shape** shape) {
   return make(shape, [&] { return make_sphere_shape(radius); });
 }
 
-lodestone_result lodestone_make_mesh(const char* name, const lodestone_vec3* vertices, size_t vertex_count, const int32_t* faces, size_t face_count, lodestone_shape** shape) {
-  return make(shape, [&] { return make_shape(&need(name, "name"), mesh(vertices, vertex_count, faces, face_count)); });
+lodestone_result lodestone_make_mesh(const char* name, const lodestone_vec3* vertices, size_t vertex_count,
+                                     const int32_t* faces, size_t face_count, lodestone_shape** shape) {
+  return make(shape, [&] {
+    return make_shape(&need(name, "name"), mesh(vertices, vertex_count, faces, face_count));
+  });
 }
 
 lodestone_result lodestone_load_mesh(const char* file, double size, lodestone_shape** shape) {
@@ -97,19 +118,27 @@ lodestone_result lodestone_load_mesh(const char* file, double size, lodestone_sh
 void lodestone_release_shape(lodestone_shape* shape) { delete shape; }
 
 lodestone_result lodestone_load_signature(const char* file, lodestone_signature** signature) {
-  return make_handle(signature, [&] { return std::make_shared<const Signature>(load_signature(std::filesystem::path(&need(file, "file")))); });
+  return make_handle(signature, [&] {
+    return std::make_shared<const Signature>(load_signature(std::filesystem::path(&need(file, "file"))));
+  });
 }
 
 lodestone_result lodestone_read_signature(const void* bytes, size_t size, lodestone_signature** signature) {
-  return make_handle(signature, [&] { return std::make_shared<const Signature>(load_signature(list(static_cast<const std::byte*>(bytes), size, "bytes"))); });
+  return make_handle(signature, [&] {
+    return std::make_shared<const Signature>(
+        load_signature(list(static_cast<const std::byte*>(bytes), size, "bytes")));
+  });
 }
 
-lodestone_result lodestone_find_or_measure_signature(const lodestone_shape* shape, double restitution, double friction, int32_t threads, lodestone_signature** signature) {
+lodestone_result lodestone_find_or_measure_signature(const lodestone_shape* shape, double restitution,
+                                                     double friction, int32_t threads,
+                                                     lodestone_signature** signature) {
   return make_handle(signature, [&] {
     if (threads < 0) throw InputError("threads: found " + std::to_string(threads) + ", expected 0 or more");
     SignatureSourceSettings settings;
     settings.threads = threads;
-    return find_or_measure_signature(*need(shape, "shape").shape, {restitution, friction}, settings).signature;
+    return find_or_measure_signature(*need(shape, "shape").shape, {restitution, friction}, settings)
+        .signature;
   });
 }
 

@@ -79,7 +79,9 @@ lodestone_result make_handle(Handle** to, const Make& make) noexcept {
 /// An enumerator of C's as ours, which have the same numbers.
 template <class Ours, class Theirs>
 Ours enumerator(Theirs value, Ours last, const char* what) {
-  if (int(value) < 0 || int(value) > int(last)) throw InputError(std::string(what) + ": found " + std::to_string(int(value)) + ", expected 0 to " + std::to_string(int(last)));
+  if (int(value) < 0 || int(value) > int(last))
+    throw InputError(std::string(what) + ": found " + std::to_string(int(value)) + ", expected 0 to " +
+                     std::to_string(int(last)));
   return Ours(int(value));
 }
 
@@ -91,14 +93,19 @@ inline BodyId body(lodestone_body id) { return {id.index, id.generation}; }
 inline lodestone_body body(BodyId id) { return {id.index, id.generation}; }
 inline GroundId ground(lodestone_ground id) { return {id.index, id.generation}; }
 inline lodestone_ground ground(GroundId id) { return {id.index, id.generation}; }
-inline RigidState state(const lodestone_state& s) { return {vec3(s.position), quat(s.orientation), vec3(s.velocity), vec3(s.angular_velocity)}; }
-inline lodestone_state state(const RigidState& s) { return {vec3(s.position), quat(s.orientation), vec3(s.velocity), vec3(s.angular_velocity)}; }
+inline RigidState state(const lodestone_state& s) {
+  return {vec3(s.position), quat(s.orientation), vec3(s.velocity), vec3(s.angular_velocity)};
+}
+inline lodestone_state state(const RigidState& s) {
+  return {vec3(s.position), quat(s.orientation), vec3(s.velocity), vec3(s.angular_velocity)};
+}
 BodyProperties properties(const lodestone_properties& p);
 lodestone_properties properties(const BodyProperties& p);
 lodestone_color color(const DebugColor& color);
 DebugColor color(const lodestone_color& color);
 lodestone_contact_side side(const ContactSide& side);
-Mesh mesh(const lodestone_vec3* vertices, std::size_t vertex_count, const std::int32_t* faces, std::size_t face_count);
+Mesh mesh(const lodestone_vec3* vertices, std::size_t vertex_count, const std::int32_t* faces,
+          std::size_t face_count);
 std::vector<std::shared_ptr<const Shape>> shapes(const lodestone_shape* const* shapes, std::size_t count);
 
 }  // namespace lodestone::c

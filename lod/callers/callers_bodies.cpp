@@ -78,19 +78,23 @@ void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
   for (std::size_t at_slot = 0; at_slot < entry.slots.size(); ++at_slot) {
     const MirroredGeom& geom = mirror.geoms()[entry.slots[at_slot]];
     const GeomShape read = read_geom(geom.geom);
-    const auto in_body = [&](const Vec3& p) { return Vec3(at.orientation.conjugate() * (geom.position + geom.orientation * p - at.position)); };
+    const auto in_body = [&](const Vec3& p) {
+      return Vec3(at.orientation.conjugate() * (geom.position + geom.orientation * p - at.position));
+    };
     const auto made = std::make_shared<const GroundSolids>(solids_of(read));
     const GroundSolids& solids = *made;
     if (solids.size() > 0) entry.solids[at_slot] = made;
     const bool surface = solids.size() > 0 && solids[0].surface;
     if (read.kind == GeomKind::sphere) {
-      if (entry.slots.size() == 1 && (geom.position - at.position).norm() < 1e-9 * read.radius) sphere = read.radius;
+      if (entry.slots.size() == 1 && (geom.position - at.position).norm() < 1e-9 * read.radius)
+        sphere = read.radius;
       std::vector<Vec3>& piece = pieces.emplace_back();
       for (const Vec3& corner : corners_of(read)) piece.push_back(in_body(corner));
       continue;
     }
     std::vector<Vec3> all;
-    if (surface) for (const Vec3& v : read.vertices) all.push_back(in_body(v));
+    if (surface)
+      for (const Vec3& v : read.vertices) all.push_back(in_body(v));
     for (int i = 0; !surface && i < int(solids.size()); ++i) {
       std::vector<Vec3>& piece = pieces.emplace_back();
       for (const Vec3& v : solids[i].shape->hull.vertices) piece.push_back(in_body(solids[i].center + v));
@@ -117,30 +121,41 @@ void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
 }
 
 // What holds them up: the ground below, which the caller's own contacts act against.
-void add_ground_contacts(const Ground& ground, const FullNeighbor& body, std::int32_t index, std::vector<FullContact>& contacts) {
+void add_ground_contacts(const Ground& ground, const FullNeighbor& body, std::int32_t index,
+                         std::vector<FullContact>& contacts) {
   const Shape& shape = *body.shape;
   const double margin = kTouching * shape.radius;
-  const auto add = [&](const Vec3& point, const Vec3& normal, double gap) { contacts.push_back({index, -1, point, normal, gap}); };
+  const auto add = [&](const Vec3& point, const Vec3& normal, double gap) {
+    contacts.push_back({index, -1, point, normal, gap});
+  };
   for (const HalfSpace& plane : ground.planes()) {
     const double height = plane.height_of(body.state.position);
     if (height > shape.radius + margin) continue;
     std::int32_t hint = 0;
-    const HullContacts low = find_hull_contacts(shape, body.state.orientation, plane.normal, height, margin, hint);
+    const HullContacts low =
+        find_hull_contacts(shape, body.state.orientation, plane.normal, height, margin, hint);
     for (int i = 0; i < low.count; ++i)
-      if (low.contact[std::size_t(i)].gap < margin) add(body.state.position + low.contact[std::size_t(i)].arm, plane.normal, low.contact[std::size_t(i)].gap);
+      if (low.contact[std::size_t(i)].gap < margin)
+        add(body.state.position + low.contact[std::size_t(i)].arm, plane.normal,
+            low.contact[std::size_t(i)].gap);
   }
   if (!ground.has_parts()) return;
   std::vector<const GroundPart*> parts;
   std::vector<PlacedSolid> near;
   ground.find_parts(body.state.position, shape.radius + margin, parts);
-  for (const GroundPart* part : parts) find_solids(*part, body.state.position, shape.radius + margin, 0.0, near);
+  for (const GroundPart* part : parts)
+    find_solids(*part, body.state.position, shape.radius + margin, 0.0, near);
   const PairBody self{&shape, body.state.position, body.state.orientation};
   for (const PlacedSolid& solid : near)
-    if (const auto contact = find_hull_contact(self, {solid.solid->shape.get(), solid.position, solid.orientation}, margin))
-      for (int i = 0; i < contact->manifold.count; ++i) add(contact->manifold.points[std::size_t(i)].point, contact->normal, contact->manifold.points[std::size_t(i)].gap);
+    if (const auto contact =
+            find_hull_contact(self, {solid.solid->shape.get(), solid.position, solid.orientation}, margin))
+      for (int i = 0; i < contact->manifold.count; ++i)
+        add(contact->manifold.points[std::size_t(i)].point, contact->normal,
+            contact->manifold.points[std::size_t(i)].gap);
 }
 
-void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vector<FullNeighbor>& neighbors, std::vector<FullContact>& contacts) const {
+void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vector<FullNeighbor>& neighbors,
+                           std::vector<FullContact>& contacts) const {
   for (const Entry& entry : bodies_) {
     if (!entry.shape) continue;
     FullNeighbor neighbor;
@@ -164,14 +179,18 @@ void CallersBodies::hand_over(std::span<const FullNeighbor> neighbors, double dt
     const FullNeighbor& neighbor = neighbors[next++];
     if (neighbor.asleep) continue;
     if (!callers::is_enabled(entry.body)) callers::set_enabled(entry.body, true);
-    if (!is_zero(neighbor.push)) callers::add_force(entry.body, neighbor.push.linear / dt, neighbor.push.angular / dt);
+    if (!is_zero(neighbor.push))
+      callers::add_force(entry.body, neighbor.push.linear / dt, neighbor.push.angular / dt);
     if (is_zero(neighbor.hit)) continue;
-    const Vec3 turn = inverse_inertia_world(neighbor.state.orientation, *neighbor.shape) * neighbor.hit.angular / neighbor.mass;
-    callers::set_velocity(entry.body, neighbor.state.velocity + neighbor.hit.linear / neighbor.mass, neighbor.state.angular_velocity + turn);
+    const Vec3 turn = inverse_inertia_world(neighbor.state.orientation, *neighbor.shape) *
+                      neighbor.hit.angular / neighbor.mass;
+    callers::set_velocity(entry.body, neighbor.state.velocity + neighbor.hit.linear / neighbor.mass,
+                          neighbor.state.angular_velocity + turn);
   }
 }
 
-void CallersBodies::each_near(const Vec3& center, double radius, const std::function<void(const Shape&, const RigidState&)>& visit) const {
+void CallersBodies::each_near(const Vec3& center, double radius,
+                              const std::function<void(const Shape&, const RigidState&)>& visit) const {
   for (const Entry& entry : bodies_) {
     if (!entry.shape) continue;
     const RigidState state = callers::state(entry.body);
@@ -189,7 +208,8 @@ std::vector<CallersPart> CallersBodies::find_parts(const SpaceMirror& mirror) co
     for (std::size_t i = 0; i < entry.slots.size(); ++i) {
       if (!entry.solids[i] || !std::ranges::binary_search(held, entry.slots[i])) continue;
       const MirroredGeom& geom = mirror.geoms()[entry.slots[i]];
-      parts.push_back({entry.body, geom.geom, geom.category, entry.solids[i], callers::position(geom.geom), callers::orientation(geom.geom)});
+      parts.push_back({entry.body, geom.geom, geom.category, entry.solids[i], callers::position(geom.geom),
+                       callers::orientation(geom.geom)});
     }
   return parts;
 }

@@ -1,4 +1,5 @@
-// The dynamic bodies of a caller's space, as statistical bodies meet them: with their own mass and the shape of their geoms. They take impulses and give them.
+// The dynamic bodies of a caller's space, as statistical bodies meet them: with their own mass and the shape
+// of their geoms. They take impulses and give them.
 #pragma once
 
 #include <memory>
@@ -28,12 +29,15 @@ class CallersBodies {
   void follow(const SpaceMirror& mirror);
   std::size_t size() const { return bodies_.size(); }
 
-  /// Appends them as neighbours, as they are now, and what holds them up: `first` is the index that the first of them has there.
-  void gather(const Ground& ground, const Vec3& gravity, std::vector<FullNeighbor>& neighbors, std::vector<FullContact>& contacts) const;
+  /// Appends them as neighbours, as they are now, and what holds them up: `first` is the index that the first
+  /// of them has there.
+  void gather(const Ground& ground, const Vec3& gravity, std::vector<FullNeighbor>& neighbors,
+              std::vector<FullContact>& contacts) const;
   /// Gives each what came back, for a step of `dt` s. `neighbors` are those that gather() appended.
   void hand_over(std::span<const FullNeighbor> neighbors, double dt) const;
   /// Calls visit(shape, state) for each whose ball meets that of `radius` m about `center`.
-  void each_near(const Vec3& center, double radius, const std::function<void(const Shape&, const RigidState&)>& visit) const;
+  void each_near(const Vec3& center, double radius,
+                 const std::function<void(const Shape&, const RigidState&)>& visit) const;
   /// Their geoms as they are now, at any time; of those that the mirror saw in its last refresh.
   std::vector<CallersPart> find_parts(const SpaceMirror& mirror) const;
   /// The body that a neighbour's owner names (FullNeighbor::owner); null where it is none of the caller's.
@@ -42,7 +46,7 @@ class CallersBodies {
  private:
   struct Entry {
     dxBody* body = nullptr;
-    std::vector<std::uint32_t> slots;  // of its geoms in the mirror, ascending
+    std::vector<std::uint32_t> slots;                         // of its geoms in the mirror, ascending
     std::vector<std::shared_ptr<const GroundSolids>> solids;  // of each geom; null: it has none
     std::shared_ptr<const Shape> shape;  // null: to be made anew, or none of its geoms is a solid
     std::uint32_t owner = 0;
@@ -50,7 +54,7 @@ class CallersBodies {
   };
   static void make_shape(const SpaceMirror& mirror, Entry& entry);
 
-  std::vector<Entry> bodies_;            // in the order in which they came
+  std::vector<Entry> bodies_;  // in the order in which they came
   std::vector<dxBody*> body_of_slot_;
   std::uint32_t owners_ = 0;
 };

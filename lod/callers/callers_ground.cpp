@@ -12,7 +12,8 @@ constexpr double kLeap = 50.0;  // m/s: what seems faster was put elsewhere, and
 
 Eigen::AlignedBox3d in_own_frame(const MirroredGeom& geom) {
   // A height field that repeats itself has no bounds.
-  const Eigen::AlignedBox3d bounds(geom.bounds.min().cwiseMax(-kStateLimit), geom.bounds.max().cwiseMin(kStateLimit));
+  const Eigen::AlignedBox3d bounds(geom.bounds.min().cwiseMax(-kStateLimit),
+                                   geom.bounds.max().cwiseMin(kStateLimit));
   const Vec3 center = geom.orientation.conjugate() * (bounds.center() - geom.position);
   const Vec3 reach = geom.orientation.conjugate().toRotationMatrix().cwiseAbs() * (0.5 * bounds.sizes());
   return {center - reach, center + reach};
@@ -27,13 +28,16 @@ HalfSpace plane_of(const MirroredGeom& geom) { return {geom.normal, geom.offset,
 
 }  // namespace
 
-void CallersGround::follow(const SpaceMirror& mirror, double dt, const std::function<void(const Eigen::AlignedBox3d&)>& disturbed) {
+void CallersGround::follow(const SpaceMirror& mirror, double dt,
+                           const std::function<void(const Eigen::AlignedBox3d&)>& disturbed) {
   const std::span<const MirroredGeom> geoms = mirror.geoms();
   ids_.resize(geoms.size());
   for (const std::uint32_t slot : mirror.removed()) {
     if (!ids_[slot]) continue;
-    if (!ground_.is_plane(ids_[slot])) disturbed(ground_.bounds(ids_[slot]));
-    else disturbed({Vec3::Constant(-1e9), Vec3::Constant(1e9)});
+    if (!ground_.is_plane(ids_[slot]))
+      disturbed(ground_.bounds(ids_[slot]));
+    else
+      disturbed({Vec3::Constant(-1e9), Vec3::Constant(1e9)});
     remove(slot);
   }
   for (const std::uint32_t slot : mirror.added()) {
@@ -53,8 +57,11 @@ void CallersGround::follow(const SpaceMirror& mirror, double dt, const std::func
   };
   for (const std::uint32_t slot : mirror.moved()) {
     if (!ids_[slot]) continue;
-    if (!ground_.is_plane(ids_[slot])) move(slot, true);
-    else ground_.move_plane(ids_[slot], plane_of(geoms[slot])), disturbed({Vec3::Constant(-1e9), Vec3::Constant(1e9)});
+    if (!ground_.is_plane(ids_[slot]))
+      move(slot, true);
+    else
+      ground_.move_plane(ids_[slot], plane_of(geoms[slot])),
+          disturbed({Vec3::Constant(-1e9), Vec3::Constant(1e9)});
   }
   for (const std::uint32_t slot : carried_)
     if (!std::ranges::binary_search(mirror.moved(), slot)) move(slot, false);
@@ -66,11 +73,13 @@ void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt)
   } else {
     GroundShape shape{.bounds = in_own_frame(geom)};
     if (geom.kind == GeomKind::height_field || geom.kind == GeomKind::other) {
-      shape.probe = [probe = probe_, own = geom.geom](const Vec3& from, const Vec3& direction, double length) -> std::optional<GroundHit> {
+      shape.probe = [probe = probe_, own = geom.geom](const Vec3& from, const Vec3& direction,
+                                                      double length) -> std::optional<GroundHit> {
         const std::optional<RayHit> hit = probe->cast(own, from, direction, length);
         return hit ? std::optional(GroundHit{hit->point, hit->normal, hit->distance}) : std::nullopt;
       };
-      shape.up = geom.kind == GeomKind::height_field ? Vec3(Vec3::UnitY()) : Vec3(geom.orientation.conjugate() * Vec3::UnitZ());
+      shape.up = geom.kind == GeomKind::height_field ? Vec3(Vec3::UnitY())
+                                                     : Vec3(geom.orientation.conjugate() * Vec3::UnitZ());
     } else {
       shape.make = [own = geom.geom] { return solids_of(read_geom(own)); };
     }
@@ -90,7 +99,8 @@ void CallersGround::remove(std::uint32_t slot) {
   std::erase(moving_, slot);
 }
 
-// One that a kinematic body carries moves as that does; one that was put elsewhere since the last step came from there.
+// One that a kinematic body carries moves as that does; one that was put elsewhere since the last step came
+// from there.
 GroundPose CallersGround::pose_of(const MirroredGeom& geom, bool moved, double dt) const {
   GroundPose pose{geom.position, geom.orientation};
   if (geom.body) {
@@ -107,6 +117,8 @@ GroundPose CallersGround::pose_of(const MirroredGeom& geom, bool moved, double d
   return pose;
 }
 
-dxGeom* CallersGround::geom_of(GroundId id) const { return ground_.valid(id) && id.index < geoms_.size() ? geoms_[id.index] : nullptr; }
+dxGeom* CallersGround::geom_of(GroundId id) const {
+  return ground_.valid(id) && id.index < geoms_.size() ? geoms_[id.index] : nullptr;
+}
 
 }  // namespace lodestone

@@ -1,4 +1,5 @@
-// The geoms of a caller's space that no dynamic body carries, as ground for the statistical rungs: followed from step to step as they come, move and go.
+// The geoms of a caller's space that no dynamic body carries, as ground for the statistical rungs: followed
+// from step to step as they come, move and go.
 #pragma once
 
 #include <memory>
@@ -15,8 +16,10 @@ class CallersGround {
   /// `ground` must outlive it.
   explicit CallersGround(Ground& ground) : ground_(ground) {}
 
-  /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s. Calls disturbed(box) for where something came, went or moved: what lies there wakes.
-  void follow(const SpaceMirror& mirror, double dt, const std::function<void(const Eigen::AlignedBox3d&)>& disturbed);
+  /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s. Calls disturbed(box)
+  /// for where something came, went or moved: what lies there wakes.
+  void follow(const SpaceMirror& mirror, double dt,
+              const std::function<void(const Eigen::AlignedBox3d&)>& disturbed);
 
   /// The geom that a part or plane is; null where it is none of the caller's.
   dxGeom* geom_of(GroundId id) const;
@@ -27,10 +30,10 @@ class CallersGround {
   GroundPose pose_of(const MirroredGeom& geom, bool moved, double dt) const;
 
   Ground& ground_;
-  std::vector<GroundId> ids_;              // by the mirror's slots; null: not ground
-  std::vector<dxGeom*> geoms_;             // by the index of their ids
-  std::vector<std::uint32_t> carried_;     // slots of those with a kinematic body
-  std::vector<std::uint32_t> moving_;      // slots of those that had a velocity in the last step
+  std::vector<GroundId> ids_;           // by the mirror's slots; null: not ground
+  std::vector<dxGeom*> geoms_;          // by the index of their ids
+  std::vector<std::uint32_t> carried_;  // slots of those with a kinematic body
+  std::vector<std::uint32_t> moving_;   // slots of those that had a velocity in the last step
   std::shared_ptr<GeomProbe> probe_ = std::make_shared<GeomProbe>();
 };
 

@@ -67,7 +67,9 @@ Mesh mesh_of(const GeomShape& geom) {
     return at->second;
   };
   for (const auto& [a, b, c] : geom.faces) {
-    const std::array<int, 3> face{index_of(geom.vertices[std::size_t(a)]), index_of(geom.vertices[std::size_t(b)]), index_of(geom.vertices[std::size_t(c)])};
+    const std::array<int, 3> face{index_of(geom.vertices[std::size_t(a)]),
+                                  index_of(geom.vertices[std::size_t(b)]),
+                                  index_of(geom.vertices[std::size_t(c)])};
     if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0]) mesh.faces.push_back(face);
   }
   return mesh;

@@ -13,7 +13,8 @@ Mat3 cross_matrix(const Vec3& v) {
   return m;
 }
 
-// Is the tangential velocity one that friction held at `sign` of its bound leaves? At the upper bound it may only be negative, at the lower positive.
+// Is the tangential velocity one that friction held at `sign` of its bound leaves? At the upper bound it may
+// only be negative, at the lower positive.
 bool bound_is_consistent(int sign, double velocity, double tolerance) { return sign * velocity <= tolerance; }
 
 }  // namespace
@@ -28,27 +29,32 @@ Mat3 contact_frame(const Vec3& normal, const Vec3& velocity) {
   const double speed = slip.norm();
   if (speed > 1e-9 * velocity.norm()) {
     slip /= speed;
-    slip = (slip - slip.dot(normal) * normal).normalized();  // again: little is left of a nearly head-on velocity
+    slip = (slip - slip.dot(normal) * normal)
+               .normalized();  // again: little is left of a nearly head-on velocity
   } else {
-    slip = std::abs(normal.z()) < 0.7 ? Vec3::UnitZ().cross(normal).normalized() : Vec3::UnitX().cross(normal).normalized();
+    slip = std::abs(normal.z()) < 0.7 ? Vec3::UnitZ().cross(normal).normalized()
+                                      : Vec3::UnitX().cross(normal).normalized();
   }
   Mat3 frame;
   frame << normal, slip, normal.cross(slip);
   return frame;
 }
 
-ContactImpulse respond_contact(const Mat3& response, const Vec3& normal, const Vec3& velocity, const ContactLaw& law) {
+ContactImpulse respond_contact(const Mat3& response, const Vec3& normal, const Vec3& velocity,
+                               const ContactLaw& law) {
   const double approach = velocity.dot(normal);
   if (!(approach < 0.0)) return {};
   const Mat3 frame = contact_frame(normal, velocity);
   const Mat3 k = frame.transpose() * response * frame;
   const Vec3 u = frame.transpose() * velocity;
-  const double target = -law.restitution * approach;               // normal velocity afterwards
+  const double target = -law.restitution * approach;                  // normal velocity afterwards
   const double bound = law.friction * (target - approach) / k(0, 0);  // μ × frictionless normal impulse
   const double tolerance = 1e-12 * u.norm();
 
-  // Each tangential impulse is free (0) or at a bound (±1). The likely sets come first: sticking, then sliding against the slip.
-  static constexpr std::array<std::array<int, 2>, 9> kSets{{{0, 0}, {-1, 0}, {0, 1}, {0, -1}, {-1, 1}, {-1, -1}, {1, 0}, {1, 1}, {1, -1}}};
+  // Each tangential impulse is free (0) or at a bound (±1). The likely sets come first: sticking, then
+  // sliding against the slip.
+  static constexpr std::array<std::array<int, 2>, 9> kSets{
+      {{0, 0}, {-1, 0}, {0, 1}, {0, -1}, {-1, 1}, {-1, -1}, {1, 0}, {1, 1}, {1, -1}}};
   Vec3 best = Vec3::Zero();
   double best_violation = 1e300;
   for (const auto& [first, second] : kSets) {
@@ -73,8 +79,10 @@ ContactImpulse respond_contact(const Mat3& response, const Vec3& normal, const V
     }
     const Vec3 after = u + k * j;
     double violation = std::max({0.0, std::abs(j[1]) - bound, std::abs(j[2]) - bound}) * k(0, 0);
-    if (first != 0 && !bound_is_consistent(first, after[1], tolerance)) violation = std::max(violation, std::abs(after[1]));
-    if (second != 0 && !bound_is_consistent(second, after[2], tolerance)) violation = std::max(violation, std::abs(after[2]));
+    if (first != 0 && !bound_is_consistent(first, after[1], tolerance))
+      violation = std::max(violation, std::abs(after[1]));
+    if (second != 0 && !bound_is_consistent(second, after[2], tolerance))
+      violation = std::max(violation, std::abs(after[2]));
     if (violation < best_violation) {
       best_violation = violation;
       best = j;

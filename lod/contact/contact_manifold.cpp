@@ -10,13 +10,18 @@ struct Point {
   double x = 0.0, y = 0.0, height = 0.0;
 };
 
-double cross(const Point& o, const Point& a, const Point& b) { return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x); }
-double squared_distance(const Point& a, const Point& b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
+double cross(const Point& o, const Point& a, const Point& b) {
+  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+double squared_distance(const Point& a, const Point& b) {
+  return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
+}
 Point between(const Point& a, const Point& b, double t) {
   return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.height + t * (b.height - a.height)};
 }
 
-/// A corner, an edge or a convex polygon, counter-clockwise. Two quadrilaterals overlap in at most eight corners.
+/// A corner, an edge or a convex polygon, counter-clockwise. Two quadrilaterals overlap in at most eight
+/// corners.
 struct Feature {
   std::array<Point, 8> at;
   int count = 0;
@@ -56,7 +61,8 @@ Feature find_outline(const HullContacts& contacts, const Plane& plane) {
   std::array<Point, kMaxGroundContacts> sorted;
   for (int i = 0; i < contacts.count; ++i) {
     int place = i;
-    for (sorted[i] = plane.to_plane(contacts.contact[i].arm); place > 0 && before(sorted[place], sorted[place - 1]); --place)
+    for (sorted[i] = plane.to_plane(contacts.contact[i].arm);
+         place > 0 && before(sorted[place], sorted[place - 1]); --place)
       std::swap(sorted[place], sorted[place - 1]);
   }
   Feature outline;
@@ -65,7 +71,9 @@ Feature find_outline(const HullContacts& contacts, const Plane& plane) {
     return outline;
   }
   const auto extend = [&outline](const Point& p, int keep) {
-    while (outline.count > keep && cross(outline.at[outline.count - 2], outline.at[outline.count - 1], p) <= 0.0) --outline.count;
+    while (outline.count > keep &&
+           cross(outline.at[outline.count - 2], outline.at[outline.count - 1], p) <= 0.0)
+      --outline.count;
     outline.add(p);
   };
   for (int i = 0; i < contacts.count; ++i) extend(sorted[i], 1);
@@ -91,7 +99,8 @@ Feature cut(const Feature& subject, const Point& a, const Point& b) {
 }
 
 Feature clip(Feature subject, const Feature& polygon) {
-  for (int i = 0; i < polygon.count && subject.count > 0; ++i) subject = cut(subject, polygon.at[i], polygon.at[(i + 1) % polygon.count]);
+  for (int i = 0; i < polygon.count && subject.count > 0; ++i)
+    subject = cut(subject, polygon.at[i], polygon.at[(i + 1) % polygon.count]);
   return subject;
 }
 
@@ -131,7 +140,8 @@ void keep_four(Feature& f) {
   if (f.count <= 4) return;
   const Feature all = f;
   const auto greatest = [&all](const auto& measure) {
-    return *std::max_element(all.at.begin(), all.at.begin() + all.count, [&](const Point& a, const Point& b) { return measure(a) < measure(b); });
+    return *std::max_element(all.at.begin(), all.at.begin() + all.count,
+                             [&](const Point& a, const Point& b) { return measure(a) < measure(b); });
   };
   const Point first = all.at[0];
   const Point second = greatest([&](const Point& p) { return squared_distance(first, p); });
@@ -143,14 +153,18 @@ void keep_four(Feature& f) {
 
 }  // namespace
 
-Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, const Vec3& normal, double least_gap) {
+Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, const Vec3& normal,
+                       double least_gap) {
   const Plane plane(normal);
   const Feature above = find_outline(upper, plane), below = find_outline(lower, plane);
   const bool above_is_face = above.count > 2, below_is_face = below.count > 2;
   Feature overlap;
-  if (!above_is_face && !below_is_face) overlap = cross_thin(above, below);
-  else if (above_is_face && (!below_is_face || area(above) > area(below))) overlap = clip(below, above);
-  else overlap = clip(above, below);
+  if (!above_is_face && !below_is_face)
+    overlap = cross_thin(above, below);
+  else if (above_is_face && (!below_is_face || area(above) > area(below)))
+    overlap = clip(below, above);
+  else
+    overlap = clip(above, below);
   keep_four(overlap);
 
   Manifold manifold;
@@ -175,10 +189,13 @@ Manifold join_manifolds(const Manifold& first, const Manifold& second, const Vec
       corners.add(corner);
     }
   // keep_four spans its area from the first, which must lie outermost: no other has so small an x.
-  std::iter_swap(corners.at.begin(), std::min_element(corners.at.begin(), corners.at.begin() + corners.count, [](const Point& a, const Point& b) { return a.x < b.x; }));
+  std::iter_swap(corners.at.begin(),
+                 std::min_element(corners.at.begin(), corners.at.begin() + corners.count,
+                                  [](const Point& a, const Point& b) { return a.x < b.x; }));
   keep_four(corners);
   Manifold joined;
-  for (int i = 0; i < corners.count; ++i) joined.points[std::size_t(joined.count++)] = all[std::size_t(corners.at[std::size_t(i)].height)];
+  for (int i = 0; i < corners.count; ++i)
+    joined.points[std::size_t(joined.count++)] = all[std::size_t(corners.at[std::size_t(i)].height)];
   return joined;
 }
 

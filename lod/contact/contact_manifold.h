@@ -1,5 +1,6 @@
-// The points in which two hulls touch across a common plane: the overlap of the two touching features (corner, edge or face), found by
-// clipping one against the other (Sutherland and Hodgman, Reentrant polygon clipping, 1974), reduced to four points of wide support.
+// The points in which two hulls touch across a common plane: the overlap of the two touching features
+// (corner, edge or face), found by clipping one against the other (Sutherland and Hodgman, Reentrant polygon
+// clipping, 1974), reduced to four points of wide support.
 #pragma once
 
 #include <array>
@@ -18,9 +19,11 @@ struct Manifold {
   int count = 0;
 };
 
-/// `upper` and `lower`: the points of the upper body nearest to the lower one along `normal` (unit, from lower to upper) and the other way round,
-/// as arms from a common origin; at most four each. No point has a gap below `least_gap`. Empty where the features do not overlap.
-Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, const Vec3& normal, double least_gap);
+/// `upper` and `lower`: the points of the upper body nearest to the lower one along `normal` (unit, from
+/// lower to upper) and the other way round, as arms from a common origin; at most four each. No point has a
+/// gap below `least_gap`. Empty where the features do not overlap.
+Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, const Vec3& normal,
+                       double least_gap);
 
 /// Of two patches of one contact, which may overlap: four points of the widest support.
 Manifold join_manifolds(const Manifold& first, const Manifold& second, const Vec3& normal);

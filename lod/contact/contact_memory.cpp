@@ -14,7 +14,8 @@ void each_run(std::span<const ContactKey> keys, std::span<const CrowdManifold> m
 
 }  // namespace
 
-void ContactMemory::recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points, double step) {
+void ContactMemory::recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
+                           std::span<CrowdPoint> points, double step) {
   std::size_t expected = 0;
   each_run(keys, manifolds, [&](ContactKey key, std::uint32_t begin, std::uint32_t end) {
     const std::int32_t place = place_.find(key, expected);
@@ -32,7 +33,8 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<const Cro
   });
 }
 
-void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> points, double step) {
+void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
+                             std::span<const CrowdPoint> points, double step) {
   runs_.clear();
   forces_.clear();
   place_.clear();

@@ -1,5 +1,5 @@
-// The impulses of the last step's contacts, from which the solver starts: a pile at rest is then solved almost before the first sweep
-// (warm starting; Catto, Iterative dynamics with temporal coherence, 2005).
+// The impulses of the last step's contacts, from which the solver starts: a pile at rest is then solved
+// almost before the first sweep (warm starting; Catto, Iterative dynamics with temporal coherence, 2005).
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,14 @@ namespace lodestone {
 
 class ContactMemory {
  public:
-  /// Sets `guess` of the points of a pair to what they had: point by point, or where their number changed, in equal parts. `keys` holds one
-  /// key per manifold, equal ones in a row; `step` is the length of this step, s.
-  void recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points, double step);
+  /// Sets `guess` of the points of a pair to what they had: point by point, or where their number changed, in
+  /// equal parts. `keys` holds one key per manifold, equal ones in a row; `step` is the length of this step,
+  /// s.
+  void recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
+              std::span<CrowdPoint> points, double step);
   /// Forgets what was before.
-  void remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> points, double step);
+  void remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
+                std::span<const CrowdPoint> points, double step);
 
   void archive(StateArchive& a) { a(place_, runs_, forces_); }
 
@@ -26,9 +29,9 @@ class ContactMemory {
   struct Run {
     std::uint32_t begin, count;
   };
-  PairMemory place_;            // in runs_
+  PairMemory place_;  // in runs_
   std::vector<Run> runs_;
-  std::vector<Vec3> forces_;    // N, on the first body
+  std::vector<Vec3> forces_;  // N, on the first body
 };
 
 }  // namespace lodestone

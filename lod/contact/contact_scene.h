@@ -21,12 +21,22 @@ struct ContactScene {
   FullNeighbor& neighbor(Participant p) const { return neighbors[p.index()]; }
   const BodyKind& kind_of(const StatisticalBody& body) const { return kinds[body.kind]; }
 
-  bool asleep(Participant p) const { return p.is_statistical() ? body(p).motion == Motion::asleep : neighbor(p).asleep; }
-  const Shape& shape(Participant p) const { return p.is_statistical() ? *kind_of(body(p)).shape : *neighbor(p).shape; }
-  MaterialId material(Participant p) const { return p.is_statistical() ? kind_of(body(p)).material : neighbor(p).material; }
+  bool asleep(Participant p) const {
+    return p.is_statistical() ? body(p).motion == Motion::asleep : neighbor(p).asleep;
+  }
+  const Shape& shape(Participant p) const {
+    return p.is_statistical() ? *kind_of(body(p)).shape : *neighbor(p).shape;
+  }
+  MaterialId material(Participant p) const {
+    return p.is_statistical() ? kind_of(body(p)).material : neighbor(p).material;
+  }
   std::uint32_t owner(Participant p) const { return p.is_statistical() ? body(p).owner : neighbor(p).owner; }
-  Vec3& position(Participant p) const { return p.is_statistical() ? body(p).position : neighbor(p).state.position; }
-  const Quat& orientation(Participant p) const { return p.is_statistical() ? body(p).orientation : neighbor(p).state.orientation; }
+  Vec3& position(Participant p) const {
+    return p.is_statistical() ? body(p).position : neighbor(p).state.position;
+  }
+  const Quat& orientation(Participant p) const {
+    return p.is_statistical() ? body(p).orientation : neighbor(p).state.orientation;
+  }
   /// m/s, of the centre of mass; of one that sleeps: none.
   Vec3 velocity(Participant p) const {
     if (asleep(p)) return Vec3::Zero();
@@ -36,7 +46,9 @@ struct ContactScene {
   /// m/s², as it acts on the body.
   Vec3 gravity(Participant p) const { return properties(p).gravity ? world.gravity : Vec3(Vec3::Zero()); }
   PairBody pair_body(Participant p) const { return {&shape(p), position(p), orientation(p)}; }
-  ContactLaw law(Participant a, Participant b) const { return world.materials->law(material(a), material(b)); }
+  ContactLaw law(Participant a, Participant b) const {
+    return world.materials->law(material(a), material(b));
+  }
 };
 
 }  // namespace lodestone

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "lod/contact/contact_impulse.h"
+#include "lod/simd/wide_loop.h"
 
 namespace lodestone {
 namespace {
 
 // What stands on the ground (second below zero) meets nothing that moves.
-Vec3 contact_velocity(std::span<const SolverBody> bodies, const SolverContact& c) {
+LODESTONE_INLINE Vec3 contact_velocity(std::span<const SolverBody> bodies, const SolverContact& c) {
   const SolverBody& a = bodies[c.first];
   const Vec3 of_first = a.velocity + a.angular_velocity.cross(c.arm_first);
   if (c.second < 0) return of_first;
@@ -18,18 +19,19 @@ Vec3 contact_velocity(std::span<const SolverBody> bodies, const SolverContact& c
   return of_first - b.velocity - b.angular_velocity.cross(c.arm_second);
 }
 
-double inverse_mass_along(const SolverBody& body, const Vec3& arm, const Vec3& axis) {
+LODESTONE_INLINE double inverse_mass_along(const SolverBody& body, const Vec3& arm, const Vec3& axis) {
   const Vec3 turning = arm.cross(axis);
   return body.inverse_mass + turning.dot(body.inverse_inertia * turning);
 }
 
-double effective_mass_along(std::span<const SolverBody> bodies, const SolverContact& c, const Vec3& axis) {
+LODESTONE_INLINE double effective_mass_along(std::span<const SolverBody> bodies, const SolverContact& c,
+                                             const Vec3& axis) {
   double inverse = inverse_mass_along(bodies[c.first], c.arm_first, axis);
   if (c.second >= 0) inverse += inverse_mass_along(bodies[c.second], c.arm_second, axis);
   return 1.0 / inverse;
 }
 
-void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& impulse) {
+LODESTONE_INLINE void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& impulse) {
   SolverBody& a = bodies[c.first];
   a.velocity += a.inverse_mass * impulse;
   a.angular_velocity += a.inverse_inertia * c.arm_first.cross(impulse);
@@ -40,10 +42,13 @@ void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& imp
 }
 
 // The normal velocity to reach: a bounce, or closing the gap just within the step.
-double target_velocity(SolverContact& c, bool on_still, double approach, double step, const ContactSolverSettings& s) {
-  const double closing = std::min(0.0, -c.gap / step), fall = on_still ? std::min(0.0, s.fall.dot(c.normal)) : 0.0;
+double target_velocity(SolverContact& c, bool on_still, double approach, double step,
+                       const ContactSolverSettings& s) {
+  const double closing = std::min(0.0, -c.gap / step),
+               fall = on_still ? std::min(0.0, s.fall.dot(c.normal)) : 0.0;
   c.bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
-  return c.bounces ? std::max(bounce_in_fall(c.law.restitution, c.gap, approach, fall, step), closing) : closing;
+  return c.bounces ? std::max(bounce_in_fall(c.law.restitution, c.gap, approach, fall, step), closing)
+                   : closing;
 }
 
 void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const ContactSolverSettings& s) {
@@ -57,7 +62,7 @@ void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const 
 }
 
 // Returns the size of the change, N s.
-double relax(std::span<SolverBody> bodies, SolverContact& c) {
+LODESTONE_INLINE double relax(std::span<SolverBody> bodies, SolverContact& c) {
   const Vec3 velocity = contact_velocity(bodies, c);
   const double before = c.impulse[0];
   c.impulse[0] = std::max(0.0, before + c.effective_mass[0] * (c.target - velocity.dot(c.normal)));
@@ -80,7 +85,8 @@ void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
   apply(bodies, c, impulse_of(c));
 }
 
-void sweep(std::span<SolverBody> bodies, std::span<SolverContact> contacts, const ContactSolverSettings& settings) {
+void sweep(std::span<SolverBody> bodies, std::span<SolverContact> contacts,
+           const ContactSolverSettings& settings) {
   for (int i = 0; i < settings.sweeps; ++i) {
     double changed = 0.0, greatest = 0.0;
     for (SolverContact& c : contacts) {
@@ -92,7 +98,8 @@ void sweep(std::span<SolverBody> bodies, std::span<SolverContact> contacts, cons
 }
 
 // What the normal impulses are without friction bounds it.
-void bound_friction(std::span<SolverBody> bodies, std::span<SolverContact> contacts, const ContactSolverSettings& settings) {
+void bound_friction(std::span<SolverBody> bodies, std::span<SolverContact> contacts,
+                    const ContactSolverSettings& settings) {
   thread_local std::vector<SolverBody> before;
   before.assign(bodies.begin(), bodies.end());
   for (SolverContact& c : contacts) c.friction_bound = 0.0;
@@ -107,6 +114,9 @@ void bound_friction(std::span<SolverBody> bodies, std::span<SolverContact> conta
 
 }  // namespace
 
+// With v₀ the velocity before the step's gravity a, the gap h is closed at vᵢ = −√(v₀² − 2 a h), after
+// t = −2 h/(v₀ + vᵢ) (v is linear in time, so h is the mean velocity times t); then −e vᵢ, and a for what is
+// left.
 double bounce_in_fall(double restitution, double gap, double approach, double fall, double step) {
   const double before = approach - fall, acceleration = fall / step, way = std::max(0.0, gap);
   const double impact = -std::sqrt(std::max(0.0, before * before - 2.0 * acceleration * way));
@@ -114,7 +124,8 @@ double bounce_in_fall(double restitution, double gap, double approach, double fa
   return -restitution * impact + acceleration * (step - time);
 }
 
-void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step, const ContactSolverSettings& settings) {
+void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step,
+                    const ContactSolverSettings& settings) {
   for (SolverContact& c : contacts) prepare(bodies, c, step, settings);
   if (settings.frictionless_bound) bound_friction(bodies, contacts, settings);
   for (SolverContact& c : contacts) start_from_guess(bodies, c);

@@ -50,7 +50,9 @@ Participant deciding(Participant one, Participant other) {
 // Numbers of what bodies touch besides planes, for what is remembered of contacts.
 constexpr std::size_t kFirstSolid = 1 << 16, kFirstFace = 1u << 31;
 
-bool is_eased(const ContactScene& scene, Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; }
+bool is_eased(const ContactScene& scene, Participant p) {
+  return p.is_statistical() && scene.body(p).eased > 0.0f;
+}
 
 }  // namespace
 
@@ -67,7 +69,8 @@ int Crowd::solver_index(const ContactScene& scene, Participant p, double time) {
 // Ground that moves carries what touches it: a body that nothing stops. −1: it stands still.
 std::int32_t Crowd::solver_index(const GroundPart& part) {
   if (!part.moves()) return -1;
-  const auto known = std::ranges::find(moving_parts_, &part, &std::pair<const GroundPart*, std::int32_t>::first);
+  const auto known =
+      std::ranges::find(moving_parts_, &part, &std::pair<const GroundPart*, std::int32_t>::first);
   if (known != moving_parts_.end()) return known->second;
   const auto index = std::int32_t(solver_bodies_.size());
   moving_parts_.emplace_back(&part, index);
@@ -79,7 +82,8 @@ std::int32_t Crowd::solver_index(const GroundPart& part) {
   return index;
 }
 
-void Crowd::add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal, const ContactLaw& law) {
+void Crowd::add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal,
+                         const ContactLaw& law) {
   keys_.push_back(key);
   manifolds_.push_back({first, second, normal, law, std::uint32_t(points_.size()), 0});
   grounds_.emplace_back();
@@ -95,26 +99,32 @@ void Crowd::add_point(const Vec3& arm_first, const Vec3& arm_second, double gap)
 }
 
 void Crowd::add_pair_contact(const ContactScene& scene, const CrowdContact& pair, double time) {
-  const std::int32_t first = solver_index(scene, pair.first, time), second = solver_index(scene, pair.second, time);
-  add_manifold(contact_key(scene.owner(pair.first), scene.owner(pair.second)), first, second, pair.contact.normal, scene.law(pair.first, pair.second));
+  const std::int32_t first = solver_index(scene, pair.first, time),
+                     second = solver_index(scene, pair.second, time);
+  add_manifold(contact_key(scene.owner(pair.first), scene.owner(pair.second)), first, second,
+               pair.contact.normal, scene.law(pair.first, pair.second));
   const Manifold& manifold = pair.contact.manifold;
   const Vec3 &at_first = scene.position(pair.first), &at_second = scene.position(pair.second);
-  for (int i = 0; i < manifold.count; ++i) add_point(manifold.points[i].point - at_first, manifold.points[i].point - at_second, manifold.points[i].gap);
+  for (int i = 0; i < manifold.count; ++i)
+    add_point(manifold.points[i].point - at_first, manifold.points[i].point - at_second,
+              manifold.points[i].gap);
 }
 
 void Crowd::add_solid_contact(const ContactScene& scene, const SolidContact& on_solid, double time) {
   const Participant p = Participant::statistical(std::size_t(on_solid.slot));
   const std::int32_t index = solver_index(scene, p, time), ground = solver_index(*on_solid.part);
-  add_manifold(ground_key(scene.owner(p), kFirstSolid + on_solid.number), index, ground, on_solid.contact.normal,
-               scene.world.materials->law(scene.material(p), on_solid.material));
+  add_manifold(ground_key(scene.owner(p), kFirstSolid + on_solid.number), index, ground,
+               on_solid.contact.normal, scene.world.materials->law(scene.material(p), on_solid.material));
   grounds_.back() = {on_solid.part->id, on_solid.material};
   const Manifold& manifold = on_solid.contact.manifold;
   for (int i = 0; i < manifold.count; ++i)
-    add_point(manifold.points[i].point - scene.position(p), manifold.points[i].point - on_solid.part->pose.position, manifold.points[i].gap);
+    add_point(manifold.points[i].point - scene.position(p),
+              manifold.points[i].point - on_solid.part->pose.position, manifold.points[i].gap);
 }
 
 // `number`: of the plane, for what is remembered of its contacts.
-void Crowd::add_ground_contacts(const ContactScene& scene, int index, const HalfSpace& plane, std::size_t number, double time) {
+void Crowd::add_ground_contacts(const ContactScene& scene, int index, const HalfSpace& plane,
+                                std::size_t number, double time) {
   StatisticalBody& body = scene.body(participants_[std::size_t(index)]);
   const BodyKind& kind = scene.kind_of(body);
   const bool hull = !body.is_sphere();
@@ -126,7 +136,8 @@ void Crowd::add_ground_contacts(const ContactScene& scene, int index, const Half
   if (height > reach + margin) return;
   HullContacts found;
   if (hull) {
-    found = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, margin, body.support_hint);
+    found =
+        find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, margin, body.support_hint);
   } else {
     found.contact[0] = {-reach * plane.normal, height - reach};
     found.count = 1;
@@ -155,19 +166,27 @@ void Crowd::sort_full_contacts(std::span<const FullContact> full_contacts, std::
   each_end([&](std::int32_t end, std::int32_t contact) { full_order_[full_next_[end]++] = contact; });
 }
 
-// What holds up a full body, and what holds that up in turn: bodies met here take their place among the participants.
+// What holds up a full body, and what holds that up in turn: bodies met here take their place among the
+// participants.
 void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch) {
   const auto self = std::int32_t(participants_[std::size_t(index)].index());
   const Vec3& at_self = scene.neighbors[self].state.position;
   for (std::int32_t i = full_start_[self]; i < full_start_[self + 1]; ++i) {
     const FullContact& contact = touch.full_contacts[full_order_[i]];
     const bool is_first = contact.first == self;
-    const std::int32_t other = is_first ? contact.second : contact.first, second = other < 0 ? -1 : solver_index(scene, Participant::full(std::size_t(other)), touch.time);
+    const std::int32_t other = is_first ? contact.second : contact.first,
+                       second = other < 0
+                                    ? -1
+                                    : solver_index(scene, Participant::full(std::size_t(other)), touch.time);
     const bool added_by_the_other = other >= 0 && second < index && !scene.neighbors[other].asleep;
     if (added_by_the_other) continue;
-    add_manifold(contact_key(scene.neighbors[self].owner, other < 0 ? 0xffffffff : scene.neighbors[other].owner), index, second,
-                 is_first ? contact.normal : Vec3(-contact.normal), {.restitution = 0.0, .friction = contact.friction});
-    add_point(contact.point - at_self, other < 0 ? Vec3(Vec3::Zero()) : Vec3(contact.point - scene.neighbors[other].state.position), contact.gap);
+    add_manifold(
+        contact_key(scene.neighbors[self].owner, other < 0 ? 0xffffffff : scene.neighbors[other].owner),
+        index, second, is_first ? contact.normal : Vec3(-contact.normal),
+        {.restitution = 0.0, .friction = contact.friction});
+    add_point(contact.point - at_self,
+              other < 0 ? Vec3(Vec3::Zero()) : Vec3(contact.point - scene.neighbors[other].state.position),
+              contact.gap);
   }
 }
 
@@ -197,15 +216,19 @@ void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
       continue;
     }
     if (!meets_ground(scene.properties(p))) continue;
-    for (std::size_t number = 0; number < planes.size(); ++number) add_ground_contacts(scene, int(i), planes[number], number, touch.time);
+    for (std::size_t number = 0; number < planes.size(); ++number)
+      add_ground_contacts(scene, int(i), planes[number], number, touch.time);
     std::size_t number = kFirstFace;
-    for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index()))) add_ground_contacts(scene, int(i), face, number++, touch.time);
+    for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index())))
+      add_ground_contacts(scene, int(i), face, number++, touch.time);
   }
 }
 
 void Crowd::solve(const ContactScene& scene, double time) {
   ContactSolverSettings settings = settings_.solver;
-  settings.bounce_velocity = scene.world.bounce_velocity + scene.world.gravity_strength() * time;  // what gravity adds in a step is no impact
+  settings.bounce_velocity =
+      scene.world.bounce_velocity +
+      scene.world.gravity_strength() * time;  // what gravity adds in a step is no impact
   settings.fall = scene.world.gravity * time;
   memory_.recall(keys_, manifolds_, points_, time);
   const std::size_t known = scene.world.log ? note_approaches(scene, time) : 0;
@@ -221,17 +244,24 @@ std::size_t Crowd::note_approaches(const ContactScene& scene, double time) const
   const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
     if (index < 0) return Vec3(Vec3::Zero());
     const SolverBody& body = solver_bodies_[std::size_t(index)];
-    const Vec3 fall = body.inverse_mass > 0.0 ? Vec3(scene.gravity(participants_[std::size_t(index)]) * time) : Vec3(Vec3::Zero());
+    const Vec3 fall = body.inverse_mass > 0.0 ? Vec3(scene.gravity(participants_[std::size_t(index)]) * time)
+                                              : Vec3(Vec3::Zero());
     return Vec3(body.velocity - fall + body.angular_velocity.cross(arm));
   };
   for (std::size_t i = 0; i < manifolds_.size(); ++i) {
     const CrowdManifold& m = manifolds_[i];
-    const Participant first = participants_[std::size_t(m.first)], second = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
-    ContactRecord& record = records.emplace_back(ContactRecord{.first = scene.owner(first), .normal = m.normal});
-    if (second.is_ground()) std::tie(record.ground, record.ground_material) = grounds_[i];
-    else record.second = scene.owner(second);
+    const Participant first = participants_[std::size_t(m.first)],
+                      second = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
+    ContactRecord& record =
+        records.emplace_back(ContactRecord{.first = scene.owner(first), .normal = m.normal});
+    if (second.is_ground())
+      std::tie(record.ground, record.ground_material) = grounds_[i];
+    else
+      record.second = scene.owner(second);
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
-      record.approach = std::max(record.approach, (velocity_of(m.second, point.arm_second) - velocity_of(m.first, point.arm_first)).dot(m.normal));
+      record.approach = std::max(
+          record.approach,
+          (velocity_of(m.second, point.arm_second) - velocity_of(m.first, point.arm_first)).dot(m.normal));
       record.point += (scene.position(first) + point.arm_first) / double(m.count);
     }
   }
@@ -244,9 +274,11 @@ void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
   std::size_t kept = known;
   for (std::size_t i = 0; i < manifolds_.size(); ++i) {
     const CrowdManifold& m = manifolds_[i];
-    const bool statistical = participants_[std::size_t(m.first)].is_statistical() || (m.second >= 0 && participants_[std::size_t(m.second)].is_statistical());
+    const bool statistical = participants_[std::size_t(m.first)].is_statistical() ||
+                             (m.second >= 0 && participants_[std::size_t(m.second)].is_statistical());
     double impulse = 0.0;
-    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) impulse += point.impulse.dot(m.normal);
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count))
+      impulse += point.impulse.dot(m.normal);
     if (!statistical || impulse <= 0.0) continue;
     records[kept] = records[known + i];
     records[kept++].impulse = impulse;
@@ -297,10 +329,13 @@ void Crowd::give_to_full(const ContactScene& scene) const {
     }
 }
 
-// Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's matter.
+// Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's
+// matter.
 void Crowd::move_apart(const ContactScene& scene, double time) {
   const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
-    return index < 0 ? Vec3(Vec3::Zero()) : Vec3(solver_bodies_[index].velocity + solver_bodies_[index].angular_velocity.cross(arm));
+    return index < 0
+               ? Vec3(Vec3::Zero())
+               : Vec3(solver_bodies_[index].velocity + solver_bodies_[index].angular_velocity.cross(arm));
   };
   const auto move = [&](std::int32_t index, const Vec3& by) {
     if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
@@ -314,20 +349,27 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
     if (m.second >= 0) ++partners_[std::size_t(m.second)];
   }
   for (const CrowdManifold& m : manifolds_) {
-    const Participant one = participants_[std::size_t(m.first)], other = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
+    const Participant one = participants_[std::size_t(m.first)],
+                      other = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
     if (!one.is_statistical() && !other.is_statistical()) continue;
     const double radius = scene.shape(deciding(one, other)).radius;
     const bool eased = is_eased(scene, one) || is_eased(scene, other);
-    const int partners = std::max(partners_[std::size_t(m.first)], m.second < 0 ? 0 : partners_[std::size_t(m.second)]);
-    const double farthest = eased ? parting_speed(radius, scene.world.gravity_strength()) * time / partners : 1e300;
-    const double first = solver_bodies_[m.first].inverse_mass, second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
+    const int partners =
+        std::max(partners_[std::size_t(m.first)], m.second < 0 ? 0 : partners_[std::size_t(m.second)]);
+    const double farthest =
+        eased ? parting_speed(radius, scene.world.gravity_strength()) * time / partners : 1e300;
+    const double first = solver_bodies_[m.first].inverse_mass,
+                 second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
     if (first + second == 0.0) continue;
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
       for (const Participant p : {one, other})
-        if (is_eased(scene, p) && point.gap < -kBroughtOverlap * radius) scene.body(p).eased = kEasedTime;  // for as long as there is some
-      const double parting = (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
-      const double overlap = point.gap + std::max(0.0, parting) * time;  // the rest is undone by the motion itself
+        if (is_eased(scene, p) && point.gap < -kBroughtOverlap * radius)
+          scene.body(p).eased = kEasedTime;  // for as long as there is some
+      const double parting =
+          (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
+      const double overlap =
+          point.gap + std::max(0.0, parting) * time;  // the rest is undone by the motion itself
       const double distance = std::min(push_out_overlap(overlap, radius), farthest) / double(m.count);
       move(m.first, distance * first / (first + second) * m.normal);
       move(m.second, -distance * second / (first + second) * m.normal);
@@ -340,8 +382,10 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
   const auto lift = [&](Participant p, const HalfSpace& plane) {
     StatisticalBody& body = scene.body(p);
     const Shape& shape = *scene.kind_of(body).shape;
-    if (body.is_sphere()) lift_sphere_out(body, plane);
-    else lift_out(body, shape, plane, lift_of(body, shape, scene.world.gravity_strength(), touch.time));
+    if (body.is_sphere())
+      lift_sphere_out(body, plane);
+    else
+      lift_out(body, shape, plane, lift_of(body, shape, scene.world.gravity_strength(), touch.time));
   };
   for (const Participant p : participants_) {
     if (!p.is_statistical() || scene.asleep(p)) continue;

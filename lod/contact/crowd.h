@@ -1,4 +1,5 @@
-// Bodies that touch other bodies: their pair contacts and ground contacts solved together, momentum exact to rounding.
+// Bodies that touch other bodies: their pair contacts and ground contacts solved together, momentum exact to
+// rounding.
 #pragma once
 
 #include <algorithm>
@@ -36,10 +37,13 @@ struct CrowdTouch {
 /// The contact solver's work arrays, kept between steps so that a warm step allocates nothing.
 class Crowd {
  public:
-  explicit Crowd(JobRunner jobs = make_job_runner(1), const CrowdSettings& settings = {}) : settings_(settings), jobs_(std::move(jobs)) {}
+  explicit Crowd(JobRunner jobs = make_job_runner(1), const CrowdSettings& settings = {})
+      : settings_(settings), jobs_(std::move(jobs)) {}
 
-  /// Solves the contacts of `touch` with the ground contacts of every body in them (the faces among these) and those of the full contacts that hold up a full body, then moves
-  /// the statistical ones among them by its time. Bodies asleep hold still; full neighbours receive impulses, the velocities that these give them, and shifts, but do not move on.
+  /// Solves the contacts of `touch` with the ground contacts of every body in them (the faces among these)
+  /// and those of the full contacts that hold up a full body, then moves the statistical ones among them by
+  /// its time. Bodies asleep hold still; full neighbours receive impulses, the velocities that these give
+  /// them, and shifts, but do not move on.
   ContactTally step(const ContactScene& scene, const CrowdTouch& touch);
   void archive(StateArchive& a) { a(memory_); }
   void make_room(std::size_t bodies) { index_of_body_.resize(std::max(index_of_body_.size(), bodies), -1); }
@@ -48,11 +52,13 @@ class Crowd {
   void gather(const ContactScene& scene, const CrowdTouch& touch);
   int solver_index(const ContactScene& scene, Participant participant, double time);
   std::int32_t solver_index(const GroundPart& part);
-  void add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal, const ContactLaw& law);
+  void add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal,
+                    const ContactLaw& law);
   void add_point(const Vec3& arm_first, const Vec3& arm_second, double gap);
   void add_pair_contact(const ContactScene& scene, const CrowdContact& pair, double time);
   void add_solid_contact(const ContactScene& scene, const SolidContact& on_solid, double time);
-  void add_ground_contacts(const ContactScene& scene, int index, const HalfSpace& plane, std::size_t number, double time);
+  void add_ground_contacts(const ContactScene& scene, int index, const HalfSpace& plane, std::size_t number,
+                           double time);
   void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
   void add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch);
   void solve(const ContactScene& scene, double time);
@@ -65,18 +71,19 @@ class Crowd {
 
   CrowdSettings settings_;
   JobRunner jobs_;
-  std::vector<Participant> participants_;     // of each solver body
+  std::vector<Participant> participants_;                        // of each solver body
   std::vector<std::int32_t> index_of_body_, index_of_neighbor_;  // in participants_; −1: not among them
-  std::vector<std::int32_t> full_start_, full_next_, full_order_;  // of each neighbour: its run of full contacts
+  std::vector<std::int32_t> full_start_, full_next_,
+      full_order_;  // of each neighbour: its run of full contacts
   std::vector<std::pair<const GroundPart*, std::int32_t>> moving_parts_;  // among solver_bodies_
   std::vector<SolverBody> solver_bodies_;
   std::vector<Vec3> angular_before_;
   std::vector<CrowdManifold> manifolds_;
-  std::size_t pair_manifolds_ = 0;            // the first of them
-  std::vector<ContactKey> keys_;              // of each manifold
+  std::size_t pair_manifolds_ = 0;                        // the first of them
+  std::vector<ContactKey> keys_;                          // of each manifold
   std::vector<std::pair<GroundId, MaterialId>> grounds_;  // that it is with, for the log
   std::vector<CrowdPoint> points_;
-  std::vector<int> partners_;                 // manifolds of each solver body
+  std::vector<int> partners_;  // manifolds of each solver body
   CrowdSolver solver_;
   ContactMemory memory_;
 };

@@ -7,20 +7,26 @@
 namespace lodestone {
 namespace {
 
-// Vertices of the hull below the margin, found by walking its edges from the lowest one: below a plane they are connected.
+// Vertices of the hull below the margin, found by walking its edges from the lowest one: below a plane they
+// are connected.
 struct Submerged {
   static constexpr int kCapacity = 64;
   std::array<std::int32_t, kCapacity> vertex;
   std::array<double, kCapacity> gap;
   int count = 0;
-  std::size_t vertices = 0;  // of the hull
+  std::size_t vertices;  // of the hull
 
-  // Marks by the vertex's low bits tell newcomers at once; where so many vertices share marks, the list decides.
+  // Marks by the vertex's low bits tell newcomers at once; where so many vertices share marks, the list
+  // decides.
   static constexpr std::uint32_t kMarks = 2048;
-  std::array<std::uint64_t, kMarks / 64> marks{};
+  std::array<std::uint64_t, kMarks / 64> marks;
+  explicit Submerged(std::size_t of_hull) : vertices(of_hull) {
+    std::fill_n(marks.begin(), std::min<std::size_t>(kMarks, of_hull + 63) / 64, 0);
+  }
   bool holds(std::int32_t v) const {
     if (!(marks[std::uint32_t(v) % kMarks / 64] >> std::uint32_t(v) % 64 & 1)) return false;
-    return vertices <= kMarks || std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
+    return vertices <= kMarks ||
+           std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
   }
   void add(std::int32_t v, double height) {
     marks[std::uint32_t(v) % kMarks / 64] |= std::uint64_t(1) << std::uint32_t(v) % 64;
@@ -29,7 +35,8 @@ struct Submerged {
   }
 };
 
-void walk_below(const Shape& shape, const Vec3& normal_in_body, double height, double margin, Submerged& found) {
+void walk_below(const Shape& shape, const Vec3& normal_in_body, double height, double margin,
+                Submerged& found) {
   for (int visited = 0; visited < found.count; ++visited) {
     for (const std::int32_t next : shape.hull.neighbors(found.vertex[visited])) {
       if (found.count == Submerged::kCapacity) return;
@@ -54,23 +61,28 @@ int find_greatest(const Shape& shape, const Submerged& found, Measure measure) {
 
 }  // namespace
 
-HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal, double height, double margin,
-                                std::int32_t& hint) {
+HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal,
+                                double height, double margin, std::int32_t& hint) {
   HullContacts result;
-  result.contact[0] = find_lowest_point(shape, orientation, normal, height, hint);
   result.count = 1;
-  if (shape.sphere_radius) return result;
-
-  Submerged found;
-  found.vertices = shape.hull.vertices.size();
+  if (shape.sphere_radius) {
+    result.contact[0] = find_lowest_point(shape, orientation, normal, height, hint);
+    return result;
+  }
   const Vec3 normal_in_body = orientation.conjugate() * normal;
+  hint = find_support(shape.hull, -normal_in_body, hint);
+  const Vec3 arm = orientation * shape.hull.vertices[std::size_t(hint)];
+  result.contact[0] = {arm, height + arm.dot(normal), hint};
+
+  Submerged found(shape.hull.vertices.size());
   found.add(hint, result.contact[0].gap);
   walk_below(shape, normal_in_body, height, margin, found);
   if (found.count == 1) return result;
   const Mat3 rotation = orientation.toRotationMatrix();
   const auto keep = [&](int i) {
     const std::int32_t vertex = found.vertex[i];
-    result.contact[result.count++] = {rotation * shape.hull.vertices[std::size_t(vertex)], found.gap[i], vertex};
+    result.contact[result.count++] = {rotation * shape.hull.vertices[std::size_t(vertex)], found.gap[i],
+                                      vertex};
   };
   if (found.count <= kMaxGroundContacts) {
     for (int i = 1; i < found.count; ++i) keep(i);

@@ -1,4 +1,5 @@
-// Where a body's convex hull meets a plane: the exact support height, and the few vertices that carry the body.
+// Where a body's convex hull meets a plane: the exact support height, and the few vertices that carry the
+// body.
 #pragma once
 
 #include <array>
@@ -9,14 +10,15 @@
 namespace lodestone {
 
 struct HullContact {
-  Vec3 arm = Vec3::Zero();  ///< m, from the centre of mass to the contact point, world axes
-  double gap = 0.0;         ///< m, of the point over the plane; negative inside
-  std::int32_t vertex = -1; ///< of the hull; −1: of a sphere
+  Vec3 arm = Vec3::Zero();   ///< m, from the centre of mass to the contact point, world axes
+  double gap = 0.0;          ///< m, of the point over the plane; negative inside
+  std::int32_t vertex = -1;  ///< of the hull; −1: of a sphere
 };
 
-/// The lowest point of a body over a plane with unit `normal`, its centre of mass at `height` over it. The climb over the hull starts at `hint`
-/// and leaves the vertex that it found there.
-inline HullContact find_lowest_point(const Shape& shape, const Quat& orientation, const Vec3& normal, double height, std::int32_t& hint) {
+/// The lowest point of a body over a plane with unit `normal`, its centre of mass at `height` over it. The
+/// climb over the hull starts at `hint` and leaves the vertex that it found there.
+inline HullContact find_lowest_point(const Shape& shape, const Quat& orientation, const Vec3& normal,
+                                     double height, std::int32_t& hint) {
   if (shape.sphere_radius) return {-*shape.sphere_radius * normal, height - *shape.sphere_radius};
   hint = find_support(shape.hull, orientation.conjugate() * (-normal), hint);
   const Vec3 arm = orientation * shape.hull.vertices[hint];
@@ -30,14 +32,17 @@ struct HullContacts {
   int count = 0;
 };
 
-/// The lowest point, and up to three more vertices with a gap below `margin`, chosen to span the widest area of support.
-HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal, double height, double margin,
-                                std::int32_t& hint);
+/// The lowest point, and up to three more vertices with a gap below `margin`, chosen to span the widest area
+/// of support.
+HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal,
+                                double height, double margin, std::int32_t& hint);
 
-/// m: how far a body may be lifted out of the ground in `time` seconds; no bound unless it brought the overlap from another rung.
+/// m: how far a body may be lifted out of the ground in `time` seconds; no bound unless it brought the
+/// overlap from another rung.
 double lift_of(const StatisticalBody& body, const Shape& shape, double gravity, double time);
 
-/// Lifts a body that has sunk into `plane` out of it, by `farthest` m at most, and stops it from sinking further.
+/// Lifts a body that has sunk into `plane` out of it, by `farthest` m at most, and stops it from sinking
+/// further.
 void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane, double farthest);
 
 }  // namespace lodestone

@@ -10,21 +10,25 @@ namespace lodestone {
 namespace {
 
 constexpr double kApart = 0.02;  // over R: so far overlapping hulls are taken apart to look for their axis
-constexpr double kShallow = 0.02;  // over R: so little that no other way out is shorter than the one known before
-constexpr double kDeep = 0.25;   // over the lesser inner radius: an overlap whose least way out may lie elsewhere
+constexpr double kShallow =
+    0.02;  // over R: so little that no other way out is shorter than the one known before
+constexpr double kDeep =
+    0.25;  // over the lesser inner radius: an overlap whose least way out may lie elsewhere
 constexpr int kMostRounds = 32;
-constexpr double kConverged = 1e-7;        // of the squared distance
+constexpr double kConverged = 1e-7;  // of the squared distance
 
 struct Corner {
   Vec3 at;
   HullCorner of;
 };
 
-// Points of the difference of the two cores; nearest() leaves those that the point nearest to the origin lies between.
+// Points of the difference of the two cores; nearest() leaves those that the point nearest to the origin lies
+// between.
 class Simplex {
  public:
   bool holds(const Vec3& p) const {
-    return std::any_of(corners_.begin(), corners_.begin() + count_, [&](const Corner& other) { return other.at == p; });
+    return std::any_of(corners_.begin(), corners_.begin() + count_,
+                       [&](const Corner& other) { return other.at == p; });
   }
   void add(const Corner& corner) { corners_[count_++] = corner; }
   void clear() { count_ = 0; }
@@ -100,7 +104,9 @@ class Simplex {
       const Vec3 &a = corners[face[0]].at, &b = corners[face[1]].at, &c = corners[face[2]].at;
       const Vec3 normal = (b - a).cross(c - a);
       if (-normal.dot(a) * normal.dot(corners[face[3]].at - a) > 0.0) continue;
-      if (const double distance = nearest_of_face(corners[face[0]], corners[face[1]], corners[face[2]]).squaredNorm(); distance < least)
+      if (const double distance =
+              nearest_of_face(corners[face[0]], corners[face[1]], corners[face[2]]).squaredNorm();
+          distance < least)
         least = distance, best = face;
     }
     return best ? nearest_of_face(corners[best[0]], corners[best[1]], corners[best[2]]) : Vec3(Vec3::Zero());
@@ -110,9 +116,10 @@ class Simplex {
 // Spheres have their centre for a core, hulls themselves.
 Vec3 core_of(const Shape& shape, const Vec3& arm) { return shape.sphere_radius ? Vec3(Vec3::Zero()) : arm; }
 
-// Of the two when the first is moved by `shift`. Whether their cores are apart then: `gap` is of the hulls where they are, along the axis found; else along the best one
-// that was met.
-bool find_axis(const PlacedHull& first, const PlacedHull& second, const Vec3& shift, double enough, HullGap& gap) {
+// Of the two when the first is moved by `shift`. Whether their cores are apart then: `gap` is of the hulls
+// where they are, along the axis found; else along the best one that was met.
+bool find_axis(const PlacedHull& first, const PlacedHull& second, const Vec3& shift, double enough,
+               HullGap& gap) {
   const Vec3 between = first.position - second.position;
   const double size = first.shape->radius + second.shape->radius, nothing = 1e-18 * size * size;
   Simplex simplex;
@@ -126,16 +133,22 @@ bool find_axis(const PlacedHull& first, const PlacedHull& second, const Vec3& sh
   if (gap.corner_count > 0) {
     const Vec3 nearest = simplex.nearest();
     square = nearest.squaredNorm();
-    if (square > nothing) gap.normal = nearest / std::sqrt(square);
-    else simplex.clear(), square = 1e300;
+    if (square > nothing)
+      gap.normal = nearest / std::sqrt(square);
+    else
+      simplex.clear(), square = 1e300;
   }
   for (int round = 0; round < kMostRounds; ++round) {
-    const Vec3 arm_first = first.find_farthest(-gap.normal, gap.vertex_first), arm_second = second.find_farthest(gap.normal, gap.vertex_second);
+    const Vec3 arm_first = first.find_farthest(-gap.normal, gap.vertex_first),
+               arm_second = second.find_farthest(gap.normal, gap.vertex_second);
     gap.gap = gap.normal.dot(between + arm_first - arm_second);
     if (gap.gap > enough) return true;
     if (gap.gap > best.gap) best = gap;
-    const Vec3 corner = between + shift + core_of(*first.shape, arm_first) - core_of(*second.shape, arm_second);
-    if (square < 1e300 && (std::sqrt(square) * gap.normal.dot(corner) >= square * (1.0 - kConverged) || simplex.holds(corner))) return simplex.save(gap), true;
+    const Vec3 corner =
+        between + shift + core_of(*first.shape, arm_first) - core_of(*second.shape, arm_second);
+    if (square < 1e300 &&
+        (std::sqrt(square) * gap.normal.dot(corner) >= square * (1.0 - kConverged) || simplex.holds(corner)))
+      return simplex.save(gap), true;
     simplex.add({corner, {gap.vertex_first, gap.vertex_second}});
     const Vec3 nearest = simplex.nearest();
     const double before = square;
@@ -175,31 +188,40 @@ Vec3 PlacedHull::find_farthest(const Vec3& direction, std::int32_t& vertex) cons
   return rotation * shape->hull.vertices[std::size_t(vertex)];
 }
 
-HullGap measure_hull_gap(const PlacedHull& first, const PlacedHull& second, const Vec3& normal, const HullGap& hints) {
+HullGap measure_hull_gap(const PlacedHull& first, const PlacedHull& second, const Vec3& normal,
+                         const HullGap& hints) {
   HullGap along = hints;
   along.normal = normal;
   const Vec3 between = first.position - second.position;
-  along.gap = normal.dot(between + first.find_farthest(-normal, along.vertex_first) - second.find_farthest(normal, along.vertex_second));
+  along.gap = normal.dot(between + first.find_farthest(-normal, along.vertex_first) -
+                         second.find_farthest(normal, along.vertex_second));
   return along;
 }
 
-HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough, bool exact) {
+HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough,
+                      bool exact) {
   const bool known = !start.normal.isZero(0.0);
-  HullGap gap = measure_hull_gap(first, second, known ? start.normal : from_line_of_centers(first, second), start);
+  HullGap gap =
+      measure_hull_gap(first, second, known ? start.normal : from_line_of_centers(first, second), start);
   if (gap.gap > enough) return gap;
   // What overlapped a little a moment ago probably does so still.
   if (known && gap.gap < 0.0) {
     gap = find_axis_of_overlap(first, second, gap, enough);
-    if (gap.gap < 0.0 && -gap.gap < kShallow * std::min(first.shape->radius, second.shape->radius)) return gap;
+    if (gap.gap < 0.0 && -gap.gap < kShallow * std::min(first.shape->radius, second.shape->radius))
+      return gap;
   }
   HullGap other = gap;
   if (find_axis(first, second, Vec3::Zero(), enough, other)) return other;
   other = find_axis_of_overlap(first, second, other, enough);
   if (other.gap > gap.gap) gap = other;
-  const auto inner = [](const Shape& shape) { return shape.sphere_radius ? *shape.sphere_radius : shape.inner_radius; };
+  const auto inner = [](const Shape& shape) {
+    return shape.sphere_radius ? *shape.sphere_radius : shape.inner_radius;
+  };
   if (!exact || -gap.gap < kDeep * std::min(inner(*first.shape), inner(*second.shape))) return gap;
-  const auto overlap = find_hull_overlap(*first.shape, {first.position, first.orientation}, *second.shape, {second.position, second.orientation});
-  return overlap && -overlap->depth > gap.gap ? measure_hull_gap(first, second, overlap->direction, gap) : gap;
+  const auto overlap = find_hull_overlap(*first.shape, {first.position, first.orientation}, *second.shape,
+                                         {second.position, second.orientation});
+  return overlap && -overlap->depth > gap.gap ? measure_hull_gap(first, second, overlap->direction, gap)
+                                              : gap;
 }
 
 bool are_apart(const PlacedHull& first, const PlacedHull& second, double enough, HullGap& gap) {

@@ -1,6 +1,8 @@
 #include "lod/contact/pair_contacts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace lodestone {
@@ -16,7 +18,8 @@ PlacedHull place(const PairBody& body) { return {*body.shape, body.position, bod
 
 // The vertices that lie within a hair of the touching plane, as arms from `origin`.
 HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin) {
-  const double lowest = vertex < 0 ? 0.0 : normal.dot(body.orientation * body.shape->hull.vertices[std::size_t(vertex)]);
+  const double lowest =
+      vertex < 0 ? 0.0 : normal.dot(body.orientation * body.shape->hull.vertices[std::size_t(vertex)]);
   const double margin = lowest + kFeatureMargin * body.shape->radius;
   HullContacts feature = find_hull_contacts(*body.shape, body.orientation, normal, 0.0, margin, vertex);
   for (int i = 0; i < feature.count; ++i) feature.contact[i].arm += body.position - origin;
@@ -29,7 +32,8 @@ Vec3 middle_of(const HullContacts& feature) {
   return sum / feature.count;
 }
 
-Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, HullContacts& upper, HullContacts& lower) {
+Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best,
+                       HullContacts& upper, HullContacts& lower) {
   upper = find_feature(first, best.normal, best.vertex_first, second.position);
   lower = find_feature(second, -best.normal, best.vertex_second, second.position);
   return find_manifold(upper, lower, best.normal, best.gap);
@@ -71,12 +75,15 @@ bool is_within(const PairBody& piece, const Vec3& point) {
   if (local.squaredNorm() > piece.shape->radius * piece.shape->radius) return false;
   for (int i = 0; i < int(hull.faces.size()); ++i) {
     const Vec3 normal = hull.face_normal(i);
-    if (normal.dot(local - hull.vertices[std::size_t(hull.faces[std::size_t(i)][0])]) > -margin * normal.norm()) return false;
+    if (normal.dot(local - hull.vertices[std::size_t(hull.faces[std::size_t(i)][0])]) >
+        -margin * normal.norm())
+      return false;
   }
   return true;
 }
 
-// Whether a point on the surface of piece `own` lies inside another piece of the body: nothing can touch it there.
+// Whether a point on the surface of piece `own` lies inside another piece of the body: nothing can touch it
+// there.
 bool is_internal(const PairBody& body, int own, const Vec3& point) {
   for (int i = 0; i < int(body.shape->pieces.size()); ++i)
     if (i != own && is_within(piece_of(body, i), point)) return true;
@@ -88,7 +95,8 @@ void drop_internal_points(const PairBody& first, int i, const PairBody& second, 
   for (int m = 0; m < contact.manifold.count; ++m) {
     const ManifoldPoint& p = contact.manifold.points[std::size_t(m)];
     const Vec3 half = 0.5 * p.gap * contact.normal;
-    if (!is_internal(first, i, p.point + half) && !is_internal(second, k, p.point - half)) kept.points[std::size_t(kept.count++)] = p;
+    if (!is_internal(first, i, p.point + half) && !is_internal(second, k, p.point - half))
+      kept.points[std::size_t(kept.count++)] = p;
   }
   contact.manifold = kept;
 }
@@ -115,7 +123,8 @@ double gap_of_pieces(const PairBody& a, const PairBody& b, KnownGap& known, doub
   return known.axis.gap;
 }
 
-void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std::span<KnownGap> known, double margin, HullContactSearch& search) {
+void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std::span<KnownGap> known,
+                             double margin, HullContactSearch& search) {
   search.gap = 1e300;
   for (int i = 0; i < count_pieces(first); ++i)
     for (int k = 0; k < count_pieces(second); ++k) {
@@ -126,11 +135,13 @@ void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std:
       if (gap > margin) continue;
       PairContact contact = contact_along(a, b, of_pieces.axis);
       drop_internal_points(first, i, second, k, contact);
-      if (contact.manifold.count > 0) add_contact(contact, kWithin * std::min(a.shape->radius, b.shape->radius), search.contacts);
+      if (contact.manifold.count > 0)
+        add_contact(contact, kWithin * std::min(a.shape->radius, b.shape->radius), search.contacts);
     }
 }
 
-void search_relative(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
+void search_relative(const PairBody& first, const PairBody& second, HullGap& whole,
+                     std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
   search.contacts.clear();
   if (first.shape->pieces.empty() && second.shape->pieces.empty()) {
     whole = find_hull_gap(place(first), place(second), whole, margin, search.exact);
@@ -145,12 +156,20 @@ void search_relative(const PairBody& first, const PairBody& second, HullGap& who
   find_contacts_of_pieces(first, second, of_pieces, margin, search);
 }
 
-// Rounded well above what the last bits of a state hold (and far below what shows), so that the path of the search does not hang on them: the same
-// two bodies meet alike whichever of them is full.
+// As std::round does, to the bit, without a call: half away from zero, and the sign of a zero kept. What is
+// added is the number below a half, so that a sum is a whole number or more only where it should be.
+double round_quickly(double x) {
+  constexpr double kLeast = 0x1p51;  // from here on, and for what is no number, by the library
+  if (!(std::abs(x) < kLeast)) return std::round(x);
+  return std::copysign(double(std::int64_t(x + std::copysign(0x1.fffffffffffffp-2, x))), x);
+}
+
+// Rounded well above what the last bits of a state hold (and far below what shows), so that the path of the
+// search does not hang on them: the same two bodies meet alike whichever of them is full.
 template <class Numbers>
 Numbers without_last_bits(const Numbers& values) {
   constexpr double kGrain = 0x1p-36;
-  return ((values / kGrain).array().round() * kGrain).matrix();
+  return (values / kGrain).unaryExpr([](double x) { return round_quickly(x); }) * kGrain;
 }
 
 std::pair<PairBody, PairBody> relative_to_second(const PairBody& first, const PairBody& second) {
@@ -180,7 +199,8 @@ std::optional<PairContact> find_sphere_contact(const PairBody& first, const Pair
 }
 
 PairPose pose_of(const PairBody& first, const PairBody& second) {
-  return {(first.position - second.position).cast<float>(), first.orientation.coeffs().cast<float>(), second.orientation.coeffs().cast<float>()};
+  return {(first.position - second.position).cast<float>(), first.orientation.coeffs().cast<float>(),
+          second.orientation.coeffs().cast<float>()};
 }
 
 double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second) {
@@ -189,7 +209,8 @@ double find_motion_since(const PairPose& then, const PairBody& first, const Pair
     const Eigen::Vector4d was = from.cast<double>();
     return 2.2 * std::sqrt(std::min((was - to.coeffs()).squaredNorm(), (was + to.coeffs()).squaredNorm()));
   };
-  return (first.position - second.position - then.apart.cast<double>()).norm() + turned(then.first, first.orientation) * first.shape->radius +
+  return (first.position - second.position - then.apart.cast<double>()).norm() +
+         turned(then.first, first.orientation) * first.shape->radius +
          turned(then.second, second.orientation) * second.shape->radius;
 }
 
@@ -198,14 +219,17 @@ HeldContact hold(const PairContact& contact, const PairBody& first, const PairBo
   for (int i = 0; i < contact.manifold.count; ++i) {
     const ManifoldPoint& p = contact.manifold.points[std::size_t(i)];
     const Vec3 half = 0.5 * p.gap * contact.normal;
-    held.on_first[std::size_t(i)] = (first.orientation.conjugate() * (p.point + half - first.position)).cast<float>();
-    held.on_second[std::size_t(i)] = (second.orientation.conjugate() * (p.point - half - second.position)).cast<float>();
+    held.on_first[std::size_t(i)] =
+        (first.orientation.conjugate() * (p.point + half - first.position)).cast<float>();
+    held.on_second[std::size_t(i)] =
+        (second.orientation.conjugate() * (p.point - half - second.position)).cast<float>();
   }
   return held;
 }
 
 PairContact follow(const HeldContact& held, const PairBody& first, const PairBody& second) {
-  const Mat3 turn_first = first.orientation.toRotationMatrix(), turn_second = second.orientation.toRotationMatrix();
+  const Mat3 turn_first = first.orientation.toRotationMatrix(),
+             turn_second = second.orientation.toRotationMatrix();
   PairContact contact{held.normal, 1e300, {}};
   contact.manifold.count = held.count;
   for (int i = 0; i < held.count; ++i) {
@@ -218,7 +242,8 @@ PairContact follow(const HeldContact& held, const PairBody& first, const PairBod
   return contact;
 }
 
-void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
+void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole,
+                        std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
   const auto [a, b] = relative_to_second(first, second);
   search_relative(a, b, whole, of_pieces, margin, search);
   for (PairContact& contact : search.contacts) shift(contact, second.position);
@@ -233,7 +258,8 @@ std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBo
   return contact;
 }
 
-std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin) {
+std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second,
+                                              const Vec3& normal, double margin) {
   const HullGap along = measure_hull_gap(place(first), place(second), normal);
   if (along.gap > margin) return {};
   HullContacts upper, lower;

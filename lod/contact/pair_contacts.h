@@ -28,8 +28,8 @@ struct PairContact {
 /// `tables`: the two spheres. None where the gap is above `margin`.
 std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin);
 
-/// A contact that its bodies take along, until they have moved so far that it must be looked for anew. Kept for every pair that touches: floats, which are fine
-/// enough for arms.
+/// A contact that its bodies take along, until they have moved so far that it must be looked for anew. Kept
+/// for every pair that touches: floats, which are fine enough for arms.
 struct HeldContact {
   Vec3 normal = Vec3::UnitZ();
   std::int32_t count = 0;
@@ -41,7 +41,7 @@ PairContact follow(const HeldContact& held, const PairBody& first, const PairBod
 
 /// How two bodies lie to each other.
 struct PairPose {
-  Eigen::Vector3f apart = Eigen::Vector3f::Zero();  ///< m, of the first from the second
+  Eigen::Vector3f apart = Eigen::Vector3f::Zero();        ///< m, of the first from the second
   Eigen::Vector4f first{0, 0, 0, 1}, second{0, 0, 0, 1};  ///< orientations
 };
 PairPose pose_of(const PairBody& first, const PairBody& second);
@@ -55,20 +55,25 @@ struct KnownGap {
 };
 
 struct HullContactSearch {
-  bool exact = true;                   ///< in: see find_hull_gap
-  double gap = 0.0;                    ///< m: the true distance is at least this
-  std::vector<PairContact> contacts;   ///< those with a gap of at most the margin: one for hulls, one for each two convex pieces that meet
+  bool exact = true;                  ///< in: see find_hull_gap
+  double gap = 0.0;                   ///< m: the true distance is at least this
+  std::vector<PairContact> contacts;  ///< those with a gap of at most the margin: one for hulls, one for each
+                                      ///< two convex pieces that meet
 };
 
-/// `support`. Concave bodies that have convex pieces (Shape::pieces) meet in these, so that they may reach into each other; others as their hulls. `whole`, of the
-/// hulls (at first with a normal of zero), and `of_pieces`, of every two pieces (at first empty), are what earlier searches found. What `search` held before is gone.
-void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole, std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search);
+/// `support`. Concave bodies that have convex pieces (Shape::pieces) meet in these, so that they may reach
+/// into each other; others as their hulls. `whole`, of the hulls (at first with a normal of zero), and
+/// `of_pieces`, of every two pieces (at first empty), are what earlier searches found. What `search` held
+/// before is gone.
+void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole,
+                        std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search);
 
 /// The two hulls, whatever pieces they have; none where the gap is above `margin`.
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);
 
-/// Contact of the two hulls along a given axis (unit, from `second` into `first`); none where the gap along it is above `margin` or the touching features do not
-/// overlap across it.
-std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second, const Vec3& normal, double margin);
+/// Contact of the two hulls along a given axis (unit, from `second` into `first`); none where the gap along
+/// it is above `margin` or the touching features do not overlap across it.
+std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second,
+                                              const Vec3& normal, double margin);
 
 }  // namespace lodestone

@@ -16,21 +16,21 @@ std::int32_t PairMemory::find(ContactKey key, std::size_t expected) {
   for (std::size_t i = expected > kBefore ? expected - kBefore : 0; i < end; ++i)
     if (keys_[i] == key) return std::int32_t(i);
   if (!made_) make_table();
-  return table_[entry_of(key)].place;
+  return table_[entry_of(key)];
 }
 
 // Where the key is, or the free entry in which it would be.
 std::size_t PairMemory::entry_of(ContactKey key) const {
   const std::size_t mask = table_.size() - 1;
   std::size_t i = std::size_t((key * 0x9e3779b97f4a7c15u) >> 20) & mask;
-  while (table_[i].key != kEmpty && table_[i].key != key) i = (i + 1) & mask;
+  while (table_[i] >= 0 && keys_[std::size_t(table_[i])] != key) i = (i + 1) & mask;
   return i;
 }
 
 void PairMemory::make_table() {
-  table_.assign(std::bit_ceil(std::max<std::size_t>(16, 2 * keys_.size())), Entry{});
+  table_.assign(std::bit_ceil(std::max<std::size_t>(16, 2 * keys_.size())), -1);
   for (std::size_t i = 0; i < keys_.size(); ++i)
-    if (Entry& entry = table_[entry_of(keys_[i])]; entry.key == kEmpty) entry = {keys_[i], std::int32_t(i)};
+    if (std::int32_t& place = table_[entry_of(keys_[i])]; place < 0) place = std::int32_t(i);
   made_ = true;
 }
 

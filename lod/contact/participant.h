@@ -5,7 +5,8 @@
 
 namespace lodestone {
 
-/// A statistical body or a full one of the scene at hand, by its index there, or the ground. Whether it sleeps, and so stands still, is a matter of its state.
+/// A statistical body or a full one of the scene at hand, by its index there, or the ground. Whether it
+/// sleeps, and so stands still, is a matter of its state.
 class Participant {
  public:
   enum class Kind : std::uint8_t { statistical, full, ground };
@@ -23,7 +24,8 @@ class Participant {
 
  private:
   static constexpr int kIndexBits = 30;
-  Participant(Kind kind, std::size_t index) : code_(std::uint32_t(kind) << kIndexBits | std::uint32_t(index)) {}
+  Participant(Kind kind, std::size_t index)
+      : code_(std::uint32_t(kind) << kIndexBits | std::uint32_t(index)) {}
   std::uint32_t code_;
 };
 

@@ -10,7 +10,9 @@ namespace {
 
 constexpr double kTouching = 0.01;  // over R: near enough to carry, as between bodies
 
-PairBody pair_body(const PlacedSolid& placed) { return {placed.solid->shape.get(), placed.position, placed.orientation}; }
+PairBody pair_body(const PlacedSolid& placed) {
+  return {placed.solid->shape.get(), placed.position, placed.orientation};
+}
 
 Vec3 middle_of(const Manifold& manifold) {
   Vec3 sum = Vec3::Zero();
@@ -31,7 +33,9 @@ std::size_t nearest_edge(const SurfaceTriangle& t, const Vec3& point) {
 }
 
 // A point of the world in the frame of the solid's part.
-Vec3 in_part(const PlacedSolid& placed, const Vec3& point) { return placed.orientation.conjugate() * (point - placed.position) + placed.solid->center; }
+Vec3 in_part(const PlacedSolid& placed, const Vec3& point) {
+  return placed.orientation.conjugate() * (point - placed.position) + placed.solid->center;
+}
 
 std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin) {
   const PairBody ground = pair_body(placed);
@@ -40,12 +44,14 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   const SurfaceTriangle& t = *placed.solid->surface;
   const Vec3 normal = placed.orientation * t.normal;
   const double along = contact->normal.dot(normal);
-  const bool over_ridge = along > 0.0 && along < 0.999 && t.ridge[nearest_edge(t, in_part(placed, middle_of(contact->manifold)))];
+  const bool over_ridge =
+      along > 0.0 && along < 0.999 && t.ridge[nearest_edge(t, in_part(placed, middle_of(contact->manifold)))];
   return over_ridge ? contact : find_contact_along(body, ground, normal, margin);
 }
 
 // Whether the contact closes within `time`.
-bool closes(const PairContact& contact, const GroundPart& part, const StatisticalBody& body, const Vec3& omega, double touching, double time) {
+bool closes(const PairContact& contact, const GroundPart& part, const StatisticalBody& body,
+            const Vec3& omega, double touching, double time) {
   const auto points = std::span(contact.manifold.points).first(std::size_t(contact.manifold.count));
   return std::ranges::any_of(points, [&](const ManifoldPoint& p) {
     const Vec3 velocity = body.velocity + omega.cross(p.point - body.position) - part.velocity_at(p.point);
@@ -62,24 +68,32 @@ struct Seeker {
   std::int32_t slot = 0;
 };
 
-// Of a part that is known by rays alone: one from above each of the body's vertices that may carry it. Where they all meet one plane, it is that plane.
-void find_probed_contacts(const Seeker& s, const GroundPart& part, double time, std::vector<SolidContact>& found, std::vector<HalfSpace>& planes) {
+// Of a part that is known by rays alone: one from above each of the body's vertices that may carry it. Where
+// they all meet one plane, it is that plane.
+void find_probed_contacts(const Seeker& s, const GroundPart& part, double time,
+                          std::vector<SolidContact>& found, std::vector<HalfSpace>& planes) {
   const Vec3 up = part.pose.orientation * part.shape.up;
   const double reach = s.shape.radius + s.touching + s.way;
-  const auto hit_below = [&](const Vec3& point) { return part.shape.probe(point + reach * up, -up, 2.0 * reach); };
+  const auto hit_below = [&](const Vec3& point) {
+    return part.shape.probe(point + reach * up, -up, 2.0 * reach);
+  };
   const std::optional<GroundHit> below = hit_below(s.body.position);
   const Vec3 normal = below ? below->normal : up;
   std::int32_t hint = s.body.support_hint;
-  const double height = below ? normal.dot(s.body.position - below->point) : 0.0, slack = 0.25 * s.shape.radius;  // as uneven as the ground may be there
-  const HullContacts low = find_hull_contacts(s.shape, s.body.orientation, normal, height, below ? s.touching + s.way + slack : reach, hint);
+  const double height = below ? normal.dot(s.body.position - below->point) : 0.0,
+               slack = 0.25 * s.shape.radius;  // as uneven as the ground may be there
+  const HullContacts low = find_hull_contacts(s.shape, s.body.orientation, normal, height,
+                                              below ? s.touching + s.way + slack : reach, hint);
   std::array<std::optional<GroundHit>, kMaxGroundContacts> hits;
   bool even = below.has_value();
   for (int i = 0; i < low.count; ++i) {
     hits[std::size_t(i)] = hit_below(s.body.position + low.contact[std::size_t(i)].arm);
     const auto& hit = hits[std::size_t(i)];
-    even = even && hit && (hit->normal - normal).squaredNorm() < 1e-12 && std::abs(normal.dot(hit->point - below->point)) < 1e-6 * s.shape.radius;
+    even = even && hit && (hit->normal - normal).squaredNorm() < 1e-12 &&
+           std::abs(normal.dot(hit->point - below->point)) < 1e-6 * s.shape.radius;
   }
-  if (even && !part.moves()) return planes.push_back({normal, normal.dot(below->point), part.material, part.id});
+  if (even && !part.moves())
+    return planes.push_back({normal, normal.dot(below->point), part.material, part.id});
   for (int i = 0; i < low.count; ++i) {
     const auto& hit = hits[std::size_t(i)];
     if (!hit) continue;
@@ -90,7 +104,8 @@ void find_probed_contacts(const Seeker& s, const GroundPart& part, double time, 
     contact.manifold.count = 1;
     contact.manifold.points[0] = {point, contact.gap};
     if (contact.gap > -s.shape.radius && closes(contact, part, s.body, s.omega, s.touching, time))
-      found.push_back({s.slot, std::uint32_t(low.contact[std::size_t(i)].vertex + 1), part.material, &part, contact});
+      found.push_back(
+          {s.slot, std::uint32_t(low.contact[std::size_t(i)].vertex + 1), part.material, &part, contact});
   }
 }
 
@@ -112,7 +127,9 @@ struct Nearest {
 
 // A point in the frame of the solid's shape. None behind the edge of a surface, where a neighbour is nearer.
 std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point) {
-  if (solid.shape->sphere_radius) return Nearest{point.squaredNorm() > 0.0 ? Vec3(point.normalized()) : Vec3(Vec3::UnitZ()), point.norm() - *solid.shape->sphere_radius};
+  if (solid.shape->sphere_radius)
+    return Nearest{point.squaredNorm() > 0.0 ? Vec3(point.normalized()) : Vec3(Vec3::UnitZ()),
+                   point.norm() - *solid.shape->sphere_radius};
   if (const auto& t = solid.surface) {
     const Vec3 at = point + solid.center;
     const double height = t->normal.dot(at - t->corner[0]);
@@ -124,33 +141,42 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
   const SolidFace* highest = nullptr;
   double most = -1e300;
   for (const SolidFace& face : solid.faces)
-    if (const double height = face.normal.dot(point) - face.offset; height > most) most = height, highest = &face;
+    if (const double height = face.normal.dot(point) - face.offset; height > most)
+      most = height, highest = &face;
   const Vec3 foot = point - most * highest->normal;
   const double rounding = 1e-9 * solid.shape->radius;
-  const bool over_face = std::ranges::all_of(solid.faces, [&](const SolidFace& face) { return face.normal.dot(foot) - face.offset <= rounding; });
+  const bool over_face = std::ranges::all_of(
+      solid.faces, [&](const SolidFace& face) { return face.normal.dot(foot) - face.offset <= rounding; });
   if (most <= 0.0 || over_face) return Nearest{highest->normal, most};
-  const HullGap gap = find_hull_gap({point_shape(), point, Quat::Identity()}, {*solid.shape, Vec3::Zero(), Quat::Identity()}, {.normal = Vec3::Zero()}, 1e300);
+  const HullGap gap =
+      find_hull_gap({point_shape(), point, Quat::Identity()}, {*solid.shape, Vec3::Zero(), Quat::Identity()},
+                    {.normal = Vec3::Zero()}, 1e300);
   return Nearest{gap.normal, gap.gap};
 }
 
 }  // namespace
 
-void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after, std::vector<GroundNear>& found) {
+void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after,
+                      std::vector<GroundNear>& found) {
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
   parts.clear();
   ground.find_parts(center, reach, parts);
   for (const GroundPart* part : parts) {
-    if (const auto plane = probe_below(*part, center, reach)) found.push_back({plane->normal, plane->height_of(center), part, part->first_number});
+    if (const auto plane = probe_below(*part, center, reach))
+      found.push_back({plane->normal, plane->height_of(center), part, part->first_number});
     near.clear();
     find_solids(*part, center, reach, after, near);
     for (const PlacedSolid& placed : near)
-      if (const auto nearest = find_nearest(*placed.solid, placed.orientation.conjugate() * (center - placed.position)); nearest && std::abs(nearest->height) < reach)
+      if (const auto nearest =
+              find_nearest(*placed.solid, placed.orientation.conjugate() * (center - placed.position));
+          nearest && std::abs(nearest->height) < reach)
         found.push_back({placed.orientation * nearest->normal, nearest->height, part, placed.number});
   }
 }
 
-bool is_held_several_ways(std::span<const GroundNear> near, std::span<const HalfSpace> planes, const Vec3& center, double reach) {
+bool is_held_several_ways(std::span<const GroundNear> near, std::span<const HalfSpace> planes,
+                          const Vec3& center, double reach) {
   constexpr double kSameWay = 0.99;  // cosine
   const Vec3* one = nullptr;
   const auto holds_another_way = [&](const Vec3& normal, double height) {
@@ -158,8 +184,11 @@ bool is_held_several_ways(std::span<const GroundNear> near, std::span<const Half
     if (!one) return one = &normal, false;
     return one->dot(normal) < kSameWay;
   };
-  return std::ranges::any_of(near, [&](const GroundNear& n) { return holds_another_way(n.normal, n.height); }) ||
-         std::ranges::any_of(planes, [&](const HalfSpace& plane) { return holds_another_way(plane.normal, plane.height_of(center)); });
+  return std::ranges::any_of(near,
+                             [&](const GroundNear& n) { return holds_another_way(n.normal, n.height); }) ||
+         std::ranges::any_of(planes, [&](const HalfSpace& plane) {
+           return holds_another_way(plane.normal, plane.height_of(center));
+         });
 }
 
 std::span<const HalfSpace> join_planes(std::span<const HalfSpace> planes, std::span<const HalfSpace> faces) {
@@ -170,9 +199,11 @@ std::span<const HalfSpace> join_planes(std::span<const HalfSpace> planes, std::s
   return joined;
 }
 
-void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot, const Ground& ground, double after, double time,
-                          std::vector<SolidContact>& found, std::vector<HalfSpace>& planes) {
-  const double radius = double(body.sphere_radius), touching = kTouching * kind.shape->radius, reach = radius + touching + body.velocity.norm() * time;
+void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
+                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
+                          std::vector<HalfSpace>& planes) {
+  const double radius = double(body.sphere_radius), touching = kTouching * kind.shape->radius,
+               reach = radius + touching + body.velocity.norm() * time;
   thread_local std::vector<GroundNear> near;
   near.clear();
   find_ground_near(ground, body.position, reach, after, near);
@@ -187,13 +218,15 @@ void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std
     contact.gap = n.height - radius;
     contact.manifold.count = 1;
     contact.manifold.points[0] = {body.position - n.height * n.normal, contact.gap};
-    if (closes(contact, *n.part, body, Vec3::Zero(), touching, time)) found.push_back({slot, n.number, n.part->material, n.part, contact});
+    if (closes(contact, *n.part, body, Vec3::Zero(), touching, time))
+      found.push_back({slot, n.number, n.part->material, n.part, contact});
   }
 }
 
 std::optional<HalfSpace> find_face_below(const PlacedSolid& placed, const Vec3& center, double reach) {
   const GroundSolid& solid = *placed.solid;
-  if (solid.surface || solid.faces.empty()) return {};  // its neighbours may rise beside it; a sphere has no face
+  if (solid.surface || solid.faces.empty())
+    return {};  // its neighbours may rise beside it; a sphere has no face
   const Vec3 in_solid = placed.orientation.conjugate() * (center - placed.position);
   std::optional<HalfSpace> face;
   for (const auto& [normal, offset] : solid.faces) {
@@ -206,11 +239,14 @@ std::optional<HalfSpace> find_face_below(const PlacedSolid& placed, const Vec3& 
   return face;
 }
 
-void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot, const Ground& ground, double after, double time,
-                         std::vector<SolidContact>& found, std::vector<HalfSpace>& planes) {
+void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
+                         const Ground& ground, double after, double time, std::vector<SolidContact>& found,
+                         std::vector<HalfSpace>& planes) {
   const Shape& shape = *kind.shape;
   const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
-  const double touching = kTouching * shape.radius, way = (body.velocity.norm() + omega.norm() * shape.radius) * time, reach = shape.radius + touching + way;
+  const double touching = kTouching * shape.radius,
+               way = (body.velocity.norm() + omega.norm() * shape.radius) * time,
+               reach = shape.radius + touching + way;
   const Seeker seeker{body, shape, omega, touching, way, slot};
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
@@ -221,17 +257,23 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
   bool any_moves = false;
   for (const GroundPart* part : parts) {
     any_moves |= part->moves();
-    if (part->shape.probe) find_probed_contacts(seeker, *part, time, found, planes);
-    else find_solids(*part, body.position, reach, after, near);
+    if (part->shape.probe)
+      find_probed_contacts(seeker, *part, time, found, planes);
+    else
+      find_solids(*part, body.position, reach, after, near);
   }
-  const auto face_below = [&](const PlacedSolid& solid) { return find_face_below(solid, body.position, reach); };
-  if (!any_moves && std::ranges::all_of(near, [&](const PlacedSolid& solid) { return face_below(solid).has_value(); })) {
+  const auto face_below = [&](const PlacedSolid& solid) {
+    return find_face_below(solid, body.position, reach);
+  };
+  if (!any_moves &&
+      std::ranges::all_of(near, [&](const PlacedSolid& solid) { return face_below(solid).has_value(); })) {
     for (const PlacedSolid& solid : near) planes.push_back(*face_below(solid));
     return;
   }
   const PairBody self{&shape, body.position, body.orientation};
   for (const PlacedSolid& solid : near)
-    if (const auto contact = meet(self, solid, touching + way); contact && closes(*contact, *solid.part, body, omega, touching, time))
+    if (const auto contact = meet(self, solid, touching + way);
+        contact && closes(*contact, *solid.part, body, omega, touching, time))
       found.push_back({slot, solid.number, solid.part->material, solid.part, *contact});
 }
 

@@ -4,55 +4,66 @@
 #include <optional>
 #include <vector>
 
-#include "lod/ground/ground.h"
 #include "lod/contact/pair_contacts.h"
+#include "lod/ground/ground.h"
 #include "lod/statistical/statistical_body.h"
 
 namespace lodestone {
 
 struct SolidContact {
-  std::int32_t slot = 0;  ///< of the body
-  std::uint32_t number = 0;   ///< of the solid, for as long as its part is there
+  std::int32_t slot = 0;     ///< of the body
+  std::uint32_t number = 0;  ///< of the solid, for as long as its part is there
   MaterialId material = 0;
   const GroundPart* part = nullptr;
-  PairContact contact;        ///< the normal points into the body
+  PairContact contact;  ///< the normal points into the body
 };
 
-/// The face of `solid` that a ball about `center` lies over wholly, with the solid's other faces farther than `reach` beyond: there it is a plane like any
-/// other. None near an edge.
+/// The face of `solid` that a ball about `center` lies over wholly, with the solid's other faces farther than
+/// `reach` beyond: there it is a plane like any other. None near an edge.
 std::optional<HalfSpace> find_face_below(const PlacedSolid& solid, const Vec3& center, double reach);
 
-/// Contacts of the body in `slot` that may close within `time` seconds, `after` so many of the step, appended to `found`. Where the body lies over faces only, away from their
-/// edges, there are none but these faces' planes, appended to `planes`.
-void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot, const Ground& ground, double after, double time,
-                         std::vector<SolidContact>& found, std::vector<HalfSpace>& planes);
+/// Contacts of the body in `slot` that may close within `time` seconds, `after` so many of the step, appended
+/// to `found`. Where the body lies over faces only, away from their edges, there are none but these faces'
+/// planes, appended to `planes`.
+void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
+                         const Ground& ground, double after, double time, std::vector<SolidContact>& found,
+                         std::vector<HalfSpace>& planes);
 
 /// What a ball meets of a solid of the ground's parts: the plane across the way to its nearest point.
 struct GroundNear {
   Vec3 normal = Vec3::UnitZ();  ///< towards the ball
   double height = 0.0;          ///< m, of the ball's centre
   const GroundPart* part = nullptr;
-  std::uint32_t number = 0;     ///< as SolidContact's
-  HalfSpace plane(const Vec3& center) const { return {normal, normal.dot(center) - height, part->material, part->id}; }
+  std::uint32_t number = 0;  ///< as SolidContact's
+  HalfSpace plane(const Vec3& center) const {
+    return {normal, normal.dot(center) - height, part->material, part->id};
+  }
 };
 
-/// Appends what a ball of radius `reach` about `center` meets of the ground's parts, `after` so many seconds of the step.
-void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after, std::vector<GroundNear>& found);
+/// Appends what a ball of radius `reach` about `center` meets of the ground's parts, `after` so many seconds
+/// of the step.
+void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after,
+                      std::vector<GroundNear>& found);
 
 /// Whether, of the ground within `reach` of `center`, two faces look different ways: a corner or a wedge.
-bool is_held_several_ways(std::span<const GroundNear> near, std::span<const HalfSpace> planes, const Vec3& center, double reach);
+bool is_held_several_ways(std::span<const GroundNear> near, std::span<const HalfSpace> planes,
+                          const Vec3& center, double reach);
 
-/// As find_solid_contacts, of a sphere: what holds it one way is a plane to it, appended to `planes`; what moves or holds it several ways, contacts.
-void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot, const Ground& ground, double after, double time,
-                          std::vector<SolidContact>& found, std::vector<HalfSpace>& planes);
+/// As find_solid_contacts, of a sphere: what holds it one way is a plane to it, appended to `planes`; what
+/// moves or holds it several ways, contacts.
+void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
+                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
+                          std::vector<HalfSpace>& planes);
 
-/// The planes that a body may meet: the ground's and the faces of its parts that it is near. A thread has one at a time.
+/// The planes that a body may meet: the ground's and the faces of its parts that it is near. A thread has one
+/// at a time.
 std::span<const HalfSpace> join_planes(std::span<const HalfSpace> planes, std::span<const HalfSpace> faces);
 
 /// The faces of the ground's parts that bodies lie over: planes, as far as these bodies are concerned.
 struct FacesBelow {
   std::vector<HalfSpace> faces;
-  std::vector<std::pair<std::int32_t, std::int32_t>> run;  ///< of each slot, in `faces`; empty where there are no solids
+  std::vector<std::pair<std::int32_t, std::int32_t>>
+      run;  ///< of each slot, in `faces`; empty where there are no solids
   std::span<const HalfSpace> of(std::int32_t slot) const {
     if (run.empty()) return {};
     const auto& [begin, end] = run[std::size_t(slot)];

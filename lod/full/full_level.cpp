@@ -1,24 +1,31 @@
 #include "lod/full/full_level.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "reference/ode/callers_bodies.h"
+#include "reference/simulation_error.h"
 #include "reference/state_archive.h"
 
 namespace lodestone {
 namespace {
 
-// Overlap, say of bodies that were added on top of each other, is pushed apart at walking pace and not at depth × ERP / h.
+// Overlap, say of bodies that were added on top of each other, is pushed apart at walking pace and not at
+// depth × ERP / h.
 constexpr double kMaxCorrectingVelocity = 1.0;
 
-// dWorldStep is the truth's law, but its time grows with the cube of the contacts that hang together: a large pile is QuickStep's.
+// dWorldStep is the truth's law, but its time grows with the cube of the contacts that hang together: a large
+// pile is QuickStep's.
 constexpr int kDirectContactsMax = 150;
 constexpr int kQuickStepIterations = 60;  // ODE's own 20 let a pile of a few layers sink into the floor
 
-// Two bunnies deep in each other else take up to 40 ms in one substep, and nothing can be foretold of a step with two of them.
+// Two bunnies deep in each other else take up to 40 ms in one substep, and nothing can be foretold of a step
+// with two of them.
 constexpr int kMostMeshMeasures = 600;
 
-// At shorter substeps ODE's own contacts with planes are as near to the truth as two batches of truth to each other.
+// At shorter substeps ODE's own contacts with planes are as near to the truth as two batches of truth to each
+// other.
 constexpr double kTimedContactsAbove = 7e-4;  // s
 
 }  // namespace
@@ -36,10 +43,14 @@ OdeSettings ode_settings_of(const FullSettings& settings) {
           .sleep = {settings.sleep.speed, settings.sleep.speed, 5.0 * settings.sleep.time}};
 }
 
-FullLevel::FullLevel(const FullSettings& settings, const MaterialTable& materials) : settings_(settings), materials_(&materials) {}
+FullLevel::FullLevel(const FullSettings& settings, const MaterialTable& materials)
+    : settings_(settings), materials_(&materials) {}
 
-FullLevel::FullLevel(dxWorld* world, dxSpace* space, const FullSettings& settings, const MaterialTable& materials)
-    : settings_(settings), materials_(&materials), world_(std::in_place, world, space, ode_settings_of(settings), materials) {}
+FullLevel::FullLevel(dxWorld* world, dxSpace* space, const FullSettings& settings,
+                     const MaterialTable& materials)
+    : settings_(settings),
+      materials_(&materials),
+      world_(std::in_place, world, space, ode_settings_of(settings), materials) {}
 
 void FullLevel::add_ground(GroundId id, std::function<OdeGroundId(OdeWorld&)> make) {
   Piece& piece = pieces_.emplace_back(Piece{.id = id, .make = std::move(make)});
@@ -54,11 +65,14 @@ void FullLevel::lay(Piece& piece) {
 }
 
 void FullLevel::add_plane(GroundId id, const HalfSpace& plane) {
-  add_ground(id, [plane](OdeWorld& world) { return world.add_plane(plane.normal, plane.offset, plane.material); });
+  add_ground(
+      id, [plane](OdeWorld& world) { return world.add_plane(plane.normal, plane.offset, plane.material); });
 }
 
-void FullLevel::add_static_box(GroundId id, const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
-  add_ground(id, [=](OdeWorld& world) { return world.add_static_box(sides, position, orientation, material); });
+void FullLevel::add_static_box(GroundId id, const Vec3& sides, const Vec3& position, const Quat& orientation,
+                               MaterialId material) {
+  add_ground(id,
+             [=](OdeWorld& world) { return world.add_static_box(sides, position, orientation, material); });
 }
 
 void FullLevel::add_static_mesh(GroundId id, const Mesh& mesh, MaterialId material) {
@@ -67,8 +81,10 @@ void FullLevel::add_static_mesh(GroundId id, const Mesh& mesh, MaterialId materi
 
 void FullLevel::move_ground(GroundId id, const RigidState& state) {
   Piece& piece = *std::ranges::find(pieces_, id, &Piece::id);
-  if (world_) world_->move_ground(piece.laid, state);
-  else piece.moved = state;
+  if (world_)
+    world_->move_ground(piece.laid, state);
+  else
+    piece.moved = state;
 }
 
 void FullLevel::remove_ground(GroundId id) {
@@ -93,7 +109,8 @@ void FullLevel::set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)
 void FullLevel::filter_pairs() {
   if (!pair_filter_) return world_->set_pair_filter({});
   const auto owner = [this](OdeBodyId body) { return members_[std::size_t(index_of(body))].owner; };
-  world_->set_pair_filter([this, owner](OdeBodyId a, OdeBodyId b) { return pair_filter_(owner(a), owner(b)); });
+  world_->set_pair_filter(
+      [this, owner](OdeBodyId a, OdeBodyId b) { return pair_filter_(owner(a), owner(b)); });
 }
 
 void FullLevel::make_world() {
@@ -133,7 +150,8 @@ void FullLevel::archive(StateArchive& a) {
   bool has_world = world_.has_value();
   a(has_world);
   if (has_world && !world_) make_world();
-  if (has_world) world_->archive(a);
+  if (has_world)
+    world_->archive(a);
   else if (world_)
     while (!members_.empty()) remove(members_.back().id, true);
   a(members_, touching_);
@@ -150,7 +168,14 @@ std::int32_t FullLevel::index_of(OdeBodyId body) const {
 
 void FullLevel::step(double dt, Counters& counters) {
   if (!world_) return;
-  world_->step(dt, settings_.substeps);
+  try {
+    world_->step(dt, settings_.substeps);
+  } catch (const SimulationError& error) {
+    const std::int32_t index = index_of(OdeBodyId{error.body()});
+    if (index < 0) throw;
+    throw SimulationError(fmt::format("{}: body {}", error.what(), members_[std::size_t(index)].owner),
+                          error.body());
+  }
   add_new_counts(counters);
 }
 
@@ -165,7 +190,8 @@ void FullLevel::note_touching() {
   touching_.assign(members_.size(), false);
   if (!world_) return;
   for (const OdeContact& contact : world_->contacts()) {
-    const std::int32_t first = index_of(contact.first), second = contact.second ? index_of(contact.second) : -1;
+    const std::int32_t first = index_of(contact.first),
+                       second = contact.second ? index_of(contact.second) : -1;
     if (first < 0 || second < 0) continue;
     touching_[std::size_t(first)] = touching_[std::size_t(second)] = true;
   }
@@ -186,7 +212,8 @@ void FullLevel::add_new_counts(Counters& counters) {
 }
 
 int FullLevel::asleep_count() const {
-  return int(std::ranges::count_if(members_, [this](const Member& member) { return world_->asleep(member.id); }));
+  return int(
+      std::ranges::count_if(members_, [this](const Member& member) { return world_->asleep(member.id); }));
 }
 
 }  // namespace lodestone

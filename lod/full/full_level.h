@@ -1,4 +1,5 @@
-// The full level: bodies as trimeshes in ODE. Its world is made when a first body becomes full, or is the caller's from the start.
+// The full level: bodies as trimeshes in ODE. Its world is made when a first body becomes full, or is the
+// caller's from the start.
 #pragma once
 
 #include <functional>
@@ -15,8 +16,9 @@
 
 namespace lodestone {
 
-/// Over the shape's size. ODE notices an impact up to v·h inside the plane. Where it is not answered at its own time (timed_contacts.h) bouncing before
-/// that is as wrong in height as after it, so it is done only where the depth would show.
+/// Over the shape's size. ODE notices an impact up to v·h inside the plane. Where it is not answered at its
+/// own time (timed_contacts.h) bouncing before that is as wrong in height as after it, so it is done only
+/// where the depth would show.
 inline constexpr double kPlaneDepthMax = 0.04;
 
 struct FullSettings {
@@ -44,7 +46,8 @@ class FullLevel {
 
   /// Ground of this level; see OdeWorld. Costs nothing before there is a world.
   void add_plane(GroundId id, const HalfSpace& plane);
-  void add_static_box(GroundId id, const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
+  void add_static_box(GroundId id, const Vec3& sides, const Vec3& position, const Quat& orientation,
+                      MaterialId material);
   void add_static_mesh(GroundId id, const Mesh& mesh, MaterialId material);
   void move_ground(GroundId id, const RigidState& state);
   void remove_ground(GroundId id);
@@ -67,7 +70,8 @@ class FullLevel {
   /// Advances every body, the caller's too, and adds what happened to `counters`.
   void step(double dt, Counters& counters);
 
-  /// What step() does, around a step of the caller's world that he takes himself; see OdeWorld::begin_callers_step.
+  /// What step() does, around a step of the caller's world that he takes himself; see
+  /// OdeWorld::begin_callers_step.
   void begin_callers_step(double dt);
   void end_callers_step(Counters& counters);
 

@@ -9,7 +9,8 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 
 Box placed(const Box& box, const GroundPose& pose) {
-  const Vec3 reach = pose.orientation.toRotationMatrix().cwiseAbs() * (0.5 * box.sizes()), center = pose.position + pose.orientation * box.center();
+  const Vec3 reach = pose.orientation.toRotationMatrix().cwiseAbs() * (0.5 * box.sizes()),
+             center = pose.position + pose.orientation * box.center();
   return {center - reach, center + reach};
 }
 
@@ -46,7 +47,8 @@ GroundId Ground::new_id(Entry entry) {
 }
 
 bool Ground::valid(GroundId id) const {
-  return id.index < entries_.size() && entries_[id.index].generation == id.generation && (entries_[id.index].plane >= 0 || entries_[id.index].part >= 0);
+  return id.index < entries_.size() && entries_[id.index].generation == id.generation &&
+         (entries_[id.index].plane >= 0 || entries_[id.index].part >= 0);
 }
 
 GroundId Ground::add_plane(const HalfSpace& plane) {
@@ -82,13 +84,15 @@ GroundId Ground::add_mesh(const Mesh& mesh, MaterialId material) {
   return add_part({.bounds = solids->bounds(), .make = [solids] { return *solids; }}, {}, material, true);
 }
 
-GroundId Ground::add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+GroundId Ground::add_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
+                         MaterialId material) {
   const auto make = [sides] {
     GroundSolids solids;
     solids.add_hull(make_box(sides).vertices);
     return solids;
   };
-  return add_part({.bounds = Box(-0.5 * sides, 0.5 * sides), .make = make}, {position, orientation.normalized()}, material, true);
+  return add_part({.bounds = Box(-0.5 * sides, 0.5 * sides), .make = make},
+                  {position, orientation.normalized()}, material, true);
 }
 
 void Ground::remove(GroundId id) {
@@ -96,7 +100,8 @@ void Ground::remove(GroundId id) {
   if (entry.plane >= 0) {
     planes_.erase(planes_.begin() + entry.plane);
     plane_ids_.erase(plane_ids_.begin() + entry.plane);
-    for (std::size_t i = std::size_t(entry.plane); i < plane_ids_.size(); ++i) entries_[plane_ids_[i].index].plane = std::int32_t(i);
+    for (std::size_t i = std::size_t(entry.plane); i < plane_ids_.size(); ++i)
+      entries_[plane_ids_[i].index].plane = std::int32_t(i);
   } else {
     const std::int32_t index = entry.part;
     let_go(index);
@@ -119,7 +124,9 @@ void Ground::move_part(GroundId id, const GroundPose& pose) {
   const std::int32_t index = entries_[id.index].part;
   GroundPart& part = *parts_[std::size_t(index)];
   moving_ -= part.moves();
-  const bool stays = part.pose.position == pose.position && part.pose.orientation.coeffs() == pose.orientation.coeffs() && part.pose.goes_on_s == 0.0 && pose.goes_on_s == 0.0;
+  const bool stays = part.pose.position == pose.position &&
+                     part.pose.orientation.coeffs() == pose.orientation.coeffs() &&
+                     part.pose.goes_on_s == 0.0 && pose.goes_on_s == 0.0;
   if (!stays) let_go(index);
   part.pose = pose;
   moving_ += part.moves();
@@ -138,8 +145,10 @@ void Ground::hold(std::int32_t part) {
 
 // From the tree it goes when that is next built: until then it is passed over there.
 void Ground::let_go(std::int32_t part) {
-  if (in_tree_[std::size_t(part)]) in_tree_[std::size_t(part)] = false;
-  else std::erase(loose_, part);
+  if (in_tree_[std::size_t(part)])
+    in_tree_[std::size_t(part)] = false;
+  else
+    std::erase(loose_, part);
 }
 
 void Ground::rebuild() const {
@@ -153,7 +162,9 @@ void Ground::rebuild() const {
   }
   loose_.clear();
   tree_size_ = indices.size();
-  tree_ = indices.empty() ? nullptr : std::make_shared<const Tree>(indices.begin(), indices.end(), boxes.begin(), boxes.end());
+  tree_ = indices.empty()
+              ? nullptr
+              : std::make_shared<const Tree>(indices.begin(), indices.end(), boxes.begin(), boxes.end());
 }
 
 void Ground::find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const {
@@ -166,9 +177,12 @@ void Ground::find_parts(const Vec3& center, double reach, std::vector<const Grou
     const Ground& ground;
     const Vec3& center;
     double reach_squared;
-    bool intersectVolume(const Box& box) const { return box.squaredExteriorDistance(center) <= reach_squared; }
+    bool intersectVolume(const Box& box) const {
+      return box.squaredExteriorDistance(center) <= reach_squared;
+    }
     bool intersectObject(int i) const {
-      if (ground.in_tree_[std::size_t(i)] && intersectVolume(ground.bounds_[std::size_t(i)])) near.push_back(i);
+      if (ground.in_tree_[std::size_t(i)] && intersectVolume(ground.bounds_[std::size_t(i)]))
+        near.push_back(i);
       return false;  // go on
     }
   };
@@ -217,10 +231,12 @@ std::optional<HalfSpace> probe_below(const GroundPart& part, const Vec3& center,
   if (!part.shape.probe) return {};
   const Vec3 up = part.pose.orientation * part.shape.up;
   const auto hit = part.shape.probe(center + reach * up, -up, 3.0 * reach);
-  return hit ? std::optional(HalfSpace{hit->normal, hit->normal.dot(hit->point), part.material, part.id}) : std::nullopt;
+  return hit ? std::optional(HalfSpace{hit->normal, hit->normal.dot(hit->point), part.material, part.id})
+             : std::nullopt;
 }
 
-void find_solids(const GroundPart& part, const Vec3& center, double reach, double after, std::vector<PlacedSolid>& found) {
+void find_solids(const GroundPart& part, const Vec3& center, double reach, double after,
+                 std::vector<PlacedSolid>& found) {
   if (!part.solids) return;
   thread_local std::vector<int> near;
   const GroundPose pose = pose_after(part.pose, after);
@@ -229,7 +245,8 @@ void find_solids(const GroundPart& part, const Vec3& center, double reach, doubl
   std::ranges::sort(near);
   for (const int i : near) {
     const GroundSolid& solid = (*part.solids)[i];
-    found.push_back({&solid, &part, pose.position + pose.orientation * solid.center, pose.orientation, part.first_number + std::uint32_t(i)});
+    found.push_back({&solid, &part, pose.position + pose.orientation * solid.center, pose.orientation,
+                     part.first_number + std::uint32_t(i)});
   }
 }
 

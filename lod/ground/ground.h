@@ -1,5 +1,6 @@
-// What does not move of itself, and everything rests on: planes, and parts that are made of convex solids (ground_solids.h) or known by rays only. Parts can be moved, and then carry what
-// lies on them, and they come and go.
+// What does not move of itself, and everything rests on: planes, and parts that are made of convex solids
+// (ground_solids.h) or known by rays only. Parts can be moved, and then carry what lies on them, and they
+// come and go.
 #pragma once
 
 #include <functional>
@@ -22,14 +23,15 @@ struct GroundHit {
 };
 
 /// Casts a ray from `from` along `direction` (unit), at most `length` m.
-using GroundProbe = std::function<std::optional<GroundHit>(const Vec3& from, const Vec3& direction, double length)>;
+using GroundProbe =
+    std::function<std::optional<GroundHit>(const Vec3& from, const Vec3& direction, double length)>;
 
 /// What a part of the ground is. One that has no `make` is known by `probe`, from above: a height field.
 struct GroundShape {
-  Eigen::AlignedBox3d bounds;                  ///< m, in the part's own frame
-  std::function<GroundSolids()> make = {};     ///< called when a body first comes near
+  Eigen::AlignedBox3d bounds;               ///< m, in the part's own frame
+  std::function<GroundSolids()> make = {};  ///< called when a body first comes near
   GroundProbe probe = {};
-  Vec3 up = Vec3::UnitZ();                     ///< of `probe`: rays are cast against it, in the part's own frame
+  Vec3 up = Vec3::UnitZ();  ///< of `probe`: rays are cast against it, in the part's own frame
 };
 
 /// Where a part stands, and how it moves in this step.
@@ -37,7 +39,8 @@ struct GroundPose {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< m/s, rad/s: what lies on it feels this
-  double goes_on_s = 0.0;                      ///< for so long it moves on from there: the next step; 0: it stands where it was put already
+  double goes_on_s =
+      0.0;  ///< for so long it moves on from there: the next step; 0: it stands where it was put already
 };
 
 struct GroundPart {
@@ -45,11 +48,13 @@ struct GroundPart {
   GroundShape shape;
   GroundPose pose;
   MaterialId material = 0;
-  std::optional<GroundSolids> solids;          ///< once made
-  std::uint32_t first_number = 0;              ///< of its solids, for what is remembered of contacts with them
+  std::optional<GroundSolids> solids;  ///< once made
+  std::uint32_t first_number = 0;      ///< of its solids, for what is remembered of contacts with them
 
   bool moves() const { return !pose.velocity.isZero(0.0) || !pose.angular_velocity.isZero(0.0); }
-  Vec3 velocity_at(const Vec3& point) const { return pose.velocity + pose.angular_velocity.cross(point - pose.position); }
+  Vec3 velocity_at(const Vec3& point) const {
+    return pose.velocity + pose.angular_velocity.cross(point - pose.position);
+  }
   /// m/s: of no point of it more.
   double greatest_speed() const;
 };
@@ -58,23 +63,27 @@ struct GroundPart {
 struct PlacedSolid {
   const GroundSolid* solid = nullptr;
   const GroundPart* part = nullptr;
-  Vec3 position = Vec3::Zero();                ///< m, world, of the solid's own frame
+  Vec3 position = Vec3::Zero();  ///< m, world, of the solid's own frame
   Quat orientation = Quat::Identity();
-  std::uint32_t number = 0;                    ///< the same for as long as the part is there
+  std::uint32_t number = 0;  ///< the same for as long as the part is there
 };
 
-/// The plane of a part that is known by rays, below (or a little above) `center`; none where a ray of three times `reach` m meets nothing, and for other parts.
+/// The plane of a part that is known by rays, below (or a little above) `center`; none where a ray of three
+/// times `reach` m meets nothing, and for other parts.
 std::optional<HalfSpace> probe_below(const GroundPart& part, const Vec3& center, double reach);
 
-/// Appends the solids of `part` whose bounding boxes come within `reach` of `center`, as they stand `after` seconds from the beginning of the step.
-void find_solids(const GroundPart& part, const Vec3& center, double reach, double after, std::vector<PlacedSolid>& found);
+/// Appends the solids of `part` whose bounding boxes come within `reach` of `center`, as they stand `after`
+/// seconds from the beginning of the step.
+void find_solids(const GroundPart& part, const Vec3& center, double reach, double after,
+                 std::vector<PlacedSolid>& found);
 
 class Ground {
  public:
   GroundId add_plane(const HalfSpace& plane);
   /// Its solids are made at once where `eager`, so that errors show here.
-  GroundId add_part(const GroundShape& shape, const GroundPose& pose, MaterialId material, bool eager = false);
-  GroundId add_mesh(const Mesh& mesh, MaterialId material);                     ///< vertices in the world frame
+  GroundId add_part(const GroundShape& shape, const GroundPose& pose, MaterialId material,
+                    bool eager = false);
+  GroundId add_mesh(const Mesh& mesh, MaterialId material);  ///< vertices in the world frame
   GroundId add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
 
   bool valid(GroundId id) const;
@@ -90,11 +99,13 @@ class Ground {
 
   std::span<const HalfSpace> planes() const { return planes_; }
   std::size_t parts() const { return parts_used_; }
-  /// Not the ground itself, but by what numbers its solids are remembered: as far as the reader has the same parts.
+  /// Not the ground itself, but by what numbers its solids are remembered: as far as the reader has the same
+  /// parts.
   void archive(StateArchive& a);
   bool has_parts() const { return parts_used_ > 0; }
   bool has_moving_parts() const { return moving_ > 0; }
-  /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making. Not for several threads at once, as it makes solids.
+  /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making.
+  /// Not for several threads at once, as it makes solids.
   void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const;
 
  private:
@@ -112,8 +123,8 @@ class Ground {
   std::vector<std::uint32_t> free_entries_;
   std::vector<HalfSpace> planes_;
   std::vector<GroundId> plane_ids_;
-  std::vector<std::unique_ptr<GroundPart>> parts_;       // null: free
-  std::vector<Eigen::AlignedBox3d> bounds_;              // of each part, world
+  std::vector<std::unique_ptr<GroundPart>> parts_;  // null: free
+  std::vector<Eigen::AlignedBox3d> bounds_;         // of each part, world
   std::vector<std::int32_t> free_parts_;
   std::size_t parts_used_ = 0, moving_ = 0;
   mutable std::uint32_t numbers_ = 0;
@@ -121,7 +132,7 @@ class Ground {
   // Most parts stand in a tree, built now and then; those that came or moved since are looked at one by one.
   struct Tree;
   mutable std::shared_ptr<const Tree> tree_;
-  mutable std::vector<char> in_tree_;                    // of each part
+  mutable std::vector<char> in_tree_;  // of each part
   mutable std::vector<std::int32_t> loose_;
   mutable std::size_t tree_size_ = 0;
 };

@@ -66,7 +66,8 @@ std::vector<SolidFace> faces_of(const Hull& hull) {
   for (int face = 0; face < int(hull.faces.size()); ++face) {
     const Vec3 normal = hull.face_normal(face).normalized();
     const auto same = [&](const SolidFace& f) { return (f.normal - normal).squaredNorm() < 1e-12; };
-    if (std::ranges::none_of(faces, same)) faces.push_back({normal, hull.vertices[std::size_t(find_support(hull, normal))].dot(normal)});
+    if (std::ranges::none_of(faces, same))
+      faces.push_back({normal, hull.vertices[std::size_t(find_support(hull, normal))].dot(normal)});
   }
   return faces;
 }
@@ -128,16 +129,19 @@ void GroundSolids::add_surface(const Mesh& mesh) {
   const double depth = kSurfaceDepth * bounds_of(mesh.vertices).diagonal().norm();
   std::vector<std::array<bool, 3>> ridge(mesh.faces.size(), {true, true, true});
   visit_edges(mesh, [&](std::span<const EdgeUse> uses) {
-    for (const EdgeUse& use : uses) ridge[std::size_t(use.face)][edge_of(mesh.faces[std::size_t(use.face)], use)] = is_ridge(mesh, uses);
+    for (const EdgeUse& use : uses)
+      ridge[std::size_t(use.face)][edge_of(mesh.faces[std::size_t(use.face)], use)] = is_ridge(mesh, uses);
   });
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     const auto& f = mesh.faces[i];
     const std::array<Vec3, 3> corner{mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]]};
     const Vec3 across = normal_of(mesh, f);
-    const double longest = std::max({(corner[1] - corner[0]).norm(), (corner[2] - corner[1]).norm(), (corner[0] - corner[2]).norm()});
+    const double longest = std::max(
+        {(corner[1] - corner[0]).norm(), (corner[2] - corner[1]).norm(), (corner[0] - corner[2]).norm()});
     if (!(across.norm() > 1e-9 * longest * longest)) continue;
     const Vec3 normal = across.normalized(), below = -depth * normal;
-    add_hull(std::array<Vec3, 6>{corner[0], corner[0] + below, corner[1], corner[1] + below, corner[2], corner[2] + below});
+    add_hull(std::array<Vec3, 6>{corner[0], corner[0] + below, corner[1], corner[1] + below, corner[2],
+                                 corner[2] + below});
     solids_.back().surface = SurfaceTriangle{normal, corner, ridge[i]};
   }
 }
@@ -159,15 +163,19 @@ void GroundSolids::find_near(const Vec3& center, double reach, std::vector<int>&
     const Vec3& center;
     double reach_squared;
     std::vector<int>& found;
-    bool intersectVolume(const Box& box) const { return box.squaredExteriorDistance(center) <= reach_squared; }
+    bool intersectVolume(const Box& box) const {
+      return box.squaredExteriorDistance(center) <= reach_squared;
+    }
     bool intersectObject(int i) const {
       if (intersectVolume(bounds[std::size_t(i)])) found.push_back(i);
       return false;  // go on
     }
   };
   Search search{bounds_, center, reach * reach, found};
-  if (tree_) Eigen::BVIntersect(*tree_, search);
-  else if (solids_.size() == 1) search.intersectObject(0);
+  if (tree_)
+    Eigen::BVIntersect(*tree_, search);
+  else if (solids_.size() == 1)
+    search.intersectObject(0);
 }
 
 }  // namespace lodestone

@@ -1,5 +1,6 @@
-// What a part of the ground is made of: convex solids in the part's own frame, found by a tree of their bounding boxes. A convex mesh is one solid, a concave one of few faces
-// as many as its convex pieces, and of any other mesh each triangle is one, solid a little way below its surface.
+// What a part of the ground is made of: convex solids in the part's own frame, found by a tree of their
+// bounding boxes. A convex mesh is one solid, a concave one of few faces as many as its convex pieces, and of
+// any other mesh each triangle is one, solid a little way below its surface.
 #pragma once
 
 #include <array>
@@ -12,24 +13,26 @@
 
 namespace lodestone {
 
-/// Of a surface: what is met across an edge that is no ridge is met along the normal, or bodies would stumble over the seams of a flat floor.
+/// Of a surface: what is met across an edge that is no ridge is met along the normal, or bodies would stumble
+/// over the seams of a flat floor.
 struct SurfaceTriangle {
   Vec3 normal = Vec3::UnitZ();
-  std::array<Vec3, 3> corner;                 ///< m, in the part's frame
-  std::array<bool, 3> ridge{};                ///< whether the edge from corner i to the next stands out, or is the surface's border
+  std::array<Vec3, 3> corner;  ///< m, in the part's frame
+  std::array<bool, 3>
+      ridge{};  ///< whether the edge from corner i to the next stands out, or is the surface's border
 };
 
 /// All of the solid has normal·x ≤ offset, in its shape's frame.
 struct SolidFace {
-  Vec3 normal = Vec3::UnitZ();                ///< unit, outward
-  double offset = 0.0;                        ///< m
+  Vec3 normal = Vec3::UnitZ();  ///< unit, outward
+  double offset = 0.0;          ///< m
 };
 
 /// Its axes are those of its part.
 struct GroundSolid {
   std::shared_ptr<const Shape> shape;
-  Vec3 center = Vec3::Zero();                 ///< m, of the shape's frame in the part's
-  std::vector<SolidFace> faces;               ///< each normal once
+  Vec3 center = Vec3::Zero();    ///< m, of the shape's frame in the part's
+  std::vector<SolidFace> faces;  ///< each normal once
   std::optional<SurfaceTriangle> surface;
 };
 
@@ -37,7 +40,7 @@ class GroundSolids {
  public:
   /// The hull of `points` (in the part's frame). Throws InputError where they lie in a plane.
   void add_hull(std::span<const Vec3> points);
-  void add_sphere(double radius);               ///< m, about the part's own origin
+  void add_sphere(double radius);  ///< m, about the part's own origin
   /// Faces counter-clockwise from outside. Faces without area are left out.
   void add_mesh(const Mesh& mesh);
   /// To be called after solids were added, before they are looked for.
@@ -46,7 +49,8 @@ class GroundSolids {
   std::size_t size() const { return solids_.size(); }
   const GroundSolid& operator[](int i) const { return solids_[std::size_t(i)]; }
   const Eigen::AlignedBox3d& bounds() const { return all_bounds_; }
-  /// Appends the indices of the solids whose bounding boxes come within `reach` of `center`, both in the part's frame.
+  /// Appends the indices of the solids whose bounding boxes come within `reach` of `center`, both in the
+  /// part's frame.
   void find_near(const Vec3& center, double reach, std::vector<int>& found) const;
 
  private:

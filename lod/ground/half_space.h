@@ -12,7 +12,7 @@ struct HalfSpace {
   Vec3 normal = Vec3::UnitZ();
   double offset = 0.0;  ///< m
   MaterialId material = 0;
-  GroundId id = {};     ///< of what it is a plane or a face of
+  GroundId id = {};  ///< of what it is a plane or a face of
   double height_of(const Vec3& point) const { return normal.dot(point) - offset; }
 };
 

@@ -8,9 +8,9 @@
 namespace lodestone {
 namespace {
 
-constexpr double kRestEnergy = 2e-3;    // J/kg, as of `compare drop`
-constexpr double kRestDuration = 1.0;   // s below it until a body counts as at rest
-constexpr double kHorizon = 10.0;       // s
+constexpr double kRestEnergy = 2e-3;   // J/kg, as of `compare drop`
+constexpr double kRestDuration = 1.0;  // s below it until a body counts as at rest
+constexpr double kHorizon = 10.0;      // s
 constexpr std::size_t kMostWatched = 64;
 
 double energy_per_mass(const Shape& shape, const RigidState& state) {
@@ -25,7 +25,9 @@ bool near_solids(const Levels& levels, const Vec3& position, double radius) {
   return !found.empty();
 }
 
-bool same(const RigidState& a, const RigidState& b) { return a.position == b.position && a.velocity == b.velocity && a.angular_velocity == b.angular_velocity; }
+bool same(const RigidState& a, const RigidState& b) {
+  return a.position == b.position && a.velocity == b.velocity && a.angular_velocity == b.angular_velocity;
+}
 
 }  // namespace
 
@@ -36,7 +38,9 @@ void RunningMean::add(double value) {
 }
 
 double RunningMean::deviation() const { return count_ > 1 ? std::sqrt(squares_ / double(count_ - 1)) : 0.0; }
-double RunningMean::standard_error() const { return count_ > 1 ? deviation() / std::sqrt(double(count_)) : 0.0; }
+double RunningMean::standard_error() const {
+  return count_ > 1 ? deviation() / std::sqrt(double(count_)) : 0.0;
+}
 
 void WayToRest::sample(double time_s, const RigidState& state, double energy, bool asleep) {
   if (done_) return;
@@ -55,7 +59,14 @@ void Audit::watch(std::uint32_t body, const RigidState& state) {
   if (!on() || watched_.size() >= kMostWatched) return;
   const BodyRecord& record = levels_.bodies[body];
   const std::shared_ptr<const Shape>& shape = levels_.bodies.shape(body);
-  watched_.push_back({.body = body, .birth = record.birth, .start = state, .seen = state, .shape = shape, .mass = record.mass, .material = record.material, .demoted = WayToRest(state, shape->size)});
+  watched_.push_back({.body = body,
+                      .birth = record.birth,
+                      .start = state,
+                      .seen = state,
+                      .shape = shape,
+                      .mass = record.mass,
+                      .material = record.material,
+                      .demoted = WayToRest(state, shape->size)});
 }
 
 // One whose own way is over is kept for its comparison, whatever becomes of it.
@@ -91,7 +102,9 @@ void Audit::look_at(Watched& w, double dt) {
 void Audit::end_step(double dt, StepReport& report) {
   if (!on()) return;
   const double started = thread_time_ms();
-  left_out_ += int(std::erase_if(watched_, [this](const Watched& w) { return !still_watched(w) || near_solids(levels_, w.seen.position, w.shape->radius); }));
+  left_out_ += int(std::erase_if(watched_, [this](const Watched& w) {
+    return !still_watched(w) || near_solids(levels_, w.seen.position, w.shape->radius);
+  }));
   for (Watched& w : watched_) look_at(w, dt);
   while (!watched_.empty() && thread_time_ms() - started < audit_ms_) {
     const auto next = std::ranges::find_if(watched_, [](const Watched& w) { return !w.full; });
@@ -111,7 +124,9 @@ void Audit::end_step(double dt, StepReport& report) {
 
 void Audit::begin(const Watched& w) {
   const std::span<const HalfSpace> planes = levels_.ground.planes();
-  if (!world_ || !std::ranges::equal(planes, planes_, [](const HalfSpace& a, const HalfSpace& b) { return a.normal == b.normal && a.offset == b.offset && a.material == b.material; })) {
+  if (!world_ || !std::ranges::equal(planes, planes_, [](const HalfSpace& a, const HalfSpace& b) {
+        return a.normal == b.normal && a.offset == b.offset && a.material == b.material;
+      })) {
     world_.reset();
     full_.gravity = levels_.statistical_settings.gravity;
     world_.emplace(ode_settings_of(full_), levels_.materials);
@@ -136,7 +151,8 @@ void Audit::simulate(double dt) {
 
 void Audit::compare(const Watched& w) {
   const Vec3 up = -levels_.statistical_settings.gravity.normalized();
-  const auto add = [](double full, double demoted, RunningMean& of_full, RunningMean& of_demoted, RunningMean& difference) {
+  const auto add = [](double full, double demoted, RunningMean& of_full, RunningMean& of_demoted,
+                      RunningMean& difference) {
     of_full.add(full), of_demoted.add(demoted), difference.add(demoted - full);
   };
   add(w.full->rest_time_s(), w.demoted.rest_time_s(), rest_time_full_, rest_time_, rest_time_difference_);
@@ -148,7 +164,10 @@ void Audit::compare(const Watched& w) {
 void Audit::fill(AuditReport& report) const {
   const auto figure = [](const RunningMean& full, const RunningMean& demoted, const RunningMean& difference) {
     const double margin = 1.96 * difference.standard_error();
-    return AuditFigure{full.mean(), demoted.mean(), full.deviation(), {difference.mean() - margin, difference.mean() + margin}};
+    return AuditFigure{full.mean(),
+                       demoted.mean(),
+                       full.deviation(),
+                       {difference.mean() - margin, difference.mean() + margin}};
   };
   report.bodies = int(drift_.count());
   report.watched = int(watched_.size());
@@ -157,7 +176,8 @@ void Audit::fill(AuditReport& report) const {
   report.distance_m = figure(distance_full_, distance_, distance_difference_);
   report.rest_height = figure(height_full_, height_, height_difference_);
   report.drift = drift_.mean();
-  report.drift_interval = {drift_.mean() - 1.96 * drift_.standard_error(), drift_.mean() + 1.96 * drift_.standard_error()};
+  report.drift_interval = {drift_.mean() - 1.96 * drift_.standard_error(),
+                           drift_.mean() + 1.96 * drift_.standard_error()};
   report.spent_ms = spent_ms_;
 }
 

@@ -1,5 +1,6 @@
-// Bodies that went down from the full level, simulated on in full beside the world, off line: what the demotion cost in truth. Such as meet nothing but planes are compared,
-// body by body, since both see the same ground alone. Nothing of the world depends on it.
+// Bodies that went down from the full level, simulated on in full beside the world, off line: what the
+// demotion cost in truth. Such as meet nothing but planes are compared, body by body, since both see the same
+// ground alone. Nothing of the world depends on it.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,8 @@ class RunningMean {
  public:
   void add(double value);
   double mean() const { return mean_; }
-  double deviation() const;        ///< of the values
-  double standard_error() const;   ///< of the mean
+  double deviation() const;       ///< of the values
+  double standard_error() const;  ///< of the mean
   std::int64_t count() const { return count_; }
 
  private:
@@ -29,7 +30,8 @@ class RunningMean {
 /// What is kept of one body's way to rest.
 class WayToRest {
  public:
-  WayToRest(const RigidState& start, double size) : start_(start.position), size_(size), a_second_on_(start.position) {}
+  WayToRest(const RigidState& start, double size)
+      : start_(start.position), size_(size), a_second_on_(start.position) {}
   /// `asleep`: nothing more is to come.
   void sample(double time_s, const RigidState& state, double energy_per_mass, bool asleep);
   bool done() const { return done_; }
@@ -49,7 +51,8 @@ class WayToRest {
 class Audit {
  public:
   /// `audit_ms`: of each step; 0: none.
-  Audit(Levels& levels, const FullSettings& full, double audit_ms) : levels_(levels), full_(full), audit_ms_(audit_ms) {}
+  Audit(Levels& levels, const FullSettings& full, double audit_ms)
+      : levels_(levels), full_(full), audit_ms_(audit_ms) {}
 
   bool on() const { return audit_ms_ > 0.0; }
   /// A body that has just gone down, with the state that it had.
@@ -65,7 +68,7 @@ class Audit {
   struct Watched {
     std::uint32_t body = 0;
     std::uint64_t birth = 0;
-    RigidState start, seen;            // at demotion; after the last step
+    RigidState start, seen;  // at demotion; after the last step
     std::shared_ptr<const Shape> shape;
     double mass = 1.0;
     MaterialId material = 0;
@@ -84,13 +87,14 @@ class Audit {
   FullSettings full_;
   double audit_ms_;
   std::deque<Watched> watched_;
-  std::optional<OdeWorld> world_;      // with the planes of the ground and one body
-  std::vector<HalfSpace> planes_;      // that it has
+  std::optional<OdeWorld> world_;  // with the planes of the ground and one body
+  std::vector<HalfSpace> planes_;  // that it has
   OdeBodyId simulated_ = {};
   std::uint64_t simulated_birth_ = 0;  // of the watched body that it is
   double simulated_s_ = 0.0;
   std::optional<WayToRest> way_;
-  RunningMean rest_time_full_, rest_time_, rest_time_difference_, distance_full_, distance_, distance_difference_, height_full_, height_, height_difference_, drift_;
+  RunningMean rest_time_full_, rest_time_, rest_time_difference_, distance_full_, distance_,
+      distance_difference_, height_full_, height_, height_difference_, drift_;
   int left_out_ = 0;
   double spent_ms_ = 0.0;
 };

@@ -10,13 +10,15 @@ namespace {
 void take_lowest_priority() {
 #ifdef SCHED_IDLE
   const sched_param none{};
-  pthread_setschedparam(pthread_self(), SCHED_IDLE, &none);  // where it is not allowed, the priority stays as it is
+  pthread_setschedparam(pthread_self(), SCHED_IDLE,
+                        &none);  // where it is not allowed, the priority stays as it is
 #endif
 }
 
 }  // namespace
 
-BackgroundSignatures::BackgroundSignatures(int most_threads, Source source) : source_(std::move(source)), most_threads_(std::size_t(most_threads)) {}
+BackgroundSignatures::BackgroundSignatures(int most_threads, Source source)
+    : source_(std::move(source)), most_threads_(std::size_t(most_threads)) {}
 
 BackgroundSignatures::~BackgroundSignatures() {
   for (std::jthread& thread : threads_) thread.request_stop();  // all before the first is waited for
@@ -28,7 +30,8 @@ FutureSignature BackgroundSignatures::request(const Shape& shape, const ContactL
   FutureSignature future = task.get_future().share();
   const std::lock_guard lock(mutex_);
   tasks_.push_back(std::move(task));
-  if (tasks_.size() > idle_ && threads_.size() < most_threads_) threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+  if (tasks_.size() > idle_ && threads_.size() < most_threads_)
+    threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
   more_.notify_one();
   return future;
 }

@@ -1,4 +1,5 @@
-// Signatures had by threads of their own, of the lowest priority, while the bodies that need them are simulated without.
+// Signatures had by threads of their own, of the lowest priority, while the bodies that need them are
+// simulated without.
 #pragma once
 
 #include <condition_variable>
@@ -22,7 +23,8 @@ using FutureSignature = std::shared_future<std::shared_ptr<const Signature>>;
 class BackgroundSignatures {
  public:
   /// Given to a thread; what it throws comes out of the future. It returns soon once the token is stopped.
-  using Source = std::function<std::shared_ptr<const Signature>(const Shape&, const ContactLaw&, std::stop_token)>;
+  using Source =
+      std::function<std::shared_ptr<const Signature>(const Shape&, const ContactLaw&, std::stop_token)>;
   /// So many threads at most; each begins with the first request that finds the others busy.
   BackgroundSignatures(int most_threads, Source source);
   /// Stops the source and waits for it.

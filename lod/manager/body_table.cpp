@@ -9,7 +9,8 @@
 namespace lodestone {
 namespace {
 
-constexpr std::size_t kKept = 64;  // elements that a list keeps room for once it is cleared: a whole scene is added only once
+constexpr std::size_t kKept =
+    64;  // elements that a list keeps room for once it is cleared: a whole scene is added only once
 
 template <class List>
 void clear(List& list) {
@@ -28,7 +29,8 @@ BodyId BodyTable::add(const BodyDefinition& definition, double mass) {
     index = free_.back();
     free_.pop_back();
   }
-  const std::uint32_t generation = std::max(1u, records_[index].generation + 1);  // zero is null, after 2³² bodies too
+  const std::uint32_t generation =
+      std::max(1u, records_[index].generation + 1);  // zero is null, after 2³² bodies too
   records_[index] = {.mass = mass,
                      .birth = ++births_,
                      .generation = generation,
@@ -36,7 +38,11 @@ BodyId BodyTable::add(const BodyDefinition& definition, double mass) {
                      .material = definition.material,
                      .newcomer = std::int32_t(newcomers_.size()),
                      .user_data = definition.user_data};
-  levels_[index] = {.importance = definition.importance, .choice = definition.level, .least = definition.least_rung, .greatest = definition.greatest_rung, .newcomer = true};
+  levels_[index] = {.importance = definition.importance,
+                    .choice = definition.level,
+                    .least = definition.least_rung,
+                    .greatest = definition.greatest_rung,
+                    .newcomer = true};
   set_properties(index, definition.properties);
   newcomers_.push_back({.index = index, .state = definition.state});
   ++counts_[std::size_t(definition.level)];
@@ -54,11 +60,17 @@ void BodyTable::remove(BodyId id) {
   properties_.forget(index);
   records_[index] = {.generation = id.generation};
   levels_[index] = {};
-  free_.push_back(index);
+  removed_.push_back(index);
+}
+
+void BodyTable::reuse_indices() {
+  free_.insert(free_.end(), removed_.begin(), removed_.end());
+  clear(removed_);
 }
 
 void BodyTable::archive(StateArchive& a) {
-  a(records_, levels_, free_, shapes_, free_shapes_, newcomers_, forces_, pushed_, rare_, properties_, births_, counts_, greatest_importance_);
+  a(records_, levels_, free_, removed_, shapes_, free_shapes_, newcomers_, forces_, pushed_, rare_,
+    properties_, births_, counts_, greatest_importance_);
   if (!a.reading()) return;
   newcomers_gone_ = 0;
   for (std::size_t i = 0; i < newcomers_.size(); ++i) newcomers_gone_ += !waits_at(i);
@@ -73,7 +85,14 @@ void BodyTable::set_choice(std::uint32_t index, LevelChoice choice) {
 }
 
 void BodyTable::forget_newcomers() {
+  std::vector<Newcomer> waiting;
+  for (std::size_t i = 0; i < newcomers_.size(); ++i)
+    if (waits_at(i)) waiting.push_back(newcomers_[i]);
   clear(newcomers_);
+  for (const Newcomer& newcomer : waiting) {
+    records_[newcomer.index].newcomer = std::int32_t(newcomers_.size());
+    newcomers_.push_back(newcomer);
+  }
   newcomers_gone_ = 0;
 }
 
@@ -94,7 +113,8 @@ void BodyTable::remove_newcomer(std::uint32_t index) {
 
 void BodyTable::add_force(std::uint32_t index, const Force& force) {
   const Force before = this->force(index), sum{before.force + force.force, before.torque + force.torque};
-  if (!sum.force.allFinite() || !sum.torque.allFinite()) throw_input_error("force", "a sum with those given before that is not finite", "a finite one");
+  if (!sum.force.allFinite() || !sum.torque.allFinite())
+    throw_input_error("force", "a sum with those given before that is not finite", "a finite one");
   const auto [held, fresh] = forces_.try_emplace(index);
   if (fresh) pushed_.push_back(index);
   held->second = sum;
@@ -158,7 +178,9 @@ void BodyTable::give_back(std::uint32_t shape) {
 }
 
 std::uint32_t BodyTable::index_of(BodyId id) const {
-  if (!valid(id)) throw_input_error("body", fmt::format("the id {{{}, {}}}", id.index, id.generation), "that of a body of this manager which was not removed");
+  if (!valid(id))
+    throw_input_error("body", fmt::format("the id {{{}, {}}}", id.index, id.generation),
+                      "that of a body of this manager which was not removed");
   return id.index;
 }
 

@@ -1,5 +1,5 @@
-// The bodies of a manager: stable ids, and for each body what the policy reads apart from what only a change of level needs. What few bodies have at a time is
-// kept for those alone.
+// The bodies of a manager: stable ids, and for each body what the policy reads apart from what only a change
+// of level needs. What few bodies have at a time is kept for those alone.
 #pragma once
 
 #include <array>
@@ -16,16 +16,17 @@
 
 namespace lodestone {
 
-/// What is kept of a body besides its state, which its rung holds: on one of the statistical rungs, at the full level, or nowhere yet.
+/// What is kept of a body besides its state, which its rung holds: on one of the statistical rungs, at the
+/// full level, or nowhere yet.
 struct BodyRecord {
-  double mass = 0.0;                 ///< kg
-  std::uint64_t birth = 0;           ///< bodies added before it; 0 in a free index
-  std::uint32_t generation = 0;      ///< of the id; a free index keeps that of its last body
-  std::uint32_t shape = 0;           ///< number of its shape
+  double mass = 0.0;             ///< kg
+  std::uint64_t birth = 0;       ///< bodies added before it; 0 in a free index
+  std::uint32_t generation = 0;  ///< of the id; a free index keeps that of its last body
+  std::uint32_t shape = 0;       ///< number of its shape
   MaterialId material = 0;
-  std::int32_t newcomer = -1;        ///< its place among the newcomers; −1: it is on a rung
-  StatisticalPlace statistical = {}; ///< nowhere while it is full
-  OdeBodyId ode = {};                ///< at the full level, else null
+  std::int32_t newcomer = -1;         ///< its place among the newcomers; −1: it is on a rung
+  StatisticalPlace statistical = {};  ///< nowhere while it is full
+  OdeBodyId ode = {};                 ///< at the full level, else null
   std::uintptr_t user_data = 0;
 };
 
@@ -40,19 +41,27 @@ struct BodyLevel {
   Rung rung = Rung::support;
   Rung least = Rung::tables, greatest = Rung::full;
   Rule reason = Rule::forced;
-  bool newcomer = false;    ///< on no rung yet
-  bool put_off = false;     ///< its promotion was put off lately
-  bool waits_for_signature = false;  ///< and is at `support` without settling clips, or full, until it is there
+  bool newcomer = false;  ///< on no rung yet
+  bool put_off = false;   ///< its promotion was put off lately
+  bool waits_for_signature =
+      false;                    ///< and is at `support` without settling clips, or full, until it is there
   bool own_properties = false;  ///< that `tables` knows nothing of
-  std::int8_t tables_open = -1;  ///< whether it has the signature that `tables` needs; −1: that was not asked for yet
+  std::int8_t tables_open =
+      -1;  ///< whether it has the signature that `tables` needs; −1: that was not asked for yet
 };
 
 class BodyTable {
  public:
   BodyId add(const BodyDefinition& definition, double mass);
+  /// Its index is given again only once reuse_indices() was called: until a step has been done without the
+  /// body, what is remembered of its contacts goes by the index.
   void remove(BodyId id);
+  void reuse_indices();
 
-  bool valid(BodyId id) const { return id && id.index < records_.size() && records_[id.index].generation == id.generation && records_[id.index].birth; }
+  bool valid(BodyId id) const {
+    return id && id.index < records_.size() && records_[id.index].generation == id.generation &&
+           records_[id.index].birth;
+  }
   /// The index of a body; throws InputError where the id is not valid.
   std::uint32_t index_of(BodyId id) const;
   BodyId id(std::uint32_t index) const { return {index, records_[index].generation}; }
@@ -63,7 +72,9 @@ class BodyTable {
   /// That of a free index asks for nothing.
   BodyLevel& level(std::uint32_t index) { return levels_[index]; }
   const BodyLevel& level(std::uint32_t index) const { return levels_[index]; }
-  const std::shared_ptr<const Shape>& shape(std::uint32_t index) const { return shapes_[records_[index].shape].shape; }
+  const std::shared_ptr<const Shape>& shape(std::uint32_t index) const {
+    return shapes_[records_[index].shape].shape;
+  }
 
   void set_choice(std::uint32_t index, LevelChoice choice);
   /// Bodies of a choice.
@@ -75,7 +86,8 @@ class BodyTable {
   /// The greatest that any body had.
   double greatest_importance() const { return greatest_importance_; }
 
-  /// Bodies on no rung yet, in order of creation, as they were given; and places of some that are gone (waits_at).
+  /// Bodies on no rung yet, in order of creation, as they were given; and places of some that are gone
+  /// (waits_at).
   struct Newcomer {
     std::uint32_t index = 0;
     RigidState state;
@@ -84,11 +96,15 @@ class BodyTable {
   };
   const std::vector<Newcomer>& newcomers() const { return newcomers_; }
   Newcomer& newcomer(std::uint32_t index) { return newcomers_[std::size_t(records_[index].newcomer)]; }
-  const Newcomer& newcomer(std::uint32_t index) const { return newcomers_[std::size_t(records_[index].newcomer)]; }
-  bool waits_at(std::size_t place) const { return records_[newcomers_[place].index].newcomer == std::int32_t(place); }  ///< not if it was placed since
+  const Newcomer& newcomer(std::uint32_t index) const {
+    return newcomers_[std::size_t(records_[index].newcomer)];
+  }
+  bool waits_at(std::size_t place) const {
+    return records_[newcomers_[place].index].newcomer == std::int32_t(place);
+  }  ///< not if it was placed since
   void remove_newcomer(std::uint32_t index);
   void forget_last_newcomer() { newcomers_.pop_back(); }  ///< once it is on a rung
-  void forget_newcomers();  ///< once all are on a rung
+  void forget_newcomers();                                ///< those that are on a rung
 
   /// Over the next step; held here so that a change of level carries it.
   struct Force {
@@ -110,13 +126,15 @@ class BodyTable {
 
   /// What few bodies need at a time.
   struct Rare {
-    double still_s = 0.0;              // how long it has been still at the full level, held up by statistical bodies
-    int frames_to_retry = 0, retry_after = 0;  // of a promotion that was put off: left to wait, and the whole wait
+    double still_s = 0.0;  // how long it has been still at the full level, held up by statistical bodies
+    int frames_to_retry = 0,
+        retry_after = 0;  // of a promotion that was put off: left to wait, and the whole wait
   };
   Rare& rare(std::uint32_t index) { return rare_[index]; }
   void forget_rare(std::uint32_t index) { rare_.erase(index); }
   void forget_retries(std::uint32_t index) {
-    if (const auto rare = rare_.find(index); rare != rare_.end()) rare->second.frames_to_retry = rare->second.retry_after = 0;
+    if (const auto rare = rare_.find(index); rare != rare_.end())
+      rare->second.frames_to_retry = rare->second.retry_after = 0;
   }
   /// It is not still.
   void stir(std::uint32_t index) {
@@ -125,7 +143,7 @@ class BodyTable {
 
   void archive(StateArchive& a);
 
-  int size() const { return int(records_.size() - free_.size()); }
+  int size() const { return int(records_.size() - free_.size() - removed_.size()); }
   std::uint32_t indices() const { return std::uint32_t(records_.size()); }
   std::vector<std::uint32_t> in_order_of_creation() const;
 
@@ -140,7 +158,7 @@ class BodyTable {
 
   std::vector<BodyRecord> records_;
   std::vector<BodyLevel> levels_;
-  std::vector<std::uint32_t> free_;
+  std::vector<std::uint32_t> free_, removed_;  // indices; `removed_`: free after the next step
   std::vector<SharedShape> shapes_;
   std::vector<std::uint32_t> free_shapes_;
   std::unordered_map<const Shape*, std::uint32_t> number_of_shape_;

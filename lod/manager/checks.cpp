@@ -6,13 +6,17 @@
 #include <cmath>
 
 #include "reference/error.h"
+#include "reference/mass_bounds.h"
 
 namespace lodestone {
 namespace {
 
-constexpr double kUnitWithin = 1e-3;    // of 1: by so much a length may be off that should be 1
-constexpr double kFarthest = 1e8;       // m, from the origin
-constexpr double kLongestStep = 10.0;   // s
+constexpr double kUnitWithin = 1e-3;  // of 1: by so much a length may be off that should be 1
+constexpr double kFarthest = 1e8;     // m, from the origin
+constexpr double kLongestStep = 10.0,
+                 kShortestStep = 1e-9;  // s; over a shorter one solvers divide by what is no longer a number
+constexpr double kFarthestView =
+    1e12;  // m, from the origin: beyond, the squares of distances lose what is near
 
 std::string text(const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z()); }
 
@@ -25,7 +29,8 @@ Vec3 bounded(const Vec3& velocity, std::string_view what) {
 }
 
 void check_number(double value, double least, std::string_view what) {
-  if (!(value >= least)) throw_input_error(what, fmt::format("{:g}", value), fmt::format("{:g} or more", least));
+  if (!(value >= least))
+    throw_input_error(what, fmt::format("{:g}", value), fmt::format("{:g} or more", least));
 }
 
 }  // namespace
@@ -35,11 +40,16 @@ void check_finite(const Vec3& value, std::string_view what) {
 }
 
 void check_positive(double value, std::string_view what) {
-  if (!(value > 0.0 && std::isfinite(value))) throw_input_error(what, fmt::format("{:g}", value), "a positive, finite number");
+  if (!(value > 0.0 && std::isfinite(value)))
+    throw_input_error(what, fmt::format("{:g}", value), "a positive, finite number");
 }
 
 void check_step(double dt) {
-  if (!(dt >= 0.0 && dt <= kLongestStep)) throw_input_error("time step", fmt::format("{:g} s", dt), fmt::format("0 … {:g} s", kLongestStep));
+  if (!(dt >= 0.0 && dt <= kLongestStep))
+    throw_input_error("time step", fmt::format("{:g} s", dt), fmt::format("0 … {:g} s", kLongestStep));
+  if (dt > 0.0 && dt < kShortestStep)
+    throw_input_error("time step", fmt::format("{:g} s", dt),
+                      fmt::format("0, or {:g} s or more", kShortestStep));
 }
 
 void check_policy(const PolicySettings& policy) {
@@ -50,8 +60,10 @@ void check_policy(const PolicySettings& policy) {
     check_number(distance->full_within, 0.0, "full_within");
     check_number(distance->support_within, 0.0, "support_within");
   }
-  if (const auto* budget = std::get_if<BudgetPolicy>(&policy.policy)) check_number(budget->budget_ms, 0.0, "budget_ms");
-  if (const auto* budget = std::get_if<WorkPolicy>(&policy.policy)) check_number(budget->budget_work, 0.0, "budget_work");
+  if (const auto* budget = std::get_if<BudgetPolicy>(&policy.policy))
+    check_number(budget->budget_ms, 0.0, "budget_ms");
+  if (const auto* budget = std::get_if<WorkPolicy>(&policy.policy))
+    check_number(budget->budget_work, 0.0, "budget_work");
   if (const auto* budget = std::get_if<ErrorBudgetPolicy>(&policy.policy)) {
     check_number(budget->budget_ms, 0.0, "budget_ms");
     if (budget->budget_work) check_number(*budget->budget_work, 0.0, "budget_work");
@@ -62,15 +74,22 @@ void check_policy(const PolicySettings& policy) {
   }
   check_number(policy.out_of_view_factor, 1.0, "out_of_view_factor");
   check_number(policy.look_ahead_s, 0.0, "look_ahead_s");
-  if (policy.look_ahead_s > 10.0) throw_input_error("look_ahead_s", fmt::format("{:g}", policy.look_ahead_s), "10 s or less");
+  if (policy.look_ahead_s > 10.0)
+    throw_input_error("look_ahead_s", fmt::format("{:g}", policy.look_ahead_s), "10 s or less");
 }
 
 void check_rung_range(Rung least, Rung greatest) {
-  if (least > greatest) throw_input_error("rungs", fmt::format("{} as the least, {} as the greatest", name_of(least), name_of(greatest)), "a least one no higher than the greatest");
+  if (least > greatest)
+    throw_input_error("rungs",
+                      fmt::format("{} as the least, {} as the greatest", name_of(least), name_of(greatest)),
+                      "a least one no higher than the greatest");
 }
 
 Viewpoint checked(const Viewpoint& viewpoint) {
   check_finite(viewpoint.position, "viewpoint");
+  if (viewpoint.position.lpNorm<Eigen::Infinity>() > kFarthestView)
+    throw_input_error("viewpoint", text(viewpoint.position),
+                      fmt::format("a place within {:g} m of the origin", kFarthestView));
   const auto check_vector = [](const Vec3& vector, std::string_view what) {
     check_finite(vector, what);
     if (!(vector.squaredNorm() > 0.0)) throw_input_error(what, text(vector), "a vector other than 0");
@@ -78,7 +97,8 @@ Viewpoint checked(const Viewpoint& viewpoint) {
   if (viewpoint.direction) check_vector(*viewpoint.direction, "direction of a viewpoint");
   check_vector(viewpoint.up, "up of a viewpoint");
   check_positive(viewpoint.vertical_fov_rad, "vertical_fov_rad");
-  if (viewpoint.vertical_fov_rad > 3.1) throw_input_error("vertical_fov_rad", fmt::format("{:g}", viewpoint.vertical_fov_rad), "3.1 or less");
+  if (viewpoint.vertical_fov_rad > 3.1)
+    throw_input_error("vertical_fov_rad", fmt::format("{:g}", viewpoint.vertical_fov_rad), "3.1 or less");
   check_positive(viewpoint.height_px, "height_px");
   check_positive(viewpoint.aspect, "aspect");
   return viewpoint;
@@ -86,11 +106,14 @@ Viewpoint checked(const Viewpoint& viewpoint) {
 
 void check_properties(const BodyProperties& properties) {
   const auto check_damping = [](double damping, std::string_view what) {
-    if (!(damping >= 0.0 && std::isfinite(damping))) throw_input_error(what, fmt::format("{:g} 1/s", damping), "a finite number of 0 or more");
+    if (!(damping >= 0.0 && std::isfinite(damping)))
+      throw_input_error(what, fmt::format("{:g} 1/s", damping), "a finite number of 0 or more");
   };
   check_damping(properties.linear_damping, "linear damping");
   check_damping(properties.angular_damping, "angular damping");
-  if (!(properties.max_angular_speed > 0.0)) throw_input_error("maximal angular speed", fmt::format("{:g} rad/s", properties.max_angular_speed), "a positive number");
+  if (!(properties.max_angular_speed > 0.0))
+    throw_input_error("maximal angular speed", fmt::format("{:g} rad/s", properties.max_angular_speed),
+                      "a positive number");
 }
 
 const EventSettings& checked(const EventSettings& settings) {
@@ -117,13 +140,16 @@ Vec3 checked_normal(const Vec3& normal, std::string_view what) {
 }
 
 Quat checked(const Quat& orientation, std::string_view what) {
-  if (!is_unit(orientation.norm())) throw_input_error(what, fmt::format("a quaternion of length {:g}", orientation.norm()), "unit length");
+  if (!is_unit(orientation.norm()))
+    throw_input_error(what, fmt::format("a quaternion of length {:g}", orientation.norm()), "unit length");
   return orientation.normalized();
 }
 
 RigidState checked(RigidState state) {
   check_finite(state.position, "position");
-  if (state.position.lpNorm<Eigen::Infinity>() > kFarthest) throw_input_error("position", text(state.position), fmt::format("a place within {:g} m of the origin", kFarthest));
+  if (state.position.lpNorm<Eigen::Infinity>() > kFarthest)
+    throw_input_error("position", text(state.position),
+                      fmt::format("a place within {:g} m of the origin", kFarthest));
   state.orientation = checked(state.orientation, "orientation");
   state.velocity = bounded(state.velocity, "velocity");
   state.angular_velocity = bounded(state.angular_velocity, "angular velocity");
@@ -135,8 +161,11 @@ double checked_mass(const BodyDefinition& definition, const MaterialTable& mater
   materials.check_known(definition.material);
   check_positive(definition.importance, "importance");
   check_rung_range(definition.least_rung, definition.greatest_rung);
-  const double mass = definition.mass.value_or(materials[definition.material].density * definition.shape->volume);
+  const double mass =
+      definition.mass.value_or(materials[definition.material].density * definition.shape->volume);
   check_positive(mass, "mass");
+  check_mass(mass);
+  check_inertia(*definition.shape);
   return mass;
 }
 
@@ -146,11 +175,18 @@ void check_ground_mesh(const Mesh& mesh) {
   for (const Vec3& vertex : mesh.vertices) check_finite(vertex, "vertex of a static mesh");
   for (const auto& face : mesh.faces) {
     for (const int i : face)
-      if (i < 0 || i >= vertices) throw_input_error("face of a static mesh", fmt::format("vertex {}", i), fmt::format("0 … {}", vertices - 1));
+      if (i < 0 || i >= vertices)
+        throw_input_error("face of a static mesh", fmt::format("vertex {}", i),
+                          fmt::format("0 … {}", vertices - 1));
     const Vec3& from = mesh.vertices[std::size_t(face[0])];
-    any_area = any_area || (mesh.vertices[std::size_t(face[1])] - from).cross(mesh.vertices[std::size_t(face[2])] - from).norm() > 0.0;
+    any_area = any_area || (mesh.vertices[std::size_t(face[1])] - from)
+                                   .cross(mesh.vertices[std::size_t(face[2])] - from)
+                                   .norm() > 0.0;
   }
-  if (mesh.faces.size() < 2 || !any_area) throw_input_error("static mesh", fmt::format("{} faces{}", mesh.faces.size(), any_area ? "" : " without area"), "two or more, with an area");
+  if (mesh.faces.size() < 2 || !any_area)
+    throw_input_error("static mesh",
+                      fmt::format("{} faces{}", mesh.faces.size(), any_area ? "" : " without area"),
+                      "two or more, with an area");
 }
 
 }  // namespace lodestone

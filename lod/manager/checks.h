@@ -1,4 +1,5 @@
-// What a caller passes at run time, looked at before anything is changed. Each throws InputError, saying what was found and what was expected.
+// What a caller passes at run time, looked at before anything is changed. Each throws InputError, saying what
+// was found and what was expected.
 #pragma once
 
 #include <span>
@@ -22,7 +23,8 @@ const EventSettings& checked(const EventSettings& settings);
 /// As a constructor can use them.
 const ManagerSettings& checked(const ManagerSettings& settings);
 
-/// As every rung can take it: finite, within 1e8 m of the origin, its orientation within 1e-3 of unit length and normalised, no faster than kGreatestSpeed.
+/// As every rung can take it: finite, within 1e8 m of the origin, its orientation within 1e-3 of unit length
+/// and normalised, no faster than kGreatestSpeed.
 RigidState checked(RigidState state);
 /// Of unit length within 1e-3, normalised.
 Vec3 checked_normal(const Vec3& normal, std::string_view what);

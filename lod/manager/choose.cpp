@@ -14,16 +14,22 @@ namespace {
 // m of travel, and over the distance: by so much a body's turn comes early, for rounding.
 constexpr double kEarly = 1e-6;
 
+// m of travel: then it is counted from zero again, lest it lose those few metres after which a body's turn
+// comes.
+constexpr double kLongTravel = 1e8;
+
 /// m, of the one that came farthest; as many now as before.
 double find_travel(const Views& before, const Views& now) {
   double farthest = 0.0;
-  for (std::size_t i = 0; i < now.size(); ++i) farthest = std::max(farthest, (now.position(i) - before.position(i)).norm());
+  for (std::size_t i = 0; i < now.size(); ++i)
+    farthest = std::max(farthest, (now.position(i) - before.position(i)).norm());
   return farthest;
 }
 
 /// Whether the policy wanted another rung for it than it has.
 bool waits(Rule reason) {
-  return reason == Rule::dwell || reason == Rule::queued || reason == Rule::overlap_put_off || reason == Rule::most_reached;
+  return reason == Rule::dwell || reason == Rule::queued || reason == Rule::overlap_put_off ||
+         reason == Rule::most_reached;
 }
 
 }  // namespace
@@ -38,7 +44,10 @@ void Choose::set_views(Views views) {
   look_at_all_ |= views.size() != views_.size();
   turned_ |= look_at_all_ || views.turned_since(views_);
   if (!look_at_all_) traveled_ += find_travel(views_, views);
-  look_at_all_ |= turned_ && limits_ && limits_->measure == Measure::size && views.per_metre(Measure::size) != views_.per_metre(Measure::size);
+  if (!(traveled_ < kLongTravel))
+    look_at_all_ = true, traveled_ = 0.0;  // whoever waits for a turn is looked at
+  look_at_all_ |= turned_ && limits_ && limits_->measure == Measure::size &&
+                  views.per_metre(Measure::size) != views_.per_metre(Measure::size);
   views_ = std::move(views);
 }
 
@@ -67,7 +76,8 @@ std::optional<RungChanges> Choose::run(StepReport& report, CostModel& costs) {
 bool Choose::sees_places() const {
   if (budgeted()) return true;
   const BodyTable& bodies = levels_.bodies;
-  return !views_.empty() && bodies.count(LevelChoice::automatic) + (model_ ? 0 : bodies.count(LevelChoice::statistical)) > 0;
+  return !views_.empty() &&
+         bodies.count(LevelChoice::automatic) + (model_ ? 0 : bodies.count(LevelChoice::statistical)) > 0;
 }
 
 void Choose::look_at_those_concerned(StepReport& report) {
@@ -109,9 +119,12 @@ void Choose::look_at_those_concerned(StepReport& report) {
 void Choose::look_at_nearest(StepReport& report) {
   std::vector<std::uint32_t> next;
   for (std::size_t known = candidates_.size();; known = candidates_.size()) {
-    const double least = (far_.next_due() - traveled_) / levels_.bodies.greatest_importance();  // of those that are left
+    const double least =
+        (far_.next_due() - traveled_) / levels_.bodies.greatest_importance();  // of those that are left
     counts_.asked = int(asked_.size());
-    if (far_.next_due() > 1e299 || reach_of_full(make_units(), views_, policy_, costs_->overhead(counts_)) < least) return;
+    if (far_.next_due() > 1e299 ||
+        reach_of_full(make_units(), views_, policy_, costs_->overhead(counts_)) < least)
+      return;
     // Some more each time: what is known is ranked anew.
     while (candidates_.size() < known + known / 4 + 16 && far_.next_due() < 1e299) {
       next.clear();
@@ -132,15 +145,19 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   if (group)
     for (const std::uint32_t member : groups_.members(group)) look_at(member, report);
   if (level.rung == Rung::full || level.newcomer) note_waiting(body);
-  if (!model_ && level.tables_open < 0 && !level.waits_for_signature && open_to(level, false).has(Rung::tables)) ask_for_tables(body);
+  if (!model_ && level.tables_open < 0 && !level.waits_for_signature &&
+      open_to(level, false).has(Rung::tables))
+    ask_for_tables(body);
   const Activity does = budgeted() || policy_.contact_groups_together ? activity(body) : Activity::alone;
   const bool pinned = level.rung == Rung::full && !level.newcomer && groups_.pinned(body);
   const RungSet open = pinned ? RungSet{Rung::full} : open_to(level, does == Activity::asleep);
   if (does == Activity::asleep || unseen) level.woke_at = report.step;
   const bool held = pinned && does != Activity::asleep;
   const float mesh = budgeted() ? mesh_weight(*levels_.bodies.shape(body)) : 0.0f;
-  if (budgeted() && held) count_held(does, costs_->full_share(mesh));
-  else if (budgeted()) count(level.newcomer ? open.lowest() : level.rung, does, arrives(level, does), mesh, 1.0);
+  if (budgeted() && held)
+    count_held(does, costs_->full_share(mesh));
+  else if (budgeted())
+    count(level.newcomer ? open.lowest() : level.rung, does, arrives(level, does), mesh, 1.0);
   const bool settled = open.one() && open.has(level.rung) && !level.newcomer && level.rung != Rung::full;
   if (settled && !budgeted() && !group) {
     level.reason = Rule::forced;
@@ -150,13 +167,20 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   if (pinned) candidate.decided_by = Rule::joined;
   candidate.mesh = mesh;
   if (budgeted()) candidate.cost = costs_->cost_of(does, costs_->full_share(mesh));
-  if (budgeted() && open.one() && open.has(Rung::full) && !level.newcomer) candidate.cost[std::size_t(Rung::full)] = float(costs_->cost_of_forced_full(does, held, costs_->full_share(mesh)));
-  if (does == Activity::asleep && !open.has(Rung::tables)) candidate.cost[std::size_t(Rung::support)] = 0.0f;  // not all of them are looked at
-  if (budgeted() && does == Activity::asleep && level.rung == Rung::support && open.has(Rung::tables)) support_sleepers_.push_back(body);
-  if (budgeted() && !held && arrives(level, does)) candidate.cost[std::size_t(level.rung)] += float(costs_->cost_of_arriving(level.rung) * (level.rung == Rung::full ? costs_->full_share(mesh) : 1.0));
+  if (budgeted() && open.one() && open.has(Rung::full) && !level.newcomer)
+    candidate.cost[std::size_t(Rung::full)] =
+        float(costs_->cost_of_forced_full(does, held, costs_->full_share(mesh)));
+  if (does == Activity::asleep && !open.has(Rung::tables))
+    candidate.cost[std::size_t(Rung::support)] = 0.0f;  // not all of them are looked at
+  if (budgeted() && does == Activity::asleep && level.rung == Rung::support && open.has(Rung::tables))
+    support_sleepers_.push_back(body);
+  if (budgeted() && !held && arrives(level, does))
+    candidate.cost[std::size_t(level.rung)] += float(
+        costs_->cost_of_arriving(level.rung) * (level.rung == Rung::full ? costs_->full_share(mesh) : 1.0));
   const bool limited = policy_.most_full < kUnlimited || policy_.most_support < kUnlimited;
   const bool may_hit = candidate.ahead.squaredNorm() > candidate.radius * candidate.radius;
-  if (limits_ && !level.newcomer && !limited && !may_hit && !group && !policy_.contact_groups_together && stays_put(candidate, views_, *limits_)) {
+  if (limits_ && !level.newcomer && !limited && !may_hit && !group && !policy_.contact_groups_together &&
+      stays_put(candidate, views_, *limits_)) {
     level.reason = reason_for_rung(*limits_, candidate);
     put_far(body, candidate);
     return;
@@ -167,7 +191,8 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
 }
 
 bool Choose::arrives(const BodyLevel& level, Activity does) const {
-  return !level.newcomer && does == Activity::crowded && levels_.now - std::max(level.changed_at, level.woke_at) < kArrivalSteps;
+  return !level.newcomer && does == Activity::crowded &&
+         levels_.now - std::max(level.changed_at, level.woke_at) < kArrivalSteps;
 }
 
 void Choose::count_meetings() {
@@ -179,13 +204,16 @@ void Choose::count_meetings() {
 double Choose::awake_pairs() const {
   const std::span<const FullLevel::Member> members = levels_.full.members();
   double most_radius = 0.0, awake = 0.0;
-  for (const FullLevel::Member& member : members) most_radius = std::max(most_radius, levels_.bodies.shape(member.owner)->radius);
+  for (const FullLevel::Member& member : members)
+    most_radius = std::max(most_radius, levels_.bodies.shape(member.owner)->radius);
   FullPairs pairs(most_radius);
   for (const FullLevel::Member& member : members) {
     const Shape& shape = *levels_.bodies.shape(member.owner);
     const OdeWorld& world = *levels_.full.world();
-    FullPairs::Body body{world.state(member.id).position, shape.radius, mesh_weight(shape), world.asleep(member.id)};
-    if (groups_.of(member.owner) && groups_.joined(member.owner)) body.joined = groups_.of(member.owner).index;
+    FullPairs::Body body{world.state(member.id).position, shape.radius, mesh_weight(shape),
+                         world.asleep(member.id)};
+    if (groups_.of(member.owner) && groups_.joined(member.owner))
+      body.joined = groups_.of(member.owner).index;
     awake += pairs.meet(body).awake;
     pairs.add(body);
   }
@@ -209,15 +237,19 @@ void Choose::put_far(std::uint32_t body, const LevelCandidate& candidate) {
   const BodyRecord& record = levels_.bodies[body];
   if (views_.empty() || !record.statistical || !levels_.statistical->asleep(record.statistical)) return;
   double nearest = 1e300;
-  for (std::size_t view = 0; view < views_.size(); ++view) nearest = std::min(nearest, (candidate.position - views_.position(view)).norm());
-  double travel = limits_ ? travel_until_change(candidate, views_, *limits_, policy_.hysteresis) : nearest - candidate.radius;
+  for (std::size_t view = 0; view < views_.size(); ++view)
+    nearest = std::min(nearest, (candidate.position - views_.position(view)).norm());
+  double travel = limits_ ? travel_until_change(candidate, views_, *limits_, policy_.hysteresis)
+                          : nearest - candidate.radius;
   if (limits_ && policy_.out_of_view_factor > 1.0) {
     // What the policy would want of it, were it in view, or not.
     LevelCandidate otherwise = candidate;
     otherwise.view_factor = candidate.view_factor > 1.0 ? 1.0 : policy_.out_of_view_factor;
     const double other_travel = travel_until_change(otherwise, views_, *limits_, policy_.hysteresis);
-    if (other_travel <= 0.0) seen_or_not_.push_back(body);
-    else travel = std::min(travel, other_travel);
+    if (other_travel <= 0.0)
+      seen_or_not_.push_back(body);
+    else
+      travel = std::min(travel, other_travel);
   }
   if (travel < 1e299) far_.put(body, traveled_ + travel - kEarly * (1.0 + nearest));
 }
@@ -230,7 +262,8 @@ void Choose::put_in_order() {
   std::ranges::sort(order, {}, [this](std::uint32_t i) { return asked_[i]; });
   std::vector<LevelCandidate> ordered(candidates_.size());
   std::vector<Activity> activities(activities_.size());
-  for (std::size_t i = 0; i < order.size(); ++i) ordered[i] = candidates_[order[i]], activities[i] = activities_[order[i]];
+  for (std::size_t i = 0; i < order.size(); ++i)
+    ordered[i] = candidates_[order[i]], activities[i] = activities_[order[i]];
   candidates_ = std::move(ordered);
   activities_ = std::move(activities);
   std::ranges::sort(asked_);
@@ -241,19 +274,27 @@ RungChanges Choose::take_answers(const LevelDecision& decision) {
     const std::uint32_t body = asked_[i];
     const Rule reason = decision.reasons[i];
     levels_.bodies.level(body).reason = reason;
-    if (levels_.bodies.level(body).newcomer) levels_.bodies.newcomer(body).rung = candidates_[i].decided() ? below_full(candidates_[i].open) : candidates_[i].open.lowest();
-    if (waits(reason)) wishing_.push_back(body);
-    else if (!candidates_[i].decided()) put_far(body, unit_of_.empty() ? candidates_[i] : units_[std::size_t(unit_of_[i])]);
+    if (levels_.bodies.level(body).newcomer)
+      levels_.bodies.newcomer(body).rung =
+          candidates_[i].decided() ? below_full(candidates_[i].open) : candidates_[i].open.lowest();
+    if (waits(reason))
+      wishing_.push_back(body);
+    else if (!candidates_[i].decided())
+      put_far(body, unit_of_.empty() ? candidates_[i] : units_[std::size_t(unit_of_[i])]);
   }
   RungChanges changes;
-  for (const auto& [from, to] : {std::pair{&decision.promote, &changes.promote}, {&decision.demote, &changes.demote}})
+  for (const auto& [from, to] :
+       {std::pair{&decision.promote, &changes.promote}, {&decision.demote, &changes.demote}})
     for (const LevelDecision::Change& change : *from) {
       const std::uint32_t body = asked_[std::size_t(change.candidate)];
       RungSet open = candidates_[std::size_t(change.candidate)].open;
-      const std::int32_t unit = unit_of_.empty() ? -1 : unit_of_[std::size_t(change.candidate)], together = unit >= 0 && units_[std::size_t(unit)].bodies > 1 ? unit : -1;
-      if (change.to == Rung::full && together < 0) open = open_to(levels_.bodies.level(body), false);  // for one that is not let in, and sleeps
+      const std::int32_t unit = unit_of_.empty() ? -1 : unit_of_[std::size_t(change.candidate)],
+                         together = unit >= 0 && units_[std::size_t(unit)].bodies > 1 ? unit : -1;
+      if (change.to == Rung::full && together < 0)
+        open = open_to(levels_.bodies.level(body), false);  // for one that is not let in, and sleeps
       const bool newcomer = levels_.bodies.level(body).newcomer;
-      if (newcomer) levels_.bodies.newcomer(body).rung = change.to == Rung::full ? below_full(open) : change.to;
+      if (newcomer)
+        levels_.bodies.newcomer(body).rung = change.to == Rung::full ? below_full(open) : change.to;
       if (!newcomer || change.to == Rung::full) to->push_back({body, change.to, open, together});
     }
   return changes;
@@ -269,15 +310,20 @@ void Choose::count_changes(const RungChanges& changes) {
   for (const auto* list : {&changes.demote, &changes.promote})
     for (const RungChanges::Change& change : *list) {
       const auto i = std::size_t(std::ranges::lower_bound(asked_, change.body) - asked_.begin());
-      count(candidates_[i].present(), activities_[i], arrives(levels_.bodies.level(change.body), activities_[i]), candidates_[i].mesh, -1.0);
-      count(change.to, activities_[i], activities_[i] == Activity::crowded && !candidates_[i].newcomer, candidates_[i].mesh, 1.0);
+      count(candidates_[i].present(), activities_[i],
+            arrives(levels_.bodies.level(change.body), activities_[i]), candidates_[i].mesh, -1.0);
+      count(change.to, activities_[i], activities_[i] == Activity::crowded && !candidates_[i].newcomer,
+            candidates_[i].mesh, 1.0);
       ++counts_.changes[std::size_t(change.to)];
     }
 }
 
 void Choose::add_up_errors(const RungChanges& changes) {
-  const auto add = [&](std::size_t i, Rung rung, double sign) { predicted_error_ += candidates_[i].asleep ? 0.0 : sign * candidates_[i].error_at(rung); };
-  for (std::size_t i = 0; i < candidates_.size(); ++i) add(i, candidates_[i].newcomer ? levels_.bodies.newcomer(asked_[i]).rung : candidates_[i].rung, 1.0);
+  const auto add = [&](std::size_t i, Rung rung, double sign) {
+    predicted_error_ += candidates_[i].asleep ? 0.0 : sign * candidates_[i].error_at(rung);
+  };
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    add(i, candidates_[i].newcomer ? levels_.bodies.newcomer(asked_[i]).rung : candidates_[i].rung, 1.0);
   for (const auto* list : {&changes.demote, &changes.promote})
     for (const RungChanges::Change& change : *list) {
       const auto i = std::size_t(std::ranges::lower_bound(asked_, change.body) - asked_.begin());

@@ -1,6 +1,7 @@
-// Stage 1 of a step: which rungs the policy wants. It is asked about those bodies alone for which its answer may have changed: those that are full, awake, new,
-// put off or changed by the caller, and of those that sleep the ones whose turn it is (far_bodies.h). The others keep the rung and the reason that they have, and the
-// decision is the one that it would be of all.
+// Stage 1 of a step: which rungs the policy wants. It is asked about those bodies alone for which its answer
+// may have changed: those that are full, awake, new, put off or changed by the caller, and of those that
+// sleep the ones whose turn it is (far_bodies.h). The others keep the rung and the reason that they have, and
+// the decision is the one that it would be of all.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,8 @@ struct RungChanges {
     std::uint32_t body = 0;
     Rung to = Rung::support;
     RungSet open = kEveryRung;
-    std::int32_t together = -1;  ///< those that follow each other with the same number change all or not at all
+    std::int32_t together =
+        -1;  ///< those that follow each other with the same number change all or not at all
   };
   std::vector<Change> promote, demote;
 };
@@ -47,7 +49,8 @@ class Choose {
   void note(std::uint32_t body) { changed_.push_back(body); }
   void forget(std::uint32_t body) { far_.forget(body), groups_.forget(body); }
 
-  /// Nothing: all stay as they are. What was decided and not done, because the step threw, is decided anew: see done().
+  /// Nothing: all stay as they are. What was decided and not done, because the step threw, is decided anew:
+  /// see done().
   std::optional<RungChanges> run(StepReport& report, CostModel& costs);
   void done() { look_at_all_ = false; }
   /// Bodies at `support` whose signature has come, of those that waited for it: a few in each step.
@@ -55,7 +58,8 @@ class Choose {
 
   /// Bodies that it saw, on the rungs that they have after its decision.
   const StepCounts& counts() const { return counts_; }
-  /// px: of those that it saw and that are awake, on the rungs that they have after its decision; under an error budget.
+  /// px: of those that it saw and that are awake, on the rungs that they have after its decision; under an
+  /// error budget.
   double predicted_error() const { return predicted_error_; }
   /// Where a body is and how it is seen, as the policy has it now; without costs.
   LevelCandidate seen(std::uint32_t body) const;
@@ -68,7 +72,10 @@ class Choose {
   void count_meetings();
 
   /// But for the policy and the ground, which are the reader's.
-  void archive(StateArchive& a) { a(groups_, views_, turned_, look_at_all_, wishing_, changed_, support_sleepers_, seen_or_not_, waiting_, next_waiting_, far_, traveled_, counts_); }
+  void archive(StateArchive& a) {
+    a(groups_, views_, turned_, look_at_all_, wishing_, changed_, support_sleepers_, seen_or_not_, waiting_,
+      next_waiting_, far_, traveled_, counts_);
+  }
 
  private:
   bool budgeted() const { return !limits_; }
@@ -104,28 +111,29 @@ class Choose {
   Levels& levels_;
   Groups groups_;
   PolicySettings policy_;
-  std::optional<Limits> limits_;                    // of the policy, but for a budget
+  std::optional<Limits> limits_;  // of the policy, but for a budget
   std::optional<StatisticalModel> model_;
   Views views_;
-  bool turned_ = false;                             // a view, since the last step
+  bool turned_ = false;  // a view, since the last step
   bool look_at_all_ = true;
-  std::vector<std::uint32_t> wishing_;              // that did not get the rung that is wanted for them
-  std::vector<std::uint32_t> changed_;              // by the caller, or by a change of rung
-  std::vector<std::uint32_t> support_sleepers_;     // that may go down to `tables`, under a budget
-  std::vector<std::uint32_t> seen_or_not_;          // sleepers whose rung depends on whether they are in view
-  std::vector<std::uint32_t> waiting_;              // for their signature
-  std::size_t next_waiting_ = 0;                    // to be asked about
+  std::vector<std::uint32_t> wishing_;           // that did not get the rung that is wanted for them
+  std::vector<std::uint32_t> changed_;           // by the caller, or by a change of rung
+  std::vector<std::uint32_t> support_sleepers_;  // that may go down to `tables`, under a budget
+  std::vector<std::uint32_t> seen_or_not_;       // sleepers whose rung depends on whether they are in view
+  std::vector<std::uint32_t> waiting_;           // for their signature
+  std::size_t next_waiting_ = 0;                 // to be asked about
   FarBodies far_;
-  double traveled_ = 0.0;                           // m: how far viewpoints came, at most
-  std::vector<std::uint32_t> asked_;                // bodies of the candidates
+  double traveled_ = 0.0;             // m: how far viewpoints came, at most
+  std::vector<std::uint32_t> asked_;  // bodies of the candidates
   std::vector<LevelCandidate> candidates_;
-  std::vector<std::int32_t> unit_of_;               // of each candidate: what it changes rung with, below; empty: each is alone
+  std::vector<std::int32_t>
+      unit_of_;  // of each candidate: what it changes rung with, below; empty: each is alone
   std::vector<LevelCandidate> units_;
-  std::vector<Activity> activities_;                // of the candidates, under a budget
+  std::vector<Activity> activities_;  // of the candidates, under a budget
   StepCounts counts_;
-  double full_in_crowd_ = 0.0;                      // bodies
-  double predicted_error_ = 0.0;                    // px
-  CostModel* costs_ = nullptr;                      // of this step
+  double full_in_crowd_ = 0.0;    // bodies
+  double predicted_error_ = 0.0;  // px
+  CostModel* costs_ = nullptr;    // of this step
 };
 
 }  // namespace lodestone

@@ -1,4 +1,5 @@
-// What the policy is told of a body: where it is, what it costs and errs by on each rung, and which rungs are open to it.
+// What the policy is told of a body: where it is, what it costs and errs by on each rung, and which rungs are
+// open to it.
 #include <algorithm>
 #include <cmath>
 
@@ -18,13 +19,18 @@ constexpr double kErrorOfSleepers = 0.01;
 constexpr double kMostPixels = 1e4;
 
 Rule rule_for_one(const BodyLevel& level) {
-  if (level.waits_for_signature && level.choice != LevelChoice::full && level.choice != LevelChoice::support) return Rule::signature_pending;
-  return level.choice == LevelChoice::automatic && (level.least != Rung::tables || level.greatest != Rung::full) ? Rule::rung_range : Rule::forced;
+  if (level.waits_for_signature && level.choice != LevelChoice::full && level.choice != LevelChoice::support)
+    return Rule::signature_pending;
+  return level.choice == LevelChoice::automatic &&
+                 (level.least != Rung::tables || level.greatest != Rung::full)
+             ? Rule::rung_range
+             : Rule::forced;
 }
 
 }  // namespace
 
-// One that sleeps at `tables` costs nothing there, and a budget has nothing to gain from moving it to `support`.
+// One that sleeps at `tables` costs nothing there, and a budget has nothing to gain from moving it to
+// `support`.
 RungSet Choose::open_to(const BodyLevel& level, bool asleep) const {
   const RungSet open = open_by_choice(level, asleep);
   return level.own_properties ? open.with_support_for_tables() : open;
@@ -32,7 +38,9 @@ RungSet Choose::open_to(const BodyLevel& level, bool asleep) const {
 
 RungSet Choose::open_by_choice(const BodyLevel& level, bool asleep) const {
   if (level.choice == LevelChoice::full) return {Rung::full};
-  if (level.waits_for_signature && level.choice == LevelChoice::automatic) return RungSet{Rung::support, Rung::full}.within(RungSet::between(std::max(level.least, Rung::support), std::max(level.greatest, Rung::support)));
+  if (level.waits_for_signature && level.choice == LevelChoice::automatic)
+    return RungSet{Rung::support, Rung::full}.within(
+        RungSet::between(std::max(level.least, Rung::support), std::max(level.greatest, Rung::support)));
   if (level.waits_for_signature) return {Rung::support};
   if (level.choice == LevelChoice::support) return {Rung::support};
   if (level.choice == LevelChoice::tables) return {Rung::tables};
@@ -40,22 +48,29 @@ RungSet Choose::open_by_choice(const BodyLevel& level, bool asleep) const {
   if (!fixed && limits_ && !limits_->three_rungs()) fixed = Rung::support;
   if (!fixed && level.tables_open == 0) fixed = Rung::support;
   if (!fixed && budgeted() && asleep && !level.newcomer && level.rung == Rung::tables) fixed = Rung::tables;
-  const RungSet statistical = fixed ? RungSet{*fixed} : RungSet{Rung::tables, Rung::support}, any = fixed ? RungSet{*fixed, Rung::full} : kEveryRung;
+  const RungSet statistical = fixed ? RungSet{*fixed} : RungSet{Rung::tables, Rung::support},
+                any = fixed ? RungSet{*fixed, Rung::full} : kEveryRung;
   const RungSet open = level.choice == LevelChoice::statistical ? statistical : any;
   return open.within(RungSet::between(level.least, level.greatest));
 }
 
-bool Choose::in_view(const Vec3& center, double radius) const { return policy_.visible ? policy_.visible(center, radius) : views_.sees(center, radius); }
+bool Choose::in_view(const Vec3& center, double radius) const {
+  return policy_.visible ? policy_.visible(center, radius) : views_.sees(center, radius);
+}
 
 double Choose::significance(std::uint32_t body) const {
   if (!policy_.significance) return 1.0;
   const double significance = policy_.significance({body, levels_.bodies[body].generation});
-  return significance >= kLeastSignificance ? std::min(significance, 1.0) : kLeastSignificance;  // for NaN, too
+  return significance >= kLeastSignificance ? std::min(significance, 1.0)
+                                            : kLeastSignificance;  // for NaN, too
 }
 
 LevelCandidate Choose::seen(std::uint32_t body) const {
   const BodyLevel& level = levels_.bodies.level(body);
-  return {.position = levels_.state(body).position, .radius = levels_.bodies.shape(body)->radius, .importance = level.importance, .rung = level.rung};
+  return {.position = levels_.state(body).position,
+          .radius = levels_.bodies.shape(body)->radius,
+          .importance = level.importance,
+          .rung = level.rung};
 }
 
 LevelCandidate Choose::make_candidate(std::uint32_t body, RungSet open, bool asleep) {
@@ -69,14 +84,22 @@ LevelCandidate Choose::make_candidate(std::uint32_t body, RungSet open, bool asl
                            .decided_by = rule_for_one(level),
                            .newcomer = level.newcomer,
                            .put_off = level.put_off};
-  candidate.frames_since_change = std::int32_t(std::min<std::int64_t>(levels_.now - level.changed_at, LevelCandidate{}.frames_since_change));
-  if (record.statistical) candidate.position = levels_.statistical->position(record.statistical);  // all that it takes, of most bodies
-  else candidate.position = levels_.state(body).position;
-  if (policy_.look_ahead_s > 0.0 && !asleep) candidate.ahead = policy_.look_ahead_s * levels_.state(body).velocity;
+  candidate.frames_since_change = std::int32_t(
+      std::min<std::int64_t>(levels_.now - level.changed_at, LevelCandidate{}.frames_since_change));
+  if (record.statistical)
+    candidate.position =
+        levels_.statistical->position(record.statistical);  // all that it takes, of most bodies
+  else
+    candidate.position = levels_.state(body).position;
+  if (policy_.look_ahead_s > 0.0 && !asleep)
+    candidate.ahead = policy_.look_ahead_s * levels_.state(body).velocity;
   const bool views_differ = policy_.visible || views_.any_frustum();
-  if (policy_.out_of_view_factor > 1.0 && views_differ && !views_.empty() && !in_view(candidate.position, candidate.radius)) candidate.view_factor = policy_.out_of_view_factor;
+  if (policy_.out_of_view_factor > 1.0 && views_differ && !views_.empty() &&
+      !in_view(candidate.position, candidate.radius))
+    candidate.view_factor = policy_.out_of_view_factor;
   if (by_error()) predict_errors(body, candidate);
-  if (budgeted() && record.ode && !asleep) candidate.motion = kFrame_s * levels_.full.world()->state(record.ode).velocity;
+  if (budgeted() && record.ode && !asleep)
+    candidate.motion = kFrame_s * levels_.full.world()->state(record.ode).velocity;
   return candidate;
 }
 
@@ -91,13 +114,16 @@ Activity Choose::activity(std::uint32_t body) const {
 // `tables` needs a signature, and a source may have none.
 void Choose::ask_for_tables(std::uint32_t body) {
   const BodyRecord& record = levels_.bodies[body];
-  levels_.bodies.level(body).tables_open = levels_.signatures.find(*levels_.bodies.shape(body), levels_.ground_law(record.material)) != nullptr;
+  levels_.bodies.level(body).tables_open =
+      levels_.signatures.find(*levels_.bodies.shape(body), levels_.ground_law(record.material)) != nullptr;
 }
 
 void Choose::note_waiting(std::uint32_t body) {
   BodyLevel& level = levels_.bodies.level(body);
   if (level.waits_for_signature || level.choice == LevelChoice::full) return;
-  if (levels_.signatures.ready(*levels_.bodies.shape(body), levels_.ground_law(levels_.bodies[body].material))) return;
+  if (levels_.signatures.ready(*levels_.bodies.shape(body),
+                               levels_.ground_law(levels_.bodies[body].material)))
+    return;
   level.waits_for_signature = true;
   waiting_.push_back(body);
 }
@@ -109,7 +135,8 @@ std::vector<std::uint32_t> Choose::take_supplied() {
     if (next_waiting_ >= waiting_.size()) next_waiting_ = 0;
     const std::uint32_t body = waiting_[next_waiting_];
     const bool gone = !levels_.bodies.alive(body) || !levels_.bodies.level(body).waits_for_signature;
-    if (!gone && !levels_.signatures.ready(*levels_.bodies.shape(body), levels_.ground_law(levels_.bodies[body].material))) {
+    if (!gone && !levels_.signatures.ready(*levels_.bodies.shape(body),
+                                           levels_.ground_law(levels_.bodies[body].material))) {
       ++next_waiting_;
       continue;
     }
@@ -132,15 +159,19 @@ double Choose::pixels(const LevelCandidate& seen) const {
 
 void Choose::predict_errors(std::uint32_t body, LevelCandidate& candidate) const {
   const std::array<RungError, kRungs> errors = levels_.errors_of(body);
-  const double weight = pixels(candidate) * candidate.importance / candidate.view_factor * (candidate.asleep ? kErrorOfSleepers : 1.0);
-  for (std::size_t rung = 0; rung < kRungs; ++rung) candidate.error[rung] = float(weight * errors[rung].drift);
+  const double weight = pixels(candidate) * candidate.importance / candidate.view_factor *
+                        (candidate.asleep ? kErrorOfSleepers : 1.0);
+  for (std::size_t rung = 0; rung < kRungs; ++rung)
+    candidate.error[rung] = float(weight * errors[rung].drift);
 }
 
 // What is about to hit a full body is as near as that is. One that is full only for that does not pass it on.
 void Choose::look_ahead() {
   std::vector<std::size_t> full;
   for (std::size_t i = 0; i < candidates_.size(); ++i)
-    if (candidates_[i].rung == Rung::full && !candidates_[i].newcomer && levels_.bodies.level(asked_[i]).reason != Rule::look_ahead) full.push_back(i);
+    if (candidates_[i].rung == Rung::full && !candidates_[i].newcomer &&
+        levels_.bodies.level(asked_[i]).reason != Rule::look_ahead)
+      full.push_back(i);
   for (LevelCandidate& candidate : candidates_) {
     const bool fast = candidate.ahead.squaredNorm() > candidate.radius * candidate.radius;
     if (fast && !candidate.decided() && candidate.open.has(Rung::full)) look_ahead(candidate, full);
@@ -152,11 +183,13 @@ void Choose::look_ahead(LevelCandidate& candidate, std::span<const std::size_t> 
     const LevelCandidate& other = candidates_[i];
     if (&other == &candidate) continue;
     const Vec3 apart = other.position - candidate.position, approach = candidate.ahead - other.ahead;
-    const double length = approach.squaredNorm(), along = length > 0.0 ? std::clamp(apart.dot(approach) / length, 0.0, 1.0) : 0.0;
+    const double length = approach.squaredNorm(),
+                 along = length > 0.0 ? std::clamp(apart.dot(approach) / length, 0.0, 1.0) : 0.0;
     const double reach = candidate.radius + other.radius;
     if (along == 0.0 || (apart - along * approach).squaredNorm() > reach * reach) continue;
     candidate.hits_full = true;
-    candidate.no_farther_than = std::min(candidate.no_farther_than, remoteness(other, views_, limits_ ? limits_->measure : Measure::distance));
+    candidate.no_farther_than = std::min(
+        candidate.no_farther_than, remoteness(other, views_, limits_ ? limits_->measure : Measure::distance));
   }
 }
 

@@ -1,4 +1,5 @@
-// Each policy says what rung it wants for every body; what dwell, queue, caps and room then allow is the same for all.
+// Each policy says what rung it wants for every body; what dwell, queue, caps and room then allow is the same
+// for all.
 #include "lod/manager/choose_levels.h"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
 
-// Of the room above what the lowest rungs cost, the part that full bodies leave to a ring of `support` around them: what goes up from `tables` takes it first.
+// Of the room above what the lowest rungs cost, the part that full bodies leave to a ring of `support` around
+// them: what goes up from `tables` takes it first.
 constexpr double kShareOfRing = 0.25;
 
 /// What the policy itself wants of one body.
@@ -28,11 +30,13 @@ Target target_by_limits(const LevelCandidate& c, double distance, const Limits& 
   const auto at = [&](Rung rung, Rule reason) { return Target{c.open.at_most(rung), reason}; };
   if (distance <= limits.full_within) return at(Rung::full, Rule::near);
   if (c.hits_full) return at(Rung::full, Rule::look_ahead);
-  if (c.present() == Rung::full && distance <= limits.full_within * (1.0 + hysteresis)) return at(Rung::full, Rule::within_hysteresis);
+  if (c.present() == Rung::full && distance <= limits.full_within * (1.0 + hysteresis))
+    return at(Rung::full, Rule::within_hysteresis);
   const bool in_view = distance <= c.view_factor * limits.full_within;  // it would be full, were it in view
   const Rule far = c.view_factor > 1.0 && in_view ? Rule::out_of_view : Rule::far;
   if (distance <= limits.support_within) return at(Rung::support, limits.three_rungs() ? Rule::near : far);
-  if (c.present() != Rung::tables && distance <= limits.support_within * (1.0 + hysteresis)) return at(Rung::support, Rule::within_hysteresis);
+  if (c.present() != Rung::tables && distance <= limits.support_within * (1.0 + hysteresis))
+    return at(Rung::support, Rule::within_hysteresis);
   return at(Rung::tables, c.view_factor > 1.0 ? Rule::out_of_view : Rule::far);
 }
 
@@ -50,13 +54,15 @@ struct BudgetRoom {
   }
 };
 
-/// Moves the nearest to the front, as many as there is room for and no more than `most`, and returns how many they are. Halves in place of a sort.
+/// Moves the nearest to the front, as many as there is room for and no more than `most`, and returns how many
+/// they are. Halves in place of a sort.
 template <class Cost>
 std::size_t take_nearest(std::span<Ranked> ranked, double room, std::int64_t most, const Cost& cost) {
   std::size_t begin = 0, end = ranked.size();
   while (end - begin > 16) {
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(ranked.begin() + std::ptrdiff_t(begin), ranked.begin() + std::ptrdiff_t(middle), ranked.begin() + std::ptrdiff_t(end), nearer);
+    std::nth_element(ranked.begin() + std::ptrdiff_t(begin), ranked.begin() + std::ptrdiff_t(middle),
+                     ranked.begin() + std::ptrdiff_t(end), nearer);
     double taken = 0.0;
     for (std::size_t i = begin; i < middle; ++i) taken += cost(ranked[i].index);
     if (taken > room || std::int64_t(middle) > most) {
@@ -74,8 +80,16 @@ std::size_t take_nearest(std::span<Ranked> ranked, double room, std::int64_t mos
 
 class Chooser {
  public:
-  Chooser(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings, const StepOverhead& overhead)
-      : candidates_(candidates), views_(views), settings_(settings), overhead_(overhead), forced_(candidates, overhead), stays_full_(forced_), pairs_(candidates.size()), goes_down_(candidates.size()) {
+  Chooser(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings,
+          const StepOverhead& overhead)
+      : candidates_(candidates),
+        views_(views),
+        settings_(settings),
+        overhead_(overhead),
+        forced_(candidates, overhead),
+        stays_full_(forced_),
+        pairs_(candidates.size()),
+        goes_down_(candidates.size()) {
     decision_.reasons.resize(candidates.size());
   }
 
@@ -105,8 +119,11 @@ class Chooser {
     std::vector<Ranked> may_be_full, others;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      if (c.decided()) consider({0.0, i}, {});
-      else (may_be_full_now(c, settings_.min_dwell_frames) ? may_be_full : others).push_back({rank_distance(c, views_, settings_.hysteresis), i});
+      if (c.decided())
+        consider({0.0, i}, {});
+      else
+        (may_be_full_now(c, settings_.min_dwell_frames) ? may_be_full : others)
+            .push_back({rank_distance(c, views_, settings_.hysteresis), i});
     }
     share_out(room, std::move(may_be_full), std::move(others));
     count_limits();
@@ -119,13 +136,23 @@ class Chooser {
     const BudgetRoom room = find_room(budget);
     room_ = room.now;
     std::vector<Rung> wanted;
-    if (!views_.empty()) wanted = share_by_error(candidates_, forced_, {room.keep, room.grow}, {.most_full = settings_.most_full, .most_support = settings_.most_support, .hysteresis = settings_.hysteresis, .min_dwell_frames = settings_.min_dwell_frames});
+    if (!views_.empty())
+      wanted = share_by_error(candidates_, forced_, {room.keep, room.grow},
+                              {.most_full = settings_.most_full,
+                               .most_support = settings_.most_support,
+                               .hysteresis = settings_.hysteresis,
+                               .min_dwell_frames = settings_.min_dwell_frames});
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
       const Rung to = wanted.empty() ? c.open.lowest() : wanted[std::size_t(i)];
-      const Rule reason = to == c.open.highest() || to != c.open.lowest() ? Rule::in_budget : views_.empty() ? Rule::far : Rule::over_budget;
-      const double nearness = 1.0 / std::max(1e-9, c.error_at(c.open.lowest()) - c.error_at(to));  // what saves most goes up first
-      consider({to < c.present() ? 1.0 / std::max(1e-9, c.error_at(to) - c.error_at(c.present())) : nearness, i}, {to, reason, room.over()});
+      const Rule reason = to == c.open.highest() || to != c.open.lowest() ? Rule::in_budget
+                          : views_.empty()                                ? Rule::far
+                                                                          : Rule::over_budget;
+      const double nearness = 1.0 / std::max(1e-9, c.error_at(c.open.lowest()) -
+                                                       c.error_at(to));  // what saves most goes up first
+      consider(
+          {to < c.present() ? 1.0 / std::max(1e-9, c.error_at(to) - c.error_at(c.present())) : nearness, i},
+          {to, reason, room.over()});
     }
     count_limits();
     grant();
@@ -139,9 +166,12 @@ class Chooser {
     std::vector<Ranked> may_be_full;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      if (may_be_full_now(c, settings_.min_dwell_frames)) may_be_full.push_back({rank_distance(c, views_, settings_.hysteresis), i});
+      if (may_be_full_now(c, settings_.min_dwell_frames))
+        may_be_full.push_back({rank_distance(c, views_, settings_.hysteresis), i});
     }
-    return share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()), settings_.most_full).reach;
+    return share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()),
+                      settings_.most_full)
+        .reach;
   }
 
  private:
@@ -150,23 +180,26 @@ class Chooser {
 
   bool has_ring() const { return std::ranges::any_of(candidates_, can_be_in_ring); }
 
-  /// The number on a higher rung grows while part of the budget is free, and shrinks when all of it is used up. Notes what must be full, and what the pairs cost of those that
-  /// are.
+  /// The number on a higher rung grows while part of the budget is free, and shrinks when all of it is used
+  /// up. Notes what must be full, and what the pairs cost of those that are.
   BudgetRoom find_room(double budget) {
     BudgetRoom room;
     double lowest = overhead_.others, now = 0.0;
     pairs_.assign(candidates_.size(), 0.0f);
     for (const LevelCandidate& c : candidates_) {
       lowest += c.cost_at(c.open.lowest());
-      if (!c.decided()) now += raise(c, c.present());
-      else if (c.open.has(Rung::full)) forced_.add(c);
+      if (!c.decided())
+        now += raise(c, c.present());
+      else if (c.open.has(Rung::full))
+        forced_.add(c);
     }
     lowest += forced_.total();
     // The farther of two that meet answers for the pair: it is the one that goes down.
     FullBill full = forced_;
     std::vector<Ranked> full_now;
     for (std::int32_t i = 0; i < count(); ++i)
-      if (const LevelCandidate& c = candidates_[std::size_t(i)]; !c.decided() && c.present() == Rung::full) full_now.push_back({rank_distance(c, views_, 0.0), i});
+      if (const LevelCandidate& c = candidates_[std::size_t(i)]; !c.decided() && c.present() == Rung::full)
+        full_now.push_back({rank_distance(c, views_, 0.0), i});
     std::ranges::sort(full_now, nearer);
     for (const Ranked& r : full_now) {
       float& pairs = pairs_[std::size_t(r.index)] = float(full.price_of_pairs(candidate(r)));
@@ -184,20 +217,30 @@ class Chooser {
   /// The nearest full, as many as there is room for, the next `support`, the rest on their lowest rungs.
   void share_out(const BudgetRoom& room, std::vector<Ranked> may_be_full, std::vector<Ranked> rest) {
     ShareOfFull share{.taken = {}, .rest = {}, .used = 0.0, .reach = 0.0};
-    if (views_.empty()) share.rest = std::move(may_be_full);
-    else share = share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()), settings_.most_full);
+    if (views_.empty())
+      share.rest = std::move(may_be_full);
+    else
+      share = share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()),
+                         settings_.most_full);
     const bool most_full = !share.rest.empty() && std::int64_t(share.taken.size()) == settings_.most_full;
     for (const Ranked& r : share.taken) consider(r, {Rung::full, Rule::in_budget});
     rest.insert(rest.end(), share.rest.begin(), share.rest.end());
-    const std::span<Ranked> lowest(std::ranges::partition(rest, [this](const Ranked& r) { return can_be_in_ring(candidate(r)); }));
+    const std::span<Ranked> lowest(
+        std::partition(rest.begin(), rest.end(),
+                       [this](const Ranked& r) { return can_be_in_ring(candidate(r)); }),
+        rest.end());
     const std::span<Ranked> may_be_in_ring = std::span(rest).first(rest.size() - lowest.size());
     double ring_now = 0.0;
     for (const Ranked& r : may_be_in_ring)
       if (candidate(r).present() != Rung::tables) ring_now += raise(candidate(r), Rung::support);
     const double room_of_ring = std::min(room.keep - share.used, std::max(ring_now, room.grow - share.used));
-    const std::size_t support = take_nearest(may_be_in_ring, room_of_ring, settings_.most_support, [this](std::int32_t i) { return raise(candidates_[std::size_t(i)], Rung::support); });
-    const bool most_support = support < may_be_in_ring.size() && std::int64_t(support) == settings_.most_support;
-    for (const Ranked& r : may_be_in_ring.first(support)) consider(r, {Rung::support, Rule::in_budget, room.over()});
+    const std::size_t support =
+        take_nearest(may_be_in_ring, room_of_ring, settings_.most_support,
+                     [this](std::int32_t i) { return raise(candidates_[std::size_t(i)], Rung::support); });
+    const bool most_support =
+        support < may_be_in_ring.size() && std::int64_t(support) == settings_.most_support;
+    for (const Ranked& r : may_be_in_ring.first(support))
+      consider(r, {Rung::support, Rule::in_budget, room.over()});
     const Rule reason = views_.empty() ? Rule::far : Rule::over_budget;
     for (const Ranked& r : std::span(rest).subspan(support)) {
       const bool limited = can_be_in_ring(candidate(r)) ? most_support : most_full;
@@ -207,19 +250,23 @@ class Chooser {
 
   /// Sends the farthest of those that are wanted on a rung down where they would be more than `most`.
   void limit(std::span<const Ranked> ranked, std::span<Target> targets, Measure measure) {
-    for (const auto& [rung, most] : {std::pair{Rung::full, settings_.most_full}, {Rung::support, settings_.most_support}}) {
+    for (const auto& [rung, most] :
+         {std::pair{Rung::full, settings_.most_full}, {Rung::support, settings_.most_support}}) {
       std::vector<Ranked> wanted;
       std::int64_t there = 0;
       for (std::size_t k = 0; k < ranked.size(); ++k) {
         const LevelCandidate& c = candidate(ranked[k]);
         if (c.decided()) continue;
         there += !c.newcomer && c.rung == rung;
-        if (targets[k].rung == rung && c.open.lowest() < rung) wanted.push_back({rank_distance(c, views_, settings_.hysteresis, measure), std::int32_t(k)});
+        if (targets[k].rung == rung && c.open.lowest() < rung)
+          wanted.push_back({rank_distance(c, views_, settings_.hysteresis, measure), std::int32_t(k)});
       }
       if (std::int64_t(wanted.size()) <= most) continue;
       std::ranges::nth_element(wanted, wanted.begin() + most, nearer);
       for (auto w = wanted.begin() + most; w != wanted.end(); ++w)
-        targets[std::size_t(w->index)] = {candidate(ranked[std::size_t(w->index)]).open.at_most(Rung(int(rung) - 1)), Rule::most_reached, there > most};
+        targets[std::size_t(w->index)] = {
+            candidate(ranked[std::size_t(w->index)]).open.at_most(Rung(int(rung) - 1)), Rule::most_reached,
+            there > most};
     }
     count_limits();
   }
@@ -227,7 +274,8 @@ class Chooser {
   /// How many more the policy may put on each rung.
   void count_limits() {
     places_[std::size_t(Rung::full)] = settings_.most_full < kUnlimited ? settings_.most_full : kNoLimit;
-    places_[std::size_t(Rung::support)] = settings_.most_support < kUnlimited ? settings_.most_support : kNoLimit;
+    places_[std::size_t(Rung::support)] =
+        settings_.most_support < kUnlimited ? settings_.most_support : kNoLimit;
     for (const LevelCandidate& c : candidates_)
       if (!c.decided() && !c.newcomer) places_[std::size_t(c.rung)] -= c.bodies;
   }
@@ -237,7 +285,8 @@ class Chooser {
     const LevelCandidate& c = candidate(by_distance);
     Rule& reason = decision_.reasons[std::size_t(by_distance.index)];
     if (c.decided()) target = {c.open.lowest(), c.decided_by, true};
-    reason = c.put_off && c.rung != Rung::full && target.rung == c.rung ? Rule::overlap_put_off : target.reason;
+    reason =
+        c.put_off && c.rung != Rung::full && target.rung == c.rung ? Rule::overlap_put_off : target.reason;
     if (target.rung == c.present() && (!c.decided() || !c.newcomer || target.rung != Rung::full)) return;
 
     const bool up = c.newcomer || target.rung > c.rung;
@@ -254,8 +303,10 @@ class Chooser {
   }
 
   void hold_or_queue(const Ranked& wish, std::vector<Ranked>& queue) {
-    if (candidate(wish).frames_since_change < settings_.min_dwell_frames) decision_.reasons[std::size_t(wish.index)] = Rule::dwell;
-    else queue.push_back(wish);
+    if (candidate(wish).frames_since_change < settings_.min_dwell_frames)
+      decision_.reasons[std::size_t(wish.index)] = Rule::dwell;
+    else
+      queue.push_back(wish);
   }
 
   /// Lets wishes come true, as long as there is room, and no more changes than the cap; the rest are queued.
@@ -277,22 +328,33 @@ class Chooser {
     const auto turns = std::size_t(std::max(0, settings_.max_transitions_per_frame));
     const std::size_t in_order = std::min(turns + kPassedOver, promote_.size());
     std::ranges::partial_sort(promote_, promote_.begin() + std::ptrdiff_t(in_order), nearer);
-    std::ranges::partial_sort(demote_, demote_.begin() + std::ptrdiff_t(std::min(turns, demote_.size())), farther);
+    std::ranges::partial_sort(demote_, demote_.begin() + std::ptrdiff_t(std::min(turns, demote_.size())),
+                              farther);
     // Those that stay full for now are met, too, wanted or not.
     for (std::int32_t i = 0; i < count(); ++i)
-      if (const LevelCandidate& c = candidates_[std::size_t(i)]; !c.decided() && c.present() == Rung::full && !goes_down_[std::size_t(i)]) stays_full_.add(c);
+      if (const LevelCandidate& c = candidates_[std::size_t(i)];
+          !c.decided() && c.present() == Rung::full && !goes_down_[std::size_t(i)])
+        stays_full_.add(c);
     for (const Ranked& wish : promote_at_once_)
-      if (fits(wish)) make(wish, decision_.promote);
-      else decision_.reasons[std::size_t(wish.index)] = Rule::over_budget;
+      if (fits(wish))
+        make(wish, decision_.promote);
+      else
+        decision_.reasons[std::size_t(wish.index)] = Rule::over_budget;
 
     std::size_t up = 0, down = 0;
     for (std::size_t left = turns; left > 0; --left) {
-      for (; up < in_order && places_[std::size_t(promote_[up].to)] > 0 && !fits(promote_[up]) && fits_but_for_pairs(promote_[up]); ++up)
+      for (; up < in_order && places_[std::size_t(promote_[up].to)] > 0 && !fits(promote_[up]) &&
+             fits_but_for_pairs(promote_[up]);
+           ++up)
         decision_.reasons[std::size_t(promote_[up].index)] = Rule::queued;
-      const bool can_rise = up < in_order && fits(promote_[up]), can_fall = down < demote_.size() && places_[std::size_t(demote_[down].to)] > 0;
-      if (can_rise && (up <= down || !can_fall)) make(promote_[up++], decision_.promote);
-      else if (can_fall) make(demote_[down++], decision_.demote);
-      else break;
+      const bool can_rise = up < in_order && fits(promote_[up]),
+                 can_fall = down < demote_.size() && places_[std::size_t(demote_[down].to)] > 0;
+      if (can_rise && (up <= down || !can_fall))
+        make(promote_[up++], decision_.promote);
+      else if (can_fall)
+        make(demote_[down++], decision_.demote);
+      else
+        break;
     }
     for (; up < promote_.size(); ++up) decision_.reasons[std::size_t(promote_[up].index)] = Rule::queued;
     for (; down < demote_.size(); ++down) decision_.reasons[std::size_t(demote_[down].index)] = Rule::queued;
@@ -302,31 +364,37 @@ class Chooser {
     const LevelCandidate& c = candidate(wish);
     const double pairs = double(pairs_[std::size_t(wish.index)]);
     const double change_of_pairs = wish.to == Rung::full ? pairs : c.present() == Rung::full ? -pairs : 0.0;
-    return c.cost_at(wish.to) - c.cost_at(c.present()) + change_of_pairs + double(c.bodies) * overhead_.change[std::size_t(wish.to)];
+    return c.cost_at(wish.to) - c.cost_at(c.present()) + change_of_pairs +
+           double(c.bodies) * overhead_.change[std::size_t(wish.to)];
   }
   bool fits(const Ranked& wish) {
-    if (wish.to == Rung::full) pairs_[std::size_t(wish.index)] = float(stays_full_.price_of_pairs(candidate(wish)));
+    if (wish.to == Rung::full)
+      pairs_[std::size_t(wish.index)] = float(stays_full_.price_of_pairs(candidate(wish)));
     return places_[std::size_t(wish.to)] >= candidate(wish).bodies && cost_of(wish) <= room_;
   }
-  bool fits_but_for_pairs(const Ranked& wish) const { return wish.to == Rung::full && cost_of(wish) - double(pairs_[std::size_t(wish.index)]) <= room_; }
+  bool fits_but_for_pairs(const Ranked& wish) const {
+    return wish.to == Rung::full && cost_of(wish) - double(pairs_[std::size_t(wish.index)]) <= room_;
+  }
   void make(const Ranked& wish, std::vector<LevelDecision::Change>& changes) {
     changes.push_back({wish.index, wish.to});
     room_ -= cost_of(wish);
     places_[std::size_t(wish.to)] -= candidate(wish).bodies;
     if (!candidate(wish).newcomer) places_[std::size_t(candidate(wish).rung)] += candidate(wish).bodies;
-    if (wish.to == Rung::full) stays_full_.add(candidate(wish));
-    else goes_down_[std::size_t(wish.index)] = true;
+    if (wish.to == Rung::full)
+      stays_full_.add(candidate(wish));
+    else
+      goes_down_[std::size_t(wish.index)] = true;
   }
 
   std::span<const LevelCandidate> candidates_;
   const Views& views_;
   const PolicySettings& settings_;
   const StepOverhead& overhead_;
-  FullBill forced_, stays_full_;                                        // of those that must be full; with those that are for now
-  std::vector<float> pairs_;                                            // what those of a candidate cost that is full, or shall be
-  std::vector<char> goes_down_;                                         // or to `support`
+  FullBill forced_, stays_full_;  // of those that must be full; with those that are for now
+  std::vector<float> pairs_;      // what those of a candidate cost that is full, or shall be
+  std::vector<char> goes_down_;   // or to `support`
   LevelDecision decision_;
-  double room_ = kInfinity;                                             // of the budget
+  double room_ = kInfinity;                                                // of the budget
   std::array<std::int64_t, kRungs> places_{kNoLimit, kNoLimit, kNoLimit};  // for more bodies on each rung
   std::vector<Ranked> promote_at_once_, demote_at_once_, promote_, demote_;
 };
@@ -334,24 +402,29 @@ class Chooser {
 }  // namespace
 
 bool counts_work(const PolicySettings& settings) {
-  if (const auto* error = std::get_if<ErrorBudgetPolicy>(&settings.policy)) return error->budget_work.has_value();
+  if (const auto* error = std::get_if<ErrorBudgetPolicy>(&settings.policy))
+    return error->budget_work.has_value();
   return std::holds_alternative<WorkPolicy>(settings.policy);
 }
 
 double budget_of(const PolicySettings& settings) {
   if (const auto* timed = std::get_if<BudgetPolicy>(&settings.policy)) return timed->budget_ms;
-  if (const auto* error = std::get_if<ErrorBudgetPolicy>(&settings.policy)) return error->budget_work.value_or(error->budget_ms);
+  if (const auto* error = std::get_if<ErrorBudgetPolicy>(&settings.policy))
+    return error->budget_work.value_or(error->budget_ms);
   return std::get<WorkPolicy>(settings.policy).budget_work;
 }
 
-double reach_of_full(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings, const StepOverhead& overhead) {
+double reach_of_full(std::span<const LevelCandidate> candidates, const Views& views,
+                     const PolicySettings& settings, const StepOverhead& overhead) {
   return Chooser(candidates, views, settings, overhead).reach(budget_of(settings));
 }
 
-LevelDecision choose_levels(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings, const StepOverhead& overhead) {
+LevelDecision choose_levels(std::span<const LevelCandidate> candidates, const Views& views,
+                            const PolicySettings& settings, const StepOverhead& overhead) {
   Chooser chooser(candidates, views, settings, overhead);
   if (const std::optional<Limits> limits = limits_of(settings)) return chooser.by(*limits);
-  if (std::holds_alternative<ErrorBudgetPolicy>(settings.policy)) return chooser.by_error(budget_of(settings));
+  if (std::holds_alternative<ErrorBudgetPolicy>(settings.policy))
+    return chooser.by_error(budget_of(settings));
   return chooser.by_budget(budget_of(settings));
 }
 

@@ -1,4 +1,5 @@
-// The decision of a step: which rung each body should have, from what a policy says and what dwell, caps and room allow. Pure: no simulation here.
+// The decision of a step: which rung each body should have, from what a policy says and what dwell, caps and
+// room allow. Pure: no simulation here.
 #pragma once
 
 #include <array>
@@ -15,11 +16,13 @@ namespace lodestone {
 
 /// What a budget has to bear besides the candidates, in the same unit.
 struct StepOverhead {
-  double others = 0.0;                    ///< whatever is no candidate's
-  double margin = 0.0;                    ///< over the prediction: that it is likely to err by, as a part of it
-  std::array<double, kRungs> change{};    ///< once, of a change to each rung
-  double pair = 0.0;                      ///< of full bodies that may meet, of weight 1; half of it where both sleep: all that wakes at once may take twice the budget
-  double spike = 0.0;                     ///< once, where there is such a pair that is awake, for what the dearest of them may take in a bad step
+  double others = 0.0;                  ///< whatever is no candidate's
+  double margin = 0.0;                  ///< over the prediction: that it is likely to err by, as a part of it
+  std::array<double, kRungs> change{};  ///< once, of a change to each rung
+  double pair = 0.0;   ///< of full bodies that may meet, of weight 1; half of it where both sleep: all that
+                       ///< wakes at once may take twice the budget
+  double spike = 0.0;  ///< once, where there is such a pair that is awake, for what the dearest of them may
+                       ///< take in a bad step
 };
 
 struct LevelDecision {
@@ -28,20 +31,25 @@ struct LevelDecision {
     Rung to = Rung::support;
     friend bool operator==(const Change&, const Change&) = default;
   };
-  /// Forced ones, newcomers and demotions that bring the cost back within the budget (of bodies awake, then of sleepers, farthest first) come first and are not limited;
-  /// of the rest at most max_transitions_per_frame, promotions (nearest first) and demotions (farthest first) by turns.
+  /// Forced ones, newcomers and demotions that bring the cost back within the budget (of bodies awake, then
+  /// of sleepers, farthest first) come first and are not limited; of the rest at most
+  /// max_transitions_per_frame, promotions (nearest first) and demotions (farthest first) by turns.
   std::vector<Change> promote, demote;
   std::vector<Rule> reasons;  ///< one per candidate
 };
 
 /// Without viewpoints no body is full that need not be.
-LevelDecision choose_levels(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings, const StepOverhead& overhead = {});
+LevelDecision choose_levels(std::span<const LevelCandidate> candidates, const Views& views,
+                            const PolicySettings& settings, const StepOverhead& overhead = {});
 
-// Which bodies may be left out of the candidates without any change to the decision. Under a policy of distances or sizes: statistical ones that stay_put. Under a budget: those
-// that sleep at a greater rank_distance than reach_of_full. Under an error budget: statistical ones that sleep.
+// Which bodies may be left out of the candidates without any change to the decision. Under a policy of
+// distances or sizes: statistical ones that stay_put. Under a budget: those that sleep at a greater
+// rank_distance than reach_of_full. Under an error budget: statistical ones that sleep.
 
-/// The rank distance up to which a budget has room for full bodies, infinite where it has room for all. Every body that is full or must be is among the candidates.
-double reach_of_full(std::span<const LevelCandidate> candidates, const Views& views, const PolicySettings& settings, const StepOverhead& overhead);
+/// The rank distance up to which a budget has room for full bodies, infinite where it has room for all. Every
+/// body that is full or must be is among the candidates.
+double reach_of_full(std::span<const LevelCandidate> candidates, const Views& views,
+                     const PolicySettings& settings, const StepOverhead& overhead);
 
 /// Whether it counts work in place of time.
 bool counts_work(const PolicySettings& settings);

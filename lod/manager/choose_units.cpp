@@ -1,4 +1,5 @@
-// Bodies that change rung together stand before the policy as one: as near as the nearest of them, at the cost of all.
+// Bodies that change rung together stand before the policy as one: as near as the nearest of them, at the
+// cost of all.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -15,9 +16,12 @@ constexpr int kMostInContact = 32;
 /// Which candidates belong together.
 class Units {
  public:
-  explicit Units(std::size_t candidates) : parent_(candidates), size_(candidates, 1) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit Units(std::size_t candidates) : parent_(candidates), size_(candidates, 1) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
   std::int32_t root(std::int32_t i) {
-    while (parent_[std::size_t(i)] != i) i = parent_[std::size_t(i)] = parent_[std::size_t(parent_[std::size_t(i)])];
+    while (parent_[std::size_t(i)] != i)
+      i = parent_[std::size_t(i)] = parent_[std::size_t(parent_[std::size_t(i)])];
     return i;
   }
   void join(std::int32_t a, std::int32_t b, int most) {
@@ -35,36 +39,46 @@ class Units {
 void join_groups(const Groups& groups, std::span<const std::uint32_t> bodies, Units& units) {
   std::unordered_map<std::uint32_t, std::int32_t> first;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (const GroupId group = groups.of(bodies[i])) units.join(first.try_emplace(group.index, std::int32_t(i)).first->second, std::int32_t(i), INT32_MAX);
+    if (const GroupId group = groups.of(bodies[i]))
+      units.join(first.try_emplace(group.index, std::int32_t(i)).first->second, std::int32_t(i), INT32_MAX);
 }
 
 /// Of bodies that touch something: whose bounding spheres meet.
-void join_touching(std::span<const LevelCandidate> candidates, std::span<const Activity> activities, Units& units) {
+void join_touching(std::span<const LevelCandidate> candidates, std::span<const Activity> activities,
+                   Units& units) {
   double reach = 0.0;
   std::vector<std::int32_t> crowd;
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (activities[i] == Activity::crowded) crowd.push_back(std::int32_t(i)), reach = std::max(reach, candidates[i].radius);
+    if (activities[i] == Activity::crowded)
+      crowd.push_back(std::int32_t(i)), reach = std::max(reach, candidates[i].radius);
   const auto at = [&](std::int32_t i) -> const LevelCandidate& { return candidates[std::size_t(i)]; };
   std::ranges::sort(crowd, {}, [&](std::int32_t i) { return std::pair(at(i).position.x(), i); });
   for (std::size_t a = 0; a < crowd.size(); ++a)
-    for (std::size_t b = a + 1; b < crowd.size() && at(crowd[b]).position.x() - at(crowd[a]).position.x() <= at(crowd[a]).radius + reach; ++b) {
+    for (std::size_t b = a + 1; b < crowd.size() && at(crowd[b]).position.x() - at(crowd[a]).position.x() <=
+                                                        at(crowd[a]).radius + reach;
+         ++b) {
       const double touch = at(crowd[a]).radius + at(crowd[b]).radius;
-      if ((at(crowd[b]).position - at(crowd[a]).position).squaredNorm() <= touch * touch) units.join(crowd[a], crowd[b], kMostInContact);
+      if ((at(crowd[b]).position - at(crowd[a]).position).squaredNorm() <= touch * touch)
+        units.join(crowd[a], crowd[b], kMostInContact);
     }
 }
 
 void add(const LevelCandidate& member, const Views& views, Measure measure, LevelCandidate& unit) {
   // Where it is: the nearest's.
   if (remoteness(member, views, measure) < remoteness(unit, views, measure)) {
-    unit.position = member.position, unit.radius = member.radius, unit.importance = member.importance, unit.view_factor = member.view_factor;
+    unit.position = member.position, unit.radius = member.radius, unit.importance = member.importance,
+    unit.view_factor = member.view_factor;
     unit.ahead = member.ahead, unit.no_farther_than = member.no_farther_than, unit.motion = member.motion;
   }
-  for (std::size_t rung = 0; rung < kRungs; ++rung) unit.cost[rung] += member.cost[rung], unit.error[rung] += member.error[rung];
+  for (std::size_t rung = 0; rung < kRungs; ++rung)
+    unit.cost[rung] += member.cost[rung], unit.error[rung] += member.error[rung];
   unit.mesh = std::max(unit.mesh, member.mesh);  // one of them meets what is outside
   unit.asleep &= member.asleep;
   unit.frames_since_change = std::min(unit.frames_since_change, member.frames_since_change);
-  if (unit.newcomer == member.newcomer) unit.rung = std::max(unit.rung, member.rung);
-  else if (unit.newcomer) unit.rung = member.rung;
+  if (unit.newcomer == member.newcomer)
+    unit.rung = std::max(unit.rung, member.rung);
+  else if (unit.newcomer)
+    unit.rung = member.rung;
   unit.newcomer &= member.newcomer;
   if (member.decided() && !unit.decided()) unit.decided_by = member.decided_by;
   unit.open = unit.open.within(member.open);
@@ -86,8 +100,11 @@ std::span<const LevelCandidate> Choose::make_units() {
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const auto root = std::size_t(units.root(std::int32_t(i)));  // no later than its members
     unit_of_[i] = root == i ? std::int32_t(units_.size()) : unit_of_[root];
-    if (root == i) units_.push_back(candidates_[i]);
-    else add(candidates_[i], views_, limits_ ? limits_->measure : Measure::distance, units_[std::size_t(unit_of_[i])]);
+    if (root == i)
+      units_.push_back(candidates_[i]);
+    else
+      add(candidates_[i], views_, limits_ ? limits_->measure : Measure::distance,
+          units_[std::size_t(unit_of_[i])]);
   }
   if (budgeted()) count_pairs_within();
   return units_;
@@ -97,7 +114,9 @@ std::span<const LevelCandidate> Choose::make_units() {
 void Choose::count_pairs_within() {
   std::vector<std::vector<std::size_t>> members(units_.size());
   for (std::size_t i = 0; i < candidates_.size(); ++i)
-    if (LevelCandidate& unit = units_[std::size_t(unit_of_[i])]; unit.bodies > 1 && unit.decided_by != Rule::joined) members[std::size_t(unit_of_[i])].push_back(i);
+    if (LevelCandidate& unit = units_[std::size_t(unit_of_[i])];
+        unit.bodies > 1 && unit.decided_by != Rule::joined)
+      members[std::size_t(unit_of_[i])].push_back(i);
   for (std::size_t unit = 0; unit < units_.size(); ++unit) {
     double most_radius = 0.0;
     for (const std::size_t i : members[unit]) most_radius = std::max(most_radius, candidates_[i].radius);
@@ -125,15 +144,18 @@ LevelDecision Choose::tell_members(const LevelDecision& of_units) {
     const auto unit = std::size_t(unit_of_[i]);
     members[unit].push_back(std::int32_t(i));
     decision.reasons.push_back(of_units.reasons[unit]);
-    if (units_[unit].bodies > 1) candidates_[i].open = units_[unit].open, candidates_[i].decided_by = units_[unit].decided_by;
+    if (units_[unit].bodies > 1)
+      candidates_[i].open = units_[unit].open, candidates_[i].decided_by = units_[unit].decided_by;
   }
   std::vector<bool> told(units_.size(), false);
   const auto tell = [&](std::size_t unit, Rung to) {
     told[unit] = true;
     for (const std::int32_t i : members[unit]) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      if (c.newcomer ? to > c.open.lowest() || c.decided() : to > c.rung) decision.promote.push_back({i, to});
-      else if (!c.newcomer && to < c.rung) decision.demote.push_back({i, to});
+      if (c.newcomer ? to > c.open.lowest() || c.decided() : to > c.rung)
+        decision.promote.push_back({i, to});
+      else if (!c.newcomer && to < c.rung)
+        decision.demote.push_back({i, to});
     }
   };
   for (const auto* changes : {&of_units.demote, &of_units.promote})

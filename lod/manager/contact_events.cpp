@@ -12,8 +12,10 @@ constexpr double kApart = 0.1;  // s: then they touch no more
 }  // namespace
 
 void ContactEvents::ask(std::uint32_t body, bool asks) {
-  if (asks) asking_.insert(body);
-  else asking_.erase(body);
+  if (asks)
+    asking_.insert(body);
+  else
+    asking_.erase(body);
 }
 
 // What it lay on is told at the end of the next step.
@@ -23,42 +25,60 @@ void ContactEvents::forget(std::uint32_t body) {
 }
 
 std::pair<dxGeom*, dxBody*> ContactEvents::callers_of(const ContactRecord& record) const {
-  if (record.second != ContactRecord::kGround) return {nullptr, is_own(record.second) ? nullptr : levels_.callers.bodies.body_of(record.second)};
-  dxGeom* const geom = record.callers_geom ? record.callers_geom : record.ground ? levels_.callers.ground.geom_of(record.ground) : nullptr;
+  if (record.second != ContactRecord::kGround)
+    return {nullptr, is_own(record.second) ? nullptr : levels_.callers.bodies.body_of(record.second)};
+  dxGeom* const geom = record.callers_geom ? record.callers_geom
+                       : record.ground     ? levels_.callers.ground.geom_of(record.ground)
+                                           : nullptr;
   dxBody* const body = record.callers_geom ? callers::body_of(geom) : nullptr;
-  return body && !callers::is_kinematic(body) ? std::pair<dxGeom*, dxBody*>(nullptr, body) : std::pair<dxGeom*, dxBody*>(geom, nullptr);
+  return body && !callers::is_kinematic(body) ? std::pair<dxGeom*, dxBody*>(nullptr, body)
+                                              : std::pair<dxGeom*, dxBody*>(geom, nullptr);
 }
 
 ContactEvents::Key ContactEvents::key_of(const ContactRecord& record) {
-  if (record.second != ContactRecord::kGround && is_own(record.second)) return {record.first, Key::Second::body, record.second};
+  if (record.second != ContactRecord::kGround && is_own(record.second))
+    return {record.first, Key::Second::body, record.second};
   const auto [geom, body] = callers_of(record);
-  if (!geom && !body) return {record.first, Key::Second::ground, record.ground.index, record.ground.generation};
+  if (!geom && !body)
+    return {record.first, Key::Second::ground, record.ground.index, record.ground.generation};
   const void* const callers = geom ? static_cast<const void*>(geom) : body;
-  return {record.first, Key::Second::callers, number_of_callers_.try_emplace(callers, std::uint32_t(number_of_callers_.size())).first->second};
+  return {record.first, Key::Second::callers,
+          number_of_callers_.try_emplace(callers, std::uint32_t(number_of_callers_.size())).first->second};
 }
 
 ContactSide ContactEvents::body_side(std::uint32_t body) const {
-  return {.kind = ContactSide::Kind::body, .body = levels_.bodies.id(body), .material = levels_.bodies[body].material};
+  return {.kind = ContactSide::Kind::body,
+          .body = levels_.bodies.id(body),
+          .material = levels_.bodies[body].material};
 }
 
 ContactSide ContactEvents::second_side(const ContactRecord& record) const {
   if (record.second != ContactRecord::kGround && is_own(record.second)) return body_side(record.second);
   const auto [geom, body] = callers_of(record);
-  if (geom || body) return {.kind = ContactSide::Kind::callers, .geom = geom, .callers = body, .material = record.ground_material};
+  if (geom || body)
+    return {.kind = ContactSide::Kind::callers,
+            .geom = geom,
+            .callers = body,
+            .material = record.ground_material};
   return {.kind = ContactSide::Kind::ground, .ground = record.ground, .material = record.ground_material};
 }
 
 // One entry for each pair, with the sum of what its touches gave.
 void ContactEvents::take_touches() {
   std::vector<ContactRecord>& records = log_.records();
-  std::erase_if(records, [&](const ContactRecord& r) { return !is_own(r.first) && (r.second == ContactRecord::kGround || !is_own(r.second)); });  // the caller's own affair
+  std::erase_if(records, [&](const ContactRecord& r) {
+    return !is_own(r.first) && (r.second == ContactRecord::kGround || !is_own(r.second));
+  });  // the caller's own affair
   for (ContactRecord& record : records) {
     if (record.second == ContactRecord::kGround || record.first < record.second) continue;
     std::swap(record.first, record.second);
     record.normal = -record.normal;
   }
   if (!settings_.all_bodies)
-    std::erase_if(records, [&](const ContactRecord& r) { return !asking_.contains(r.first) && (r.second == ContactRecord::kGround || !asking_.contains(r.second)); });
+    std::erase_if(records, [&](const ContactRecord& r) {
+      return !asking_.contains(r.first) &&
+             (r.second == ContactRecord::kGround || !asking_.contains(r.second));
+    });
   std::vector<std::pair<Key, std::uint32_t>> order;  // those of a pair in the order in which they came
   for (std::uint32_t i = 0; i < records.size(); ++i) order.emplace_back(key_of(records[i]), i);
   std::ranges::sort(order);
@@ -67,13 +87,16 @@ void ContactEvents::take_touches() {
   for (const auto& [key, index] : order) {
     const ContactRecord& record = records[index];
     if (touches_.empty() || touches_.back().key != key) {
-      touches_.push_back({.key = key, .last = {.first = body_side(record.first), .second = second_side(record)}, .touches = true});
+      touches_.push_back({.key = key,
+                          .last = {.first = body_side(record.first), .second = second_side(record)},
+                          .touches = true});
       most = -1.0;
     }
     ContactEvent& event = touches_.back().last;
     event.impulse += record.impulse;
     event.speed = std::max(event.speed, record.approach);
-    if (record.impulse > most) most = record.impulse, event.point = record.point, event.normal = record.normal;
+    if (record.impulse > most)
+      most = record.impulse, event.point = record.point, event.normal = record.normal;
   }
   records.clear();
 }
@@ -86,7 +109,8 @@ void ContactEvents::tell(ContactPhase phase, const Pair& pair) {
 
 // A removed one does not.
 bool ContactEvents::rests(const ContactSide& side) const {
-  return side.kind != ContactSide::Kind::body || (levels_.bodies.valid(side.body) && levels_.asleep(side.body.index));
+  return side.kind != ContactSide::Kind::body ||
+         (levels_.bodies.valid(side.body) && levels_.asleep(side.body.index));
 }
 
 void ContactEvents::set_aside(const Pair& pair) {
@@ -109,7 +133,8 @@ void ContactEvents::bring_back(std::uint32_t body) {
   aside_.erase(own);
   for (const Pair& pair : pairs) {
     live_.push_back(pair);
-    if (pair.key.kind == Key::Second::body) take_from(pair.key.first == body ? pair.key.second : pair.key.first, pair.key);
+    if (pair.key.kind == Key::Second::body)
+      take_from(pair.key.first == body ? pair.key.second : pair.key.first, pair.key);
   }
 }
 
@@ -131,19 +156,25 @@ void ContactEvents::finish(double dt, std::span<const BodyId> woke) {
   take_touches();
   std::vector<Pair> now;
   const auto keep = [&](Pair pair) {
-    const bool there = levels_.bodies.valid(pair.last.first.body) && (pair.last.second.kind != ContactSide::Kind::body || levels_.bodies.valid(pair.last.second.body));
+    const bool there =
+        levels_.bodies.valid(pair.last.first.body) &&
+        (pair.last.second.kind != ContactSide::Kind::body || levels_.bodies.valid(pair.last.second.body));
     pair.since_s = pair.touches ? 0.0 : pair.since_s + dt;
     pair.touches = false;
-    if (!there || pair.since_s >= kApart) tell(ContactPhase::end, pair);
-    else if (rests(pair.last.first) && rests(pair.last.second)) set_aside(pair);
-    else now.push_back(pair);
+    if (!there || pair.since_s >= kApart)
+      tell(ContactPhase::end, pair);
+    else if (rests(pair.last.first) && rests(pair.last.second))
+      set_aside(pair);
+    else
+      now.push_back(pair);
   };
   auto before = live_.begin();
   for (Pair& touch : touches_) {
     for (; before != live_.end() && before->key < touch.key; ++before) keep(*before);
     bool known = false;
     if (before != live_.end() && before->key == touch.key) {
-      known = before->last.first.body == touch.last.first.body && before->last.second.body == touch.last.second.body;
+      known = before->last.first.body == touch.last.first.body &&
+              before->last.second.body == touch.last.second.body;
       if (!known) tell(ContactPhase::end, *before);  // another body has its index now
       ++before;
     } else {
@@ -151,7 +182,8 @@ void ContactEvents::finish(double dt, std::span<const BodyId> woke) {
       known = bring_back(touch.key, aside);
     }
     if (!known) tell(ContactPhase::begin, touch);
-    if (touch.last.speed >= settings_.least_speed && touch.last.impulse >= settings_.least_impulse) tell(ContactPhase::hit, touch);
+    if (touch.last.speed >= settings_.least_speed && touch.last.impulse >= settings_.least_impulse)
+      tell(ContactPhase::hit, touch);
     keep(touch);
   }
   for (; before != live_.end(); ++before) keep(*before);

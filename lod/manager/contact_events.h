@@ -1,4 +1,5 @@
-// From what a step wrote down of its touches to events. Pairs of which both sleep are set aside and cost nothing until one of them wakes.
+// From what a step wrote down of its touches to events. Pairs of which both sleep are set aside and cost
+// nothing until one of them wakes.
 #pragma once
 
 #include <compare>
@@ -44,13 +45,14 @@ class ContactEvents {
   };
   struct Pair {
     Key key;
-    ContactEvent last;       // what is known of it
-    double since_s = 0.0;    // that they touched
-    bool touches = false;    // in this step
+    ContactEvent last;     // what is known of it
+    double since_s = 0.0;  // that they touched
+    bool touches = false;  // in this step
   };
 
   Key key_of(const ContactRecord& record);
-  /// What of the caller's it is: a geom that stands still or is moved by him, or a dynamic body; both null: neither.
+  /// What of the caller's it is: a geom that stands still or is moved by him, or a dynamic body; both null:
+  /// neither.
   std::pair<dxGeom*, dxBody*> callers_of(const ContactRecord& record) const;
   bool is_own(std::uint32_t owner) const { return owner < levels_.bodies.indices(); }
   void take_touches();
@@ -67,7 +69,8 @@ class ContactEvents {
   EventSettings settings_;
   ContactLog log_;
   std::unordered_set<std::uint32_t> asking_;
-  std::unordered_map<const void*, std::uint32_t> number_of_callers_;  // of geoms and bodies, in the order in which they were first touched
+  std::unordered_map<const void*, std::uint32_t>
+      number_of_callers_;      // of geoms and bodies, in the order in which they were first touched
   std::vector<Pair> touches_;  // of this step, by key
   std::vector<Pair> live_;     // by key
   std::unordered_map<std::uint32_t, std::vector<Pair>> aside_;  // of each body that sleeps on something

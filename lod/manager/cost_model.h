@@ -1,5 +1,6 @@
-// What bodies cost in a step, on the rungs that they have and on those that they might have. Counted work is fixed: a microsecond of the machine that it was measured on,
-// so that it repeats exactly. Milliseconds are the work times factors that are learnt from measured steps, one for each line of a rung's bill.
+// What bodies cost in a step, on the rungs that they have and on those that they might have. Counted work is
+// fixed: a microsecond of the machine that it was measured on, so that it repeats exactly. Milliseconds are
+// the work times factors that are learnt from measured steps, one for each line of a rung's bill.
 #pragma once
 
 #include <array>
@@ -12,10 +13,12 @@
 
 namespace lodestone {
 
-/// What a rung is charged for in a step: bodies asleep, alone and in a crowd, as Activity has them; those of the crowd that came to it or woke lately, besides; and what
-/// full bodies do there: at the full level the pairs that they make (full_pairs.h), at `support` their contacts with statistical bodies, one for each that touches any; at the
-/// full level those awake that joints hold, which are neither alone nor in a crowd.
-inline constexpr std::size_t kArriving = kActivities, kOfFull = kActivities + 1, kJoined = kActivities + 2, kCharges = kActivities + 3;
+/// What a rung is charged for in a step: bodies asleep, alone and in a crowd, as Activity has them; those of
+/// the crowd that came to it or woke lately, besides; and what full bodies do there: at the full level the
+/// pairs that they make (full_pairs.h), at `support` their contacts with statistical bodies, one for each
+/// that touches any; at the full level those awake that joints hold, which are neither alone nor in a crowd.
+inline constexpr std::size_t kArriving = kActivities, kOfFull = kActivities + 1, kJoined = kActivities + 2,
+                             kCharges = kActivities + 3;
 using Charges = std::array<double, kCharges>;
 
 /// Steps in which a body counts as arriving.
@@ -45,12 +48,14 @@ class CostModel {
   enum class Unit : std::uint8_t { work, milliseconds };
   void set_unit(Unit unit) { unit_ = unit; }
 
-  /// What a body of this mesh (full_pairs.h) is charged at the full level, of what one of 4,698 faces is: in work units the same.
+  /// What a body of this mesh (full_pairs.h) is charged at the full level, of what one of 4,698 faces is: in
+  /// work units the same.
   double full_share(float mesh_weight) const;
-  /// Of one more body that does this, at each rung, but for the pairs that it makes there. One that touches nothing is charged for the crowd that it may be in soon, too.
-  /// `share`: see full_share.
+  /// Of one more body that does this, at each rung, but for the pairs that it makes there. One that touches
+  /// nothing is charged for the crowd that it may be in soon, too. `share`: see full_share.
   std::array<float, kRungs> cost_of(Activity activity, double share = 1.0) const;
-  /// Of one that must be full, so that nothing is gained by a reserve for what it may come to do; `held`: awake, by joints.
+  /// Of one that must be full, so that nothing is gained by a reserve for what it may come to do; `held`:
+  /// awake, by joints.
   double cost_of_forced_full(Activity activity, bool held, double share) const;
   /// Besides, of one that came to the rung lately and is in a crowd.
   double cost_of_arriving(Rung rung) const { return price(rung, kArriving); }
@@ -58,8 +63,10 @@ class CostModel {
   StepOverhead overhead(const StepCounts& counts) const;
   /// Predicted for all that `counts` has: fills predicted_ms and work.
   void predict(const StepCounts& counts, StepReport& report) const;
-  /// From a step that was predicted to take so many ms of its budget, and in which the bodies did what `counts` says.
-  void learn(double budget_ms, double predicted_ms, const StepCounts& counts, const StepMeasurement& measured);
+  /// From a step that was predicted to take so many ms of its budget, and in which the bodies did what
+  /// `counts` says.
+  void learn(double budget_ms, double predicted_ms, const StepCounts& counts,
+             const StepMeasurement& measured);
 
   /// Of one body, whatever the unit.
   double ms_of_one(Rung rung, std::size_t charge) const;

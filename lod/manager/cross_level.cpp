@@ -20,19 +20,24 @@ FullNeighbor neighbor_of(const Levels& levels, const FullLevel::Member& member) 
 
 double friction_between(const Levels& levels, const Neighborhood& neighborhood, const FullContact& contact) {
   const MaterialId first = neighborhood.bodies[contact.first].material;
-  return levels.materials.law(first, contact.second < 0 ? 0 : neighborhood.bodies[contact.second].material).friction;
+  return levels.materials.law(first, contact.second < 0 ? 0 : neighborhood.bodies[contact.second].material)
+      .friction;
 }
 
 // ODE's contacts of the last substep, and those of the last steps whose pair it did not find again.
 void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Seen>& seen) {
   constexpr int kKept = 3;  // steps
-  const auto pair_of = [](const Neighborhood::Seen& s) { return std::pair(s.contact.first.value, s.contact.second.value); };
+  const auto pair_of = [](const Neighborhood::Seen& s) {
+    return std::pair(s.contact.first.value, s.contact.second.value);
+  };
   std::vector<Neighborhood::Seen> now;
   for (const OdeContact& contact : found) now.push_back({contact});
   std::ranges::stable_sort(now, {}, pair_of);
   const std::size_t fresh = now.size();
   for (Neighborhood::Seen& old : seen) {
-    if (++old.age > kKept || std::ranges::binary_search(now.begin(), now.begin() + std::ptrdiff_t(fresh), pair_of(old), {}, pair_of)) continue;
+    if (++old.age > kKept || std::ranges::binary_search(now.begin(), now.begin() + std::ptrdiff_t(fresh),
+                                                        pair_of(old), {}, pair_of))
+      continue;
     old.contact.depth = 0.0;
     now.push_back(old);
   }
@@ -43,10 +48,12 @@ void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Se
 void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
   update_seen(levels.full.world()->contacts(), neighborhood.seen);
   for (const auto& [contact, age] : neighborhood.seen) {
-    const std::int32_t first = levels.full.index_of(contact.first), second = contact.second ? levels.full.index_of(contact.second) : -1;
+    const std::int32_t first = levels.full.index_of(contact.first),
+                       second = contact.second ? levels.full.index_of(contact.second) : -1;
     const bool gone = first < 0 || (contact.second && second < 0);
     if (gone) continue;
-    FullContact& full = neighborhood.contacts.emplace_back(FullContact{first, second, contact.point, contact.normal, -contact.depth});
+    FullContact& full = neighborhood.contacts.emplace_back(
+        FullContact{first, second, contact.point, contact.normal, -contact.depth});
     full.friction = friction_between(levels, neighborhood, full);
   }
 }
@@ -58,12 +65,15 @@ Vec3 angular_velocity_change(const FullNeighbor& body, const Vec3& angular_impul
 
 bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impulse.angular.isZero(0.0); }
 
-// ODE lets no body sleep that none of its own contacts holds up: by the same measure, one that statistical bodies hold up sleeps here.
-bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepThresholds& thresholds, double dt) {
+// ODE lets no body sleep that none of its own contacts holds up: by the same measure, one that statistical
+// bodies hold up sleeps here.
+bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepThresholds& thresholds,
+                  double dt) {
   const double still_speed = thresholds.speed, still_time = 5.0 * thresholds.time;  // m/s and s, as alone
   if (!bodies.properties(neighbor.owner).allow_sleep) return false;
   const double turning = neighbor.state.angular_velocity.norm() * neighbor.shape->radius;
-  const bool still = !is_zero(neighbor.push) && neighbor.state.velocity.norm() < still_speed && turning < still_speed;
+  const bool still =
+      !is_zero(neighbor.push) && neighbor.state.velocity.norm() < still_speed && turning < still_speed;
   if (!still) return bodies.stir(neighbor.owner), false;
   double& still_s = bodies.rare(neighbor.owner).still_s;
   still_s += dt;
@@ -76,8 +86,9 @@ void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
   world.set_asleep(body, true);
 }
 
-// A hit changes the velocity before the first substep. Support is a force over the whole step: it then balances gravity in every substep,
-// where a change of velocity would make the body hop, and bounce on what holds it up.
+// A hit changes the velocity before the first substep. Support is a force over the whole step: it then
+// balances gravity in every substep, where a change of velocity would make the body hop, and bounce on what
+// holds it up.
 void hand_over(OdeWorld& world, OdeBodyId body, const FullNeighbor& neighbor, double dt) {
   if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
   if (world.asleep(body)) world.set_asleep(body, false);
@@ -97,9 +108,11 @@ bool is_touched(const FullNeighbor& neighbor) { return !is_zero(neighbor.hit) ||
 void gather(const Levels& levels, Neighborhood& neighborhood) {
   neighborhood.bodies.clear();
   neighborhood.contacts.clear();
-  for (const FullLevel::Member& member : levels.full.members()) neighborhood.bodies.push_back(neighbor_of(levels, member));
+  for (const FullLevel::Member& member : levels.full.members())
+    neighborhood.bodies.push_back(neighbor_of(levels, member));
   if (!neighborhood.bodies.empty()) gather_contacts(levels, neighborhood);
-  levels.callers.bodies.gather(levels.ground, levels.statistical_settings.gravity, neighborhood.bodies, neighborhood.contacts);
+  levels.callers.bodies.gather(levels.ground, levels.statistical_settings.gravity, neighborhood.bodies,
+                               neighborhood.contacts);
 }
 
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
@@ -108,9 +121,12 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
   for (std::size_t i = 0; i < own; ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
-    const bool sleeps = falls_asleep(levels.bodies, neighbor, levels.statistical_settings.sleep, dt) && levels.statistical_settings.sleeping;
-    if (sleeps) put_to_sleep(*levels.full.world(), id, neighbor.state);
-    else hand_over(*levels.full.world(), id, neighbor, dt);
+    const bool sleeps = falls_asleep(levels.bodies, neighbor, levels.statistical_settings.sleep, dt) &&
+                        levels.statistical_settings.sleeping;
+    if (sleeps)
+      put_to_sleep(*levels.full.world(), id, neighbor.state);
+    else
+      hand_over(*levels.full.world(), id, neighbor, dt);
   }
 }
 

@@ -1,6 +1,6 @@
-// Contacts between a full and a statistical body. The statistical level solves them, with the full bodies as they are at the start of the
-// step and with what held them up in ODE's last substep; what they get from it is handed to ODE's bodies before the full level's step, so
-// that momentum is kept to rounding.
+// Contacts between a full and a statistical body. The statistical level solves them, with the full bodies as
+// they are at the start of the step and with what held them up in ODE's last substep; what they get from it
+// is handed to ODE's bodies before the full level's step, so that momentum is kept to rounding.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,8 @@ struct Neighborhood {
   std::vector<FullNeighbor> bodies;
   std::vector<FullContact> contacts;
 
-  /// A contact that ODE found, kept for some steps after: bodies at rest touch and part from substep to substep.
+  /// A contact that ODE found, kept for some steps after: bodies at rest touch and part from substep to
+  /// substep.
   struct Seen {
     OdeContact contact;
     int age = 0;  ///< steps

@@ -31,7 +31,8 @@ void EasedBodies::hold_back(Levels& levels, double dt) {
     if (speed > kInEarnest * slow) return true;
     const double rate = std::min(gravity / slow, 1.0 / dt), mass = levels.bodies[body].mass;  // 1/s
     const Quat& q = state.orientation;
-    world.add_force(ode, -rate * mass * state.velocity, -rate * mass * (q * (shape.inertia_per_mass * (q.conjugate() * state.angular_velocity))));
+    world.add_force(ode, -rate * mass * state.velocity,
+                    -rate * mass * (q * (shape.inertia_per_mass * (q.conjugate() * state.angular_velocity))));
     eased.left_s -= speed > kSinks * slow ? dt / kPatience : dt;
     return eased.left_s <= 0.0;
   });

@@ -1,5 +1,6 @@
-// Bodies that lay among others on a statistical rung, on hulls or spheres, and are full now: their meshes leave gaps there. Once they are awake they sink into these no faster than
-// bodies part that overlap (parting.h), for as long; what is moved in earnest is let go at once.
+// Bodies that lay among others on a statistical rung, on hulls or spheres, and are full now: their meshes
+// leave gaps there. Once they are awake they sink into these no faster than bodies part that overlap
+// (parting.h), for as long; what is moved in earnest is let go at once.
 #pragma once
 
 #include <cstdint>

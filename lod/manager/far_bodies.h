@@ -1,5 +1,6 @@
-// Sleeping bodies that are too far from every viewpoint for a policy to want another level for them, by how far the viewpoints must travel before that can change.
-// So a step looks at those few whose turn it is, and at no others.
+// Sleeping bodies that are too far from every viewpoint for a policy to want another level for them, by how
+// far the viewpoints must travel before that can change. So a step looks at those few whose turn it is, and
+// at no others.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +29,9 @@ class FarBodies {
   static constexpr std::int32_t kNowhere = INT32_MIN;
   void drop_stale();
 
-  std::map<std::int32_t, std::vector<std::uint32_t>> places_;  // some entries are stale: the body is elsewhere now
-  std::vector<std::int32_t> place_of_;                         // of each body
+  std::map<std::int32_t, std::vector<std::uint32_t>>
+      places_;                          // some entries are stale: the body is elsewhere now
+  std::vector<std::int32_t> place_of_;  // of each body
   std::size_t entries_ = 0, bodies_ = 0;
 };
 

@@ -1,4 +1,5 @@
-// What the full level's bodies touched among themselves, of the ground and of the caller's, for contact events.
+// What the full level's bodies touched among themselves, of the ground and of the caller's, for contact
+// events.
 #pragma once
 
 #include "lod/manager/levels.h"

@@ -14,7 +14,8 @@ constexpr double kFaces = 4698.0;
 constexpr double kLeastWeight = 0.15;
 // A pair of two such counts so much; for rounding, a little more.
 constexpr double kOfSimplest = 1.001 * kLeastWeight * kLeastWeight;
-// Bounding spheres meet before what is in them: within the first part of the sum of both radii bodies begin to be a pair, within the second they are a whole one.
+// Bounding spheres meet before what is in them: within the first part of the sum of both radii bodies begin
+// to be a pair, within the second they are a whole one.
 constexpr double kMeetWithin = 1.0, kWholeWithin = 0.6;
 
 double least_squared_distance(const FullPairs::Body& a, const FullPairs::Body& b) {
@@ -31,13 +32,16 @@ PairWeights& PairWeights::operator+=(const PairWeights& more) {
 }
 
 float mesh_weight(const Shape& shape) {
-  return float(shape.convex ? kLeastWeight : std::max(kLeastWeight, std::sqrt(double(shape.mesh.faces.size()) / kFaces)));
+  return float(shape.convex ? kLeastWeight
+                            : std::max(kLeastWeight, std::sqrt(double(shape.mesh.faces.size()) / kFaces)));
 }
 
-FullPairs::FullPairs(double most_radius) : cells_per_m_(1.0 / std::max(2.0 * kMeetWithin * most_radius, 1e-6)), first_(kBuckets, -1) {}
+FullPairs::FullPairs(double most_radius)
+    : cells_per_m_(1.0 / std::max(2.0 * kMeetWithin * most_radius, 1e-6)), first_(kBuckets, -1) {}
 
 std::size_t FullPairs::bucket(std::int64_t x, std::int64_t y, std::int64_t z) const {
-  return (std::uint64_t(x) * 73856093u ^ std::uint64_t(y) * 19349663u ^ std::uint64_t(z) * 83492791u) % kBuckets;
+  return (std::uint64_t(x) * 73856093u ^ std::uint64_t(y) * 19349663u ^ std::uint64_t(z) * 83492791u) %
+         kBuckets;
 }
 
 PairWeights FullPairs::meet(const Body& body) const {
@@ -46,9 +50,12 @@ PairWeights FullPairs::meet(const Body& body) const {
   const auto cell = [this](double x) { return std::int64_t(std::floor(x * cells_per_m_)); };
   const std::int64_t x = cell(body.position.x()), y = cell(body.position.y()), z = cell(body.position.z());
   std::array<std::size_t, 27> buckets;
-  for (int i = 0; i < 27; ++i) buckets[std::size_t(i)] = bucket(x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1);
+  for (int i = 0; i < 27; ++i)
+    buckets[std::size_t(i)] = bucket(x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1);
   for (std::size_t i = 0; i < 27; ++i) {
-    if (first_[buckets[i]] < 0 || std::find(buckets.begin(), buckets.begin() + std::ptrdiff_t(i), buckets[i]) != buckets.begin() + std::ptrdiff_t(i)) continue;
+    if (first_[buckets[i]] < 0 || std::find(buckets.begin(), buckets.begin() + std::ptrdiff_t(i),
+                                            buckets[i]) != buckets.begin() + std::ptrdiff_t(i))
+      continue;
     for (std::int32_t other = first_[buckets[i]]; other >= 0; other = next_[std::size_t(other)]) {
       const Body& there = bodies_[std::size_t(other)];
       if (body.joined >= 0 && body.joined == there.joined) continue;
@@ -57,7 +64,8 @@ PairWeights FullPairs::meet(const Body& body) const {
       const double depth = (kMeetWithin - std::sqrt(squared) / reach) / (kMeetWithin - kWholeWithin);
       const double meshes = double(body.mesh) * double(there.mesh), weight = std::min(1.0, depth) * meshes;
       (body.asleep && there.asleep ? pairs.asleep : pairs.awake) += weight;
-      if ((!body.asleep || !there.asleep) && meshes > kOfSimplest) pairs.dearest = std::max(pairs.dearest, weight);
+      if ((!body.asleep || !there.asleep) && meshes > kOfSimplest)
+        pairs.dearest = std::max(pairs.dearest, weight);
     }
   }
   return pairs;
@@ -65,7 +73,8 @@ PairWeights FullPairs::meet(const Body& body) const {
 
 void FullPairs::add(const Body& body) {
   const auto cell = [this](double x) { return std::int64_t(std::floor(x * cells_per_m_)); };
-  std::int32_t& first = first_[bucket(cell(body.position.x()), cell(body.position.y()), cell(body.position.z()))];
+  std::int32_t& first =
+      first_[bucket(cell(body.position.x()), cell(body.position.y()), cell(body.position.z()))];
   next_.push_back(std::exchange(first, std::int32_t(bodies_.size())));
   bodies_.push_back(body);
 }

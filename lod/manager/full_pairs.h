@@ -8,10 +8,11 @@
 
 namespace lodestone {
 
-/// Pairs by what their meshes cost to collide: two bunnies of 4,698 faces that touch deep count 1, those that just begin to meet 0.
+/// Pairs by what their meshes cost to collide: two bunnies of 4,698 faces that touch deep count 1, those that
+/// just begin to meet 0.
 struct PairWeights {
   double awake = 0.0, asleep = 0.0;  ///< at least one of the two is awake; both sleep
-  double dearest = 0.0;              ///< of those awake, but for two hulls or simplest meshes, which have no bad steps
+  double dearest = 0.0;  ///< of those awake, but for two hulls or simplest meshes, which have no bad steps
   PairWeights& operator+=(const PairWeights& more);
 };
 
@@ -26,8 +27,9 @@ class FullPairs {
     double radius = 0.0;  ///< m, of the bounding sphere
     float mesh = 0.0f;    ///< mesh_weight
     bool asleep = false;
-    Vec3 motion = Vec3::Zero();  ///< m, in the next frame: a pair is as deep as it will be then, where that is deeper
-    std::int64_t joined = -1;    ///< the group whose joints hold it, in which there are no pairs; −1: none
+    Vec3 motion =
+        Vec3::Zero();  ///< m, in the next frame: a pair is as deep as it will be then, where that is deeper
+    std::int64_t joined = -1;  ///< the group whose joints hold it, in which there are no pairs; −1: none
   };
 
   /// `most_radius`: m, of all bodies that are to come.

@@ -12,7 +12,9 @@ GroupId Groups::make(std::span<const std::uint32_t> bodies, GroupJoints joints) 
   std::vector<std::uint32_t> members(bodies.begin(), bodies.end());
   std::ranges::sort(members);
   const bool twice = std::ranges::adjacent_find(members) != members.end();
-  if (members.empty() || twice || std::ranges::any_of(members, [&](std::uint32_t body) { return group_of_.contains(body); })) return {};
+  if (members.empty() || twice ||
+      std::ranges::any_of(members, [&](std::uint32_t body) { return group_of_.contains(body); }))
+    return {};
   const auto free = std::ranges::find_if(groups_, [](const Group& group) { return group.members.empty(); });
   const auto index = std::size_t(free - groups_.begin());
   if (free == groups_.end()) groups_.emplace_back();
@@ -34,7 +36,8 @@ void Groups::archive(StateArchive& a) {
 }
 
 bool Groups::valid(GroupId group) const {
-  return group && group.index < groups_.size() && groups_[group.index].generation == group.generation && !groups_[group.index].members.empty();
+  return group && group.index < groups_.size() && groups_[group.index].generation == group.generation &&
+         !groups_[group.index].members.empty();
 }
 
 void Groups::dissolve(GroupId id) {
@@ -65,7 +68,8 @@ void Groups::wake_together(std::vector<GroupId>& woken) {
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     Group& group = groups_[i];
     if (group.members.empty()) continue;
-    const bool all_sleep = std::ranges::all_of(group.members, [this](std::uint32_t body) { return levels_.asleep(body); });
+    const bool all_sleep =
+        std::ranges::all_of(group.members, [this](std::uint32_t body) { return levels_.asleep(body); });
     if (group.asleep && !all_sleep)
       for (const std::uint32_t body : group.members) levels_.wake(body);
     if (group.detached && !all_sleep) woken.push_back(id_of(i));
@@ -89,7 +93,8 @@ bool Groups::joined_outside(const Group& group, std::uint32_t body) const {
       return ode && levels_.full.world()->ode_body(ode) == other;
     });
   };
-  return std::ranges::any_of(joined_bodies(levels_.full.world()->ode_body(levels_.bodies[body].ode)), [&](dxBody* other) { return other && !is_member(other); });
+  return std::ranges::any_of(joined_bodies(levels_.full.world()->ode_body(levels_.bodies[body].ode)),
+                             [&](dxBody* other) { return other && !is_member(other); });
 }
 
 // A joint to a body outside of the group would hold what is gone.
@@ -98,7 +103,8 @@ bool Groups::pinned(std::uint32_t body) const {
   const auto found = group_of_.find(body);
   if (found == group_of_.end()) return true;
   const Group& group = groups_[found->second];
-  return group.refused || !group.asleep || !group.joints.before_demotion || !group.joints.after_promotion || joined_outside(group, body);
+  return group.refused || !group.asleep || !group.joints.before_demotion || !group.joints.after_promotion ||
+         joined_outside(group, body);
 }
 
 bool Groups::release(GroupId id) {

@@ -1,4 +1,5 @@
-// The groups that a caller has named: who is in which, which sleep, and those whose joints the caller has taken off for the time being.
+// The groups that a caller has named: who is in which, which sleep, and those whose joints the caller has
+// taken off for the time being.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,8 @@ class Groups {
   GroupId of(std::uint32_t body) const;
   std::span<const std::uint32_t> members(GroupId group) const { return groups_[group.index].members; }
 
-  /// Who wakes wakes the others. Adds those of groups whose joints are off, which must be full at once, to `woken`.
+  /// Who wakes wakes the others. Adds those of groups whose joints are off, which must be full at once, to
+  /// `woken`.
   void wake_together(std::vector<GroupId>& woken);
 
   /// Whether a body is full and on joints.
@@ -41,9 +43,9 @@ class Groups {
   bool release(GroupId group);
   /// Where a group is brought back whose joints are off.
   enum class Return : std::uint8_t {
-    asleep,      ///< as it lies
-    awake,       ///< as it is now: something woke it between steps
-    as_it_slept, ///< at the poses in which it slept, with the velocities that it was given in this step
+    asleep,       ///< as it lies
+    awake,        ///< as it is now: something woke it between steps
+    as_it_slept,  ///< at the poses in which it slept, with the velocities that it was given in this step
   };
   bool detached(GroupId group) const { return groups_[group.index].detached; }
   /// Moves it to the full level and has the caller join it. Returns how many bodies changed.
@@ -54,10 +56,10 @@ class Groups {
     std::vector<std::uint32_t> members;  // in order; empty: free
     std::uint32_t generation = 0;
     GroupJoints joints;
-    bool asleep = false;                 // all of it, when that was last asked
-    bool detached = false;               // its joints are off
-    bool refused = false;                // the caller left a joint on when it was asked
-    std::vector<RigidState> poses;       // of the members, while its joints are off
+    bool asleep = false;            // all of it, when that was last asked
+    bool detached = false;          // its joints are off
+    bool refused = false;           // the caller left a joint on when it was asked
+    std::vector<RigidState> poses;  // of the members, while its joints are off
     void archive(StateArchive& a) { a(members, generation, asleep, detached, refused, poses); }
   };
   GroupId id_of(std::size_t index) const { return {std::uint32_t(index), groups_[index].generation}; }

@@ -44,18 +44,24 @@ void Levels::set_state(std::uint32_t body, const RigidState& state) {
 void Levels::set_motion(std::uint32_t body, const RigidState& state) {
   const BodyRecord& record = bodies[body];
   wake(body);
-  if (record.ode) full.world()->set_state(record.ode, state), note_full(body);
-  else if (record.statistical) statistical->set_state(record.statistical, state);
-  else bodies.newcomer(body).state = state;
+  if (record.ode)
+    full.world()->set_state(record.ode, state), note_full(body);
+  else if (record.statistical)
+    statistical->set_state(record.statistical, state);
+  else
+    bodies.newcomer(body).state = state;
 }
 
 void Levels::wake(std::uint32_t body) {
   const BodyRecord& record = bodies[body];
   if (!asleep(body)) return;
   woken.push_back(body);
-  if (record.ode) full.world()->set_asleep(record.ode, false);
-  else if (record.statistical) statistical->wake(record.statistical);
-  else bodies.newcomer(body).asleep = false;
+  if (record.ode)
+    full.world()->set_asleep(record.ode, false);
+  else if (record.statistical)
+    statistical->wake(record.statistical);
+  else
+    bodies.newcomer(body).asleep = false;
 }
 
 void Levels::put_to_sleep(std::uint32_t body) {
@@ -66,8 +72,10 @@ void Levels::put_to_sleep(std::uint32_t body) {
   RigidState still = state(body);
   still.velocity = still.angular_velocity = Vec3::Zero();
   set_motion(body, still);
-  if (record.ode) full.world()->set_asleep(record.ode, true);
-  else bodies.newcomer(body).asleep = true;
+  if (record.ode)
+    full.world()->set_asleep(record.ode, true);
+  else
+    bodies.newcomer(body).asleep = true;
 }
 
 void Levels::set_gravity(const Vec3& gravity) {
@@ -83,9 +91,10 @@ void Levels::wake_all() {
 }
 
 void Levels::follow_callers_space(double dt) {
-  if (!full.world() || !full.world()->callers_space()) return;
-  full.world()->look_at_callers_space();
+  if (!full.world()) return;
+  full.world()->look_at_callers_space();  // puts back what the caller spoilt of ours, too
   const SpaceMirror* mirror = full.world()->callers_space();
+  if (!mirror) return;
   callers.ground.follow(*mirror, dt, [this](const Eigen::AlignedBox3d& box) { wake_in(box); });
   callers.bodies.follow(*mirror);
 }
@@ -102,7 +111,8 @@ void Levels::wake_in(const Eigen::AlignedBox3d& box) {
   std::ranges::sort(near);
   for (const std::uint32_t body : near) {
     const double reach = (1.0 + kTouchMargin) * bodies.shape(body)->radius;
-    if (box.squaredExteriorDistance(statistical->position(bodies[body].statistical)) <= reach * reach) wake(body);
+    if (box.squaredExteriorDistance(statistical->position(bodies[body].statistical)) <= reach * reach)
+      wake(body);
   }
 }
 
@@ -113,8 +123,10 @@ void Levels::wake_near(std::uint32_t body, Level level) {
   for (const std::uint32_t other : near) wake(other);
 }
 
-void Levels::find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near, bool asleep_only) const {
+void Levels::find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near,
+                       bool asleep_only) const {
   const Vec3 position = state(body).position;
+  if (!position.allFinite()) return;  // the caller spoilt it, and the next step puts it back
   const double radius = bodies.shape(body)->radius;
   const auto add = [&](std::uint32_t other, const Vec3& place) {
     const double reach = factor * (radius + bodies.shape(other)->radius);
@@ -124,26 +136,32 @@ void Levels::find_near(std::uint32_t body, double factor, Level level, std::vect
     const auto add_full = [&](std::uint32_t other) {
       if (bodies[other].ode) add(other, full.world()->state(bodies[other].ode).position);
     };
-    if (full.members().size() > kFewFull) near_full().find(position, factor * radius, add_full);
-    else for (const FullLevel::Member& member : full.members()) add_full(member.owner);
+    if (full.members().size() > kFewFull)
+      near_full().find(position, factor * radius, add_full);
+    else
+      for (const FullLevel::Member& member : full.members()) add_full(member.owner);
     return;
   }
   if (!statistical) return;
   std::vector<std::uint32_t> owners;
-  statistical->find_sleepers(position, factor * (radius + statistical->reach()) - statistical->reach(), owners);
+  statistical->find_sleepers(position, factor * (radius + statistical->reach()) - statistical->reach(),
+                             owners);
   if (!asleep_only) statistical->find_awake(owners);
   for (const std::uint32_t owner : owners) add(owner, statistical->position(bodies[owner].statistical));
 }
 
 void Levels::note_full(std::uint32_t body) {
-  if (near_full_.made()) near_full_.add(body, full.world()->state(bodies[body].ode).position, (1.0 + kTouchMargin) * bodies.shape(body)->radius);
+  if (near_full_.made())
+    near_full_.add(body, full.world()->state(bodies[body].ode).position,
+                   (1.0 + kTouchMargin) * bodies.shape(body)->radius);
 }
 
 const NearFull& Levels::near_full() const {
   if (near_full_.made()) return near_full_;
   near_full_.begin();
   for (const FullLevel::Member& member : full.members())
-    near_full_.add(member.owner, full.world()->state(member.id).position, (1.0 + kTouchMargin) * bodies.shape(member.owner)->radius);
+    near_full_.add(member.owner, full.world()->state(member.id).position,
+                   (1.0 + kTouchMargin) * bodies.shape(member.owner)->radius);
   return near_full_;
 }
 
@@ -151,8 +169,10 @@ void Levels::give_forces() {
   for (const std::uint32_t body : bodies.pushed()) {
     const BodyRecord& record = bodies[body];
     const auto [force, torque] = bodies.force(body);
-    if (record.ode) full.world()->add_force(record.ode, force, torque), eased.forget(body);
-    else if (record.statistical) statistical->add_force(record.statistical, force, torque);
+    if (record.ode)
+      full.world()->add_force(record.ode, force, torque), eased.forget(body);
+    else if (record.statistical)
+      statistical->add_force(record.statistical, force, torque);
   }
   bodies.clear_forces();
 }

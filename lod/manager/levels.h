@@ -1,4 +1,5 @@
-// The bodies of a manager and the rungs that they are on: what is the same to do with a body whatever its rung.
+// The bodies of a manager and the rungs that they are on: what is the same to do with a body whatever its
+// rung.
 #pragma once
 
 #include <memory>
@@ -16,10 +17,16 @@ namespace lodestone {
 
 struct Levels {
   Levels(const StatisticalSettings& statistical_level, const FullSettings& full_level, SignatureStore store)
-      : full(full_level, materials), statistical_settings(statistical_level), signatures(std::move(store)), callers(ground) {}
-  Levels(dxWorld* world, dxSpace* space, const StatisticalSettings& statistical_level, const FullSettings& full_level,
-         SignatureStore store)
-      : full(world, space, full_level, materials), statistical_settings(statistical_level), signatures(std::move(store)), callers(ground) {}
+      : full(full_level, materials),
+        statistical_settings(statistical_level),
+        signatures(std::move(store)),
+        callers(ground) {}
+  Levels(dxWorld* world, dxSpace* space, const StatisticalSettings& statistical_level,
+         const FullSettings& full_level, SignatureStore store)
+      : full(world, space, full_level, materials),
+        statistical_settings(statistical_level),
+        signatures(std::move(store)),
+        callers(ground) {}
   Levels(const Levels&) = delete;  // the levels point at materials and ground
   Levels& operator=(const Levels&) = delete;
 
@@ -30,13 +37,14 @@ struct Levels {
   std::unique_ptr<StatisticalLevel> statistical;  ///< null until a first body is statistical
   StatisticalSettings statistical_settings;
   SignatureStore signatures;
-  EasedBodies eased;                              ///< at the full level
+  EasedBodies eased;  ///< at the full level
   CallersSpace callers;
-  std::int64_t now = 0;                           ///< steps so far
-  std::vector<RungChange> rung_changes;           ///< of this step
-  std::vector<std::uint32_t> woken;               ///< by wake(), until somebody takes note
+  std::int64_t now = 0;                  ///< steps so far
+  std::vector<RungChange> rung_changes;  ///< of this step
+  std::vector<std::uint32_t> woken;      ///< by wake(), until somebody takes note
 
-  /// The law between a body and the ground that it most likely meets: the first plane, else ground of the default material.
+  /// The law between a body and the ground that it most likely meets: the first plane, else ground of the
+  /// default material.
   ContactLaw ground_law(MaterialId material) const;
 
   /// Of a body's shape at each rung, by Rung.
@@ -49,12 +57,14 @@ struct Levels {
   /// Wakes the body alone: for another motion in the same place.
   void set_motion(std::uint32_t body, const RigidState& state);
   void wake(std::uint32_t body);
-  /// Lays it still where it is, without the force that is held for it. One on no rung yet will be so on its first.
+  /// Lays it still where it is, without the force that is held for it. One on no rung yet will be so on its
+  /// first.
   void put_to_sleep(std::uint32_t body);
   void wake_all();
   /// m/s², from now on; wakes all.
   void set_gravity(const Vec3& gravity);
-  /// Brings ground and bodies to what the caller's space holds now, before a step of `dt` s; what lay on ground that came, went or moved wakes.
+  /// Brings ground and bodies to what the caller's space holds now, before a step of `dt` s; what lay on
+  /// ground that came, went or moved wakes.
   void follow_callers_space(double dt);
   /// The geoms of the caller's dynamic bodies as they are now, at any time.
   std::vector<CallersPart> callers_parts() const;
@@ -62,8 +72,10 @@ struct Levels {
   void wake_in(const Eigen::AlignedBox3d& box);
   /// Wakes every other body of `level` whose bounding sphere meets that of `body`.
   void wake_near(std::uint32_t body, Level level);
-  /// Adds the other bodies of `level`, or those of them that sleep, whose bounding sphere meets that of `body`, both `factor` times as large.
-  void find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near, bool asleep_only) const;
+  /// Adds the other bodies of `level`, or those of them that sleep, whose bounding sphere meets that of
+  /// `body`, both `factor` times as large.
+  void find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near,
+                 bool asleep_only) const;
   /// A body has become full, or was moved there.
   void note_full(std::uint32_t body);
   /// The full level has moved its bodies.

@@ -1,11 +1,10 @@
-#include "lod/manager/manager_impl.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "lod/manager/finish_report.h"
+#include "lod/manager/manager_impl.h"
 #include "lod/manager/transfer.h"
 #include "lod/timing/stage_timer.h"
 #include "lod/timing/stage_zones.h"
@@ -18,9 +17,12 @@ namespace {
 
 constexpr double kLongestPart = 0.1;  // s, of a step
 
-JobRunner runner_of(const ManagerSettings& settings) { return settings.jobs ? settings.jobs : make_job_runner(settings.threads); }
+JobRunner runner_of(const ManagerSettings& settings) {
+  return settings.jobs ? settings.jobs : make_job_runner(settings.threads);
+}
 
-StatisticalSettings statistical_settings(const ManagerSettings& settings, const std::shared_ptr<JobRunner>& jobs, const Vec3& gravity) {
+StatisticalSettings statistical_settings(const ManagerSettings& settings,
+                                         const std::shared_ptr<JobRunner>& jobs, const Vec3& gravity) {
   return {.gravity = gravity,
           .seed = settings.seed,
           .threads = settings.threads,
@@ -31,7 +33,11 @@ StatisticalSettings statistical_settings(const ManagerSettings& settings, const 
 }
 
 FullSettings full_settings(const ManagerSettings& settings) {
-  return {.gravity = settings.gravity, .seed = settings.seed, .substeps = settings.full_substeps, .sleeping = settings.sleeping, .sleep = settings.sleep};
+  return {.gravity = settings.gravity,
+          .seed = settings.seed,
+          .substeps = settings.full_substeps,
+          .sleeping = settings.sleeping,
+          .sleep = settings.sleep};
 }
 
 /// Of a statistical stage that took `ms` in all.
@@ -48,7 +54,8 @@ void add_statistical(const Levels& levels, double ms, StepMeasurement& measured)
 Manager::Impl::Impl(const ManagerSettings& s)
     : jobs(std::make_shared<JobRunner>(runner_of(s))),
       own_jobs(!s.jobs),
-      levels(statistical_settings(s, jobs, s.gravity), full_settings(s), SignatureStore(s.signatures, s.signature_timing)),
+      levels(statistical_settings(s, jobs, s.gravity), full_settings(s),
+             SignatureStore(s.signatures, s.signature_timing)),
       choose(levels, s.policy, s.model),
       audit(levels, full_settings(s), s.audit_ms),
       events(levels, s.events) {
@@ -57,7 +64,8 @@ Manager::Impl::Impl(const ManagerSettings& s)
 Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
     : jobs(std::make_shared<JobRunner>(runner_of(s))),
       own_jobs(!s.jobs),
-      levels(world, space, statistical_settings(s, jobs, callers::gravity(world)), full_settings(s), SignatureStore(s.signatures, s.signature_timing)),
+      levels(world, space, statistical_settings(s, jobs, callers::gravity(world)), full_settings(s),
+             SignatureStore(s.signatures, s.signature_timing)),
       choose(levels, s.policy, s.model),
       audit(levels, full_settings(s), s.audit_ms),
       events(levels, s.events),
@@ -69,7 +77,8 @@ Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
 void Manager::Impl::set_up(const ManagerSettings& settings) {
   levels.statistical_settings.properties = &levels.bodies.own_properties();
   if (!settings.pair_filter) return;
-  levels.statistical_settings.pair_filter = [filter = settings.pair_filter, &bodies = levels.bodies](std::uint32_t a, std::uint32_t b) {
+  levels.statistical_settings.pair_filter = [filter = settings.pair_filter, &bodies = levels.bodies](
+                                                std::uint32_t a, std::uint32_t b) {
     const bool own = a < bodies.indices() && b < bodies.indices();  // the caller's bodies are beyond
     return !own || filter(bodies.id(a), bodies.id(b));
   };
@@ -88,7 +97,8 @@ Manager& Manager::operator=(Manager&&) noexcept = default;
 const StepReport& Manager::step(double dt) {
   check_step(dt);
   Impl& impl = *impl_;
-  if (impl.waits_for_world_step) throw_input_error("step", "one between before_world_step and after_world_step", "none");
+  if (impl.waits_for_world_step)
+    throw_input_error("step", "one between before_world_step and after_world_step", "none");
   if (dt == 0.0) {
     impl.begin_lists();
     impl.report.dt_s = 0.0;
@@ -97,8 +107,10 @@ const StepReport& Manager::step(double dt) {
   const StageZones zones(impl.profile, impl.report.times);
   impl.follow_gravity();
   impl.begin_lists();
-  if (const int parts = int(std::ceil(dt / kLongestPart)); parts > 1) impl.step_divided(dt, parts);
-  else impl.step(dt);
+  if (const int parts = int(std::ceil(dt / kLongestPart)); parts > 1)
+    impl.step_divided(dt, parts);
+  else
+    impl.step(dt);
   return impl.finish_lists(dt);
 }
 
@@ -106,7 +118,10 @@ void Manager::before_world_step(double dt) {
   Impl& impl = *impl_;
   if (!impl.callers_world) throw_input_error("world", "the manager's own", "the caller's");
   if (impl.waits_for_world_step) throw_input_error("before_world_step", "a second one", "after_world_step");
-  if (!(dt > 0.0 && dt <= kLongestPart)) throw_input_error("time step", fmt::format("{:g} s", dt), fmt::format("more than 0, at most {:g} s", kLongestPart));
+  if (!(dt > 0.0 && dt <= kLongestPart))
+    throw_input_error("time step", fmt::format("{:g} s", dt),
+                      fmt::format("more than 0, at most {:g} s", kLongestPart));
+  check_step(dt);
   const StageZones zones(impl.profile, impl.report.times);
   impl.follow_gravity();
   impl.begin_lists();
@@ -118,7 +133,8 @@ void Manager::before_world_step(double dt) {
 
 const StepReport& Manager::after_world_step() {
   Impl& impl = *impl_;
-  if (!impl.waits_for_world_step) throw_input_error("after_world_step", "none before it", "before_world_step");
+  if (!impl.waits_for_world_step)
+    throw_input_error("after_world_step", "none before it", "before_world_step");
   const StageZones zones(impl.profile, impl.report.times);
   impl.waits_for_world_step = false;
   const double dt = impl.underway->dt;
@@ -182,13 +198,16 @@ void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
   std::vector<std::uint32_t> to_full;
   for (const auto* list : {&rung_changes.demote, &rung_changes.promote})
     for (const RungChanges::Change& change : *list) {
-      if (change.to == Rung::full) to_full.push_back(change.body);
-      else find_signature(levels, change.body, change.to);
+      if (change.to == Rung::full)
+        to_full.push_back(change.body);
+      else
+        find_signature(levels, change.body, change.to);
     }
   std::ranges::sort(to_full);
   const auto& newcomers = levels.bodies.newcomers();
   for (std::size_t i = 0; i < newcomers.size(); ++i)
-    if (levels.bodies.waits_at(i) && !std::ranges::binary_search(to_full, newcomers[i].index)) find_signature(levels, newcomers[i].index, newcomers[i].rung);
+    if (levels.bodies.waits_at(i) && !std::ranges::binary_search(to_full, newcomers[i].index))
+      find_signature(levels, newcomers[i].index, newcomers[i].rung);
 }
 
 void Manager::Impl::do_stages(double dt) {
@@ -240,10 +259,12 @@ void Manager::Impl::end_stages() {
   if (!limits_of(policy)) {
     step_levels.note_touching();
     measured.others_ms += laps.lap_ms();
-    report_cost(levels, choose.counts(), measured, counts_work(policy) ? std::nullopt : std::optional(budget_of(policy)), costs, report);
+    report_cost(levels, choose.counts(), measured,
+                counts_work(policy) ? std::nullopt : std::optional(budget_of(policy)), costs, report);
   }
   audit.end_step(dt, report);
   step_log.end_step(report);
+  levels.bodies.reuse_indices();
 }
 
 }  // namespace lodestone

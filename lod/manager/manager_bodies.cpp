@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "lod/manager/crowded_places.h"
 #include "lod/manager/manager_impl.h"
 #include "lod/manager/transfer.h"
 #include "reference/error.h"
@@ -16,11 +17,15 @@ BodyId Manager::add_body(const BodyDefinition& definition) {
   impl_->changes.add(body.index);
   impl_->queries.touch();
   if (definition.events) impl_->events.ask(body.index, true);
-  if (definition.level == LevelChoice::full) {
+  if (definition.level == LevelChoice::full &&
+      !is_full_place(levels, sound.state.position, *definition.shape)) {
     place(levels, body.index, Rung::full);
     levels.bodies.forget_last_newcomer();
   }
-  impl_->recorder.note(Call::add_body, name_of(*definition.shape), definition.state, definition.material, definition.mass, definition.level, definition.importance, definition.properties, definition.user_data, definition.events, definition.least_rung, definition.greatest_rung);
+  impl_->recorder.note(Call::add_body, name_of(*definition.shape), definition.state, definition.material,
+                       definition.mass, definition.level, definition.importance, definition.properties,
+                       definition.user_data, definition.events, definition.least_rung,
+                       definition.greatest_rung);
   return body;
 }
 
@@ -59,7 +64,9 @@ void Manager::set_properties(BodyId body, const BodyProperties& properties) {
   check_properties(properties);
   Levels& levels = impl_->levels;
   levels.bodies.set_properties(index, properties);
-  if (levels.bodies[index].statistical && levels.bodies.level(index).rung == Rung::tables && levels.bodies.level(index).own_properties) transfer(levels, index, Rung::support);
+  if (levels.bodies[index].statistical && levels.bodies.level(index).rung == Rung::tables &&
+      levels.bodies.level(index).own_properties)
+    transfer(levels, index, Rung::support);
   if (levels.bodies[index].ode) levels.full.world()->set_properties(levels.bodies[index].ode, properties);
   levels.set_motion(index, levels.state(index));
   impl_->choose.note(index);
@@ -95,13 +102,17 @@ void Manager::add_impulse(BodyId body, const Vec3& impulse, const Vec3& point) {
   check_finite(point, "point of an impulse");
   Levels& levels = impl_->levels;
   RigidState state = levels.state(index);
-  impl_->recorder.note(Call::add_impulse, body, impulse, point);
-  if (levels.bodies.properties(index).kinematic) return levels.wake(index);
+  if (levels.bodies.properties(index).kinematic) {
+    levels.wake(index);
+    return impl_->recorder.note(Call::add_impulse, body, impulse, point);
+  }
   const double mass = levels.bodies[index].mass;
   const Vec3 angular = state.orientation.conjugate() * (point - state.position).cross(impulse);
   state.velocity += impulse / mass;
-  state.angular_velocity += state.orientation * (levels.bodies.shape(index)->inverse_inertia_per_mass * angular) / mass;
+  state.angular_velocity +=
+      state.orientation * (levels.bodies.shape(index)->inverse_inertia_per_mass * angular) / mass;
   levels.set_motion(index, checked(state));
+  impl_->recorder.note(Call::add_impulse, body, impulse, point);
 }
 
 void Manager::sleep(BodyId body) {

@@ -9,7 +9,9 @@ namespace lodestone {
 namespace {
 
 void check_valid(const Ground& ground, GroundId id) {
-  if (!ground.valid(id)) throw_input_error("ground", fmt::format("the id {{{}, {}}}", id.index, id.generation), "that of ground of this manager which was not removed");
+  if (!ground.valid(id))
+    throw_input_error("ground", fmt::format("the id {{{}, {}}}", id.index, id.generation),
+                      "that of ground of this manager which was not removed");
 }
 
 void check_callers(const dxWorld* callers_world, const dxBody* body) {
@@ -23,7 +25,8 @@ MaterialTable& Manager::materials() { return impl_->levels.materials; }
 
 GroundId Manager::add_plane(const Vec3& normal, double offset, MaterialId material) {
   const Vec3 unit = checked_normal(normal, "normal of a plane");
-  if (!std::isfinite(offset)) throw_input_error("offset of a plane", fmt::format("{:g} m", offset), "a finite number");
+  if (!std::isfinite(offset))
+    throw_input_error("offset of a plane", fmt::format("{:g} m", offset), "a finite number");
   impl_->levels.materials.check_known(material);
   const HalfSpace plane{unit, offset, material};
   const GroundId id = impl_->levels.ground.add_plane(plane);
@@ -43,7 +46,8 @@ GroundId Manager::add_static_mesh(const Mesh& mesh, MaterialId material) {
   return id;
 }
 
-GroundId Manager::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+GroundId Manager::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
+                                 MaterialId material) {
   for (const double side : sides) check_positive(side, "side of a static box");
   const RigidState pose = checked(RigidState{position, orientation, Vec3::Zero(), Vec3::Zero()});
   impl_->levels.materials.check_known(material);
@@ -60,7 +64,10 @@ void Manager::move_ground(GroundId id, const RigidState& state) {
   if (levels.ground.is_plane(id)) throw_input_error("ground to be moved", "a plane", "a static box or mesh");
   const RigidState sound = checked(state);
   impl_->disturb(levels.ground.bounds(id));
-  levels.ground.move_part(id, {.position = sound.position, .orientation = sound.orientation, .velocity = sound.velocity, .angular_velocity = sound.angular_velocity});
+  levels.ground.move_part(id, {.position = sound.position,
+                               .orientation = sound.orientation,
+                               .velocity = sound.velocity,
+                               .angular_velocity = sound.angular_velocity});
   levels.full.move_ground(id, sound);
   impl_->disturb(levels.ground.bounds(id));
   impl_->recorder.note(Call::move_ground, id, state);
@@ -69,8 +76,10 @@ void Manager::move_ground(GroundId id, const RigidState& state) {
 void Manager::remove_ground(GroundId id) {
   Levels& levels = impl_->levels;
   check_valid(levels.ground, id);
-  if (levels.ground.is_plane(id)) levels.wake_all();
-  else impl_->disturb(levels.ground.bounds(id));
+  if (levels.ground.is_plane(id))
+    levels.wake_all();
+  else
+    impl_->disturb(levels.ground.bounds(id));
   levels.ground.remove(id);
   levels.full.remove_ground(id);
   impl_->queries.touch();

@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kCircleParts = 16;
 
-void draw_circle(const DebugDrawer& drawer, const Vec3& center, const Vec3& first, const Vec3& second, DebugColor color) {
+void draw_circle(const DebugDrawer& drawer, const Vec3& center, const Vec3& first, const Vec3& second,
+                 DebugColor color) {
   Vec3 from = center + first;
   for (int i = 1; i <= kCircleParts; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kCircleParts;
@@ -25,7 +26,9 @@ void draw_sphere(const DebugDrawer& drawer, const RigidState& state, double radi
 }
 
 void draw_hull(const DebugDrawer& drawer, const Hull& hull, const RigidState& state, DebugColor color) {
-  const auto place = [&](int vertex) -> Vec3 { return state.position + state.orientation * hull.vertices[std::size_t(vertex)]; };
+  const auto place = [&](int vertex) -> Vec3 {
+    return state.position + state.orientation * hull.vertices[std::size_t(vertex)];
+  };
   for (int vertex = 0; vertex < int(hull.vertices.size()); ++vertex)
     for (const int neighbor : hull.neighbors(vertex))
       if (vertex < neighbor) drawer.line(place(vertex), place(neighbor), color);
@@ -34,22 +37,27 @@ void draw_hull(const DebugDrawer& drawer, const Hull& hull, const RigidState& st
 void draw_box(const DebugDrawer& drawer, const Eigen::AlignedBox3d& box, DebugColor color) {
   for (int corner = 0; corner < 8; ++corner)
     for (const int axis : {1, 2, 4})
-      if (!(corner & axis)) drawer.line(box.corner(Eigen::AlignedBox3d::CornerType(corner)), box.corner(Eigen::AlignedBox3d::CornerType(corner | axis)), color);
+      if (!(corner & axis))
+        drawer.line(box.corner(Eigen::AlignedBox3d::CornerType(corner)),
+                    box.corner(Eigen::AlignedBox3d::CornerType(corner | axis)), color);
 }
 
 Eigen::AlignedBox3d bounds_of(const Shape& shape, const RigidState& state) {
-  if (shape.sphere_radius) return {state.position.array() - *shape.sphere_radius, state.position.array() + *shape.sphere_radius};
+  if (shape.sphere_radius)
+    return {state.position.array() - *shape.sphere_radius, state.position.array() + *shape.sphere_radius};
   Eigen::AlignedBox3d bounds;
   for (const Vec3& vertex : shape.hull.vertices) bounds.extend(state.position + state.orientation * vertex);
   return bounds;
 }
 
-void draw_contact(const DebugDrawer& drawer, const Vec3& point, const Vec3& normal, const DrawSettings& settings) {
+void draw_contact(const DebugDrawer& drawer, const Vec3& point, const Vec3& normal,
+                  const DrawSettings& settings) {
   if (drawer.point) drawer.point(point, settings.contact_color);
   if (drawer.line) drawer.line(point, point + settings.normal_length * normal, settings.contact_color);
 }
 
-void draw_body(const Levels& levels, std::uint32_t body, const DebugDrawer& drawer, const DrawSettings& settings) {
+void draw_body(const Levels& levels, std::uint32_t body, const DebugDrawer& drawer,
+               const DrawSettings& settings) {
   const RigidState state = levels.state(body);
   const Shape& shape = *levels.bodies.shape(body);
   DebugColor color = settings.colors[std::size_t(levels.bodies.level(body).rung)];
@@ -58,18 +66,22 @@ void draw_body(const Levels& levels, std::uint32_t body, const DebugDrawer& draw
   const double sphere = place ? levels.statistical->sphere_radius(place) : 0.0;
   if (drawer.point && settings.bodies) drawer.point(state.position, color);
   if (!drawer.line) return;
-  if (settings.bodies && (sphere > 0.0 || shape.sphere_radius)) draw_sphere(drawer, state, sphere > 0.0 ? sphere : *shape.sphere_radius, color);
-  else if (settings.bodies) draw_hull(drawer, shape.hull, state, color);
+  if (settings.bodies && (sphere > 0.0 || shape.sphere_radius))
+    draw_sphere(drawer, state, sphere > 0.0 ? sphere : *shape.sphere_radius, color);
+  else if (settings.bodies)
+    draw_hull(drawer, shape.hull, state, color);
   if (settings.bounds) draw_box(drawer, bounds_of(shape, state), settings.bounds_color);
 }
 
 void draw_contacts(const Levels& levels, const DebugDrawer& drawer, const DrawSettings& settings) {
   if (levels.full.world())
-    for (const OdeContact& contact : levels.full.world()->contacts()) draw_contact(drawer, contact.point, contact.normal, settings);
+    for (const OdeContact& contact : levels.full.world()->contacts())
+      draw_contact(drawer, contact.point, contact.normal, settings);
   std::vector<PairContact> contacts;
   if (levels.statistical) levels.statistical->find_contacts(contacts);
   for (const PairContact& contact : contacts)
-    for (int i = 0; i < contact.manifold.count; ++i) draw_contact(drawer, contact.manifold.points[std::size_t(i)].point, contact.normal, settings);
+    for (int i = 0; i < contact.manifold.count; ++i)
+      draw_contact(drawer, contact.manifold.points[std::size_t(i)].point, contact.normal, settings);
 }
 
 }  // namespace
@@ -83,7 +95,8 @@ void Manager::set_profile(ProfileHooks hooks) { impl_->profile = std::move(hooks
 
 void Manager::draw(const DebugDrawer& drawer, const DrawSettings& settings) const {
   const Levels& levels = impl_->levels;
-  for (const std::uint32_t body : levels.bodies.in_order_of_creation()) draw_body(levels, body, drawer, settings);
+  for (const std::uint32_t body : levels.bodies.in_order_of_creation())
+    draw_body(levels, body, drawer, settings);
   if (settings.contacts) draw_contacts(levels, drawer, settings);
 }
 

@@ -15,8 +15,8 @@
 #include "lod/manager/query_scene.h"
 #include "lod/manager/recorder.h"
 #include "lod/manager/step_changes.h"
-#include "lod/manager/step_log.h"
 #include "lod/manager/step_levels.h"
+#include "lod/manager/step_log.h"
 #include "lod/timing/thread_clock.h"
 #include "reference/state_archive.h"
 
@@ -55,7 +55,8 @@ struct Manager::Impl {
   /// All that the next steps depend on.
   void archive(StateArchive& a);
   /// Does what a chunk of a recording tells, but for steps.
-  void do_call(Manager& manager, Call call, StateArchive& chunk, std::span<const std::shared_ptr<const Shape>> shapes);
+  void do_call(Manager& manager, Call call, StateArchive& chunk,
+               std::span<const std::shared_ptr<const Shape>> shapes);
   std::uint32_t index_of(BodyId body) const { return levels.bodies.index_of(body); }
   /// The caller may have changed it in a world of his.
   void follow_gravity();
@@ -71,7 +72,8 @@ struct Manager::Impl {
     } catch (...) {
       report = before;
       levels.now = report.step;
-      for (std::uint32_t body = 0; body < levels.bodies.indices(); ++body)  // in the step to come they are looked at anew
+      for (std::uint32_t body = 0; body < levels.bodies.indices();
+           ++body)  // in the step to come they are looked at anew
         levels.bodies.level(body).looked_at = std::min(levels.bodies.level(body).looked_at, report.step);
       throw;
     }

@@ -14,23 +14,29 @@ PolicySettings::~PolicySettings() = default;
 void Manager::set_policy(const PolicySettings& policy) {
   check_policy(policy);
   impl_->choose.set_policy(policy);
-  if (impl_->recorder.on()) impl_->recorder.note(Call::set_policy, RecordedPolicy{policy, bool(policy.visible), bool(policy.significance)});
+  if (impl_->recorder.on())
+    impl_->recorder.note(Call::set_policy,
+                         RecordedPolicy{policy, bool(policy.visible), bool(policy.significance)});
 }
 
 void Manager::set_viewpoints(std::span<const Vec3> positions) {
-  for (const Vec3& position : positions) check_finite(position, "viewpoint");
+  for (const Vec3& position : positions) checked(Viewpoint{.position = position});
   impl_->choose.set_views(Views(positions));
-  if (impl_->recorder.on()) impl_->recorder.note(Call::set_positions, std::vector<Vec3>(positions.begin(), positions.end()));
+  if (impl_->recorder.on())
+    impl_->recorder.note(Call::set_positions, std::vector<Vec3>(positions.begin(), positions.end()));
 }
 
 void Manager::set_viewpoints(std::span<const Viewpoint> viewpoints) {
   std::vector<Viewpoint> sound;
   for (const Viewpoint& viewpoint : viewpoints) sound.push_back(checked(viewpoint));
   impl_->choose.set_views(Views(std::span<const Viewpoint>(sound)));
-  if (impl_->recorder.on()) impl_->recorder.note(Call::set_viewpoints, std::vector<Viewpoint>(viewpoints.begin(), viewpoints.end()));
+  if (impl_->recorder.on())
+    impl_->recorder.note(Call::set_viewpoints, std::vector<Viewpoint>(viewpoints.begin(), viewpoints.end()));
 }
 
-void Manager::set_viewpoints(std::initializer_list<Viewpoint> viewpoints) { set_viewpoints(std::span(viewpoints.begin(), viewpoints.size())); }
+void Manager::set_viewpoints(std::initializer_list<Viewpoint> viewpoints) {
+  set_viewpoints(std::span(viewpoints.begin(), viewpoints.size()));
+}
 
 void Manager::set_rung_range(BodyId body, Rung least, Rung greatest) {
   const std::uint32_t index = impl_->index_of(body);
@@ -42,19 +48,22 @@ void Manager::set_rung_range(BodyId body, Rung least, Rung greatest) {
 }
 
 GroupId Manager::make_group(std::span<const BodyId> bodies, GroupJoints joints) {
-  if (bool(joints.before_demotion) != bool(joints.after_promotion)) throw InputError("a group's joints: expected both functions or none");
+  if (bool(joints.before_demotion) != bool(joints.after_promotion))
+    throw InputError("a group's joints: expected both functions or none");
   std::vector<std::uint32_t> members;
   for (const BodyId body : bodies) members.push_back(impl_->index_of(body));
   const GroupId group = impl_->choose.groups().make(members, std::move(joints));
   if (!group) throw InputError("a group: expected at least one body, none twice and none in another group");
   for (const std::uint32_t member : members) impl_->choose.note(member);
-  if (impl_->recorder.on()) impl_->recorder.note(Call::make_group, std::vector<BodyId>(bodies.begin(), bodies.end()));
+  if (impl_->recorder.on())
+    impl_->recorder.note(Call::make_group, std::vector<BodyId>(bodies.begin(), bodies.end()));
   return group;
 }
 
 void Manager::dissolve_group(GroupId group) {
   Groups& groups = impl_->choose.groups();
-  if (!groups.valid(group)) throw InputError("a group's id: expected one that make_group returned and that was not dissolved");
+  if (!groups.valid(group))
+    throw InputError("a group's id: expected one that make_group returned and that was not dissolved");
   if (groups.detached(group)) groups.bring_back(group, Groups::Return::asleep);
   for (const std::uint32_t member : groups.members(group)) impl_->choose.note(member);
   groups.dissolve(group);
@@ -67,9 +76,13 @@ Why Manager::explain(BodyId body) const {
   const Choose& choose = impl_->choose;
   const BodyLevel& level = levels.bodies.level(index);
   const LevelCandidate seen = choose.seen(index);
-  Why why{.rung = level.rung, .rule = level.reason, .placed = !level.newcomer, .group = choose.groups().of(index)};
+  Why why{.rung = level.rung,
+          .rule = level.reason,
+          .placed = !level.newcomer,
+          .group = choose.groups().of(index)};
   if (!choose.views().empty()) {
-    why.distance_m = std::max(0.0, std::sqrt(choose.views().squared(seen.position, Measure::distance)) - seen.radius);
+    why.distance_m =
+        std::max(0.0, std::sqrt(choose.views().squared(seen.position, Measure::distance)) - seen.radius);
     why.pixels = choose.pixels(seen);
     why.in_view = choose.in_view(seen.position, seen.radius);
   }
@@ -77,36 +90,57 @@ Why Manager::explain(BodyId body) const {
   if (does != Activity::asleep) {
     const RungError error = levels.errors_of(index)[std::size_t(level.rung)];
     why.predicted_error = error.score;
-    why.predicted_error_pixels = error.drift * why.pixels / (why.in_view ? 1.0 : choose.policy().out_of_view_factor);
+    why.predicted_error_pixels =
+        error.drift * why.pixels / (why.in_view ? 1.0 : choose.policy().out_of_view_factor);
   }
   why.cost_work = work_of(level.rung, std::size_t(does));
   const PolicySettings& policy = choose.policy();
-  if (!limits_of(policy) && !counts_work(policy)) why.cost_ms = impl_->costs.ms_of_one(level.rung, std::size_t(does));
-  why.dwell_left_frames = int(std::clamp<std::int64_t>(policy.min_dwell_frames - (levels.now - level.changed_at), 0, policy.min_dwell_frames));
+  if (!limits_of(policy) && !counts_work(policy))
+    why.cost_ms = impl_->costs.ms_of_one(level.rung, std::size_t(does));
+  why.dwell_left_frames = int(std::clamp<std::int64_t>(
+      policy.min_dwell_frames - (levels.now - level.changed_at), 0, policy.min_dwell_frames));
   return why;
 }
 
 std::string Manager::why(BodyId body) const { return text_of(explain(body)); }
 
-std::string text_of(const Why& why) { return why.placed ? fmt::format("{}: {}", name_of(why.rung), text_of(why.rule)) : "at no level yet: the next step chooses one"; }
+std::string text_of(const Why& why) {
+  return why.placed ? fmt::format("{}: {}", name_of(why.rung), text_of(why.rule))
+                    : "at no level yet: the next step chooses one";
+}
 
 std::string_view text_of(Rule rule) {
   switch (rule) {
-    case Rule::forced: return "the caller chose this level";
-    case Rule::near: return "near a viewpoint";
-    case Rule::far: return "far from every viewpoint";
-    case Rule::within_hysteresis: return "only just past the limit, within the hysteresis";
-    case Rule::dwell: return "it changed too recently to change again";
-    case Rule::queued: return "it waits its turn: this step has made all the changes it may";
-    case Rule::over_budget: return "nearer bodies use up the budget";
-    case Rule::in_budget: return "among the nearest bodies that fit the budget";
-    case Rule::most_reached: return "as many nearer bodies as may be on a higher level are there";
-    case Rule::overlap_put_off: return "its promotion waits until it overlaps no other body";
-    case Rule::signature_pending: return "its signature is still being measured";
-    case Rule::rung_range: return "the caller left it this level alone";
-    case Rule::out_of_view: return "out of every viewpoint's picture";
-    case Rule::look_ahead: return "about to hit a full body";
-    case Rule::joined: return "joints hold its ODE body";
+    case Rule::forced:
+      return "the caller chose this level";
+    case Rule::near:
+      return "near a viewpoint";
+    case Rule::far:
+      return "far from every viewpoint";
+    case Rule::within_hysteresis:
+      return "only just past the limit, within the hysteresis";
+    case Rule::dwell:
+      return "it changed too recently to change again";
+    case Rule::queued:
+      return "it waits its turn: this step has made all the changes it may";
+    case Rule::over_budget:
+      return "nearer bodies use up the budget";
+    case Rule::in_budget:
+      return "among the nearest bodies that fit the budget";
+    case Rule::most_reached:
+      return "as many nearer bodies as may be on a higher level are there";
+    case Rule::overlap_put_off:
+      return "its promotion waits until it overlaps no other body";
+    case Rule::signature_pending:
+      return "its signature is still being measured";
+    case Rule::rung_range:
+      return "the caller left it this level alone";
+    case Rule::out_of_view:
+      return "out of every viewpoint's picture";
+    case Rule::look_ahead:
+      return "about to hit a full body";
+    case Rule::joined:
+      return "joints hold its ODE body";
   }
   return "";
 }

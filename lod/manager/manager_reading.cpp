@@ -11,7 +11,8 @@ namespace lodestone {
 namespace {
 
 void check_size(std::size_t found, std::size_t expected, std::string_view what) {
-  if (found != expected) throw_input_error(what, fmt::format("room for {} numbers", found), fmt::to_string(expected));
+  if (found != expected)
+    throw_input_error(what, fmt::format("room for {} numbers", found), fmt::to_string(expected));
 }
 
 }  // namespace
@@ -22,9 +23,7 @@ int Manager::bodies() const { return impl_->levels.bodies.size(); }
 bool Manager::valid(BodyId body) const { return impl_->levels.bodies.valid(body); }
 RigidState Manager::state(BodyId body) const { return impl_->levels.state(impl_->index_of(body)); }
 double Manager::mass(BodyId body) const { return impl_->levels.bodies[impl_->index_of(body)].mass; }
-const Shape& Manager::shape(BodyId body) const {
-  return *impl_->levels.bodies.shape(impl_->index_of(body));
-}
+const Shape& Manager::shape(BodyId body) const { return *impl_->levels.bodies.shape(impl_->index_of(body)); }
 Level Manager::level(BodyId body) const { return level_of(rung(body)); }
 Rung Manager::rung(BodyId body) const { return impl_->levels.bodies.level(impl_->index_of(body)).rung; }
 bool Manager::asleep(BodyId body) const { return impl_->levels.asleep(impl_->index_of(body)); }
@@ -36,8 +35,12 @@ dxBody* Manager::ode_body(BodyId body) const {
   const BodyRecord& record = impl_->levels.bodies[impl_->index_of(body)];
   return record.ode ? impl_->levels.full.world()->ode_body(record.ode) : nullptr;
 }
-std::uintptr_t Manager::user_data(BodyId body) const { return impl_->levels.bodies[impl_->index_of(body)].user_data; }
-const BodyProperties& Manager::properties(BodyId body) const { return impl_->levels.bodies.properties(impl_->index_of(body)); }
+std::uintptr_t Manager::user_data(BodyId body) const {
+  return impl_->levels.bodies[impl_->index_of(body)].user_data;
+}
+const BodyProperties& Manager::properties(BodyId body) const {
+  return impl_->levels.bodies.properties(impl_->index_of(body));
+}
 
 void Manager::read_states(std::span<const BodyId> bodies, std::span<RigidState> states) const {
   check_size(states.size(), bodies.size(), "states");
@@ -45,7 +48,8 @@ void Manager::read_states(std::span<const BodyId> bodies, std::span<RigidState> 
   for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = impl_->levels.state(bodies[i].index);
 }
 
-void Manager::read_poses(std::span<const BodyId> bodies, std::span<float> positions_xyz, std::span<float> orientations_wxyz) const {
+void Manager::read_poses(std::span<const BodyId> bodies, std::span<float> positions_xyz,
+                         std::span<float> orientations_wxyz) const {
   check_size(positions_xyz.size(), 3 * bodies.size(), "positions");
   check_size(orientations_wxyz.size(), 4 * bodies.size(), "orientations");
   for (const BodyId body : bodies) impl_->index_of(body);
@@ -64,7 +68,9 @@ std::span<const BodyId> Manager::woke() const { return impl_->changes.woke(); }
 std::span<const RungChange> Manager::rung_changes() const { return impl_->changes.rung_changes(); }
 
 const StepReport& Manager::report() const { return impl_->report; }
-std::size_t Manager::statistical_bytes() const { return impl_->levels.statistical ? impl_->levels.statistical->bytes() : 0; }
+std::size_t Manager::statistical_bytes() const {
+  return impl_->levels.statistical ? impl_->levels.statistical->bytes() : 0;
+}
 
 std::uint64_t Manager::state_hash() const {
   const Levels& levels = impl_->levels;
@@ -72,8 +78,9 @@ std::uint64_t Manager::state_hash() const {
   for (const std::uint32_t body : levels.bodies.in_order_of_creation()) {
     const auto [x, q, v, w] = levels.state(body);
     const bool full(levels.bodies[body].ode), asleep = levels.asleep(body);
-    const std::array<double, 15> numbers{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(), v.x(),
-                                         v.y(), v.z(), w.x(), w.y(), w.z(), double(full), double(asleep)};
+    const std::array<double, 15> numbers{x.x(), x.y(), x.z(), q.w(),        q.x(),
+                                         q.y(), q.z(), v.x(), v.y(),        v.z(),
+                                         w.x(), w.y(), w.z(), double(full), double(asleep)};
     hash = XXH64(numbers.data(), sizeof numbers, hash);
   }
   return hash;

@@ -10,11 +10,14 @@
 namespace lodestone {
 namespace {
 
-// The chunks of a recording, one after the other. One that is cut short, as where the program ended, is the end.
+// The chunks of a recording, one after the other. One that is cut short, as where the program ended, is the
+// end.
 class Chunks {
  public:
   explicit Chunks(std::span<const std::byte> bytes) : left_(bytes) {
-    if (left_.size() < kRecordingMagic.size() || std::memcmp(left_.data(), kRecordingMagic.data(), kRecordingMagic.size()) != 0) throw InputError("no recording: it begins otherwise");
+    if (left_.size() < kRecordingMagic.size() ||
+        std::memcmp(left_.data(), kRecordingMagic.data(), kRecordingMagic.size()) != 0)
+      throw InputError("no recording: it begins otherwise");
     left_ = left_.subspan(kRecordingMagic.size());
   }
   bool next() {
@@ -44,9 +47,12 @@ PolicySettings read_policy(StateArchive& chunk, const PolicySettings& readers) {
   RecordedPolicy recorded;
   chunk(recorded);
   PolicySettings& policy = recorded.settings;
-  if (policy.policy.index() >= std::variant_size_v<decltype(policy.policy)>) throw InputError("the recording is damaged");
+  if (policy.policy.index() >= std::variant_size_v<decltype(policy.policy)>)
+    throw InputError("the recording is damaged");
   const auto check = [](bool has, std::string_view what) {
-    if (!has) throw InputError(fmt::format("the recording sets a policy with a function for `{}`: expected one in the manager's own", what));
+    if (!has)
+      throw InputError(fmt::format(
+          "the recording sets a policy with a function for `{}`: expected one in the manager's own", what));
   };
   if (recorded.visible) check(bool(policy.visible = readers.visible), "visible");
   if (recorded.significance) check(bool(policy.significance = readers.significance), "significance");
@@ -68,9 +74,11 @@ void Manager::set_record(RecordFunction write) {
   impl_->recorder.set(std::move(write), std::move(begin));
 }
 
-void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk, std::span<const std::shared_ptr<const Shape>> shapes) {
+void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk,
+                            std::span<const std::shared_ptr<const Shape>> shapes) {
   const auto with = [&]<class Result, class... T>(Result (Manager::*function)(T...)) {
-    std::apply([&](auto&&... values) { (manager.*function)(values...); }, read<std::remove_cvref_t<T>...>(chunk));
+    std::apply([&](auto&&... values) { (manager.*function)(values...); },
+               read<std::remove_cvref_t<T>...>(chunk));
   };
   switch (call) {
     case Call::begin: {
@@ -81,14 +89,20 @@ void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk, st
     case Call::add_body: {
       ShapeName name;
       BodyDefinition definition;
-      chunk(name, definition.state, definition.material, definition.mass, definition.level, definition.importance, definition.properties, definition.user_data, definition.events, definition.least_rung, definition.greatest_rung);
+      chunk(name, definition.state, definition.material, definition.mass, definition.level,
+            definition.importance, definition.properties, definition.user_data, definition.events,
+            definition.least_rung, definition.greatest_rung);
       definition.shape = find_shape(name, shapes, levels.bodies);
-      if (!definition.shape) throw InputError(fmt::format("the recording adds a body of a shape that is not here: content {:016x}, radius {} m", name.content_hash, name.radius));
+      if (!definition.shape)
+        throw InputError(
+            fmt::format("the recording adds a body of a shape that is not here: content {:016x}, radius {} m",
+                        name.content_hash, name.radius));
       manager.add_body(definition);
       return;
     }
     case Call::add_static_mesh: {
-      const auto [vertices, faces, material] = read<std::vector<Vec3>, std::vector<std::array<int, 3>>, MaterialId>(chunk);
+      const auto [vertices, faces, material] =
+          read<std::vector<Vec3>, std::vector<std::array<int, 3>>, MaterialId>(chunk);
       manager.add_static_mesh({vertices, faces}, material);
       return;
     }
@@ -105,31 +119,53 @@ void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk, st
       manager.make_group(bodies);
       return;
     }
-    case Call::add_plane: return with(&Manager::add_plane);
-    case Call::add_static_box: return with(&Manager::add_static_box);
-    case Call::set_rung_range: return with(&Manager::set_rung_range);
-    case Call::dissolve_group: return with(&Manager::dissolve_group);
-    case Call::move_ground: return with(&Manager::move_ground);
-    case Call::remove_ground: return with(&Manager::remove_ground);
-    case Call::remove_body: return with(&Manager::remove_body);
-    case Call::set_level: return with(&Manager::set_level);
-    case Call::set_importance: return with(&Manager::set_importance);
-    case Call::set_state: return with(&Manager::set_state);
-    case Call::set_user_data: return with(&Manager::set_user_data);
-    case Call::set_body_events: return with(static_cast<void (Manager::*)(BodyId, bool)>(&Manager::set_events));
-    case Call::set_properties: return with(&Manager::set_properties);
-    case Call::add_force: return with(&Manager::add_force);
-    case Call::add_impulse: return with(&Manager::add_impulse);
-    case Call::sleep: return with(&Manager::sleep);
-    case Call::wake: return with(&Manager::wake);
-    case Call::set_gravity: return with(&Manager::set_gravity);
-    case Call::set_full_substeps: return with(&Manager::set_full_substeps);
-    case Call::set_policy: return manager.set_policy(read_policy(chunk, choose.policy()));
-    case Call::step: break;
+    case Call::add_plane:
+      return with(&Manager::add_plane);
+    case Call::add_static_box:
+      return with(&Manager::add_static_box);
+    case Call::set_rung_range:
+      return with(&Manager::set_rung_range);
+    case Call::dissolve_group:
+      return with(&Manager::dissolve_group);
+    case Call::move_ground:
+      return with(&Manager::move_ground);
+    case Call::remove_ground:
+      return with(&Manager::remove_ground);
+    case Call::remove_body:
+      return with(&Manager::remove_body);
+    case Call::set_level:
+      return with(&Manager::set_level);
+    case Call::set_importance:
+      return with(&Manager::set_importance);
+    case Call::set_state:
+      return with(&Manager::set_state);
+    case Call::set_user_data:
+      return with(&Manager::set_user_data);
+    case Call::set_body_events:
+      return with(static_cast<void (Manager::*)(BodyId, bool)>(&Manager::set_events));
+    case Call::set_properties:
+      return with(&Manager::set_properties);
+    case Call::add_force:
+      return with(&Manager::add_force);
+    case Call::add_impulse:
+      return with(&Manager::add_impulse);
+    case Call::sleep:
+      return with(&Manager::sleep);
+    case Call::wake:
+      return with(&Manager::wake);
+    case Call::set_gravity:
+      return with(&Manager::set_gravity);
+    case Call::set_full_substeps:
+      return with(&Manager::set_full_substeps);
+    case Call::set_policy:
+      return manager.set_policy(read_policy(chunk, choose.policy()));
+    case Call::step:
+      break;
   }
 }
 
-ReplayResult Manager::replay(std::span<const std::byte> recording, std::span<const std::shared_ptr<const Shape>> shapes) {
+ReplayResult Manager::replay(std::span<const std::byte> recording,
+                             std::span<const std::shared_ptr<const Shape>> shapes) {
   ReplayResult result;
   bool begun = false;
   for (Chunks chunks(recording); chunks.next();) {
@@ -148,8 +184,10 @@ ReplayResult Manager::replay(std::span<const std::byte> recording, std::span<con
     const std::optional<BodyId> other = find_other(impl_->levels, recorded);
     if (!other) continue;
     result.same = false, result.body = *other;
-    result.text = *other ? fmt::format("step {} of the recording: body {} ({}) is not as it was recorded", result.steps, other->index, shape(*other).name)
-                         : fmt::format("step {} of the recording: there are {} bodies, not {}", result.steps, bodies(), recorded.size());
+    result.text = *other ? fmt::format("step {} of the recording: body {} ({}) is not as it was recorded",
+                                       result.steps, other->index, shape(*other).name)
+                         : fmt::format("step {} of the recording: there are {} bodies, not {}", result.steps,
+                                       bodies(), recorded.size());
     return result;
   }
   if (!begun) throw InputError("the recording has no beginning");

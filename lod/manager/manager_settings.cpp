@@ -1,8 +1,7 @@
 // What of a manager's settings can change while it runs.
-#include "lod/manager/manager_impl.h"
-
 #include <fmt/format.h>
 
+#include "lod/manager/manager_impl.h"
 #include "reference/error.h"
 
 namespace lodestone {

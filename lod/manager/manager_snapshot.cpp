@@ -1,5 +1,5 @@
-// A manager as bytes, and back to the bit. First a header that says for whom it is, so that nothing is changed by what does not fit; then the shapes by name; then what each owner of
-// state archives.
+// A manager as bytes, and back to the bit. First a header that says for whom it is, so that nothing is
+// changed by what does not fit; then the shapes by name; then what each owner of state archives.
 #include <fmt/format.h>
 #include <xxhash.h>
 
@@ -26,26 +26,36 @@ struct Circumstances {
 
 struct Header {
   std::array<char, 8> magic = {'L', 'O', 'D', 'E', 'S', 'N', 'A', 'P'};
-  std::uint32_t format = 1, version = LODESTONE_VERSION;
+  std::uint32_t format = 2, version = LODESTONE_VERSION;
   // Sizes of what goes as it lies in memory: a build with other ones is no reader.
-  std::array<std::uint16_t, 8> layout = {sizeof(void*), sizeof(BodyRecord), sizeof(BodyLevel), sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport), sizeof(StepCounts), sizeof(OdeContact)};
+  std::array<std::uint16_t, 8> layout = {sizeof(void*),           sizeof(BodyRecord),   sizeof(BodyLevel),
+                                         sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport),
+                                         sizeof(StepCounts),      sizeof(OdeContact)};
   Circumstances circumstances;
   std::uint64_t shapes = 0, bytes = 0, checksum = 0;  // how many; how long the state is; of shapes and state
 };
 
 template <class T>
-std::uint64_t mix(std::uint64_t hash, const T& value) { return XXH64(&value, sizeof value, hash); }
+std::uint64_t mix(std::uint64_t hash, const T& value) {
+  return XXH64(&value, sizeof value, hash);
+}
 
 Circumstances circumstances_of(const Levels& levels, bool callers_world) {
-  Circumstances found{.seed = levels.statistical_settings.seed, .sleeping = levels.statistical_settings.sleeping, .callers_world = callers_world};
+  Circumstances found{.seed = levels.statistical_settings.seed,
+                      .sleeping = levels.statistical_settings.sleeping,
+                      .callers_world = callers_world};
   for (const double part : levels.statistical_settings.gravity) found.gravity = mix(found.gravity, part);
   const MaterialTable& materials = levels.materials;
   for (MaterialId i = 0; i < materials.size(); ++i)
-    for (MaterialId j = 0; j < materials.size(); ++j) found.materials = mix(mix(found.materials, materials.law(i, j).restitution), materials.law(i, j).friction);
+    for (MaterialId j = 0; j < materials.size(); ++j)
+      found.materials =
+          mix(mix(found.materials, materials.law(i, j).restitution), materials.law(i, j).friction);
   if (callers_world) return found;  // his ground is his
   found.parts = levels.ground.parts();
   for (const HalfSpace& plane : levels.ground.planes()) {
-    for (const double part : {plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.offset, double(plane.material)}) found.planes = mix(found.planes, part);
+    for (const double part :
+         {plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.offset, double(plane.material)})
+      found.planes = mix(found.planes, part);
   }
   return found;
 }
@@ -54,13 +64,15 @@ void check_alike(const Circumstances& written, const Circumstances& here) {
   const auto check = [](bool alike, std::string_view what) {
     if (!alike) throw InputError(fmt::format("the snapshot is of a manager with {}", what));
   };
-  check(written.callers_world == here.callers_world, written.callers_world ? "a world of the caller's" : "a world of its own");
+  check(written.callers_world == here.callers_world,
+        written.callers_world ? "a world of the caller's" : "a world of its own");
   check(written.seed == here.seed, fmt::format("seed {}, not {}", written.seed, here.seed));
   check(written.sleeping == here.sleeping, written.sleeping ? "sleeping" : "no sleeping");
   check(written.gravity == here.gravity, "another gravity");
   check(written.materials == here.materials, "other materials");
   check(written.planes == here.planes, "other planes");
-  check(written.parts == here.parts, fmt::format("{} static boxes and meshes, not {}", written.parts, here.parts));
+  check(written.parts == here.parts,
+        fmt::format("{} static boxes and meshes, not {}", written.parts, here.parts));
 }
 
 std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
@@ -71,22 +83,30 @@ Header read_header(std::span<const std::byte> bytes) {
   if (bytes.size() < sizeof header) throw InputError("no snapshot: too short");
   std::memcpy(static_cast<void*>(&header), bytes.data(), sizeof header);
   if (header.magic != expected.magic) throw InputError("no snapshot: it begins otherwise");
-  if (header.format != expected.format || header.version != expected.version || header.layout != expected.layout)
-    throw InputError(fmt::format("the snapshot is of another build of Lodestone (format {}, version {})", header.format, header.version));
+  if (header.format != expected.format || header.version != expected.version ||
+      header.layout != expected.layout)
+    throw InputError(fmt::format("the snapshot is of another build of Lodestone (format {}, version {})",
+                                 header.format, header.version));
   const std::size_t left = bytes.size() - sizeof header;
-  if (header.shapes > left / sizeof(ShapeName) || header.bytes != left - header.shapes * sizeof(ShapeName)) throw InputError("the snapshot is not whole");
-  if (header.checksum != checksum(bytes.subspan(sizeof header))) throw InputError("the snapshot is damaged: its checksum is another");
+  if (header.shapes > left / sizeof(ShapeName) || header.bytes != left - header.shapes * sizeof(ShapeName))
+    throw InputError("the snapshot is not whole");
+  if (header.checksum != checksum(bytes.subspan(sizeof header)))
+    throw InputError("the snapshot is damaged: its checksum is another");
   return header;
 }
 
 // Those named at the beginning of `bytes`, among the shapes given and those of bodies here.
-Shapes find_shapes(std::span<const std::byte> bytes, std::size_t count, std::span<const std::shared_ptr<const Shape>> given, const BodyTable& bodies) {
+Shapes find_shapes(std::span<const std::byte> bytes, std::size_t count,
+                   std::span<const std::shared_ptr<const Shape>> given, const BodyTable& bodies) {
   Shapes found;
   for (std::size_t i = 0; i < count; ++i) {
     ShapeName name;
     std::memcpy(&name, bytes.data() + i * sizeof name, sizeof name);
     found.push_back(find_shape(name, given, bodies));
-    if (!found.back()) throw InputError(fmt::format("the snapshot has bodies of a shape that is not here: content {:016x}, radius {} m", name.content_hash, name.radius));
+    if (!found.back())
+      throw InputError(
+          fmt::format("the snapshot has bodies of a shape that is not here: content {:016x}, radius {} m",
+                      name.content_hash, name.radius));
   }
   return found;
 }
@@ -101,17 +121,23 @@ void append(std::vector<std::byte>& bytes, const void* from, std::size_t count) 
 
 // The full level first: it refuses what does not fit before anything has changed.
 void Manager::Impl::archive(StateArchive& a) {
-  a(levels.full, levels.ground, levels.bodies, levels.now, levels.woken, levels.eased, report, costs, choose, move_bodies, step_levels, changes, events);
+  a(levels.full, levels.ground, levels.bodies, levels.now, levels.woken, levels.eased, report, costs, choose,
+    move_bodies, step_levels, changes, events);
   if (a.reading()) queries.forget_all(), levels.forget_places(), audit.forget_watched();
   bool has_statistical = levels.statistical != nullptr;
   a(has_statistical);
   if (!has_statistical) return levels.statistical.reset();
-  if (!levels.statistical) levels.statistical = std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
-  levels.statistical->archive(a, [this](const Shape& shape, MaterialId material) { return levels.signatures.find(shape, levels.ground_law(material)); });
+  if (!levels.statistical)
+    levels.statistical =
+        std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
+  levels.statistical->archive(a, [this](const Shape& shape, MaterialId material) {
+    return levels.signatures.find(shape, levels.ground_law(material));
+  });
 }
 
 std::vector<std::byte> Manager::snapshot() const {
-  if (impl_->waits_for_world_step) throw_input_error("snapshot", "one between before_world_step and after_world_step", "none");
+  if (impl_->waits_for_world_step)
+    throw_input_error("snapshot", "one between before_world_step and after_world_step", "none");
   StateArchive state;
   impl_->archive(state);  // which changes nothing where it writes
   std::vector<std::byte> body;
@@ -122,7 +148,8 @@ std::vector<std::byte> Manager::snapshot() const {
   append(body, state.bytes().data(), state.bytes().size());
   Header header;
   header.circumstances = circumstances_of(impl_->levels, impl_->callers_world != nullptr);
-  header.shapes = state.shapes().size(), header.bytes = state.bytes().size(), header.checksum = checksum(body);
+  header.shapes = state.shapes().size(), header.bytes = state.bytes().size(),
+  header.checksum = checksum(body);
   std::vector<std::byte> bytes;
   bytes.reserve(sizeof header + body.size());
   append(bytes, &header, sizeof header);
@@ -130,13 +157,16 @@ std::vector<std::byte> Manager::snapshot() const {
   return bytes;
 }
 
-void Manager::restore(std::span<const std::byte> snapshot, std::span<const std::shared_ptr<const Shape>> shapes) {
+void Manager::restore(std::span<const std::byte> snapshot,
+                      std::span<const std::shared_ptr<const Shape>> shapes) {
   Levels& levels = impl_->levels;
-  if (impl_->waits_for_world_step) throw_input_error("restore", "one between before_world_step and after_world_step", "none");
+  if (impl_->waits_for_world_step)
+    throw_input_error("restore", "one between before_world_step and after_world_step", "none");
   const Header header = read_header(snapshot);
   check_alike(header.circumstances, circumstances_of(levels, impl_->callers_world != nullptr));
   const std::span<const std::byte> body = snapshot.subspan(sizeof header);
-  StateArchive state(body.subspan(header.shapes * sizeof(ShapeName)), find_shapes(body, header.shapes, shapes, levels.bodies));
+  StateArchive state(body.subspan(header.shapes * sizeof(ShapeName)),
+                     find_shapes(body, header.shapes, shapes, levels.bodies));
   impl_->archive(state);
   check_that(state.at_end(), "a snapshot is read to its end");
 }

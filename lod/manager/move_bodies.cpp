@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
+#include "lod/manager/crowded_places.h"
 #include "lod/manager/transfer.h"
 #include "lod/timing/stage_timer.h"
 
 namespace lodestone {
 namespace {
 
-// A promotion that was put off is tried again after 8 frames, then 16, … 128: overlapping bodies must not use up every frame's changes.
+// A promotion that was put off is tried again after 8 frames, then 16, … 128: overlapping bodies must not use
+// up every frame's changes.
 constexpr int kFirstRetry = 8, kLastRetry = 128;
 
 }  // namespace
@@ -41,23 +43,29 @@ void MoveBodies::supply_signatures() {
 
 void MoveBodies::run(const RungChanges& changes, StepReport& report) {
   const StageTimer timer(report.times.transfer_ms);
+  const std::vector<std::uint32_t> held = find_held_back(levels_);
+  report.counters.bodies_held_back += std::int64_t(held.size());
   const auto each_run = [](Run all, const auto& act) {
     for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
-      for (end = begin + 1; all[begin].together >= 0 && end < all.size() && all[end].together == all[begin].together;) ++end;
+      for (end = begin + 1;
+           all[begin].together >= 0 && end < all.size() && all[end].together == all[begin].together;)
+        ++end;
       act(all.subspan(begin, end - begin));
     }
   };
   each_run(changes.demote, [&](Run run) { demote(run, report); });
-  each_run(changes.promote, [&](Run run) { promote(run, report); });
+  each_run(changes.promote, [&](Run run) { promote(run, held, report); });
   BodyTable& bodies = levels_.bodies;
   for (std::size_t i = 0; i < bodies.newcomers().size(); ++i)
-    if (bodies.waits_at(i)) place(levels_, bodies.newcomers()[i].index, bodies.newcomers()[i].rung);
+    if (bodies.waits_at(i) && !std::ranges::binary_search(held, bodies.newcomers()[i].index))
+      place(levels_, bodies.newcomers()[i].index, bodies.newcomers()[i].rung);
   bodies.forget_newcomers();
   choose_.done();
 }
 
 void MoveBodies::demote(Run run, StepReport& report) {
-  if (const GroupId group = choose_.groups().of(run.front().body); group && !choose_.groups().release(group)) return;
+  if (const GroupId group = choose_.groups().of(run.front().body); group && !choose_.groups().release(group))
+    return;
   for (const RungChanges::Change& change : run) {
     const bool audited = audit_.on() && levels_.bodies[change.body].ode && !levels_.asleep(change.body);
     transfer(levels_, change.body, change.to);
@@ -68,7 +76,7 @@ void MoveBodies::demote(Run run, StepReport& report) {
 }
 
 // One that overlaps a body of no matter which other run keeps all of its run where they are.
-void MoveBodies::promote(Run run, StepReport& report) {
+void MoveBodies::promote(Run run, std::span<const std::uint32_t> held, StepReport& report) {
   Groups& groups = choose_.groups();
   const GroupId group = groups.of(run.front().body);
   if (group && groups.detached(group) && run.front().to == Rung::full) {
@@ -78,26 +86,31 @@ void MoveBodies::promote(Run run, StepReport& report) {
   std::vector<std::uint32_t> bodies;
   for (const RungChanges::Change& change : run) bodies.push_back(change.body);
   const bool blocked = run.front().to == Rung::full && std::ranges::any_of(bodies, [&](std::uint32_t body) {
-    const BodyLevel& level = levels_.bodies.level(body);
-    const bool placed_full = level.newcomer && level.choice == LevelChoice::full;
-    return !placed_full && overlaps(levels_, body, bodies);
-  });
-  for (const RungChanges::Change& change : run) promote(change, blocked, report);
+                         const BodyLevel& level = levels_.bodies.level(body);
+                         const bool placed_full = level.newcomer && level.choice == LevelChoice::full;
+                         return !placed_full && overlaps(levels_, body, bodies);
+                       });
+  for (const RungChanges::Change& change : run)
+    if (!std::ranges::binary_search(held, change.body)) promote(change, blocked, report);
 }
 
 void MoveBodies::promote(const RungChanges::Change& change, bool blocked, StepReport& report) {
   const auto [body, wanted, open, together] = change;
   const BodyLevel& level = levels_.bodies.level(body);
   // Spheres overlap where hulls do not yet: `support` parts them.
-  const Rung to = blocked && !level.newcomer && level.rung == Rung::tables && open.has(Rung::support) ? Rung::support : wanted;
+  const Rung to = blocked && !level.newcomer && level.rung == Rung::tables && open.has(Rung::support)
+                      ? Rung::support
+                      : wanted;
   if (blocked && to == Rung::full) {
     put_off(body, report);
   } else if (level.newcomer) {
     place(levels_, body, to);
   } else {
     transfer(levels_, body, to);
-    if (to == Rung::full) levels_.bodies.forget_retries(body);
-    else choose_.note(body);
+    if (to == Rung::full)
+      levels_.bodies.forget_retries(body);
+    else
+      choose_.note(body);
     ++report.promotions;
   }
 }

@@ -1,4 +1,5 @@
-// Where the full bodies are, for as long as they stay there: made once it is asked for, so that taking many bodies out between two steps does not look at all of them each time.
+// Where the full bodies are, for as long as they stay there: made once it is asked for, so that taking many
+// bodies out between two steps does not look at all of them each time.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,8 @@ class NearFull {
     grid_.insert(std::uint32_t(bodies_.size()), position, reach);
     bodies_.push_back(body);
   }
-  /// Calls found(body) for those whose reach may meet this one, for some beyond, and for some that are gone, perhaps twice.
+  /// Calls found(body) for those whose reach may meet this one, for some beyond, and for some that are gone,
+  /// perhaps twice.
   template <class Found>
   void find(const Vec3& center, double reach, const Found& found) const {
     grid_.find_near(center, reach, [&](std::uint32_t entry) { found(bodies_[entry]); });

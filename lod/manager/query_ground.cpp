@@ -6,7 +6,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kPiece = 2.0;   // m: of a ray, for which solids are looked up at a time
+constexpr double kPiece = 2.0;  // m: of a ray, for which solids are looked up at a time
 constexpr double kMostPieces = 256.0;
 constexpr double kFarthest = 1e6;  // m: beyond, rays meet no piece of the ground but planes
 
@@ -17,7 +17,8 @@ SurfaceHit in_world(const PosedSurface& surface, SurfaceHit hit) {
 }
 
 double height_of(const HalfSpace& plane, const Volume& volume) {
-  const double reach = volume.is_box ? (volume.axes.transpose() * plane.normal).cwiseAbs().dot(volume.half) : volume.reach;
+  const double reach =
+      volume.is_box ? (volume.axes.transpose() * plane.normal).cwiseAbs().dot(volume.half) : volume.reach;
   return plane.height_of(volume.center) - reach;
 }
 
@@ -26,13 +27,17 @@ double height_of(const HalfSpace& plane, const Volume& volume) {
 const TriangleTree& ShapeTrees::of(const std::shared_ptr<const Shape>& shape) {
   const std::lock_guard lock(access_);
   Entry& entry = trees_[shape.get()];
-  if (!entry.tree) entry = {shape, std::make_unique<const TriangleTree>(shape->mesh.faces.empty() ? Mesh{shape->hull.vertices, shape->hull.faces} : shape->mesh)};
+  if (!entry.tree)
+    entry = {shape, std::make_unique<const TriangleTree>(shape->mesh.faces.empty()
+                                                             ? Mesh{shape->hull.vertices, shape->hull.faces}
+                                                             : shape->mesh)};
   return *entry.tree;
 }
 
 std::optional<SurfaceHit> meet(const PosedSurface& surface, const Sweep& sweep) {
   if (!surface.tree) {
-    const auto distance = meet_sphere(sweep.from, sweep.direction, sweep.length, surface.position, surface.sphere_radius + sweep.radius);
+    const auto distance = meet_sphere(sweep.from, sweep.direction, sweep.length, surface.position,
+                                      surface.sphere_radius + sweep.radius);
     if (!distance || (*distance == 0.0 && sweep.radius == 0.0)) return {};  // begun inside
     const Vec3 apart = sweep.from + *distance * sweep.direction - surface.position;
     const Vec3 normal = apart.norm() > 0.0 ? Vec3(apart.normalized()) : Vec3(Vec3::UnitZ());
@@ -57,11 +62,15 @@ std::optional<SurfaceHit> overlap(const PosedSurface& surface, const Volume& vol
     const SurfaceHit hit{0.0, surface.position, Vec3::UnitZ()};
     if (!surface.tree) {
       const Vec3 center = volume.axes.transpose() * (surface.position - volume.center);
-      return Eigen::AlignedBox3d(-volume.half, volume.half).exteriorDistance(center) <= surface.sphere_radius ? std::optional(hit) : std::nullopt;
+      return Eigen::AlignedBox3d(-volume.half, volume.half).exteriorDistance(center) <= surface.sphere_radius
+                 ? std::optional(hit)
+                 : std::nullopt;
     }
     const Mat3 back = surface.orientation.conjugate().toRotationMatrix();
     const Vec3 center = back * (volume.center - surface.position);
-    return surface.tree->meets_box(center, back * volume.axes, volume.half) || surface.tree->contains(center) ? std::optional(hit) : std::nullopt;
+    return surface.tree->meets_box(center, back * volume.axes, volume.half) || surface.tree->contains(center)
+               ? std::optional(hit)
+               : std::nullopt;
   }
   const Vec3 apart = volume.center - surface.position;
   if (!surface.tree) {
@@ -79,7 +88,10 @@ std::optional<SurfaceHit> overlap(const PosedSurface& surface, const Volume& vol
 
 ContactSide QueryGround::side_of(GroundId id, MaterialId material) const {
   dxGeom* const geom = id ? callers_.geom_of(id) : nullptr;
-  return {.kind = geom ? ContactSide::Kind::callers : ContactSide::Kind::ground, .ground = geom ? GroundId{} : id, .geom = geom, .material = material};
+  return {.kind = geom ? ContactSide::Kind::callers : ContactSide::Kind::ground,
+          .ground = geom ? GroundId{} : id,
+          .geom = geom,
+          .material = material};
 }
 
 PosedSurface QueryGround::surface_of(const PlacedSolid& solid) {
@@ -89,14 +101,17 @@ PosedSurface QueryGround::surface_of(const PlacedSolid& solid) {
 }
 
 // Each once, in the order of their numbers. `probed`: parts that are known by rays only.
-std::vector<PlacedSolid> QueryGround::find_near(const Vec3& center, double reach, std::vector<const GroundPart*>& probed) {
+std::vector<PlacedSolid> QueryGround::find_near(const Vec3& center, double reach,
+                                                std::vector<const GroundPart*>& probed) {
   std::vector<const GroundPart*> parts;
   std::vector<PlacedSolid> solids;
   const std::lock_guard lock(access_);
   ground_.find_parts(center, reach, parts);
   for (const GroundPart* part : parts) {
-    if (part->shape.make) find_solids(*part, center, reach, part->pose.goes_on_s, solids);
-    else if (part->shape.probe) probed.push_back(part);
+    if (part->shape.make)
+      find_solids(*part, center, reach, part->pose.goes_on_s, solids);
+    else if (part->shape.probe)
+      probed.push_back(part);
   }
   return solids;
 }
@@ -107,47 +122,59 @@ std::vector<PlacedSolid> QueryGround::find_along(const Sweep& sweep, std::vector
   const double length = std::min(sweep.length, kFarthest), piece = std::max(kPiece, length / kMostPieces);
   for (double at = 0.0; at <= length; at += piece) {
     const double half = 0.5 * std::min(piece, length - at);
-    for (const PlacedSolid& solid : find_near(sweep.from + (at + half) * sweep.direction, half + sweep.radius, probed)) all.push_back(solid);
+    for (const PlacedSolid& solid :
+         find_near(sweep.from + (at + half) * sweep.direction, half + sweep.radius, probed))
+      all.push_back(solid);
   }
   std::ranges::sort(all, {}, &PlacedSolid::number);
-  all.erase(std::ranges::unique(all, {}, &PlacedSolid::number).begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end(),
+                        [](const PlacedSolid& a, const PlacedSolid& b) { return a.number == b.number; }),
+            all.end());
   std::ranges::sort(probed, {}, [](const GroundPart* part) { return part->id.index; });
-  probed.erase(std::ranges::unique(probed).begin(), probed.end());
+  probed.erase(std::unique(probed.begin(), probed.end()), probed.end());
   return all;
 }
 
 void QueryGround::meet(const Sweep& sweep, const Found& found) {
   const auto meet_plane = [&](const HalfSpace& plane) {
     const double height = plane.height_of(sweep.from), falling = -plane.normal.dot(sweep.direction);
-    if (sweep.radius == 0.0 ? height < 0.0 || falling <= 0.0 : height > sweep.radius && falling <= 0.0) return;
+    if (sweep.radius == 0.0 ? height < 0.0 || falling <= 0.0 : height > sweep.radius && falling <= 0.0)
+      return;
     const double distance = height <= sweep.radius ? 0.0 : (height - sweep.radius) / falling;
     if (distance > sweep.length) return;
     const Vec3 center = sweep.from + distance * sweep.direction;
-    found({side_of(plane.id, plane.material), center - plane.height_of(center) * plane.normal, plane.normal, distance});
+    found({side_of(plane.id, plane.material), center - plane.height_of(center) * plane.normal, plane.normal,
+           distance});
   };
   for (const HalfSpace& plane : ground_.planes()) meet_plane(plane);
   if (!ground_.has_parts()) return;
   std::vector<const GroundPart*> probed;
   for (const PlacedSolid& solid : find_along(sweep, probed))
-    if (const auto hit = lodestone::meet(surface_of(solid), sweep)) found({side_of(solid.part->id, solid.part->material), hit->point, hit->normal, hit->distance});
+    if (const auto hit = lodestone::meet(surface_of(solid), sweep))
+      found({side_of(solid.part->id, solid.part->material), hit->point, hit->normal, hit->distance});
   for (const GroundPart* part : probed) {
     const std::lock_guard lock(access_);
     const auto hit = part->shape.probe(sweep.from, sweep.direction, std::min(sweep.length, kFarthest));
     if (!hit) continue;
-    if (sweep.radius > 0.0) meet_plane({hit->normal, hit->normal.dot(hit->point), part->material, part->id});
-    else if (hit->normal.dot(sweep.direction) < 0.0) found({side_of(part->id, part->material), hit->point, hit->normal, hit->distance});
+    if (sweep.radius > 0.0)
+      meet_plane({hit->normal, hit->normal.dot(hit->point), part->material, part->id});
+    else if (hit->normal.dot(sweep.direction) < 0.0)
+      found({side_of(part->id, part->material), hit->point, hit->normal, hit->distance});
   }
 }
 
 void QueryGround::overlap(const Volume& volume, const Found& found) {
   const auto overlap_plane = [&](const HalfSpace& plane) {
-    if (height_of(plane, volume) <= 0.0) found({side_of(plane.id, plane.material), volume.center - plane.height_of(volume.center) * plane.normal, plane.normal, 0.0});
+    if (height_of(plane, volume) <= 0.0)
+      found({side_of(plane.id, plane.material), volume.center - plane.height_of(volume.center) * plane.normal,
+             plane.normal, 0.0});
   };
   for (const HalfSpace& plane : ground_.planes()) overlap_plane(plane);
   if (!ground_.has_parts()) return;
   std::vector<const GroundPart*> probed;
   for (const PlacedSolid& solid : find_near(volume.center, volume.reach, probed))
-    if (const auto hit = lodestone::overlap(surface_of(solid), volume)) found({side_of(solid.part->id, solid.part->material), hit->point, hit->normal, 0.0});
+    if (const auto hit = lodestone::overlap(surface_of(solid), volume))
+      found({side_of(solid.part->id, solid.part->material), hit->point, hit->normal, 0.0});
   for (const GroundPart* part : probed) {
     const std::lock_guard lock(access_);
     if (const auto below = probe_below(*part, volume.center, volume.reach)) overlap_plane(*below);

@@ -55,14 +55,16 @@ class QueryGround {
   QueryGround(const Ground& ground, const CallersGround& callers) : ground_(ground), callers_(callers) {}
 
   using Found = std::function<void(const QueryHit&)>;
-  // Each piece at most once, at its first point; the ray of a sweep may become shorter meanwhile. From any thread.
+  // Each piece at most once, at its first point; the ray of a sweep may become shorter meanwhile. From any
+  // thread.
   void meet(const Sweep& sweep, const Found& found);
   void overlap(const Volume& volume, const Found& found);
 
  private:
   ContactSide side_of(GroundId id, MaterialId material) const;
   std::vector<PlacedSolid> find_along(const Sweep& sweep, std::vector<const GroundPart*>& probed);
-  std::vector<PlacedSolid> find_near(const Vec3& center, double reach, std::vector<const GroundPart*>& probed);
+  std::vector<PlacedSolid> find_near(const Vec3& center, double reach,
+                                     std::vector<const GroundPart*>& probed);
   PosedSurface surface_of(const PlacedSolid& solid);
 
   const Ground& ground_;

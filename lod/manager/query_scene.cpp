@@ -34,7 +34,9 @@ bool comes_before(const QueryHit& a, const QueryHit& b) {
   return a.who.body.index < b.who.body.index;
 }
 
-QueryHit hit_of(const ContactSide& who, const SurfaceHit& hit) { return {who, hit.point, hit.normal, hit.distance}; }
+QueryHit hit_of(const ContactSide& who, const SurfaceHit& hit) {
+  return {who, hit.point, hit.normal, hit.distance};
+}
 
 }  // namespace
 
@@ -46,11 +48,13 @@ void QueryScene::finish(std::span<const BodyId> fell_asleep, std::span<const Bod
 }
 
 void QueryScene::put(std::uint32_t body) {
-  if (levels_.bodies.alive(body)) grid_.put(body, levels_.state(body).position, levels_.bodies.shape(body)->radius);
+  if (levels_.bodies.alive(body))
+    grid_.put(body, levels_.state(body).position, levels_.bodies.shape(body)->radius);
 }
 
 QueryScene::Asked QueryScene::prepare(const QueryFilter& filter) {
-  const std::lock_guard lock(access_);  // also to the caller's space, in which a look at its geoms keeps its place
+  const std::lock_guard lock(
+      access_);  // also to the caller's space, in which a look at its geoms keeps its place
   update_grid();
   Asked asked{.filter = filter, .callers = {}};
   if (filter.callers) asked.callers = levels_.callers_parts();
@@ -75,7 +79,8 @@ void QueryScene::update_grid() {
 }
 
 bool QueryScene::passes(std::uint32_t body, const QueryFilter& filter) const {
-  return (levels_.bodies.properties(body).category & filter.categories) != 0 && levels_.bodies.id(body) != filter.except;
+  return (levels_.bodies.properties(body).category & filter.categories) != 0 &&
+         levels_.bodies.id(body) != filter.except;
 }
 
 PosedSurface QueryScene::surface_of(std::uint32_t body, const Vec3& position, const Quat& orientation) {
@@ -90,7 +95,10 @@ std::optional<QueryHit> QueryScene::meet_body(std::uint32_t body, const Sweep& s
   if (!meet_sphere(sweep.from, sweep.direction, sweep.length, state.position, reach)) return {};
   const auto hit = meet(surface_of(body, state.position, state.orientation), sweep);
   if (!hit) return {};
-  return hit_of({.kind = ContactSide::Kind::body, .body = levels_.bodies.id(body), .material = levels_.bodies[body].material}, *hit);
+  return hit_of({.kind = ContactSide::Kind::body,
+                 .body = levels_.bodies.id(body),
+                 .material = levels_.bodies[body].material},
+                *hit);
 }
 
 std::optional<QueryHit> QueryScene::overlap_body(std::uint32_t body, const Volume& volume) {
@@ -98,7 +106,10 @@ std::optional<QueryHit> QueryScene::overlap_body(std::uint32_t body, const Volum
   if ((state.position - volume.center).norm() > levels_.bodies.shape(body)->radius + volume.reach) return {};
   const auto hit = overlap(surface_of(body, state.position, state.orientation), volume);
   if (!hit) return {};
-  return hit_of({.kind = ContactSide::Kind::body, .body = levels_.bodies.id(body), .material = levels_.bodies[body].material}, *hit);
+  return hit_of({.kind = ContactSide::Kind::body,
+                 .body = levels_.bodies.id(body),
+                 .material = levels_.bodies[body].material},
+                *hit);
 }
 
 std::optional<QueryHit> QueryScene::first(const Sweep& sweep, const Asked& asked) {
@@ -122,7 +133,8 @@ std::optional<QueryHit> QueryScene::first(const Sweep& sweep, const Asked& asked
 void QueryScene::all(const Sweep& sweep, const Asked& asked, std::vector<QueryHit>& hits) {
   const auto before = std::ptrdiff_t(hits.size());
   if (asked.filter.ground) ground_.meet(sweep, [&](const QueryHit& hit) { hits.push_back(hit); });
-  callers_.meet(asked.callers, asked.filter.categories, sweep, [&](const QueryHit& hit) { hits.push_back(hit); });
+  callers_.meet(asked.callers, asked.filter.categories, sweep,
+                [&](const QueryHit& hit) { hits.push_back(hit); });
   if (asked.filter.bodies) {
     Seen seen(levels_.bodies.indices());
     grid_.find_along(sweep.from, sweep.direction, sweep.length, sweep.radius, [&](std::uint32_t body) {
@@ -137,7 +149,8 @@ void QueryScene::all(const Sweep& sweep, const Asked& asked, std::vector<QueryHi
 void QueryScene::overlaps(const Volume& volume, const Asked& asked, std::vector<QueryHit>& hits) {
   const auto before = std::ptrdiff_t(hits.size());
   if (asked.filter.ground) ground_.overlap(volume, [&](const QueryHit& hit) { hits.push_back(hit); });
-  callers_.overlap(asked.callers, asked.filter.categories, volume, [&](const QueryHit& hit) { hits.push_back(hit); });
+  callers_.overlap(asked.callers, asked.filter.categories, volume,
+                   [&](const QueryHit& hit) { hits.push_back(hit); });
   if (asked.filter.bodies) {
     Seen seen(levels_.bodies.indices());
     const Vec3 reach = Vec3::Constant(volume.reach);

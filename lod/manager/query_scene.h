@@ -1,4 +1,5 @@
-// All bodies where they are now, for queries: nothing is kept of them until somebody asks, and from then on a step costs in proportion to those that moved.
+// All bodies where they are now, for queries: nothing is kept of them until somebody asks, and from then on a
+// step costs in proportion to those that moved.
 #pragma once
 
 #include <mutex>
@@ -15,7 +16,8 @@ namespace lodestone {
 
 class QueryScene {
  public:
-  explicit QueryScene(const Levels& levels) : levels_(levels), ground_(levels.ground, levels.callers.ground) {}
+  explicit QueryScene(const Levels& levels)
+      : levels_(levels), ground_(levels.ground, levels.callers.ground) {}
 
   /// Something moved, came or went.
   void touch() { stale_ = true; }

@@ -6,7 +6,8 @@
 
 namespace lodestone {
 
-std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given, const BodyTable& bodies) {
+std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given,
+                                        const BodyTable& bodies) {
   for (const std::shared_ptr<const Shape>& shape : given)
     if (shape && name_of(*shape) == name) return shape;
   for (std::uint32_t i = 0; i < bodies.indices(); ++i)
@@ -18,7 +19,21 @@ std::vector<std::uint32_t> body_hashes(const Levels& levels) {
   std::vector<std::uint32_t> hashes;
   for (const std::uint32_t body : levels.bodies.in_order_of_creation()) {
     const auto [x, q, v, w] = levels.state(body);
-    const std::array<double, 15> numbers{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), double(bool(levels.bodies[body].ode)), double(levels.asleep(body))};
+    const std::array<double, 15> numbers{x.x(),
+                                         x.y(),
+                                         x.z(),
+                                         q.w(),
+                                         q.x(),
+                                         q.y(),
+                                         q.z(),
+                                         v.x(),
+                                         v.y(),
+                                         v.z(),
+                                         w.x(),
+                                         w.y(),
+                                         w.z(),
+                                         double(bool(levels.bodies[body].ode)),
+                                         double(levels.asleep(body))};
     hashes.push_back(std::uint32_t(XXH64(numbers.data(), sizeof numbers, 0)));
   }
   return hashes;

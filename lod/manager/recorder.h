@@ -1,4 +1,5 @@
-// A recording: first the snapshot that it begins with, then one chunk for each call that changed the manager, in order, and for each step what came of it.
+// A recording: first the snapshot that it begins with, then one chunk for each call that changed the manager,
+// in order, and for each step what came of it.
 #pragma once
 
 #include <array>
@@ -15,10 +16,31 @@ namespace lodestone {
 
 enum class Call : std::uint8_t {
   begin,  ///< a snapshot
-  step, add_plane, add_static_mesh, add_static_box, move_ground, remove_ground, add_body, remove_body, set_level, set_importance, set_state, set_user_data, set_body_events, set_properties, add_force, add_impulse,
-  sleep, wake, set_positions, set_viewpoints, set_rung_range,
+  step,
+  add_plane,
+  add_static_mesh,
+  add_static_box,
+  move_ground,
+  remove_ground,
+  add_body,
+  remove_body,
+  set_level,
+  set_importance,
+  set_state,
+  set_user_data,
+  set_body_events,
+  set_properties,
+  add_force,
+  add_impulse,
+  sleep,
+  wake,
+  set_positions,
+  set_viewpoints,
+  set_rung_range,
   make_group,  ///< without the functions for its joints
-  dissolve_group, set_gravity, set_full_substeps,
+  dissolve_group,
+  set_gravity,
+  set_full_substeps,
   set_policy,  ///< without its functions
 };
 inline constexpr auto kLastCall = Call::set_policy;
@@ -34,7 +56,8 @@ struct ShapeName {
 };
 inline ShapeName name_of(const Shape& shape) { return {shape.content_hash, shape.radius}; }
 /// Among those given and those of bodies; null where there is none.
-std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given, const BodyTable& bodies);
+std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given,
+                                        const BodyTable& bodies);
 
 /// Of each body's state, whether it sleeps and is full, in order of creation.
 std::vector<std::uint32_t> body_hashes(const Levels& levels);
@@ -44,7 +67,8 @@ struct RecordedPolicy {
   PolicySettings settings;
   bool visible = false, significance = false;
   void archive(StateArchive& a) {
-    a(settings.policy, settings.hysteresis, settings.min_dwell_frames, settings.max_transitions_per_frame, settings.most_full, settings.most_support, settings.out_of_view_factor);
+    a(settings.policy, settings.hysteresis, settings.min_dwell_frames, settings.max_transitions_per_frame,
+      settings.most_full, settings.most_support, settings.out_of_view_factor);
     a(settings.look_ahead_s, settings.contact_groups_together, visible, significance);
   }
 };

@@ -12,7 +12,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Yardstick {
   double offset, scale;
   Yardstick(const LevelCandidate& c, Measure measure)
-      : offset(measure == Measure::distance ? c.radius : 0.0), scale((measure == Measure::distance ? 1.0 : 2.0 * c.radius) * c.importance / c.view_factor) {}
+      : offset(measure == Measure::distance ? c.radius : 0.0),
+        scale((measure == Measure::distance ? 1.0 : 2.0 * c.radius) * c.importance / c.view_factor) {}
   double reach(double within) const { return within == kInfinity ? kInfinity : within * scale + offset; }
 };
 
@@ -26,7 +27,8 @@ std::optional<Limits> limits_of(const PolicySettings& settings) {
 
 double remoteness(const LevelCandidate& c, const Views& views, Measure measure) {
   const Yardstick yardstick(c, measure);
-  const double beyond = std::max(0.0, std::sqrt(views.squared(c.position, c.ahead, measure)) - yardstick.offset);
+  const double beyond =
+      std::max(0.0, std::sqrt(views.squared(c.position, c.ahead, measure)) - yardstick.offset);
   return std::min(beyond == 0.0 ? 0.0 : beyond / yardstick.scale, c.no_farther_than);
 }
 
@@ -47,21 +49,27 @@ bool stays_put(const LevelCandidate& c, const Views& views, const Limits& limits
   if (c.rung == Rung::full || c.decided() || !c.open.has(c.rung) || c.hits_full) return false;
   const Yardstick yardstick(c, limits.measure);
   const double squared = views.squared(c.position, c.ahead, limits.measure);
-  const auto beyond = [&](double within) { return squared > 1.001 * yardstick.reach(within) * yardstick.reach(within); };
+  const auto beyond = [&](double within) {
+    return squared > 1.001 * yardstick.reach(within) * yardstick.reach(within);
+  };
   if (c.open.has(Rung::full) && !beyond(limits.full_within)) return false;
   if (!can_be_in_ring(c) || !limits.three_rungs()) return c.rung == c.open.at_most(Rung::support);
   if (c.rung == Rung::tables) return beyond(limits.support_within);
   return squared < 0.999 * yardstick.reach(limits.support_within) * yardstick.reach(limits.support_within);
 }
 
-double travel_until_change(const LevelCandidate& c, const Views& views, const Limits& limits, double hysteresis) {
+double travel_until_change(const LevelCandidate& c, const Views& views, const Limits& limits,
+                           double hysteresis) {
   const Yardstick yardstick(c, limits.measure);
-  const double nearest = std::sqrt(views.squared(c.position, limits.measure)), per_metre = views.per_metre(limits.measure);
+  const double nearest = std::sqrt(views.squared(c.position, limits.measure)),
+               per_metre = views.per_metre(limits.measure);
   double travel = kInfinity;
   if (c.open.has(Rung::full)) travel = nearest - yardstick.reach(limits.full_within);
   if (!can_be_in_ring(c) || !limits.three_rungs()) return travel / per_metre;
-  if (c.rung == Rung::tables) travel = std::min(travel, nearest - yardstick.reach(limits.support_within));
-  else travel = std::min(travel, yardstick.reach(limits.support_within * (1.0 + hysteresis)) - nearest);
+  if (c.rung == Rung::tables)
+    travel = std::min(travel, nearest - yardstick.reach(limits.support_within));
+  else
+    travel = std::min(travel, yardstick.reach(limits.support_within * (1.0 + hysteresis)) - nearest);
   return travel / per_metre;
 }
 

@@ -15,8 +15,12 @@ class RungSet {
   }
   constexpr bool has(Rung rung) const { return bits_ & bit(rung); }
   constexpr bool one() const { return (bits_ & (bits_ - 1)) == 0; }
-  constexpr Rung lowest() const { return has(Rung::tables) ? Rung::tables : has(Rung::support) ? Rung::support : Rung::full; }
-  constexpr Rung highest() const { return has(Rung::full) ? Rung::full : has(Rung::support) ? Rung::support : Rung::tables; }
+  constexpr Rung lowest() const {
+    return has(Rung::tables) ? Rung::tables : has(Rung::support) ? Rung::support : Rung::full;
+  }
+  constexpr Rung highest() const {
+    return has(Rung::full) ? Rung::full : has(Rung::support) ? Rung::support : Rung::tables;
+  }
   /// The highest that is no higher than `rung`; the lowest of all where there is none.
   constexpr Rung at_most(Rung rung) const {
     for (int i = int(rung); i >= 0; --i)

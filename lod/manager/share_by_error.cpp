@@ -16,23 +16,30 @@ struct Upgrade {
   double saved_per_cost = 0.0;
 };
 
-double saved_per_cost(const LevelCandidate& c, Rung from, Rung to) { return (c.error_at(from) - c.error_at(to)) / std::max(kLeastCost, c.cost_at(to) - c.cost_at(from)); }
+double saved_per_cost(const LevelCandidate& c, Rung from, Rung to) {
+  return (c.error_at(from) - c.error_at(to)) / std::max(kLeastCost, c.cost_at(to) - c.cost_at(from));
+}
 
-/// What saves nothing is left out. A rung that the body has already counts for more, so that none of two alike goes up and down by turns.
-void add_upgrade(const LevelCandidate& c, std::int32_t index, Rung from, Rung to, double hysteresis, std::vector<Upgrade>& upgrades) {
+/// What saves nothing is left out. A rung that the body has already counts for more, so that none of two
+/// alike goes up and down by turns.
+void add_upgrade(const LevelCandidate& c, std::int32_t index, Rung from, Rung to, double hysteresis,
+                 std::vector<Upgrade>& upgrades) {
   const double saved = saved_per_cost(c, from, to) * (!c.newcomer && c.rung >= to ? 1.0 + hysteresis : 1.0);
   if (saved > 0.0) upgrades.push_back({index, from, to, saved});
 }
 
-void add_upgrades(const LevelCandidate& c, std::int32_t index, const ErrorShareLimits& limits, std::vector<Upgrade>& upgrades) {
+void add_upgrades(const LevelCandidate& c, std::int32_t index, const ErrorShareLimits& limits,
+                  std::vector<Upgrade>& upgrades) {
   if (c.decided()) return;
   const Rung lowest = c.open.lowest();
-  const bool full = may_be_full_now(c, limits.min_dwell_frames), between = lowest == Rung::tables && c.open.has(Rung::support);
+  const bool full = may_be_full_now(c, limits.min_dwell_frames),
+             between = lowest == Rung::tables && c.open.has(Rung::support);
   if (!between) {
     if (full) add_upgrade(c, index, lowest, Rung::full, limits.hysteresis, upgrades);
     return;
   }
-  const bool at_once = full && saved_per_cost(c, Rung::support, Rung::full) >= saved_per_cost(c, Rung::tables, Rung::support);
+  const bool at_once =
+      full && saved_per_cost(c, Rung::support, Rung::full) >= saved_per_cost(c, Rung::tables, Rung::support);
   if (at_once) return add_upgrade(c, index, Rung::tables, Rung::full, limits.hysteresis, upgrades);
   add_upgrade(c, index, Rung::tables, Rung::support, limits.hysteresis, upgrades);
   if (full) add_upgrade(c, index, Rung::support, Rung::full, limits.hysteresis, upgrades);
@@ -40,7 +47,8 @@ void add_upgrades(const LevelCandidate& c, std::int32_t index, const ErrorShareL
 
 }  // namespace
 
-std::vector<Rung> share_by_error(std::span<const LevelCandidate> candidates, FullBill bill, const ErrorRoom& room, const ErrorShareLimits& limits) {
+std::vector<Rung> share_by_error(std::span<const LevelCandidate> candidates, FullBill bill,
+                                 const ErrorRoom& room, const ErrorShareLimits& limits) {
   std::vector<Rung> rungs;
   std::vector<Upgrade> upgrades;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -60,7 +68,8 @@ std::vector<Rung> share_by_error(std::span<const LevelCandidate> candidates, Ful
       const LevelCandidate& c = candidates[std::size_t(u.candidate)];
       Rung& rung = rungs[std::size_t(u.candidate)];
       if (rung != u.from) continue;  // made already, or the step before was not
-      const bool to_full = u.to == Rung::full, has_it = !c.newcomer && c.rung >= u.to, leaves_support = to_full && rung == Rung::support && c.open.lowest() == Rung::tables;
+      const bool to_full = u.to == Rung::full, has_it = !c.newcomer && c.rung >= u.to,
+                 leaves_support = to_full && rung == Rung::support && c.open.lowest() == Rung::tables;
       if (to_full ? full + c.bodies > limits.most_full : support + c.bodies > limits.most_support) {
         refused |= !to_full;
         continue;
@@ -73,8 +82,10 @@ std::vector<Rung> share_by_error(std::span<const LevelCandidate> candidates, Ful
       }
       rung = u.to;
       if (leaves_support) support -= c.bodies, of_support -= refund, again |= refused;
-      if (to_full) bill.add(c), full += c.bodies;
-      else of_support += price, support += c.bodies;
+      if (to_full)
+        bill.add(c), full += c.bodies;
+      else
+        of_support += price, support += c.bodies;
     }
   }
   return rungs;

@@ -1,4 +1,5 @@
-// Where an error budget is spent: on the rungs that lessen the error in the picture most for what they cost, body by body. Pure.
+// Where an error budget is spent: on the rungs that lessen the error in the picture most for what they cost,
+// body by body. Pure.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,8 @@
 
 namespace lodestone {
 
-/// Above what all cost on their lowest rungs, in the unit of the budget: for those that are on a higher rung, and for more of them.
+/// Above what all cost on their lowest rungs, in the unit of the budget: for those that are on a higher rung,
+/// and for more of them.
 struct ErrorRoom {
   double keep = 0.0, grow = 0.0;
 };
@@ -20,8 +22,10 @@ struct ErrorShareLimits {
   int min_dwell_frames = 0;
 };
 
-/// The rung of each candidate that the policy has a say in; the lowest of the others. Greedy: of all steps up the one that saves most error per cost, as long as it fits. Where a
-/// body's way to full saves more per cost than its way to `support`, it is one step. `bill` has those that must be full.
-std::vector<Rung> share_by_error(std::span<const LevelCandidate> candidates, FullBill bill, const ErrorRoom& room, const ErrorShareLimits& limits);
+/// The rung of each candidate that the policy has a say in; the lowest of the others. Greedy: of all steps up
+/// the one that saves most error per cost, as long as it fits. Where a body's way to full saves more per cost
+/// than its way to `support`, it is one step. `bill` has those that must be full.
+std::vector<Rung> share_by_error(std::span<const LevelCandidate> candidates, FullBill bill,
+                                 const ErrorRoom& room, const ErrorShareLimits& limits);
 
 }  // namespace lodestone

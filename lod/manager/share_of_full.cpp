@@ -9,7 +9,9 @@ namespace {
 // What a pair of sleepers is charged of what it costs awake.
 constexpr double kChargeOfSleepers = 0.5;
 
-FullPairs::Body body_of(const LevelCandidate& c) { return {c.position, c.radius, c.mesh, c.asleep, c.motion}; }
+FullPairs::Body body_of(const LevelCandidate& c) {
+  return {c.position, c.radius, c.mesh, c.asleep, c.motion};
+}
 
 double most_radius(std::span<const LevelCandidate> candidates) {
   double most = 0.0;
@@ -19,10 +21,12 @@ double most_radius(std::span<const LevelCandidate> candidates) {
 
 }  // namespace
 
-FullBill::FullBill(std::span<const LevelCandidate> candidates, const StepOverhead& overhead) : overhead_(&overhead), pairs_(most_radius(candidates)) {}
+FullBill::FullBill(std::span<const LevelCandidate> candidates, const StepOverhead& overhead)
+    : overhead_(&overhead), pairs_(most_radius(candidates)) {}
 
 double FullBill::price_of(const PairWeights& pairs) const {
-  return overhead_->pair * (pairs.awake + kChargeOfSleepers * pairs.asleep) + overhead_->spike * std::max(0.0, pairs.dearest - dearest_);
+  return overhead_->pair * (pairs.awake + kChargeOfSleepers * pairs.asleep) +
+         overhead_->spike * std::max(0.0, pairs.dearest - dearest_);
 }
 
 PairWeights FullBill::pairs_of(const LevelCandidate& candidate) const {
@@ -30,7 +34,9 @@ PairWeights FullBill::pairs_of(const LevelCandidate& candidate) const {
   return pairs += candidate.pairs_within;
 }
 
-double FullBill::price_of_pairs(const LevelCandidate& candidate) const { return price_of(pairs_of(candidate)); }
+double FullBill::price_of_pairs(const LevelCandidate& candidate) const {
+  return price_of(pairs_of(candidate));
+}
 
 void FullBill::add(const LevelCandidate& candidate) {
   const PairWeights met = pairs_of(candidate);
@@ -39,7 +45,8 @@ void FullBill::add(const LevelCandidate& candidate) {
   pairs_.add(body_of(candidate));
 }
 
-ShareOfFull share_full(std::span<const LevelCandidate> candidates, std::vector<Ranked> ranked, FullBill bill, double room, std::int64_t most) {
+ShareOfFull share_full(std::span<const LevelCandidate> candidates, std::vector<Ranked> ranked, FullBill bill,
+                       double room, std::int64_t most) {
   ShareOfFull share;
   const double before = bill.total();
   std::ranges::make_heap(ranked, farther);
@@ -50,7 +57,8 @@ ShareOfFull share_full(std::span<const LevelCandidate> candidates, std::vector<R
     const LevelCandidate& c = candidates[std::size_t(nearest.index)];
     const double left = room - (bill.total() - before), price = raise(c, Rung::full);
     const bool fits = price + bill.price_of_pairs(c) <= left;
-    if (std::int64_t(share.taken.size()) >= most || price > left || (!fits && ++passed_over > int(kPassedOver))) {
+    if (std::int64_t(share.taken.size()) >= most || price > left ||
+        (!fits && ++passed_over > int(kPassedOver))) {
       share.reach = nearest.distance;
       break;
     }
@@ -59,7 +67,8 @@ ShareOfFull share_full(std::span<const LevelCandidate> candidates, std::vector<R
     (fits ? share.taken : share.rest).push_back(nearest);
     if (fits) bill.add(c);
   }
-  if (std::int64_t(share.taken.size()) >= most && ranked.empty()) share.reach = share.taken.empty() ? 0.0 : share.taken.back().distance;
+  if (std::int64_t(share.taken.size()) >= most && ranked.empty())
+    share.reach = share.taken.empty() ? 0.0 : share.taken.back().distance;
   share.rest.insert(share.rest.end(), ranked.begin(), ranked.end());
   share.used = bill.total() - before;
   return share;

@@ -1,4 +1,5 @@
-// Which bodies a budget makes full: the nearest first, each with what it costs and with the pairs that it makes with those before.
+// Which bodies a budget makes full: the nearest first, each with what it costs and with the pairs that it
+// makes with those before.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +11,20 @@
 
 namespace lodestone {
 
-/// A body by its distance, or by its rank among the others; ties go to the lower index, so that the order is the same in every run.
+/// A body by its distance, or by its rank among the others; ties go to the lower index, so that the order is
+/// the same in every run.
 struct Ranked {
   double distance = 0.0;
   std::int32_t index = 0;
   Rung to = Rung::support;
 };
-inline bool nearer(const Ranked& a, const Ranked& b) { return a.distance != b.distance ? a.distance < b.distance : a.index < b.index; }
+inline bool nearer(const Ranked& a, const Ranked& b) {
+  return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;
+}
 inline bool farther(const Ranked& a, const Ranked& b) { return nearer(b, a); }
 
-/// So many are passed over whose pairs do not fit, and no more: beyond them bodies are too far from the nearest to be worth a look.
+/// So many are passed over whose pairs do not fit, and no more: beyond them bodies are too far from the
+/// nearest to be worth a look.
 inline constexpr std::size_t kPassedOver = 20;
 
 /// Above its lowest rung, without pairs.
@@ -57,6 +62,7 @@ struct ShareOfFull {
 };
 
 /// `bill` has those that must be full. One whose pairs do not fit is passed over.
-ShareOfFull share_full(std::span<const LevelCandidate> candidates, std::vector<Ranked> ranked, FullBill bill, double room, std::int64_t most);
+ShareOfFull share_full(std::span<const LevelCandidate> candidates, std::vector<Ranked> ranked, FullBill bill,
+                       double room, std::int64_t most);
 
 }  // namespace lodestone

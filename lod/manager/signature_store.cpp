@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "reference/error.h"
+#include "signature/signature_file.h"
 #include "signature/signature_source.h"
 
 namespace lodestone {
@@ -14,23 +15,27 @@ namespace {
 // A game goes on meanwhile.
 int half_of_the_cores() { return std::max(1, int(std::thread::hardware_concurrency()) / 2); }
 
-// Each signature is measured by one thread, whose priority is the lowest: with more, they would be oneTBB's, which the game's own loops may wait for.
+// Each signature is measured by one thread, whose priority is the lowest: with more, they would be oneTBB's,
+// which the game's own loops may wait for.
 std::unique_ptr<BackgroundSignatures> make_background(const SignatureFunction& source) {
   // A caller's source may not bear two threads at a time.
-  return std::make_unique<BackgroundSignatures>(source ? 1 : half_of_the_cores(), [source](const Shape& shape, const ContactLaw& law, std::stop_token stop) {
-    if (source) return source(shape, law);
-    SignatureSourceSettings settings;
-    settings.threads = 1;
-    settings.stop = std::move(stop);
-    return find_or_measure_signature(shape, law, settings).signature;
-  });
+  return std::make_unique<BackgroundSignatures>(
+      source ? 1 : half_of_the_cores(),
+      [source](const Shape& shape, const ContactLaw& law, std::stop_token stop) {
+        if (source) return source(shape, law);
+        SignatureSourceSettings settings;
+        settings.threads = 1;
+        settings.stop = std::move(stop);
+        return find_or_measure_signature(shape, law, settings).signature;
+      });
 }
 
 }  // namespace
 
 SignatureStore::SignatureStore(SignatureFunction source, SignatureTiming timing)
     : source_(std::move(source)),
-      in_background_(timing == SignatureTiming::in_background || (timing == SignatureTiming::automatic && !source_)) {}
+      in_background_(timing == SignatureTiming::in_background ||
+                     (timing == SignatureTiming::automatic && !source_)) {}
 
 bool SignatureStore::ready(const Shape& shape, const ContactLaw& law) {
   if (!in_background_) return true;
@@ -47,8 +52,16 @@ bool SignatureStore::ready(const Shape& shape, const ContactLaw& law) {
 }
 
 std::shared_ptr<const Signature> SignatureStore::find(const Shape& shape, const ContactLaw& law) {
-  if (Entry* entry = find_entry(shape, law)) return entry->pending.valid() ? take(shape, *entry) : entry->signature;
-  entries_.push_back({shape.content_hash, law, logged(shape, [&] { return source_ ? source_(shape, law) : find_or_measure_signature(shape, law).signature; }), {}});
+  if (Entry* entry = find_entry(shape, law))
+    return entry->pending.valid() ? take(shape, *entry) : entry->signature;
+  entries_.push_back({shape.content_hash,
+                      law,
+                      logged(shape,
+                             [&] {
+                               return source_ ? source_(shape, law)
+                                              : find_or_measure_signature(shape, law).signature;
+                             }),
+                      {}});
   if (entries_.back().signature) ++loaded_;
   return entries_.back().signature;
 }
@@ -57,10 +70,12 @@ template <class Get>
 std::shared_ptr<const Signature> SignatureStore::logged(const Shape& shape, const Get& get) const {
   try {
     std::shared_ptr<const Signature> signature = get();
+    if (signature) check_measured_for(*signature, shape, "signature of shape " + shape.name);
     if (log_ && signature) log_(LogLevel::info, fmt::format("the signature of {} is there", shape.name));
     return signature;
   } catch (const InputError& error) {
-    if (log_) log_(LogLevel::error, fmt::format("the signature of {} cannot be had: {}", shape.name, error.what()));
+    if (log_)
+      log_(LogLevel::error, fmt::format("the signature of {} cannot be had: {}", shape.name, error.what()));
     throw;
   }
 }
@@ -72,7 +87,8 @@ const RungErrors& SignatureStore::errors(const Shape& shape, const ContactLaw& l
 }
 
 SignatureStore::Entry* SignatureStore::find_entry(const Shape& shape, const ContactLaw& law) {
-  const auto entry = std::ranges::find_if(entries_, [&](const Entry& e) { return e.shape_hash == shape.content_hash && e.law == law; });
+  const auto entry = std::ranges::find_if(
+      entries_, [&](const Entry& e) { return e.shape_hash == shape.content_hash && e.law == law; });
   return entry == entries_.end() ? nullptr : &*entry;
 }
 

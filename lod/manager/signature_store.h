@@ -15,10 +15,12 @@ namespace lodestone {
 
 class SignatureStore {
  public:
-  /// `source` empty: find_or_measure_signature with its defaults, in the background on up to half of the cores.
+  /// `source` empty: find_or_measure_signature with its defaults, in the background on up to half of the
+  /// cores.
   SignatureStore(SignatureFunction source, SignatureTiming timing);
 
-  /// Whether find() would return at once. Where not, a thread begins to make it so. Throws InputError where the signature cannot be had.
+  /// Whether find() would return at once. Where not, a thread begins to make it so. Throws InputError where
+  /// the signature cannot be had.
   bool ready(const Shape& shape, const ContactLaw& law);
   /// The signature of `shape`, or of a scaled copy of it, under `law`; null where the source has none.
   std::shared_ptr<const Signature> find(const Shape& shape, const ContactLaw& law);
@@ -39,7 +41,9 @@ class SignatureStore {
   std::shared_ptr<const Signature> take(const Shape& shape, Entry& entry);
   template <class Get>
   std::shared_ptr<const Signature> logged(const Shape& shape, const Get& get) const;
-  const Entry* find_entry(const Shape& shape, const ContactLaw& law) const { return const_cast<SignatureStore*>(this)->find_entry(shape, law); }
+  const Entry* find_entry(const Shape& shape, const ContactLaw& law) const {
+    return const_cast<SignatureStore*>(this)->find_entry(shape, law);
+  }
 
   SignatureFunction source_;
   bool in_background_;

@@ -31,14 +31,17 @@ void StepChanges::finish() {
   for (const FullLevel::Member& member : levels_.full.members()) noted_.push_back(member.owner);
   noted_.insert(noted_.end(), settled_.begin(), settled_.end());
   std::ranges::sort(noted_);
-  noted_.erase(std::ranges::unique(noted_).begin(), noted_.end());
+  noted_.erase(std::unique(noted_.begin(), noted_.end()), noted_.end());
   std::ranges::sort(settled_);
   for (const std::uint32_t body : noted_) {
     if (!levels_.bodies.alive(body)) continue;
     const bool before = slept_[body], now = levels_.asleep(body);
-    if (now && !before) fell_asleep_.push_back(levels_.bodies.id(body));
-    else if (before && !now) woke_.push_back(levels_.bodies.id(body));
-    else if (now && std::ranges::binary_search(settled_, body)) moved_and_slept_.push_back(levels_.bodies.id(body));
+    if (now && !before)
+      fell_asleep_.push_back(levels_.bodies.id(body));
+    else if (before && !now)
+      woke_.push_back(levels_.bodies.id(body));
+    else if (now && std::ranges::binary_search(settled_, body))
+      moved_and_slept_.push_back(levels_.bodies.id(body));
     slept_[body] = now;
   }
   noted_.clear();

@@ -1,4 +1,5 @@
-// What the last step changed, body by body: who moved, fell asleep, woke, changed rung. Costs in proportion to those concerned, never to all bodies.
+// What the last step changed, body by body: who moved, fell asleep, woke, changed rung. Costs in proportion
+// to those concerned, never to all bodies.
 #pragma once
 
 #include <mutex>
@@ -33,16 +34,18 @@ class StepChanges {
   std::span<const BodyId> moved() const;
   std::span<const BodyId> fell_asleep() const { return fell_asleep_; }
   std::span<const BodyId> woke() const { return woke_; }
-  std::span<const BodyId> moved_and_slept() const { return moved_and_slept_; }  ///< woke in the step and fell asleep again
+  std::span<const BodyId> moved_and_slept() const {
+    return moved_and_slept_;
+  }  ///< woke in the step and fell asleep again
   std::span<const RungChange> rung_changes() const { return levels_.rung_changes; }
 
  private:
   void find_moved() const;
 
   Levels& levels_;
-  std::vector<char> slept_;                 // at the end of the last step, by index
-  std::vector<std::uint32_t> noted_;        // who may have woken or fallen asleep since
-  std::vector<std::uint32_t> settled_;      // who fell asleep in some part of the step
+  std::vector<char> slept_;             // at the end of the last step, by index
+  std::vector<std::uint32_t> noted_;    // who may have woken or fallen asleep since
+  std::vector<std::uint32_t> settled_;  // who fell asleep in some part of the step
   std::vector<BodyId> fell_asleep_, woke_;
   std::vector<BodyId> moved_and_slept_;
   // Found when first asked for.

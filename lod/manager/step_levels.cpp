@@ -8,6 +8,7 @@ namespace lodestone {
 
 void StepLevels::step_statistical(double dt, StepReport& report) {
   if (!levels_.statistical || levels_.statistical->size() == 0) {
+    if (levels_.statistical) levels_.statistical->forget_contacts();
     neighborhood_.bodies.clear();
     levels_.give_forces();
     return;

@@ -1,4 +1,5 @@
-// Stages 3 and 4 of a step: the statistical rungs and their contacts with full bodies, then the full level with what came of those contacts.
+// Stages 3 and 4 of a step: the statistical rungs and their contacts with full bodies, then the full level
+// with what came of those contacts.
 #pragma once
 
 #include "lod/manager/cross_level.h"

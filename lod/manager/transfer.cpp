@@ -5,35 +5,49 @@
 #include "lod/statistical/parting.h"
 #include "reference/error.h"
 #include "reference/hull/hull_overlap.h"
-#include "signature/signature_file.h"
 
 namespace lodestone {
 namespace {
 
-// Deeper overlap puts a promotion off, as a fraction of the smaller radius. ODE parts less without a visible jump.
+// Deeper overlap puts a promotion off, as a fraction of the smaller radius. ODE parts less without a visible
+// jump.
 constexpr double kOverlapAllowed = 0.02;
 
 void enter_full(Levels& levels, std::uint32_t body, const RigidState& state, bool asleep) {
   BodyRecord& record = levels.bodies[body];
-  const OdeBodyDefinition definition{
-      .shape = levels.bodies.shape(body), .mass = record.mass, .material = record.material, .state = state, .properties = levels.bodies.properties(body)};
+  const OdeBodyDefinition definition{.shape = levels.bodies.shape(body),
+                                     .mass = record.mass,
+                                     .material = record.material,
+                                     .state = state,
+                                     .properties = levels.bodies.properties(body)};
   record.ode = levels.full.add(body, definition, asleep);
   levels.note_full(body);
 }
 
-void enter_statistical(Levels& levels, std::uint32_t body, StatisticalModel model, const RigidState& state, bool asleep, bool arrives) {
+void enter_statistical(Levels& levels, std::uint32_t body, StatisticalModel model, const RigidState& state,
+                       bool asleep, bool arrives) {
   BodyRecord& record = levels.bodies[body];
   const std::shared_ptr<const Shape>& shape = levels.bodies.shape(body);
   if (!levels.statistical)
-    levels.statistical = std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
-  record.statistical = levels.statistical->add(model, body, shape, record.mass, record.material, state, asleep,
-                                               levels.bodies.level(body).waits_for_signature ? nullptr : levels.signatures.find(*shape, levels.ground_law(record.material)), arrives);
+    levels.statistical =
+        std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
+  record.statistical =
+      levels.statistical->add(model, body, shape, record.mass, record.material, state, asleep,
+                              levels.bodies.level(body).waits_for_signature
+                                  ? nullptr
+                                  : levels.signatures.find(*shape, levels.ground_law(record.material)),
+                              arrives);
 }
 
 /// `arrives`: from another rung.
-void enter(Levels& levels, std::uint32_t body, Rung rung, const RigidState& state, bool asleep, bool arrives) {
-  if (rung == Rung::full) enter_full(levels, body, state, asleep);
-  else enter_statistical(levels, body, rung == Rung::tables ? StatisticalModel::tables : StatisticalModel::support, state, asleep, arrives);
+void enter(Levels& levels, std::uint32_t body, Rung rung, const RigidState& state, bool asleep,
+           bool arrives) {
+  if (rung == Rung::full)
+    enter_full(levels, body, state, asleep);
+  else
+    enter_statistical(levels, body,
+                      rung == Rung::tables ? StatisticalModel::tables : StatisticalModel::support, state,
+                      asleep, arrives);
   levels.bodies.level(body).rung = rung;
   levels.bodies.level(body).changed_at = levels.now;
 }
@@ -45,7 +59,8 @@ void leave(Levels& levels, std::uint32_t body, bool stays) {
     levels.full.remove(record.ode, stays);
     record.ode = {};
   } else if (record.statistical) {
-    if (const auto moved = levels.statistical->remove(record.statistical, stays)) levels.bodies[*moved].statistical = record.statistical;
+    if (const auto moved = levels.statistical->remove(record.statistical, stays))
+      levels.bodies[*moved].statistical = record.statistical;
     record.statistical = {};
   }
 }
@@ -66,13 +81,17 @@ void each_piece(const Shape& shape, const RigidState& state, const Visit& visit)
   }
 }
 
-// m: of the hulls or, where these overlap by more than is allowed, of the convex pieces of those that have some, so that one L may hook into another.
-double measure_overlap(const Shape& first, const RigidState& at_first, const Shape& second, const RigidState& at_second, double allowed) {
+// m: of the hulls or, where these overlap by more than is allowed, of the convex pieces of those that have
+// some, so that one L may hook into another.
+double measure_overlap(const Shape& first, const RigidState& at_first, const Shape& second,
+                       const RigidState& at_second, double allowed) {
   const double of_hulls = measure_hull_overlap(first, at_first, second, at_second);
   if (of_hulls <= allowed || (first.pieces.empty() && second.pieces.empty())) return of_hulls;
   double deepest = 0.0;
   each_piece(first, at_first, [&](const Shape& a, const RigidState& at_a) {
-    each_piece(second, at_second, [&](const Shape& b, const RigidState& at_b) { deepest = std::max(deepest, measure_hull_overlap(a, at_a, b, at_b)); });
+    each_piece(second, at_second, [&](const Shape& b, const RigidState& at_b) {
+      deepest = std::max(deepest, measure_hull_overlap(a, at_a, b, at_b));
+    });
   });
   return deepest;
 }
@@ -80,8 +99,10 @@ double measure_overlap(const Shape& first, const RigidState& at_first, const Sha
 // Whether it leans on others there, or may do so, and hardly moves.
 bool lies_among_others(const Levels& levels, std::uint32_t body, const RigidState& state) {
   const Activity does = levels.statistical->activity(levels.bodies[body].statistical);
-  const double radius = levels.bodies.shape(body)->radius, slow = 4.0 * parting_speed(radius, levels.statistical_settings.gravity.norm());
-  return does != Activity::alone && state.velocity.norm() <= slow && state.angular_velocity.norm() * radius <= slow;
+  const double radius = levels.bodies.shape(body)->radius,
+               slow = 4.0 * parting_speed(radius, levels.statistical_settings.gravity.norm());
+  return does != Activity::alone && state.velocity.norm() <= slow &&
+         state.angular_velocity.norm() * radius <= slow;
 }
 
 // With planes and the parts of the ground; those known by rays count as the plane below.
@@ -98,11 +119,11 @@ bool overlaps_ground(const Levels& levels, const Shape& shape, const RigidState&
     if (const auto plane = probe_below(*part, state.position, shape.radius)) probed.push_back(*plane);
   }
   return overlaps_planes(probed, shape, state) || std::ranges::any_of(near, [&](const PlacedSolid& solid) {
-    RigidState at;
-    at.position = solid.position;
-    at.orientation = solid.orientation;
-    return measure_overlap(shape, state, *solid.solid->shape, at, allowed) > allowed;
-  });
+           RigidState at;
+           at.position = solid.position;
+           at.orientation = solid.orientation;
+           return measure_overlap(shape, state, *solid.solid->shape, at, allowed) > allowed;
+         });
 }
 
 }  // namespace
@@ -112,10 +133,10 @@ void find_signature(Levels& levels, std::uint32_t body, Rung rung) {
   const Shape& shape = *levels.bodies.shape(body);
   const auto signature = levels.signatures.find(shape, levels.ground_law(levels.bodies[body].material));
   const std::string name = "signature of shape " + shape.name;
-  if (signature) check_measured_for(*signature, shape, name);
   if (rung != Rung::tables) return;
   if (!signature) throw_input_error(name, "none", "one, without which the body cannot be at tables");
-  if (signature->collision_heights.mean.empty()) throw_input_error(name, "no collision heights", "some, without which the body cannot be at tables");
+  if (signature->collision_heights.mean.empty())
+    throw_input_error(name, "no collision heights", "some, without which the body cannot be at tables");
 }
 
 void place(Levels& levels, std::uint32_t body, Rung rung) {
@@ -134,7 +155,8 @@ void transfer(Levels& levels, std::uint32_t body, Rung to) {
     levels.wake_near(body, level_of(to));
     if (from == level_of(to)) levels.wake_near(body, Level::full);
   }
-  const bool lies = to == Rung::full && levels.bodies[body].statistical && lies_among_others(levels, body, state);
+  const bool lies =
+      to == Rung::full && levels.bodies[body].statistical && lies_among_others(levels, body, state);
   const Rung before = levels.bodies.level(body).rung;
   leave(levels, body, asleep);
   enter(levels, body, to, state, asleep, true);
@@ -153,18 +175,24 @@ bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uin
   if (overlaps_ground(levels, shape, state)) return true;
   const auto overlaps_body = [&](std::uint32_t other, const RigidState& there) {
     const Shape& other_shape = *levels.bodies.shape(other);
-    const double reach = shape.radius + other_shape.radius, allowed = kOverlapAllowed * std::min(shape.radius, other_shape.radius);
-    return other != body && std::ranges::find(but, other) == but.end() && (there.position - state.position).squaredNorm() <= reach * reach && measure_overlap(shape, state, other_shape, there, allowed) > allowed;
+    const double reach = shape.radius + other_shape.radius,
+                 allowed = kOverlapAllowed * std::min(shape.radius, other_shape.radius);
+    return other != body && std::ranges::find(but, other) == but.end() &&
+           (there.position - state.position).squaredNorm() <= reach * reach &&
+           measure_overlap(shape, state, other_shape, there, allowed) > allowed;
   };
   std::vector<std::uint32_t> near;
   levels.find_near(body, 1.0, Level::full, near, false);
   levels.find_near(body, 1.0, Level::statistical, near, false);
-  if (std::ranges::any_of(near, [&](std::uint32_t other) { return overlaps_body(other, levels.state(other)); })) return true;
+  if (std::ranges::any_of(near,
+                          [&](std::uint32_t other) { return overlaps_body(other, levels.state(other)); }))
+    return true;
   bool meets_callers = false;
-  levels.callers.bodies.each_near(state.position, shape.radius, [&](const Shape& other, const RigidState& there) {
-    const double allowed = kOverlapAllowed * std::min(shape.radius, other.radius);
-    meets_callers |= measure_overlap(shape, state, other, there, allowed) > allowed;
-  });
+  levels.callers.bodies.each_near(
+      state.position, shape.radius, [&](const Shape& other, const RigidState& there) {
+        const double allowed = kOverlapAllowed * std::min(shape.radius, other.radius);
+        meets_callers |= measure_overlap(shape, state, other, there, allowed) > allowed;
+      });
   if (meets_callers) return true;
   const auto& newcomers = levels.bodies.newcomers();
   for (std::size_t i = 0; i < newcomers.size(); ++i)

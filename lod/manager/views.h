@@ -1,4 +1,5 @@
-// The viewpoints as a policy sees them: how far a place is from the nearest, how large a ball is in the picture, whether it is in any.
+// The viewpoints as a policy sees them: how far a place is from the nearest, how large a ball is in the
+// picture, whether it is in any.
 #pragma once
 
 #include <array>
@@ -20,7 +21,7 @@ enum class Measure : std::uint8_t {
 class Views {
  public:
   Views() = default;
-  Views(std::span<const Vec3> positions);               // NOLINT: a list of places is a list of views
+  Views(std::span<const Vec3> positions);  // NOLINT: a list of places is a list of views
   Views(const std::vector<Vec3>& positions) : Views(std::span(positions)) {}
   explicit Views(std::span<const Viewpoint> viewpoints);
 

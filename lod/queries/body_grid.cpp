@@ -5,17 +5,21 @@
 namespace lodestone {
 namespace {
 
-constexpr double kDrawn = 1.3;  // over the radius: of the ball in the cells
+constexpr double kDrawn = 1.3;        // over the radius: of the ball in the cells
 constexpr std::size_t kFewest = 256;  // cells
 
 }  // namespace
 
 // Cells as large as a ball is across: it meets eight at most.
-int BodyGrid::level_of(double radius) { return std::clamp(std::ilogb(2.0 * kDrawn * radius) + 1 + kBaseLevel, 0, kLevels - 1); }
+int BodyGrid::level_of(double radius) {
+  return std::clamp(std::ilogb(2.0 * kDrawn * radius) + 1 + kBaseLevel, 0, kLevels - 1);
+}
 
 BodyGrid::Range BodyGrid::range_of(const Eigen::AlignedBox3d& box, int level) {
   Range range;
-  for (int a = 0; a < 3; ++a) range.low[std::size_t(a)] = along(box.min()[a] / edge_of(level)), range.high[std::size_t(a)] = along(box.max()[a] / edge_of(level));
+  for (int a = 0; a < 3; ++a)
+    range.low[std::size_t(a)] = along(box.min()[a] / edge_of(level)),
+    range.high[std::size_t(a)] = along(box.max()[a] / edge_of(level));
   return range;
 }
 
@@ -38,7 +42,8 @@ const BodyGrid::Cell* BodyGrid::find(const Key& key) const {
 void BodyGrid::grow() {
   if (cells_.empty()) cells_.resize(kFewest);
   if (2 * used_ < cells_.size()) return;
-  const auto filled = std::size_t(std::ranges::count_if(cells_, [](const Cell& cell) { return cell.head != kNone; }));
+  const auto filled =
+      std::size_t(std::ranges::count_if(cells_, [](const Cell& cell) { return cell.head != kNone; }));
   std::vector<Cell> before(4 * filled < cells_.size() ? cells_.size() : 2 * cells_.size());
   std::swap(before, cells_);
   used_ = 0;
@@ -76,7 +81,8 @@ void BodyGrid::forget(std::uint32_t body) {
 
 void BodyGrid::put(std::uint32_t body, const Vec3& position, double radius) {
   if (places_.size() <= body) places_.resize(std::size_t(body) + 1 + places_.size() / 2);
-  if (places_[body].radius == radius && (places_[body].position - position).norm() <= (kDrawn - 1.0) * radius) return;
+  if (places_[body].radius == radius && (places_[body].position - position).norm() <= (kDrawn - 1.0) * radius)
+    return;
   forget(body);
   places_[body] = {position, radius};
   each_cell(places_[body], [&](const Key& key) {

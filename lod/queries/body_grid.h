@@ -1,5 +1,6 @@
-// Where all bodies are, asleep or not: each in the cells that its ball meets, in a hash table, with cells of the sizes that there are bodies of. Balls are drawn larger
-// than they are, so that one that has moved little stays where it is.
+// Where all bodies are, asleep or not: each in the cells that its ball meets, in a hash table, with cells of
+// the sizes that there are bodies of. Balls are drawn larger than they are, so that one that has moved little
+// stays where it is.
 #pragma once
 
 #include <array>
@@ -22,10 +23,12 @@ class BodyGrid {
   template <class Found>
   void find_near(const Eigen::AlignedBox3d& box, const Found& found) const;
 
-  /// Calls found(body), perhaps more than once, for those whose ball may come within `margin` m of a ray (direction of unit length), near ones mostly first. What it returns
-  /// is how much of the ray is still of interest, m.
+  /// Calls found(body), perhaps more than once, for those whose ball may come within `margin` m of a ray
+  /// (direction of unit length), near ones mostly first. What it returns is how much of the ray is still of
+  /// interest, m.
   template <class Found>
-  void find_along(const Vec3& from, const Vec3& direction, double length, double margin, const Found& found) const;
+  void find_along(const Vec3& from, const Vec3& direction, double length, double margin,
+                  const Found& found) const;
 
  private:
   static constexpr std::uint32_t kNone = ~0u;
@@ -52,7 +55,9 @@ class BodyGrid {
 
   static int level_of(double radius);
   static double edge_of(int level) { return std::ldexp(1.0, level - kBaseLevel); }
-  static std::int32_t along(double at) { return std::int32_t(std::floor(std::fmin(std::fmax(at, -2e9), 2e9))); }
+  static std::int32_t along(double at) {
+    return std::int32_t(std::floor(std::fmin(std::fmax(at, -2e9), 2e9)));
+  }
   static Range range_of(const Eigen::AlignedBox3d& box, int level);
   std::size_t place_of(const Key& key) const;
   const Cell* find(const Key& key) const;
@@ -61,8 +66,8 @@ class BodyGrid {
   void each_cell(const Place& place, const Visit& visit) const;
   void take_out(std::uint32_t body);
 
-  std::vector<Place> places_;      // of each body
-  std::vector<Cell> cells_;        // a power of two
+  std::vector<Place> places_;  // of each body
+  std::vector<Cell> cells_;    // a power of two
   std::size_t used_ = 0, bodies_ = 0;
   std::vector<Entry> entries_;
   std::uint32_t free_entry_ = kNone;
@@ -85,30 +90,36 @@ void BodyGrid::find_near(const Eigen::AlignedBox3d& box, const Found& found) con
       for (std::int32_t y = range.low[1]; y <= range.high[1]; ++y)
         for (std::int32_t x = range.low[0]; x <= range.high[0]; ++x)
           if (const Cell* cell = find({x, y, z, level}))
-            for (std::uint32_t entry = cell->head; entry != kNone; entry = entries_[entry].next) found(entries_[entry].body);
+            for (std::uint32_t entry = cell->head; entry != kNone; entry = entries_[entry].next)
+              found(entries_[entry].body);
   }
 }
 
-// From cell to cell (Amanatides and Woo, A fast voxel traversal algorithm, 1987). A ray with a margin is cut into boxes.
+// From cell to cell (Amanatides and Woo, A fast voxel traversal algorithm, 1987). A ray with a margin is cut
+// into boxes.
 template <class Found>
-void BodyGrid::find_along(const Vec3& from, const Vec3& direction, double length, double margin, const Found& found) const {
+void BodyGrid::find_along(const Vec3& from, const Vec3& direction, double length, double margin,
+                          const Found& found) const {
   for (int level = 0; level < kLevels; ++level) {
     if (of_level_[std::size_t(level)] == 0) continue;
     const double edge = edge_of(level);
     double left = length;
     if (!(length / edge < 4.0 * double(cells_.size()))) {  // farther than it is worth
       for (std::uint32_t body = 0; body < places_.size(); ++body)
-        if (places_[body].radius > 0.0 && level_of(places_[body].radius) == level) left = std::min(left, found(body));
+        if (places_[body].radius > 0.0 && level_of(places_[body].radius) == level)
+          left = std::min(left, found(body));
     } else if (margin > 0.0) {
       const double piece = std::max(edge, 2.0 * margin);
       for (double at = 0.0; at <= left; at += piece) {
-        const Vec3 begin = from + at * direction, end = from + std::min(at + piece, left) * direction, around = Vec3::Constant(margin);
+        const Vec3 begin = from + at * direction, end = from + std::min(at + piece, left) * direction,
+                   around = Vec3::Constant(margin);
         const Range range = range_of({begin.cwiseMin(end) - around, begin.cwiseMax(end) + around}, level);
         for (std::int32_t z = range.low[2]; z <= range.high[2]; ++z)
           for (std::int32_t y = range.low[1]; y <= range.high[1]; ++y)
             for (std::int32_t x = range.low[0]; x <= range.high[0]; ++x)
               if (const Cell* cell = find({x, y, z, level}))
-                for (std::uint32_t entry = cell->head; entry != kNone; entry = entries_[entry].next) left = std::min(left, found(entries_[entry].body));
+                for (std::uint32_t entry = cell->head; entry != kNone; entry = entries_[entry].next)
+                  left = std::min(left, found(entries_[entry].body));
       }
     } else {
       std::array<std::int32_t, 3> cell{}, step{};
@@ -118,11 +129,13 @@ void BodyGrid::find_along(const Vec3& from, const Vec3& direction, double length
         cell[i] = along(from[a] / edge);
         step[i] = direction[a] > 0.0 ? 1 : -1;
         across[i] = direction[a] == 0.0 ? 1e300 : edge / std::abs(direction[a]);
-        next[i] = direction[a] == 0.0 ? 1e300 : ((cell[i] + (direction[a] > 0.0)) * edge - from[a]) / direction[a];
+        next[i] =
+            direction[a] == 0.0 ? 1e300 : ((cell[i] + (direction[a] > 0.0)) * edge - from[a]) / direction[a];
       }
       for (double at = 0.0; at <= left;) {
         if (const Cell* here = find({cell[0], cell[1], cell[2], level}))
-          for (std::uint32_t entry = here->head; entry != kNone; entry = entries_[entry].next) left = std::min(left, found(entries_[entry].body));
+          for (std::uint32_t entry = here->head; entry != kNone; entry = entries_[entry].next)
+            left = std::min(left, found(entries_[entry].body));
         const std::size_t a = next[0] <= next[1] && next[0] <= next[2] ? 0 : next[1] <= next[2] ? 1 : 2;
         at = next[a];
         next[a] += across[a];

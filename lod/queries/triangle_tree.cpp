@@ -44,7 +44,8 @@ Vec3 nearest_point(const std::array<Vec3, 3>& t, const Vec3& p) {
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return t[0] + d2 / (d2 - d6) * ac;
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) return t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]);
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
+    return t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]);
   const double sum = va + vb + vc;
   return t[0] + vb / sum * ab + vc / sum * ac;
 }
@@ -56,7 +57,8 @@ bool is_within(const std::array<Vec3, 3>& t, const Vec3& normal, const Vec3& p) 
 }
 
 // Möller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997; front faces only.
-std::optional<double> meet_front(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& direction, double length) {
+std::optional<double> meet_front(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& direction,
+                                 double length) {
   const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], p = direction.cross(ac);
   const double determinant = ab.dot(p);
   if (determinant <= 0.0) return {};
@@ -67,12 +69,15 @@ std::optional<double> meet_front(const std::array<Vec3, 3>& t, const Vec3& from,
 }
 
 // Of a ray into a cylinder about the segment, without its ends.
-std::optional<double> meet_edge(const Vec3& from, const Vec3& direction, double length, const Vec3& begin, const Vec3& end, double radius) {
+std::optional<double> meet_edge(const Vec3& from, const Vec3& direction, double length, const Vec3& begin,
+                                const Vec3& end, double radius) {
   const Vec3 axis = end - begin, to = from - begin;
   const double square = axis.squaredNorm();
   if (square == 0.0) return {};
-  const Vec3 across = direction - direction.dot(axis) / square * axis, off = to - to.dot(axis) / square * axis;
-  const double a = across.squaredNorm(), b = off.dot(across), c = off.squaredNorm() - radius * radius, root = b * b - a * c;
+  const Vec3 across = direction - direction.dot(axis) / square * axis,
+             off = to - to.dot(axis) / square * axis;
+  const double a = across.squaredNorm(), b = off.dot(across), c = off.squaredNorm() - radius * radius,
+               root = b * b - a * c;
   if (a < 1e-18 || root < 0.0) return {};
   const double distance = (-b - std::sqrt(root)) / a;
   if (distance < 0.0 || distance > length) return {};
@@ -80,16 +85,20 @@ std::optional<double> meet_edge(const Vec3& from, const Vec3& direction, double 
   return along >= 0.0 && along <= 1.0 ? std::optional(distance) : std::nullopt;
 }
 
-std::optional<SurfaceHit> sweep_triangle(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& direction, double length, double radius) {
+std::optional<SurfaceHit> sweep_triangle(const std::array<Vec3, 3>& t, const Vec3& from,
+                                         const Vec3& direction, double length, double radius) {
   const Vec3 nearest = nearest_point(t, from);
-  if (const double apart = (from - nearest).norm(); apart <= radius) return SurfaceHit{0.0, nearest, apart > 0.0 ? Vec3((from - nearest) / apart) : Vec3(normal_of(t).normalized())};
+  if (const double apart = (from - nearest).norm(); apart <= radius)
+    return SurfaceHit{0.0, nearest,
+                      apart > 0.0 ? Vec3((from - nearest) / apart) : Vec3(normal_of(t).normalized())};
   double first = length;
   std::optional<Vec3> center;
   const auto take = [&](std::optional<double> distance) {
     if (distance && *distance <= first) first = *distance, center = from + *distance * direction;
   };
   const Vec3 normal = normal_of(t).normalized();
-  const double height = normal.dot(from - t[0]), side = height >= 0.0 ? 1.0 : -1.0, falling = -side * normal.dot(direction);
+  const double height = normal.dot(from - t[0]), side = height >= 0.0 ? 1.0 : -1.0,
+               falling = -side * normal.dot(direction);
   if (falling > 0.0) {
     const double distance = (std::abs(height) - radius) / falling;
     if (distance >= 0.0 && is_within(t, normal, from + distance * direction)) take(distance);
@@ -121,7 +130,8 @@ bool meets(const std::array<Vec3, 3>& t, const Vec3& half) {
 
 }  // namespace
 
-std::optional<double> meet_sphere(const Vec3& from, const Vec3& direction, double length, const Vec3& center, double radius) {
+std::optional<double> meet_sphere(const Vec3& from, const Vec3& direction, double length, const Vec3& center,
+                                  double radius) {
   const Vec3 to = from - center;
   const double b = to.dot(direction), c = to.squaredNorm() - radius * radius;
   if (c <= 0.0) return 0.0;
@@ -132,7 +142,9 @@ std::optional<double> meet_sphere(const Vec3& from, const Vec3& direction, doubl
 }
 
 TriangleTree::TriangleTree(const Mesh& mesh) {
-  for (const auto& f : mesh.faces) triangles_.push_back({mesh.vertices[std::size_t(f[0])], mesh.vertices[std::size_t(f[1])], mesh.vertices[std::size_t(f[2])]});
+  for (const auto& f : mesh.faces)
+    triangles_.push_back({mesh.vertices[std::size_t(f[0])], mesh.vertices[std::size_t(f[1])],
+                          mesh.vertices[std::size_t(f[2])]});
   nodes_.push_back({.begin = 0, .end = std::uint32_t(triangles_.size())});
   for (std::size_t node = 0; node < nodes_.size(); ++node) split(node);
 }
@@ -149,7 +161,8 @@ void TriangleTree::split(std::size_t index) {
   box.sizes().maxCoeff(&axis);
   const std::uint32_t middle = (begin + end) / 2;
   const auto place = [&](const Triangle& t) { return t[0][axis] + t[1][axis] + t[2][axis]; };
-  std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end, [&](const Triangle& a, const Triangle& b) { return place(a) < place(b); });
+  std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
+                   [&](const Triangle& a, const Triangle& b) { return place(a) < place(b); });
   nodes_[index].left = std::int32_t(nodes_.size());
   nodes_.push_back({.begin = begin, .end = middle});
   nodes_.push_back({.begin = middle, .end = end});
@@ -183,16 +196,19 @@ std::optional<SurfaceHit> TriangleTree::cast(const Vec3& from, const Vec3& direc
   return SurfaceHit{first, from + first * direction, normal_of(*met).normalized()};
 }
 
-std::optional<SurfaceHit> TriangleTree::sweep(const Vec3& from, const Vec3& direction, double length, double radius) const {
+std::optional<SurfaceHit> TriangleTree::sweep(const Vec3& from, const Vec3& direction, double length,
+                                              double radius) const {
   std::optional<SurfaceHit> first;
   double reach = length;
   const auto apart = [&](const SurfaceHit& hit) { return (hit.point - from).squaredNorm(); };
-  walk([&](const Box& box) { return enters_box(box, radius, from, direction, reach); },
-       [&](const Triangle& t) {
-         const auto hit = sweep_triangle(t, from, direction, reach, radius);
-         if (!hit || (first && first->distance == 0.0 && hit->distance == 0.0 && apart(*hit) >= apart(*first))) return;
-         first = hit, reach = hit->distance;
-       });
+  walk(
+      [&](const Box& box) { return enters_box(box, radius, from, direction, reach); },
+      [&](const Triangle& t) {
+        const auto hit = sweep_triangle(t, from, direction, reach, radius);
+        if (!hit || (first && first->distance == 0.0 && hit->distance == 0.0 && apart(*hit) >= apart(*first)))
+          return;
+        first = hit, reach = hit->distance;
+      });
   return first;
 }
 
@@ -202,7 +218,8 @@ std::optional<SurfaceHit> TriangleTree::find_nearest(const Vec3& point, double r
   walk([&](const Box& box) { return box.squaredExteriorDistance(point) <= square; },
        [&](const Triangle& t) {
          const Vec3 at = nearest_point(t, point);
-         if (const double apart = (at - point).squaredNorm(); apart <= square) square = apart, nearest = SurfaceHit{std::sqrt(apart), at, normal_of(t).normalized()};
+         if (const double apart = (at - point).squaredNorm(); apart <= square)
+           square = apart, nearest = SurfaceHit{std::sqrt(apart), at, normal_of(t).normalized()};
        });
   return nearest;
 }
@@ -214,7 +231,10 @@ bool TriangleTree::contains(const Vec3& point) const {
   int crossings = 0;
   const double length = 2.0 * nodes_[0].box.diagonal().norm();
   walk([&](const Box& box) { return enters_box(box, 0.0, point, direction, length); },
-       [&](const Triangle& t) { crossings += meet_front(t, point, direction, length).has_value() || meet_front({t[0], t[2], t[1]}, point, direction, length).has_value(); });
+       [&](const Triangle& t) {
+         crossings += meet_front(t, point, direction, length).has_value() ||
+                      meet_front({t[0], t[2], t[1]}, point, direction, length).has_value();
+       });
   return crossings % 2 == 1;
 }
 

@@ -1,5 +1,6 @@
-// The triangles of a mesh in a tree of boxes, to be asked what a ray, a moving sphere or a box meets. Made once for each shape.
-// (Ericson, Real-time collision detection, 2005: 5.1.5, 5.3.6, 5.5.6; triangles and boxes: Akenine-Möller, Fast 3D triangle-box overlap testing, 2001.)
+// The triangles of a mesh in a tree of boxes, to be asked what a ray, a moving sphere or a box meets. Made
+// once for each shape. (Ericson, Real-time collision detection, 2005: 5.1.5, 5.3.6, 5.5.6; triangles and
+// boxes: Akenine-Möller, Fast 3D triangle-box overlap testing, 2001.)
 #pragma once
 
 #include <array>
@@ -25,8 +26,10 @@ class TriangleTree {
 
   /// The first triangle whose outside a ray meets. `direction` of unit length.
   std::optional<SurfaceHit> cast(const Vec3& from, const Vec3& direction, double length) const;
-  /// The first that a sphere meets which moves along a ray; at once, with the nearest point, where it touches one already.
-  std::optional<SurfaceHit> sweep(const Vec3& from, const Vec3& direction, double length, double radius) const;
+  /// The first that a sphere meets which moves along a ray; at once, with the nearest point, where it touches
+  /// one already.
+  std::optional<SurfaceHit> sweep(const Vec3& from, const Vec3& direction, double length,
+                                  double radius) const;
   /// The nearest point within `reach`; `distance` is that from `point`.
   std::optional<SurfaceHit> find_nearest(const Vec3& point, double reach) const;
   /// Whether a point lies inside a closed mesh.
@@ -49,7 +52,9 @@ class TriangleTree {
   std::vector<Node> nodes_;
 };
 
-/// m: of a ray into a sphere about `center`, from outside; a start inside meets it at 0. None where it misses.
-std::optional<double> meet_sphere(const Vec3& from, const Vec3& direction, double length, const Vec3& center, double radius);
+/// m: of a ray into a sphere about `center`, from outside; a start inside meets it at 0. None where it
+/// misses.
+std::optional<double> meet_sphere(const Vec3& from, const Vec3& direction, double length, const Vec3& center,
+                                  double radius);
 
 }  // namespace lodestone

@@ -1,5 +1,6 @@
-// Stages 3 to 5 for hulls: bodies of `support` and full ones, and those of `tables` near them, which are guests here for a step. Who may touch another moves in substeps: contacts
-// found, all of them solved at once, the bodies moved; the others move by themselves.
+// Stages 3 to 5 for hulls: bodies of `support` and full ones, and those of `tables` near them, which are
+// guests here for a step. Who may touch another moves in substeps: contacts found, all of them solved at
+// once, the bodies moved; the others move by themselves.
 #pragma once
 
 #include <span>
@@ -20,16 +21,28 @@ namespace lodestone {
 
 class NearBodies {
  public:
-  NearBodies(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials, const Kinds& kinds, const JobRunner& jobs)
-      : settings_(settings), ground_(ground), materials_(materials), kinds_(kinds), jobs_(jobs), pairs_(jobs), crowd_(jobs), rest_law_(settings.sleep) {
+  NearBodies(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials,
+             const Kinds& kinds, const JobRunner& jobs)
+      : settings_(settings),
+        ground_(ground),
+        materials_(materials),
+        kinds_(kinds),
+        jobs_(jobs),
+        pairs_(jobs),
+        crowd_(jobs),
+        rest_law_(settings.sleep) {
     tables_.options = settings.tables;
   }
 
-  /// Moves the bodies of `support`, and the guests that are touched, by `dt` seconds; full neighbours receive their share of the contacts.
-  void step(double dt, SupportLevel& support, std::span<Guest> guests, NearSearch& search, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts,
-            StageTimes& times, ContactTally& tally);
+  /// Moves the bodies of `support`, and the guests that are touched, by `dt` seconds; full neighbours receive
+  /// their share of the contacts.
+  void step(double dt, SupportLevel& support, std::span<Guest> guests, NearSearch& search,
+            std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, StageTimes& times,
+            ContactTally& tally);
   /// As bodies are added, little by little, so that no step has to.
-  void make_room(std::size_t bodies) { pairs_.make_room(bodies), near_.make_room(bodies), crowd_.make_room(bodies); }
+  void make_room(std::size_t bodies) {
+    pairs_.make_room(bodies), near_.make_room(bodies), crowd_.make_room(bodies);
+  }
   void archive(StateArchive& a) { a(pairs_, crowd_); }
   void set_gravity(const Vec3& gravity) { settings_.gravity = gravity; }
   void set_log(ContactLog* log) { log_ = log; }  ///< null: none
@@ -39,13 +52,19 @@ class NearBodies {
   std::span<const CrowdContact> contacts() const { return pairs_.contacts(); }
 
  private:
-  StepWorld world() const { return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, settings_.properties, log_}; }
-  void find_ground_solids(const ContactScene& scene, const SupportLevel& support, double after, double time, bool of_near_only);
+  StepWorld world() const {
+    return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, settings_.properties, log_};
+  }
+  void find_ground_solids(const ContactScene& scene, const SupportLevel& support, double after, double time,
+                          bool of_near_only);
   template <class Select>
-  void move_those(SupportLevel& support, std::span<Guest> guests, double time, ContactTally& tally, const Select& select);
-  void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time, ContactTally& tally) const;
+  void move_those(SupportLevel& support, std::span<Guest> guests, double time, ContactTally& tally,
+                  const Select& select);
+  void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
+                  ContactTally& tally) const;
   void wake_touched(const ContactScene& scene, SupportLevel& support);
-  void move_crowded(const ContactScene& scene, SupportLevel& support, std::span<Guest> guests, std::span<const FullContact> full_contacts, double time, ContactTally& tally);
+  void move_crowded(const ContactScene& scene, SupportLevel& support, std::span<Guest> guests,
+                    std::span<const FullContact> full_contacts, double time, ContactTally& tally);
   void move_on(double time, int substep);
 
   StatisticalSettings settings_;
@@ -55,7 +74,7 @@ class NearBodies {
   JobRunner jobs_;
   TablesSettings tables_;
   ContactLog* log_ = nullptr;
-  double step_s_ = 0.0;                           // s, of the whole step
+  double step_s_ = 0.0;  // s, of the whole step
 
   NearPairs pairs_;
   NearMarks near_;

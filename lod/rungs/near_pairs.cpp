@@ -9,8 +9,10 @@ namespace {
 constexpr double kTouching = 0.01;  // over R: a gap that is as good as none
 constexpr double kFar = 0.25;       // over R: across so wide a gap fast bodies may well miss each other
 
-// Whether two that close in at `closing` (m/s, of the first) do touch within `time`: conservative advancement of their hulls as they are turned now.
-bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3& closing, const PairContact& contact, double touching, double time) {
+// Whether two that close in at `closing` (m/s, of the first) do touch within `time`: conservative advancement
+// of their hulls as they are turned now.
+bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3& closing,
+                       const PairContact& contact, double touching, double time) {
   constexpr int kMostSteps = 12;
   HullGap gap{contact.normal, contact.gap, -1, -1};
   double gone = 0.0;
@@ -25,44 +27,98 @@ bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3
   return true;
 }
 
-bool comes_before(const Vec3& p, const Vec3& q) { return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end()); }
+bool comes_before(const Vec3& p, const Vec3& q) {
+  return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+}
 
 }  // namespace
 
-// Pairs too many are set aside, not freed: what they have allocated serves others.
-void NearPairs::resize(std::size_t count) {
-  while (found_.size() > count) {
-    spare_.push_back(std::move(found_.back()));
-    found_.pop_back();
+std::uint32_t NearPairs::take_place() {
+  if (spare_.empty()) {
+    if (all_.size() == all_.capacity())
+      all_.reserve(all_.size() + all_.size() / 4 + 64);  // a quarter more, not twice as much: they are many
+    all_.emplace_back();
+    return std::uint32_t(all_.size() - 1);
   }
-  while (found_.size() < count) {
-    if (spare_.empty()) {
-      found_.emplace_back();
-      continue;
+  const std::uint32_t place = spare_.back();
+  spare_.pop_back();
+  all_[place].forget();
+  return place;
+}
+
+void NearPairs::clear() {
+  spare_.insert(spare_.end(), found_.begin(), found_.end());
+  found_.clear();
+  contacts_.clear();
+}
+
+// In the order of the step, whatever their places.
+void NearPairs::archive(StateArchive& a) {
+  auto count = std::uint64_t(found_.size());
+  a(count);
+  if (a.reading()) {
+    clear();
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::uint32_t place = take_place();
+      a(all_[place]);
+      found_.push_back(place);
     }
-    found_.push_back(std::move(spare_.back()));
-    spare_.pop_back();
+  } else {
+    for (const std::uint32_t place : found_) a(all_[place]);
   }
+  a(contacts_);
 }
 
 void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs) {
   std::swap(found_, before_);
   memory_.clear();
-  for (const FoundPair& pair : before_) memory_.add(pair.key);
-  resize(pairs.size());
+  for (const std::uint32_t place : before_) memory_.add(all_[place].key);
+  constexpr std::uint32_t kTaken = ~0u;
+  found_.resize(pairs.size());
+  newcomers_.clear();
   std::size_t expected = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    // By place, so that a contact is the same on whichever rungs its bodies are and whichever was added first.
+    // By place, so that a contact is the same on whichever rungs its bodies are and whichever was added
+    // first.
     auto [first, second] = pairs[i];
     if (comes_before(scene.position(second), scene.position(first))) std::swap(first, second);
     const ContactKey key = contact_key(scene.owner(first), scene.owner(second));
-    const std::int32_t before = memory_.find(key, expected);  // none, too, where they have changed places: what is known holds for their old order
-    if (before < 0) found_[i].forget();
-    else std::swap(found_[i], before_[std::size_t(before)]), expected = std::size_t(before) + 1;
-    found_[i].key = key;
-    found_[i].first = first;
-    found_[i].second = second;
+    const std::int32_t before = memory_.find(
+        key, expected);  // none, too, where they have changed places: what is known holds for their old order
+    if (before < 0 || before_[std::size_t(before)] == kTaken) {
+      newcomers_.push_back({std::uint32_t(i), key, first, second});
+      continue;
+    }
+    found_[i] = std::exchange(before_[std::size_t(before)], kTaken);
+    expected = std::size_t(before) + 1;
+    all_[found_[i]].first = first;
+    all_[found_[i]].second = second;
   }
+  for (const std::uint32_t place : before_)
+    if (place != kTaken) spare_.push_back(place);
+  for (const Newcomer& newcomer : newcomers_) {
+    FoundPair& pair = all_[found_[newcomer.at] = take_place()];
+    pair.key = newcomer.key, pair.first = newcomer.first, pair.second = newcomer.second;
+  }
+  put_in_order();
+}
+
+// Loops over pairs that lie far from each other in memory wait for them: where too many do, all are moved to
+// where the order of the step has them, in place.
+void NearPairs::put_in_order() {
+  std::size_t leaps = 0;
+  for (std::size_t i = 0; i < found_.size(); ++i) leaps += found_[i] != (i == 0 ? 0 : found_[i - 1] + 1);
+  if (leaps < found_.size() / 4 + 16) return;
+  const std::size_t count = found_.size();
+  found_.insert(found_.end(), spare_.begin(), spare_.end());
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t from = found_[i];
+    while (from < i) from = found_[from];  // it has been moved there since
+    if (from != i) std::swap(all_[i], all_[from]);
+  }
+  for (std::size_t i = 0; i < count; ++i) found_[i] = std::uint32_t(i);
+  for (std::size_t i = 0; i < spare_.size(); ++i) spare_[i] = std::uint32_t(count + i);
+  found_.resize(count);
 }
 
 Vec3 NearPairs::point_velocity(const ContactScene& scene, Participant p, const Vec3& point) const {
@@ -76,42 +132,54 @@ Vec3 NearPairs::point_velocity(const ContactScene& scene, Participant p, const V
 }
 
 void NearPairs::find_contact(const ContactScene& scene, double time, FoundPair& pair) const {
-  // Over R: so far bodies take a contact along. A sphere's orientation is coarse anyway, and spheres among others may overlap deeply, where a search is dear.
+  // Over R: so far bodies take a contact along. A sphere's orientation is coarse anyway, and spheres among
+  // others may overlap deeply, where a search is dear.
   constexpr double kHeld = 0.02, kHeldBySphere = 0.1;
   const PairBody a = scene.pair_body(pair.first), b = scene.pair_body(pair.second);
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
   const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;
-  if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(scene, pair, time)) return;
+  if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(scene, pair, time))
+    return;
   const auto is_sphere = [&](Participant p) { return p.is_statistical() && scene.body(p).is_sphere(); };
   const auto is_eased = [&](Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; };
   const double held = is_sphere(pair.first) || is_sphere(pair.second) ? kHeldBySphere : kHeld;
   if (!pair.contacts.empty() && moved < held * least_radius) return;
   const Vec3 closing = scene.velocity(pair.first) - scene.velocity(pair.second);
   thread_local HullContactSearch search;
-  search.exact = !is_sphere(pair.first) && !is_sphere(pair.second) && !is_eased(pair.first) && !is_eased(pair.second);
+  search.exact =
+      !is_sphere(pair.first) && !is_sphere(pair.second) && !is_eased(pair.first) && !is_eased(pair.second);
   find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + closing.norm() * time, search);
   pair.gap = search.gap;
   pair.when = pose_of(a, b);
   pair.contacts.clear();
-  const auto meet = [&](const PairContact& contact) { return contact.gap < kFar * least_radius || meet_on_their_way(a, b, closing, contact, touching, time); };
+  const auto meet = [&](const PairContact& contact) {
+    return contact.gap < kFar * least_radius || meet_on_their_way(a, b, closing, contact, touching, time);
+  };
   for (const PairContact& contact : search.contacts)
     if (meet(contact)) pair.contacts.push_back(hold(contact, a, b));
 }
 
 // Within the time, or nearly so.
-bool NearPairs::closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact, double time) const {
+bool NearPairs::closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact,
+                       double time) const {
   const double touching = kTouching * least_radius(scene, pair);
-  return std::ranges::any_of(std::span(contact.manifold.points).first(std::size_t(contact.manifold.count)), [&](const ManifoldPoint& p) {
-    const Vec3 velocity = point_velocity(scene, pair.first, p.point) - point_velocity(scene, pair.second, p.point);
-    return p.gap + velocity.dot(contact.normal) * time <= touching;
-  });
+  return std::ranges::any_of(std::span(contact.manifold.points).first(std::size_t(contact.manifold.count)),
+                             [&](const ManifoldPoint& p) {
+                               const Vec3 velocity = point_velocity(scene, pair.first, p.point) -
+                                                     point_velocity(scene, pair.second, p.point);
+                               return p.gap + velocity.dot(contact.normal) * time <= touching;
+                             });
 }
 
-void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> awake, NearMarks& near) {
+void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> awake,
+                              NearMarks& near) {
   for (const std::int32_t slot : awake) scene.bodies[std::size_t(slot)].crowded = false;
-  const auto moved_on = [&](Participant p) { return p.is_statistical() && !near[p.index()] && !scene.asleep(p); };
+  const auto moved_on = [&](Participant p) {
+    return p.is_statistical() && !near[p.index()] && !scene.asleep(p);
+  };
   const auto looked_at = [&](const FoundPair& pair) {
-    if (pair.first.is_full() && pair.second.is_full()) return false;  // two full bodies are the full level's matter
+    if (pair.first.is_full() && pair.second.is_full())
+      return false;  // two full bodies are the full level's matter
     if (moved_on(pair.first) || moved_on(pair.second)) return false;
     return !(scene.asleep(pair.first) && scene.asleep(pair.second));
   };
@@ -119,18 +187,24 @@ void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<
   const auto count = std::int64_t(found_.size());
   run_in_pieces(jobs_, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
-      if (looked_at(found_[std::size_t(i)])) find_contact(scene, time, found_[std::size_t(i)]);
+      if (FoundPair& pair = all_[found_[std::size_t(i)]]; looked_at(pair)) find_contact(scene, time, pair);
   });
   first_contact_.assign(1, 0);
-  for (const FoundPair& pair : found_) first_contact_.push_back(first_contact_.back() + (pair.contacts.empty() || !looked_at(pair) ? 0 : std::uint32_t(pair.contacts.size())));
+  for (const std::uint32_t place : found_) {
+    const FoundPair& pair = all_[place];
+    first_contact_.push_back(first_contact_.back() + (pair.contacts.empty() || !looked_at(pair)
+                                                          ? 0
+                                                          : std::uint32_t(pair.contacts.size())));
+  }
   contacts_.resize(first_contact_.back());
   may_close_.resize(first_contact_.back());
   run_in_pieces(jobs_, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
-      const FoundPair& pair = found_[std::size_t(i)];
+      const FoundPair& pair = (*this)[std::size_t(i)];
       for (std::uint32_t at = first_contact_[std::size_t(i)]; at < first_contact_[std::size_t(i) + 1]; ++at) {
         const HeldContact& held = pair.contacts[at - first_contact_[std::size_t(i)]];
-        contacts_[at] = {pair.first, pair.second, follow(held, scene.pair_body(pair.first), scene.pair_body(pair.second))};
+        contacts_[at] = {pair.first, pair.second,
+                         follow(held, scene.pair_body(pair.first), scene.pair_body(pair.second))};
         may_close_[at] = closes(scene, pair, contacts_[at].contact, time);
       }
     }
@@ -151,7 +225,8 @@ void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int
   for (const std::int32_t slot : awake) {
     const StatisticalBody& body = scene.bodies[std::size_t(slot)];
     const Shape& shape = *scene.kind_of(body).shape;
-    const Vec3 omega = body.motion == Motion::asleep ? Vec3(Vec3::Zero()) : angular_velocity(body.orientation, body.spin, shape);
+    const Vec3 omega = body.motion == Motion::asleep ? Vec3(Vec3::Zero())
+                                                     : angular_velocity(body.orientation, body.spin, shape);
     turning_[std::size_t(slot)] = {omega, omega.norm() * shape.radius};
   }
 }
@@ -162,12 +237,16 @@ double NearPairs::find_approach(const ContactScene& scene, const FoundPair& pair
     return scene.neighbor(p).state.angular_velocity.norm() * scene.shape(p).radius;
   };
   const double fall = 0.5 * scene.world.gravity_strength() * time * time;
-  return ((scene.velocity(pair.first) - scene.velocity(pair.second)).norm() + rim_speed(pair.first) + rim_speed(pair.second)) * time + fall;
+  return ((scene.velocity(pair.first) - scene.velocity(pair.second)).norm() + rim_speed(pair.first) +
+          rim_speed(pair.second)) *
+             time +
+         fall;
 }
 
 double NearPairs::gap_left(const ContactScene& scene, const FoundPair& pair) const {
   if (!pair.when || !pair.contacts.empty()) return 0.0;
-  return pair.gap - find_motion_since(*pair.when, scene.pair_body(pair.first), scene.pair_body(pair.second)) - kTouching * least_radius(scene, pair);
+  return pair.gap - find_motion_since(*pair.when, scene.pair_body(pair.first), scene.pair_body(pair.second)) -
+         kTouching * least_radius(scene, pair);
 }
 
 }  // namespace lodestone

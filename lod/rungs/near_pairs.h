@@ -1,5 +1,6 @@
-// Stages 2 and 3: which of the bodies that may meet in a step do touch: of `support`, full ones, and those of `tables` near them. What is known of a pair is kept from step
-// to step. Bodies meet as their hulls, whatever their rung: spheres are for two of `tables`, which meet by themselves (tables/).
+// Stages 2 and 3: which of the bodies that may meet in a step do touch: of `support`, full ones, and those of
+// `tables` near them. What is known of a pair is kept from step to step. Bodies meet as their hulls, whatever
+// their rung: spheres are for two of `tables`, which meet by themselves (tables/).
 #pragma once
 
 #include <optional>
@@ -18,13 +19,14 @@ namespace lodestone {
 
 using NearPair = std::pair<Participant, Participant>;
 
-/// What is known of a near pair. A gap lasts until its bodies have moved by it, so most near pairs need no look at their hulls (conservative advancement;
-/// Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996); a contact lasts while they move little.
+/// What is known of a near pair. A gap lasts until its bodies have moved by it, so most near pairs need no
+/// look at their hulls (conservative advancement; Mirtich, Impulse-based dynamic simulation of rigid body
+/// systems, 1996); a contact lasts while they move little.
 struct FoundPair {
   ContactKey key = 0;
   Participant first = Participant::ground(), second = Participant::ground();
-  double gap = 0.0;                ///< m, at least, when it was found
-  std::optional<PairPose> when;    ///< how the bodies lay then; none: never
+  double gap = 0.0;  ///< m, at least, when it was found: valid while find_motion_since(*when) is less
+  std::optional<PairPose> when;              ///< how the bodies lay then; none: never
   HullGap whole = {.normal = Vec3::Zero()};  ///< as the two after it, see find_pair_contacts
   std::vector<KnownGap> of_pieces;
   std::vector<HeldContact> contacts;
@@ -44,17 +46,20 @@ class NearPairs {
 
   /// Takes the pairs of a step; what is known of those that were near before stays so.
   void take(const ContactScene& scene, std::span<const NearPair> pairs);
-  void clear() { found_.clear(), contacts_.clear(); }
-  void archive(StateArchive& a) { a(found_, contacts_); }
+  void clear();
+  void archive(StateArchive& a);
   void make_room(std::size_t bodies) { turning_.resize(std::max(turning_.size(), bodies)); }
-  std::span<const FoundPair> pairs() const { return found_; }
+  std::size_t size() const { return found_.size(); }
+  const FoundPair& operator[](std::size_t i) const { return all_[found_[i]]; }
 
   /// Of each body given, by index, before its contacts are looked for.
   void find_turning(const ContactScene& scene, std::span<const std::int32_t> awake);
   /// Of one that was just woken.
   void clear_turning(Participant p) { turning_[p.index()] = {}; }
-  /// Contacts that may close within `time` seconds: of pairs whose bodies are near others (`near`) or asleep. Marks as crowded, and near, who has one.
-  void find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> awake, NearMarks& near);
+  /// Contacts that may close within `time` seconds: of pairs whose bodies are near others (`near`) or asleep.
+  /// Marks as crowded, and near, who has one.
+  void find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> awake,
+                     NearMarks& near);
   std::span<const CrowdContact> contacts() const { return contacts_; }
 
   /// m: by how much the gap of a pair can shrink in `time` seconds, at most, if nothing strikes them.
@@ -71,21 +76,34 @@ class NearPairs {
     double rim_speed = 0.0;                // m/s: of the point farthest from the centre about it
   };
 
-  void resize(std::size_t count);
+  struct Newcomer {
+    std::uint32_t at;  // in found_
+    ContactKey key;
+    Participant first, second;
+  };
+
+  std::uint32_t take_place();
+  void put_in_order();
   void find_contact(const ContactScene& scene, double time, FoundPair& pair) const;
-  bool closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact, double time) const;
+  bool closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact,
+              double time) const;
 
   JobRunner jobs_;
-  PairMemory memory_;                         // places in before_
-  std::vector<FoundPair> found_, before_;     // of the pairs of this step and of the last one
-  std::vector<FoundPair> spare_;
-  std::vector<Turning> turning_;              // by index; of those awake
+  PairMemory memory_;           // places in before_
+  std::vector<FoundPair> all_;  // in no order; a pair stays where it is while its bodies are near
+  std::vector<std::uint32_t> found_,
+      before_;  // places in all_ of the pairs of this step and, while it takes its own, of the last one
+  std::vector<std::uint32_t> spare_;  // places in all_ of none: what these have allocated serves others
+  std::vector<Newcomer> newcomers_;   // pairs of this step that were not near in the last one
+  std::vector<Turning> turning_;      // by index; of those awake
   std::vector<CrowdContact> contacts_;
   std::vector<std::uint32_t> first_contact_;  // of each pair, among those that are looked at
   std::vector<char> may_close_;               // of each of these
 };
 
 /// m.
-inline double least_radius(const ContactScene& scene, const FoundPair& pair) { return std::min(scene.shape(pair.first).radius, scene.shape(pair.second).radius); }
+inline double least_radius(const ContactScene& scene, const FoundPair& pair) {
+  return std::min(scene.shape(pair.first).radius, scene.shape(pair.second).radius);
+}
 
 }  // namespace lodestone

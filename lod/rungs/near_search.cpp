@@ -6,18 +6,59 @@
 namespace lodestone {
 namespace {
 
-constexpr double kBall = 1.02;        // over R: of the ball about a hull
-constexpr int kSharesMost = 16;       // of the work of filling the cells
+constexpr double kBall = 1.02;   // over R: of the ball about a hull
+constexpr int kSharesMost = 16;  // of the work of filling the cells
 
 }  // namespace
 
-// By place, so that nothing hangs on the order in which bodies were added.
-void NearSearch::sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const {
+void NearSearch::sort_by_place(std::span<const StatisticalBody> bodies,
+                               std::vector<std::int32_t>& indices) const {
   const auto place = [&](std::int32_t index) {
     const Vec3& p = bodies[std::size_t(index)].position;
     return std::array{p.x(), p.y(), p.z()};
   };
   std::ranges::sort(indices, {}, place);
+}
+
+// Those awake, first those that were so in the last step, in their order then: the rest of the sorting is
+// little.
+void NearSearch::take_movers(const SupportLevel& support) {
+  const std::span<const std::int32_t> awake = support.awake();
+  kept_.assign(awake.size(), 0);
+  std::erase_if(movers_, [&](std::int32_t index) {
+    if (index >= support.size() || !support.is_among_awake(index)) return true;
+    kept_[std::size_t(support.place_among_awake(index))] = 1;
+    return false;
+  });
+  if (movers_.size() == awake.size()) return;
+  for (std::size_t i = 0; i < awake.size(); ++i)
+    if (!kept_[i]) movers_.push_back(awake[i]);
+}
+
+// By insertion, while that takes few moves.
+void NearSearch::sort_nearly_sorted(std::vector<Placed>& placed) {
+  constexpr std::size_t kFewMoves = 16;  // of each, on average
+  std::size_t left = kFewMoves * placed.size();
+  for (std::size_t i = 1; i < placed.size(); ++i) {
+    if (!(placed[i] < placed[i - 1])) continue;
+    const Placed one = placed[i];
+    std::size_t at = i;
+    for (; at > 0 && one < placed[at - 1]; --at) placed[at] = placed[at - 1];
+    placed[at] = one;
+    if (i - at > left) return std::sort(placed.begin(), placed.end());
+    left -= i - at;
+  }
+}
+
+// By place, so that nothing hangs on the order in which bodies were added.
+void NearSearch::sort_movers(std::span<const StatisticalBody> bodies) {
+  placed_.clear();
+  for (const std::int32_t index : movers_) {
+    const Vec3& p = bodies[std::size_t(index)].position;
+    placed_.push_back({p.x(), p.y(), p.z(), index});
+  }
+  sort_nearly_sorted(placed_);
+  for (std::size_t i = 0; i < placed_.size(); ++i) movers_[i] = placed_[i].index;
 }
 
 void NearSearch::add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt) {
@@ -26,7 +67,8 @@ void NearSearch::add_ball(const Vec3& position, const Vec3& velocity, double rad
   reach_.push_back(float(kBall * radius + half_way.norm() + 0.5 * gravity_.norm() * dt * dt));
 }
 
-void NearSearch::add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support, std::span<const FullNeighbor> neighbors) {
+void NearSearch::add_hull_balls(double dt, std::span<const StatisticalBody> bodies,
+                                const SupportLevel& support, std::span<const FullNeighbor> neighbors) {
   for (const std::int32_t index : movers_) {
     const StatisticalBody& body = bodies[std::size_t(index)];
     add_ball(body.position, body.velocity, support.kind_of(body).shape->radius, dt);
@@ -54,33 +96,42 @@ void NearSearch::clear() {
   mixed_ = true;  // no order
 }
 
-void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& support, std::span<const FullNeighbor> neighbors) {
+void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& support,
+                      std::span<const FullNeighbor> neighbors) {
   const Spheres& s = tables.spheres();
   spheres_ = std::size_t(s.awake);
   own_bodies_ = std::size_t(support.size());
-  movers_.assign(support.awake().begin(), support.awake().end());
+  take_movers(support);
   mixed_ = spheres_ > 0 && movers_.size() + neighbors.size() > 0;
   x_.clear(), y_.clear(), z_.clear(), reach_.clear();
-  const auto cells_of_spheres = [&](const auto& x, const auto& y, const auto& z, std::span<const float> reach, const CellGrid::Lent& lent) {
-    cells_.fill({std::span<const double>(x).first(reach.size()), std::span<const double>(y).first(reach.size()), std::span<const double>(z).first(reach.size()), reach},
-                jobs_, std::min(threads_, kSharesMost), lent);
+  const auto cells_of_spheres = [&](const auto& x, const auto& y, const auto& z, std::span<const float> reach,
+                                    const CellGrid::Lent& lent) {
+    cells_.fill(
+        {std::span<const double>(x).first(reach.size()), std::span<const double>(y).first(reach.size()),
+         std::span<const double>(z).first(reach.size()), reach},
+        jobs_, std::min(threads_, kSharesMost), lent);
   };
   if (spheres_ > 0 && !mixed_) return cells_of_spheres(s.x, s.y, s.z, tables.reach(), tables.free_rows());
 
-  sort_by_place(support.bodies(), movers_);
+  sort_movers(support.bodies());
   if (!mixed_) {
     add_hull_balls(dt, support.bodies(), support, neighbors);
     return cells_.fill({x_, y_, z_, reach_});
   }
-  // Spheres keep the balls that they have among themselves; those of hulls are drawn larger by as much as the hull of any sphere stands out of it.
+  // Spheres keep the balls that they have among themselves; those of hulls are drawn larger by as much as the
+  // hull of any sphere stands out of it.
   double standing_out = 0.0;
-  for (std::size_t i = 0; i < spheres_; ++i) standing_out = std::max(standing_out, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
-  const auto copy = [&](auto& to, const auto& from) { to.assign(from.begin(), from.begin() + std::ptrdiff_t(spheres_)); };
+  for (std::size_t i = 0; i < spheres_; ++i)
+    standing_out = std::max(standing_out, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
+  const auto copy = [&](auto& to, const auto& from) {
+    to.assign(from.begin(), from.begin() + std::ptrdiff_t(spheres_));
+  };
   copy(x_, s.x), copy(y_, s.y), copy(z_, s.z), copy(reach_, tables.reach());
   add_hull_balls(dt, support.bodies(), support, neighbors);
   drawn_reach_ = reach_;
   for (std::size_t i = spheres_; i < reach_.size(); ++i) drawn_reach_[i] += float(standing_out);
-  for (std::size_t i = 0; i < spheres_; ++i) reach_[i] += float(std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i])));
+  for (std::size_t i = 0; i < spheres_; ++i)
+    reach_[i] += float(std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i])));
   cells_of_spheres(x_, y_, z_, drawn_reach_, {});
   note_order(spheres_);
 }
@@ -97,7 +148,8 @@ void NearSearch::find_hull_pairs() {
 }
 
 bool NearSearch::meet(std::uint32_t a, std::uint32_t b) const {
-  const double dx = x_[a] - x_[b], dy = y_[a] - y_[b], dz = z_[a] - z_[b], limit = double(reach_[a]) + double(reach_[b]);
+  const double dx = x_[a] - x_[b], dy = y_[a] - y_[b], dz = z_[a] - z_[b],
+               limit = double(reach_[a]) + double(reach_[b]);
   return dx * dx + dy * dy + dz * dz < limit * limit;
 }
 
@@ -113,7 +165,8 @@ Participant NearSearch::guest(std::int32_t slot) {
 Participant NearSearch::participant(std::uint32_t ball, const TablesLevel& tables) {
   if (ball < spheres_) return guest(tables.spheres().slot[ball]);
   const std::size_t mover = ball - spheres_;
-  return mover < movers_.size() ? Participant::statistical(std::size_t(movers_[mover])) : Participant::full(mover - movers_.size());
+  return mover < movers_.size() ? Participant::statistical(std::size_t(movers_[mover]))
+                                : Participant::full(mover - movers_.size());
 }
 
 void NearSearch::add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables) {
@@ -126,40 +179,48 @@ void NearSearch::add_pair(std::uint32_t first, std::uint32_t second, const Table
 
 // Of two owners.
 bool NearSearch::lets_meet(std::uint32_t first, std::uint32_t second) const {
-  if (properties_ && !properties_->empty() && !may_meet(properties_->of(first), properties_->of(second))) return false;
+  if (properties_ && !properties_->empty() && !may_meet(properties_->of(first), properties_->of(second)))
+    return false;
   return !pair_filter_ || pair_filter_(first, second);
 }
 
 template <class Owner>
 void NearSearch::filter_pairs(const Owner& owner) {
-  if (pair_filter_ || (properties_ && !properties_->empty())) std::erase_if(pairs_, [&](const NearPair& pair) { return !lets_meet(owner(pair.first), owner(pair.second)); });
+  if (pair_filter_ || (properties_ && !properties_->empty()))
+    std::erase_if(pairs_,
+                  [&](const NearPair& pair) { return !lets_meet(owner(pair.first), owner(pair.second)); });
 }
 
 void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
   pairs_.clear();
   forget_guests();
-  const bool hulls = movers_.size() + neighbors.size() > 0 || !sleepers_.of(StatisticalModel::support).empty();
+  const bool hulls =
+      movers_.size() + neighbors.size() > 0 || !sleepers_.of(StatisticalModel::support).empty();
   if (hulls) guest_of_slot_.resize(std::size_t(tables.size()), -1);
   if (spheres_ > 0) {
     tables.find_contacts(cells_, mixed_ ? &others_ : nullptr);
     if (mixed_)
       for (std::int64_t part = 0; part < cells_.parts(); ++part)
-        for (std::int64_t i = 0; i < others_[std::size_t(part)].size(); ++i) add_pair(others_[std::size_t(part)].first(i), others_[std::size_t(part)].second(i), tables);
+        for (std::int64_t i = 0; i < others_[std::size_t(part)].size(); ++i)
+          add_pair(others_[std::size_t(part)].first(i), others_[std::size_t(part)].second(i), tables);
     find_still_hulls_near_spheres(support, tables);
   } else {
     tables.forget_contacts();
     find_hull_pairs();
-    for (std::int64_t i = 0; i < ball_pairs_.size(); ++i) add_pair(ball_pairs_.first(i), ball_pairs_.second(i), tables);
+    for (std::int64_t i = 0; i < ball_pairs_.size(); ++i)
+      add_pair(ball_pairs_.first(i), ball_pairs_.second(i), tables);
   }
   find_still_pairs(support, neighbors, &tables);
   filter_pairs([&](Participant p) {
     if (p.is_full()) return neighbors[p.index()].owner;
-    return p.index() < own_bodies_ ? support.body(int(p.index())).owner : tables.owner(guests_[p.index() - own_bodies_].slot);
+    return p.index() < own_bodies_ ? support.body(int(p.index())).owner
+                                   : tables.owner(guests_[p.index() - own_bodies_].slot);
   });
 }
 
 // Of moving hulls with those that sleep.
-void NearSearch::find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors, const TablesLevel* tables) {
+void NearSearch::find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors,
+                                  const TablesLevel* tables) {
   if (sleepers_.empty()) return;
   const std::span<const StatisticalBody> bodies = support.bodies();
   for (std::size_t i = spheres_; i < x_.size(); ++i) {
@@ -167,18 +228,24 @@ void NearSearch::find_still_pairs(const SupportLevel& support, std::span<const F
     if (full && neighbors[i - spheres_ - movers_.size()].asleep) continue;
     const Vec3 center(x_[i], y_[i], z_[i]);
     const auto own_reach = double(reach_[i]);
-    const auto is_near = [&](const Vec3& position, double radius) { return (position - center).squaredNorm() < (own_reach + kBall * radius) * (own_reach + kBall * radius); };
-    const Participant self = full ? Participant::full(i - spheres_ - movers_.size()) : Participant::statistical(std::size_t(movers_[i - spheres_]));
+    const auto is_near = [&](const Vec3& position, double radius) {
+      return (position - center).squaredNorm() < (own_reach + kBall * radius) * (own_reach + kBall * radius);
+    };
+    const Participant self = full ? Participant::full(i - spheres_ - movers_.size())
+                                  : Participant::statistical(std::size_t(movers_[i - spheres_]));
     still_near_.clear();
     sleepers_.of(StatisticalModel::support).find_near(center, own_reach, [&](std::uint32_t slot) {
-      if (is_near(bodies[slot].position, support.kind_of(bodies[slot]).shape->radius)) still_near_.push_back(std::int32_t(slot));
+      if (is_near(bodies[slot].position, support.kind_of(bodies[slot]).shape->radius))
+        still_near_.push_back(std::int32_t(slot));
     });
     sort_by_place(bodies, still_near_);
-    for (const std::int32_t slot : still_near_) pairs_.emplace_back(self, Participant::statistical(std::size_t(slot)));
+    for (const std::int32_t slot : still_near_)
+      pairs_.emplace_back(self, Participant::statistical(std::size_t(slot)));
     if (!tables) continue;
     still_near_.clear();
     sleepers_.of(StatisticalModel::tables).find_near(center, own_reach, [&](std::uint32_t slot) {
-      if (is_near(tables->position(int(slot)), tables->radius(int(slot)))) still_near_.push_back(std::int32_t(slot));
+      if (is_near(tables->position(int(slot)), tables->radius(int(slot))))
+        still_near_.push_back(std::int32_t(slot));
     });
     std::ranges::sort(still_near_);
     for (const std::int32_t slot : still_near_) pairs_.emplace_back(self, guest(slot));
@@ -192,14 +259,17 @@ void NearSearch::find_still_hulls_near_spheres(const SupportLevel& support, cons
   const Spheres& s = tables.spheres();
   for (std::size_t i = 0; i < spheres_; ++i) {
     const Vec3 center = s.position(std::int64_t(i));
-    const double own_reach = double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
+    const double own_reach =
+        double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
     still_near_.clear();
     still.find_near(center, own_reach, [&](std::uint32_t slot) {
       const double limit = own_reach + kBall * support.kind_of(bodies[slot]).shape->radius;
-      if ((bodies[slot].position - center).squaredNorm() < limit * limit) still_near_.push_back(std::int32_t(slot));
+      if ((bodies[slot].position - center).squaredNorm() < limit * limit)
+        still_near_.push_back(std::int32_t(slot));
     });
     sort_by_place(bodies, still_near_);
-    for (const std::int32_t slot : still_near_) pairs_.emplace_back(guest(s.slot[i]), Participant::statistical(std::size_t(slot)));
+    for (const std::int32_t slot : still_near_)
+      pairs_.emplace_back(guest(s.slot[i]), Participant::statistical(std::size_t(slot)));
   }
 }
 
@@ -208,7 +278,7 @@ void NearSearch::find_again(double dt, SupportLevel& support, std::span<const Fu
   movers_.assign(support.awake_with_guests().begin(), support.awake_with_guests().end());
   for (std::size_t i = own_bodies_; i < bodies.size(); ++i)
     if (bodies[i].motion == Motion::asleep) movers_.push_back(std::int32_t(i));  // in no store of `support`
-  sort_by_place(bodies, movers_);
+  sort_movers(bodies);
   spheres_ = 0;
   x_.clear(), y_.clear(), z_.clear(), reach_.clear();
   add_hull_balls(dt, bodies, support, neighbors);
@@ -216,15 +286,20 @@ void NearSearch::find_again(double dt, SupportLevel& support, std::span<const Fu
   mixed_ = true;  // the cells hold no spheres now
   find_hull_pairs();
   pairs_.clear();
-  const auto is_guest = [&](std::uint32_t ball) { return ball < movers_.size() && support.is_guest(movers_[ball]); };
+  const auto is_guest = [&](std::uint32_t ball) {
+    return ball < movers_.size() && support.is_guest(movers_[ball]);
+  };
   for (std::int64_t i = 0; i < ball_pairs_.size(); ++i) {
-    const std::uint32_t low = std::min(ball_pairs_.first(i), ball_pairs_.second(i)), high = std::max(ball_pairs_.first(i), ball_pairs_.second(i));
+    const std::uint32_t low = std::min(ball_pairs_.first(i), ball_pairs_.second(i)),
+                        high = std::max(ball_pairs_.first(i), ball_pairs_.second(i));
     if (low >= movers_.size() || (is_guest(low) && is_guest(high))) continue;
     const Participant first = Participant::statistical(std::size_t(movers_[low]));
-    pairs_.emplace_back(first, high < movers_.size() ? Participant::statistical(std::size_t(movers_[high])) : Participant::full(high - movers_.size()));
+    pairs_.emplace_back(first, high < movers_.size() ? Participant::statistical(std::size_t(movers_[high]))
+                                                     : Participant::full(high - movers_.size()));
   }
   find_still_pairs(support, neighbors, nullptr);
-  filter_pairs([&](Participant p) { return p.is_full() ? neighbors[p.index()].owner : bodies[p.index()].owner; });
+  filter_pairs(
+      [&](Participant p) { return p.is_full() ? neighbors[p.index()].owner : bodies[p.index()].owner; });
 }
 
 }  // namespace lodestone

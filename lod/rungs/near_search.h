@@ -1,5 +1,6 @@
-// Stage 2: who is near whom, on all rungs. One set of cells holds the balls of all that move: awake spheres, awake bodies of `support`, full ones; those that sleep are looked up
-// in their store. Pairs of spheres stay with the tables level; all others are near pairs of hulls, and spheres among them become guests there.
+// Stage 2: who is near whom, on all rungs. One set of cells holds the balls of all that move: awake spheres,
+// awake bodies of `support`, full ones; those that sleep are looked up in their store. Pairs of spheres stay
+// with the tables level; all others are near pairs of hulls, and spheres among them become guests there.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +21,17 @@ class NearSearch {
  public:
   /// `sleepers` must outlive it.
   NearSearch(const StatisticalSettings& settings, const Sleepers& sleepers, const JobRunner& jobs)
-      : gravity_(settings.gravity), properties_(settings.properties), pair_filter_(settings.pair_filter), sleepers_(sleepers), threads_(settings.threads), jobs_(jobs), cells_(settings.simd) {}
+      : gravity_(settings.gravity),
+        properties_(settings.properties),
+        pair_filter_(settings.pair_filter),
+        sleepers_(sleepers),
+        threads_(settings.threads),
+        jobs_(jobs),
+        cells_(settings.simd) {}
 
   /// Puts all that move into cells, for a step of `dt` seconds.
-  void fill(double dt, TablesLevel& tables, const SupportLevel& support, std::span<const FullNeighbor> neighbors);
+  void fill(double dt, TablesLevel& tables, const SupportLevel& support,
+            std::span<const FullNeighbor> neighbors);
   /// The contacts of spheres, then the near pairs of all others; spheres among these are guests().
   void find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors);
   /// The near pairs anew within a step of `dt` seconds, after some were woken. Guests stay who they are.
@@ -47,8 +55,22 @@ class NearSearch {
   }
 
  private:
-  void add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support, std::span<const FullNeighbor> neighbors);
+  /// A body by its place, which is how they are put in order.
+  struct Placed {
+    double x, y, z;  // m
+    std::int32_t index;
+    friend bool operator<(const Placed& a, const Placed& b) {
+      if (a.x != b.x) return a.x < b.x;
+      if (a.y != b.y) return a.y < b.y;
+      return a.z != b.z ? a.z < b.z : a.index < b.index;
+    }
+  };
+  static void sort_nearly_sorted(std::vector<Placed>& placed);
+  void add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support,
+                      std::span<const FullNeighbor> neighbors);
   void add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt);
+  void take_movers(const SupportLevel& support);
+  void sort_movers(std::span<const StatisticalBody> bodies);
   void sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const;
   void note_order(std::size_t spheres);
   void find_hull_pairs();
@@ -60,7 +82,8 @@ class NearSearch {
   Participant participant(std::uint32_t ball, const TablesLevel& tables);
   Participant guest(std::int32_t slot);
   void forget_guests();
-  void find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors, const TablesLevel* tables);
+  void find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors,
+                        const TablesLevel* tables);
   void find_still_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables);
 
   Vec3 gravity_;
@@ -72,19 +95,21 @@ class NearSearch {
   CellGrid cells_;
 
   // Balls: the awake spheres by place, then movers_, then full neighbours.
-  std::vector<double> x_, y_, z_;          // m
-  std::vector<float> reach_;               // m: how far its hull may reach in this step
-  std::vector<float> drawn_reach_;         // m: of its ball in the cells
+  std::vector<double> x_, y_, z_;   // m
+  std::vector<float> reach_;        // m: how far its hull may reach in this step
+  std::vector<float> drawn_reach_;  // m: of its ball in the cells
   std::size_t spheres_ = 0;
-  std::vector<std::int32_t> movers_;       // indices of bodies that move, by place
-  bool mixed_ = false;                     // spheres and others
-  std::vector<BallPairs> others_;          // of parts of the cells: pairs that are not of two spheres
+  std::vector<std::int32_t> movers_;  // indices of bodies that move, by place
+  std::vector<Placed> placed_;        // the same
+  std::vector<char> kept_;            // of those awake: whether they moved before
+  bool mixed_ = false;                // spheres and others
+  std::vector<BallPairs> others_;     // of parts of the cells: pairs that are not of two spheres
   BallPairs ball_pairs_;
   std::vector<std::uint32_t> order_;
   std::vector<NearPair> pairs_;
   std::vector<Guest> guests_;
   std::vector<std::int32_t> guest_of_slot_;  // of spheres; −1: none
-  std::size_t own_bodies_ = 0;             // of `support`: guests follow these
+  std::size_t own_bodies_ = 0;               // of `support`: guests follow these
   std::vector<std::int32_t> still_near_;
 };
 

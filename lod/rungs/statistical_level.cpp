@@ -16,8 +16,13 @@ constexpr double kTouchFactor = 1.02;  // of the radii: what rests on a removed 
 
 struct StatisticalLevel::Impl {
   Impl(const StatisticalSettings& s, const Ground& g, const MaterialTable& m)
-      : settings(s), jobs(s.jobs ? s.jobs : make_job_runner(s.threads)), support(s, g, m, kinds, sleepers), tables(s, g, m, kinds, sleepers, jobs),
-        search(s, sleepers, jobs), near_bodies(s, g, m, kinds, jobs) {}
+      : settings(s),
+        jobs(s.jobs ? s.jobs : make_job_runner(s.threads)),
+        kinds(!s.tables.as_published()),
+        support(s, g, m, kinds, sleepers),
+        tables(s, g, m, kinds, sleepers, jobs),
+        search(s, sleepers, jobs),
+        near_bodies(s, g, m, kinds, jobs) {}
 
   StatisticalSettings settings;
   JobRunner jobs;
@@ -29,7 +34,7 @@ struct StatisticalLevel::Impl {
   NearBodies near_bodies;
   std::vector<StatisticalBody> guest_bodies;
   std::vector<std::uint32_t> fell_asleep;
-  double reach = 0.0;     // m, greatest bounding radius
+  double reach = 0.0;  // m, greatest bounding radius
   StatisticalCost cost;
   bool clocked = false;
 
@@ -37,11 +42,18 @@ struct StatisticalLevel::Impl {
   auto at(StatisticalPlace place, const Do& act) {
     return place.model == StatisticalModel::tables ? act(tables) : act(support);
   }
-  Vec3 position(StatisticalPlace place) const { return place.model == StatisticalModel::tables ? tables.position(place.slot) : support.body(place.slot).position; }
-  double radius(StatisticalPlace place) const {
-    return place.model == StatisticalModel::tables ? tables.radius(place.slot) : support.kind_of(support.body(place.slot)).shape->radius;
+  Vec3 position(StatisticalPlace place) const {
+    return place.model == StatisticalModel::tables ? tables.position(place.slot)
+                                                   : support.body(place.slot).position;
   }
-  std::uint32_t owner(StatisticalPlace place) const { return place.model == StatisticalModel::tables ? tables.owner(place.slot) : support.body(place.slot).owner; }
+  double radius(StatisticalPlace place) const {
+    return place.model == StatisticalModel::tables ? tables.radius(place.slot)
+                                                   : support.kind_of(support.body(place.slot)).shape->radius;
+  }
+  std::uint32_t owner(StatisticalPlace place) const {
+    return place.model == StatisticalModel::tables ? tables.owner(place.slot)
+                                                   : support.body(place.slot).owner;
+  }
   double clock() const { return clocked ? thread_time_ms() : 0.0; }
   void wake_touching(StatisticalPlace place);
   bool any_pairs(std::span<const FullNeighbor> neighbors) const;
@@ -55,35 +67,44 @@ void StatisticalLevel::Impl::wake_touching(StatisticalPlace gone) {
   std::vector<StatisticalPlace> touching;
   sleepers.find_near(center, kTouchFactor * own_radius, [&](StatisticalModel model, std::int32_t slot) {
     const StatisticalPlace other{model, slot};
-    if (other != gone && (position(other) - center).norm() < kTouchFactor * (own_radius + radius(other))) touching.push_back(other);
+    if (other != gone && (position(other) - center).norm() < kTouchFactor * (own_radius + radius(other)))
+      touching.push_back(other);
   });
   std::ranges::sort(touching, {}, [](StatisticalPlace p) { return std::pair(p.model, p.slot); });
   for (const StatisticalPlace other : touching) at(other, [&](auto& level) { level.wake(other.slot); });
 }
 
 bool StatisticalLevel::Impl::any_pairs(std::span<const FullNeighbor> neighbors) const {
-  const bool any_moves = tables.awake().size() + support.awake().size() > 0 || std::ranges::any_of(neighbors, [](const FullNeighbor& n) { return !n.asleep; });
+  const bool any_moves = tables.awake().size() + support.awake().size() > 0 ||
+                         std::ranges::any_of(neighbors, [](const FullNeighbor& n) { return !n.asleep; });
   return any_moves && std::size_t(tables.size() + support.size()) + neighbors.size() > 1;
 }
 
 void StatisticalLevel::Impl::count_bodies() {
   cost.tables = cost.support = {};
   const auto count = [](auto& counts, Activity activity) { ++counts[std::size_t(activity)]; };
-  for (const std::int32_t slot : tables.awake()) count(cost.tables, tables.crowded(slot) ? Activity::crowded : Activity::alone);
-  for (const std::int32_t slot : support.awake()) count(cost.support, support.crowded(slot) ? Activity::crowded : Activity::alone);
+  for (const std::int32_t slot : tables.awake())
+    count(cost.tables, tables.crowded(slot) ? Activity::crowded : Activity::alone);
+  for (const std::int32_t slot : support.awake())
+    count(cost.support, support.crowded(slot) ? Activity::crowded : Activity::alone);
   cost.tables[std::size_t(Activity::asleep)] = tables.asleep_count();
   cost.support[std::size_t(Activity::asleep)] = support.asleep_count();
 }
 
-StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials)
+StatisticalLevel::StatisticalLevel(const StatisticalSettings& settings, const Ground& ground,
+                                   const MaterialTable& materials)
     : impl_(std::make_unique<Impl>(settings, ground, materials)) {}
 StatisticalLevel::~StatisticalLevel() = default;
 
-StatisticalPlace StatisticalLevel::add(StatisticalModel model, std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material,
-                                       const RigidState& state, bool asleep, std::shared_ptr<const Signature> signature, bool arrives) {
+StatisticalPlace StatisticalLevel::add(StatisticalModel model, std::uint32_t owner,
+                                       std::shared_ptr<const Shape> shape, double mass, MaterialId material,
+                                       const RigidState& state, bool asleep,
+                                       std::shared_ptr<const Signature> signature, bool arrives) {
   impl_->reach = std::max(impl_->reach, shape->radius);
   const std::uint32_t kind = impl_->kinds.take(model, std::move(shape), material, std::move(signature));
-  const StatisticalPlace place{model, impl_->at({model, 0}, [&](auto& level) { return level.add(owner, kind, mass, state, asleep, arrives); })};
+  const StatisticalPlace place{model, impl_->at({model, 0}, [&](auto& level) {
+                                 return level.add(owner, kind, mass, state, asleep, arrives);
+                               })};
   impl_->near_bodies.make_room(std::size_t(impl_->support.size()));
   return place;
 }
@@ -96,7 +117,8 @@ std::optional<std::uint32_t> StatisticalLevel::remove(StatisticalPlace place, bo
   return moved;
 }
 
-void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts) {
+void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report,
+                            std::span<const FullContact> full_contacts) {
   Impl& s = *impl_;
   SupportLevel& support = s.support;
   TablesLevel& tables = s.tables;
@@ -171,11 +193,21 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   report.counters.states_recovered += tally.states_recovered;
 }
 
-std::size_t StatisticalLevel::bytes() const {
-  return impl_->tables.size() == 0 ? 0 : impl_->tables.bytes() + impl_->search.bytes() + impl_->sleepers.bytes();
+void StatisticalLevel::forget_contacts() {
+  impl_->tables.forget_contacts();
+  impl_->near_bodies.forget_pairs();
 }
-int StatisticalLevel::size(StatisticalModel model) const { return model == StatisticalModel::tables ? impl_->tables.size() : impl_->support.size(); }
-int StatisticalLevel::asleep_count() const { return impl_->support.asleep_count() + impl_->tables.asleep_count(); }
+
+std::size_t StatisticalLevel::bytes() const {
+  return impl_->tables.size() == 0 ? 0
+                                   : impl_->tables.bytes() + impl_->search.bytes() + impl_->sleepers.bytes();
+}
+int StatisticalLevel::size(StatisticalModel model) const {
+  return model == StatisticalModel::tables ? impl_->tables.size() : impl_->support.size();
+}
+int StatisticalLevel::asleep_count() const {
+  return impl_->support.asleep_count() + impl_->tables.asleep_count();
+}
 std::span<const std::uint32_t> StatisticalLevel::fell_asleep() const { return impl_->fell_asleep; }
 
 void StatisticalLevel::take_woke(std::vector<std::uint32_t>& owners) {
@@ -228,11 +260,16 @@ void StatisticalLevel::add_force(StatisticalPlace place, const Vec3& force, cons
 }
 double StatisticalLevel::reach() const { return impl_->reach; }
 
-void StatisticalLevel::find_sleepers(const Vec3& center, double reach, std::vector<std::uint32_t>& owners) const {
-  impl_->sleepers.find_near(center, reach, [&](StatisticalModel model, std::int32_t slot) { owners.push_back(impl_->owner({model, slot})); });
+void StatisticalLevel::find_sleepers(const Vec3& center, double reach,
+                                     std::vector<std::uint32_t>& owners) const {
+  impl_->sleepers.find_near(center, reach, [&](StatisticalModel model, std::int32_t slot) {
+    owners.push_back(impl_->owner({model, slot}));
+  });
 }
 
-void StatisticalLevel::archive(StateArchive& a, const std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>& signature_of) {
+void StatisticalLevel::archive(
+    StateArchive& a,
+    const std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>& signature_of) {
   Impl& s = *impl_;
   s.kinds.archive(a, signature_of);
   a(s.sleepers, s.support, s.tables, s.search, s.near_bodies, s.fell_asleep, s.reach, s.cost, s.clocked);
@@ -244,7 +281,11 @@ void StatisticalLevel::find_contacts(std::vector<PairContact>& contacts) const {
 }
 
 Activity StatisticalLevel::activity(StatisticalPlace place) const {
-  return impl_->at(place, [&](const auto& level) { return level.asleep(place.slot) ? Activity::asleep : level.crowded(place.slot) ? Activity::crowded : Activity::alone; });
+  return impl_->at(place, [&](const auto& level) {
+    return level.asleep(place.slot)    ? Activity::asleep
+           : level.crowded(place.slot) ? Activity::crowded
+                                       : Activity::alone;
+  });
 }
 
 const StatisticalCost& StatisticalLevel::cost() const { return impl_->cost; }

@@ -1,5 +1,6 @@
-// The statistical bodies of a world, on two rungs: `support` (support/) and `tables` (tables/), stepped without ODE (sections 3.3 and 3.4). They meet each other and
-// the full bodies near them; one broad phase finds who is near whom, and one store holds those that sleep.
+// The statistical bodies of a world, on two rungs: `support` (support/) and `tables` (tables/), stepped
+// without ODE (sections 3.3 and 3.4). They meet each other and the full bodies near them; one broad phase
+// finds who is near whom, and one store holds those that sleep.
 #pragma once
 
 #include <array>
@@ -22,7 +23,8 @@
 
 namespace lodestone {
 
-/// Where a statistical body is kept: on which rung, and its slot there. Slots are dense: a removal moves the rung's last body into the free one.
+/// Where a statistical body is kept: on which rung, and its slot there. Slots are dense: a removal moves the
+/// rung's last body into the free one.
 struct StatisticalPlace {
   StatisticalModel model = StatisticalModel::support;
   std::int32_t slot = -1;  ///< −1: nowhere
@@ -31,13 +33,20 @@ struct StatisticalPlace {
 };
 
 /// What a body does, as far as its cost goes.
-enum class Activity : std::uint8_t { asleep, alone, crowded };  // alone: flies, slides or rests by itself; crowded: touches other bodies
+enum class Activity : std::uint8_t {
+  asleep,
+  alone,
+  crowded
+};  // alone: flies, slides or rests by itself; crowded: touches other bodies
 inline constexpr std::size_t kActivities = 3;
 
-/// Bodies of each rung by what they did in the last step, and the processor time of the calling thread that they took, ms.
+/// Bodies of each rung by what they did in the last step, and the processor time of the calling thread that
+/// they took, ms.
 struct StatisticalCost {
   std::array<int, kActivities> tables{}, support{};
-  double tables_ms = 0.0, support_ms = 0.0;  ///< `support`: with what it and full bodies have to do with those of `tables` near them
+  double tables_ms = 0.0,
+         support_ms =
+             0.0;  ///< `support`: with what it and full bodies have to do with those of `tables` near them
 };
 
 class StatisticalLevel {
@@ -46,16 +55,22 @@ class StatisticalLevel {
   StatisticalLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials);
   ~StatisticalLevel();
 
-  /// Adds a body for `owner` (the manager's index of it). `signature` may be null for `support`, which then rests without settling clips. One that `arrives` from another rung
-  /// neither leaps nor drops: what it overlaps comes apart slowly.
-  StatisticalPlace add(StatisticalModel model, std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state,
-                       bool asleep, std::shared_ptr<const Signature> signature, bool arrives = false);
-  /// Frees the place; the rung's last body moves into it and its owner is returned (none where it was the last). Wakes what touches it, unless it `stays` where it is, on
-  /// another rung.
+  /// Adds a body for `owner` (the manager's index of it). `signature` may be null for `support`, which then
+  /// rests without settling clips. One that `arrives` from another rung neither leaps nor drops: what it
+  /// overlaps comes apart slowly.
+  StatisticalPlace add(StatisticalModel model, std::uint32_t owner, std::shared_ptr<const Shape> shape,
+                       double mass, MaterialId material, const RigidState& state, bool asleep,
+                       std::shared_ptr<const Signature> signature, bool arrives = false);
+  /// Frees the place; the rung's last body moves into it and its owner is returned (none where it was the
+  /// last). Wakes what touches it, unless it `stays` where it is, on another rung.
   std::optional<std::uint32_t> remove(StatisticalPlace place, bool stays = false);
 
-  /// `neighbors` receive their share of the contacts; `full_contacts` are among them. Times and counts are added to `report`.
-  void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts = {});
+  /// What is remembered of the last step: for steps in which it has no body, and step() is not called.
+  void forget_contacts();
+  /// `neighbors` receive their share of the contacts; `full_contacts` are among them. Times and counts are
+  /// added to `report`.
+  void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report,
+            std::span<const FullContact> full_contacts = {});
 
   /// That the arrays of `tables` hold; those of `support` are not counted.
   std::size_t bytes() const;
@@ -66,7 +81,8 @@ class StatisticalLevel {
   void find_awake(std::vector<std::uint32_t>& owners) const;
   /// Owners of those that fell asleep in the last step.
   std::span<const std::uint32_t> fell_asleep() const;
-  /// Appends the owners of those that woke since this was last asked; some may be twice there, or asleep again.
+  /// Appends the owners of those that woke since this was last asked; some may be twice there, or asleep
+  /// again.
   void take_woke(std::vector<std::uint32_t>& owners);
   /// Where steps write down what touches what; null, as at first: nowhere.
   void set_log(ContactLog* log);
@@ -76,13 +92,15 @@ class StatisticalLevel {
   void set_threads(int threads);
   RigidState state(StatisticalPlace place) const;
   Vec3 position(StatisticalPlace place) const;
-  void set_state(StatisticalPlace place, const RigidState& state);                   ///< wakes it
+  void set_state(StatisticalPlace place, const RigidState& state);  ///< wakes it
   bool asleep(StatisticalPlace place) const;
-  double sphere_radius(StatisticalPlace place) const;                                ///< m, of the colliding sphere at `tables`; 0 at `support`
+  double sphere_radius(
+      StatisticalPlace place) const;  ///< m, of the colliding sphere at `tables`; 0 at `support`
   void wake(StatisticalPlace place);
-  void put_to_sleep(StatisticalPlace place);                                         ///< where it is, at once
-  void add_force(StatisticalPlace place, const Vec3& force, const Vec3& torque);     ///< over the next step; wakes it
-  double reach() const;                                                              ///< m, greatest bounding radius
+  void put_to_sleep(StatisticalPlace place);  ///< where it is, at once
+  void add_force(StatisticalPlace place, const Vec3& force,
+                 const Vec3& torque);  ///< over the next step; wakes it
+  double reach() const;                ///< m, greatest bounding radius
   /// Appends the owners of sleepers whose bounding sphere meets this one, and perhaps others; `reach` in m.
   void find_sleepers(const Vec3& center, double reach, std::vector<std::uint32_t>& owners) const;
 
@@ -90,7 +108,8 @@ class StatisticalLevel {
   void find_contacts(std::vector<PairContact>& contacts) const;
 
   /// All that its next steps depend on. Where it reads, `signature_of` tells the signatures that bodies had.
-  void archive(StateArchive& a, const std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>& signature_of);
+  void archive(StateArchive& a,
+               const std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>& signature_of);
 
   /// What it did in the last step.
   Activity activity(StatisticalPlace place) const;

@@ -7,12 +7,14 @@ namespace lodestone {
 namespace {
 
 constexpr int kLeastSubsteps = 3, kMostSubsteps = 12;
-constexpr double kStride = 0.07;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
+constexpr double kStride =
+    0.07;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
 
 bool may_strike_ground(const ContactScene& scene, const StatisticalBody& body, double dt) {
   const double fall = 0.5 * scene.world.gravity_strength() * dt * dt;
   return std::ranges::any_of(scene.world.planes, [&](const HalfSpace& plane) {
-    return plane.height_of(body.position) - scene.kind_of(body).shape->radius <= fall - std::min(0.0, body.velocity.dot(plane.normal)) * dt;
+    return plane.height_of(body.position) - scene.kind_of(body).shape->radius <=
+           fall - std::min(0.0, body.velocity.dot(plane.normal)) * dt;
   });
 }
 
@@ -20,10 +22,12 @@ void mark(const FoundPair& pair, NearMarks& near) { near.mark(pair.first), near.
 
 }  // namespace
 
-// What strikes another or the ground may stop within the step: then who follows close behind meets it, though neither gains on the other now. Returns the farthest way
-// of a follower, over R.
+// What strikes another or the ground may stop within the step: then who follows close behind meets it, though
+// neither gains on the other now. Returns the farthest way of a follower, over R.
 double SubstepPlan::mark_followers(const ContactScene& scene, double dt, NearMarks& near) {
-  const auto stops = [&](Participant p) { return !p.is_statistical() || near[p.index()] || may_strike_ground(scene, scene.body(p), dt); };
+  const auto stops = [&](Participant p) {
+    return !p.is_statistical() || near[p.index()] || may_strike_ground(scene, scene.body(p), dt);
+  };
   double farthest = 0.0;
   for (bool any = true; any;) {
     any = false;
@@ -38,11 +42,13 @@ double SubstepPlan::mark_followers(const ContactScene& scene, double dt, NearMar
   return farthest;
 }
 
-int SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs, std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
+int SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
+                      std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
   bool any = false;
   double longest = 0.0;  // way over R
   following_.clear();
-  for (const FoundPair& pair : pairs.pairs()) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const FoundPair& pair = pairs[i];
     const double gap = pairs.gap_left(scene, pair), approach = pairs.find_approach(scene, pair, dt);
     const Vec3 first = scene.velocity(pair.first), second = scene.velocity(pair.second);
     if (gap <= 2.0 * approach) {  // twice, since others may strike them meanwhile
@@ -56,7 +62,8 @@ int SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs, std::sp
   const double farthest = mark_followers(scene, dt, near);
   any |= farthest > 0.0;
   longest = std::max(longest, farthest);
-  for (const SolidContact& contact : solid_contacts) near.mark(Participant::statistical(std::size_t(contact.slot)));
+  for (const SolidContact& contact : solid_contacts)
+    near.mark(Participant::statistical(std::size_t(contact.slot)));
   if (!any) return solid_contacts.empty() ? 0 : 1;
   return int(std::ceil(std::clamp(longest / kStride, double(kLeastSubsteps), double(kMostSubsteps))));
 }

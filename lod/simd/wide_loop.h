@@ -1,5 +1,5 @@
-// Loops over dense arrays, compiled for several instruction sets and chosen at run time. The same operations in the same order without contraction or
-// reassociation: the results are the same to the bit.
+// Loops over dense arrays, compiled for several instruction sets and chosen at run time. The same operations
+// in the same order without contraction or reassociation: the results are the same to the bit.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@ enum class Simd : std::uint8_t { portable, avx2, avx512 };
 /// The widest that this processor has.
 inline Simd find_simd() {
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
     return Simd::avx512;
   if (__builtin_cpu_supports("avx2")) return Simd::avx2;
 #endif
@@ -26,7 +27,8 @@ template <class Loop>
   loop(begin, end);
 }
 template <class Loop>
-[[gnu::target("avx512f,avx512dq,avx512bw,avx512vl")]] void run_avx512(const Loop& loop, std::int64_t begin, std::int64_t end) {
+[[gnu::target("avx512f,avx512dq,avx512bw,avx512vl")]] void run_avx512(const Loop& loop, std::int64_t begin,
+                                                                      std::int64_t end) {
   loop(begin, end);
 }
 #else

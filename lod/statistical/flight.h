@@ -1,11 +1,15 @@
 // Motion without contact: a parabola and torque-free rotation.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "lod/statistical/statistical_body.h"
 
 namespace lodestone {
 
-/// Turns `axes` (principal axes to world) about its own axis `Axis` by `angle` rad; `spin` is the angular momentum in these axes.
+/// Turns `axes` (principal axes to world) about its own axis `Axis` by `angle` rad; `spin` is the angular
+/// momentum in these axes.
 template <int Axis>
 inline void turn_about_own(double angle, Quat& axes, Vec3& spin) {
   constexpr int kNext = (Axis + 1) % 3, kLast = (Axis + 2) % 3;
@@ -16,23 +20,93 @@ inline void turn_about_own(double angle, Quat& axes, Vec3& spin) {
   axes.vec()[Axis] = own * cosine + w * sine;
   axes.vec()[kNext] = next * cosine + last * sine;
   axes.vec()[kLast] = last * cosine - next * sine;
-  const double whole_sine = 2.0 * sine * cosine, whole_cosine = 1.0 - 2.0 * sine * sine, at_next = spin[kNext], at_last = spin[kLast];
+  const double whole_sine = 2.0 * sine * cosine, whole_cosine = 1.0 - 2.0 * sine * sine,
+               at_next = spin[kNext], at_last = spin[kLast];
   spin[kNext] = at_next * whole_cosine + at_last * whole_sine;
   spin[kLast] = at_last * whole_cosine - at_next * whole_sine;
 }
 
-/// The orientation `time` seconds later in free rotation, by splitting the kinetic energy into that of a ball with the middle moment and those of the other two
-/// axes (Touma and Wisdom, Lie–Poisson integrators for rigid body dynamics in the solar system, 1994). Each part is solved exactly, so the whole
-/// is exact where two moments are equal, however slender the body, of second order else, and its energy does not drift.
-inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const BodyKind& kind, double time) {
+/// Half the turn, as the tangent times the axis, that takes `own` to the direction of `to`, which is less
+/// than a right angle from it.
+inline Vec3 half_tangent(const Vec3& own, const Vec3& to) {
+  const double along = own.dot(to);
+  return own.cross(to) / (along + std::sqrt(own.squaredNorm() * to.squaredNorm()));
+}
+
+/// The turn, in principal axes and as half_tangent gives it, after which the angular momentum `own` (m²/s,
+/// these axes) has the energy of a free rotation: `twice_energy` = own·I⁻¹own (J/kg). On the great circle
+/// through own along which that changes fastest it is a quadratic form, solved exactly; where that circle
+/// does not reach the energy, the one through the pole of the least or greatest energy does.
+inline Vec3 turn_to_energy(const Vec3& own, const Vec3& inverse_moments, double twice_energy) {
+  const Vec3 omega = inverse_moments.cwiseProduct(own);  // rad/s
+  const double now = own.dot(omega), excess = now - twice_energy, square = own.squaredNorm();
+  if (!(std::abs(excess) > 1e-14 * now)) return Vec3::Zero();
+  const double inverse_square = 1.0 / square;
+  const Vec3 across = omega - (now * inverse_square) * own;
+  const double slope = across.squaredNorm();  // half the derivative of (own + x across)·I⁻¹(own + x across)
+  if (slope * square > 1e-18 * now * now) {
+    const double curve =
+        across.dot(inverse_moments.cwiseProduct(across)) - twice_energy * slope * inverse_square;
+    const double inverse_slope = 1.0 / slope, bend = curve * excess * inverse_slope * inverse_slope;
+    if (bend <= 1.0) {
+      // x = −excess / (slope (1 + √(1 − bend))), and half the angle whose tangent is x |across| / |own|;
+      // small ones by their series
+      const bool small = std::abs(bend) < 1e-3;
+      const double x = -excess * inverse_slope *
+                       (small ? 0.5 + bend * (0.125 + 0.0625 * bend) : 1.0 / (1.0 + std::sqrt(1.0 - bend)));
+      const double t = x * x * slope * inverse_square;
+      return own.cross(omega) *
+             (x * inverse_square *
+              (t < 1e-4 ? 0.5 - t * (0.125 - 0.0625 * t) : 1.0 / (1.0 + std::sqrt(1.0 + t))));
+    }
+  }
+  const int pole = excess > 0.0 ? 0 : 2;
+  const double of_pole = inverse_moments[pole] * square,
+               share = std::clamp((twice_energy - of_pole) / (now - of_pole), 0.0, 1.0);
+  Vec3 to = std::sqrt(share) * own;
+  to[pole] =
+      std::copysign(std::sqrt(std::max(0.0, square - share * (square - own[pole] * own[pole]))), own[pole]);
+  return half_tangent(own, to);
+}
+
+/// Angle (rad) by which the other two axes' parts may turn a body in one round of the splitting, and the
+/// rounds at most.
+inline constexpr double kTurnOfRound = 0.5;
+inline constexpr int kMostRounds = 16;
+/// rad: a smaller one changes the energy by less than 1e-12 of it, as its third power.
+inline constexpr double kNoTurn = 1e-4;
+
+/// The orientation `time` seconds later in free rotation, by splitting the kinetic energy into that of a ball
+/// with the middle moment and those of the other two axes (Touma and Wisdom, Lie–Poisson integrators for
+/// rigid body dynamics in the solar system, 1994). Each part is solved exactly, so the whole is exact where
+/// two moments are equal, however slender the body, of second order else; a fast turn takes several rounds.
+/// The angular momentum is kept to rounding, and so is the energy, by a turn at the end (turn_to_energy).
+inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const BodyKind& kind,
+                                double time) {
   const Vec3& inverse = kind.inverse_moments;
   const Quat of_ball = rotation_from_vector(spin * (inverse[1] * time));
   if (kind.isotropic) return of_ball * orientation;
   Quat axes = kind.along_principal_axes ? orientation : Quat(orientation * kind.principal_axes);
   Vec3 own = axes.conjugate() * spin;
-  turn_about_own<0>((inverse[0] - inverse[1]) * own[0] * (0.5 * time), axes, own);
-  turn_about_own<2>((inverse[2] - inverse[1]) * own[2] * time, axes, own);
-  turn_about_own<0>((inverse[0] - inverse[1]) * own[0] * (0.5 * time), axes, own);
+  const double twice_energy = own.dot(inverse.cwiseProduct(own));
+  const double widest = std::max(inverse[1] - inverse[0], inverse[2] - inverse[1]) * time,
+               angle_squared = own.squaredNorm() * widest * widest;
+  int rounds = 1;
+  if (angle_squared > kTurnOfRound * kTurnOfRound)
+    rounds = int(std::min(double(kMostRounds), std::ceil(std::sqrt(angle_squared) / kTurnOfRound)));
+  const double part = time / rounds;
+  for (int round = 0; round < rounds; ++round) {
+    turn_about_own<0>((inverse[0] - inverse[1]) * own[0] * (0.5 * part), axes, own);
+    turn_about_own<2>((inverse[2] - inverse[1]) * own[2] * part, axes, own);
+    turn_about_own<0>((inverse[0] - inverse[1]) * own[0] * (0.5 * part), axes, own);
+  }
+  if (angle_squared > kNoTurn * kNoTurn) {
+    const Vec3 half = turn_to_energy(own, inverse, twice_energy);
+    const Quat back(1.0, -half.x(), -half.y(), -half.z());
+    const double square = half.squaredNorm();
+    axes = axes * back;
+    axes.coeffs() *= square < 1e-5 ? 1.0 - square * (0.5 - 0.375 * square) : 1.0 / std::sqrt(1.0 + square);
+  }
   return of_ball * (kind.along_principal_axes ? axes : Quat(axes * kind.principal_axes.conjugate()));
 }
 
@@ -41,7 +115,8 @@ inline void advance_flight(StatisticalBody& body, const BodyKind& kind, const Ve
   body.position += (body.velocity + gravity * (0.5 * time)) * time;
   body.velocity += gravity * time;
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time);
-  // Renormalising without a square root: one Newton step is exact to rounding for a norm already within 1e-8 of 1.
+  // Renormalising without a square root: one Newton step is exact to rounding for a norm already within 1e-8
+  // of 1.
   body.orientation.coeffs() *= 1.5 - 0.5 * body.orientation.squaredNorm();
 }
 

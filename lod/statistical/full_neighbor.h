@@ -13,27 +13,28 @@ struct Impulse {
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
 };
 
-/// A body of the full level, as statistical ones meet it: it takes part in this step's contacts with its own mass and shape.
+/// A body of the full level, as statistical ones meet it: it takes part in this step's contacts with its own
+/// mass and shape.
 struct FullNeighbor {
-  std::uint32_t owner = 0;                ///< as in StatisticalLevel::add
+  std::uint32_t owner = 0;  ///< as in StatisticalLevel::add
   const Shape* shape = nullptr;
   double mass = 1.0;
   MaterialId material = 0;
-  RigidState state;                       ///< at the start of the step
-  Vec3 force = Vec3::Zero();              ///< N, acting on it over the step besides gravity
-  bool asleep = false;                    ///< stands still like ground; also out: false where a hit woke it
-  Impulse hit;                            ///< out: of impacts, to be given to the body before the full level's step
-  Impulse push;                           ///< out: of resting, sliding and rolling, to be given as a force spread over that step
-  Vec3 shift = Vec3::Zero();              ///< out: m, to be moved by, so that an overlap shrinks
+  RigidState state;           ///< at the start of the step
+  Vec3 force = Vec3::Zero();  ///< N, acting on it over the step besides gravity
+  bool asleep = false;        ///< stands still like ground; also out: false where a hit woke it
+  Impulse hit;                ///< out: of impacts, to be given to the body before the full level's step
+  Impulse push;  ///< out: of resting, sliding and rolling, to be given as a force spread over that step
+  Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
 };
 
-/// Where two full neighbours, or one and the ground, touch: what holds up a body that statistical ones lean on. Solved along with their contacts;
-/// what it gives to the full bodies is the full level's matter.
+/// Where two full neighbours, or one and the ground, touch: what holds up a body that statistical ones lean
+/// on. Solved along with their contacts; what it gives to the full bodies is the full level's matter.
 struct FullContact {
-  std::int32_t first = 0, second = -1;    ///< indices of neighbours; `second` −1: the ground
-  Vec3 point = Vec3::Zero();              ///< world
-  Vec3 normal = Vec3::UnitZ();            ///< from `second` into `first`
-  double gap = 0.0;                       ///< m, negative where they overlap
+  std::int32_t first = 0, second = -1;  ///< indices of neighbours; `second` −1: the ground
+  Vec3 point = Vec3::Zero();            ///< world
+  Vec3 normal = Vec3::UnitZ();          ///< from `second` into `first`
+  double gap = 0.0;                     ///< m, negative where they overlap
   double friction = 0.5;
 };
 

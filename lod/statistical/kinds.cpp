@@ -27,12 +27,19 @@ std::shared_ptr<const RestingFaces> make_faces(const std::shared_ptr<const Shape
 
 }  // namespace
 
-std::size_t Kinds::Hash::operator()(const Key& key) const { return hash_of(key.shape, key.signature, key.material); }
-std::size_t Kinds::Hash::operator()(const PartsKey& key) const { return hash_of(key.shape_hash, key.signature); }
+std::size_t Kinds::Hash::operator()(const Key& key) const {
+  return hash_of(key.shape, key.signature, key.material);
+}
+std::size_t Kinds::Hash::operator()(const PartsKey& key) const {
+  return hash_of(key.shape_hash, key.signature);
+}
 
-std::uint32_t Kinds::take(StatisticalModel model, std::shared_ptr<const Shape> shape, MaterialId material, std::shared_ptr<const Signature> signature) {
+std::uint32_t Kinds::take(StatisticalModel model, std::shared_ptr<const Shape> shape, MaterialId material,
+                          std::shared_ptr<const Signature> signature) {
   const auto known = known_.find({shape.get(), signature.get(), material});
-  const std::uint32_t number = known != known_.end() ? known->second : add(make_body_kind(std::move(shape), std::move(signature), material));
+  const std::uint32_t number = known != known_.end()
+                                   ? known->second
+                                   : add(make_body_kind(std::move(shape), std::move(signature), material));
   prepare(model, kinds_[number]);
   ++uses_[number].bodies;
   return number;
@@ -59,7 +66,9 @@ void Kinds::give_back(std::uint32_t number) {
   known_.erase(key_of(kinds_[number]));
   kinds_[number] = {};
   free_.push_back(number);
-  if (const auto parts = parts_.find(key); parts != parts_.end() && parts->second.clips.expired() && parts->second.faces.expired()) parts_.erase(parts);
+  if (const auto parts = parts_.find(key);
+      parts != parts_.end() && parts->second.clips.expired() && parts->second.faces.expired())
+    parts_.erase(parts);
 }
 
 void Kinds::archive(StateArchive& a, const SignatureOf& signature_of) {
@@ -70,7 +79,9 @@ void Kinds::archive(StateArchive& a, const SignatureOf& signature_of) {
     void archive(StateArchive& b) { b(shape, material, has_signature, tables, support); }
   };
   std::vector<Known> known;
-  for (const BodyKind& kind : kinds_) known.push_back({kind.shape, kind.material, kind.signature != nullptr, kind.faces != nullptr, kind.clips != nullptr});
+  for (const BodyKind& kind : kinds_)
+    known.push_back(
+        {kind.shape, kind.material, kind.signature != nullptr, kind.faces != nullptr, kind.clips != nullptr});
   a(known, uses_, free_, births_);
   if (!a.reading()) return;
   kinds_.assign(known.size(), {});
@@ -78,7 +89,8 @@ void Kinds::archive(StateArchive& a, const SignatureOf& signature_of) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     const Known& kind = known[i];
     if (!kind.shape) continue;
-    kinds_[i] = make_body_kind(kind.shape, kind.has_signature ? signature_of(*kind.shape, kind.material) : nullptr, kind.material);
+    kinds_[i] = make_body_kind(
+        kind.shape, kind.has_signature ? signature_of(*kind.shape, kind.material) : nullptr, kind.material);
     known_.emplace(key_of(kinds_[i]), std::uint32_t(i));
     if (kind.tables) prepare(StatisticalModel::tables, kinds_[i]);
     if (kind.support) prepare(StatisticalModel::support, kinds_[i]);
@@ -87,17 +99,20 @@ void Kinds::archive(StateArchive& a, const SignatureOf& signature_of) {
 
 // What only one model asks for is made when its first body comes.
 void Kinds::prepare(StatisticalModel model, BodyKind& kind) {
-  if (model == StatisticalModel::tables) {
-    check_that(kind.signature != nullptr, "the tables model needs a signature");
-    if (kind.faces || kind.shape->sphere_radius) return;
+  const bool tables = model == StatisticalModel::tables;
+  if (tables) check_that(kind.signature != nullptr, "the tables model needs a signature");
+  if (tables && !kind.faces && !kind.shape->sphere_radius) {
     std::weak_ptr<const RestingFaces>& known = parts_[parts_key_of(kind)].faces;
     kind.faces = known.lock();
     if (!kind.faces) known = kind.faces = make_faces(kind.shape);
-  } else if (kind.signature && !kind.clips) {
+  }
+  if ((!tables || clips_at_tables_) && kind.signature && !kind.clips) {
     std::weak_ptr<const ClipIndex>& known = parts_[parts_key_of(kind)].clips;
     kind.clips = known.lock();
     const double radius = kind.shape->radius;
-    if (!kind.clips) known = kind.clips = std::make_shared<const ClipIndex>(*kind.signature, kind.shape->inertia_per_mass / (radius * radius), kGreatestClipDistance);
+    if (!kind.clips)
+      known = kind.clips = std::make_shared<const ClipIndex>(
+          *kind.signature, kind.shape->inertia_per_mass / (radius * radius), kGreatestClipDistance);
   }
 }
 

@@ -1,4 +1,5 @@
-// The kinds of body in a world: what all bodies of one shape and material share, on either statistical rung. A kind is kept for as long as a body has it.
+// The kinds of body in a world: what all bodies of one shape and material share, on either statistical rung.
+// A kind is kept for as long as a body has it.
 #pragma once
 
 #include <functional>
@@ -13,8 +14,12 @@ namespace lodestone {
 
 class Kinds {
  public:
+  /// `clips_at_tables`: bodies of `tables` play settling clips, too.
+  explicit Kinds(bool clips_at_tables = false) : clips_at_tables_(clips_at_tables) {}
+
   /// The number of a kind that is known or new, for one more body of `model`. `tables` needs a signature.
-  std::uint32_t take(StatisticalModel model, std::shared_ptr<const Shape> shape, MaterialId material, std::shared_ptr<const Signature> signature);
+  std::uint32_t take(StatisticalModel model, std::shared_ptr<const Shape> shape, MaterialId material,
+                     std::shared_ptr<const Signature> signature);
   /// A body less has it. A number that no body has is given to another kind in time.
   void give_back(std::uint32_t kind);
 
@@ -54,7 +59,9 @@ class Kinds {
     std::uint64_t bodies = 0, birth = 0;
   };
   static Key key_of(const BodyKind& kind) { return {kind.shape.get(), kind.signature.get(), kind.material}; }
-  static PartsKey parts_key_of(const BodyKind& kind) { return {kind.shape->content_hash, kind.signature.get()}; }
+  static PartsKey parts_key_of(const BodyKind& kind) {
+    return {kind.shape->content_hash, kind.signature.get()};
+  }
   std::uint32_t add(BodyKind kind);
   void prepare(StatisticalModel model, BodyKind& kind);
 
@@ -64,6 +71,7 @@ class Kinds {
   std::unordered_map<Key, std::uint32_t, Hash> known_;
   std::unordered_map<PartsKey, Parts, Hash> parts_;
   std::uint64_t births_ = 0;
+  bool clips_at_tables_ = false;
 };
 
 }  // namespace lodestone

@@ -20,8 +20,10 @@ class OwnProperties {
     return own == own_.end() ? usual : own->second;
   }
   void set(std::uint32_t owner, const BodyProperties& properties) {
-    if (properties == BodyProperties{}) own_.erase(owner);
-    else own_[owner] = properties;
+    if (properties == BodyProperties{})
+      own_.erase(owner);
+    else
+      own_[owner] = properties;
   }
   void forget(std::uint32_t owner) { own_.erase(owner); }
   void archive(StateArchive& a) { a(own_); }
@@ -30,7 +32,9 @@ class OwnProperties {
   std::unordered_map<std::uint32_t, BodyProperties> own_;
 };
 
-inline bool may_meet(const BodyProperties& a, const BodyProperties& b) { return may_meet(a.category, a.collide, b.category, b.collide); }
+inline bool may_meet(const BodyProperties& a, const BodyProperties& b) {
+  return may_meet(a.category, a.collide, b.category, b.collide);
+}
 /// Ground of a manager has all bits.
 inline bool meets_ground(const BodyProperties& a) { return may_meet(a, BodyProperties{}); }
 /// Whether a settling clip, recorded under gravity and nothing else, is how it comes to rest.

@@ -1,4 +1,5 @@
-// How fast bodies come apart that overlap since one of them changed its rung: slowly enough that nobody sees it.
+// How fast bodies come apart that overlap since one of them changed its rung: slowly enough that nobody sees
+// it.
 #pragma once
 
 #include <algorithm>
@@ -7,9 +8,12 @@
 namespace lodestone {
 
 inline constexpr double kBroughtOverlap = 0.02;  // over R: what a pile at rest has anyway is less
-inline constexpr float kEasedTime = 2.0f;  // s awake after a change of rung, in which overlaps that it brought are undone so slowly
+inline constexpr float kEasedTime =
+    2.0f;  // s awake after a change of rung, in which overlaps that it brought are undone so slowly
 
 /// m/s, of a body of `radius` m under `gravity` m/s²: 2 mm in 1/60 s for one of .13 m.
-inline double parting_speed(double radius, double gravity) { return 0.1 * std::sqrt(std::max(gravity, 1.0) * radius); }
+inline double parting_speed(double radius, double gravity) {
+  return 0.1 * std::sqrt(std::max(gravity, 1.0) * radius);
+}
 
 }  // namespace lodestone

@@ -1,6 +1,7 @@
-// When a body sleeps and what wakes it, on either statistical rung (section 3.4's second threshold). Among other bodies: slower than .05 m/s at R = .2 m, scaled with √R,
-// for .1 s. Alone a body may still rock slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s. Other thresholds
-// (SleepThresholds) scale all of these alike.
+// When a body sleeps and what wakes it, on either statistical rung (section 3.4's second threshold). Among
+// other bodies: slower than .05 m/s at R = .2 m, scaled with √R, for .1 s. Alone a body may still rock
+// slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s. Other
+// thresholds (SleepThresholds) scale all of these alike.
 #pragma once
 
 #include <cmath>
@@ -11,14 +12,18 @@ namespace lodestone {
 
 class RestLaw {
  public:
-  static constexpr double kSleepSpeedRadius = 0.2;      // m
-  static constexpr double kAloneSleepEnergy = 2.5e-4;   // J/kg over g R
-  static constexpr double kAloneSleepTime = 5.0;        // of the time among others
-  static constexpr double kLeaningTime = 0.19;          // s: a body that touched another so lately still leans on it, though a hair apart
-  static constexpr double kWakeFactor = 2.0;            // a sleeper wakes when touched faster than this times its sleeping speed
+  static constexpr double kSleepSpeedRadius = 0.2;     // m
+  static constexpr double kAloneSleepEnergy = 2.5e-4;  // J/kg over g R
+  static constexpr double kAloneSleepTime = 5.0;       // of the time among others
+  static constexpr double kLeaningTime =
+      0.19;  // s: a body that touched another so lately still leans on it, though a hair apart
+  static constexpr double kWakeFactor =
+      2.0;  // a sleeper wakes when touched faster than this times its sleeping speed
 
   explicit RestLaw(const SleepThresholds& thresholds = {})
-      : speed_(thresholds.speed), alone_energy_(kAloneSleepEnergy * square(thresholds.speed / SleepThresholds{}.speed)), time_(float(thresholds.time)),
+      : speed_(thresholds.speed),
+        alone_energy_(kAloneSleepEnergy * square(thresholds.speed / SleepThresholds{}.speed)),
+        time_(float(thresholds.time)),
         alone_time_(float(kAloneSleepTime * thresholds.time)) {}
 
   /// m/s.

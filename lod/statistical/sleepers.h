@@ -1,4 +1,5 @@
-// The one store of bodies that sleep: in no loop, found by where they lie. Each rung calls its own by their slots there.
+// The one store of bodies that sleep: in no loop, found by where they lie. Each rung calls its own by their
+// slots there.
 #pragma once
 
 #include <array>
@@ -25,7 +26,10 @@ class Sleepers {
   }
 
  private:
-  std::array<StillGrid, 2> grids_;
+  // Of `support` with blocks: its bodies ask for sleepers one by one. Spheres ask rarely, and have no bytes
+  // to spare.
+  std::array<StillGrid, 2> grids_{StillGrid(false), StillGrid(true)};
+  static_assert(std::size_t(StatisticalModel::support) == 1);
 };
 
 }  // namespace lodestone

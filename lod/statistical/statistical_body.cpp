@@ -1,7 +1,6 @@
 #include "lod/statistical/statistical_body.h"
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,12 +10,14 @@ namespace {
 // However it moves, it collides nearly as high as its bounding sphere would.
 bool is_round(const Shape& shape, const Signature* signature) {
   constexpr double kRound = 0.95;  // over R
-  return shape.sphere_radius || (signature && !signature->collision_heights.mean.empty() && std::ranges::min(signature->collision_heights.mean) > kRound);
+  return shape.sphere_radius || (signature && !signature->collision_heights.mean.empty() &&
+                                 std::ranges::min(signature->collision_heights.mean) > kRound);
 }
 
 }  // namespace
 
-BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature, MaterialId material) {
+BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature,
+                        MaterialId material) {
   BodyKind kind;
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(shape->inverse_inertia_per_mass);
   Mat3 axes = principal.eigenvectors();

@@ -1,4 +1,5 @@
-// A body of the statistical level: the state that a step touches, apart from the description that bodies of a kind share.
+// A body of the statistical level: the state that a step touches, apart from the description that bodies of a
+// kind share.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +20,20 @@ inline constexpr float kGreatestClipDistance = 0.1f;
 struct BodyKind {
   std::shared_ptr<const Shape> shape;
   std::shared_ptr<const Signature> signature;  ///< may be null (support model)
-  std::shared_ptr<const ClipIndex> clips;      ///< of the signature's settling clips (support model); none without a signature
-  std::shared_ptr<const RestingFaces> faces;   ///< on which it can stand (tables model); none for a sphere
+  std::shared_ptr<const ClipIndex>
+      clips;  ///< of the signature's settling clips; none without a signature, or where no model plays them
+  std::shared_ptr<const RestingFaces> faces;  ///< on which it can stand (tables model); none for a sphere
   MaterialId material = 0;
-  bool isotropic = false;                      ///< a sphere or a cube: rotates steadily
-  bool round = false;                          ///< a sphere or nearly one: rolls down a slope (tables model)
-  Quat principal_axes = Quat::Identity();      ///< take principal axes of inertia to body axes
-  bool along_principal_axes = true;            ///< body axes are these very axes
-  Vec3 inverse_moments = Vec3::Ones();         ///< along them, over mass, 1/m²: ascending
+  bool isotropic = false;                  ///< a sphere or a cube: rotates steadily
+  bool round = false;                      ///< a sphere or nearly one: rolls down a slope (tables model)
+  Quat principal_axes = Quat::Identity();  ///< take principal axes of inertia to body axes
+  bool along_principal_axes = true;        ///< body axes are these very axes
+  Vec3 inverse_moments = Vec3::Ones();     ///< along them, over mass, 1/m²: ascending
 };
 
 /// With what follows from the shape's inertia.
-BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature = nullptr, MaterialId material = 0);
+BodyKind make_body_kind(std::shared_ptr<const Shape> shape,
+                        std::shared_ptr<const Signature> signature = nullptr, MaterialId material = 0);
 
 enum class Motion : std::uint8_t {
   dynamic,   ///< flies and collides
@@ -42,26 +45,27 @@ struct StatisticalBody {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();
-  Vec3 spin = Vec3::Zero();             ///< angular momentum over mass, m²/s, world frame: what free flight conserves
-  double mass = 1.0;                    ///< kg
-  float sphere_radius = 0.0f;           ///< m, `tables`: of the colliding sphere; 0 for a body of `support`
-  float quiet_time = 0.0f;              ///< s spent below the sleeping threshold
-  std::int32_t support_hint = 0;        ///< hull vertex last found lowest: where the next climb starts
-  std::int32_t settling = -1;           ///< index of the settling record (clip or rest pose) while Motion::settling
+  Vec3 spin = Vec3::Zero();    ///< angular momentum over mass, m²/s, world frame: what free flight conserves
+  double mass = 1.0;           ///< kg
+  float sphere_radius = 0.0f;  ///< m, `tables`: of the colliding sphere; 0 for a body of `support`
+  float quiet_time = 0.0f;     ///< s spent below the sleeping threshold
+  std::int32_t support_hint = 0;  ///< hull vertex last found lowest: where the next climb starts
+  std::int32_t settling = -1;     ///< index of the settling record (clip or rest pose) while Motion::settling
   std::uint32_t owner = 0;
-  std::uint32_t events = 0;             ///< collisions so far: keys the random draws
+  std::uint32_t events = 0;  ///< collisions so far: keys the random draws
   std::uint32_t kind = 0;
   Motion motion = Motion::dynamic;
-  bool crowded = false;                 ///< touches another body in this step
-  float since_crowded = 1e9f;           ///< s since it last did
-  float eased = 0.0f;                   ///< s left in which overlaps that it brought from another rung are undone slowly
+  bool crowded = false;        ///< touches another body in this step
+  float since_crowded = 1e9f;  ///< s since it last did
+  float eased = 0.0f;  ///< s left in which overlaps that it brought from another rung are undone slowly
 
   bool is_sphere() const { return sphere_radius > 0.0f; }
 };
 
 /// Kinetic energy over mass, J/kg, with the true inertia.
 inline double kinetic_energy(const StatisticalBody& body, const Shape& shape) {
-  return 0.5 * (body.velocity.squaredNorm() + body.spin.dot(angular_velocity(body.orientation, body.spin, shape)));
+  return 0.5 *
+         (body.velocity.squaredNorm() + body.spin.dot(angular_velocity(body.orientation, body.spin, shape)));
 }
 
 }  // namespace lodestone

@@ -16,13 +16,16 @@ struct StatisticalSettings {
   Vec3 gravity{0, 0, -9.81};  ///< m/s²
   std::uint64_t seed = 1;
   int threads = 1;
-  JobRunner jobs = {};        ///< empty: oneTBB's on so many threads
+  JobRunner jobs = {};  ///< empty: oneTBB's on so many threads
   TablesOptions tables = {};
   bool sleeping = true;
   SleepThresholds sleep = {};
-  const OwnProperties* properties = nullptr;  ///< of bodies at `support` and of full ones, by owner; those at `tables` have none. Null: nobody has any. Must outlive the level
-  std::function<bool(std::uint32_t, std::uint32_t)> pair_filter = {};  ///< of two owners: whether they may meet; empty: all do. Called from several threads
-  Simd simd = find_simd();    ///< the results do not depend on it
+  const OwnProperties* properties =
+      nullptr;  ///< of bodies at `support` and of full ones, by owner; those at `tables` have none. Null:
+                ///< nobody has any. Must outlive the level
+  std::function<bool(std::uint32_t, std::uint32_t)> pair_filter =
+      {};  ///< of two owners: whether they may meet; empty: all do. Called from several threads
+  Simd simd = find_simd();  ///< the results do not depend on it
 };
 
 }  // namespace lodestone

@@ -1,4 +1,5 @@
-// What both models need to move one body that touches no other: the world it moves in, and what happened to it.
+// What both models need to move one body that touches no other: the world it moves in, and what happened to
+// it.
 #pragma once
 
 #include <span>
@@ -17,18 +18,22 @@ struct StepWorld {
   const MaterialTable* materials = nullptr;
   std::uint64_t seed = 1;
   const OwnProperties* properties = nullptr;  ///< null: nobody has any
-  ContactLog* log = nullptr;      ///< null: nobody asked
-  double bounce_velocity = 0.05;  ///< m/s, ODE's: slower contacts do not bounce
+  ContactLog* log = nullptr;                  ///< null: nobody asked
+  double bounce_velocity = 0.05;              ///< m/s, ODE's: slower contacts do not bounce
 
   const BodyProperties& properties_of(std::uint32_t owner) const {
     static const BodyProperties usual;
     return properties ? properties->of(owner) : usual;
   }
 
-  ContactLaw law(const BodyKind& kind, const HalfSpace& plane) const { return materials->law(kind.material, plane.material); }
+  ContactLaw law(const BodyKind& kind, const HalfSpace& plane) const {
+    return materials->law(kind.material, plane.material);
+  }
   double gravity_strength() const { return gravity.norm(); }
   /// Whether resting conditions apply on `plane` (3.4): gravity presses straight onto it.
-  bool is_horizontal(const HalfSpace& plane) const { return -plane.normal.dot(gravity) > 0.9999 * gravity.norm() && gravity.norm() > 0.0; }
+  bool is_horizontal(const HalfSpace& plane) const {
+    return -plane.normal.dot(gravity) > 0.9999 * gravity.norm() && gravity.norm() > 0.0;
+  }
 };
 
 /// What moving one body found, summed into the step report.

@@ -24,16 +24,17 @@ Vec3 rotation_vector(const Quat& q) {
 RigidState state_of(const ClipPlayback& p, const BodyKind& kind, double gravity) {
   const ClipState clip = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
   const double radius = kind.shape->radius, speed_unit = std::sqrt(gravity * radius);
+  // Smoothstep, 3s² − 2s³: the residual begins and ends to fade without a jump of its speed.
   const double fade = p.residual_left * p.residual_left * (3.0 - 2.0 * p.residual_left);
   return {p.origin + p.yaw * (clip.position * radius) + fade * p.residual_position,
-          rotation_from_vector(fade * p.residual_rotation) * (p.yaw * clip.orientation), p.yaw * (clip.velocity * speed_unit),
-          p.yaw * (clip.angular_velocity * (speed_unit / radius))};
+          rotation_from_vector(fade * p.residual_rotation) * (p.yaw * clip.orientation),
+          p.yaw * (clip.velocity * speed_unit), p.yaw * (clip.angular_velocity * (speed_unit / radius))};
 }
 
 }  // namespace
 
-std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKind& kind, const HalfSpace& ground, double gravity,
-                                      const ClipSettings& settings) {
+std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKind& kind,
+                                      const HalfSpace& ground, double gravity, const ClipSettings& settings) {
   const Shape& shape = *kind.shape;
   const double radius = shape.radius, speed_unit = std::sqrt(gravity * radius);
   const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
@@ -42,10 +43,13 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
 
   const Quat to_body = body.orientation.conjugate();
   const double height = ground.height_of(body.position);
-  const SettlingKey key{(to_body * ground.normal).cast<float>(), (to_body * body.velocity / speed_unit).cast<float>(),
-                        (to_body * omega * (radius / speed_unit)).cast<float>(), float(kinetic / (gravity * radius) + height / radius)};
+  const SettlingKey key{(to_body * ground.normal).cast<float>(),
+                        (to_body * body.velocity / speed_unit).cast<float>(),
+                        (to_body * omega * (radius / speed_unit)).cast<float>(),
+                        float(kinetic / (gravity * radius) + height / radius)};
   const auto energy = float(kinetic / (gravity * radius));
-  const float distance = std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);
+  const float distance =
+      std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);
   const std::optional<ClipEntry> entry = kind.clips->find_nearest(key, settings.energy_slack, distance);
   if (!entry) return {};
 
@@ -55,6 +59,8 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
   p.frame = entry->frame;
   p.residual_left = 1.0;
   const ClipState pose = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
+  // The yaw frame: of all turns about the ground's normal the one that brings the clip's pose nearest to the
+  // body's. What it leaves between them is a tilt, residual_rotation.
   const Quat upright = Quat::FromTwoVectors(Vec3::UnitZ(), ground.normal);
   p.yaw = twist_about(body.orientation * (upright * pose.orientation).conjugate(), ground.normal) * upright;
   const Vec3 above_origin = p.yaw * (pose.position * radius);
@@ -65,13 +71,18 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
   return p;
 }
 
-bool advance_clip(ClipPlayback& p, StatisticalBody& body, const BodyKind& kind, double gravity, double time, const ClipSettings& settings) {
+bool advance_clip(ClipPlayback& p, StatisticalBody& body, const BodyKind& kind, double gravity, double time,
+                  const ClipSettings& settings) {
   const double time_unit = std::sqrt(kind.shape->radius / gravity);
   p.frame += time / (kind.signature->clip_frame_interval * time_unit);
-  p.residual_left = std::max(0.0, p.residual_left - time / (settings.fade_time * time_unit / std::sqrt(0.2 / 9.81)));
+  // fade_time is said for R = .2 m at 9.81 m/s²; in other worlds it is as many √(R/g).
+  p.residual_left =
+      std::max(0.0, p.residual_left - time / (settings.fade_time * time_unit / std::sqrt(0.2 / 9.81)));
   RigidState state = state_of(p, kind, gravity);
   if (p.residual_left > 0.0) {  // between two poses the hull may dip below the ground
-    const double gap = find_lowest_point(*kind.shape, state.orientation, p.ground.normal, p.ground.height_of(state.position), body.support_hint).gap;
+    const double gap = find_lowest_point(*kind.shape, state.orientation, p.ground.normal,
+                                         p.ground.height_of(state.position), body.support_hint)
+                           .gap;
     if (gap < 0.0) state.position -= gap * p.ground.normal;
   }
   body.position = state.position;

@@ -4,8 +4,8 @@
 #include <functional>
 #include <limits>
 
-#include "lod/contact/hull_contacts.h"
 #include "lod/statistical/parting.h"
+#include "lod/support/hull_motion.h"
 #include "lod/support/support_level.h"
 
 namespace lodestone {
@@ -45,7 +45,8 @@ void SupportLevel::put_to_sleep(int slot) {
 void SupportLevel::set_gravity(const Vec3& gravity) {
   settings_.gravity = gravity;
   for (const std::int32_t slot : awake_)
-    if (StatisticalBody& body = bodies_[std::size_t(slot)]; body.motion == Motion::settling) body.motion = Motion::dynamic;
+    if (StatisticalBody& body = bodies_[std::size_t(slot)]; body.motion == Motion::settling)
+      body.motion = Motion::dynamic;
 }
 
 void SupportLevel::take_woke(std::vector<std::uint32_t>& owners) {
@@ -70,7 +71,8 @@ void SupportLevel::put_to_sleep(StatisticalBody& body) const {
 }
 
 void SupportLevel::end_step() {
-  const auto first_asleep = std::stable_partition(awake_.begin(), awake_.end(), [this](std::int32_t slot) { return !asleep(slot); });
+  const auto first_asleep = std::stable_partition(awake_.begin(), awake_.end(),
+                                                  [this](std::int32_t slot) { return !asleep(slot); });
   std::for_each(first_asleep, awake_.end(), [this](std::int32_t slot) {
     place_awake_[std::size_t(slot)] = -1;
     lay_still(slot);
@@ -85,11 +87,12 @@ void SupportLevel::end_step() {
 bool SupportLevel::is_sound(const StatisticalBody& body, double energy) const {
   if (!is_within_limit(body.position)) return false;
   if (energy < kSurelySound) return true;  // not so for NaN
-  return is_within_limit(body.velocity) && is_within_limit(angular_velocity(body.orientation, body.spin, *kind_of(body).shape));
+  return is_within_limit(body.velocity) &&
+         is_within_limit(angular_velocity(body.orientation, body.spin, *kind_of(body).shape));
 }
 
-// Put to rest at the nearest place that can be held, or, where the place is no number, the last one known: what is not sound must neither spread nor
-// reach ODE, which would end the process.
+// Put to rest at the nearest place that can be held, or, where the place is no number, the last one known:
+// what is not sound must neither spread nor reach ODE, which would end the process.
 void SupportLevel::recover(StatisticalBody& body, const Vec3& last_place, ContactTally& tally) const {
   if (!body.position.allFinite()) body.position = last_place;
   body.position = body.position.cwiseMax(-kStateLimit).cwiseMin(kStateLimit);
@@ -99,25 +102,50 @@ void SupportLevel::recover(StatisticalBody& body, const Vec3& last_place, Contac
   ++tally.states_recovered;
 }
 
-void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally) {
+// Sound and not still, whatever it turns like: from bounds of its energy, so that what flies need not be
+// asked for that itself. Half of v² is the least that it may be, and the spin L of a body turns with at most
+// its length over the least moment of inertia.
+bool SupportLevel::surely_moves_on(const StatisticalBody& body, const BodyKind& kind,
+                                   double still_energy) const {
+  constexpr double kRounding = 1e-6;
+  const double of_motion = 0.5 * body.velocity.squaredNorm(),
+               of_spin = 0.5 * kind.inverse_moments[2] * body.spin.squaredNorm();
+  const double length = body.orientation.squaredNorm();  // NaN spreads, too
+  return of_motion > (1.0 + kRounding) * still_energy &&
+         (1.0 + kRounding) * (of_motion + of_spin) < kSurelySound && is_within_limit(body.position) &&
+         length > 0.9 && length < 1.1;
+}
+
+void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> faces, double time,
+                                ContactTally& tally) {
   StatisticalBody& body = bodies_[std::size_t(slot)];
   const BodyKind& kind = kind_of(body);
   const bool among_others = body.crowded || double(body.since_crowded) < RestLaw::kLeaningTime;
   body.since_crowded = body.crowded ? 0.0f : body.since_crowded + float(time);
-  const bool parts = body.eased == kEasedTime;  // from what it overlaps since it came: it is not at rest, though it has no velocity
+  const bool parts =
+      body.eased ==
+      kEasedTime;  // from what it overlaps since it came: it is not at rest, though it has no velocity
   body.eased = std::max(0.0f, body.eased - float(time));
   const BodyProperties& own = properties_of(body);
   govern(body, own, time);
+  const double still_energy =
+      rest_law_.still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
+  if (!own.kinematic && rest_law_.still_time(among_others) > 0.0f &&
+      surely_moves_on(body, kind, still_energy)) {
+    body.quiet_time = 0.0f;
+    return;
+  }
   const double energy = kinetic_energy(body, *kind.shape);
   if (!is_sound(body, energy)) recover(body, last_places_[std::size_t(slot)], tally);
-  const bool still = !parts && energy < rest_law_.still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
+  const bool still = !parts && energy < still_energy;
   body.quiet_time = still ? body.quiet_time + float(time) : 0.0f;
   if (own.kinematic) {  // moved by nothing else: without a velocity it is at rest
     if (settings_.sleeping && own.allow_sleep && energy == 0.0) put_to_sleep(body);
     return;
   }
   if (!settings_.sleeping || !own.allow_sleep || body.quiet_time < rest_law_.still_time(among_others)) return;
-  if (among_others || stands_firmly(body, faces)) put_to_sleep(body);
+  if (among_others || stands_firmly(body, *kind.shape, join_planes(ground_.planes(), faces)))
+    put_to_sleep(body);
 }
 
 void SupportLevel::govern(StatisticalBody& body, const BodyProperties& own, double time) const {
@@ -127,24 +155,6 @@ void SupportLevel::govern(StatisticalBody& body, const BodyProperties& own, doub
   if (own.max_angular_speed == std::numeric_limits<double>::infinity()) return;
   const double speed = angular_velocity(body.orientation, body.spin, *kind_of(body).shape).norm();
   if (speed > own.max_angular_speed) body.spin *= own.max_angular_speed / speed;
-}
-
-// On three vertices at least: on an edge a body may balance for a while, but not for good.
-bool SupportLevel::stands_firmly(const StatisticalBody& body, std::span<const HalfSpace> faces) const {
-  constexpr double kFlat = 0.02;  // over R
-  const Shape& shape = *kind_of(body).shape;
-  if (shape.sphere_radius) return true;
-  int vertices = 0;
-  const auto count_on = [&](const HalfSpace& plane) {
-    const double height = plane.height_of(body.position), margin = kFlat * shape.radius;
-    if (height > shape.radius + margin) return;
-    std::int32_t hint = body.support_hint;
-    const HullContacts low = find_hull_contacts(shape, body.orientation, plane.normal, height, margin, hint);
-    for (int i = 0; i < low.count; ++i) vertices += low.contact[std::size_t(i)].gap < margin;
-  };
-  for (const HalfSpace& plane : ground_.planes()) count_on(plane);
-  for (const HalfSpace& face : faces) count_on(face);
-  return vertices >= 3;
 }
 
 }  // namespace lodestone

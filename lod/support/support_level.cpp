@@ -6,7 +6,8 @@
 #include "reference/error.h"
 
 namespace lodestone {
-int SupportLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep, bool eased) {
+int SupportLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state,
+                      bool asleep, bool eased) {
   StatisticalBody body;
   body.kind = kind;
   body.mass = mass;
@@ -33,8 +34,10 @@ std::optional<std::uint32_t> SupportLevel::remove(int slot) {
   check_that(slot >= 0 && slot < size(), "slot out of range");
   const int last = size() - 1;
   const auto at = std::size_t(slot), at_last = std::size_t(last);
-  if (lies_still(slot)) take_from_still(slot);
-  else drop_awake(slot);
+  if (lies_still(slot))
+    take_from_still(slot);
+  else
+    drop_awake(slot);
   const bool last_lies = slot != last && lies_still(last);
   if (last_lies) take_from_still(last);
   std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
@@ -45,11 +48,14 @@ std::optional<std::uint32_t> SupportLevel::remove(int slot) {
     array[at] = array[at_last];
     array.pop_back();
   };
-  fill_gap(bodies_), fill_gap(clips_), fill_gap(last_places_), fill_gap(angular_velocity_given_), fill_gap(place_awake_);
+  fill_gap(bodies_), fill_gap(clips_), fill_gap(last_places_), fill_gap(angular_velocity_given_),
+      fill_gap(place_awake_);
   if (slot == last) return {};
   if (last_given) note_given(slot);
-  if (last_lies) lay_still(slot);
-  else awake_[std::size_t(place_awake_[at])] = slot, awake_in_order_ = false;
+  if (last_lies)
+    lay_still(slot);
+  else
+    awake_[std::size_t(place_awake_[at])] = slot, awake_in_order_ = false;
   return bodies_[at].owner;
 }
 
@@ -77,19 +83,23 @@ void SupportLevel::put_awake_in_order() {
   awake_in_order_ = true;
 }
 
-// The list of these may hold slots that are none any more, but does not grow while bodies come and go between steps.
+// The list of these may hold slots that are none any more, but does not grow while bodies come and go between
+// steps.
 void SupportLevel::note_given(std::int32_t slot) {
   given_.push_back(slot);
   if (given_.size() < 2 * bodies_.size() + 64) return;
   std::ranges::sort(given_);
   given_.erase(std::unique(given_.begin(), given_.end()), given_.end());
-  std::erase_if(given_, [this](std::int32_t listed) { return listed >= size() || !angular_velocity_given_[std::size_t(listed)]; });
+  std::erase_if(given_, [this](std::int32_t listed) {
+    return listed >= size() || !angular_velocity_given_[std::size_t(listed)];
+  });
 }
 
 RigidState SupportLevel::state(int slot) const {
   const StatisticalBody& b = body(slot);
   const std::optional<Vec3>& given = angular_velocity_given_[std::size_t(slot)];
-  return {b.position, b.orientation, b.velocity, given ? *given : angular_velocity(b.orientation, b.spin, *kind_of(b).shape)};
+  return {b.position, b.orientation, b.velocity,
+          given ? *given : angular_velocity(b.orientation, b.spin, *kind_of(b).shape)};
 }
 
 void SupportLevel::set_state(int slot, const RigidState& state) {
@@ -106,7 +116,8 @@ void SupportLevel::set_state(int slot, const RigidState& state) {
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
   // What no level can hold is mended, and counted, before the next step looks at it.
-  if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape))) pushes_.push_back({slot, Vec3::Zero(), Vec3::Zero()});
+  if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape)))
+    pushes_.push_back({slot, Vec3::Zero(), Vec3::Zero()});
 }
 
 void SupportLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
@@ -127,10 +138,12 @@ void SupportLevel::begin_step(double dt, ContactTally& tally) {
     const double impulse = dt / body.mass;
     body.velocity += impulse * force;
     body.spin += impulse * torque;
-    if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape))) recover(body, last_places_[std::size_t(slot)], tally);
+    if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape)))
+      recover(body, last_places_[std::size_t(slot)], tally);
   }
   pushes_.clear();
-  for (const std::int32_t slot : awake_) last_places_[std::size_t(slot)] = bodies_[std::size_t(slot)].position;
+  for (const std::int32_t slot : awake_)
+    last_places_[std::size_t(slot)] = bodies_[std::size_t(slot)].position;
 }
 
 void SupportLevel::admit_guests(std::span<const StatisticalBody> guests) {

@@ -1,4 +1,5 @@
-// Bodies of `support`, as dense arrays: how one moves that touches no other, comes to rest, sleeps and wakes. Those near others are moved by rungs/near_bodies.h.
+// Bodies of `support`, as dense arrays: how one moves that touches no other, comes to rest, sleeps and wakes.
+// Those near others are moved by rungs/near_bodies.h.
 #pragma once
 
 #include <optional>
@@ -20,37 +21,49 @@ namespace lodestone {
 class SupportLevel {
  public:
   /// All but the settings must outlive the level.
-  SupportLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers)
-      : settings_(settings), ground_(ground), materials_(materials), kinds_(kinds), sleepers_(sleepers), rest_law_(settings.sleep) {}
+  SupportLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials,
+               const Kinds& kinds, Sleepers& sleepers)
+      : settings_(settings),
+        ground_(ground),
+        materials_(materials),
+        kinds_(kinds),
+        sleepers_(sleepers),
+        rest_law_(settings.sleep) {}
 
   /// Returns the slot. `eased`: comes from another rung, perhaps with overlaps.
-  int add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep, bool eased);
+  int add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep,
+          bool eased);
   /// The last body moves into the slot and its owner is returned (none where it was the last). Wakes nobody.
   std::optional<std::uint32_t> remove(int slot);
 
   int size() const { return int(clips_.size()); }
   int asleep_count() const { return size() - int(awake_.size()); }
-  std::span<const std::int32_t> awake() const { return awake_; }                 ///< slots; in order during a step
-  std::span<const std::uint32_t> fell_asleep() const { return fell_asleep_; }    ///< owners, in the last step
+  std::span<const std::int32_t> awake() const { return awake_; }  ///< slots; in order during a step
+  bool is_among_awake(int slot) const { return place_awake_[std::size_t(slot)] >= 0; }
+  int place_among_awake(int slot) const { return place_awake_[std::size_t(slot)]; }  ///< in awake()
+  std::span<const std::uint32_t> fell_asleep() const { return fell_asleep_; }  ///< owners, in the last step
   const StatisticalBody& body(int slot) const { return bodies_[std::size_t(slot)]; }
   std::uint32_t kind(int slot) const { return body(slot).kind; }
   const BodyKind& kind_of(const StatisticalBody& body) const { return kinds_[body.kind]; }
   RigidState state(int slot) const;
-  void set_state(int slot, const RigidState& state);                             ///< wakes it
+  void set_state(int slot, const RigidState& state);  ///< wakes it
   bool asleep(int slot) const { return body(slot).motion == Motion::asleep; }
-  bool crowded(int slot) const { return body(slot).since_crowded == 0.0f; }      ///< touched another body in the last step
+  bool crowded(int slot) const {
+    return body(slot).since_crowded == 0.0f;
+  }  ///< touched another body in the last step
   void wake(int slot);
-  void put_to_sleep(int slot);                                                   ///< where it is, at once
+  void put_to_sleep(int slot);  ///< where it is, at once
   /// m/s², from the next step on. Clips end: they were recorded under another.
   void set_gravity(const Vec3& gravity);
-  void set_log(ContactLog* log) { log_ = log; }                                  ///< null: none
+  void set_log(ContactLog* log) { log_ = log; }  ///< null: none
   /// Appends the owners of those that woke since this was last asked.
   void take_woke(std::vector<std::uint32_t>& owners);
-  void add_force(int slot, const Vec3& force, const Vec3& torque);               ///< over the next step; wakes it
+  void add_force(int slot, const Vec3& force, const Vec3& torque);  ///< over the next step; wakes it
 
   // A step, in this order.
   void begin_step(double dt, ContactTally& tally);
-  /// Bodies of `tables` that are near others in this step follow in bodies(), until dismiss_guests(). They are among those awake, unless they sleep.
+  /// Bodies of `tables` that are near others in this step follow in bodies(), until dismiss_guests(). They
+  /// are among those awake, unless they sleep.
   void admit_guests(std::span<const StatisticalBody> guests);
   std::span<StatisticalBody> bodies() { return bodies_; }
   std::span<const StatisticalBody> bodies() const { return bodies_; }
@@ -65,7 +78,10 @@ class SupportLevel {
   void dismiss_guests();
   void end_step();
 
-  void archive(StateArchive& a) { a(bodies_, clips_, angular_velocity_given_, last_places_, place_awake_, awake_, awake_in_order_, given_, pushes_, fell_asleep_, woke_, woken_); }
+  void archive(StateArchive& a) {
+    a(bodies_, clips_, angular_velocity_given_, last_places_, place_awake_, awake_, awake_in_order_, given_,
+      pushes_, fell_asleep_, woke_, woken_);
+  }
 
  private:
   struct Push {
@@ -73,18 +89,22 @@ class SupportLevel {
     Vec3 force, torque;
   };
 
-  StepWorld world() const { return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, settings_.properties, log_}; }
-  const BodyProperties& properties_of(const StatisticalBody& body) const { return world().properties_of(body.owner); }
+  StepWorld world() const {
+    return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, settings_.properties, log_};
+  }
+  const BodyProperties& properties_of(const StatisticalBody& body) const {
+    return world().properties_of(body.owner);
+  }
   void govern(StatisticalBody& body, const BodyProperties& own, double time) const;
   void put_to_sleep(StatisticalBody& body) const;
-  void lay_still(std::int32_t slot);        // a sleeper leaves all loops
+  void lay_still(std::int32_t slot);  // a sleeper leaves all loops
   void take_from_still(std::int32_t slot);
   bool lies_still(std::int32_t slot) const { return place_awake_[std::size_t(slot)] < 0; }
   void add_awake(std::int32_t slot);
   void drop_awake(std::int32_t slot);
   void put_awake_in_order();
   void note_given(std::int32_t slot);
-  bool stands_firmly(const StatisticalBody& body, std::span<const HalfSpace> faces) const;
+  bool surely_moves_on(const StatisticalBody& body, const BodyKind& kind, double still_energy) const;
   bool is_sound(const StatisticalBody& body, double energy) const;
   void recover(StatisticalBody& body, const Vec3& last_place, ContactTally& tally) const;
 
@@ -97,18 +117,20 @@ class SupportLevel {
   ContactLog* log_ = nullptr;
 
   // One of each per body, by slot.
-  std::vector<StatisticalBody> bodies_;      // and guests
+  std::vector<StatisticalBody> bodies_;  // and guests
   std::vector<ClipPlayback> clips_;
-  std::vector<std::optional<Vec3>> angular_velocity_given_;  // until the next step: a state that was set is read back to the bit
-  std::vector<Vec3> last_places_;            // m, at the step's start
-  std::vector<std::int32_t> place_awake_;    // in `awake_`; −1: sleeps since an earlier step, and is in no loop
+  std::vector<std::optional<Vec3>>
+      angular_velocity_given_;     // until the next step: a state that was set is read back to the bit
+  std::vector<Vec3> last_places_;  // m, at the step's start
+  std::vector<std::int32_t> place_awake_;  // in `awake_`; −1: sleeps since an earlier step, and is in no loop
 
-  std::vector<std::int32_t> awake_;          // slots, and guests
+  std::vector<std::int32_t> awake_;  // slots, and guests
   bool awake_in_order_ = true;
-  std::vector<std::int32_t> given_;          // slots whose angular velocity was given, and some for which that is so no more
-  std::vector<Push> pushes_;                 // of the next step
-  std::vector<std::uint32_t> fell_asleep_;   // owners
-  std::vector<std::uint32_t> woke_;          // owners
+  std::vector<std::int32_t>
+      given_;                 // slots whose angular velocity was given, and some for which that is so no more
+  std::vector<Push> pushes_;  // of the next step
+  std::vector<std::uint32_t> fell_asleep_;  // owners
+  std::vector<std::uint32_t> woke_;         // owners
   bool woken_ = false;
 };
 

@@ -32,7 +32,9 @@ void set_apart(BallPairs& pairs, std::uint32_t spheres, BallPairs& others) {
 void ContactArrays::make_room(std::size_t elements, bool one_kind) {
   if (elements + kContactChunk > first.size()) {
     const std::size_t size = elements + elements / 16 + 2 * kContactChunk;
-    const auto grow = [&](auto& array) { array.reserve(size), array.resize(size); };  // not twice as long, as a resize by itself would
+    const auto grow = [&](auto& array) {
+      array.reserve(size), array.resize(size);
+    };  // not twice as long, as a resize by itself would
     grow(first), grow(second);
     for (auto* array : {&nx, &ny, &nz, &gap, &closing, &impulse}) grow(*array);
   }
@@ -76,8 +78,9 @@ void SphereContacts::put_back(ContactArrays& arrays) {
   free_arrays_.push_back(&arrays);
 }
 
-void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity, const StepConstants& constants,
-                          Simd simd, const JobRunner& jobs, std::vector<BallPairs>* others) {
+void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid,
+                          float bounce_velocity, const StepConstants& constants, Simd simd,
+                          const JobRunner& jobs, std::vector<BallPairs>* others) {
   clear();
   if (others && others->size() < std::size_t(grid.parts())) others->resize(std::size_t(grid.parts()));
   used_parts_ = std::size_t(grid.parts()) + 1;
@@ -87,23 +90,29 @@ void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, cons
     of_colour_[std::size_t(parts_[i].colour)].push_back(std::uint32_t(i));
   }
   jobs(grid.parts(), TaskRef([&](std::int64_t i) {
-    BallPairs& pairs = empty_pairs();
-    grid.find_pairs(i, pairs);
-    if (others) set_apart(pairs, std::uint32_t(spheres.awake), (*others)[std::size_t(i)]);
-    if (pair_filter_) pairs.filter([&](std::uint32_t first, std::uint32_t second) { return pair_filter_(spheres.owner[first], spheres.owner[second]); });
-    ContactArrays& arrays = take_arrays();
-    parts_[std::size_t(i)].run = find_touching(pairs, spheres, kinds, constants, settings_.touching, simd, arrays);
-    recall(spheres, bounce_velocity, constants, parts_[std::size_t(i)].run);
-    put_back(arrays);
-  }));
+         BallPairs& pairs = empty_pairs();
+         grid.find_pairs(i, pairs);
+         if (others) set_apart(pairs, std::uint32_t(spheres.awake), (*others)[std::size_t(i)]);
+         if (pair_filter_)
+           pairs.filter([&](std::uint32_t first, std::uint32_t second) {
+             return pair_filter_(spheres.owner[first], spheres.owner[second]);
+           });
+         ContactArrays& arrays = take_arrays();
+         parts_[std::size_t(i)].run =
+             find_touching(pairs, spheres, kinds, constants, settings_.touching, simd, arrays);
+         recall(spheres, bounce_velocity, constants, parts_[std::size_t(i)].run);
+         put_back(arrays);
+       }));
 }
 
-void SphereContacts::add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs,
+void SphereContacts::add(const Spheres& spheres, const SphereKinds& kinds,
+                         std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs,
                          float bounce_velocity, const StepConstants& constants, Simd simd) {
   BallPairs& near = empty_pairs();
   for (const auto& [first, second] : pairs) near.add(first, second);
   ContactArrays& arrays = take_arrays();
-  parts_[used_parts_ - 1].run = find_touching(near, spheres, kinds, constants, settings_.touching, simd, arrays);
+  parts_[used_parts_ - 1].run =
+      find_touching(near, spheres, kinds, constants, settings_.touching, simd, arrays);
   recall(spheres, bounce_velocity, constants, parts_[used_parts_ - 1].run);
   put_back(arrays);
 }
@@ -113,9 +122,9 @@ void SphereContacts::run_by_colour(const JobRunner& jobs, const Task& task) {
   for (const auto& colour : of_colour_)
     if (!colour.empty())
       jobs(std::int64_t(colour.size()), TaskRef([&](std::int64_t i) {
-        Part& part = parts_[colour[std::size_t(i)]];
-        if (part.run.size() > 0) task(part);
-      }));
+             Part& part = parts_[colour[std::size_t(i)]];
+             if (part.run.size() > 0) task(part);
+           }));
 }
 
 float SphereContacts::find_known_force(const Spheres& spheres, std::uint32_t at, std::uint32_t other) const {
@@ -126,12 +135,15 @@ float SphereContacts::find_known_force(const Spheres& spheres, std::uint32_t at,
 }
 
 float SphereContacts::find_known_apart(std::uint32_t owner, std::uint32_t other) const {
-  const auto found = std::ranges::lower_bound(known_apart_, std::array{owner, other}, {}, &KnownApart::owners);
+  const auto found =
+      std::ranges::lower_bound(known_apart_, std::array{owner, other}, {}, &KnownApart::owners);
   return found != known_apart_.end() && found->owners == std::array{owner, other} ? found->force : 0.0f;
 }
 
-// Contacts mostly come in the order of the last step: `nth`, of those of the first body, is where it should be.
-float SphereContacts::known_force(const Spheres& spheres, std::uint32_t first, std::uint32_t second, std::uint32_t nth) const {
+// Contacts mostly come in the order of the last step: `nth`, of those of the first body, is where it should
+// be.
+float SphereContacts::known_force(const Spheres& spheres, std::uint32_t first, std::uint32_t second,
+                                  std::uint32_t nth) const {
   if (nth < spheres.known_count[first]) {
     const KnownContact& expected = known_[spheres.known_begin[first] + nth];
     if (expected.owner == spheres.owner[second]) return expected.force;
@@ -143,27 +155,31 @@ float SphereContacts::known_force(const Spheres& spheres, std::uint32_t first, s
   return force != 0.0f ? force : find_known_apart(spheres.owner[second], spheres.owner[first]);
 }
 
-void SphereContacts::recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants, const ContactRun& run) const {
+void SphereContacts::recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants,
+                            const ContactRun& run) const {
   ContactArrays& c = *run.arrays;
   std::uint32_t last = ~0u, nth = 0;
   for (std::size_t i = run.begin; i < run.end; ++i) {
     nth = c.first[i] == last ? nth + 1 : 0;
     last = c.first[i];
     const bool impact = c.closing[i] < -bounce_velocity;  // is no support
-    c.impulse[i] = impact || known_.empty() ? 0.0f : known_force(spheres, c.first[i], c.second[i], nth) * constants.time;
+    c.impulse[i] =
+        impact || known_.empty() ? 0.0f : known_force(spheres, c.first[i], c.second[i], nth) * constants.time;
   }
 }
 
-void SphereContacts::set_laws(const ContactRun& run, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials) const {
+void SphereContacts::set_laws(const ContactRun& run, const Spheres& spheres, const SphereKinds& kinds,
+                              const MaterialTable& materials) const {
   ContactArrays& c = *run.arrays;
   for (std::size_t i = run.begin; i < run.end; ++i) {
-    const ContactLaw law = materials.law(kinds.material[spheres.kind[c.first[i]]], kinds.material[spheres.kind[c.second[i]]]);
+    const ContactLaw law =
+        materials.law(kinds.material[spheres.kind[c.first[i]]], kinds.material[spheres.kind[c.second[i]]]);
     c.restitution[i] = float(law.restitution), c.friction[i] = float(law.friction);
   }
 }
 
-void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, const StepConstants& constants,
-                           SphereStep& step, const JobRunner& jobs) {
+void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
+                           const StepConstants& constants, SphereStep& step, const JobRunner& jobs) {
   const auto awake = std::uint32_t(spheres.awake);
   step.clear_still(awake);
   run_by_colour(jobs, [&](Part& part) {
@@ -179,9 +195,11 @@ void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, con
   });
 }
 
-void SphereContacts::sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity,
-                           const StepConstants& constants, bool last, bool eased, Simd simd, SphereStep& step, const JobRunner& jobs) {
-  const SweepSettings settings{settings_, materials.law(kinds.material[0], kinds.material[0]), bounce_velocity, last, eased};
+void SphereContacts::sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
+                           float bounce_velocity, const StepConstants& constants, bool last, bool eased,
+                           Simd simd, SphereStep& step, const JobRunner& jobs) {
+  const SweepSettings settings{settings_, materials.law(kinds.material[0], kinds.material[0]),
+                               bounce_velocity, last, eased};
   if (last) make_room_to_remember(spheres);
   run_by_colour(jobs, [&](Part& part) {
     sweep_contacts(settings, spheres, kinds, constants, simd, part.run, step);
@@ -202,7 +220,8 @@ void SphereContacts::make_room_to_remember(Spheres& spheres) {
 }
 
 // All contacts of a first body are in one part, one after the other.
-void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const Part& part) {
+void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants,
+                              const Part& part) {
   const float per_time = 1.0f / constants.time;
   const ContactArrays& c = *part.run.arrays;
   std::uint32_t at = part.known_begin, last = ~0u;
@@ -217,7 +236,8 @@ void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const Ste
   }
 }
 
-void SphereContacts::remember_apart(const Spheres& spheres, float bounce_velocity, const StepConstants& constants) {
+void SphereContacts::remember_apart(const Spheres& spheres, float bounce_velocity,
+                                    const StepConstants& constants) {
   known_apart_.clear();
   const float per_time = 1.0f / constants.time;
   for (std::size_t p = 0; p < used_parts_; ++p) {
@@ -225,20 +245,24 @@ void SphereContacts::remember_apart(const Spheres& spheres, float bounce_velocit
     const ContactArrays& c = *parts_[p].run.arrays;
     for (std::size_t i = parts_[p].run.begin; i < parts_[p].run.end; ++i)
       if (is_support(c, i, bounce_velocity))
-        known_apart_.push_back({{spheres.owner[c.first[i]], spheres.owner[c.second[i]]}, c.impulse[i] * per_time});
+        known_apart_.push_back(
+            {{spheres.owner[c.first[i]], spheres.owner[c.second[i]]}, c.impulse[i] * per_time});
   }
   std::ranges::sort(known_apart_, {}, &KnownApart::owners);
 }
 
 std::size_t SphereContacts::bytes() const {
-  std::size_t bytes = known_.capacity() * sizeof(KnownContact) + known_apart_.capacity() * sizeof(KnownApart) + parts_.capacity() * sizeof(Part);
-  for (const ContactArrays& arrays : arrays_) arrays.each_array([&](const auto& array) { bytes += array.capacity() * sizeof array[0]; });
+  std::size_t bytes = known_.capacity() * sizeof(KnownContact) +
+                      known_apart_.capacity() * sizeof(KnownApart) + parts_.capacity() * sizeof(Part);
+  for (const ContactArrays& arrays : arrays_)
+    arrays.each_array([&](const auto& array) { bytes += array.capacity() * sizeof array[0]; });
   return bytes;
 }
 
 std::size_t SphereContacts::bytes_each() const {
   std::size_t bytes = 0;
-  if (!arrays_.empty()) arrays_.front().each_array([&](const auto& array) { bytes += array.empty() ? 0 : sizeof array[0]; });
+  if (!arrays_.empty())
+    arrays_.front().each_array([&](const auto& array) { bytes += array.empty() ? 0 : sizeof array[0]; });
   return bytes;
 }
 

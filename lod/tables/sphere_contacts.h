@@ -1,6 +1,8 @@
-// Spheres that touch: found, and answered all at once. Each contact looks at the velocities as they were before any of them, with each body's mass split
-// among its contacts (Tonge, Benevolenski and Voroshilov, Mass splitting for jitter-free parallel rigid body simulation, 2012): the order of contacts does not matter,
-// impulses are equal and opposite, and no energy is added. What a contact gave in the last step it gives at once in this one, so that piles stand.
+// Spheres that touch: found, and answered all at once. Each contact looks at the velocities as they were
+// before any of them, with each body's mass split among its contacts (Tonge, Benevolenski and Voroshilov,
+// Mass splitting for jitter-free parallel rigid body simulation, 2012): the order of contacts does not
+// matter, impulses are equal and opposite, and no energy is added. What a contact gave in the last step it
+// gives at once in this one, so that piles stand.
 #pragma once
 
 #include <array>
@@ -11,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "lod/jobs.h"
 #include "lod/broad_phase/cell_grid.h"
+#include "lod/jobs.h"
 #include "lod/tables/sphere_motion.h"
 #include "reference/state_archive.h"
 
@@ -31,7 +33,8 @@ struct ContactArrays {
   /// Calls `visit` with each array.
   template <class Visit>
   void each_array(const Visit& visit) const {
-    visit(first), visit(second), visit(nx), visit(ny), visit(nz), visit(gap), visit(closing), visit(impulse), visit(restitution), visit(friction);
+    visit(first), visit(second), visit(nx), visit(ny), visit(nz), visit(gap), visit(closing), visit(impulse),
+        visit(restitution), visit(friction);
   }
   /// Of all arrays at least.
   void make_room(std::size_t elements, bool one_kind);
@@ -50,46 +53,54 @@ struct ContactRun {
 struct SphereContact {
   std::uint32_t first, second;
   float nx, ny, nz, gap, closing;
-  float impulse;                             // N s
+  float impulse;  // N s
 };
 
 /// One of a body's contacts of the last step.
 struct KnownContact {
-  std::uint32_t owner = 0;               // the other's
-  float force = 0.0f;                    // N
+  std::uint32_t owner = 0;  // the other's
+  float force = 0.0f;       // N
 };
 
 /// One of those few that are not in the part that holds all other contacts of their first body.
 struct KnownApart {
   std::array<std::uint32_t, 2> owners{};
-  float force = 0.0f;                    // N
+  float force = 0.0f;  // N
 };
 
 struct SphereContactSettings {
   int sweeps = 2;
-  float touching = 0.01f;                // m over R: gaps up to it are contacts
-  float slop = 0.002f, push_out = 0.5f;  // overlap that stays, over R; part of the rest that is undone in a step
-  float parting = 0.1f;                  // over √(g R): no faster than so where one of them is eased (parting.h), as spheres may overlap where hulls did not
+  float touching = 0.01f;  // m over R: gaps up to it are contacts
+  float slop = 0.002f,
+        push_out = 0.5f;  // overlap that stays, over R; part of the rest that is undone in a step
+  float parting = 0.1f;  // over √(g R): no faster than so where one of them is eased (parting.h), as spheres
+                         // may overlap where hulls did not
 };
 
 class SphereContacts {
  public:
-  /// Between awake bodies, with the impulses known from the last step; approaches faster than `bounce_velocity`, m/s, are impacts.
-  /// Where the grid holds other balls behind the spheres, pairs with those go to `others`, part by part.
-  void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity, const StepConstants& constants, Simd simd,
-            const JobRunner& jobs, std::vector<BallPairs>* others);
+  /// Between awake bodies, with the impulses known from the last step; approaches faster than
+  /// `bounce_velocity`, m/s, are impacts. Where the grid holds other balls behind the spheres, pairs with
+  /// those go to `others`, part by part.
+  void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity,
+            const StepConstants& constants, Simd simd, const JobRunner& jobs, std::vector<BallPairs>* others);
   /// Of two owners: whether they may meet; empty: all. Called from several threads.
-  void set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter) { pair_filter_ = std::move(filter); }
+  void set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter) {
+    pair_filter_ = std::move(filter);
+  }
   /// More, where the two touch: of an awake body with any other.
-  void add(const Spheres& spheres, const SphereKinds& kinds, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, float bounce_velocity,
+  void add(const Spheres& spheres, const SphereKinds& kinds,
+           std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, float bounce_velocity,
            const StepConstants& constants, Simd simd);
 
   /// Counts each body's contacts and gives the impulses known.
-  void begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, const StepConstants& constants, SphereStep& step,
-             const JobRunner& jobs);
-  /// One round of all contacts; the last one has friction, moves bodies out of overlaps, and is remembered for the next step.
-  void sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials, float bounce_velocity, const StepConstants& constants, bool last,
-             bool eased, Simd simd, SphereStep& step, const JobRunner& jobs);
+  void begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
+             const StepConstants& constants, SphereStep& step, const JobRunner& jobs);
+  /// One round of all contacts; the last one has friction, moves bodies out of overlaps, and is remembered
+  /// for the next step.
+  void sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
+             float bounce_velocity, const StepConstants& constants, bool last, bool eased, Simd simd,
+             SphereStep& step, const JobRunner& jobs);
 
   void archive(StateArchive& a) { a(known_, known_apart_); }
   const SphereContactSettings& settings() const { return settings_; }
@@ -100,7 +111,8 @@ class SphereContacts {
   template <class Visit>
   void each(const Visit& visit) const {
     for (std::size_t p = 0; p < used_parts_; ++p)
-      for (std::size_t i = parts_[p].run.begin; i < parts_[p].run.end; ++i) visit(contact_of(*parts_[p].run.arrays, i));
+      for (std::size_t i = parts_[p].run.begin; i < parts_[p].run.end; ++i)
+        visit(contact_of(*parts_[p].run.arrays, i));
   }
   void clear();
 
@@ -114,16 +126,21 @@ class SphereContacts {
     return {c.first[i], c.second[i], c.nx[i], c.ny[i], c.nz[i], c.gap[i], c.closing[i], c.impulse[i]};
   }
   // A blow is none.
-  static bool is_support(const ContactArrays& c, std::size_t i, float bounce_velocity) { return (c.impulse[i] > 0.0f) & (c.closing[i] >= -bounce_velocity); }
+  static bool is_support(const ContactArrays& c, std::size_t i, float bounce_velocity) {
+    return (c.impulse[i] > 0.0f) & (c.closing[i] >= -bounce_velocity);
+  }
   template <class Task>
   void run_by_colour(const JobRunner& jobs, const Task& task);
   ContactArrays& take_arrays();
   void put_back(ContactArrays& arrays);
-  void set_laws(const ContactRun& run, const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials) const;
-  float known_force(const Spheres& spheres, std::uint32_t first, std::uint32_t second, std::uint32_t nth) const;
+  void set_laws(const ContactRun& run, const Spheres& spheres, const SphereKinds& kinds,
+                const MaterialTable& materials) const;
+  float known_force(const Spheres& spheres, std::uint32_t first, std::uint32_t second,
+                    std::uint32_t nth) const;
   float find_known_force(const Spheres& spheres, std::uint32_t at, std::uint32_t other) const;
   float find_known_apart(std::uint32_t owner, std::uint32_t other) const;
-  void recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants, const ContactRun& run) const;
+  void recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants,
+              const ContactRun& run) const;
   void make_room_to_remember(Spheres& spheres);
   void remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const Part& part);
   void remember_apart(const Spheres& spheres, float bounce_velocity, const StepConstants& constants);
@@ -132,8 +149,9 @@ class SphereContacts {
 
   SphereContactSettings settings_;
   std::function<bool(std::uint32_t, std::uint32_t)> pair_filter_;
-  std::vector<Part> parts_;       // the grid's, and one for contacts that were added
-  // As many arrays as parts were searched at once: room for the contacts of all parts together, not for as many as each of them ever had.
+  std::vector<Part> parts_;  // the grid's, and one for contacts that were added
+  // As many arrays as parts were searched at once: room for the contacts of all parts together, not for as
+  // many as each of them ever had.
   std::deque<ContactArrays> arrays_;
   std::vector<ContactArrays*> free_arrays_;
   std::mutex free_arrays_access_;

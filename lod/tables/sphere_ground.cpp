@@ -7,13 +7,18 @@ namespace {
 
 using namespace lane;
 
-constexpr auto kNear = std::uint8_t(GroundState::near), kLies = std::uint8_t(GroundState::lies), kSettles = std::uint8_t(GroundState::settles);
+constexpr auto kNear = std::uint8_t(GroundState::near), kLies = std::uint8_t(GroundState::lies),
+               kSettles = std::uint8_t(GroundState::settles);
 static_assert(kSettles == kLies + 1);
 constexpr float kFootprint = 0.3f;  // lever of pivoting friction over R
 constexpr float kRise = 0.25f;      // of a sphere that has grown into the plane, part a step
 
+constexpr auto kWithin = std::uint8_t(GroundState::within);
+
+template <bool Hulls>
 struct NearLoop {
   const Spheres& spheres;
+  const SphereKinds& kinds;
   F3 n;
   double wide_x, wide_y, wide_z, offset;
   std::int32_t number;
@@ -28,14 +33,25 @@ struct NearLoop {
     std::int32_t* plane = step.plane.data();
     float* gap = step.gap.data();
     const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz);
+    [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
+    [[maybe_unused]] const float* hull_reach = kinds.hull_reach.data();
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
-      const float above = float(wide_x * x[i] + wide_y * y[i] + wide_z * z[i] - offset) - radius[i];
-      const float way = least(0.0f, n.x * float(vx[i]) + n.y * float(vy[i]) + n.z * float(vz[i])) * c.time + 0.5f * pull * c.time * c.time;
+      const float height = float(wide_x * x[i] + wide_y * y[i] + wide_z * z[i] - offset),
+                  above = height - radius[i];
+      const float way = least(0.0f, n.x * float(vx[i]) + n.y * float(vy[i]) + n.z * float(vz[i])) * c.time +
+                        0.5f * pull * c.time * c.time;
       const int state = on_ground[i], other = plane[i];
       const float known = gap[i];
-      const int near = -int(above + 1.001f * way < 0.002f * radius[i]), nearest = near & -(int(state == 0) | int(above < known));  // masks
-      on_ground[i] = std::uint8_t((int(kNear) & near) | (state & ~near));
+      const int near = -int(above + 1.001f * way < 0.002f * radius[i]),
+                nearest = near & -(int(state != int(kNear)) | int(above < known));  // masks
+      int otherwise = state;
+      if constexpr (Hulls) {
+        const int within =
+            -(int(height - hull_reach[kind[i]] + 1.001f * way < 0.002f * radius[i]) & int(state == 0));
+        otherwise = (int(kWithin) & within) | (state & ~within);
+      }
+      on_ground[i] = std::uint8_t((int(kNear) & near) | (otherwise & ~near));
       gap[i] = select(nearest, above, known);
       plane[i] = (number & nearest) | (other & ~nearest);
     }
@@ -55,7 +71,8 @@ struct SortLoop {
     const double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data();
     const float* held = spheres.held.data();
     const float* size = kinds.radius.data();
-    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *pressure = ground.pressure.data();
+    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(),
+                *pressure = ground.pressure.data();
     const float* slope = ground.slope.data();
     const std::uint32_t* kind = spheres.kind.data();
     const auto* motion = reinterpret_cast<const std::uint8_t*>(spheres.motion.data());
@@ -68,15 +85,18 @@ struct SortLoop {
       const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), moves = int(motion[i]);
       const int state = on_ground[i];
       const F3 n{nx[p], ny[p], nz[p]}, v{float(vx[i]), float(vy[i]), float(vz[i])};
-      const float touching = start[i].w, moving = s[i].x + s[i].y + s[i].z + s[i].w, threshold = c.resting_energy * c.gravity * size[k];
+      const float touching = start[i].w, moving = s[i].x + s[i].y + s[i].z + s[i].w,
+                  threshold = c.resting_energy * c.gravity * size[k];
       const float kept = held[i], weight = pressure[p] * c.time;
       // Masks: 0 or −1.
-      const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce), others = -int(touching > 0.0f), level = -int(slope[p] == 0.0f);
+      const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce),
+                others = -int(touching > 0.0f), level = -int(slope[p] == 0.0f);
       const int settling = -int(moves == int(Motion::settling)) & level & -int(moving <= 2.0f * threshold);
       const int settles = (-int(moves == int(Motion::dynamic)) | ~level) & -int(moving < threshold);
       const int lies = near & presses & (others | settling), among = lies & others;
       const float known = select(among, kept, 0.0f);
-      start[i].x += known * n.x, start[i].y += known * n.y, start[i].z += known * n.z, start[i].w = touching + select(among, 1.0f, 0.0f);
+      start[i].x += known * n.x, start[i].y += known * n.y, start[i].z += known * n.z,
+          start[i].w = touching + select(among, 1.0f, 0.0f);
       given[i].x = 0.0f, given[i].y = 0.0f, given[i].z = 0.0f, given[i].w = select(others, known, weight);
       on_ground[i] = std::uint8_t((lies & (int(kLies) - settles)) | (state & ~lies));
     }
@@ -102,9 +122,12 @@ struct SweepLoop {
       const int p = OnePlane ? 0 : int(plane[i]), state = on_ground[i];
       const float touching = start[i].w;
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)) & (touching > 0.0f);
-      const float speed = start[i].x * nx[p] + start[i].y * ny[p] + start[i].z * nz[p], shut = least(0.0f, -gap[i] * per_time), before = added[i].w;
-      const float raised = most(0.0f, before + (shut - speed) / most(1.0f, touching)), after = choose(lies, raised, before), change = after - before;
-      added[i].x += change * nx[p], added[i].y += change * ny[p], added[i].z += change * nz[p], added[i].w = after;
+      const float speed = start[i].x * nx[p] + start[i].y * ny[p] + start[i].z * nz[p],
+                  shut = least(0.0f, -gap[i] * per_time), before = added[i].w;
+      const float raised = most(0.0f, before + (shut - speed) / most(1.0f, touching)),
+                  after = choose(lies, raised, before), change = after - before;
+      added[i].x += change * nx[p], added[i].y += change * ny[p], added[i].z += change * nz[p],
+          added[i].w = after;
     }
   }
 };
@@ -121,9 +144,12 @@ struct LieLoop {
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
-    const SmallNumbers own{motion, spheres.pose.data(), spheres.kind.data(), step.plane.data(), step.on_ground.data()};
-    if (end - begin < kFew) lie_few(own, begin, end - begin);
-    else lie(own.from(begin), begin, end - begin);
+    const SmallNumbers own{motion, spheres.pose.data(), spheres.kind.data(), step.plane.data(),
+                           step.on_ground.data()};
+    if (end - begin < kFew)
+      lie_few(own, begin, end - begin);
+    else
+      lie(own.from(begin), begin, end - begin);
   }
 
  private:
@@ -134,10 +160,13 @@ struct LieLoop {
     const Kind* kind;
     const std::int32_t* plane;
     const Byte* on_ground;
-    LODESTONE_INLINE SmallNumbers from(std::int64_t begin) const { return {motion + begin, pose + begin, kind + begin, plane + begin, on_ground + begin}; }
+    LODESTONE_INLINE SmallNumbers from(std::int64_t begin) const {
+      return {motion + begin, pose + begin, kind + begin, plane + begin, on_ground + begin};
+    }
   };
 
-  // With integers in place of bytes: with those a vector instruction takes more bodies at a time than there are.
+  // With integers in place of bytes: with those a vector instruction takes more bodies at a time than there
+  // are.
   template <class Own>
   LODESTONE_INLINE void lie_few(const Own& own, std::int64_t begin, std::int64_t count) const {
     std::int32_t motion[kFew], pose[kFew], kind[kFew], plane[kFew], on_ground[kFew];
@@ -150,9 +179,13 @@ struct LieLoop {
   }
 
   template <class Byte, class Pose, class Kind>
-  LODESTONE_INLINE void lie(const SmallNumbers<Byte, Pose, Kind>& numbers, std::int64_t begin, std::int64_t count) const {
-    const float *qw = spheres.qw.data() + begin, *qx = spheres.qx.data() + begin, *qy = spheres.qy.data() + begin, *qz = spheres.qz.data() + begin, *radius = spheres.radius.data() + begin;
-    const double *lx = spheres.lx.data() + begin, *ly = spheres.ly.data() + begin, *lz = spheres.lz.data() + begin;
+  LODESTONE_INLINE void lie(const SmallNumbers<Byte, Pose, Kind>& numbers, std::int64_t begin,
+                            std::int64_t count) const {
+    const float *qw = spheres.qw.data() + begin, *qx = spheres.qx.data() + begin,
+                *qy = spheres.qy.data() + begin, *qz = spheres.qz.data() + begin,
+                *radius = spheres.radius.data() + begin;
+    const double *lx = spheres.lx.data() + begin, *ly = spheres.ly.data() + begin,
+                 *lz = spheres.lz.data() + begin;
     float* held = spheres.held.data() + begin;
     Byte* motion = numbers.motion;
     const Kind* kind = numbers.kind;
@@ -160,9 +193,12 @@ struct LieLoop {
     const float *size = kinds.radius.data(), *blend_time = kinds.blend_time.data();
     const float *pose_x = kinds.pose_x.data(), *pose_y = kinds.pose_y.data(), *pose_z = kinds.pose_z.data();
     const std::int32_t* first_pose = kinds.first_pose.data();
-    const Tensors soft{kinds.ixx.data(), kinds.iyy.data(), kinds.izz.data(), kinds.ixy.data(), kinds.ixz.data(), kinds.iyz.data()};
-    const Tensors hard{kinds.jxx.data(), kinds.jyy.data(), kinds.jzz.data(), kinds.jxy.data(), kinds.jxz.data(), kinds.jyz.data()};
-    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(), *slope = ground.slope.data(), *friction = ground.friction.data();
+    const Tensors soft{kinds.ixx.data(), kinds.iyy.data(), kinds.izz.data(),
+                       kinds.ixy.data(), kinds.ixz.data(), kinds.iyz.data()};
+    const Tensors hard{kinds.jxx.data(), kinds.jyy.data(), kinds.jzz.data(),
+                       kinds.jxy.data(), kinds.jxz.data(), kinds.jyz.data()};
+    const float *nx = ground.nx.data(), *ny = ground.ny.data(), *nz = ground.nz.data(),
+                *slope = ground.slope.data(), *friction = ground.friction.data();
     const std::int32_t* row = ground.row.data();
     const int kind_count = int(ground.kinds);
     const Row* begun = step.p.data() + begin;
@@ -172,37 +208,54 @@ struct LieLoop {
     Row *a = step.a.data() + begin, *s = step.s.data() + begin, *d = step.d.data() + begin;
 #pragma GCC ivdep
     for (std::int64_t i = 0; i < count; ++i) {
-      const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), number = pose[i], at = first_pose[k] + choose(number > 0, number, 0);
+      const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), number = pose[i],
+                at = first_pose[k] + choose(number > 0, number, 0);
       const int state = on_ground[i], moves = int(motion[i]);
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)), others = begun[i].w > 0.0f;
-      const F3 n{nx[p], ny[p], nz[p]}, start{begun[i].x, begun[i].y, begun[i].z}, start_spin{float(lx[i]), float(ly[i]), float(lz[i])}, old{a[i].x, a[i].y, a[i].z}, old_turn{s[i].x, s[i].y, s[i].z};
+      const F3 n{nx[p], ny[p], nz[p]}, start{begun[i].x, begun[i].y, begun[i].z},
+          start_spin{float(lx[i]), float(ly[i]), float(lz[i])}, old{a[i].x, a[i].y, a[i].z},
+          old_turn{s[i].x, s[i].y, s[i].z};
       const F3 out{d[i].x, d[i].y, d[i].z};
       const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
-      const float r = radius[i], above = gap[i], given_speed = a[i].w, moving = s[i].w, lifted = d[i].w, big = size[k];
+      const float r = radius[i], above = gap[i], given_speed = a[i].w, moving = s[i].w, lifted = d[i].w,
+                  big = size[k];
       const F3 solved = start + old;
       F3 v = solved - choose(others, 0.0f, dot(solved, n)) * n, spin = start_spin + old_turn;
 
-      // Under the resting conditions the spin is that of the turn into the rest pose; its energy comes from what the body still moves with.
-      const bool rests = (moves == int(Motion::settling)) & (moving <= 2.0f * c.resting_energy * c.gravity * big);
+      // Under the resting conditions the spin is that of the turn into the rest pose; its energy comes from
+      // what the body still moves with. The pose's normal `up` goes to n by `angle` about up × n within the
+      // blend time: `ask`, rad/s; `ask_spin` is its angular momentum over mass, m²/s, `cost` its energy,
+      // J/kg. Where that exceeds the budget (energy at the start less what v keeps), it is slower by the root
+      // of their ratio.
+      const bool rests =
+          (moves == int(Motion::settling)) & (moving <= 2.0f * c.resting_energy * c.gravity * big);
       const F3 up = turned(q, {pose_x[at], pose_y[at], pose_z[at]}), axis = cross(up, n);
-      const float sine = length(axis), cosine = dot(up, n), steep = arc_tangent(sine, absolute(cosine)), angle = choose(cosine < 0.0f, 3.14159265f - steep, steep);
+      const float sine = length(axis), cosine = dot(up, n), steep = arc_tangent(sine, absolute(cosine)),
+                  angle = choose(cosine < 0.0f, 3.14159265f - steep, steep);
       const float blend = most(blend_time[k], c.time);
       const F3 ask = angle / (most(sine, 1e-9f) * blend) * axis, ask_spin = in_world(hard, k, q, ask);
       const float cost = 0.5f * dot(ask, ask_spin), budget = most(0.0f, moving - 0.5f * dot(v, v));
       const float slowest = least(1.0f, 0.25f / (blend * most(length(ask), 1e-12f)));
-      const float scale = choose(cost > budget, most(square_root(budget / most(cost, 1e-30f)), slowest), 1.0f);
+      const float scale =
+          choose(cost > budget, most(square_root(budget / most(cost, 1e-30f)), slowest), 1.0f);
       spin = choose(rests, scale * ask_spin, spin);
 
-      // Friction of the lowest point, and of the footprint against pivoting.
+      // Coulomb friction of the lowest point: the impulse that ends its slip, at most μ times the normal one.
+      // The patch that the body stands on, of which the sphere knows nothing, brakes pivoting about n: by
+      // kFootprint R, its mean lever, times the same bound.
       const bool on_face = rests & (slope[p] > 0.0f);  // which does not roll
-      const F3 omega = in_world(soft, k, q, spin), arm = choose(on_face, 0.0f, -r) * n, touching = v + cross(omega, arm), slip = touching - dot(touching, n) * n;
+      const F3 omega = in_world(soft, k, q, spin), arm = choose(on_face, 0.0f, -r) * n,
+               touching = v + cross(omega, arm), slip = touching - dot(touching, n) * n;
       const float speed = length(slip), available = friction[row[p] * kind_count + k] * given_speed;
       const F3 direction = 1.0f / most(speed, 1e-12f) * slip, lever = cross(arm, direction);
       const float needed = speed / (1.0f + dot(lever, in_world(soft, k, q, lever)));
       const F3 rub = -least(available, needed) * direction;
       v = v + rub;
       spin = spin + cross(arm, rub);
-      const float pivot = dot(spin, n), most_pivot = kFootprint * big * available;
+      // A torque about the normal turns a leaning body about other axes, too: τ changes ω·n by τ n·I⁻¹n.
+      const F3 per_torque = in_world(soft, k, q, n);
+      const float pivot = dot(spin, per_torque) / most(dot(n, per_torque), 1e-12f),
+                  most_pivot = kFootprint * big * available;
       spin = spin - most(-most_pivot, least(pivot, most_pivot)) * n;
 
       const F3 change = choose(lies, v - start, old), turn = choose(lies, spin - start_spin, old_turn);
@@ -211,9 +264,11 @@ struct LieLoop {
       held[i] = choose(lies & others, given_speed, 0.0f);
       motion[i] = Byte(choose(lies & !rests, int(Motion::dynamic), moves));
       // The ground has the last word: among others no sinking in; alone down onto it, or out of it gradually.
-      const float height = above + dot(v, n) * c.time + dot(out, n), alone = choose(above < 0.0f, -kRise * above, -above);
+      const float height = above + dot(v, n) * c.time + dot(out, n),
+                  alone = choose(above < 0.0f, -kRise * above, -above);
       const float raise = choose(lies, choose(others, most(0.0f, -height), alone), 0.0f);
-      d[i].x = out.x + raise * n.x, d[i].y = out.y + raise * n.y, d[i].z = out.z + raise * n.z, d[i].w = lifted + raise;
+      d[i].x = out.x + raise * n.x, d[i].y = out.y + raise * n.y, d[i].z = out.z + raise * n.z,
+      d[i].w = lifted + raise;
     }
   }
 };
@@ -222,10 +277,14 @@ struct LieLoop {
 template <class Run>
 void choose_loop(const StepConstants& constants, const SphereGround& ground, const Run& run) {
   const bool one_plane = ground.nx.size() == 1;
-  if (constants.one_kind && one_plane) run.template operator()<true, true>();
-  else if (constants.one_kind) run.template operator()<true, false>();
-  else if (one_plane) run.template operator()<false, true>();
-  else run.template operator()<false, false>();
+  if (constants.one_kind && one_plane)
+    run.template operator()<true, true>();
+  else if (constants.one_kind)
+    run.template operator()<true, false>();
+  else if (one_plane)
+    run.template operator()<false, true>();
+  else
+    run.template operator()<false, false>();
 }
 
 }  // namespace
@@ -237,8 +296,10 @@ void SphereGround::clear(std::size_t kinds_now) {
   kinds = kinds_now;
 }
 
-std::int32_t SphereGround::add(const HalfSpace& plane, const MaterialTable& materials, const SphereKinds& of, const Vec3& gravity) {
-  nx.push_back(float(plane.normal.x())), ny.push_back(float(plane.normal.y())), nz.push_back(float(plane.normal.z()));
+std::int32_t SphereGround::add(const HalfSpace& plane, const MaterialTable& materials, const SphereKinds& of,
+                               const Vec3& gravity) {
+  nx.push_back(float(plane.normal.x())), ny.push_back(float(plane.normal.y())),
+      nz.push_back(float(plane.normal.z()));
   pressure.push_back(float(std::max(0.0, -gravity.dot(plane.normal))));
   slope.push_back(StepWorld{.gravity = gravity}.is_horizontal(plane) ? 0.0f : 1.0f);
   row_of_material.resize(std::max(row_of_material.size(), std::size_t(plane.material) + 1), -1);
@@ -256,27 +317,53 @@ std::int32_t SphereGround::add(const HalfSpace& plane, const MaterialTable& mate
   return std::int32_t(nx.size()) - 1;
 }
 
-void find_near_ground(const Spheres& spheres, const HalfSpace& plane, std::int32_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
+void find_near_ground(const Spheres& spheres, const SphereKinds& kinds, const HalfSpace& plane,
+                      std::int32_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
                       std::int64_t end, SphereStep& step) {
   const Vec3& n = plane.normal;
-  run_wide(simd, NearLoop{spheres, {float(n.x()), float(n.y()), float(n.z())}, n.x(), n.y(), n.z(), plane.offset, number, constants, step}, begin, end);
+  const auto run = [&]<bool Hulls>() {
+    run_wide(simd,
+             NearLoop<Hulls>{spheres,
+                             kinds,
+                             {float(n.x()), float(n.y()), float(n.z())},
+                             n.x(),
+                             n.y(),
+                             n.z(),
+                             plane.offset,
+                             number,
+                             constants,
+                             step},
+             begin, end);
+  };
+  const bool level =
+      StepWorld{.gravity = {constants.wide_gx, constants.wide_gy, constants.wide_gz}}.is_horizontal(plane);
+  if (constants.hulls && level)
+    run.template operator()<true>();
+  else
+    run.template operator()<false>();
 }
 
-void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants,
-                      float bounce_velocity, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
+void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
+                      const StepConstants& constants, float bounce_velocity, Simd simd, std::int64_t begin,
+                      std::int64_t end, SphereStep& step) {
   std::fill(step.d.begin() + begin, step.d.begin() + end, Row{});
   choose_loop(constants, ground, [&]<bool OneKind, bool OnePlane>() {
-    run_wide(simd, SortLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, bounce_velocity, step}, begin, end);
+    run_wide(simd, SortLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, bounce_velocity, step},
+             begin, end);
   });
 }
 
-void sweep_ground(const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
-  if (ground.nx.size() == 1) run_wide(simd, SweepLoop<true>{ground, constants, step}, begin, end);
-  else run_wide(simd, SweepLoop<false>{ground, constants, step}, begin, end);
+void sweep_ground(const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin,
+                  std::int64_t end, SphereStep& step) {
+  if (ground.nx.size() == 1)
+    run_wide(simd, SweepLoop<true>{ground, constants, step}, begin, end);
+  else
+    run_wide(simd, SweepLoop<false>{ground, constants, step}, begin, end);
 }
 
-void lie_on_ground(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin,
-                   std::int64_t end, SphereStep& step) {
+void lie_on_ground(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
+                   const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
+                   SphereStep& step) {
   choose_loop(constants, ground, [&]<bool OneKind, bool OnePlane>() {
     run_wide(simd, LieLoop<OneKind, OnePlane>{spheres, kinds, ground, constants, step}, begin, end);
   });

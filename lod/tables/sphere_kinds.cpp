@@ -1,7 +1,6 @@
 #include "lod/tables/sphere_kinds.h"
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,9 +17,13 @@ void SphereKinds::take(const Kinds& kinds, std::uint32_t kind, double gravity) {
 }
 
 void SphereKinds::resize(std::size_t size) {
-  for (auto* array : {&radius, &ixx, &iyy, &izz, &ixy, &ixz, &iyz, &jxx, &jyy, &jzz, &jxy, &jxz, &jyz, &softest, &blend_time}) array->resize(size, 1.0f);
+  for (auto* array : {&radius, &ixx, &iyy, &izz, &ixy, &ixz, &iyz, &jxx, &jyy, &jzz, &jxy, &jxz, &jyz,
+                      &softest, &blend_time})
+    array->resize(size, 1.0f);
+  hull_reach.resize(size);
   height.resize(size * (kHeightSamples + 1));
-  material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size), is_slender_.resize(size);
+  material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size),
+      is_slender_.resize(size);
 }
 
 void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
@@ -32,17 +35,20 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   slender_ += is_slender_[k];
   material[k] = kind.material;
   radius[k] = float(shape.radius);
+  hull_reach[k] = shape.sphere_radius ? 0.0f : radius[k];
   ixx[k] = float(inverse(0, 0)), iyy[k] = float(inverse(1, 1)), izz[k] = float(inverse(2, 2));
   ixy[k] = float(inverse(0, 1)), ixz[k] = float(inverse(0, 2)), iyz[k] = float(inverse(1, 2));
   jxx[k] = float(inertia(0, 0)), jyy[k] = float(inertia(1, 1)), jzz[k] = float(inertia(2, 2));
   jxy[k] = float(inertia(0, 1)), jxz[k] = float(inertia(0, 2)), jyz[k] = float(inertia(1, 2));
-  softest[k] = float(Eigen::SelfAdjointEigenSolver<Mat3>(inverse, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
+  softest[k] =
+      float(Eigen::SelfAdjointEigenSolver<Mat3>(inverse, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
   const auto height_at = [&](int sample) {
     if (!kind.signature || kind.signature->collision_heights.mean.empty()) return 1.0;
     const double alpha = std::numbers::pi / 2 * std::min(sample, kHeightSamples - 1) / (kHeightSamples - 1);
     return find_collision_height(kind.signature->collision_heights, alpha).mean;
   };
-  for (int i = 0; i <= kHeightSamples; ++i) height[k * std::size_t(kHeightSamples + 1) + std::size_t(i)] = float(height_at(i) * shape.radius);
+  for (int i = 0; i <= kHeightSamples; ++i)
+    height[k * std::size_t(kHeightSamples + 1) + std::size_t(i)] = float(height_at(i) * shape.radius);
   blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
   set_poses(k, kind);
 }
@@ -50,7 +56,8 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
 // Where the poses of the number's last kind were, if they fit there.
 void SphereKinds::set_poses(std::uint32_t k, const BodyKind& kind) {
   const std::vector<RestPose> none = {{.normal = Vec3::UnitZ(), .height = 1.0}};
-  const auto& poses = kind.signature && !kind.signature->rest_poses.empty() ? kind.signature->rest_poses : none;
+  const auto& poses =
+      kind.signature && !kind.signature->rest_poses.empty() ? kind.signature->rest_poses : none;
   const auto count = std::int32_t(poses.size());
   if (count > pose_room_[k]) {
     first_pose[k] = std::int32_t(pose_height.size());
@@ -60,7 +67,8 @@ void SphereKinds::set_poses(std::uint32_t k, const BodyKind& kind) {
   auto at = std::size_t(first_pose[k]);
   for (const RestPose& pose : poses) {
     pose_height[at] = float(pose.height * kind.shape->radius);
-    pose_x[at] = float(pose.normal.x()), pose_y[at] = float(pose.normal.y()), pose_z[at] = float(pose.normal.z());
+    pose_x[at] = float(pose.normal.x()), pose_y[at] = float(pose.normal.y()),
+    pose_z[at] = float(pose.normal.z());
     ++at;
   }
 }

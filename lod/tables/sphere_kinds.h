@@ -11,17 +11,20 @@ inline constexpr int kHeightSamples = 64;  // of the collision height over α, r
 
 struct SphereKinds {
   std::vector<MaterialId> material;
-  std::vector<float> radius;                            // m
-  std::vector<float> ixx, iyy, izz, ixy, ixz, iyz;      // inverse inertia over mass, body axes, 1/m²
-  std::vector<float> jxx, jyy, jzz, jxy, jxz, jyz;      // inertia over mass, m²
-  std::vector<float> softest;                           // its greatest eigenvalue, 1/m²
-  std::vector<float> height;                            // kHeightSamples + 1 a kind, m, one more to read beyond the end
-  std::vector<float> blend_time;                        // s, of the approach to a rest pose
-  std::vector<std::int32_t> first_pose;                 // of the kind's rest poses in the next ones
+  std::vector<float> radius;      // m
+  std::vector<float> hull_reach;  // m: the same, but 0 of spheres, which have no hull to stand on
+  std::vector<float> ixx, iyy, izz, ixy, ixz, iyz;  // inverse inertia over mass, body axes, 1/m²
+  std::vector<float> jxx, jyy, jzz, jxy, jxz, jyz;  // inertia over mass, m²
+  std::vector<float> softest;                       // its greatest eigenvalue, 1/m²
+  std::vector<float> height;             // kHeightSamples + 1 a kind, m, one more to read beyond the end
+  std::vector<float> blend_time;         // s, of the approach to a rest pose
+  std::vector<std::int32_t> first_pose;  // of the kind's rest poses in the next ones
   std::vector<float> pose_height, pose_x, pose_y, pose_z;  // m; normal in body axes; at least one pose a kind
 
   /// Whether the midpoint rule would feed energy into its spin.
-  static bool is_slender(const BodyKind& kind) { return kind.inverse_moments[2] > 20.0 * kind.inverse_moments[0]; }
+  static bool is_slender(const BodyKind& kind) {
+    return kind.inverse_moments[2] > 20.0 * kind.inverse_moments[0];
+  }
   /// Takes in a kind, unless it is known; m/s².
   void take(const Kinds& kinds, std::uint32_t kind, double gravity);
   std::size_t size() const { return radius.size(); }
@@ -33,8 +36,8 @@ struct SphereKinds {
   void set(std::uint32_t k, const BodyKind& kind, double gravity);
   void set_poses(std::uint32_t k, const BodyKind& kind);
 
-  std::vector<std::uint64_t> birth_;       // of the kind that has the number; 0: of none yet
-  std::vector<std::int32_t> pose_room_;    // poses that fit where its own are
+  std::vector<std::uint64_t> birth_;     // of the kind that has the number; 0: of none yet
+  std::vector<std::int32_t> pose_room_;  // poses that fit where its own are
   std::vector<std::uint8_t> is_slender_;
   std::size_t slender_ = 0;
 };

@@ -1,9 +1,11 @@
-// Loops without branches that compilers turn into vector instructions. Built without errno and traps of mathematical functions, which would prevent that
-// and change no result.
+// Loops without branches that compilers turn into vector instructions. Built without errno and traps of
+// mathematical functions, which would prevent that and change no result.
 #include "lod/tables/sphere_motion.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "lod/tables/free_turn.h"
 
 namespace lodestone {
 namespace {
@@ -12,9 +14,12 @@ using namespace lane;
 
 constexpr float kCalming = 4.0f;  // 1/s
 constexpr int kLying = 110;       // ms in a row on others: no passing blow in the air
-constexpr float kSettleSpeed = 0.24f;  // radii in the time of the approach to a rest pose: how fast a radius grows into it
+constexpr float kSettleSpeed =
+    0.24f;  // radii in the time of the approach to a rest pose: how fast a radius grows into it
 
-Tensors soft_of(const SphereKinds& k) { return {k.ixx.data(), k.iyy.data(), k.izz.data(), k.ixy.data(), k.ixz.data(), k.iyz.data()}; }
+Tensors soft_of(const SphereKinds& k) {
+  return {k.ixx.data(), k.iyy.data(), k.izz.data(), k.ixy.data(), k.ixz.data(), k.iyz.data()};
+}
 
 template <bool OneKind>
 struct StartLoop {
@@ -25,13 +30,16 @@ struct StartLoop {
   Spheres& out;
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
-    const double *vx = in.vx.data(), *vy = in.vy.data(), *vz = in.vz.data(), *lx = in.lx.data(), *ly = in.ly.data(), *lz = in.lz.data();
+    const double *vx = in.vx.data(), *vy = in.vy.data(), *vz = in.vz.data(), *lx = in.lx.data(),
+                 *ly = in.ly.data(), *lz = in.lz.data();
     const float *qw = in.qw.data(), *qx = in.qx.data(), *qy = in.qy.data(), *qz = in.qz.data();
     const std::uint32_t* kind = in.kind.data();
     const std::int16_t* pose = in.pose.data();
     const auto* motion = reinterpret_cast<const std::uint8_t*>(in.motion.data());
     const std::uint8_t *since_crowded = in.since_crowded.data(), *eased = in.eased.data();
-    const float *size = kinds.radius.data(), *height = kinds.height.data(), *pose_height = kinds.pose_height.data(), *blend = kinds.blend_time.data();
+    const auto* on_hull = reinterpret_cast<const std::uint8_t*>(in.on_hull.data());
+    const float *size = kinds.radius.data(), *height = kinds.height.data(),
+                *pose_height = kinds.pose_height.data(), *blend = kinds.blend_time.data();
     const std::int32_t* first_pose = kinds.first_pose.data();
     const Tensors soft = soft_of(kinds);
     float *radius = out.radius.data(), *reach = step.reach.data();
@@ -50,14 +58,19 @@ struct StartLoop {
       // The sphere's radius: in flight by the tables, at rest by the pose, among others as it was.
       const float at = arc_tangent(spin, speed) * (float(kHeightSamples - 1) / 1.57079633f);
       const int sample = int(least(at, float(kHeightSamples - 1))), from = k * (kHeightSamples + 1) + sample;
-      const float low = height[from], high = height[from + 1], measured = low + (at - float(sample)) * (high - low);
-      const float way = (speed + spin) * c.time, slow = (kSettleSpeed * size[k] / blend[k]) * c.time, grown = was + choose(eased[i] > 0, least(way, slow), way);
-      const float flying = least(measured, grown);  // no faster than it moves: bodies that begin to move would leap
-      const int number = pose[i], moves = int(motion[i]), rest = first_pose[k] + choose(number > 0, number, 0);
+      const float low = height[from], high = height[from + 1],
+                  measured = low + (at - float(sample)) * (high - low);
+      const float way = (speed + spin) * c.time, slow = (kSettleSpeed * size[k] / blend[k]) * c.time,
+                  grown = was + choose(eased[i] > 0, least(way, slow), way);
+      const float flying =
+          least(measured, grown);  // no faster than it moves: bodies that begin to move would leap
+      const int number = pose[i], moves = int(motion[i]),
+                rest = first_pose[k] + choose(number > 0, number, 0);
       const float settled = was + (pose_height[rest] - was) * least(1.0f, 2.0f * c.time / blend[k]);
       const float resting = least(settled, was + slow);
-      const bool flies = update & (moves == int(Motion::dynamic)) & (since_crowded[i] > 0);
-      const float r = choose(moves == int(Motion::settling), resting, choose(flies, flying, was));
+      const bool sphere = on_hull[i] == 0;  // else as high as it was when it last touched the ground
+      const bool flies = update & sphere & (moves == int(Motion::dynamic)) & (since_crowded[i] > 0);
+      const float r = choose(sphere & (moves == int(Motion::settling)), resting, choose(flies, flying, was));
       radius[i] = r;
       reach[i] = r + 0.01f * size[k] + speed * c.time + fall;
       p[i].x = v.x + c.gx * c.time, p[i].y = v.y + c.gy * c.time, p[i].z = v.z + c.gz * c.time, p[i].w = 0.0f;
@@ -78,7 +91,8 @@ struct EndLoop {
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data();
-    double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *lx = spheres.lx.data(), *ly = spheres.ly.data(), *lz = spheres.lz.data();
+    double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *lx = spheres.lx.data(),
+           *ly = spheres.ly.data(), *lz = spheres.lz.data();
     float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data();
     const std::uint32_t* kind = spheres.kind.data();
     const Tensors soft = soft_of(kinds);
@@ -88,54 +102,75 @@ struct EndLoop {
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
     const float* size = kinds.radius.data();
     const double calm = double(most(0.0f, 1.0f - kCalming * c.time));
-    constexpr int kMoved = int(GroundState::moved), kFree = int(GroundState::free), kLies = int(GroundState::lies), kSettles = int(GroundState::settles);
+    constexpr int kMoved = int(GroundState::moved), kFree = int(GroundState::free),
+                  kLies = int(GroundState::lies), kSettles = int(GroundState::settles);
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]);
       const int state = on_ground[i];
-      const bool here = state != kMoved, touches = p[i].w > 0.0f, slides = (state >= kLies) & (state <= kSettles), flies = !touches & !slides;
-      const double old_x = vx[i], old_y = vy[i], old_z = vz[i], spun_x = lx[i], spun_y = ly[i], spun_z = lz[i];
-      const int lonely = int(since_crowded[i]) + c.ticks, crowded = int(crowded_for[i]) + c.ticks, moves = int(motion[i]);
+      const bool here = state != kMoved, touches = p[i].w > 0.0f,
+                 slides = (state >= kLies) & (state <= kSettles), flies = !touches & !slides;
+      const double old_x = vx[i], old_y = vy[i], old_z = vz[i], spun_x = lx[i], spun_y = ly[i],
+                   spun_z = lz[i];
+      const int lonely = int(since_crowded[i]) + c.ticks, crowded = int(crowded_for[i]) + c.ticks,
+                moves = int(motion[i]);
       since_crowded[i] = std::uint8_t(choose(touches, 0, choose(lonely > 255, 255, lonely)));
       // Among others and off the ground it settles no more.
-      motion[i] = std::uint8_t(choose(touches & (moves == int(Motion::settling)) & (state == kFree), int(Motion::dynamic), moves));
-      // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for ever.
+      motion[i] = std::uint8_t(
+          choose(touches & (moves == int(Motion::settling)) & (state == kFree), int(Motion::dynamic), moves));
+      // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for
+      // ever.
       const bool calms = touches & (crowded > kLying) & (s[i].w < c.resting_energy * c.gravity * size[k]);
       crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
       const double kept = select(-std::int64_t(calms), calm, 1.0);
-      const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)), by_z = kept * (spun_z + double(s[i].z));
+      const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)),
+                   by_z = kept * (spun_z + double(s[i].z));
       // In flight a body follows its parabola; else the velocity that its contacts left it.
       const std::int64_t flight = -std::int64_t(flies), stays = -std::int64_t(!here);
-      const F3 given{p[i].x + a[i].x - (float(old_x) + c.gx * c.time), p[i].y + a[i].y - (float(old_y) + c.gy * c.time), p[i].z + a[i].z - (float(old_z) + c.gz * c.time)};
-      const double fallen_x = old_x + c.wide_gx * c.wide_time, fallen_y = old_y + c.wide_gy * c.wide_time, fallen_z = old_z + c.wide_gz * c.wide_time;
-      const double solved_x = fallen_x + double(given.x), solved_y = fallen_y + double(given.y), solved_z = fallen_z + double(given.z), half = 0.5 * c.wide_time;
+      const F3 given{p[i].x + a[i].x - (float(old_x) + c.gx * c.time),
+                     p[i].y + a[i].y - (float(old_y) + c.gy * c.time),
+                     p[i].z + a[i].z - (float(old_z) + c.gz * c.time)};
+      const double fallen_x = old_x + c.wide_gx * c.wide_time, fallen_y = old_y + c.wide_gy * c.wide_time,
+                   fallen_z = old_z + c.wide_gz * c.wide_time;
+      const double solved_x = fallen_x + double(given.x), solved_y = fallen_y + double(given.y),
+                   solved_z = fallen_z + double(given.z), half = 0.5 * c.wide_time;
       // What only takes a near-still body out of an overlap is no motion.
       const F3 out{d[i].x, d[i].y, d[i].z};
-      const float against = -dot(F3{float(solved_x), float(solved_y), float(solved_z)}, out) / most(dot(out, out), 1e-20f);
+      const float against =
+          -dot(F3{float(solved_x), float(solved_y), float(solved_z)}, out) / most(dot(out, out), 1e-20f);
       const float undone = choose(calms, least(most(against, 0.0f), 1.0f / c.time), 0.0f);
-      const double to_vx = select(flight, fallen_x, solved_x + double(undone * out.x)), to_vy = select(flight, fallen_y, solved_y + double(undone * out.y));
+      const double to_vx = select(flight, fallen_x, solved_x + double(undone * out.x)),
+                   to_vy = select(flight, fallen_y, solved_y + double(undone * out.y));
       const double to_vz = select(flight, fallen_z, solved_z + double(undone * out.z));
-      const double way_x = select(flight, old_x + c.wide_gx * half, solved_x), way_y = select(flight, old_y + c.wide_gy * half, solved_y);
+      const double way_x = select(flight, old_x + c.wide_gx * half, solved_x),
+                   way_y = select(flight, old_y + c.wide_gy * half, solved_y);
       const double way_z = select(flight, old_z + c.wide_gz * half, solved_z);
-      const double to_x = x[i] + select(stays, 0.0, way_x * c.wide_time + double(d[i].x)), to_y = y[i] + select(stays, 0.0, way_y * c.wide_time + double(d[i].y));
+      const double to_x = x[i] + select(stays, 0.0, way_x * c.wide_time + double(d[i].x)),
+                   to_y = y[i] + select(stays, 0.0, way_y * c.wide_time + double(d[i].y));
       const double to_z = z[i] + select(stays, 0.0, way_z * c.wide_time + double(d[i].z));
-      const double new_vx = select(stays, old_x, to_vx), new_vy = select(stays, old_y, to_vy), new_vz = select(stays, old_z, to_vz);
-      const double new_lx = select(stays, spun_x, by_x), new_ly = select(stays, spun_y, by_y), new_lz = select(stays, spun_z, by_z);
+      const double new_vx = select(stays, old_x, to_vx), new_vy = select(stays, old_y, to_vy),
+                   new_vz = select(stays, old_z, to_vz);
+      const double new_lx = select(stays, spun_x, by_x), new_ly = select(stays, spun_y, by_y),
+                   new_lz = select(stays, spun_z, by_z);
       x[i] = to_x, y[i] = to_y, z[i] = to_z;
       vx[i] = new_vx, vy[i] = new_vy, vz[i] = new_vz;
       lx[i] = new_lx, ly[i] = new_ly, lz[i] = new_lz;
-      const F3 spin{float(by_x), float(by_y), float(by_z)}, new_v{float(new_vx), float(new_vy), float(new_vz)}, new_spin{float(new_lx), float(new_ly), float(new_lz)};
+      const F3 spin{float(by_x), float(by_y), float(by_z)},
+          new_v{float(new_vx), float(new_vy), float(new_vz)},
+          new_spin{float(new_lx), float(new_ly), float(new_lz)};
       const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
-      const Turn middle = product(turn_by(in_world(soft, k, q, spin), 0.5f * c.time), q);
-      const Turn to = product(turn_by(in_world(soft, k, middle, spin), c.time), q);
+      const Turn to = turned_freely(soft, k, q, spin, c.time);
       // Renormalised without a root: a Newton step.
       const float scale = 1.5f - 0.5f * (to.w * to.w + dot(to.v, to.v));
       const F3 new_q = choose(here, scale * to.v, q.v);
       qw[i] = choose(here, scale * to.w, q.w), qx[i] = new_q.x, qy[i] = new_q.y, qz[i] = new_q.z;
       constexpr float kFast = 1e6f;  // m/s, m²/s: beyond it someone looks closer
-      const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) + absolute(new_spin.y) + absolute(new_spin.z) + absolute(a[i].w) + absolute(d[i].w);
+      const float sum = absolute(new_v.x) + absolute(new_v.y) + absolute(new_v.z) + absolute(new_spin.x) +
+                        absolute(new_spin.y) + absolute(new_spin.z) + absolute(a[i].w) + absolute(d[i].w);
       const float far = most(absolute(float(to_x)), most(absolute(float(to_y)), absolute(float(to_z))));
-      const float wrong = choose(sum < kFast, 0.0f, 1.0f) + choose(absolute(scale - 1.0f) < 0.1f, 0.0f, 1.0f) + choose(far + absolute(float(to_x - to_x)) < 0.999e8f, 0.0f, 1.0f);
+      const float wrong = choose(sum < kFast, 0.0f, 1.0f) +
+                          choose(absolute(scale - 1.0f) < 0.1f, 0.0f, 1.0f) +
+                          choose(far + absolute(float(to_x - to_x)) < 0.999e8f, 0.0f, 1.0f);
       on_ground[i] = std::uint8_t(choose(wrong > 0.0f, int(GroundState::unsound), state));
     }
   }
@@ -169,21 +204,28 @@ std::size_t SphereStep::bytes() const {
   return bytes;
 }
 
-void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
-                SphereStep& step, Spheres& out) {
-  if (constants.one_kind) run_wide(simd, StartLoop<true>{spheres, kinds, constants, step, out}, begin, end);
-  else run_wide(simd, StartLoop<false>{spheres, kinds, constants, step, out}, begin, end);
+void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
+                std::int64_t begin, std::int64_t end, SphereStep& step, Spheres& out) {
+  if (constants.one_kind)
+    run_wide(simd, StartLoop<true>{spheres, kinds, constants, step, out}, begin, end);
+  else
+    run_wide(simd, StartLoop<false>{spheres, kinds, constants, step, out}, begin, end);
 }
 
 void clear_added(std::int64_t begin, std::int64_t end, SphereStep& step) {
   for (auto* rows : {&step.a, &step.d}) std::fill(rows->begin() + begin, rows->begin() + end, Row{});
 }
 
-void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) { run_wide(simd, TakeLoop{step}, begin, end); }
+void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
+  run_wide(simd, TakeLoop{step}, begin, end);
+}
 
-void end_step(Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step) {
-  if (constants.one_kind) run_wide(simd, EndLoop<true>{spheres, kinds, constants, step}, begin, end);
-  else run_wide(simd, EndLoop<false>{spheres, kinds, constants, step}, begin, end);
+void end_step(Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
+              std::int64_t begin, std::int64_t end, SphereStep& step) {
+  if (constants.one_kind)
+    run_wide(simd, EndLoop<true>{spheres, kinds, constants, step}, begin, end);
+  else
+    run_wide(simd, EndLoop<false>{spheres, kinds, constants, step}, begin, end);
 }
 
 }  // namespace lodestone

@@ -1,40 +1,49 @@
-// What every awake body does in a step, in loops over dense arrays: the start, which tells how far it may reach, and the end, which moves it.
+// What every awake body does in a step, in loops over dense arrays: the start, which tells how far it may
+// reach, and the end, which moves it.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <span>
 
-#include "lod/tables/sphere_kinds.h"
-#include "lod/tables/spheres.h"
 #include "lod/simd/lane_math.h"
 #include "lod/simd/row.h"
+#include "lod/tables/sphere_kinds.h"
+#include "lod/tables/spheres.h"
 
 namespace lodestone {
 
-/// Of a step, one element an awake body. What contacts read and add are rows, and one more stands for all that sleep.
+/// Of a step, one element an awake body. What contacts read and add are rows, and one more stands for all
+/// that sleep.
 struct SphereStep {
-  std::vector<float> reach;            // m
-  std::vector<lane::Row> p;            // m/s: the velocity with gravity and the impulses known so far; contacts with other bodies, and one with the ground that
-                                       // carries it among them
-  std::vector<lane::Row> u;            // m/s at the start: radius times angular velocity; 1 + radius² over the softest inertia
-  std::vector<lane::Row> a;            // m/s: what the contacts of this step add; what the ground gives it against what presses on it
-  std::vector<lane::Row> s;            // m²/s: what they add to the spin; J/kg: kinetic energy at the start
-  std::vector<lane::Row> d;            // m: how far they move it out of overlaps; w holds nothing
-  std::vector<float> gap;              // m, to the nearest plane, where near
-  std::vector<std::uint8_t> on_ground; // GroundState
-  std::vector<std::int32_t> plane;     // the nearest
+  std::vector<float> reach;  // m
+  // The rows, as xyz; w. r: the sphere's radius.
+  std::vector<lane::Row>
+      p;  // m/s, velocity with gravity and the impulses known so far; contacts with other bodies,
+          // and one with the ground that carries it among them: so many ways its mass is split
+  std::vector<lane::Row> u;  // m/s, rω at the start; 1 + r² over the softest inertia over mass: of its
+                             // surface, what an impulse along it changes the velocity by, times the mass
+  std::vector<lane::Row>
+      a;  // m/s, what the contacts of this step add; what the ground gives it against what presses
+  std::vector<lane::Row> s;  // m²/s, what they add to the spin; J/kg, kinetic energy at the start
+  std::vector<lane::Row> d;  // m, how far they move it out of overlaps; how far the ground alone does
+  std::vector<float> gap;    // m, to the nearest plane, where near
+  std::vector<std::uint8_t> on_ground;  // GroundState
+  std::vector<std::int32_t> plane;      // the nearest
   void resize(std::size_t count);
   std::size_t bytes() const;
   /// Rows that serve for nothing until clear_added.
-  std::array<std::span<std::byte>, 2> free_rows() { return {std::as_writable_bytes(std::span(a)), std::as_writable_bytes(std::span(d))}; }
+  std::array<std::span<std::byte>, 2> free_rows() {
+    return {std::as_writable_bytes(std::span(a)), std::as_writable_bytes(std::span(d))};
+  }
   /// Sets the row of those that sleep.
   void clear_still(std::size_t row) { p[row] = u[row] = a[row] = s[row] = d[row] = {}; }
 
   bool touches(std::int64_t i) const { return p[std::size_t(i)].w > 0.0f; }
   /// m/s, with gravity but for `without`.
   Vec3 velocity(std::int64_t i, lane::Row without = {}) const {
-    return vector_of(lane::row_of(lane::lanes_of(p[std::size_t(i)]) + lane::lanes_of(a[std::size_t(i)]) - lane::lanes_of(without)));
+    return vector_of(lane::row_of(lane::lanes_of(p[std::size_t(i)]) + lane::lanes_of(a[std::size_t(i)]) -
+                                  lane::lanes_of(without)));
   }
   Vec3 added_spin(std::int64_t i) const { return vector_of(s[std::size_t(i)]); }
   Vec3 push_out(std::int64_t i) const { return vector_of(d[std::size_t(i)]); }
@@ -50,23 +59,26 @@ enum class GroundState : std::uint8_t {
   lies,     ///< presses on it, and slides along it: no parabola
   settles,  ///< so, and comes under the resting conditions
   moved,    ///< met it by itself and was moved: the end leaves it alone
+  within,   ///< its hull may meet it, the sphere that stands for it does not
+  stands,   ///< touches no other and moves on its hull
   unsound,  ///< after the end of the step: its state cannot be
 };
 
 struct StepConstants {
-  float time = 0.0f;                      // s
-  float gx = 0.0f, gy = 0.0f, gz = 0.0f;  // m/s²
+  float time = 0.0f;                                                    // s
+  float gx = 0.0f, gy = 0.0f, gz = 0.0f;                                // m/s²
   double wide_time = 0.0, wide_gx = 0.0, wide_gy = 0.0, wide_gz = 0.0;  // for flight
-  float gravity = 0.0f;                   // m/s²
-  float resting_energy = 0.15f;           // J/kg over g R: the first threshold of 3.4
-  bool update_radius = true;              // of those in flight
-  int ticks = 17;                         // ms that the step is long, as whole ones: over many steps they add up
+  float gravity = 0.0f;                                                 // m/s²
+  float resting_energy = 0.15f;  // J/kg over g R: the first threshold of 3.4
+  bool update_radius = true;     // of those in flight
+  int ticks = 17;                // ms that the step is long, as whole ones: over many steps they add up
   bool one_kind = false;
+  bool hulls = false;  // bodies that touch no other stand on their hulls, on level ground
 };
 
 /// Angular velocities, radii, reaches, and velocities with gravity.
-void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
-                SphereStep& step, Spheres& out);
+void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
+                std::int64_t begin, std::int64_t end, SphereStep& step, Spheres& out);
 
 /// Clears what contacts add to velocities and positions: in its memory the search for pairs kept its arrays.
 void clear_added(std::int64_t begin, std::int64_t end, SphereStep& step);
@@ -74,7 +86,9 @@ void clear_added(std::int64_t begin, std::int64_t end, SphereStep& step);
 /// The impulses of a round of contacts become part of the velocities that the next one sees.
 void take_impulses(Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
 
-/// Moves the bodies that are not GroundState::moved, and marks those as GroundState::unsound whose state cannot be.
-void end_step(Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end, SphereStep& step);
+/// Moves the bodies that are not GroundState::moved, and marks those as GroundState::unsound whose state
+/// cannot be.
+void end_step(Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
+              std::int64_t begin, std::int64_t end, SphereStep& step);
 
 }  // namespace lodestone

@@ -18,6 +18,7 @@ StatisticalBody Spheres::body(std::int64_t place) const {
   body.events = events[place];
   body.kind = kind[place];
   body.motion = motion[place];
+  body.support_hint = support_hint[place];
   body.since_crowded = 0.001f * float(since_crowded[place]);
   body.eased = 0.008f * float(eased[place]);
   return body;
@@ -35,6 +36,7 @@ void Spheres::put(std::int64_t place, const StatisticalBody& body) {
   events[place] = body.events;
   kind[place] = body.kind;
   motion[place] = body.motion;
+  support_hint[place] = body.support_hint;
 }
 
 namespace {
@@ -54,6 +56,7 @@ std::int64_t Spheres::add(std::uint32_t new_owner) {
   qw[last] = 1.0f;
   owner[last] = new_owner;
   pose[last] = -1;
+  clip[last] = -1;
   since_crowded[last] = 255;
   slot[last] = std::int32_t(last);
   grow(place_of_slot);

@@ -14,38 +14,52 @@
 namespace lodestone {
 namespace {
 
-constexpr std::int64_t kBlock = 1024;        // bodies of a job
-constexpr int kOrderInterval = 16;           // steps between looks at how far bodies have moved from their places
+constexpr std::int64_t kBlock = 1024;  // bodies of a job
+constexpr int kOrderInterval = 16;     // steps between looks at how far bodies have moved from their places
 
 constexpr auto kEasedUnits = std::uint8_t(125.0f * kEasedTime);  // of 8 ms
 static_assert(125.0f * kEasedTime < 256.0f);
 
 // Calls visit(i) for the elements of [begin, end) that hold `mark`: mostly few or none.
 template <class Visit>
-void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std::int64_t begin, std::int64_t end, const Visit& visit) {
+void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std::int64_t begin,
+                 std::int64_t end, const Visit& visit) {
   const std::uint8_t *at = marks.data() + begin, *last = marks.data() + end;
-  while (at < last && (at = static_cast<const std::uint8_t*>(std::memchr(at, mark, std::size_t(last - at))))) visit(at++ - marks.data());
+  while (at < last && (at = static_cast<const std::uint8_t*>(std::memchr(at, mark, std::size_t(last - at)))))
+    visit(at++ - marks.data());
 }
 
 }  // namespace
 
-TablesLevel::TablesLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
+TablesLevel::TablesLevel(const StatisticalSettings& settings, const Ground& ground,
+                         const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
                          const JobRunner& jobs)
-    : settings_(settings), ground_(ground), materials_(materials), all_kinds_(kinds), sleepers_(sleepers), jobs_(jobs), simd_(settings.simd), rest_law_(settings.sleep) {
+    : settings_(settings),
+      ground_(ground),
+      materials_(materials),
+      all_kinds_(kinds),
+      sleepers_(sleepers),
+      jobs_(jobs),
+      simd_(settings.simd),
+      rest_law_(settings.sleep) {
   tables_.options = settings.tables;
   contacts_.set_pair_filter(settings.pair_filter);
 }
 
-int TablesLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep, bool arrives) {
+int TablesLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state,
+                     bool asleep, bool arrives) {
   kinds_.take(all_kinds_, kind, settings_.gravity.norm());
   const std::int64_t place = spheres_.add(owner);
   const auto slot = int(spheres_.slot[place]);
   spheres_.kind[place] = kind;
   spheres_.inverse_mass[place] = 1.0 / mass;
-  one_mass_ = size() == 1 || (one_mass_ && spheres_.inverse_mass[place] == spheres_.inverse_mass[place > 0 ? 0 : 1]);
+  one_mass_ =
+      size() == 1 || (one_mass_ && spheres_.inverse_mass[place] == spheres_.inverse_mass[place > 0 ? 0 : 1]);
   set_state(slot, state);
   const StatisticalBody body = spheres_.body(place);
-  spheres_.radius[place] = arrives ? arriving_radius(body, kind_of(place)) : float(find_sphere_radius(body, kind_of(place), settings_.tables, settings_.seed));
+  spheres_.radius[place] =
+      arrives ? arriving_radius(body, kind_of(place))
+              : float(find_sphere_radius(body, kind_of(place), settings_.tables, settings_.seed));
   if (arrives) spheres_.eased[std::size_t(place)] = kEasedUnits, ++eased_;
   if (asleep) lay_still(place);
   return slot;
@@ -58,6 +72,7 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
   const Vec3 position = spheres_.position(place);
   eased_ -= spheres_.eased[std::size_t(place)] > 0;
   if (asleep(slot)) still().remove(gone, position, kind_of(place).shape->radius);
+  end_clip(place);
   const std::int64_t last_place = spheres_.place_of_slot[last];
   const bool renamed = gone != last, last_sleeps = renamed && last_place >= spheres_.awake;
   const Vec3 last_position = spheres_.position(last_place);
@@ -65,6 +80,9 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
   if (last_sleeps) still().remove(last, last_position, last_radius);
   spheres_.remove(gone);
   if (last_sleeps) still().insert(gone, last_position, last_radius);
+  if (renamed)
+    if (const std::int32_t clip = spheres_.clip[spheres_.place_of_slot[gone]]; clip >= 0)
+      clips_[std::size_t(clip)].slot = slot;
   std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
   for (Push& push : pushes_)
     if (push.slot == std::int32_t(last)) push.slot = slot;
@@ -77,11 +95,14 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
   return renamed ? std::optional(spheres_.owner[spheres_.place_of_slot[gone]]) : std::nullopt;
 }
 
-// The height that its hull has over the plane that it is nearest to, where it is near one: it neither sinks nor rises as it arrives. Else as it moves, but into no plane.
+// The height that its hull has over the plane that it is nearest to, where it is near one: it neither sinks
+// nor rises as it arrives. Else as it moves, but into no plane.
 float TablesLevel::arriving_radius(const StatisticalBody& body, const BodyKind& kind) const {
   constexpr double kNear = 0.3, kLeast = 0.02;  // over R: a gap; a radius
   const Shape& shape = *kind.shape;
-  double least_gap = kNear * shape.radius, radius = find_sphere_radius(body, kind, settings_.tables, settings_.seed), least_height = shape.radius;
+  double least_gap = kNear * shape.radius,
+         radius = find_sphere_radius(body, kind, settings_.tables, settings_.seed),
+         least_height = shape.radius;
   std::vector<GroundNear> near;
   std::vector<HalfSpace> faces;
   find_ground_near(ground_, body.position, shape.radius + least_gap, 0.0, near);
@@ -102,12 +123,14 @@ RigidState TablesLevel::state(int slot) const {
     if (const auto given = given_.find(std::uint32_t(slot)); given != given_.end()) return given->second;
   const std::int64_t place = spheres_.place_of_slot[std::size_t(slot)];
   const Quat orientation = spheres_.orientation(place);
-  return {spheres_.position(place), orientation, spheres_.velocity(place), angular_velocity(orientation, spheres_.spin(place), *kind_of(place).shape)};
+  return {spheres_.position(place), orientation, spheres_.velocity(place),
+          angular_velocity(orientation, spheres_.spin(place), *kind_of(place).shape)};
 }
 
 void TablesLevel::set_state(int slot, const RigidState& state) {
   wake(slot);
   const std::int64_t place = spheres_.place_of_slot[std::size_t(slot)];
+  end_clip(place);
   StatisticalBody body = spheres_.body(place);
   body.position = state.position;
   body.orientation = state.orientation;
@@ -139,7 +162,9 @@ void TablesLevel::set_gravity(const Vec3& gravity) {
   kinds_ = {};
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, gravity.norm());
   for (std::int64_t i = 0; i < spheres_.awake; ++i)
-    if (spheres_.motion[std::size_t(i)] == Motion::settling) spheres_.motion[std::size_t(i)] = Motion::dynamic;
+    if (spheres_.motion[std::size_t(i)] == Motion::settling)
+      spheres_.motion[std::size_t(i)] = Motion::dynamic;
+  end_all_clips();  // they were recorded under another
 }
 
 void TablesLevel::take_woke(std::vector<std::uint32_t>& owners) {
@@ -150,15 +175,21 @@ void TablesLevel::take_woke(std::vector<std::uint32_t>& owners) {
 void TablesLevel::lay_still(std::int64_t place) {
   still().insert(std::uint32_t(spheres_.slot[place]), spheres_.position(place), kind_of(place).shape->radius);
   given_.erase(std::uint32_t(spheres_.slot[place]));
+  end_clip(place);
+  spheres_.on_hull[std::size_t(place)] = HullStand::none;
   spheres_.put_to_sleep(place);
   searched_ = 0;
 }
 
 void TablesLevel::archive(StateArchive& a) {
-  a(spheres_, contacts_, elapsed_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_, cornered_, given_, pushes_);
+  a(spheres_, contacts_, elapsed_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_, cornered_,
+    given_, pushes_, clips_);
   if (!a.reading()) return;
   kinds_ = {};
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());
+  if (!settings_.tables.as_published()) return;
+  end_all_clips();  // of a level that had them
+  std::ranges::fill(spheres_.on_hull, HullStand::none);
 }
 
 // For as long as there are overlaps, and a while after.
@@ -176,8 +207,10 @@ void TablesLevel::ease() {
 }
 
 void TablesLevel::forget_all_given() {
-  if (given_.size() > 64) given_ = {};  // of a whole scene that was added
-  else if (!given_.empty()) given_.clear();
+  if (given_.size() > 64)
+    given_ = {};  // of a whole scene that was added
+  else if (!given_.empty())
+    given_.clear();
 }
 
 void TablesLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
@@ -189,7 +222,8 @@ template <class Task>
 void TablesLevel::each_block(const Task& task) const {
   const std::int64_t count = spheres_.awake;
   if (count == 0) return;
-  jobs_((count + kBlock - 1) / kBlock, TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+  jobs_((count + kBlock - 1) / kBlock,
+        TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
 }
 
 void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally) {
@@ -205,8 +239,11 @@ double TablesLevel::count_traffic(bool pair_phase) const {
 
 std::size_t TablesLevel::bytes() const {
   const auto held = [](const auto& array) { return array.capacity() * sizeof array[0]; };
-  const std::size_t given = given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) + given_.bucket_count() * sizeof(void*);
-  std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) + held(tallies_);
+  const std::size_t given =
+      given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
+      given_.bucket_count() * sizeof(void*);
+  std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) +
+                      held(tallies_) + held(clips_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
   return bytes + step_.bytes() + contacts_.bytes();
 }
@@ -226,7 +263,8 @@ void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
 
 void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   // Bodies near each other should lie near each other in memory, too.
-  if (steps_ % kOrderInterval == 0 && searched_ == spheres_.awake && searched_ == std::int64_t(order.size()) && !std::ranges::is_sorted(order)) {
+  if (steps_ % kOrderInterval == 0 && searched_ == spheres_.awake &&
+      searched_ == std::int64_t(order.size()) && !std::ranges::is_sorted(order)) {
     step_.resize(std::size_t(spheres_.awake));
     spheres_.reorder_awake(order, step_.s.data());  // the rows of the last step serve no more
   }
@@ -234,12 +272,26 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   const auto ticks = [](double time) { return std::int64_t(1000.0 * time); };
   const int step_ticks = int(std::min<std::int64_t>(255, ticks(elapsed_ + dt) - ticks(elapsed_)));
   elapsed_ += dt;
-  const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height && settings_.tables.radius_update_interval <= 1;
+  const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height &&
+                            settings_.tables.radius_update_interval <= 1;
   const Vec3& g = settings_.gravity;
-  constants_ = {.time = float(dt), .gx = float(g.x()), .gy = float(g.y()), .gz = float(g.z()), .wide_time = dt, .wide_gx = g.x(), .wide_gy = g.y(), .wide_gz = g.z(), .gravity = float(g.norm()), .resting_energy = float(tables_.resting_energy),
-                .update_radius = plain_radius, .ticks = step_ticks, .one_kind = all_kinds_.size() == 1 && one_mass_};
+  constants_ = {.time = float(dt),
+                .gx = float(g.x()),
+                .gy = float(g.y()),
+                .gz = float(g.z()),
+                .wide_time = dt,
+                .wide_gx = g.x(),
+                .wide_gy = g.y(),
+                .wide_gz = g.z(),
+                .gravity = float(g.norm()),
+                .resting_energy = float(tables_.resting_energy),
+                .update_radius = plain_radius,
+                .ticks = step_ticks,
+                .one_kind = all_kinds_.size() == 1 && one_mass_,
+                .hulls = !settings_.tables.as_published()};
   step_.resize(std::size_t(spheres_.awake));
-  if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0) update_radii_one_by_one();
+  if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0)
+    update_radii_one_by_one();
   planes_.clear(kinds_.size());
   for (const HalfSpace& plane : ground_.planes()) planes_.add(plane, materials_, kinds_, settings_.gravity);
   faces_.clear();
@@ -253,11 +305,14 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
 void TablesLevel::start_block(std::int64_t begin, std::int64_t end, Simd simd) {
   start_step(spheres_, kinds_, constants_, simd, begin, end, step_, spheres_);
   for (std::size_t p = 0; p < ground_.planes().size(); ++p)
-    find_near_ground(spheres_, ground_.planes()[p], std::int32_t(p), constants_, simd, begin, end, step_);
+    find_near_ground(spheres_, kinds_, ground_.planes()[p], std::int32_t(p), constants_, simd, begin, end,
+                     step_);
   const auto first = std::ranges::lower_bound(near_faces_, begin, {}, &NearFaces::place);
   for (auto near = first; near != near_faces_.end() && near->place < end; ++near)
     for (std::int32_t face = near->begin; face < near->end; ++face)
-      find_near_ground(spheres_, faces_[std::size_t(face)], std::int32_t(ground_.planes().size()) + face, constants_, Simd::portable, near->place, near->place + 1, step_);
+      find_near_ground(spheres_, kinds_, faces_[std::size_t(face)],
+                       std::int32_t(ground_.planes().size()) + face, constants_, Simd::portable, near->place,
+                       near->place + 1, step_);
 }
 
 // Of the spheres at places [begin, end): what they are near of the ground's parts, as planes.
@@ -266,7 +321,8 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
   const double time = constants_.wide_time, fall = 0.5 * settings_.gravity.norm() * time * time;
   thread_local std::vector<GroundNear> near;
   for (std::int64_t i = begin; i < end; ++i) {
-    const double size = double(kinds_.radius[spheres_.kind[i]]), way = spheres_.velocity(i).norm() * time + fall;
+    const double size = double(kinds_.radius[spheres_.kind[i]]),
+                 way = spheres_.velocity(i).norm() * time + fall;
     const Vec3 center = spheres_.position(i);
     near.clear();
     find_ground_near(ground_, center, 1.01 * size + way, 0.0, near);
@@ -277,9 +333,13 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
       planes_.add(faces_.back(), materials_, kinds_, settings_.gravity);
     }
     near_faces_.push_back({i, first, std::int32_t(faces_.size())});
-    const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) { return n.part->moves() && n.height < double(spheres_.radius[i]) + 0.01 * size + way; });
-    if (mover != near.end()) carried_.push_back({i, mover->part->velocity_at(center), mover->part->pose.angular_velocity});
-    if (is_held_several_ways(near, ground_.planes(), center, double(spheres_.radius[i]) + 0.01 * size + way)) cornered_.push_back(spheres_.slot[i]);
+    const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
+      return n.part->moves() && n.height < double(spheres_.radius[i]) + 0.01 * size + way;
+    });
+    if (mover != near.end())
+      carried_.push_back({i, mover->part->velocity_at(center), mover->part->pose.angular_velocity});
+    if (is_held_several_ways(near, ground_.planes(), center, double(spheres_.radius[i]) + 0.01 * size + way))
+      cornered_.push_back(spheres_.slot[i]);
   }
 }
 
@@ -292,7 +352,8 @@ std::span<const HalfSpace> TablesLevel::faces_of(std::int64_t place) const {
 void TablesLevel::update_radii_one_by_one() {
   for (std::int64_t i = 0; i < spheres_.awake; ++i)
     if (spheres_.motion[i] == Motion::dynamic && spheres_.since_crowded[i] > 0)
-      spheres_.radius[i] = float(find_sphere_radius(spheres_.body(i), kind_of(i), settings_.tables, settings_.seed));
+      spheres_.radius[i] =
+          float(find_sphere_radius(spheres_.body(i), kind_of(i), settings_.tables, settings_.seed));
 }
 
 void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
@@ -318,11 +379,15 @@ void TablesLevel::find_still_contacts() {
     still().find_near(position, double(step_.reach[i]), [&](std::uint32_t other) {
       const std::int64_t at = spheres_.place_of_slot[other];
       const double limit = double(step_.reach[i]) + 1.01 * double(spheres_.radius[at]);
-      if ((spheres_.position(at) - position).squaredNorm() < limit * limit) still_touches_.emplace_back(std::uint32_t(i), other);
+      if ((spheres_.position(at) - position).squaredNorm() < limit * limit)
+        still_touches_.emplace_back(std::uint32_t(i), other);
     });
   }
   if (settings_.pair_filter)
-    std::erase_if(still_touches_, [&](const auto& touch) { return !settings_.pair_filter(spheres_.owner[touch.first], spheres_.owner[spheres_.place_of_slot[touch.second]]); });
+    std::erase_if(still_touches_, [&](const auto& touch) {
+      return !settings_.pair_filter(spheres_.owner[touch.first],
+                                    spheres_.owner[spheres_.place_of_slot[touch.second]]);
+    });
   std::ranges::sort(still_touches_);
   for (const auto& [place, slot] : still_touches_) {
     const std::int64_t at = spheres_.place_of_slot[slot];
@@ -331,7 +396,8 @@ void TablesLevel::find_still_contacts() {
     const double gap = between.norm() - double(spheres_.radius[place]) - double(spheres_.radius[at]);
     const Vec3 velocity = spheres_.velocity(place);
     const double closing = velocity.dot(between.normalized());
-    const bool touches = gap + closing * double(constants_.time) <= 0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
+    const bool touches = gap + closing * double(constants_.time) <=
+                         0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
     if (touches && velocity.norm() > rest_law_.wake_speed(kind_of(at).shape->radius)) wake(int(slot));
   }
 }
@@ -345,7 +411,8 @@ void TablesLevel::respond(ContactTally& tally) {
   if (!crowd) return;
   const int sweeps = contacts_.settings().sweeps;
   for (int sweep = 1; sweep <= sweeps; ++sweep) {
-    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, eased_ > 0, simd_, step_, jobs_);
+    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, eased_ > 0,
+                    simd_, step_, jobs_);
     if (sweep < sweeps)
       each_block([&](std::int64_t begin, std::int64_t end) {
         if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
@@ -359,8 +426,12 @@ void TablesLevel::write_contacts() {
   contacts_.each([&](const SphereContact& c) {
     if (c.impulse <= 0.0f) return;
     const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
-    log_->add({.first = spheres_.owner[c.first], .second = spheres_.owner[c.second], .point = spheres_.position(c.first) - double(spheres_.radius[c.first]) * normal, .normal = normal,
-               .impulse = double(c.impulse), .approach = std::max(0.0, -double(c.closing))});
+    log_->add({.first = spheres_.owner[c.first],
+               .second = spheres_.owner[c.second],
+               .point = spheres_.position(c.first) - double(spheres_.radius[c.first]) * normal,
+               .normal = normal,
+               .impulse = double(c.impulse),
+               .approach = std::max(0.0, -double(c.closing))});
   });
 }
 
@@ -370,14 +441,20 @@ void TablesLevel::write_ground() {
     const std::uint8_t state = step_.on_ground[std::size_t(i)];
     if (state != std::uint8_t(GroundState::lies) && state != std::uint8_t(GroundState::settles)) continue;
     const HalfSpace& under = plane(step_.plane[std::size_t(i)]);
-    const double pressing = std::max(0.0, -settings_.gravity.dot(under.normal)) * constants_.wide_time;  // m/s
-    log_->add({.first = spheres_.owner[std::size_t(i)], .ground = under.id, .ground_material = under.material,
-               .point = spheres_.position(i) - double(spheres_.radius[std::size_t(i)]) * under.normal, .normal = under.normal,
-               .impulse = std::max(pressing, double(spheres_.held[std::size_t(i)])) / spheres_.inverse_mass[std::size_t(i)]});
+    const double pressing =
+        std::max(0.0, -settings_.gravity.dot(under.normal)) * constants_.wide_time;  // m/s
+    log_->add({.first = spheres_.owner[std::size_t(i)],
+               .ground = under.id,
+               .ground_material = under.material,
+               .point = spheres_.position(i) - double(spheres_.radius[std::size_t(i)]) * under.normal,
+               .normal = under.normal,
+               .impulse = std::max(pressing, double(spheres_.held[std::size_t(i)])) /
+                          spheres_.inverse_mass[std::size_t(i)]});
   }
 }
 
-// The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves as if alone.
+// The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves
+// as if alone.
 void TablesLevel::respond_as_paper(ContactTally& tally) {
   const auto take = [&](std::int64_t place, const StatisticalBody& body) {
     spheres_.put(place, body);
@@ -387,8 +464,9 @@ void TablesLevel::respond_as_paper(ContactTally& tally) {
     if (c.second >= std::uint32_t(spheres_.awake)) return;
     StatisticalBody first = spheres_.body(c.first), second = spheres_.body(c.second);
     const BodyKind &first_kind = kind_of(c.first), &second_kind = kind_of(c.second);
-    respond_pair_as_paper(first, first_kind, second, second_kind, Vec3(double(c.nx), double(c.ny), double(c.nz)), world(), materials_.law(first_kind.material, second_kind.material), settings_.tables,
-                          tally);
+    respond_pair_as_paper(first, first_kind, second, second_kind,
+                          Vec3(double(c.nx), double(c.ny), double(c.nz)), world(),
+                          materials_.law(first_kind.material, second_kind.material), settings_.tables, tally);
     take(c.first, first);
     take(c.second, second);
   });
@@ -396,12 +474,18 @@ void TablesLevel::respond_as_paper(ContactTally& tally) {
 }
 
 void TablesLevel::sort_ground() {
+  end_clips_of_touched();
   each_block([&](std::int64_t begin, std::int64_t end) {
+    if (constants_.hulls) choose_hulls(begin, end);
     if (!has_planes()) return clear_added(begin, end, step_);
     sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
-    each_marked(step_.on_ground, std::uint8_t(GroundState::settles), begin, end, [&](std::int64_t i) { choose_rest_pose(i); });
-    for (auto carried = std::ranges::lower_bound(carried_, begin, {}, &Carried::place); carried != carried_.end() && carried->place < end; ++carried)
-      step_.on_ground[std::size_t(carried->place)] = std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
+    each_marked(step_.on_ground, std::uint8_t(GroundState::settles), begin, end,
+                [&](std::int64_t i) { choose_rest_pose(i); });
+    for (auto carried = std::ranges::lower_bound(carried_, begin, {}, &Carried::place);
+         carried != carried_.end() && carried->place < end; ++carried)
+      if (step_.on_ground[std::size_t(carried->place)] != std::uint8_t(GroundState::stands))
+        step_.on_ground[std::size_t(carried->place)] =
+            std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
   });
 }
 
@@ -410,47 +494,69 @@ void TablesLevel::choose_rest_pose(std::int64_t i) {
   const Quat orientation = spheres_.orientation(i);
   const BodyKind& kind = kind_of(i);
   const HalfSpace& under = plane(step_.plane[i]);
-  if (spheres_.motion[i] == Motion::settling && holds_pose(orientation, kind, spheres_.pose[i], under, world())) return;
+  if (spheres_.motion[i] == Motion::settling &&
+      holds_pose(orientation, kind, spheres_.pose[i], under, world()))
+    return;
   const RestingRecord resting = find_resting(orientation, kind, under, world(), settings_.tables);
   spheres_.motion[i] = resting.pose < 0 ? Motion::dynamic : Motion::settling;
   if (resting.pose >= 0) spheres_.pose[i] = std::int16_t(resting.pose);
 }
 
-// Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts, motion.
+// Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts,
+// motion.
 void TablesLevel::finish(ContactTally& tally) {
   const bool ground = has_planes();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
+  joined_.resize(std::max(joined_.size(), tallies_.size()));
   each_block([&](std::int64_t begin, std::int64_t end) {
     ContactTally& own = tallies_[std::size_t(begin / kBlock)];
+    std::vector<PlayingClip>& joined = joined_[std::size_t(begin / kBlock)];
     if (ground) {
       sweep_ground(planes_, constants_, simd_, begin, end, step_);
       lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
-      each_marked(step_.on_ground, std::uint8_t(GroundState::near), begin, end, [&](std::int64_t i) { move_alone(i, own); });
+      each_marked(step_.on_ground, std::uint8_t(GroundState::near), begin, end,
+                  [&](std::int64_t i) { move_alone(i, own, joined); });
+      if (constants_.hulls)
+        each_marked(step_.on_ground, std::uint8_t(GroundState::stands), begin, end,
+                    [&](std::int64_t i) { move_alone(i, own, joined); });
     }
-    if (kinds_.any_slender()) end_step_with_slender(begin, end);
-    else end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
-    each_marked(step_.on_ground, std::uint8_t(GroundState::unsound), begin, end, [&](std::int64_t i) { recover(i, own); });
+    end_block(begin, end);
+    each_marked(step_.on_ground, std::uint8_t(GroundState::unsound), begin, end,
+                [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
+  update_clips();
   if (log_ && ground) write_ground();
 }
 
-// The orientations of slender bodies follow by splitting, one by one.
-void TablesLevel::end_step_with_slender(std::int64_t begin, std::int64_t end) {
+// The orientations of slender bodies, and of those that turn far in a step, follow by splitting, one by one.
+void TablesLevel::end_block(std::int64_t begin, std::int64_t end) {
+  constexpr float kFar = 0.7f;  // rad: so far the loop's rule keeps the energy
   thread_local std::vector<std::pair<std::int64_t, Quat>> before;
   before.clear();
-  for (std::int64_t i = begin; i < end; ++i)
-    if (SphereKinds::is_slender(kind_of(i)) && step_.on_ground[i] != std::uint8_t(GroundState::moved)) before.emplace_back(i, spheres_.orientation(i));
+  const bool slender = kinds_.any_slender();
+  const float rate = kFar / constants_.time;  // rad/s
+  for (std::int64_t i = begin; i < end; ++i) {
+    const lane::Row& turning = step_.u[std::size_t(i)];  // m/s, at the radius
+    const float most = rate * spheres_.radius[std::size_t(i)];
+    const bool far = turning.x * turning.x + turning.y * turning.y + turning.z * turning.z > most * most;
+    if ((far || (slender && SphereKinds::is_slender(kind_of(i)))) &&
+        step_.on_ground[std::size_t(i)] != std::uint8_t(GroundState::moved))
+      before.emplace_back(i, spheres_.orientation(i));
+  }
   end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
   for (const auto& [i, orientation] : before)
-    spheres_.set_orientation(i, advance_orientation(orientation, spheres_.spin(i), kind_of(i), constants_.wide_time).normalized());
+    spheres_.set_orientation(
+        i, advance_orientation(orientation, spheres_.spin(i), kind_of(i), constants_.wide_time).normalized());
 }
 
 // A body that meets the ground by itself, after the impulses of its contacts with others.
-void TablesLevel::move_alone(std::int64_t i, ContactTally& tally) {
+void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<PlayingClip>& joined) {
   const float t = constants_.time;
   StatisticalBody body = spheres_.body(i);
-  body.velocity = step_.touches(i) ? step_.velocity(i, {constants_.gx * t, constants_.gy * t, constants_.gz * t, 0.0f}) : spheres_.velocity(i);
+  body.velocity = step_.touches(i)
+                      ? step_.velocity(i, {constants_.gx * t, constants_.gy * t, constants_.gz * t, 0.0f})
+                      : spheres_.velocity(i);
   body.spin += step_.added_spin(i);
   body.position += step_.push_out(i);
   RestingRecord resting{spheres_.pose[i]};
@@ -459,12 +565,18 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally) {
   const auto carried = std::ranges::lower_bound(carried_, i, {}, &Carried::place);
   const bool rides = carried != carried_.end() && carried->place == i;
   if (rides) body.velocity -= carried->velocity;
-  const ContactTally own = step_tables_body(body, resting, kind_of(i), around, constants_.wide_time, tables_);
-  tally += own;
+  if (step_.on_ground[i] == std::uint8_t(GroundState::stands) && is_over_level_ground(body, around)) {
+    tally += move_over_ground(i, body, around, rides, joined);
+  } else {
+    become_sphere(i, body);
+    tally += step_tables_body(body, resting, kind_of(i), around, constants_.wide_time, tables_);
+  }
   if (rides) {
     body.velocity += carried->velocity;
     body.position += carried->velocity * constants_.wide_time;
-    body.orientation = (rotation_from_vector(carried->angular_velocity * constants_.wide_time) * body.orientation).normalized();
+    body.orientation =
+        (rotation_from_vector(carried->angular_velocity * constants_.wide_time) * body.orientation)
+            .normalized();
   }
   spheres_.pose[i] = std::int16_t(resting.pose);
   spheres_.put(i, body);
@@ -480,6 +592,7 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
     body.spin += step_.added_spin(i);
     body.position += step_.push_out(i);
   }
+  if (spheres_.clip[std::size_t(i)] >= 0) body.motion = Motion::dynamic;
   return body;
 }
 
@@ -497,11 +610,14 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     if (!guests[k].touched) continue;
     const std::size_t i = place_of(guests[k].slot);
     const StatisticalBody& body = bodies[k];
+    end_clip(std::int64_t(i));
+    spheres_.on_hull[i] = HullStand::none;
     spheres_.put(std::int64_t(i), body);
     spheres_.pose[i] = std::int16_t(guests[k].resting.pose);
     spheres_.held[i] = 0.0f;
     // It has moved and lies among others: nothing is left to be added to what it has now.
-    step_.p[i] = {float(body.velocity.x()), float(body.velocity.y()), float(body.velocity.z()), std::max(1.0f, step_.p[i].w)};
+    step_.p[i] = {float(body.velocity.x()), float(body.velocity.y()), float(body.velocity.z()),
+                  std::max(1.0f, step_.p[i].w)};
     step_.a[i] = step_.s[i] = step_.d[i] = {};
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
   }

@@ -1,5 +1,7 @@
-// Bodies of `tables`: every one a sphere, in dense arrays. A step: 1 start (radii, reaches), 2 near pairs (cells), 3 contacts of spheres and who wakes, 4 the response of all
-// these at once, 5 those near bodies of other rungs are moved among them (rungs/near_bodies.h), 6 the ground: impacts at their exact time answered from the tables, and motion, 7 rest.
+// Bodies of `tables`: every one a sphere, in dense arrays. A step: 1 start (radii, reaches), 2 near pairs
+// (cells), 3 contacts of spheres and who wakes, 4 the response of all these at once, 5 those near bodies of
+// other rungs are moved among them (rungs/near_bodies.h), 6 the ground: impacts at their exact time answered
+// from the tables, and motion, 7 rest.
 #pragma once
 
 #include <optional>
@@ -16,6 +18,7 @@
 #include "lod/statistical/sleepers.h"
 #include "lod/statistical/statistical_settings.h"
 #include "lod/step_report.h"
+#include "lod/support/hull_motion.h"
 #include "lod/tables/guest.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_ground.h"
@@ -26,11 +29,12 @@ namespace lodestone {
 class TablesLevel {
  public:
   /// All but the settings must outlive the level.
-  TablesLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials, const Kinds& kinds, Sleepers& sleepers,
-              const JobRunner& jobs);
+  TablesLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials,
+              const Kinds& kinds, Sleepers& sleepers, const JobRunner& jobs);
 
   /// Returns the slot. `arrives`: from another rung, at the height that its hull has.
-  int add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep, bool arrives);
+  int add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep,
+          bool arrives);
   /// The last body moves into the slot and its owner is returned (none where it was the last). Wakes nobody.
   std::optional<std::uint32_t> remove(int slot);
 
@@ -39,35 +43,43 @@ class TablesLevel {
   int size() const { return int(spheres_.size()); }
   int asleep_count() const { return int(spheres_.size() - spheres_.awake); }
   /// Slots.
-  std::span<const std::int32_t> awake() const { return std::span(spheres_.slot).first(std::size_t(spheres_.awake)); }
-  std::span<const std::uint32_t> fell_asleep() const { return fell_asleep_; }    ///< owners, in the last step
+  std::span<const std::int32_t> awake() const {
+    return std::span(spheres_.slot).first(std::size_t(spheres_.awake));
+  }
+  std::span<const std::uint32_t> fell_asleep() const { return fell_asleep_; }  ///< owners, in the last step
   std::uint32_t kind(int slot) const { return spheres_.kind[place_of(slot)]; }
   std::uint32_t owner(int slot) const { return spheres_.owner[place_of(slot)]; }
   RigidState state(int slot) const;
   Vec3 position(int slot) const { return spheres_.position(std::int64_t(place_of(slot))); }
-  double radius(int slot) const { return double(kinds_.radius[spheres_.kind[place_of(slot)]]); }   ///< m, of the bounding sphere
-  void set_state(int slot, const RigidState& state);                             ///< wakes it
+  double radius(int slot) const {
+    return double(kinds_.radius[spheres_.kind[place_of(slot)]]);
+  }                                                   ///< m, of the bounding sphere
+  void set_state(int slot, const RigidState& state);  ///< wakes it
   bool asleep(int slot) const { return std::int64_t(place_of(slot)) >= spheres_.awake; }
-  bool crowded(int slot) const { return spheres_.since_crowded[place_of(slot)] == 0; }  ///< touched another body in the last step
+  bool crowded(int slot) const {
+    return spheres_.since_crowded[place_of(slot)] == 0;
+  }  ///< touched another body in the last step
   void wake(int slot);
-  void put_to_sleep(int slot);                                                   ///< where it is, at once
+  void put_to_sleep(int slot);  ///< where it is, at once
   /// m/s², from the next step on. Who comes to rest begins anew.
   void set_gravity(const Vec3& gravity);
-  void set_log(ContactLog* log) { log_ = log; }                                  ///< null: none
+  void set_log(ContactLog* log) { log_ = log; }  ///< null: none
   /// Appends the owners of those that woke since this was last asked.
   void take_woke(std::vector<std::uint32_t>& owners);
-  void add_force(int slot, const Vec3& force, const Vec3& torque);               ///< over the next step; wakes it
+  void add_force(int slot, const Vec3& force, const Vec3& torque);  ///< over the next step; wakes it
   double sphere_radius(int slot) const { return double(spheres_.radius[place_of(slot)]); }
 
-  // A step, in this order. `order`: of the awake spheres in the cells of the step before, empty where these hold for others.
+  // A step, in this order. `order`: of the awake spheres in the cells of the step before, empty where these
+  // hold for others.
   void begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally);
   const Spheres& spheres() const { return spheres_; }
-  std::span<const float> reach() const { return step_.reach; }                   ///< m, of those awake
-  CellGrid::Lent free_rows() { return step_.free_rows(); }                       ///< to search in, until respond()
+  std::span<const float> reach() const { return step_.reach; }  ///< m, of those awake
+  CellGrid::Lent free_rows() { return step_.free_rows(); }      ///< to search in, until respond()
   /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given.
   void find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
-  void forget_contacts() { contacts_.clear(); }                                  ///< in their place, where there are none
-  /// Slots of those in this step that parts of the ground hold several ways: one plane does not tell how they go on.
+  void forget_contacts() { contacts_.clear(); }  ///< in their place, where there are none
+  /// Slots of those in this step that parts of the ground hold several ways: one plane does not tell how they
+  /// go on.
   std::span<const std::int32_t> cornered() const { return cornered_; }
   void respond(ContactTally& tally);
   /// The body as it would go on, with what its contacts with spheres give it.
@@ -93,12 +105,23 @@ class TablesLevel {
     std::int64_t place = 0;
     Vec3 velocity, angular_velocity;  // of the ground below
   };
+  struct PlayingClip {
+    ClipPlayback playback = {};
+    std::int32_t slot = 0;
+    enum State : std::int32_t {
+      plays,
+      over,   // the body rests
+      ended,  // the body moves on without it
+    } state = plays;
+  };
   struct Push {
     std::int32_t slot;
     Vec3 force, torque;
   };
 
-  StepWorld world() const { return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, nullptr, log_}; }
+  StepWorld world() const {
+    return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, nullptr, log_};
+  }
   void write_contacts();
   void write_ground();
   std::size_t place_of(int slot) const { return spheres_.place_of_slot[std::size_t(slot)]; }
@@ -112,7 +135,9 @@ class TablesLevel {
   const StillGrid& still() const { return sleepers_.of(StatisticalModel::tables); }
   const BodyKind& kind_of(std::int64_t place) const { return all_kinds_[spheres_.kind[std::size_t(place)]]; }
   float arriving_radius(const StatisticalBody& body, const BodyKind& kind) const;
-  float bounce_velocity() const { return float(world().bounce_velocity) + constants_.gravity * constants_.time; }  // with what gravity adds in a step
+  float bounce_velocity() const {
+    return float(world().bounce_velocity) + constants_.gravity * constants_.time;
+  }  // with what gravity adds in a step
   void lay_still(std::int64_t place);
   void forget_all_given();
   void ease();
@@ -126,8 +151,18 @@ class TablesLevel {
   void start_block(std::int64_t begin, std::int64_t end, Simd simd);
   void sort_ground();
   void choose_rest_pose(std::int64_t place);
-  void end_step_with_slender(std::int64_t begin, std::int64_t end);
-  void move_alone(std::int64_t place, ContactTally& tally);
+  void end_block(std::int64_t begin, std::int64_t end);
+  void choose_hulls(std::int64_t begin, std::int64_t end);
+  void move_alone(std::int64_t place, ContactTally& tally, std::vector<PlayingClip>& joined);
+  bool is_over_level_ground(const StatisticalBody& body, const StepWorld& around) const;
+  void become_sphere(std::int64_t place, StatisticalBody& body);
+  ContactTally move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
+                                bool rides, std::vector<PlayingClip>& joined);
+  void end_clip(std::int64_t place);
+  void end_all_clips();
+  void end_clips_of_touched();
+  void update_clips();
+  bool stands(std::int64_t place) const;
   void recover(std::int64_t place, ContactTally& tally);
   template <class Task>
   void each_block(const Task& task) const;
@@ -148,22 +183,25 @@ class TablesLevel {
   SphereContacts contacts_;
   SphereGround planes_;
   SphereStep step_;
-  std::vector<HalfSpace> faces_;                 // of this step: of the ground's parts, each for the sphere near it
-  std::vector<NearFaces> near_faces_;            // by place
-  std::vector<std::int32_t> cornered_;           // slots
-  std::vector<Carried> carried_;                 // by place: near ground that moves
+  std::vector<HalfSpace> faces_;        // of this step: of the ground's parts, each for the sphere near it
+  std::vector<NearFaces> near_faces_;   // by place
+  std::vector<std::int32_t> cornered_;  // slots
+  std::vector<Carried> carried_;        // by place: near ground that moves
   StepConstants constants_;
-  double elapsed_ = 0.0;                         // s, over all steps
+  double elapsed_ = 0.0;  // s, over all steps
   std::int64_t steps_ = 0;
-  bool one_mass_ = true;                         // all bodies have, since there last were none
-  std::int64_t eased_ = 0;                       // bodies that are, asleep or not
-  std::int64_t searched_ = 0;                    // awake bodies at the step's start; 0 once the places of any have changed
+  bool one_mass_ = true;       // all bodies have, since there last were none
+  std::int64_t eased_ = 0;     // bodies that are, asleep or not
+  std::int64_t searched_ = 0;  // awake bodies at the step's start; 0 once the places of any have changed
   std::vector<std::uint32_t> fell_asleep_, woke_;  // owners
 
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
   std::vector<Push> pushes_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> still_touches_;  // place awake, slot asleep; then both places
+  std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
+  std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>
+      still_touches_;  // place awake, slot asleep; then both places
   std::vector<ContactTally> tallies_;
 };
 

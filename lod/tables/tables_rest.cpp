@@ -9,16 +9,24 @@ void TablesLevel::rest() {
   if (!settings_.sleeping) return;
   constexpr int kLeaning = int(1000.0 * RestLaw::kLeaningTime);  // ms
   const double gravity = settings_.gravity.norm();
-  for (std::int64_t i = spheres_.awake - 1; i >= 0; --i) {  // from the end: the last one takes the place of one that falls asleep
+  for (std::int64_t i = spheres_.awake - 1; i >= 0;
+       --i) {  // from the end: the last one takes the place of one that falls asleep
+    if (const std::int32_t clip = spheres_.clip[std::size_t(i)]; clip >= 0) {
+      if (clips_[std::size_t(clip)].state == PlayingClip::over)
+        fell_asleep_.push_back(spheres_.owner[std::size_t(i)]), lay_still(i);
+      continue;
+    }
     const double radius = kind_of(i).shape->radius;
     const bool among_others = spheres_.since_crowded[i] < kLeaning;
     const StatisticalBody body = spheres_.body(i);
-    // Nor while it is still being taken out of an overlap; one that is pressed in again as far as it is taken out stays where it is.
+    // Nor while it is still being taken out of an overlap; one that is pressed in again as far as it is taken
+    // out stays where it is.
     const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
-    const bool still = kinetic_energy(body, *kind_of(i).shape) < rest_law_.still_energy(among_others, radius, gravity) &&
-                       (!step_.touches(i) || out < rest_law_.sleep_speed(radius));
+    const bool still =
+        kinetic_energy(body, *kind_of(i).shape) < rest_law_.still_energy(among_others, radius, gravity) &&
+        (!step_.touches(i) || out < rest_law_.sleep_speed(radius));
     spheres_.quiet[i] = still ? spheres_.quiet[i] + constants_.time : 0.0f;
-    if (spheres_.quiet[i] < rest_law_.still_time(among_others)) continue;
+    if (spheres_.quiet[i] < rest_law_.still_time(among_others) || (!among_others && !stands(i))) continue;
     fell_asleep_.push_back(spheres_.owner[std::size_t(i)]);
     lay_still(i);
   }

@@ -1,4 +1,5 @@
-// Adds the wall time of a scope to one field of StageTimes, and makes the scope a zone of the profiler that listens.
+// Adds the wall time of a scope to one field of StageTimes, and makes the scope a zone of the profiler that
+// listens.
 #pragma once
 
 #include <chrono>
@@ -9,7 +10,9 @@ namespace lodestone {
 
 class StageTimer {
  public:
-  explicit StageTimer(double& milliseconds) : milliseconds_(milliseconds), start_(Clock::now()) { StageZones::begin(milliseconds_); }
+  explicit StageTimer(double& milliseconds) : milliseconds_(milliseconds), start_(Clock::now()) {
+    StageZones::begin(milliseconds_);
+  }
   ~StageTimer() {
     milliseconds_ += std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
     StageZones::end(milliseconds_);

@@ -6,7 +6,8 @@
 
 namespace lodestone {
 
-/// The zone of a whole step. While it lasts, every StageTimer of this thread over a field of `times` but the total is a zone, too. Both must outlive it.
+/// The zone of a whole step. While it lasts, every StageTimer of this thread over a field of `times` but the
+/// total is a zone, too. Both must outlive it.
 class StageZones {
  public:
   StageZones(const ProfileHooks& hooks, const StageTimes& times);

@@ -59,7 +59,8 @@ class Decomposition {
   /// Those of faces that do not lie on the hull; false where they are too many.
   bool find_planes() {
     std::vector<Plane> outer;
-    for (int i = 0; i < int(hull_.faces.size()); ++i) add_plane(outer, hull_.face_normal(i), hull_.vertices[hull_.faces[i][0]]);
+    for (int i = 0; i < int(hull_.faces.size()); ++i)
+      add_plane(outer, hull_.face_normal(i), hull_.vertices[hull_.faces[i][0]]);
     std::vector<Plane> all = outer;
     for (const auto& [a, b, c] : mesh_.faces) {
       const Vec3 corner = mesh_.vertices[a];
@@ -74,7 +75,8 @@ class Decomposition {
     const double offset = normal.dot(point);
     const auto same = [&](const Plane& plane) {
       const double side = plane.normal.dot(normal);
-      return std::abs(side) > 1.0 - 1e-9 && std::abs(plane.offset - (side < 0.0 ? -offset : offset)) < kFlat * size_;
+      return std::abs(side) > 1.0 - 1e-9 &&
+             std::abs(plane.offset - (side < 0.0 ? -offset : offset)) < kFlat * size_;
     };
     if (raw_normal.norm() > 0.0 && std::ranges::none_of(planes, same)) planes.push_back({normal, offset});
   }
@@ -93,7 +95,8 @@ class Decomposition {
     std::vector<double> height;
     for (const Vec3& vertex : cell.hull.vertices) height.push_back(plane.normal.dot(vertex) - plane.offset);
     const double flat = kFlat * size_;
-    if (std::ranges::max(height) < flat || std::ranges::min(height) > -flat) return into.push_back(std::move(cell));
+    if (std::ranges::max(height) < flat || std::ranges::min(height) > -flat)
+      return into.push_back(std::move(cell));
     std::vector<Vec3> above, below;
     for (int i = 0; i < int(height.size()); ++i) {
       if (height[i] > -flat) above.push_back(cell.hull.vertices[i]);
@@ -154,7 +157,8 @@ class Decomposition {
     std::ranges::stable_sort(by_volume_, std::ranges::greater{}, [&](int i) { return cells_[i].volume; });
     std::vector<Union> unions;
     for (const int seed : by_volume_)
-      if (Union grown = grow(seed); std::ranges::none_of(unions, [&](const Union& other) { return other.cells == grown.cells; }))
+      if (Union grown = grow(seed);
+          std::ranges::none_of(unions, [&](const Union& other) { return other.cells == grown.cells; }))
         unions.push_back(std::move(grown));
     std::ranges::stable_sort(unions, std::ranges::greater{}, [](const Union& u) { return u.whole.volume; });
     std::vector<bool> covered(cells_.size(), false);
@@ -177,6 +181,8 @@ class Decomposition {
 
 }  // namespace
 
-std::vector<Hull> find_convex_pieces(const Mesh& mesh, const Hull& hull) { return Decomposition(mesh, hull).run(); }
+std::vector<Hull> find_convex_pieces(const Mesh& mesh, const Hull& hull) {
+  return Decomposition(mesh, hull).run();
+}
 
 }  // namespace lodestone

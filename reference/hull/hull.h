@@ -1,5 +1,6 @@
 // Convex hull (Qhull) with its edge graph, and the support function by hill climbing on that graph:
-// on a convex polyhedron a vertex none of whose neighbours is farther along a direction is the farthest of all.
+// on a convex polyhedron a vertex none of whose neighbours is farther along a direction is the farthest of
+// all.
 #pragma once
 
 #include <array>
@@ -11,13 +12,16 @@
 
 namespace lodestone {
 
-/// A convex polyhedron. `neighbors(i)` are the vertices that share an edge with vertex i, `faces_of(i)` the faces around it.
+/// A convex polyhedron. `neighbors(i)` are the vertices that share an edge with vertex i, `faces_of(i)` the
+/// faces around it.
 struct Hull {
-  std::vector<Vec3> vertices;                  ///< m, hull corners only
-  std::vector<std::array<int, 3>> faces;       ///< triangulated, counter-clockwise seen from outside
-  std::vector<std::int32_t> neighbor_start;    ///< size vertices + 1: where each vertex's run of `neighbor` begins
+  std::vector<Vec3> vertices;             ///< m, hull corners only
+  std::vector<std::array<int, 3>> faces;  ///< triangulated, counter-clockwise seen from outside
+  std::vector<std::int32_t>
+      neighbor_start;  ///< size vertices + 1: where each vertex's run of `neighbor` begins
   std::vector<std::int32_t> neighbor;
-  std::vector<std::int32_t> face_start;        ///< size vertices + 1: where each vertex's run of `incident_face` begins
+  std::vector<std::int32_t>
+      face_start;  ///< size vertices + 1: where each vertex's run of `incident_face` begins
   std::vector<std::int32_t> incident_face;
 
   std::span<const std::int32_t> neighbors(int vertex) const {
@@ -33,14 +37,17 @@ struct Hull {
   }
 };
 
-/// The hull of `points`: its corners only, in the order of `points`; what stands out from the rest by less than 1e-10 × size is no corner. Throws InputError where they lie in a plane or are fewer than four.
+/// The hull of `points`: its corners only, in the order of `points`; what stands out from the rest by less
+/// than 1e-10 × size is no corner. Throws InputError where they lie in a plane or are fewer than four.
 Hull make_hull(std::span<const Vec3> points);
 
-/// Index of the vertex farthest along `direction` (any length), climbing from `start`. Exact to rounding: 1e-11 × size at worst, where
-/// `direction` is normal to a face with a thousand corners, else 1e-15. Direction zero or not finite: some vertex.
+/// Index of the vertex farthest along `direction` (any length), climbing from `start`. Exact to rounding:
+/// 1e-11 × size at worst, where `direction` is normal to a face with a thousand corners, else 1e-15.
+/// Direction zero or not finite: some vertex.
 int find_support(const Hull& hull, const Vec3& direction, int start = 0);
 
-/// For a direction, a vertex near the farthest one: cube map of 6 × `side` × `side` cells (a start for the climb, which is then exact).
+/// For a direction, a vertex near the farthest one: cube map of 6 × `side` × `side` cells (a start for the
+/// climb, which is then exact).
 class SupportMap {
  public:
   SupportMap() = default;
@@ -53,7 +60,8 @@ class SupportMap {
   std::vector<std::uint16_t> cells_;
 };
 
-/// What looking up the map without the climb would cost: support height missed, m, over directions even on the sphere.
+/// What looking up the map without the climb would cost: support height missed, m, over directions even on
+/// the sphere.
 struct SupportMapError {
   double mean = 0.0, greatest = 0.0;
 };

@@ -8,7 +8,8 @@ namespace {
 constexpr double kRounding = 1e-9;  // × size
 constexpr int kMostCorners = 64;    // of a hull; beyond it those nearest to the deepest one, by edges
 
-/// In the frame of the contact: z along the way out of the upper body, or against it for the lower one, so that the tip is the lowest point of either.
+/// In the frame of the contact: z along the way out of the upper body, or against it for the lower one, so
+/// that the tip is the lowest point of either.
 struct Face {
   Vec3 normal, point;  // outward, of unit length
 };
@@ -16,14 +17,18 @@ struct Edge {
   Vec3 from, to;
 };
 
-/// The part of a hull that lies deeper than the other body's tip: its corners there, and the faces and edges around them.
+/// The part of a hull that lies deeper than the other body's tip: its corners there, and the faces and edges
+/// around them.
 class Tip {
  public:
-  /// `rotation`: from the body's axes into the contact's frame, in which the body's centre of mass is `center`. Takes what lies below `height`.
-  Tip(const Shape& shape, const Mat3& rotation, const Vec3& center, double height) : hull_(shape.hull), rotation_(rotation), center_(center) {
+  /// `rotation`: from the body's axes into the contact's frame, in which the body's centre of mass is
+  /// `center`. Takes what lies below `height`.
+  Tip(const Shape& shape, const Mat3& rotation, const Vec3& center, double height)
+      : hull_(shape.hull), rotation_(rotation), center_(center) {
     const Vec3 down = rotation.transpose() * -Vec3::UnitZ();
     corners_.push_back(find_support(hull_, down, shape.support_map.find_start(down)));
-    for (std::size_t i = 0; i < corners_.size() && corners_.size() < kMostCorners; ++i) visit_neighbors(corners_[i], height);
+    for (std::size_t i = 0; i < corners_.size() && corners_.size() < kMostCorners; ++i)
+      visit_neighbors(corners_[i], height);
     for (const int corner : corners_) points_.push_back(place(corner));
     collect_faces();
     collect_edges();
@@ -32,7 +37,8 @@ class Tip {
   const std::vector<Vec3>& points() const { return points_; }
   const std::vector<Edge>& edges() const { return edges_; }
 
-  /// How far below `point`, a corner of the other's tip, this hull's surface is; negative where the point is outside.
+  /// How far below `point`, a corner of the other's tip, this hull's surface is; negative where the point is
+  /// outside.
   double depth_below(const Vec3& point, double rounding) const {
     double least = 1e300;
     for (const Face& face : faces_) {
@@ -48,21 +54,26 @@ class Tip {
 
   void visit_neighbors(int corner, double height) {
     for (const int next : hull_.neighbors(corner))
-      if (place(next).z() < height && std::ranges::find(corners_, next) == corners_.end()) corners_.push_back(next);
+      if (place(next).z() < height && std::ranges::find(corners_, next) == corners_.end())
+        corners_.push_back(next);
   }
   void collect_faces() {
     std::vector<int> faces;
-    for (const int corner : corners_) faces.insert(faces.end(), hull_.faces_of(corner).begin(), hull_.faces_of(corner).end());
+    for (const int corner : corners_)
+      faces.insert(faces.end(), hull_.faces_of(corner).begin(), hull_.faces_of(corner).end());
     std::ranges::sort(faces);
-    const auto repeated = std::ranges::unique(faces);
-    faces.erase(repeated.begin(), repeated.end());
-    for (const int face : faces) faces_.push_back({rotation_ * hull_.face_normal(face).normalized(), place(hull_.faces[face][0])});
+    faces.erase(
+        std::unique(faces.begin(), faces.end()),
+        faces.end());  // here as elsewhere not std::ranges', whose subranges clang 14 does not compile
+    for (const int face : faces)
+      faces_.push_back({rotation_ * hull_.face_normal(face).normalized(), place(hull_.faces[face][0])});
   }
   void collect_edges() {
     for (std::size_t i = 0; i < corners_.size(); ++i)
       for (const int next : hull_.neighbors(corners_[i])) {
         const auto other = std::ranges::find(corners_, next) - corners_.begin();
-        if (other > std::ptrdiff_t(i)) edges_.push_back({points_[i], place(next)});  // once where both ends are in the tip
+        if (other > std::ptrdiff_t(i))
+          edges_.push_back({points_[i], place(next)});  // once where both ends are in the tip
       }
   }
 
@@ -100,15 +111,18 @@ std::optional<std::pair<Vec3, Vec3>> find_crossing(const Edge& a, const Edge& b)
 /// In the contact's frame the first body is above, the second below; the second's tip is held upside down.
 class Manifold {
  public:
-  Manifold(const Tip& upper, const Tip& lower, double rounding) : upper_(upper), lower_(lower), rounding_(rounding) {}
+  Manifold(const Tip& upper, const Tip& lower, double rounding)
+      : upper_(upper), lower_(lower), rounding_(rounding) {}
 
   struct Found {
     Vec3 point;
     double depth;
   };
   std::vector<Found> find() {
-    for (const Vec3& corner : upper_.points()) add_corner(corner, lower_.depth_below(kMirror * corner, rounding_));
-    for (const Vec3& corner : lower_.points()) add_mirrored(kMirror * corner, upper_.depth_below(kMirror * corner, rounding_));
+    for (const Vec3& corner : upper_.points())
+      add_corner(corner, lower_.depth_below(kMirror * corner, rounding_));
+    for (const Vec3& corner : lower_.points())
+      add_mirrored(kMirror * corner, upper_.depth_below(kMirror * corner, rounding_));
     for (const Edge& a : upper_.edges())
       for (const Edge& b : lower_.edges())
         if (const auto crossing = find_crossing(a, {kMirror * b.from, kMirror * b.to}))
@@ -131,8 +145,9 @@ class Manifold {
 
 }  // namespace
 
-void find_hull_manifold(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state,
-                        const HullOverlap& overlap, std::vector<ContactPoint>& contacts) {
+void find_hull_manifold(const Shape& first, const RigidState& first_state, const Shape& second,
+                        const RigidState& second_state, const HullOverlap& overlap,
+                        std::vector<ContactPoint>& contacts) {
   const double rounding = kRounding * std::min(first.radius, second.radius);
   const Mat3 frame = frame_along(overlap.direction);
   const Mat3 first_axes = frame * first_state.orientation.toRotationMatrix();
@@ -141,12 +156,15 @@ void find_hull_manifold(const Shape& first, const RigidState& first_state, const
   const Vec3 second_center = kMirror * frame * (second_state.position - first_state.position);
   const auto lowest = [](const Shape& shape, const Mat3& axes, const Vec3& center) {
     const Vec3 down = axes.transpose() * -Vec3::UnitZ();
-    return center.z() + (axes * shape.hull.vertices[find_support(shape.hull, down, shape.support_map.find_start(down))]).z();
+    return center.z() +
+           (axes * shape.hull.vertices[find_support(shape.hull, down, shape.support_map.find_start(down))])
+               .z();
   };
   const Tip upper(first, first_axes, Vec3::Zero(), -lowest(second, second_axes, second_center) + rounding);
   const Tip lower(second, second_axes, second_center, -lowest(first, first_axes, Vec3::Zero()) + rounding);
   for (const auto& [point, depth] : Manifold(upper, lower, rounding).find())
-    contacts.push_back({first_state.position + frame.transpose() * point, overlap.direction, std::min(depth, overlap.depth)});
+    contacts.push_back({first_state.position + frame.transpose() * point, overlap.direction,
+                        std::min(depth, overlap.depth)});
 }
 
 }  // namespace lodestone

@@ -16,7 +16,9 @@ struct PlacedHull {
   Mat3 axes = state.orientation.toRotationMatrix();
   mutable int last = 0;  // vertex found before: the next one is mostly near it
 
-  int farthest_vertex(const Vec3& direction) const { return last = find_support(shape->hull, axes.transpose() * direction, last); }
+  int farthest_vertex(const Vec3& direction) const {
+    return last = find_support(shape->hull, axes.transpose() * direction, last);
+  }
   /// The farthest point along `direction` (any length), relative to the centre of mass.
   Vec3 farthest_offset(const Vec3& direction) const {
     if (shape->sphere_radius) return *shape->sphere_radius * direction.normalized();
@@ -26,13 +28,17 @@ struct PlacedHull {
 };
 
 Vec3 to_vec3(const ccd_vec3_t& v) { return {v.v[0], v.v[1], v.v[2]}; }
-void assign(ccd_vec3_t& to, const Vec3& v) { ccdVec3Set(&to, ccd_real_t(v.x()), ccd_real_t(v.y()), ccd_real_t(v.z())); }
+void assign(ccd_vec3_t& to, const Vec3& v) {
+  ccdVec3Set(&to, ccd_real_t(v.x()), ccd_real_t(v.y()), ccd_real_t(v.z()));
+}
 
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
   assign(*point, static_cast<const PlacedHull*>(object)->farthest(to_vec3(*direction)));
 }
 
-void center(const void* object, ccd_vec3_t* point) { assign(*point, static_cast<const PlacedHull*>(object)->state.position); }
+void center(const void* object, ccd_vec3_t* point) {
+  assign(*point, static_cast<const PlacedHull*>(object)->state.position);
+}
 
 double depth_along(const PlacedHull& first, const PlacedHull& second, const Vec3& direction) {
   return (second.farthest(direction) - first.farthest(-direction)).dot(direction);
@@ -47,12 +53,13 @@ struct Corner {
     const Hull& hull = body.shape->hull;
     const int vertex = body.farthest_vertex(direction);
     for (const int face : hull.faces_of(vertex)) normals.push_back(body.axes * hull.face_normal(face));
-    for (const int other : hull.neighbors(vertex)) edges.push_back(body.axes * (hull.vertices[other] - hull.vertices[vertex]));
+    for (const int other : hull.neighbors(vertex))
+      edges.push_back(body.axes * (hull.vertices[other] - hull.vertices[vertex]));
   }
 };
 
-/// From a direction to the best of its neighbours among the normals of the Minkowski difference (a face of one body, or an edge of each), and
-/// on, until none is better.
+/// From a direction to the best of its neighbours among the normals of the Minkowski difference (a face of
+/// one body, or an edge of each), and on, until none is better.
 class Walk {
  public:
   Walk(const PlacedHull& first, const PlacedHull& second, const Vec3& start)
@@ -60,7 +67,8 @@ class Walk {
 
   HullOverlap end() {
     constexpr int kMostSteps = 64;
-    for (int i = 0; i < kMostSteps && step(); ++i) {}
+    for (int i = 0; i < kMostSteps && step(); ++i) {
+    }
     return best_;
   }
 
@@ -90,14 +98,16 @@ class Walk {
 
 using Search = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*, ccd_vec3_t*);
 
-/// Where libccd says that the two overlap, a direction along which the first leaves the second by about the shortest way.
+/// Where libccd says that the two overlap, a direction along which the first leaves the second by about the
+/// shortest way.
 std::optional<Vec3> find_way_out(const PlacedHull& first, const PlacedHull& second, Search search) {
   ccd_t query;
   CCD_INIT(&query);
   query.support1 = query.support2 = support;
   query.center1 = query.center2 = center;
   query.max_iterations = 100;
-  query.mpr_tolerance = query.epa_tolerance = ccd_real_t(1e-6 * std::min(first.shape->radius, second.shape->radius));
+  query.mpr_tolerance = query.epa_tolerance =
+      ccd_real_t(1e-6 * std::min(first.shape->radius, second.shape->radius));
   ccd_real_t depth = 0;
   ccd_vec3_t out, point;
   if (search(&first, &second, &query, &depth, &out, &point) != 0) return {};
@@ -116,21 +126,25 @@ std::optional<HullOverlap> find_sphere_overlap(double radii, const Vec3& between
 
 }  // namespace
 
-std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
-                                             const RigidState& second_state) {
+std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidState& first_state,
+                                             const Shape& second, const RigidState& second_state) {
   // Around the origin, so that nothing is lost far from it.
   PlacedHull a{&first, first_state}, b{&second, second_state};
   b.state.position -= a.state.position;
   a.state.position.setZero();
-  if (first.sphere_radius && second.sphere_radius) return find_sphere_overlap(*first.sphere_radius + *second.sphere_radius, -b.state.position);
-  // The portal tells best whether the hulls overlap, but may be misled about the way out where they do so by far; the polytope now and then.
+  if (first.sphere_radius && second.sphere_radius)
+    return find_sphere_overlap(*first.sphere_radius + *second.sphere_radius, -b.state.position);
+  // The portal tells best whether the hulls overlap, but may be misled about the way out where they do so by
+  // far; the polytope now and then.
   const auto by_portal = find_way_out(a, b, ccdMPRPenetration);
   if (!by_portal) return {};
   HullOverlap least = Walk(a, b, *by_portal).end();
-  if (least.depth < kShallow * std::min(first.radius, second.radius)) return least.depth > 0.0 ? std::optional(least) : std::nullopt;
+  if (least.depth < kShallow * std::min(first.radius, second.radius))
+    return least.depth > 0.0 ? std::optional(least) : std::nullopt;
   if (const auto by_polytope = find_way_out(a, b, ccdGJKPenetration))
     if (const HullOverlap other = Walk(a, b, *by_polytope).end(); other.depth < least.depth) least = other;
-  // Of two that touch and hardly overlap both may name the far side of the second. What is less by rounding alone is the same way.
+  // Of two that touch and hardly overlap both may name the far side of the second. What is less by rounding
+  // alone is the same way.
   constexpr double kLess = 0.999;
   const auto try_from = [&](const Vec3& start) {
     if (const HullOverlap other = Walk(a, b, start).end(); other.depth < kLess * least.depth) least = other;
@@ -140,7 +154,8 @@ std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidStat
   return least.depth > 0.0 ? std::optional(least) : std::nullopt;
 }
 
-double measure_hull_overlap(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state) {
+double measure_hull_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
+                            const RigidState& second_state) {
   const auto overlap = find_hull_overlap(first, first_state, second, second_state);
   return overlap ? overlap->depth : 0.0;
 }

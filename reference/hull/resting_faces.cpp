@@ -14,10 +14,12 @@ constexpr double kSameFace = 0.998;   // cosine between a normal that was measur
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::acos(std::clamp(a.dot(b), -1.0, 1.0)); }
 
-/// Height of the centre of mass over a plane that turns from normal `from` to `to` about `pivot`: A cos t + B sin t, t up to `turn`.
+/// Height of the centre of mass over a plane that turns from normal `from` to `to` about `pivot`: A cos t + B
+/// sin t, t up to `turn`.
 struct Turning {
   double a, b, turn;
-  Turning(const Vec3& from, const Vec3& to, const Vec3& pivot) : a(-from.dot(pivot)), b(0.0), turn(angle_between(from, to)) {
+  Turning(const Vec3& from, const Vec3& to, const Vec3& pivot)
+      : a(-from.dot(pivot)), b(0.0), turn(angle_between(from, to)) {
     const Vec3 across = to - to.dot(from) * from;
     if (across.squaredNorm() > 0.0) b = -across.normalized().dot(pivot);
   }
@@ -60,14 +62,19 @@ void RestingFaces::find_triangles() {
     for (int i = 0; i < 3; ++i) t.across[i] = triangle_of_edge.at({t.corner[(i + 1) % 3], t.corner[i]});
 }
 
-// Kruskal's algorithm over the edges, lowest pass first. A part whose lowest triangle is lower than the pass at which it joins another holds a
-// stable face; of the two the higher then has its pass.
+// The tree's leaves are the triangles; whoever goes up from a leaf meets ever higher passes, so the part that
+// can be walked below a height is the last ancestor before the first pass above it (part_below). Kruskal's
+// algorithm over the edges, lowest pass first. A part whose lowest triangle is lower than the pass at which
+// it joins another holds a stable face; of the two the higher then has its pass.
 void RestingFaces::join_parts() {
   std::vector<Join> joins;
   for (int t = 0; t < int(triangles_.size()); ++t)
     for (int i = 0; i < 3; ++i)
       if (const int other = triangles_[t].across[i]; other > t)
-        joins.push_back({Turning(triangles_[t].normal, triangles_[other].normal, hull_.vertices[triangles_[t].corner[i]]).highest(), t, other});
+        joins.push_back(
+            {Turning(triangles_[t].normal, triangles_[other].normal, hull_.vertices[triangles_[t].corner[i]])
+                 .highest(),
+             t, other});
   std::ranges::stable_sort(joins, {}, &Join::pass);
 
   parts_.resize(triangles_.size());
@@ -96,7 +103,9 @@ void RestingFaces::join_parts() {
     Part part{.lowest = parts_[low].lowest};
     stable.push_back(std::move(stable[low]));
     stable.back().insert(stable.back().end(), stable[high].begin(), stable[high].end());
-    for (const int t : stable.back()) part.spread = std::max(part.spread, angle_between(triangles_[t].normal, triangles_[part.lowest].normal));
+    for (const int t : stable.back())
+      part.spread =
+          std::max(part.spread, angle_between(triangles_[t].normal, triangles_[part.lowest].normal));
     parts_.push_back(part);
   }
   note_stable(int(parts_.size()) - 1);
@@ -161,7 +170,8 @@ int RestingFaces::tip(const Vec3& normal) const {
   return angle_between(triangles_[first].normal, on_edge) > over.top() ? second : first;
 }
 
-// From face to face over the edge that the foot of the centre of mass lies farthest beyond; each is lower than the one before.
+// From face to face over the edge that the foot of the centre of mass lies farthest beyond; each is lower
+// than the one before.
 int RestingFaces::roll(int triangle) const {
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const Triangle& t = triangles_[triangle];

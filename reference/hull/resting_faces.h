@@ -1,6 +1,7 @@
-// On which faces a convex body can stand and what it takes to tip it off them: statics, from the hull alone. The height of the centre of mass over
-// the plane, as a function of the plane's normal in body axes, has its minima at the stable faces. A body without the energy to get over
-// the passes around some of them stays among these. (Goldberg, Mirtich, Zhuang, Craig, Carlisle, Canny: Part pose statistics, 1999.)
+// On which faces a convex body can stand and what it takes to tip it off them: statics, from the hull alone.
+// The height of the centre of mass over the plane, as a function of the plane's normal in body axes, has its
+// minima at the stable faces. A body without the energy to get over the passes around some of them stays
+// among these. (Goldberg, Mirtich, Zhuang, Craig, Carlisle, Canny: Part pose statistics, 1999.)
 #pragma once
 
 #include <array>
@@ -15,7 +16,8 @@ namespace lodestone {
 struct RestingFace {
   Vec3 normal = Vec3::UnitZ();  ///< the plane's normal in body axes when the body stands on it: into the body
   double height = 0.0;          ///< m, of the centre of mass over the plane
-  double pass = 0.0;            ///< m, height that the centre of mass must reach to get to a lower stable face; infinite for the lowest
+  double pass = 0.0;  ///< m, height that the centre of mass must reach to get to a lower stable face;
+                      ///< infinite for the lowest
 };
 
 class RestingFaces {
@@ -26,15 +28,17 @@ class RestingFaces {
   /// Lowest first.
   const std::vector<RestingFace>& faces() const { return faces_; }
 
-  /// The face onto which the body tips when let down without speed, touching the plane, whose normal in body axes is `normal`.
+  /// The face onto which the body tips when let down without speed, touching the plane, whose normal in body
+  /// axes is `normal`.
   int find_quasistatic(const Vec3& normal) const;
 
-  /// The face on which a body that touches the plane is bound to end: its energy lifts its centre of mass no higher than `energy_height` (m). −1 where that
-  /// leaves faces more than `same_angle` (rad) apart.
+  /// The face on which a body that touches the plane is bound to end: its energy lifts its centre of mass no
+  /// higher than `energy_height` (m). −1 where that leaves faces more than `same_angle` (rad) apart.
   int find_certain(const Vec3& normal, double energy_height, double same_angle) const;
 
-  /// Whether a body that lies on the face with `normal` stays there while it is pulled along `down` (of any length): from the centre of mass that leads through the face. Both in
-  /// body axes; of whatever size the body is.
+  /// Whether a body that lies on the face with `normal` stays there while it is pulled along `down` (of any
+  /// length): from the centre of mass that leads through the face. Both in body axes; of whatever size the
+  /// body is.
   bool holds(const Vec3& normal, const Vec3& down) const;
 
  private:
@@ -43,12 +47,13 @@ class RestingFaces {
     Vec3 normal;                        // into the body
     double height = 0.0;
   };
-  // Triangles join into ever larger parts of the hull at the height of the pass between them: a tree, its leaves the triangles.
+  // Triangles join into ever larger parts of the hull at the height of the pass between them: a tree, its
+  // leaves the triangles.
   struct Part {
     int parent = -1;
-    double pass = 0.0;     // at which it joined its parent's other part
-    int lowest = -1;       // triangle
-    double spread = 0.0;   // rad, of its stable faces about the lowest
+    double pass = 0.0;    // at which it joined its parent's other part
+    int lowest = -1;      // triangle
+    double spread = 0.0;  // rad, of its stable faces about the lowest
   };
 
   void find_triangles();
@@ -58,11 +63,11 @@ class RestingFaces {
   int tip(const Vec3& normal) const;
 
   const Hull& hull_;
-  double slack_ = 0.0;                           // m, heights that differ by less are equal
+  double slack_ = 0.0;  // m, heights that differ by less are equal
   std::vector<Triangle> triangles_;
-  std::vector<std::vector<int>> triangles_at_;   // of each vertex
+  std::vector<std::vector<int>> triangles_at_;  // of each vertex
   std::vector<Part> parts_;
-  std::vector<int> face_of_;                     // of each triangle; −1: not stable
+  std::vector<int> face_of_;  // of each triangle; −1: not stable
   std::vector<RestingFace> faces_;
 };
 

@@ -9,7 +9,8 @@ namespace lodestone {
 
 /// The `i`-th of `n` unit vectors (Fibonacci's spiral).
 inline Vec3 spiral_direction(int i, int n) {
-  const double z = 1.0 - (2.0 * i + 1.0) / n, angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0)), r = std::sqrt(1.0 - z * z);
+  const double z = 1.0 - (2.0 * i + 1.0) / n, angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0)),
+               r = std::sqrt(1.0 - z * z);
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 

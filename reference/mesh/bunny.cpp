@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "reference/error.h"
-#include "reference/shape.h"
 #include "reference/mesh/simplified_shapes.h"
+#include "reference/shape.h"
 
 namespace lodestone {
 

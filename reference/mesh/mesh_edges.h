@@ -14,7 +14,8 @@ struct EdgeUse {
   bool forward = false;  ///< the face runs from low to high
 };
 
-/// Calls `visit` once for each edge, in order of its vertices, with all its uses: two where the surface is closed and simple.
+/// Calls `visit` once for each edge, in order of its vertices, with all its uses: two where the surface is
+/// closed and simple.
 void visit_edges(const Mesh& mesh, const std::function<void(std::span<const EdgeUse>)>& visit);
 
 }  // namespace lodestone

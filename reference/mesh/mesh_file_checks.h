@@ -1,4 +1,5 @@
-// What assimp 5.2 must not be shown: files on which it loops for ever, runs out of memory or out of stack.
+// What assimp 5.2 must not be shown: files on which it loops for ever, or sets aside what a count in the file
+// promises.
 #pragma once
 
 #include <filesystem>
@@ -6,8 +7,9 @@
 
 namespace lodestone {
 
-/// Throws InputError, naming the file, for a PLY header without its end or that promises more elements than the file
-/// has bytes, and for glTF nested too deep. `extension` is in lower case and without its dot; other formats pass.
+/// Throws InputError, naming the file, for a PLY file whose header or lists promise more than the file has,
+/// and for a binary STL file with fewer bytes than its triangles. `extension` is in lower case and without
+/// its dot; other formats pass.
 void require_safe_for_assimp(const std::filesystem::path& file, const std::string& extension);
 
 }  // namespace lodestone

@@ -1,6 +1,6 @@
-// Reading mesh files through assimp. Assimp is trusted with the syntax only: it guesses the format from the
-// contents, lets NaN and 1e39 through, and follows file names inside files, so the importer, the files it may
-// open and every number are ours to check.
+// Reading mesh files, glTF by ourselves and the rest through assimp. Assimp is trusted with the syntax only:
+// it guesses the format from the contents, lets NaN and 1e39 through, and follows file names inside files, so
+// the importer, the file it may open and every number are ours to check.
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
@@ -15,7 +15,9 @@
 #include <set>
 
 #include "reference/error.h"
+#include "reference/mesh/gltf_mesh.h"
 #include "reference/mesh/mesh.h"
+#include "reference/mesh/mesh_child.h"
 #include "reference/mesh/mesh_file_checks.h"
 
 namespace lodestone {
@@ -50,11 +52,10 @@ void require_readable(const fs::path& file, const MeshLoadSettings& settings) {
     refuse(file, fmt::format("{} bytes", bytes), fmt::format("at most {}", settings.max_bytes));
 }
 
-/// Lets assimp open the file itself and, for glTF, the buffers beside it; no other file, however it is named.
+/// Lets assimp open the file itself; no other file, however it is named.
 class GuardedFiles : public Assimp::DefaultIOSystem {
  public:
-  GuardedFiles(const fs::path& file, std::uintmax_t max_bytes)
-      : file_(fs::canonical(file)), max_bytes_(max_bytes) {}
+  explicit GuardedFiles(const fs::path& file) : file_(fs::canonical(file)) {}
 
   Assimp::IOStream* Open(const char* name, const char* mode) override {
     return is_allowed(name) && mode[0] == 'r' ? Assimp::DefaultIOSystem::Open(name, mode) : nullptr;
@@ -65,14 +66,10 @@ class GuardedFiles : public Assimp::DefaultIOSystem {
   bool is_allowed(const char* name) const {
     std::error_code error;
     const fs::path path = fs::canonical(name, error);
-    if (error || !fs::is_regular_file(path, error)) return false;
-    if (path == file_) return true;
-    return extension_of(file_) == "gltf" && path.parent_path() == file_.parent_path() &&
-           fs::file_size(path, error) <= max_bytes_;
+    return !error && path == file_;
   }
 
   fs::path file_;
-  std::uintmax_t max_bytes_;
 };
 
 /// Leaves only the importer of `extension`.
@@ -132,7 +129,8 @@ std::vector<PlacedPart> parts_of(const aiScene& scene) {
     const auto [node, above] = open.back();
     open.pop_back();
     const aiMatrix4x4 transform = above * node->mTransformation;
-    for (unsigned i = 0; i < node->mNumMeshes; ++i) parts.push_back({scene.mMeshes[node->mMeshes[i]], transform});
+    for (unsigned i = 0; i < node->mNumMeshes; ++i)
+      parts.push_back({scene.mMeshes[node->mMeshes[i]], transform});
     for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], transform);
   }
   return parts;
@@ -143,7 +141,8 @@ void require_few(const std::vector<PlacedPart>& parts, const fs::path& file, std
   std::uint64_t faces = 0, vertices = 0;
   for (const PlacedPart& part : parts) faces += part.mesh->mNumFaces, vertices += part.mesh->mNumVertices;
   const auto refuse_many = [&](std::uint64_t found, const char* what, std::uint64_t most) {
-    refuse(file, fmt::format("{} {}", found, what), fmt::format("at most {} (simplify the mesh first)", most));
+    refuse(file, fmt::format("{} {}", found, what),
+           fmt::format("at most {} (simplify the mesh first)", most));
   };
   if (faces > max_faces) refuse_many(faces, "faces", max_faces);
   if (vertices > 3 * max_faces) refuse_many(vertices, "vertices", 3 * max_faces);
@@ -158,17 +157,10 @@ Mesh join(const aiScene& scene, const fs::path& file, const MeshLoadSettings& se
   return mesh;
 }
 
-}  // namespace
-
-Mesh load_mesh(const fs::path& file, const MeshLoadSettings& settings) {
-  require_readable(file, settings);
-  const std::string extension = extension_of(file);
-  if (std::find(std::begin(kExtensions), std::end(kExtensions), extension) == std::end(kExtensions))
-    refuse(file, "the extension \"" + extension + "\"", "obj, ply, stl, gltf, glb or 3ds");
+Mesh read_with_assimp(const fs::path& file, const std::string& extension, const MeshLoadSettings& settings) {
   require_safe_for_assimp(file, extension);
-
   Assimp::Importer importer;
-  importer.SetIOHandler(new GuardedFiles(file, settings.max_bytes));  // the importer owns it
+  importer.SetIOHandler(new GuardedFiles(file));  // the importer owns it
   keep_importer_of(importer, extension);
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
   if (scene) {
@@ -177,7 +169,21 @@ Mesh load_mesh(const fs::path& file, const MeshLoadSettings& settings) {
   }
   if (!scene || !scene->mRootNode)
     refuse(file, fmt::format("no mesh in it ({})", importer.GetErrorString()), "a mesh");
-  Mesh mesh = join(*scene, file, settings);
+  return join(*scene, file, settings);
+}
+
+}  // namespace
+
+Mesh load_mesh(const fs::path& file, const MeshLoadSettings& settings) {
+  require_readable(file, settings);
+  const std::string extension = extension_of(file);
+  if (std::find(std::begin(kExtensions), std::end(kExtensions), extension) == std::end(kExtensions))
+    refuse(file, "the extension \"" + extension + "\"", "obj, ply, stl, gltf, glb or 3ds");
+  const bool is_gltf = extension == "gltf" || extension == "glb";
+  const auto read = [&] {
+    return is_gltf ? read_gltf_mesh(file, extension, settings) : read_with_assimp(file, extension, settings);
+  };
+  Mesh mesh = settings.untrusted ? read_mesh_in_child(file.string(), read, settings.max_faces) : read();
   if (mesh.faces.empty()) refuse(file, "no faces", "a mesh");
   return mesh;
 }

@@ -7,9 +7,10 @@
 
 namespace lodestone {
 
-/// Turns faces so that neighbours agree and each piece faces out of the solid: outwards, or inwards where the piece
-/// lies inside another and so bounds a cavity. Fills in the report's edges, components and faces_flipped.
-/// Throws InputError, with `name` at its head, for a one-sided surface (a Möbius band) or more than 1,000 pieces.
+/// Turns faces so that neighbours agree and each piece faces out of the solid: outwards, or inwards where the
+/// piece lies inside another and so bounds a cavity. Fills in the report's edges, components and
+/// faces_flipped. Throws InputError, with `name` at its head, for a one-sided surface (a Möbius band) or more
+/// than 1,000 pieces.
 void orient_faces(Mesh& mesh, const std::string& name, MeshReport& report);
 
 }  // namespace lodestone

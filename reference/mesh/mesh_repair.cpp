@@ -47,9 +47,12 @@ void require_sound_extent(double extent, const std::string& name) {
 void require_faces(const Mesh& mesh, const std::string& name, const MeshReport& report) {
   if (mesh.faces.size() >= 4) return;
   std::string besides;
-  if (report.degenerate_faces_dropped > 0) besides += fmt::format(", beside {} without area", report.degenerate_faces_dropped);
-  if (report.duplicate_faces_dropped > 0) besides += fmt::format(", beside {} on the same corners", report.duplicate_faces_dropped);
-  throw InputError(fmt::format("{}: found {} faces{}, expected at least 4", name, mesh.faces.size(), besides));
+  if (report.degenerate_faces_dropped > 0)
+    besides += fmt::format(", beside {} without area", report.degenerate_faces_dropped);
+  if (report.duplicate_faces_dropped > 0)
+    besides += fmt::format(", beside {} on the same corners", report.duplicate_faces_dropped);
+  throw InputError(
+      fmt::format("{}: found {} faces{}, expected at least 4", name, mesh.faces.size(), besides));
 }
 
 void require_volume(const Mesh& mesh, const std::string& name, const MeshReport& report) {

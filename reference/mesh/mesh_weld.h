@@ -5,7 +5,8 @@
 
 namespace lodestone {
 
-/// Makes faces use the first of all vertices within `distance_m` of each other. Returns how many vertices are no longer used.
+/// Makes faces use the first of all vertices within `distance_m` of each other. Returns how many vertices are
+/// no longer used.
 int weld_vertices(Mesh& mesh, double distance_m);
 
 }  // namespace lodestone

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "reference/mesh/edge_collapse.h"
 #include "reference/error.h"
+#include "reference/mesh/edge_collapse.h"
 
 namespace lodestone {
 namespace {

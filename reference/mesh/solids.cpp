@@ -75,7 +75,8 @@ Mesh make_box(const Vec3& sides_m) {
 
 Mesh make_sphere(double radius_m, int subdivisions) {
   require_length(radius_m, "sphere radius");
-  if (subdivisions < 0 || subdivisions > 7) throw_input_error("sphere subdivisions", fmt::to_string(subdivisions), "0 … 7");
+  if (subdivisions < 0 || subdivisions > 7)
+    throw_input_error("sphere subdivisions", fmt::to_string(subdivisions), "0 … 7");
   Mesh mesh = make_icosahedron();
   for (int i = 0; i < subdivisions; ++i) {
     for (Vec3& vertex : mesh.vertices) vertex.normalize();

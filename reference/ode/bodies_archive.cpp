@@ -72,7 +72,9 @@ void set_motion(Body& body, const Motion& motion) {
   motion.awake ? dBodyEnable(body.body) : dBodyDisable(body.body);
 }
 
-bool is_same(const Body& body, const Slot& slot) { return bool(body.body) == slot.taken && (!slot.taken || (body.id == slot.id && body.birth == slot.birth)); }
+bool is_same(const Body& body, const Slot& slot) {
+  return bool(body.body) == slot.taken && (!slot.taken || (body.id == slot.id && body.birth == slot.birth));
+}
 
 }  // namespace
 
@@ -80,15 +82,19 @@ void Bodies::archive(StateArchive& a, dWorldID world, const OdeSettings& setting
   std::vector<Slot> slots;
   if (!a.reading())
     for (const Body& body : slots_)
-      slots.push_back(body.body ? Slot{body.generation, body.id, true, body.birth, making_of(body), motion_of(body)} : Slot{.generation = body.generation});
+      slots.push_back(body.body
+                          ? Slot{body.generation, body.id, true, body.birth, making_of(body), motion_of(body)}
+                          : Slot{.generation = body.generation});
   std::vector<std::uint32_t> free = free_;
   std::uint64_t births = births_;
   a(slots, free, births);
   if (!a.reading()) return;
 
   if (!std::ranges::equal(slots_, slots, is_same)) {
-    if (std::ranges::any_of(slots_, [](const Body& body) { return body.body && dBodyGetNumJoints(body.body) > 0; }))
-      throw InputError("a snapshot with other full bodies is restored only where none of those there has a joint");
+    if (std::ranges::any_of(slots_,
+                            [](const Body& body) { return body.body && dBodyGetNumJoints(body.body) > 0; }))
+      throw InputError(
+          "a snapshot with other full bodies is restored only where none of those there has a joint");
     clear();
     slots_.resize(slots.size());
     std::vector<std::size_t> order;
@@ -99,7 +105,14 @@ void Bodies::archive(StateArchive& a, dWorldID world, const OdeSettings& setting
     for (const std::size_t i : order) {
       const Making& making = slots[i].making;
       make(i, world,
-           {.shape = making.shape, .mass = making.mass, .material = making.material, .state = slots[i].motion.state, .geometry = making.geometry, .spheres = making.spheres, .properties = making.properties}, settings, cache);
+           {.shape = making.shape,
+            .mass = making.mass,
+            .material = making.material,
+            .state = slots[i].motion.state,
+            .geometry = making.geometry,
+            .spheres = making.spheres,
+            .properties = making.properties},
+           settings, cache);
       slots_[i].birth = slots[i].birth;
     }
   }

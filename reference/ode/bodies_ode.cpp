@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "reference/error.h"
+#include "reference/mass_bounds.h"
 
 namespace lodestone::ode {
 namespace {
@@ -20,28 +21,34 @@ bool within_limit(const Vec3& v) {  // false for NaN
 }
 
 std::string describe(const RigidState& s) {
-  return fmt::format("position {} {} {}, orientation {} {} {} {}, velocity {} {} {}, angular velocity {} {} {}",
-                     s.position.x(), s.position.y(), s.position.z(), s.orientation.w(), s.orientation.x(),
-                     s.orientation.y(), s.orientation.z(), s.velocity.x(), s.velocity.y(), s.velocity.z(),
-                     s.angular_velocity.x(), s.angular_velocity.y(), s.angular_velocity.z());
+  return fmt::format(
+      "position {} {} {}, orientation {} {} {} {}, velocity {} {} {}, angular velocity {} {} {}",
+      s.position.x(), s.position.y(), s.position.z(), s.orientation.w(), s.orientation.x(), s.orientation.y(),
+      s.orientation.z(), s.velocity.x(), s.velocity.y(), s.velocity.z(), s.angular_velocity.x(),
+      s.angular_velocity.y(), s.angular_velocity.z());
 }
 
 void check_state(const RigidState& state) {
-  if (!is_sound(state)) throw InputError("a body's state: found " + describe(state) + ", expected finite, below 1e8 in each part, the orientation of unit norm");
+  if (!is_sound(state))
+    throw InputError("a body's state: found " + describe(state) +
+                     ", expected finite, below 1e8 in each part, the orientation of unit norm");
 }
 
 void check_properties(const BodyProperties& properties) {
   const bool rates = properties.linear_damping >= 0.0 && properties.angular_damping >= 0.0;
   if (!rates || !std::isfinite(properties.linear_damping) || !std::isfinite(properties.angular_damping))
-    throw InputError(fmt::format("a body's damping: found {} and {} 1/s, expected finite, 0 or more", properties.linear_damping, properties.angular_damping));
-  if (!(properties.max_angular_speed > 0.0)) throw InputError(fmt::format("a body's greatest angular speed: found {} rad/s, expected more than 0", properties.max_angular_speed));
+    throw InputError(fmt::format("a body's damping: found {} and {} 1/s, expected finite, 0 or more",
+                                 properties.linear_damping, properties.angular_damping));
+  if (!(properties.max_angular_speed > 0.0))
+    throw InputError(fmt::format("a body's greatest angular speed: found {} rad/s, expected more than 0",
+                                 properties.max_angular_speed));
 }
 
 void check_definition(const OdeBodyDefinition& definition, const OdeSettings& settings) {
   check_that(settings.max_contacts_per_pair > 0, "pairs have at least one contact");
   if (!definition.shape) throw InputError("a body's shape: found none");
-  if (!(definition.mass > 0.0 && std::isfinite(definition.mass))) throw InputError(fmt::format("a body's mass: found {} kg, expected more than 0", definition.mass));
-  if (!is_possible_inertia(definition.shape->inertia_per_mass)) throw InputError("shape " + definition.shape->name + ": no rigid body can have its inertia");
+  check_mass(definition.mass);
+  check_inertia(*definition.shape);
   check_properties(definition.properties);
   check_state(definition.state);
 }
@@ -73,8 +80,10 @@ double reach_of(const Shape& shape, std::span<const Sphere> spheres) {
 
 void destroy(dBodyID body, dSpaceID space) {
   while (const dGeomID geom = dBodyGetFirstGeom(body)) {
-    if (dGeomGetSpace(geom) == space) dGeomDestroy(geom);
-    else dGeomSetBody(geom, nullptr);  // the caller's, who hung it there
+    if (dGeomGetSpace(geom) == space)
+      dGeomDestroy(geom);
+    else
+      dGeomSetBody(geom, nullptr);  // the caller's, who hung it there
   }
   dBodyDestroy(body);
 }
@@ -82,8 +91,8 @@ void destroy(dBodyID body, dSpaceID space) {
 }  // namespace
 
 bool is_sound(const RigidState& state) {
-  return within_limit(state.position) && within_limit(state.velocity) && within_limit(state.angular_velocity) &&
-         std::abs(state.orientation.squaredNorm() - 1.0) <= 1e-6;
+  return within_limit(state.position) && within_limit(state.velocity) &&
+         within_limit(state.angular_velocity) && std::abs(state.orientation.squaredNorm() - 1.0) <= 1e-6;
 }
 
 std::uint32_t slot_of(OdeBodyId id) { return id.value & kSlotMask; }
@@ -105,18 +114,20 @@ void set_damping(Body& body, double h) {
   const BodyProperties& properties = body.properties;
   const bool damps = properties.linear_damping > 0.0 || properties.angular_damping > 0.0;
   if (!damps && !body.damped) return;
-  dBodySetDamping(body.body, -std::expm1(-properties.linear_damping * h), -std::expm1(-properties.angular_damping * h));
+  dBodySetDamping(body.body, -std::expm1(-properties.linear_damping * h),
+                  -std::expm1(-properties.angular_damping * h));
   body.damped = damps;
 }
 
 bool is_moving(dBodyID body) {
   if (!body || !dBodyIsEnabled(body)) return false;
-  return !dBodyIsKinematic(body) || !to_vec3(dBodyGetLinearVel(body)).isZero(0.0) || !to_vec3(dBodyGetAngularVel(body)).isZero(0.0);
+  return !dBodyIsKinematic(body) || !to_vec3(dBodyGetLinearVel(body)).isZero(0.0) ||
+         !to_vec3(dBodyGetAngularVel(body)).isZero(0.0);
 }
 
 RigidState state_of(dBodyID body) {
-  return {to_vec3(dBodyGetPosition(body)), to_quat(dBodyGetQuaternion(body)), to_vec3(dBodyGetLinearVel(body)),
-          to_vec3(dBodyGetAngularVel(body))};
+  return {to_vec3(dBodyGetPosition(body)), to_quat(dBodyGetQuaternion(body)),
+          to_vec3(dBodyGetLinearVel(body)), to_vec3(dBodyGetAngularVel(body))};
 }
 
 void set_state(dBodyID body, const RigidState& state) {
@@ -125,10 +136,12 @@ void set_state(dBodyID body, const RigidState& state) {
   const dQuaternion quaternion = {q.w(), q.x(), q.y(), q.z()};
   dBodySetPosition(body, state.position.x(), state.position.y(), state.position.z());
   dBodySetQuaternion(body, quaternion);
-  // ODE normalizes what it is given, which can change the last bit; a body moved here from elsewhere keeps all of them.
+  // ODE normalizes what it is given, which can change the last bit; a body moved here from elsewhere keeps
+  // all of them.
   std::copy_n(quaternion, 4, const_cast<dReal*>(dBodyGetQuaternion(body)));
   dBodySetLinearVel(body, state.velocity.x(), state.velocity.y(), state.velocity.z());
-  dBodySetAngularVel(body, state.angular_velocity.x(), state.angular_velocity.y(), state.angular_velocity.z());
+  dBodySetAngularVel(body, state.angular_velocity.x(), state.angular_velocity.y(),
+                     state.angular_velocity.z());
 }
 
 Bodies::~Bodies() { clear(); }
@@ -141,14 +154,16 @@ void Bodies::clear() {
   count_ = 0;
 }
 
-OdeBodyId Bodies::add(dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings, TrimeshCache& cache) {
+OdeBodyId Bodies::add(dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings,
+                      TrimeshCache& cache) {
   check_definition(definition, settings);
   const std::size_t slot = take_slot();
   make(slot, world, definition, settings, cache);
   return slots_[slot].id;
 }
 
-void Bodies::make(std::size_t slot, dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings, TrimeshCache& cache) {
+void Bodies::make(std::size_t slot, dWorldID world, const OdeBodyDefinition& definition,
+                  const OdeSettings& settings, TrimeshCache& cache) {
   Body& entry = slots_[slot];
   entry.id = {std::uint32_t(slot) | entry.generation << kSlotBits};
   entry.shape = definition.shape;

@@ -14,27 +14,31 @@
 namespace lodestone::ode {
 
 struct Body {
-  dBodyID body = nullptr;          ///< null in a free slot
+  dBodyID body = nullptr;  ///< null in a free slot
   std::uint32_t generation = 0;
   OdeBodyId id{};
   MaterialId material = 0;
   std::shared_ptr<const Shape> shape;
-  std::vector<Sphere> spheres;     ///< empty: a mesh, and its contacts with planes are those of the hull
-  std::vector<Piece> pieces;       ///< convex, whose union is the body; none where it is met as a trimesh or as primitives
-  double reach = 0.0;              ///< m, nothing of the body is farther from its centre of mass
-  double thickness = 0.0;          ///< m, radius of a ball about its centre of mass that its hull, or its sphere, contains
-  Vec3 before = Vec3::Zero();      ///< m, its place before the substep
-  int last_support = 0;            ///< the hull vertex deepest in a plane last time
+  std::vector<Sphere> spheres;  ///< empty: a mesh, and its contacts with planes are those of the hull
+  std::vector<Piece>
+      pieces;  ///< convex, whose union is the body; none where it is met as a trimesh or as primitives
+  double reach = 0.0;  ///< m, nothing of the body is farther from its centre of mass
+  double thickness =
+      0.0;  ///< m, radius of a ball about its centre of mass that its hull, or its sphere, contains
+  Vec3 before = Vec3::Zero();  ///< m, its place before the substep
+  int last_support = 0;        ///< the hull vertex deepest in a plane last time
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   RigidState last_good;
   BodyProperties properties;
-  double to_sleep_s = 0.0;         ///< how much longer it has to be still to fall asleep
-  bool was_enabled = true;         ///< after the last substep
-  bool damped = false;             ///< ODE was told of its damping
+  double to_sleep_s = 0.0;  ///< how much longer it has to be still to fall asleep
+  bool was_enabled = true;  ///< after the last substep
+  bool damped = false;      ///< ODE was told of its damping
   OdeGeometry geometry = OdeGeometry::trimesh;
-  std::uint64_t birth = 0;         ///< bodies of this world made before it: ODE goes through them from the last to the first
-  bool in_company = false;         ///< in this substep: it may touch more than planes
-  std::optional<double> impact_time = {};  ///< in this substep: s after its start, of an impact that is answered at its own time
+  std::uint64_t birth =
+      0;  ///< bodies of this world made before it: ODE goes through them from the last to the first
+  bool in_company = false;  ///< in this substep: it may touch more than planes
+  std::optional<double> impact_time =
+      {};  ///< in this substep: s after its start, of an impact that is answered at its own time
 };
 
 /// Tells ODE, but of the damping, which depends on the step.
@@ -42,7 +46,8 @@ void set_properties(Body& body, const BodyProperties& properties);
 /// Of steps of `h` s.
 void set_damping(Body& body, double h);
 
-/// Whether every part is finite and within ODE's reach: 1e8 m, m/s and rad/s; the squared norm of the quaternion within 1e-6 of one.
+/// Whether every part is finite and within ODE's reach: 1e8 m, m/s and rad/s; the squared norm of the
+/// quaternion within 1e-6 of one.
 bool is_sound(const RigidState& state);
 
 std::uint32_t slot_of(OdeBodyId id);
@@ -59,9 +64,11 @@ class Bodies {
   Bodies(const Bodies&) = delete;
   Bodies& operator=(const Bodies&) = delete;
 
-  OdeBodyId add(dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings, TrimeshCache& cache);
+  OdeBodyId add(dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings,
+                TrimeshCache& cache);
   void remove(OdeBodyId id);
-  /// Where it reads, bodies are kept if the writer had the very same ones; else all are made anew. Throws InputError, and nothing has changed, where one of those has a joint.
+  /// Where it reads, bodies are kept if the writer had the very same ones; else all are made anew. Throws
+  /// InputError, and nothing has changed, where one of those has a joint.
   void archive(StateArchive& a, dWorldID world, const OdeSettings& settings, TrimeshCache& cache);
   void clear();
   Body& find(OdeBodyId id);
@@ -79,7 +86,8 @@ class Bodies {
 
  private:
   std::size_t take_slot();
-  void make(std::size_t slot, dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings, TrimeshCache& cache);
+  void make(std::size_t slot, dWorldID world, const OdeBodyDefinition& definition,
+            const OdeSettings& settings, TrimeshCache& cache);
 
   dSpaceID space_;
   std::vector<Body> slots_;

@@ -19,7 +19,8 @@ bool has_joints(dxBody* body) { return dBodyGetNumJoints(body) > 0 && !joined_bo
 
 void join_bodies(dxBody* first, dxBody* second, JointKind kind, const Vec3& anchor, const Vec3& axis) {
   const dWorldID world = dBodyGetWorld(first);
-  const dJointID joint = kind == JointKind::ball ? dJointCreateBall(world, nullptr) : dJointCreateHinge(world, nullptr);
+  const dJointID joint =
+      kind == JointKind::ball ? dJointCreateBall(world, nullptr) : dJointCreateHinge(world, nullptr);
   dJointAttach(joint, first, second);
   if (kind == JointKind::ball) {
     dJointSetBallAnchor(joint, anchor.x(), anchor.y(), anchor.z());

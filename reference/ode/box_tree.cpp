@@ -20,7 +20,7 @@ struct SameNumber {
 };
 using Tree = bg::index::rtree<Value, bg::index::quadratic<16>, bg::index::indexable<Value>, SameNumber>;
 
-constexpr double kMargin = 0.05;   // of its longest side, about what moves
+constexpr double kMargin = 0.05;    // of its longest side, about what moves
 constexpr double kForesight = 8.0;  // moves like the last one that the tree need not hear of
 
 Point point_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }

@@ -9,7 +9,8 @@
 
 namespace lodestone {
 
-/// An R-tree. What moves is held in a box a little larger than itself, so that most moves leave the tree as it is.
+/// An R-tree. What moves is held in a box a little larger than itself, so that most moves leave the tree as
+/// it is.
 class BoxTree {
  public:
   BoxTree();

@@ -9,18 +9,26 @@ namespace {
 // Of a body's reach: bodies at rest on something are apart by less.
 constexpr double kTouchMargin = 0.02;
 
-std::uint32_t part_of(dGeomID geom) { return std::uint32_t(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))); }
+std::uint32_t part_of(dGeomID geom) {
+  return std::uint32_t(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom)));
+}
 
 bool is_dynamic(dBodyID body) { return body && !dBodyIsKinematic(body); }
 
 bool may_touch(dBodyID first, dBodyID second) {
-  if (first == second || !(is_moving(first) || is_moving(second)) || !(is_dynamic(first) || is_dynamic(second))) return false;
+  if (first == second || !(is_moving(first) || is_moving(second)) ||
+      !(is_dynamic(first) || is_dynamic(second)))
+    return false;
   return !(first && second && dAreConnectedExcluding(first, second, dJointTypeContact));
 }
 
-auto sorted_by(const Candidate& c) { return std::tie(c.first_order, c.second_order, c.first_part, c.second_part); }
+auto sorted_by(const Candidate& c) {
+  return std::tie(c.first_order, c.second_order, c.first_part, c.second_part);
+}
 
-Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box, double by) { return {box.min() - Vec3::Constant(by), box.max() + Vec3::Constant(by)}; }
+Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box, double by) {
+  return {box.min() - Vec3::Constant(by), box.max() + Vec3::Constant(by)};
+}
 
 }  // namespace
 
@@ -32,12 +40,15 @@ Eigen::AlignedBox3d bounds_of(dGeomID geom) {
 
 Eigen::AlignedBox3d bounds_of(const Body& body) {
   Eigen::AlignedBox3d bounds;
-  for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) bounds.extend(ode::bounds_of(geom));
+  for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom))
+    bounds.extend(ode::bounds_of(geom));
   return bounds;
 }
 
 BroadPhase::BroadPhase(const SpaceMirror* callers, bool hash_space)
-    : callers_(callers), bodies_space_(hash_space ? dHashSpaceCreate(nullptr) : dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ)) {}
+    : callers_(callers),
+      bodies_space_(hash_space ? dHashSpaceCreate(nullptr)
+                               : dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ)) {}
 
 BroadPhase::~BroadPhase() { dSpaceDestroy(bodies_space_); }
 
@@ -54,13 +65,16 @@ void BroadPhase::remove_ground(dGeomID geom) {
   ground_tree_.remove(part_of(geom));
 }
 
-void BroadPhase::follow_ground(dGeomID geom, const Eigen::AlignedBox3d& before) { ground_tree_.move(part_of(geom), before, bounds_of(geom)); }
+void BroadPhase::follow_ground(dGeomID geom, const Eigen::AlignedBox3d& before) {
+  ground_tree_.move(part_of(geom), before, bounds_of(geom));
+}
 
 std::span<const Candidate> BroadPhase::find(Bodies& bodies) {
   candidates_.clear();
   bodies_ = &bodies;
   const auto is_awake = [](const Body& body) { return body.body && dBodyIsEnabled(body.body); };
-  if (bodies.count() > 1 && std::ranges::any_of(bodies.slots(), is_awake)) dSpaceCollide(bodies_space_, this, meet_ours);
+  if (bodies.count() > 1 && std::ranges::any_of(bodies.slots(), is_awake))
+    dSpaceCollide(bodies_space_, this, meet_ours);
   for (const Body& body : bodies.slots())
     if (is_awake(body)) find_around(body, std::uint64_t(&body - bodies.slots().data()));
   if (callers_) find_sleepers_met();
@@ -75,7 +89,8 @@ void BroadPhase::meet_ours(void* data, dGeomID a, dGeomID b) {
   if (second < first) std::swap(first, second), std::swap(a, b);
   if (!self.lets_meet(*first, *second)) return;
   const Body* slots = self.bodies_->slots().data();
-  self.candidates_.push_back({a, b, std::uint64_t(first - slots), std::uint64_t(second - slots), part_of(a), part_of(b)});
+  self.candidates_.push_back(
+      {a, b, std::uint64_t(first - slots), std::uint64_t(second - slots), part_of(a), part_of(b)});
 }
 
 bool BroadPhase::lets_meet(const Body& first, const Body& second) const {
@@ -88,21 +103,26 @@ void BroadPhase::find_around(const Body& body, std::uint64_t order) {
     const Eigen::AlignedBox3d box = bounds_of(geom);
     found_.clear();
     ground_tree_.find(box, found_);
-    for (const std::uint32_t number : found_) add({geom, ground_[number], order, Candidate::kGround + number, part_of(geom), 0}, ~0u, ~0u);
+    for (const std::uint32_t number : found_)
+      add({geom, ground_[number], order, Candidate::kGround + number, part_of(geom), 0}, ~0u, ~0u);
     if (!callers_) continue;
     found_.clear();
     callers_->find_followed(box, found_);
     for (const std::uint32_t slot : found_) {
       const MirroredGeom& other = callers_->geoms()[slot];
-      add({geom, other.geom, order, Candidate::kCallers + slot, part_of(geom), 0}, other.category, other.collide);
+      add({geom, other.geom, order, Candidate::kCallers + slot, part_of(geom), 0}, other.category,
+          other.collide);
     }
   }
 }
 
 /// Where their boxes overlap and bodies and bits let them.
 void BroadPhase::add(const Candidate& pair, unsigned category, unsigned collide) {
-  if (!may_meet(unsigned(dGeomGetCategoryBits(pair.first)), unsigned(dGeomGetCollideBits(pair.first)), category, collide)) return;
-  if (bounds_of(pair.first).intersects(bounds_of(pair.second)) && may_touch(dGeomGetBody(pair.first), dGeomGetBody(pair.second)))
+  if (!may_meet(unsigned(dGeomGetCategoryBits(pair.first)), unsigned(dGeomGetCollideBits(pair.first)),
+                category, collide))
+    return;
+  if (bounds_of(pair.first).intersects(bounds_of(pair.second)) &&
+      may_touch(dGeomGetBody(pair.first), dGeomGetBody(pair.second)))
     candidates_.push_back(pair);
 }
 
@@ -114,8 +134,10 @@ void BroadPhase::note_sleep(const Body& body) {
     if (slept_[slot] == Slept::here) slept_[slot] = Slept::near_here;
   } else if (slept_[slot] != Slept::here) {
     const BoxTree::Entry entry{slot, bounds_of(body)};
-    if (slept_[slot] == Slept::no) sleepers_.add({&entry, 1});
-    else sleepers_.move(slot, entry.box, entry.box);
+    if (slept_[slot] == Slept::no)
+      sleepers_.add({&entry, 1});
+    else
+      sleepers_.move(slot, entry.box, entry.box);
     slept_[slot] = Slept::here;
   }
 }
@@ -130,12 +152,14 @@ void BroadPhase::find_sleepers_met() {
       const dBodyID body = bodies_->slots()[sleeper].body;
       if (dBodyIsEnabled(body)) continue;
       for (dGeomID own = dBodyGetFirstGeom(body); own; own = dBodyGetNextGeom(own))
-        add({own, geom.geom, sleeper, Candidate::kCallers + slot, part_of(own), 0}, geom.category, geom.collide);
+        add({own, geom.geom, sleeper, Candidate::kCallers + slot, part_of(own), 0}, geom.category,
+            geom.collide);
     }
   }
 }
 
-std::span<const dGeomID> BroadPhase::find_others(const Eigen::AlignedBox3d& box, const BodyProperties& properties) {
+std::span<const dGeomID> BroadPhase::find_others(const Eigen::AlignedBox3d& box,
+                                                 const BodyProperties& properties) {
   others_.clear();
   const auto add_where_it_is = [&](dGeomID geom) {
     if (bounds_of(geom).intersects(box)) others_.push_back(geom);
@@ -150,7 +174,8 @@ std::span<const dGeomID> BroadPhase::find_others(const Eigen::AlignedBox3d& box,
   std::ranges::sort(found_);
   for (const std::uint32_t slot : found_) {
     const MirroredGeom& other = callers_->geoms()[slot];
-    if (may_meet(properties.category, properties.collide, other.category, other.collide)) add_where_it_is(other.geom);
+    if (may_meet(properties.category, properties.collide, other.category, other.collide))
+      add_where_it_is(other.geom);
   }
   return others_;
 }
@@ -160,7 +185,8 @@ void BroadPhase::wake_ours(Bodies& bodies, const Eigen::AlignedBox3d& box) {
   sleepers_.find(widened(box, kTouchMargin * bodies.greatest_reach()), found_);
   for (const std::uint32_t sleeper : found_) {
     const Body& body = bodies.slots()[sleeper];
-    if (!dBodyIsEnabled(body.body) && widened(bounds_of(body), kTouchMargin * body.reach).intersects(box)) dBodyEnable(body.body);
+    if (!dBodyIsEnabled(body.body) && widened(bounds_of(body), kTouchMargin * body.reach).intersects(box))
+      dBodyEnable(body.body);
   }
 }
 

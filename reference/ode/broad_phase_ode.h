@@ -15,8 +15,9 @@ struct Candidate {
   static constexpr std::uint64_t kGround = 1ull << 60, kCallers = 2ull << 60;
 
   dGeomID first, second;
-  std::uint64_t first_order, second_order;  ///< slot of a body; the second's may be kGround + number or kCallers + the mirror's slot
-  std::uint32_t first_part, second_part;    ///< of a body of several geoms
+  std::uint64_t first_order,
+      second_order;  ///< slot of a body; the second's may be kGround + number or kCallers + the mirror's slot
+  std::uint32_t first_part, second_part;  ///< of a body of several geoms
 
   bool with_ground() const { return second_order >= kGround && second_order < kCallers; }
   bool with_callers() const { return second_order >= kCallers; }
@@ -26,8 +27,9 @@ struct Candidate {
 Eigen::AlignedBox3d bounds_of(dGeomID geom);
 Eigen::AlignedBox3d bounds_of(const Body& body);
 
-/// Sweep and prune (ODE's; or its hash space) over this world's bodies, which stand by themselves, in no space of the caller's; trees of the ground and of what
-/// the caller's space holds. Sleepers cost nothing but where a body of the caller's comes near.
+/// Sweep and prune (ODE's; or its hash space) over this world's bodies, which stand by themselves, in no
+/// space of the caller's; trees of the ground and of what the caller's space holds. Sleepers cost nothing but
+/// where a body of the caller's comes near.
 class BroadPhase {
  public:
   /// `callers`: null in a world of its own.
@@ -47,9 +49,11 @@ class BroadPhase {
   void remove_ground(dGeomID geom);
   void follow_ground(dGeomID geom, const Eigen::AlignedBox3d& before);
 
-  /// Sorted; valid until the next call. Planes are not among them. The mirror has followed what moves (SpaceMirror::follow).
+  /// Sorted; valid until the next call. Planes are not among them. The mirror has followed what moves
+  /// (SpaceMirror::follow).
   std::span<const Candidate> find(Bodies& bodies);
-  /// The ground and the caller's geoms, save planes, whose boxes meet `box` (m, world) and that a body of these bits meets; valid until the next call.
+  /// The ground and the caller's geoms, save planes, whose boxes meet `box` (m, world) and that a body of
+  /// these bits meets; valid until the next call.
   std::span<const dGeomID> find_others(const Eigen::AlignedBox3d& box, const BodyProperties& properties);
 
   /// Wakes this world's bodies that overlap `box` (m, world) or nearly do.
@@ -72,9 +76,9 @@ class BroadPhase {
   std::vector<dGeomID> ground_;  // by number; null where it was removed
   BoxTree ground_tree_;
   enum class Slept : char { no, near_here, here };
-  BoxTree sleepers_;             // bodies that sleep, and some that slept
-  std::vector<Slept> slept_;     // by slot: whether it is in the tree, and at its place
-  Bodies* bodies_ = nullptr;     // while finding
+  BoxTree sleepers_;          // bodies that sleep, and some that slept
+  std::vector<Slept> slept_;  // by slot: whether it is in the tree, and at its place
+  Bodies* bodies_ = nullptr;  // while finding
   std::vector<Candidate> candidates_;
   std::vector<dGeomID> others_;
   std::vector<std::uint32_t> found_;

@@ -12,7 +12,9 @@ Vec3 gravity(dxWorld* world) {
   return to_vec3(gravity);
 }
 dxBody* body_of(dxGeom* geom) { return dGeomGetBody(geom); }
-void set_gravity(dxWorld* world, const Vec3& gravity) { dWorldSetGravity(world, gravity.x(), gravity.y(), gravity.z()); }
+void set_gravity(dxWorld* world, const Vec3& gravity) {
+  dWorldSetGravity(world, gravity.x(), gravity.y(), gravity.z());
+}
 
 RigidState state(dxBody* body) { return state_of(body); }
 Vec3 position(dxGeom* geom) { return to_vec3(dGeomGetPosition(geom)); }

@@ -9,23 +9,25 @@ struct dxGeom;   // dGeomID is dxGeom*
 
 namespace lodestone::callers {
 
-Vec3 gravity(dxWorld* world);         ///< m/s²
+Vec3 gravity(dxWorld* world);  ///< m/s²
 void set_gravity(dxWorld* world, const Vec3& gravity);
 
-dxBody* body_of(dxGeom* geom);        ///< null: static
+dxBody* body_of(dxGeom* geom);  ///< null: static
 RigidState state(dxBody* body);
-Vec3 position(dxGeom* geom);          ///< m, world; of one that is no plane
+Vec3 position(dxGeom* geom);  ///< m, world; of one that is no plane
 Quat orientation(dxGeom* geom);
-double mass(dxBody* body);            ///< kg
-Mat3 inverse_inertia(dxBody* body);   ///< 1/(kg m²), about the centre of mass, in the body's axes
-Vec3 force(dxBody* body);             ///< N, gathered since its last step
-Vec3 torque(dxBody* body);            ///< N m, world
+double mass(dxBody* body);           ///< kg
+Mat3 inverse_inertia(dxBody* body);  ///< 1/(kg m²), about the centre of mass, in the body's axes
+Vec3 force(dxBody* body);            ///< N, gathered since its last step
+Vec3 torque(dxBody* body);           ///< N m, world
 bool is_enabled(dxBody* body);
 bool is_kinematic(dxBody* body);
 bool has_gravity(dxBody* body);
 
-void set_velocity(dxBody* body, const Vec3& linear, const Vec3& angular);  ///< m/s and rad/s, world; does not wake
-void add_force(dxBody* body, const Vec3& force, const Vec3& torque);       ///< N at the centre of mass and N m, world, over its next step
+void set_velocity(dxBody* body, const Vec3& linear,
+                  const Vec3& angular);  ///< m/s and rad/s, world; does not wake
+void add_force(dxBody* body, const Vec3& force,
+               const Vec3& torque);  ///< N at the centre of mass and N m, world, over its next step
 void set_enabled(dxBody* body, bool enabled);
 
 }  // namespace lodestone::callers

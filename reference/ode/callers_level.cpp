@@ -19,10 +19,14 @@ bool is_awake(dBodyID body) { return body && dBodyIsEnabled(body); }
 dSpaceID make_space(CallersSpace kind, double half) {
   const dVector3 center = {0, 0, 0}, halves = {half, half, half};
   switch (kind) {
-    case CallersSpace::simple: return dSimpleSpaceCreate(nullptr);
-    case CallersSpace::hash: return dHashSpaceCreate(nullptr);
-    case CallersSpace::sweep_and_prune: return dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
-    case CallersSpace::quadtree: return dQuadTreeSpaceCreate(nullptr, center, halves, 6);
+    case CallersSpace::simple:
+      return dSimpleSpaceCreate(nullptr);
+    case CallersSpace::hash:
+      return dHashSpaceCreate(nullptr);
+    case CallersSpace::sweep_and_prune:
+      return dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
+    case CallersSpace::quadtree:
+      return dQuadTreeSpaceCreate(nullptr, center, halves, 6);
   }
   return nullptr;
 }
@@ -86,7 +90,8 @@ void CallersLevel::add_crates(std::span<const RigidState> states, double side, d
 }
 
 void CallersLevel::step(double dt) {
-  dSpaceCollide(impl_->space, impl_.get(), [](void* level, dGeomID a, dGeomID b) { static_cast<Impl*>(level)->meet(a, b); });
+  dSpaceCollide(impl_->space, impl_.get(),
+                [](void* level, dGeomID a, dGeomID b) { static_cast<Impl*>(level)->meet(a, b); });
   dWorldStep(impl_->world, dt);
   dJointGroupEmpty(impl_->contacts);
 }

@@ -1,4 +1,5 @@
-// A game's level as its programmer would write it with ODE alone: static boxes and crates in one space, dSpaceCollide, dWorldStep. What OdeWorld is compared with.
+// A game's level as its programmer would write it with ODE alone: static boxes and crates in one space,
+// dSpaceCollide, dWorldStep. What OdeWorld is compared with.
 #pragma once
 
 #include <memory>
@@ -15,7 +16,7 @@ enum class CallersSpace { simple, hash, sweep_and_prune, quadtree };
 
 struct CallersLevelSettings {
   CallersSpace space = CallersSpace::hash;
-  int boxes = 10'000;      ///< static, of 1 m, side by side in a square about the origin, their tops at z = 0
+  int boxes = 10'000;  ///< static, of 1 m, side by side in a square about the origin, their tops at z = 0
   double friction = 0.5, restitution = 0.3;
 };
 

@@ -29,7 +29,8 @@ CallersShape CallersShapes::make(dxGeom* geom) {
     const GeomShape read = read_geom(geom);
     if (read.kind == GeomKind::box) return {box_of(read.sides)};
     if (read.faces.empty()) return {};
-    const auto shape = std::make_shared<const Shape>(make_shape("caller's convex", {read.vertices, read.faces}));
+    const auto shape =
+        std::make_shared<const Shape>(make_shape("caller's convex", {read.vertices, read.faces}));
     return {shape, shape->center_of_mass_in_mesh};
   } catch (const InputError&) {
     return {};

@@ -1,4 +1,5 @@
-// The caller's boxes and convexes as shapes of ours, so that bodies meet them as they meet each other: exactly. Made as they are first touched.
+// The caller's boxes and convexes as shapes of ours, so that bodies meet them as they meet each other:
+// exactly. Made as they are first touched.
 #pragma once
 
 #include <array>
@@ -29,8 +30,8 @@ class CallersShapes {
   CallersShape make(dxGeom* geom);
   std::shared_ptr<const Shape> box_of(const Vec3& sides);
 
-  std::vector<CallersShape> shapes_;  // by slot
-  std::vector<Known> known_;          // one of each
+  std::vector<CallersShape> shapes_;                                   // by slot
+  std::vector<Known> known_;                                           // one of each
   std::map<std::array<double, 3>, std::weak_ptr<const Shape>> boxes_;  // by their sides
 };
 

@@ -25,7 +25,8 @@ Pieces pieces_of(const Body& body) { return {body.pieces, state_of(body.body)}; 
 
 void place(dGeomID geom, const RigidState& state) {
   dGeomSetPosition(geom, state.position.x(), state.position.y(), state.position.z());
-  const dQuaternion q = {state.orientation.w(), state.orientation.x(), state.orientation.y(), state.orientation.z()};
+  const dQuaternion q = {state.orientation.w(), state.orientation.x(), state.orientation.y(),
+                         state.orientation.z()};
   dGeomSetQuaternion(geom, q);
 }
 
@@ -33,11 +34,13 @@ void place(dGeomID geom, const RigidState& state) {
 bool is_inside_other(const Body& first, const Body& second) {
   const auto& [inner, outer] = first.reach < second.reach ? std::tie(first, second) : std::tie(second, first);
   const RigidState within = state_of(inner.body), around = state_of(outer.body);
-  const Vec3 point = around.orientation.conjugate() * (within.position + within.orientation * inner.shape->mesh.vertices[0] - around.position);
+  const Vec3 point = around.orientation.conjugate() *
+                     (within.position + within.orientation * inner.shape->mesh.vertices[0] - around.position);
   return point.norm() < outer.reach && winding_number(outer.shape->mesh, point) > 0;
 }
 
-/// A contact deeper than the hulls' overlap has a false direction. Where there are no others, the hulls' way out is taken.
+/// A contact deeper than the hulls' overlap has a false direction. Where there are no others, the hulls' way
+/// out is taken.
 void limit_depths(std::vector<ContactPoint>& contacts, const HullOverlap& overlap) {
   const auto is_false = [&](const ContactPoint& contact) { return contact.depth > overlap.depth; };
   if (contacts.empty() || std::ranges::none_of(contacts, is_false)) return;
@@ -45,12 +48,15 @@ void limit_depths(std::vector<ContactPoint>& contacts, const HullOverlap& overla
   for (ContactPoint& contact : contacts) contact = {contact.point, overlap.direction, overlap.depth};
 }
 
-/// A body deep in another (pitfall 4) is let out one way: contacts that oppose the deepest would squeeze it like a stone from a cherry.
+/// A body deep in another (pitfall 4) is let out one way: contacts that oppose the deepest would squeeze it
+/// like a stone from a cherry.
 void drop_opposing(std::vector<ContactPoint>& contacts, double size) {
   constexpr double kDeep = 0.1;  // × size
   if (contacts.empty()) return;
   const ContactPoint deepest = std::ranges::max(contacts, {}, &ContactPoint::depth);
-  if (deepest.depth > kDeep * size) std::erase_if(contacts, [&](const ContactPoint& contact) { return contact.normal.dot(deepest.normal) < 0.0; });
+  if (deepest.depth > kDeep * size)
+    std::erase_if(contacts,
+                  [&](const ContactPoint& contact) { return contact.normal.dot(deepest.normal) < 0.0; });
 }
 
 bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.body)) == dTriMeshClass; }
@@ -71,17 +77,27 @@ Collision::~Collision() {
 }
 
 OdeGroundId Collision::add_plane(const Vec3& normal, double offset, MaterialId material) {
-  if (!(std::abs(normal.norm() - 1.0) < 1e-6 && std::isfinite(offset))) throw InputError("a plane: expected a normal of unit length and a finite offset");
-  planes_.push_back({normal, offset, material, dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), offset), ~0u, ~0u, {++last_ground_id_}});
+  if (!(std::abs(normal.norm() - 1.0) < 1e-6 && std::isfinite(offset)))
+    throw InputError("a plane: expected a normal of unit length and a finite offset");
+  planes_.push_back({normal,
+                     offset,
+                     material,
+                     dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), offset),
+                     ~0u,
+                     ~0u,
+                     {++last_ground_id_}});
   return planes_.back().id;
 }
 
-OdeGroundId Collision::add_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+OdeGroundId Collision::add_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
+                               MaterialId material) {
   const RigidState state{position, orientation, Vec3::Zero(), Vec3::Zero()};
-  if (!(sides.allFinite() && sides.minCoeff() > 0.0 && is_sound(state))) throw InputError("a static box: expected positive sides and a finite pose, below 1e8 m");
+  if (!(sides.allFinite() && sides.minCoeff() > 0.0 && is_sound(state)))
+    throw InputError("a static box: expected positive sides and a finite pose, below 1e8 m");
   const dGeomID box = dCreateBox(nullptr, sides.x(), sides.y(), sides.z());
   place(box, state);
-  return add_ground({{}, box, material, std::make_shared<const Shape>(make_shape("static box", make_box(sides))), state});
+  return add_ground(
+      {{}, box, material, std::make_shared<const Shape>(make_shape("static box", make_box(sides))), state});
 }
 
 OdeGroundId Collision::add_mesh(const Mesh& mesh, MaterialId material) {
@@ -108,13 +124,16 @@ OdeGroundId Collision::add_ground(Ground ground) {
 
 Ground& Collision::find_ground(OdeGroundId id) {
   const auto found = std::ranges::find(ground_, id, &Ground::id);
-  if (!id || found == ground_.end()) throw InputError(fmt::format("OdeGroundId {}: found no such box or mesh", id.value));
+  if (!id || found == ground_.end())
+    throw InputError(fmt::format("OdeGroundId {}: found no such box or mesh", id.value));
   return *found;
 }
 
 void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bodies) {
   Ground& ground = find_ground(id);
-  if (!is_sound(state)) throw InputError("a pose of ground: expected finite, below 1e8 in each part, the orientation of unit norm");
+  if (!is_sound(state))
+    throw InputError(
+        "a pose of ground: expected finite, below 1e8 in each part, the orientation of unit norm");
   const Eigen::AlignedBox3d before = bounds_of(ground.geom);
   place(ground.geom, state);
   ground.state = state;
@@ -128,7 +147,9 @@ void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bod
 void Collision::remove_ground(OdeGroundId id, Bodies& bodies) {
   if (const auto plane = std::ranges::find(planes_, id, &Plane::id); id && plane != planes_.end()) {
     for (const Body& body : bodies.slots())
-      if (body.body && plane->normal.dot(to_vec3(dBodyGetPosition(body.body))) - plane->offset < 1.1 * body.reach) dBodyEnable(body.body);
+      if (body.body &&
+          plane->normal.dot(to_vec3(dBodyGetPosition(body.body))) - plane->offset < 1.1 * body.reach)
+        dBodyEnable(body.body);
     dGeomDestroy(plane->geom);
     planes_.erase(plane);
     return;
@@ -150,7 +171,8 @@ void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
   const bool any_awake = std::ranges::any_of(bodies.slots(), is_awake);
   // One body over planes needs no broad phase, nor do sleepers, except from a caller's bodies.
   std::span<const Candidate> candidates;
-  if (callers_ || (any_awake && (bodies.count() > 1 || !ground_.empty()))) candidates = broad_phase_.find(bodies);
+  if (callers_ || (any_awake && (bodies.count() > 1 || !ground_.empty())))
+    candidates = broad_phase_.find(bodies);
   mark_company(bodies, candidates);
   if (callers_) note_callers_planes();
   for (Body& body : bodies.slots()) {
@@ -190,15 +212,19 @@ void Collision::collide_plane(Body& body, const Plane& plane, ContactJoints& joi
   if (!may_meet(body.properties.category, body.properties.collide, plane.category, plane.collide)) return;
   points_.clear();
   plane_phase_.find(body, plane, joints.law(body.material, plane.material), step_, points_);
-  if (!points_.empty()) joints.add(side_of_ours(body), {nullptr, plane.material, {}, {}, false, plane.id ? nullptr : plane.geom, plane.id}, points_);
+  if (!points_.empty())
+    joints.add(side_of_ours(body),
+               {nullptr, plane.material, {}, {}, false, plane.id ? nullptr : plane.geom, plane.id}, points_);
 }
 
-void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints) {
+void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> candidates,
+                                   ContactJoints& joints) {
   for (std::size_t i = 0, next; i < candidates.size(); i = next) {
     points_.clear();
     const Body& body = *bodies.owner(candidates[i].first);
     const Body* other = bodies.owner(candidates[i].second);
-    for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next) {}
+    for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next) {
+    }
     find_pair_points(body, other, candidates.subspan(i, next - i));
     if (!points_.empty()) joints.add(side_of_ours(body), side_of(candidates[i], other), points_);
   }
@@ -206,12 +232,14 @@ void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> ca
 
 void Collision::find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts) {
   const double size = other ? std::min(body.reach, other->reach) : body.reach;
-  if (!other && settings_.mesh_contacts != MeshContacts::plain && dGeomGetClass(parts[0].second) == dHeightfieldClass) {
+  if (!other && settings_.mesh_contacts != MeshContacts::plain &&
+      dGeomGetClass(parts[0].second) == dHeightfieldClass) {
     height_field_contacts_.find(body, parts[0].second, points_);
     return drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
   }
   const bool exact = settings_.mesh_contacts == MeshContacts::exact;
-  const Pieces first = pieces_of(body), second = exact && !first.empty() ? pieces_of_other(parts[0], other) : Pieces{};
+  const Pieces first = pieces_of(body),
+               second = exact && !first.empty() ? pieces_of_other(parts[0], other) : Pieces{};
   if (exact && !first.empty() && !second.empty())
     find_contacts_of_pieces(first, second, points_);
   else if (exact && other && is_mesh(body) && is_mesh(*other))
@@ -231,12 +259,14 @@ void Collision::prepare_for_convex(dGeomID geom) {
 }
 
 /// Bodies are clear of each other once their hulls are.
-void Collision::find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size) {
+void Collision::find_filtered_points(const Body& body, const Body& other, const Candidate& pair,
+                                     double size) {
   const RigidState first = state_of(body.body), second = state_of(other.body);
   const auto overlap = find_hull_overlap(*body.shape, first, *other.shape, second);
   if (!overlap) return;
   narrow_phase_.find(pair.first, pair.second, size, points_);
-  if (points_.empty() && is_inside_other(body, other)) {  // surfaces that do not cross make no contact, wherever they are
+  if (points_.empty() &&
+      is_inside_other(body, other)) {  // surfaces that do not cross make no contact, wherever they are
     ++swallowed_;
     find_hull_manifold(*body.shape, first, *other.shape, second, *overlap, points_);
   }
@@ -260,7 +290,8 @@ Pieces Collision::pieces_of_other(const Candidate& candidate, const Body* other)
   if (!shape) return {};
   dQuaternion q;
   dGeomGetQuaternion(candidate.second, q);
-  return {{{shape->shape.get(), shape->center}}, {to_vec3(dGeomGetPosition(candidate.second)), to_quat(q), Vec3::Zero(), Vec3::Zero()}};
+  return {{{shape->shape.get(), shape->center}},
+          {to_vec3(dGeomGetPosition(candidate.second)), to_quat(q), Vec3::Zero(), Vec3::Zero()}};
 }
 
 ContactSide Collision::side_of(const Candidate& candidate, const Body* other) const {
@@ -268,7 +299,9 @@ ContactSide Collision::side_of(const Candidate& candidate, const Body* other) co
   if (candidate.with_ground()) {
     const Ground& ground = ground_[candidate.second_number()];
     ContactSide side{nullptr, ground.material, {}, {}, ground.moved || ground.moves, nullptr, ground.id};
-    if (ground.moves) side.motion = SurfaceMotion{ground.state.position, ground.state.velocity, ground.state.angular_velocity};
+    if (ground.moves)
+      side.motion =
+          SurfaceMotion{ground.state.position, ground.state.velocity, ground.state.angular_velocity};
     return side;
   }
   const MirroredGeom& geom = callers_->geoms()[candidate.second_number()];

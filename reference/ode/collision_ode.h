@@ -1,4 +1,5 @@
-// Collision detection of one OdeWorld: bodies against planes, the other bodies, the ground and the caller's geoms.
+// Collision detection of one OdeWorld: bodies against planes, the other bodies, the ground and the caller's
+// geoms.
 #pragma once
 
 #include <memory>
@@ -17,14 +18,14 @@ namespace lodestone::ode {
 
 /// A box or mesh that nothing can push.
 struct Ground {
-  OdeGroundId id{};                       ///< null: removed
+  OdeGroundId id{};  ///< null: removed
   dGeomID geom = nullptr;
   MaterialId material = 0;
   std::shared_ptr<const Shape> box = {};  ///< null for a mesh
   RigidState state = {};
   std::unique_ptr<TrimeshData> mesh = {};
-  bool moved = false;                     ///< before this step
-  bool moves = false;                     ///< its state has a velocity
+  bool moved = false;  ///< before this step
+  bool moves = false;  ///< its state has a velocity
 };
 
 class Collision {
@@ -74,14 +75,14 @@ class Collision {
   HeightFieldContacts height_field_contacts_;
   std::vector<Plane> planes_;
   std::vector<Plane> callers_planes_;
-  std::vector<Ground> ground_;                // by the ground geom's number (dGeomGetData)
+  std::vector<Ground> ground_;  // by the ground geom's number (dGeomGetData)
   std::vector<std::uint32_t> free_ground_;
   std::uint32_t last_ground_id_ = 0;
   std::int64_t ground_meshes_ = 0;
-  std::vector<ContactPoint> points_;          // of the pair at hand
+  std::vector<ContactPoint> points_;  // of the pair at hand
   const SpaceMirror* callers_;
   CallersShapes callers_shapes_;
-  PlaneStep step_;                            // the one to come
+  PlaneStep step_;                                  // the one to come
   std::unordered_set<dTriMeshDataID> with_angles_;  // trimeshes prepared for convexes
   std::int64_t dropped_ = 0, swallowed_ = 0;
 };

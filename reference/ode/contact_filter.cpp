@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kSameDirection = 0.9;  // least cosine between contacts of one direction …
 constexpr double kTried = 0.995;        // … and of what need not be tried again
-constexpr double kShallow = 2e-2;       // × size: depths below it need no second look where all directions agree
-constexpr double kDepthSlack = 2e-3;    // × size: depths below it cost about the same
-constexpr double kDepthRatio = 1.5;     // a displacement clears depths up to this times its own, and the slack
-constexpr int kSample = 12;             // places that directions are judged by
-constexpr double kTooNear = 2e-2;       // × size: contacts nearer to each other say the same
-// Places lie on edges, where any way out seems short; they are measured part of the way towards their middle, as far as that is inside:
-// far along where directions are compared, not so far where a depth is wanted.
+constexpr double kShallow = 2e-2;  // × size: depths below it need no second look where all directions agree
+constexpr double kDepthSlack = 2e-3;  // × size: depths below it cost about the same
+constexpr double kDepthRatio = 1.5;   // a displacement clears depths up to this times its own, and the slack
+constexpr int kSample = 12;           // places that directions are judged by
+constexpr double kTooNear = 2e-2;     // × size: contacts nearer to each other say the same
+// Places lie on edges, where any way out seems short; they are measured part of the way towards their middle,
+// as far as that is inside: far along where directions are compared, not so far where a depth is wanted.
 constexpr double kToCompare = 0.5, kToMeasure = 0.15, kBarely = 1e-3;
 
 /// Of the first body.
@@ -28,7 +28,8 @@ struct Displacement {
 /// Ways out at the contacts' places.
 class Places {
  public:
-  Places(std::span<const ContactPoint> contacts, const WayOutMeasure& measure) : measure_(measure), middle_(Vec3::Zero()) {
+  Places(std::span<const ContactPoint> contacts, const WayOutMeasure& measure)
+      : measure_(measure), middle_(Vec3::Zero()) {
     for (const ContactPoint& contact : contacts) middle_ += contact.point / double(contacts.size());
   }
   std::optional<WayOut> measure(const Vec3& place, const Vec3& direction, double inward) const {
@@ -54,7 +55,8 @@ std::vector<Vec3> edges_between(std::span<const Vec3> normals) {
   std::vector<Vec3> edges;
   for (std::size_t i = 0; i < normals.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (const Vec3 edge = normals[i].cross(normals[j]); edge.norm() > 0.1) edges.push_back(edge.normalized());
+      if (const Vec3 edge = normals[i].cross(normals[j]); edge.norm() > 0.1)
+        edges.push_back(edge.normalized());
   return edges;
 }
 
@@ -62,7 +64,8 @@ std::vector<Vec3> edges_between(std::span<const Vec3> normals) {
 class Search {
  public:
   /// Tries no new direction once `places` has measured `until` ways out.
-  Search(std::span<const ContactPoint> sample, double slack, const Places& places, int until) : sample_(sample), slack_(slack), places_(places), until_(until) {}
+  Search(std::span<const ContactPoint> sample, double slack, const Places& places, int until)
+      : sample_(sample), slack_(slack), places_(places), until_(until) {}
 
   void consider(const Vec3& direction) {
     if (places_.measured() >= until_) return;
@@ -82,7 +85,8 @@ class Search {
   void refine() {
     for (std::size_t tried = 0; tried != tried_.size();) {
       tried = tried_.size();
-      for (const WayOut& way : std::vector(faces_of_best_)) consider(way.second_face), consider(way.first_face);
+      for (const WayOut& way : std::vector(faces_of_best_))
+        consider(way.second_face), consider(way.first_face);
     }
   }
 
@@ -101,12 +105,15 @@ class Search {
   void look_around() {
     for (const ContactPoint& contact : sample_.first(std::min<std::size_t>(sample_.size(), 3)))
       for (int axis = 0; axis < 6; ++axis)
-        if (const auto way = places_.measure(contact.point, axis < 3 ? Vec3::Unit(axis) : Vec3(-Vec3::Unit(axis - 3)), kToCompare))
+        if (const auto way = places_.measure(
+                contact.point, axis < 3 ? Vec3::Unit(axis) : Vec3(-Vec3::Unit(axis - 3)), kToCompare))
           consider(way->second_face), consider(way->first_face);
   }
 
   const std::optional<Displacement>& best() const { return best_; }
-  bool clears_all_within(double depth) const { return best_ && best_->cleared == int(sample_.size()) && best_->depth <= depth; }
+  bool clears_all_within(double depth) const {
+    return best_ && best_->cleared == int(sample_.size()) && best_->depth <= depth;
+  }
 
  private:
   /// Shallowest first; gives up where the direction can no longer be the best.
@@ -137,7 +144,8 @@ class Search {
   double least_ = std::numeric_limits<double>::infinity();
 };
 
-std::optional<Displacement> find_displacement(std::span<ContactPoint> contacts, double size, const Places& places, int until) {
+std::optional<Displacement> find_displacement(std::span<ContactPoint> contacts, double size,
+                                              const Places& places, int until) {
   Search search(contacts.first(reduce_contacts(contacts, kSample, size)), kDepthSlack * size, places, until);
   std::vector<ContactPoint> shallow_first(contacts.begin(), contacts.end());
   std::ranges::stable_sort(shallow_first, {}, &ContactPoint::depth);
@@ -153,11 +161,13 @@ std::optional<Displacement> find_displacement(std::span<ContactPoint> contacts, 
 }
 
 /// Turns the contacts that `way` clears to its direction and moves them to the front; returns the others.
-std::span<ContactPoint> turn_cleared(std::span<ContactPoint> contacts, const Displacement& way, double slack, const Places& places) {
+std::span<ContactPoint> turn_cleared(std::span<ContactPoint> contacts, const Displacement& way, double slack,
+                                     const Places& places) {
   const auto clears = [&](double depth) { return depth <= kDepthRatio * way.depth + slack; };
   const auto turn = [&](ContactPoint& contact) {
     if (contact.normal.dot(way.direction) > kSameDirection && clears(contact.depth)) return true;
-    const auto compared = places.measure(contact.point, way.direction, kToCompare);  // as in the search, which cleared at least one
+    const auto compared = places.measure(contact.point, way.direction,
+                                         kToCompare);  // as in the search, which cleared at least one
     if (compared && !clears(compared->depth)) return false;
     const auto measured = places.measure(contact.point, way.direction, kToMeasure);
     contact = {contact.point, way.direction, measured ? measured->depth : 0.0};
@@ -177,12 +187,14 @@ bool plainly_believable(std::span<const ContactPoint> contacts, double size) {
   });
 }
 
-int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure, int most_measures) {
+int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure,
+                    int most_measures) {
   constexpr int kLeast = 5 * kSample;  // of a round: those that are left want a direction, too
   const Places places(contacts, measure);
   std::span<ContactPoint> left = contacts;
   while (!left.empty()) {
-    const auto way = find_displacement(left, size, places, std::max(most_measures, places.measured() + kLeast));
+    const auto way =
+        find_displacement(left, size, places, std::max(most_measures, places.measured() + kLeast));
     if (!way) break;
     left = turn_cleared(left, *way, kDepthSlack * size, places);
   }

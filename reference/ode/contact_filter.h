@@ -1,9 +1,11 @@
-// Makes ODE's trimesh–trimesh contacts believable. OPCODE measures each pair of crossing triangles by itself, against the two
-// triangles' own planes, so two stacked cubes half a millimetre deep also get contacts through the whole of a cube, sideways. Where
-// contacts share a point ODE keeps the deepest, so the false one replaces the true, or averages directions that have nothing in common.
-// So the places are believed and the directions are proposals. The directions taken are those of the cheapest set of displacements that
-// clears every place (greedy weighted set cover; Chvátal, A greedy heuristic for the set-covering problem, 1979), measured in the solid:
-// a false direction goes far and clears little. A place cleared along another direction than its own is measured anew along that.
+// Makes ODE's trimesh–trimesh contacts believable. OPCODE measures each pair of crossing triangles by itself,
+// against the two triangles' own planes, so two stacked cubes half a millimetre deep also get contacts
+// through the whole of a cube, sideways. Where contacts share a point ODE keeps the deepest, so the false one
+// replaces the true, or averages directions that have nothing in common. So the places are believed and the
+// directions are proposals. The directions taken are those of the cheapest set of displacements that clears
+// every place (greedy weighted set cover; Chvátal, A greedy heuristic for the set-covering problem, 1979),
+// measured in the solid: a false direction goes far and clears little. A place cleared along another
+// direction than its own is measured anew along that.
 #pragma once
 
 #include <functional>
@@ -17,23 +19,30 @@ namespace lodestone {
 
 /// What moving the first body along a direction meets.
 struct WayOut {
-  double depth = 0.0;                     ///< m until the two are clear of each other at the place; 0 where they are already
-  Vec3 second_face = Vec3::UnitZ();       ///< the directions (unit) that the faces met last ask for: the outward normal of the second body's …
-  Vec3 first_face = Vec3::UnitZ();        ///< … and the inward normal of the first's
+  double depth = 0.0;  ///< m until the two are clear of each other at the place; 0 where they are already
+  Vec3 second_face = Vec3::UnitZ();  ///< the directions (unit) that the faces met last ask for: the outward
+                                     ///< normal of the second body's …
+  Vec3 first_face = Vec3::UnitZ();   ///< … and the inward normal of the first's
 };
 
-/// Measures the way out along `direction` (unit) at `place`; nothing where the place is outside either body by more than rounding.
+/// Measures the way out along `direction` (unit) at `place`; nothing where the place is outside either body
+/// by more than rounding.
 using WayOutMeasure = std::function<std::optional<WayOut>(const Vec3& place, const Vec3& direction)>;
 
-/// Moves the contacts to believe to the front and returns how many they are. `size` (m) is the smaller body's radius. Once about `most_measures` ways out were measured, the best
-/// directions known so far are taken: the search mostly needs three hundred of them, but where two concave meshes are deep in each other ten thousand.
-int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure, int most_measures = std::numeric_limits<int>::max());
+/// Moves the contacts to believe to the front and returns how many they are. `size` (m) is the smaller body's
+/// radius. Once about `most_measures` ways out were measured, the best directions known so far are taken: the
+/// search mostly needs three hundred of them, but where two concave meshes are deep in each other ten
+/// thousand.
+int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutMeasure& measure,
+                    int most_measures = std::numeric_limits<int>::max());
 
-/// Whether filter_contacts would let `contacts` pass as they are: their directions agree and they are shallow.
+/// Whether filter_contacts would let `contacts` pass as they are: their directions agree and they are
+/// shallow.
 bool plainly_believable(std::span<const ContactPoint> contacts, double size);
 
-/// Moves to the front the at most `max_contacts` that hold the bodies apart best: the deepest, then each time the one farthest (in place
-/// and in direction) from those taken, until none is farther than .02 × `size`. Returns how many they are.
+/// Moves to the front the at most `max_contacts` that hold the bodies apart best: the deepest, then each time
+/// the one farthest (in place and in direction) from those taken, until none is farther than .02 × `size`.
+/// Returns how many they are.
 int reduce_contacts(std::span<ContactPoint> contacts, int max_contacts, double size);
 
 }  // namespace lodestone

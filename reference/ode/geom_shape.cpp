@@ -10,8 +10,8 @@ using namespace ode;
 
 namespace {
 
-// A convex keeps its corners to itself, but its contacts with a plane are those of them that are below: a plane through its middle and the same one
-// turned round give all of them.
+// A convex keeps its corners to itself, but its contacts with a plane are those of them that are below: a
+// plane through its middle and the same one turned round give all of them.
 std::vector<Vec3> corners_of(dGeomID convex) {
   constexpr int kMost = 0xffff;  // as many as dCollide can give
   std::vector<dContactGeom> found(kMost);
@@ -26,7 +26,8 @@ std::vector<Vec3> corners_of(dGeomID convex) {
     const dGeomID plane = dCreatePlane(nullptr, 0, 0, side, side * middle);
     const int count = dCollide(convex, plane, kMost, found.data(), sizeof(dContactGeom));
     dGeomDestroy(plane);
-    for (int i = 0; i < count; ++i) corners.push_back(to_quat(q).conjugate() * (to_vec3(found[i].pos) - place));
+    for (int i = 0; i < count; ++i)
+      corners.push_back(to_quat(q).conjugate() * (to_vec3(found[i].pos) - place));
   }
   return corners;
 }
@@ -58,15 +59,24 @@ void read_trimesh(dGeomID geom, GeomShape& shape) {
 
 GeomKind kind_of(dxGeom* geom) {
   switch (dGeomGetClass(geom)) {
-    case dPlaneClass: return GeomKind::plane;
-    case dSphereClass: return GeomKind::sphere;
-    case dBoxClass: return GeomKind::box;
-    case dCapsuleClass: return GeomKind::capsule;
-    case dCylinderClass: return GeomKind::cylinder;
-    case dConvexClass: return GeomKind::convex;
-    case dTriMeshClass: return GeomKind::trimesh;
-    case dHeightfieldClass: return GeomKind::height_field;
-    default: return GeomKind::other;
+    case dPlaneClass:
+      return GeomKind::plane;
+    case dSphereClass:
+      return GeomKind::sphere;
+    case dBoxClass:
+      return GeomKind::box;
+    case dCapsuleClass:
+      return GeomKind::capsule;
+    case dCylinderClass:
+      return GeomKind::cylinder;
+    case dConvexClass:
+      return GeomKind::convex;
+    case dTriMeshClass:
+      return GeomKind::trimesh;
+    case dHeightfieldClass:
+      return GeomKind::height_field;
+    default:
+      return GeomKind::other;
   }
 }
 
@@ -75,18 +85,29 @@ GeomShape read_geom(dxGeom* geom) {
   GeomShape shape{.kind = kind_of(geom)};
   dVector3 sides;
   switch (shape.kind) {
-    case GeomKind::sphere: shape.radius = dGeomSphereGetRadius(geom); break;
+    case GeomKind::sphere:
+      shape.radius = dGeomSphereGetRadius(geom);
+      break;
     case GeomKind::box:
       dGeomBoxGetLengths(geom, sides);
       shape.sides = to_vec3(sides);
       break;
-    case GeomKind::capsule: dGeomCapsuleGetParams(geom, &shape.radius, &shape.length); break;
-    case GeomKind::cylinder: dGeomCylinderGetParams(geom, &shape.radius, &shape.length); break;
-    case GeomKind::convex: read_convex(geom, shape); break;
-    case GeomKind::trimesh: read_trimesh(geom, shape); break;
+    case GeomKind::capsule:
+      dGeomCapsuleGetParams(geom, &shape.radius, &shape.length);
+      break;
+    case GeomKind::cylinder:
+      dGeomCylinderGetParams(geom, &shape.radius, &shape.length);
+      break;
+    case GeomKind::convex:
+      read_convex(geom, shape);
+      break;
+    case GeomKind::trimesh:
+      read_trimesh(geom, shape);
+      break;
     case GeomKind::plane:
     case GeomKind::height_field:
-    case GeomKind::other: break;
+    case GeomKind::other:
+      break;
   }
   return shape;
 }
@@ -117,7 +138,8 @@ std::optional<RayHit> GeomProbe::cast(dxGeom* geom, const Vec3& from, const Vec3
   Vec3 origin = Vec3::Zero();
   std::unique_lock lock(trimesh_mutex(), std::defer_lock);
   if (is_mesh) {
-    // OPCODE computes in float: about the start of the ray it is as precise far from the world's origin as near it.
+    // OPCODE computes in float: about the start of the ray it is as precise far from the world's origin as
+    // near it.
     lock.lock();
     origin = from;
     const Vec3 place = to_vec3(dGeomGetPosition(geom)) - origin;

@@ -12,12 +12,14 @@ namespace {
 
 void check_faces(std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {
   // A single triangle against another mesh makes OPCODE crash, and it takes indices out of range silently.
-  if (faces.size() < 2) throw InputError(fmt::format("a trimesh: found {} faces, expected two or more", faces.size()));
+  if (faces.size() < 2)
+    throw InputError(fmt::format("a trimesh: found {} faces, expected two or more", faces.size()));
   for (const Vec3& vertex : vertices)
     if (!vertex.allFinite()) throw InputError("a trimesh: found a vertex that is not finite");
   for (const auto& face : faces)
     for (const int i : face)
-      if (i < 0 || i >= int(vertices.size())) throw InputError(fmt::format("a trimesh: found a face of vertex {}, of {}", i, vertices.size()));
+      if (i < 0 || i >= int(vertices.size()))
+        throw InputError(fmt::format("a trimesh: found a face of vertex {}, of {}", i, vertices.size()));
 }
 
 Sphere sphere_of_volume(const Shape& shape) {
@@ -29,7 +31,8 @@ Sphere sphere_of_volume(const Shape& shape) {
 Vec3 sides_of(const Shape& shape) {
   Eigen::AlignedBox3d bounds;
   for (const Vec3& vertex : shape.hull.vertices) bounds.extend(vertex);
-  check_that(bounds.center().norm() <= 1e-9 * shape.size, "a box primitive's centre of mass is in its middle");
+  check_that(bounds.center().norm() <= 1e-9 * shape.size,
+             "a box primitive's centre of mass is in its middle");
   return bounds.sizes();
 }
 
@@ -38,7 +41,8 @@ dGeomID make_box_or_mesh(dSpaceID space, const OdeBodyDefinition& definition, Tr
     const Vec3 sides = sides_of(*definition.shape);
     return dCreateBox(space, sides.x(), sides.y(), sides.z());
   }
-  const auto data = definition.geometry == OdeGeometry::hull ? cache.hull_of(definition.shape) : cache.mesh_of(definition.shape);
+  const auto data = definition.geometry == OdeGeometry::hull ? cache.hull_of(definition.shape)
+                                                             : cache.mesh_of(definition.shape);
   return dCreateTriMesh(space, data, nullptr, nullptr, nullptr);
 }
 
@@ -46,8 +50,10 @@ dGeomID make_box_or_mesh(dSpaceID space, const OdeBodyDefinition& definition, Tr
 
 TrimeshData::TrimeshData(std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {
   check_faces(vertices, faces);
-  for (const Vec3& v : vertices) vertices_.insert(vertices_.end(), {float(v.x()), float(v.y()), float(v.z())});
-  for (const auto& f : faces) indices_.insert(indices_.end(), {dTriIndex(f[0]), dTriIndex(f[1]), dTriIndex(f[2])});
+  for (const Vec3& v : vertices)
+    vertices_.insert(vertices_.end(), {float(v.x()), float(v.y()), float(v.z())});
+  for (const auto& f : faces)
+    indices_.insert(indices_.end(), {dTriIndex(f[0]), dTriIndex(f[1]), dTriIndex(f[2])});
   id_ = dGeomTriMeshDataCreate();
   dGeomTriMeshDataBuildSingle(id_, vertices_.data(), 3 * sizeof(float), int(vertices.size()), indices_.data(),
                               int(indices_.size()), 3 * sizeof(dTriIndex));
@@ -70,14 +76,15 @@ std::vector<Sphere> spheres_of(const OdeBodyDefinition& definition) {
   return {definition.spheres.begin(), definition.spheres.end()};
 }
 
-void make_geoms(dSpaceID space, dBodyID body, const OdeBodyDefinition& definition, std::span<const Sphere> spheres,
-                TrimeshCache& cache) {
+void make_geoms(dSpaceID space, dBodyID body, const OdeBodyDefinition& definition,
+                std::span<const Sphere> spheres, TrimeshCache& cache) {
   if (spheres.empty()) dGeomSetBody(make_box_or_mesh(space, definition, cache), body);
   std::uintptr_t ordinal = 0;
   for (const Sphere& sphere : spheres) {
     const dGeomID geom = dCreateSphere(space, sphere.radius);
     dGeomSetBody(geom, body);
-    if (!sphere.center.isZero(0.0)) dGeomSetOffsetPosition(geom, sphere.center.x(), sphere.center.y(), sphere.center.z());
+    if (!sphere.center.isZero(0.0))
+      dGeomSetOffsetPosition(geom, sphere.center.x(), sphere.center.y(), sphere.center.z());
     dGeomSetData(geom, reinterpret_cast<void*>(ordinal++));
   }
 }

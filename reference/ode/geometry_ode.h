@@ -10,8 +10,8 @@
 
 namespace lodestone::ode {
 
-/// ODE's trimesh data with the arrays that it refers to (it copies nothing). OPCODE keeps its vertices in float whatever it is
-/// given, so float is what is stored.
+/// ODE's trimesh data with the arrays that it refers to (it copies nothing). OPCODE keeps its vertices in
+/// float whatever it is given, so float is what is stored.
 class TrimeshData {
  public:
   TrimeshData(std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces);
@@ -29,8 +29,12 @@ class TrimeshData {
 /// The trimesh data of each shape and of each shape's hull, built on first use.
 class TrimeshCache {
  public:
-  dTriMeshDataID mesh_of(const std::shared_ptr<const Shape>& shape) { return find(meshes_, shape, shape->mesh.vertices, shape->mesh.faces); }
-  dTriMeshDataID hull_of(const std::shared_ptr<const Shape>& shape) { return find(hulls_, shape, shape->hull.vertices, shape->hull.faces); }
+  dTriMeshDataID mesh_of(const std::shared_ptr<const Shape>& shape) {
+    return find(meshes_, shape, shape->mesh.vertices, shape->mesh.faces);
+  }
+  dTriMeshDataID hull_of(const std::shared_ptr<const Shape>& shape) {
+    return find(hulls_, shape, shape->hull.vertices, shape->hull.faces);
+  }
   std::int64_t built() const { return std::int64_t(meshes_.size() + hulls_.size()); }
 
  private:
@@ -39,18 +43,19 @@ class TrimeshCache {
     std::unique_ptr<TrimeshData> data;
   };
   using Entries = std::unordered_map<const Shape*, Entry>;
-  static dTriMeshDataID find(Entries& entries, const std::shared_ptr<const Shape>& shape, std::span<const Vec3> vertices,
-                             std::span<const std::array<int, 3>> faces);
+  static dTriMeshDataID find(Entries& entries, const std::shared_ptr<const Shape>& shape,
+                             std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces);
   Entries meshes_, hulls_;
 };
 
-/// The spheres that stand for a body, about its centre of mass: those given for OdeGeometry::spheres, one for OdeGeometry::sphere
-/// (of the shape's volume) and for a shape that is a sphere; none where the body is a mesh.
+/// The spheres that stand for a body, about its centre of mass: those given for OdeGeometry::spheres, one for
+/// OdeGeometry::sphere (of the shape's volume) and for a shape that is a sphere; none where the body is a
+/// mesh.
 std::vector<Sphere> spheres_of(const OdeBodyDefinition& definition);
 
 /// Adds to `space` the geoms of `body` and numbers them (dGeomGetData) from zero.
-void make_geoms(dSpaceID space, dBodyID body, const OdeBodyDefinition& definition, std::span<const Sphere> spheres,
-                TrimeshCache& cache);
+void make_geoms(dSpaceID space, dBodyID body, const OdeBodyDefinition& definition,
+                std::span<const Sphere> spheres, TrimeshCache& cache);
 
 inline Vec3 to_vec3(const dReal* v) { return {v[0], v[1], v[2]}; }
 inline Quat to_quat(const dReal* q) { return {q[0], q[1], q[2], q[3]}; }

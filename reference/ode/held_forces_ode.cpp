@@ -31,7 +31,9 @@ void HeldForces::note_jointed() {
     jointed_.pop_back();
     for (int i = 0; i < dBodyGetNumJoints(body); ++i)
       for (const int end : {0, 1})
-        if (const dBodyID other = dJointGetBody(dBodyGetJoint(body, i), end); other && met.insert(other).second) note(other);
+        if (const dBodyID other = dJointGetBody(dBodyGetJoint(body, i), end);
+            other && met.insert(other).second)
+          note(other);
   }
 }
 

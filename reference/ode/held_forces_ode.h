@@ -1,4 +1,5 @@
-// Forces that the caller gave bodies before a step (dBodyAdd…, the motors of joints), which ODE forgets with each of its own: held over all substeps, as gravity is.
+// Forces that the caller gave bodies before a step (dBodyAdd…, the motors of joints), which ODE forgets with
+// each of its own: held over all substeps, as gravity is.
 #pragma once
 
 #include <vector>
@@ -14,7 +15,8 @@ class HeldForces {
   void include(dBodyID body) { included_.push_back(body); }
   void exclude(dBodyID body) { std::erase(included_, body); }
 
-  /// Notes what acts now on this world's bodies, those of the caller's that are in `mirror` (null: none) or were included, and what hangs on them by joints.
+  /// Notes what acts now on this world's bodies, those of the caller's that are in `mirror` (null: none) or
+  /// were included, and what hangs on them by joints.
   void note(dWorldID world, Bodies& bodies, const SpaceMirror* mirror);
   /// Before each substep.
   void give() const;

@@ -12,7 +12,9 @@ int largest_island(std::span<const OdeContact> contacts) {
   for (const OdeContact& c : contacts) bodies.insert(bodies.end(), {c.first.value, c.second.value});
   std::ranges::sort(bodies);
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  const auto number_of = [&](OdeBodyId body) { return std::size_t(std::ranges::lower_bound(bodies, body.value) - bodies.begin()); };
+  const auto number_of = [&](OdeBodyId body) {
+    return std::size_t(std::ranges::lower_bound(bodies, body.value) - bodies.begin());
+  };
 
   std::vector<std::size_t> parent(bodies.size());
   std::iota(parent.begin(), parent.end(), std::size_t(0));

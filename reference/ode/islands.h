@@ -1,4 +1,5 @@
-// How large a problem dWorldStep would have to solve at once: bodies that touch, directly or through others, are one island.
+// How large a problem dWorldStep would have to solve at once: bodies that touch, directly or through others,
+// are one island.
 #pragma once
 
 #include <span>

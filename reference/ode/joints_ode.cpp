@@ -37,7 +37,8 @@ ContactSide side_of(dBodyID body, MaterialId material, OdeBodyId id, dGeomID cal
   if (!body || !dBodyIsKinematic(body)) return {body, material, id, {}, false, callers_geom, {}};
   if (!is_moving(body)) return {nullptr, material, id, {}, false, callers_geom, {}};
   const RigidState state = state_of(body);
-  return {nullptr, material, id, SurfaceMotion{state.position, state.velocity, state.angular_velocity}, true, callers_geom, {}};
+  return {nullptr, material,     id, SurfaceMotion{state.position, state.velocity, state.angular_velocity},
+          true,    callers_geom, {}};
 }
 
 ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const MaterialTable& materials)
@@ -66,15 +67,20 @@ void ContactJoints::begin(double h, int attempt) {
   h_ = h;
   attempt_cfm_ = cfm_ + kAddedCfm[attempt];
   unevenness_ = kUnevenness[attempt] * gravity_.norm() * h * h;
-  // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone, whosever the world is.
+  // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone,
+  // whosever the world is.
   deepest_ = erp_ > 0.0 ? max_correcting_velocity_ * h / erp_ : dInfinity;
 }
 
-void ContactJoints::add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points) {
+void ContactJoints::add(const ContactSide& first, const ContactSide& second,
+                        std::span<const ContactPoint> points) {
   const ContactLaw pair = law(first.material, second.material);
   joint_.surface.mu = pair.friction;
   joint_.surface.bounce = pair.restitution;
-  joint_.surface.soft_cfm = attempt_cfm_ * cfm_share(std::min(mass_of(first.body), mass_of(second.body)));
+  const double lighter = std::min(mass_of(first.body), mass_of(second.body));
+  joint_.surface.soft_cfm = attempt_cfm_ * cfm_share(lighter) * light_share(lighter);
+  // Friction's is the world's, but for light bodies.
+  joint_.surface.slip1 = joint_.surface.slip2 = light_share(lighter) > 1.0 ? joint_.surface.soft_cfm : 0.0;
   for (const auto& [side, other] : {std::pair(first, second), std::pair(second, first)}) {
     if (!side.body || !other.moves) continue;
     carried_.push_back(side.body);
@@ -89,13 +95,15 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second, std
   made_ += std::int64_t(points.size());
 }
 
-void ContactJoints::add_joint(const ContactSide& first, const ContactSide& second, const ContactPoint& point) {
+void ContactJoints::add_joint(const ContactSide& first, const ContactSide& second,
+                              const ContactPoint& point) {
   copy(point.point, joint_.geom.pos);
   copy(point.normal, joint_.geom.normal);
   joint_.geom.depth = first.body && second.body ? depth_of(point) : std::min(point.depth, deepest_);
   joint_.surface.mode = mode_;
   joint_.surface.motionN = point.lift;
   if (point.lift != 0.0) joint_.surface.mode |= dContactMotionN;
+  if (joint_.surface.slip1 > 0.0) joint_.surface.mode |= dContactSlip1 | dContactSlip2;
   copy(slip_direction(first, second, point), joint_.fdir1);
   for (const ContactSide* side : {&first, &second})
     if (side->motion) move_surface(side->motion->velocity_at(point.point), point, side == &first);
@@ -105,7 +113,8 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
 }
 
 /// m/s along the normal, as they are now.
-double ContactJoints::approach_of(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const {
+double ContactJoints::approach_of(const ContactSide& first, const ContactSide& second,
+                                  const ContactPoint& point) const {
   return point.normal.dot(velocity_at(second, point.point) - velocity_at(first, point.point));
 }
 
@@ -118,16 +127,18 @@ void ContactJoints::move_surface(const Vec3& velocity, const ContactPoint& point
   joint_.surface.motion2 = normal.cross(along).dot(velocity);
 }
 
-// ODE's solver gives up where two contacts tie exactly, as those of bodies at rest on each other do; a small part of what a body falls in a
-// step sets them apart.
+// ODE's solver gives up where two contacts tie exactly, as those of bodies at rest on each other do; a small
+// part of what a body falls in a step sets them apart.
 double ContactJoints::depth_of(const ContactPoint& point) const {
   const double turn = 0.6180339887498949 * double(contacts_.size());  // of the golden angle: no two alike
   return std::clamp(point.depth + unevenness_ * (turn - std::floor(turn)), 0.0, deepest_);
 }
 
-// ODE's friction is a box: μ along fdir1 and μ across it, so only along fdir1 is it Coulomb's. Friction opposes the slip that the step
-// would have without it; taking that rather than the slip before it lets a body at rest on a slope start downhill.
-Vec3 ContactJoints::slip_direction(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const {
+// ODE's friction is a box: μ along fdir1 and μ across it, so only along fdir1 is it Coulomb's. Friction
+// opposes the slip that the step would have without it; taking that rather than the slip before it lets a
+// body at rest on a slope start downhill.
+Vec3 ContactJoints::slip_direction(const ContactSide& first, const ContactSide& second,
+                                   const ContactPoint& point) const {
   const Vec3 relative = unhindered_velocity(first, point.point) - unhindered_velocity(second, point.point);
   const double still = 1e-3 * h_ * gravity_.norm() + 1e-9;
   for (const Vec3& direction : {relative, gravity_}) {
@@ -137,7 +148,8 @@ Vec3 ContactJoints::slip_direction(const ContactSide& first, const ContactSide& 
   return point.normal.unitOrthogonal();
 }
 
-/// Of the body's material at `point` at the end of the step if nothing but gravity and applied forces acted on it.
+/// Of the body's material at `point` at the end of the step if nothing but gravity and applied forces acted
+/// on it.
 Vec3 ContactJoints::unhindered_velocity(const ContactSide& side, const Vec3& point) const {
   const Vec3 now = velocity_at(side, point);
   const dBodyID body = side.body;

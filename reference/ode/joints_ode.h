@@ -13,27 +13,35 @@ namespace lodestone::ode {
 
 class Touches;
 
-/// Part of the constraint force mixing that a body of `mass` (kg) is given: of much more than the inverse of its mass over the step, its contacts would be soft.
+/// Part of the constraint force mixing that a body of `mass` (kg) is given: of much more than the inverse of
+/// its mass over the step, its contacts would be soft.
 inline double cfm_share(double mass) { return std::min(1.0, 100.0 / mass); }
+
+/// The same upwards: of a body below ten grams much less than the inverse of its mass over the step would be
+/// lost in rounding, and the solver with it.
+inline double light_share(double mass) { return std::max(1.0, 1e-2 / mass); }
 
 /// How a surface that nothing can push moves.
 struct SurfaceMotion {
-  Vec3 center = Vec3::Zero(), velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< m, m/s and rad/s, world
+  Vec3 center = Vec3::Zero(), velocity = Vec3::Zero(),
+       angular_velocity = Vec3::Zero();  ///< m, m/s and rad/s, world
   Vec3 velocity_at(const Vec3& point) const { return velocity + angular_velocity.cross(point - center); }
 };
 
-/// One of the two bodies at a contact; `body` null for static ground, and for ground or a kinematic body that moves.
+/// One of the two bodies at a contact; `body` null for static ground, and for ground or a kinematic body that
+/// moves.
 struct ContactSide {
   dBodyID body = nullptr;
   MaterialId material = 0;
   OdeBodyId id{};  ///< null where the body is not this world's
   std::optional<SurfaceMotion> motion = {};
-  bool moves = false;      ///< does so, or was moved before this step
+  bool moves = false;  ///< does so, or was moved before this step
   dGeomID callers_geom = nullptr;
   OdeGroundId ground = {};
 };
 
-/// `body` as a side: one that is kinematic is a surface that moves. ODE would else make one island of all that lies on it.
+/// `body` as a side: one that is kinematic is a surface that moves. ODE would else make one island of all
+/// that lies on it.
 ContactSide side_of(dBodyID body, MaterialId material, OdeBodyId id, dGeomID callers_geom = nullptr);
 
 /// The contact joints of one substep.
@@ -44,8 +52,8 @@ class ContactJoints {
   ContactJoints(const ContactJoints&) = delete;
   ContactJoints& operator=(const ContactJoints&) = delete;
 
-  /// Forgets the last substep's contacts; the next are for a step of `h` seconds. From one attempt at a step to the next (0, 1, …) the contacts
-  /// are a little softer and their depths a little more uneven.
+  /// Forgets the last substep's contacts; the next are for a step of `h` seconds. From one attempt at a step
+  /// to the next (0, 1, …) the contacts are a little softer and their depths a little more uneven.
   void begin(double h, int attempt);
   /// Depths may be negative by what bodies at rest are left to overlap (kRestingDepth).
   void add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points);
@@ -57,6 +65,7 @@ class ContactJoints {
 
   const Vec3& gravity() const { return gravity_; }
   ContactLaw law(MaterialId first, MaterialId second) const { return materials_->law(first, second); }
+  void check_known(MaterialId material) const { materials_->check_known(material); }  ///< throws InputError
   std::span<const OdeContact> contacts() const { return contacts_; }
   /// Bodies that touch a surface that moves, in no order.
   std::span<const dBodyID> carried() const { return carried_; }

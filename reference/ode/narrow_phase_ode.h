@@ -10,8 +10,8 @@
 
 namespace lodestone::ode {
 
-/// × size: overlap that is left to meshes at rest on each other, so that they still overlap in the next step (in OPCODE's float arithmetic, too)
-/// and their contacts stay.
+/// × size: overlap that is left to meshes at rest on each other, so that they still overlap in the next step
+/// (in OPCODE's float arithmetic, too) and their contacts stay.
 inline constexpr double kRestingDepth = 1e-4;
 
 class NarrowPhase {
@@ -27,7 +27,8 @@ class NarrowPhase {
   NarrowPhase(const NarrowPhase&) = delete;
   NarrowPhase& operator=(const NarrowPhase&) = delete;
 
-  /// Appends the contacts of `first` with `second`, normals into `first`, depths less what bodies at rest are left to overlap. `size`: the smaller body's radius (m). Locks where ODE needs it.
+  /// Appends the contacts of `first` with `second`, normals into `first`, depths less what bodies at rest are
+  /// left to overlap. `size`: the smaller body's radius (m). Locks where ODE needs it.
   void find(dGeomID first, dGeomID second, double size, std::vector<ContactPoint>& points);
 
  private:

@@ -15,19 +15,33 @@ using namespace ode;
 
 namespace {
 
+constexpr double kShortestSubstep = 1e-12;  // s; over a shorter one ODE divides by what is no longer a number
+
 void check_step(double dt, int substeps) {
-  if (!(dt > 0.0 && std::isfinite(dt) && substeps > 0))
-    throw InputError(fmt::format("a step: found {} s in {} substeps, expected a positive and finite time, one substep or more", dt, substeps));
+  if (!(dt > 0.0 && std::isfinite(dt) && substeps > 0 && dt / substeps >= kShortestSubstep))
+    throw InputError(fmt::format(
+        "a step: found {} s in {} substeps, expected one substep or more, each of {} s or more and finite",
+        dt, substeps, kShortestSubstep));
+}
+
+const OdeSettings& checked(const OdeSettings& settings) {
+  if (!settings.gravity.allFinite())
+    throw_input_error("gravity",
+                      fmt::format("({:g}, {:g}, {:g}) m/s²", settings.gravity.x(), settings.gravity.y(),
+                                  settings.gravity.z()),
+                      "finite numbers");
+  return settings;
 }
 
 }  // namespace
 
 OdeWorld::OdeWorld(const OdeSettings& settings, const MaterialTable& materials) {
   prepare();
-  impl_ = std::make_unique<Impl>(nullptr, nullptr, settings, materials);
+  impl_ = std::make_unique<Impl>(nullptr, nullptr, checked(settings), materials);
 }
 
-OdeWorld::OdeWorld(dxWorld* world, dxSpace* space, const OdeSettings& settings, const MaterialTable& materials) {
+OdeWorld::OdeWorld(dxWorld* world, dxSpace* space, const OdeSettings& settings,
+                   const MaterialTable& materials) {
   check_that(world && space, "the caller's world and space are given");
   prepare();
   impl_ = std::make_unique<Impl>(world, space, settings, materials);
@@ -38,20 +52,31 @@ OdeWorld::OdeWorld(OdeWorld&&) noexcept = default;
 OdeWorld& OdeWorld::operator=(OdeWorld&&) noexcept = default;
 
 OdeGroundId OdeWorld::add_plane(const Vec3& normal, double offset, MaterialId material) {
+  impl_->joints.check_known(material);
   return impl_->collision.add_plane(normal, offset, material);
 }
 
-OdeGroundId OdeWorld::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material) {
+OdeGroundId OdeWorld::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
+                                     MaterialId material) {
+  impl_->joints.check_known(material);
   return impl_->collision.add_box(sides, position, orientation, material);
 }
 
-OdeGroundId OdeWorld::add_static_mesh(const Mesh& mesh, MaterialId material) { return impl_->collision.add_mesh(mesh, material); }
-void OdeWorld::move_ground(OdeGroundId ground, const RigidState& state) { impl_->collision.move_ground(ground, state, impl_->bodies); }
+OdeGroundId OdeWorld::add_static_mesh(const Mesh& mesh, MaterialId material) {
+  impl_->joints.check_known(material);
+  return impl_->collision.add_mesh(mesh, material);
+}
+
+void OdeWorld::move_ground(OdeGroundId ground, const RigidState& state) {
+  impl_->collision.move_ground(ground, state, impl_->bodies);
+}
 void OdeWorld::remove_ground(OdeGroundId ground) { impl_->collision.remove_ground(ground, impl_->bodies); }
 
 OdeBodyId OdeWorld::add_body(const OdeBodyDefinition& definition) {
+  impl_->joints.check_known(definition.material);
   prepare();
-  if (const double cfm = impl_->settings.cfm * ode::cfm_share(definition.mass); impl_->own_world && cfm > 0.0 && cfm < dWorldGetCFM(impl_->world))
+  if (const double cfm = impl_->settings.cfm * ode::cfm_share(definition.mass);
+      impl_->own_world && cfm > 0.0 && cfm < dWorldGetCFM(impl_->world))
     dWorldSetCFM(impl_->world, cfm);
   return impl_->bodies.add(impl_->world, definition, impl_->settings, impl_->trimeshes);
 }
@@ -69,15 +94,18 @@ void OdeWorld::step(double dt, int substeps) {
   prepare();
   const std::int64_t messages_before = messages_of_this_thread();
   impl_->begin_step(dt / substeps);
-  if (impl_->has_work()) for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
-  else impl_->joints.begin(dt, 0);  // no contacts
+  if (impl_->has_work())
+    for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
+  else
+    impl_->joints.begin(dt, 0);  // no contacts
   impl_->end_step();
   impl_->counters.messages += messages_of_this_thread() - messages_before;
 }
 
 void OdeWorld::begin_callers_step(double dt) {
   check_step(dt, 1);
-  if (impl_->callers_step_s > 0.0) throw InputError("begin_callers_step twice, with no end_callers_step between them");
+  if (impl_->callers_step_s > 0.0)
+    throw InputError("begin_callers_step twice, with no end_callers_step between them");
   prepare();
   impl_->callers_step_s = dt;
   impl_->begin_step(dt);
@@ -112,7 +140,8 @@ void OdeWorld::set_state(OdeBodyId id, const RigidState& state) {
 }
 
 void OdeWorld::add_force(OdeBodyId id, const Vec3& force, const Vec3& torque) {
-  if (!force.allFinite() || !torque.allFinite()) throw InputError("a force on a body: found one that is not finite");
+  if (!force.allFinite() || !torque.allFinite())
+    throw InputError("a force on a body: found one that is not finite");
   Body& body = impl_->bodies.find(id);
   body.force += force;
   body.torque += torque;
@@ -127,9 +156,15 @@ void OdeWorld::set_asleep(OdeBodyId id, bool asleep) {
   impl_->collision.broad_phase().note_sleep(body);
 }
 
-const BodyProperties& OdeWorld::properties(OdeBodyId body) const { return impl_->bodies.find(body).properties; }
-void OdeWorld::set_properties(OdeBodyId body, const BodyProperties& properties) { ode::set_properties(impl_->bodies.find(body), properties); }
-void OdeWorld::set_pair_filter(std::function<bool(OdeBodyId, OdeBodyId)> filter) { impl_->collision.broad_phase().set_pair_filter(std::move(filter)); }
+const BodyProperties& OdeWorld::properties(OdeBodyId body) const {
+  return impl_->bodies.find(body).properties;
+}
+void OdeWorld::set_properties(OdeBodyId body, const BodyProperties& properties) {
+  ode::set_properties(impl_->bodies.find(body), properties);
+}
+void OdeWorld::set_pair_filter(std::function<bool(OdeBodyId, OdeBodyId)> filter) {
+  impl_->collision.broad_phase().set_pair_filter(std::move(filter));
+}
 void OdeWorld::set_sleep_law(const SleepLaw& law) { impl_->sleep.set_law(law); }
 
 dxBody* OdeWorld::ode_body(OdeBodyId body) const { return impl_->bodies.find(body).body; }

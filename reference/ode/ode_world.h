@@ -1,8 +1,9 @@
-// Rigid bodies simulated by the Open Dynamics Engine (ODE): the ground truth, the full level and its baselines.
-// ODE stays behind this file. Pitfalls that it takes care of: trimesh–trimesh contacts are filtered (contact_filter.h), plane
-// contacts come from hull vertices, messages are counted and not printed, QuickStep's global generator is seeded from
-// (seed, step), sleeping neighbours wake on removal, bodies faster than they are thick stop at what they would have passed through (sweep_ode.h), every
-// value is checked before ODE could abort on it. What a caller passes wrongly throws InputError and changes nothing.
+// Rigid bodies simulated by the Open Dynamics Engine (ODE): the ground truth, the full level and its
+// baselines. ODE stays behind this file. Pitfalls that it takes care of: trimesh–trimesh contacts are
+// filtered (contact_filter.h), plane contacts come from hull vertices, messages are counted and not printed,
+// QuickStep's global generator is seeded from (seed, step), sleeping neighbours wake on removal, bodies
+// faster than they are thick stop at what they would have passed through (sweep_ode.h), every value is
+// checked before ODE could abort on it. What a caller passes wrongly throws InputError and changes nothing.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +16,9 @@
 #include "reference/body_properties.h"
 #include "reference/geometry.h"
 #include "reference/material.h"
+#include "reference/mesh/simplified_shapes.h"
 #include "reference/ode/space_mirror.h"
 #include "reference/shape.h"
-#include "reference/mesh/simplified_shapes.h"
 
 struct dxWorld;  // ODE's own types (dWorldID is dxWorld*), so that no header includes ODE
 struct dxSpace;
@@ -32,7 +33,8 @@ class StateArchive;
 enum class MeshContacts {
   plain,     ///< as ODE's dCollide finds them
   filtered,  ///< as it finds them, made believable (contact_filter.h)
-  exact,     ///< two convex bodies by their hulls (hull_manifold.h), which bound the same solids; others filtered
+  exact,     ///< two convex bodies by their hulls (hull_manifold.h), which bound the same solids; others
+             ///< filtered
 };
 
 /// ODE's own, for bodies that something holds: one slower than this for long enough is put to rest.
@@ -43,32 +45,41 @@ struct SleepLaw {
 };
 
 struct OdeSettings {
-  Vec3 gravity{0, 0, -9.81};            ///< m/s²
+  Vec3 gravity{0, 0, -9.81};  ///< m/s²
   std::uint64_t seed = 1;
-  bool quick_step = false;              ///< dWorldQuickStep instead of dWorldStep (another friction law)
+  bool quick_step = false;  ///< dWorldQuickStep instead of dWorldStep (another friction law)
   int quick_step_iterations = 20;
-  int direct_contacts_max = 1 << 30;    ///< contacts of one island above which a substep is QuickStep's: dWorldStep's time grows with their cube
-  double erp = 0.2, cfm = 1e-10;        ///< ODE's error reduction and constraint force mixing (s/kg) at contacts; less, in proportion, for bodies above 100 kg, whose
-                                        ///< impacts it would soften
-  double bounce_velocity = 0.05;        ///< m/s, slower contacts do not bounce
-  double max_correcting_velocity = 1e9; ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
-  bool friction_along_slip = true;      ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
+  int direct_contacts_max = 1 << 30;  ///< contacts of one island above which a substep is QuickStep's:
+                                      ///< dWorldStep's time grows with their cube
+  double erp = 0.2,
+         cfm = 1e-10;  ///< ODE's error reduction and constraint force mixing (s/kg) at contacts; less, in
+                       ///< proportion, for bodies above 100 kg, whose impacts it would soften
+  double bounce_velocity = 0.05;  ///< m/s, slower contacts do not bounce
+  double max_correcting_velocity =
+      1e9;  ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
+  bool friction_along_slip =
+      true;  ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
   int max_contacts_per_pair = 8;
   MeshContacts mesh_contacts = MeshContacts::exact;
-  int most_mesh_measures = 1 << 30;     ///< of the contacts of two concave meshes in a substep: after so many the search for their directions ends (contact_filter.h)
-  bool plane_contacts_from_hull = true; ///< false: dCollide of the trimesh with the plane, brute force over all faces
-  double plane_depth_max = 1e9;         ///< over the shape's size: a hull vertex that would sink deeper into a plane within the step bounces beforehand
-  /// In substeps longer than the first and no longer than the second (s) a hull's contacts with planes are answered at their own time, where it
-  /// touches nothing else (timed_contacts.h). Nowhere unless the first is set.
+  int most_mesh_measures = 1 << 30;  ///< of the contacts of two concave meshes in a substep: after so many
+                                     ///< the search for their directions ends (contact_filter.h)
+  bool plane_contacts_from_hull =
+      true;  ///< false: dCollide of the trimesh with the plane, brute force over all faces
+  double plane_depth_max = 1e9;  ///< over the shape's size: a hull vertex that would sink deeper into a plane
+                                 ///< within the step bounces beforehand
+  /// In substeps longer than the first and no longer than the second (s) a hull's contacts with planes are
+  /// answered at their own time, where it touches nothing else (timed_contacts.h). Nowhere unless the first
+  /// is set.
   double timed_contacts_above = 1e9, timed_contacts_up_to = 0.01;
   bool gyroscopic = true;
-  bool hash_space = false;              ///< ODE's hash space as the broad phase instead of sweep and prune
-  bool auto_disable = false;            ///< bodies at rest fall asleep
+  bool hash_space = false;    ///< ODE's hash space as the broad phase instead of sweep and prune
+  bool auto_disable = false;  ///< bodies at rest fall asleep
   SleepLaw sleep = {};
 };
 
-/// What a body is to ODE's collision detection. `hull` is a trimesh of the hull: ODE's own dConvex gives one contact a pair, on which nothing stacks.
-/// `sphere` has the shape's volume. `box` is ODE's primitive, with the sides of the shape's bounding box, whose centre must be that of mass.
+/// What a body is to ODE's collision detection. `hull` is a trimesh of the hull: ODE's own dConvex gives one
+/// contact a pair, on which nothing stacks. `sphere` has the shape's volume. `box` is ODE's primitive, with
+/// the sides of the shape's bounding box, whose centre must be that of mass.
 enum class OdeGeometry { trimesh, hull, spheres, sphere, box };
 
 /// A body of an OdeWorld; stays valid until removed. Zero is null.
@@ -90,13 +101,18 @@ struct OdeBodyDefinition {
 
 /// Since the world was made.
 struct OdeCounters {
-  std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0, quick_steps = 0, states_recovered = 0;
-  std::int64_t swallowed = 0;  ///< times that a body was wholly inside another in a substep (both meshes, one of them concave)
-  std::int64_t passes_prevented = 0;  ///< times that a body would have gone through another, or through ground, within a substep
-  std::int64_t uneven_contacts = 0;   ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: it lets the heavy one sink in
+  std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0,
+               quick_steps = 0, states_recovered = 0;
+  std::int64_t swallowed =
+      0;  ///< times that a body was wholly inside another in a substep (both meshes, one of them concave)
+  std::int64_t passes_prevented =
+      0;  ///< times that a body would have gone through another, or through ground, within a substep
+  std::int64_t uneven_contacts = 0;  ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as
+                                     ///< each other: it lets the heavy one sink in
 };
 
-/// What ODE said last on the calling thread, at most 255 characters; empty where it has said nothing. Until its next message.
+/// What ODE said last on the calling thread, at most 255 characters; empty where it has said nothing. Until
+/// its next message.
 std::string_view last_ode_message();
 
 /// Wall time of the last step(), all its substeps, ms.
@@ -105,7 +121,8 @@ struct OdeTimes {
   double response_ms = 0.0;   ///< ODE's own step
 };
 
-/// Two of this world's bodies that touched in the last substep (`second` null: static ground or a body of the caller's).
+/// Two of this world's bodies that touched in the last substep (`second` null: static ground or a body of the
+/// caller's).
 struct OdeContact {
   OdeBodyId first, second;
   Vec3 point, normal;  ///< world; the normal points from `second` into `first`
@@ -119,14 +136,16 @@ struct OdeGroundId {
   friend bool operator==(OdeGroundId, OdeGroundId) = default;
 };
 
-/// A body of this world's, and what it touched in the last step: another (`second`), ground of this world's, or a geom of the caller's.
+/// A body of this world's, and what it touched in the last step: another (`second`), ground of this world's,
+/// or a geom of the caller's.
 struct OdeTouch {
   OdeBodyId first, second = {};
   OdeGroundId ground = {};
   dxGeom* callers_geom = nullptr;
   MaterialId first_material = 0, second_material = 0;
-  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< m and unit, world, where it was hardest; the normal points into `first`
-  double impulse = 0.0;   ///< N s, along the normals, all contacts and substeps together
+  Vec3 point = Vec3::Zero(),
+       normal = Vec3::UnitZ();  ///< m and unit, world, where it was hardest; the normal points into `first`
+  double impulse = 0.0;         ///< N s, along the normals, all contacts and substeps together
   double approach = 0.0;  ///< m/s, the greatest along a normal before a substep; 0 where they only parted
   bool at_end = true;     ///< in the last substep, too
 };
@@ -135,45 +154,58 @@ class OdeWorld {
  public:
   /// A world of its own. `materials` must outlive it.
   OdeWorld(const OdeSettings& settings, const MaterialTable& materials);
-  /// Joins the caller's world and space (dWorldID, dSpaceID), both of which must outlive it. Static geoms and other bodies there are met, with
-  /// material 0, and stepped; their contacts with each other remain the caller's to make, before step(), and last all its substeps. So do forces that he gives
-  /// his bodies (see include_body). Of `settings` those of a whole world (gravity, QuickStep's iterations) are left as the caller has them. His space may be of
-  /// any type and change at any time between steps. Our geoms are in a space of their own that his knows nothing of (cast rays into ode_space() to meet them);
-  /// the caller must not collide trimeshes on another thread meanwhile.
+  /// Joins the caller's world and space (dWorldID, dSpaceID), both of which must outlive it. Static geoms and
+  /// other bodies there are met, with material 0, and stepped; their contacts with each other remain the
+  /// caller's to make, before step(), and last all its substeps. So do forces that he gives his bodies (see
+  /// include_body). Of `settings` those of a whole world (gravity, QuickStep's iterations) are left as the
+  /// caller has them. His space may be of any type and change at any time between steps. Our geoms are in a
+  /// space of their own that his knows nothing of (cast rays into ode_space() to meet them); the caller must
+  /// not collide trimeshes on another thread meanwhile.
   OdeWorld(dxWorld* world, dxSpace* space, const OdeSettings& settings, const MaterialTable& materials);
   ~OdeWorld();
   OdeWorld(OdeWorld&&) noexcept;
   OdeWorld& operator=(OdeWorld&&) noexcept;
 
   /// Ground that nothing pushes. Each throws InputError where it cannot be.
-  OdeGroundId add_plane(const Vec3& normal, double offset, MaterialId material);  ///< normal·x = offset, normal of unit length
-  OdeGroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation, MaterialId material);
+  OdeGroundId add_plane(const Vec3& normal, double offset,
+                        MaterialId material);  ///< normal·x = offset, normal of unit length
+  OdeGroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
+                             MaterialId material);
   OdeGroundId add_static_mesh(const Mesh& mesh, MaterialId material);
-  /// A box's or mesh's (which begins at the origin, unturned); wakes what is near where it was and where it is. With a velocity (m/s and rad/s, world) it carries what
-  /// touches it, but goes on only as it is moved, by the caller, before each step. A plane cannot be moved.
+  /// A box's or mesh's (which begins at the origin, unturned); wakes what is near where it was and where it
+  /// is. With a velocity (m/s and rad/s, world) it carries what touches it, but goes on only as it is moved,
+  /// by the caller, before each step. A plane cannot be moved.
   void move_ground(OdeGroundId ground, const RigidState& state);
   void remove_ground(OdeGroundId ground);  ///< wakes what is near it
 
-  /// Throws InputError where mass ≤ 0 or the state is not finite or beyond 1e8 m. The first body of a shape builds its trimesh data, shared by the rest.
+  /// Throws InputError where mass ≤ 0 or the state is not finite or beyond 1e8 m. The first body of a shape
+  /// builds its trimesh data, shared by the rest.
   OdeBodyId add_body(const OdeBodyDefinition& definition);
-  /// Wakes what touched it (the caller's bodies, too, in the next step), unless it `stays` where it is, as something else.
+  /// Wakes what touched it (the caller's bodies, too, in the next step), unless it `stays` where it is, as
+  /// something else.
   void remove_body(OdeBodyId body, bool stays = false);
 
-  /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). Nearly free while all bodies sleep. A body whose state stops being finite is
-  /// put back to its last good pose at rest, and counted. A substep that ODE's solver gives up on is repeated a little softer (not in a caller's world).
+  /// Advances by `dt` seconds in `substeps` equal steps: collide, then dWorldStep (or QuickStep). Nearly free
+  /// while all bodies sleep. A body whose state stops being finite is put back to its last good pose at rest,
+  /// and counted. A substep that ODE's solver gives up on is repeated a little softer (not in a caller's
+  /// world). Throws SimulationError once an assertion in ODE fails.
   void step(double dt, int substeps = 1);
 
-  /// For a caller who keeps a loop of his own. Before his dWorldStep or dWorldQuickStep of `dt` seconds: makes the contacts of this world's bodies, as joints in his world;
-  /// and after it: removes them, and does what else step() does after a substep. Between the two he destroys neither bodies nor geoms, and steps once.
+  /// For a caller who keeps a loop of his own. Before his dWorldStep or dWorldQuickStep of `dt` seconds:
+  /// makes the contacts of this world's bodies, as joints in his world; and after it: removes them, and does
+  /// what else step() does after a substep. Between the two he destroys neither bodies nor geoms, and steps
+  /// once.
   void begin_callers_step(double dt);
   void end_callers_step();
 
-  /// Looks at what the caller's space holds, unless that was done since the last step; each step does so first.
+  /// Looks at what the caller did since the last step: what his space holds, and bodies here that he spoilt,
+  /// which are put back; each step does so first.
   void look_at_callers_space();
   /// As seen then; null in a world of its own.
   const SpaceMirror* callers_space() const;
-  /// Forces that the caller gives a body (dBodyAddForce, dBodyAddTorque, the motors of joints) act for the whole of the next step(), as gravity does, if its geoms are
-  /// in his space, or if joints tie it, through others too, to a body whose are or to one of ours. Any other is to be named here, until it is destroyed.
+  /// Forces that the caller gives a body (dBodyAddForce, dBodyAddTorque, the motors of joints) act for the
+  /// whole of the next step(), as gravity does, if its geoms are in his space, or if joints tie it, through
+  /// others too, to a body whose are or to one of ours. Any other is to be named here, until it is destroyed.
   void include_body(dxBody* body);
   void exclude_body(dxBody* body);
   /// The caller's forces of the last step() act in the next one, too, for one that is done in parts.
@@ -181,28 +213,31 @@ class OdeWorld {
 
   RigidState state(OdeBodyId body) const;
   void set_state(OdeBodyId body, const RigidState& state);  ///< leaves sleep as it is
-  void add_force(OdeBodyId body, const Vec3& force, const Vec3& torque);  ///< N and N m, over the whole of the next step(); does not wake
+  void add_force(OdeBodyId body, const Vec3& force,
+                 const Vec3& torque);  ///< N and N m, over the whole of the next step(); does not wake
   bool asleep(OdeBodyId body) const;
   void set_asleep(OdeBodyId body, bool asleep);
   const BodyProperties& properties(OdeBodyId body) const;
   void set_properties(OdeBodyId body, const BodyProperties& properties);  ///< does not wake
   void set_sleep_law(const SleepLaw& law);
-  /// Whether two bodies of this world's may meet, beside what their bits say; empty: always. Asked in each substep of each two that come near each other.
+  /// Whether two bodies of this world's may meet, beside what their bits say; empty: always. Asked in each
+  /// substep of each two that come near each other.
   void set_pair_filter(std::function<bool(OdeBodyId, OdeBodyId)> filter);
-  dxBody* ode_body(OdeBodyId body) const;                    ///< dBodyID, for joints and the like
+  dxBody* ode_body(OdeBodyId body) const;  ///< dBodyID, for joints and the like
 
-  /// All that the next steps depend on, save ground and settings. Where it reads, bodies are kept if the writer had the very same ones; else all are made anew, with another dBodyID.
-  /// Throws InputError, and nothing has changed, where one of those has a joint.
+  /// All that the next steps depend on, save ground and settings. Where it reads, bodies are kept if the
+  /// writer had the very same ones; else all are made anew, with another dBodyID. Throws InputError, and
+  /// nothing has changed, where one of those has a joint.
   void archive(StateArchive& a);
 
-  std::span<const OdeContact> contacts() const;              ///< of the last substep
+  std::span<const OdeContact> contacts() const;  ///< of the last substep
   /// From the next step on; costs a little for each contact.
   void record_touches(bool on);
-  std::span<const OdeTouch> touches() const;                 ///< of the last step; none unless they are recorded
+  std::span<const OdeTouch> touches() const;  ///< of the last step; none unless they are recorded
   const OdeCounters& counters() const;
   const OdeTimes& times() const;
-  dxWorld* ode_world() const;                                ///< an own world is stepped only while a body of this OdeWorld's is awake
-  dxSpace* ode_space() const;                                ///< dSpaceID that holds this world's bodies
+  dxWorld* ode_world() const;  ///< an own world is stepped only while a body of this OdeWorld's is awake
+  dxSpace* ode_space() const;  ///< dSpaceID that holds this world's bodies
 
  private:
   struct Impl;

@@ -1,4 +1,5 @@
-// Contacts of two bodies that are unions of convex pieces: those of every two pieces, exact to rounding, less those on faces within the body.
+// Contacts of two bodies that are unions of convex pieces: those of every two pieces, exact to rounding, less
+// those on faces within the body.
 #pragma once
 
 #include <vector>
@@ -21,7 +22,8 @@ struct Pieces {
   bool empty() const { return pieces.empty(); }
 };
 
-/// Appends the contacts, normals into `first`, depths less what bodies at rest are left to overlap (2e-5 × radius), so that their contacts stay.
+/// Appends the contacts, normals into `first`, depths less what bodies at rest are left to overlap (2e-5 ×
+/// radius), so that their contacts stay.
 void find_contacts_of_pieces(const Pieces& first, const Pieces& second, std::vector<ContactPoint>& contacts);
 
 }  // namespace lodestone

@@ -1,5 +1,6 @@
-// Contacts of a convex polyhedron with a plane. The deepest vertex of a mesh under a plane is always a hull vertex, and the hull vertices
-// under a plane are connected through the hull's edges, so a climb and a flood find them all without visiting the rest.
+// Contacts of a convex polyhedron with a plane. The deepest vertex of a mesh under a plane is always a hull
+// vertex, and the hull vertices under a plane are connected through the hull's edges, so a climb and a flood
+// find them all without visiting the rest.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +19,12 @@ struct PlaneContact {
 /// Finds the vertices of a hull below a plane. Keeps its memory between calls; one to a thread.
 class PlaneContactFinder {
  public:
-  /// The up to `max_contacts` deepest vertices of `hull` with normal·v < offset (unit normal, both in the hull's frame), deepest first and by
-  /// index where depths are equal. `start` is any vertex, best the last deepest one, and becomes the deepest one.
-  /// The result, valid until the next call, does not depend on `start`. `dropped`, when given, receives how many more there were.
-  std::span<const PlaneContact> find(const Hull& hull, const Vec3& normal, double offset, int max_contacts, int& start,
-                                     std::int64_t* dropped = nullptr);
+  /// The up to `max_contacts` deepest vertices of `hull` with normal·v < offset (unit normal, both in the
+  /// hull's frame), deepest first and by index where depths are equal. `start` is any vertex, best the last
+  /// deepest one, and becomes the deepest one. The result, valid until the next call, does not depend on
+  /// `start`. `dropped`, when given, receives how many more there were.
+  std::span<const PlaneContact> find(const Hull& hull, const Vec3& normal, double offset, int max_contacts,
+                                     int& start, std::int64_t* dropped = nullptr);
 
  private:
   void gather_by_scan(const Hull& hull, const Vec3& normal, double offset);

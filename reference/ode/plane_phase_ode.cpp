@@ -14,62 +14,79 @@ double height_of(const Body& body, const Plane& plane) {
 
 /// Against the plane's normal, m/s.
 double approach_of(const Body& body, const Vec3& arm, const Vec3& normal) {
-  return -normal.dot(to_vec3(dBodyGetLinearVel(body.body)) + to_vec3(dBodyGetAngularVel(body.body)).cross(arm));
+  return -normal.dot(to_vec3(dBodyGetLinearVel(body.body)) +
+                     to_vec3(dBodyGetAngularVel(body.body)).cross(arm));
 }
 
 Mat3 rotation_of(const Body& body) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(dBodyGetRotation(body.body)).leftCols<3>();
+  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(dBodyGetRotation(body.body))
+      .leftCols<3>();
 }
 
 }  // namespace
 
-void PlanePhase::find(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step, std::vector<ContactPoint>& points) {
+void PlanePhase::find(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step,
+                      std::vector<ContactPoint>& points) {
   const bool by_hull = settings_.plane_contacts_from_hull;
   if (by_hull && height_of(body, plane) > body.reach + nearing(body, plane, step)) return;
-  if (!by_hull) find_mesh_points(body, plane, points);
-  else if (body.spheres.empty()) find_hull_points(body, plane, law, step, points);
-  else find_sphere_points(body, plane, points);
+  if (!by_hull)
+    find_mesh_points(body, plane, points);
+  else if (body.spheres.empty())
+    find_hull_points(body, plane, law, step, points);
+  else
+    find_sphere_points(body, plane, points);
   keep_deepest(points);
 }
 
-// How far below the plane vertices are of interest, m: what may come down to it within the step, where contacts are made early.
+// How far below the plane vertices are of interest, m: what may come down to it within the step, where
+// contacts are made early.
 double PlanePhase::nearing(const Body& body, const Plane& plane, const PlaneStep& step) const {
   const bool timed = is_timed(body, step);
   if (!timed && settings_.plane_depth_max > 1.0) return 0.0;
   const double fall = timed ? std::max(0.0, -plane.normal.dot(step.gravity)) * step.duration : 0.0;
-  const double approach = approach_of(body, Vec3::Zero(), plane.normal) + to_vec3(dBodyGetAngularVel(body.body)).norm() * body.reach;
+  const double approach = approach_of(body, Vec3::Zero(), plane.normal) +
+                          to_vec3(dBodyGetAngularVel(body.body)).norm() * body.reach;
   return (std::max(0.0, approach) + fall) * step.duration;
 }
 
 bool PlanePhase::is_timed(const Body& body, const PlaneStep& step) const {
-  const bool fits = step.duration > settings_.timed_contacts_above && step.duration <= settings_.timed_contacts_up_to;
+  const bool fits =
+      step.duration > settings_.timed_contacts_above && step.duration <= settings_.timed_contacts_up_to;
   return fits && !body.in_company && !body.impact_time;
 }
 
-void PlanePhase::find_hull_points(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step, std::vector<ContactPoint>& points) {
+void PlanePhase::find_hull_points(Body& body, const Plane& plane, const ContactLaw& law,
+                                  const PlaneStep& step, std::vector<ContactPoint>& points) {
   const bool timed = is_timed(body, step);
   const double margin = nearing(body, plane, step);
   const Mat3 rotation = rotation_of(body);
   std::int64_t dropped = 0;
   near_.clear();
-  for (const PlaneContact& contact : plane_contacts_.find(body.shape->hull, rotation.transpose() * plane.normal, margin - height_of(body, plane),
-                                                          timed ? kAll : settings_.max_contacts_per_pair, body.last_support, &dropped))
+  for (const PlaneContact& contact : plane_contacts_.find(
+           body.shape->hull, rotation.transpose() * plane.normal, margin - height_of(body, plane),
+           timed ? kAll : settings_.max_contacts_per_pair, body.last_support, &dropped))
     near_.push_back({rotation * body.shape->hull.vertices[contact.vertex], contact.depth - margin});
   dropped_ += dropped;
-  if (timed) append_timed(body, plane, law, step, points);
-  else append_early_and_deep(body, plane, step, points);
+  if (timed)
+    append_timed(body, plane, law, step, points);
+  else
+    append_early_and_deep(body, plane, step, points);
 }
 
-void PlanePhase::append_timed(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step, std::vector<ContactPoint>& points) const {
-  body.impact_time = append_timed_contacts(near_, {.body = state_of(body.body),
-                                                   .normal = plane.normal,
-                                                   .gravity = -plane.normal.dot(step.gravity),
-                                                   .duration = step.duration,
-                                                   .restitution = law.restitution,
-                                                   .bounce_velocity = settings_.bounce_velocity}, points);
+void PlanePhase::append_timed(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step,
+                              std::vector<ContactPoint>& points) const {
+  body.impact_time = append_timed_contacts(near_,
+                                           {.body = state_of(body.body),
+                                            .normal = plane.normal,
+                                            .gravity = -plane.normal.dot(step.gravity),
+                                            .duration = step.duration,
+                                            .restitution = law.restitution,
+                                            .bounce_velocity = settings_.bounce_velocity},
+                                           points);
 }
 
-void PlanePhase::append_early_and_deep(const Body& body, const Plane& plane, const PlaneStep& step, std::vector<ContactPoint>& points) const {
+void PlanePhase::append_early_and_deep(const Body& body, const Plane& plane, const PlaneStep& step,
+                                       std::vector<ContactPoint>& points) const {
   const Vec3 position = to_vec3(dBodyGetPosition(body.body));
   const double most = settings_.plane_depth_max * body.shape->size;
   for (const NearPoint& near : near_)
@@ -77,7 +94,8 @@ void PlanePhase::append_early_and_deep(const Body& body, const Plane& plane, con
       points.push_back({position + near.arm, plane.normal, std::max(near.depth, 0.0)});
 }
 
-void PlanePhase::find_sphere_points(const Body& body, const Plane& plane, std::vector<ContactPoint>& points) const {
+void PlanePhase::find_sphere_points(const Body& body, const Plane& plane,
+                                    std::vector<ContactPoint>& points) const {
   const Vec3 position = to_vec3(dBodyGetPosition(body.body));
   const Quat orientation = to_quat(dBodyGetQuaternion(body.body));
   for (const Sphere& sphere : body.spheres) {
@@ -87,8 +105,10 @@ void PlanePhase::find_sphere_points(const Body& body, const Plane& plane, std::v
   }
 }
 
-// As plain ODE does it: wherever the body is, for a plane's box has no end; and the first contacts that it finds, whatever their depth.
-void PlanePhase::find_mesh_points(const Body& body, const Plane& plane, std::vector<ContactPoint>& points) const {
+// As plain ODE does it: wherever the body is, for a plane's box has no end; and the first contacts that it
+// finds, whatever their depth.
+void PlanePhase::find_mesh_points(const Body& body, const Plane& plane,
+                                  std::vector<ContactPoint>& points) const {
   std::vector<dContactGeom> found(settings_.max_contacts_per_pair);
   for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) {
     const int count = dCollide(geom, plane.geom, int(found.size()), found.data(), sizeof(dContactGeom));

@@ -35,15 +35,21 @@ void report_fatal(dMessageFunction* callers, int number, const char* message, va
   check_that(false, "ODE cannot go on:", text);
 }
 
+void throw_where_recoverable(const char* message, va_list arguments) {
+  if (!recoverable) return;
+  ++messages;
+  char text[512];
+  std::vsnprintf(text, sizeof text, message, arguments);
+  throw AssertionFailed{text};
+}
+
 void report_error(int number, const char* message, va_list arguments) {
+  throw_where_recoverable(message, arguments);
   report_fatal(callers_error_handler, number, message, arguments);
 }
 
 void report_debug(int number, const char* message, va_list arguments) {
-  if (recoverable) {
-    ++messages;
-    throw AssertionFailed{};
-  }
+  throw_where_recoverable(message, arguments);
   report_fatal(callers_debug_handler, number, message, arguments);
 }
 
@@ -106,7 +112,7 @@ StepThreading::StepThreading(dWorldID world)
 
 StepThreading::~StepThreading() {
   dWorldSetStepThreadingImplementation(world_, nullptr, nullptr);
-  dThreadingFreeImplementation(threading_);
+  if (threading_) dThreadingFreeImplementation(threading_);
 }
 
 }  // namespace lodestone::ode

@@ -24,7 +24,8 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
     // Woken from outside, and not by ODE's own step with those that it hangs together with.
     if (!body.was_enabled) body.to_sleep_s = law_.time;
     body.was_enabled = true;
-    if (dBodyGetNumJoints(body.body) == 0 || !body.properties.allow_sleep || body.properties.kinematic) continue;
+    if (dBodyGetNumJoints(body.body) == 0 || !body.properties.allow_sleep || body.properties.kinematic)
+      continue;
     body.to_sleep_s = is_still(body) ? body.to_sleep_s - h : law_.time;
     if (body.to_sleep_s <= 0.0) put_to_rest(body.body);
   }
@@ -32,7 +33,8 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
 
 bool Sleep::is_still(const Body& body) const {
   if (carried_.contains(body.body)) return false;
-  return squared_norm(dBodyGetLinearVel(body.body)) <= square(law_.speed) && squared_norm(dBodyGetAngularVel(body.body)) <= square(law_.turning_speed / body.reach);
+  return squared_norm(dBodyGetLinearVel(body.body)) <= square(law_.speed) &&
+         squared_norm(dBodyGetAngularVel(body.body)) <= square(law_.turning_speed / body.reach);
 }
 
 void Sleep::find_carried(std::span<const dBodyID> carried) {

@@ -1,5 +1,6 @@
-// When this world's bodies fall asleep: ODE's own law (dInternalHandleAutoDisabling), before each step of ODE's, in our hands, so that it can be saved and set, and so
-// that what a moving surface carries stays awake: ODE would stop a body at rest in each step that friction moves it by less than the threshold.
+// When this world's bodies fall asleep: ODE's own law (dInternalHandleAutoDisabling), before each step of
+// ODE's, in our hands, so that it can be saved and set, and so that what a moving surface carries stays
+// awake: ODE would stop a body at rest in each step that friction moves it by less than the threshold.
 #pragma once
 
 #include <unordered_set>
@@ -15,7 +16,8 @@ class Sleep {
   void set_law(const SleepLaw& law) { law_ = law; }
   const SleepLaw& law() const { return law_; }
 
-  /// `carried`: bodies on surfaces that move; they and what hangs together with them by joints, those of contacts too, stay awake. `h`: the step to come, s.
+  /// `carried`: bodies on surfaces that move; they and what hangs together with them by joints, those of
+  /// contacts too, stay awake. `h`: the step to come, s.
   void run(Bodies& bodies, std::span<const dBodyID> carried, double h);
 
  private:

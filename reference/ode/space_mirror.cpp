@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <unordered_map>
 
 #include "reference/ode/box_tree.h"
@@ -77,15 +78,36 @@ class Print {
 std::array<dReal, 4> sizes_of(dGeomID geom, int geom_class) {
   std::array<dReal, 4> sizes{};
   switch (geom_class) {
-    case dSphereClass: sizes[0] = dGeomSphereGetRadius(geom); break;
-    case dBoxClass: dGeomBoxGetLengths(geom, sizes.data()); break;
-    case dCapsuleClass: dGeomCapsuleGetParams(geom, &sizes[0], &sizes[1]); break;
-    case dCylinderClass: dGeomCylinderGetParams(geom, &sizes[0], &sizes[1]); break;
-    case dPlaneClass: dGeomPlaneGetParams(geom, sizes.data()); break;
-    default: break;
+    case dSphereClass:
+      sizes[0] = dGeomSphereGetRadius(geom);
+      break;
+    case dBoxClass:
+      dGeomBoxGetLengths(geom, sizes.data());
+      break;
+    case dCapsuleClass:
+      dGeomCapsuleGetParams(geom, &sizes[0], &sizes[1]);
+      break;
+    case dCylinderClass:
+      dGeomCylinderGetParams(geom, &sizes[0], &sizes[1]);
+      break;
+    case dPlaneClass:
+      dGeomPlaneGetParams(geom, sizes.data());
+      break;
+    default:
+      break;
   }
   sizes[3] = geom_class == dPlaneClass ? sizes[3] : 0.0;  // a box's fourth is ODE's padding
   return sizes;
+}
+
+/// Whether the caller made something of it that is no number. Such a geom is left alone.
+bool is_spoilt(dGeomID geom, int geom_class) {
+  if (geom_class == dPlaneClass) return false;
+  const auto sum = [](const dReal* v) { return v[0] + v[1] + v[2]; };
+  dReal all = sum(dGeomGetPosition(geom));
+  if (const dBodyID body = dGeomGetBody(geom))
+    all += sum(dBodyGetLinearVel(body)) + sum(dBodyGetAngularVel(body));
+  return !std::isfinite(all);
 }
 
 Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
@@ -121,7 +143,9 @@ std::uint64_t print_of(dGeomID geom, int geom_class, unsigned category, unsigned
   const dReal *position = dGeomGetPosition(geom), *rotation = dGeomGetRotation(geom);
   for (const int i : {0, 1, 2}) print.add(position[i]);
   for (const int i : {0, 1, 2, 4, 5, 6, 8, 9, 10}) print.add(rotation[i]);
-  if (geom_class == dSphereClass || geom_class == dBoxClass || geom_class == dCapsuleClass || geom_class == dCylinderClass) return print.value();
+  if (geom_class == dSphereClass || geom_class == dBoxClass || geom_class == dCapsuleClass ||
+      geom_class == dCylinderClass)
+    return print.value();
   if (geom_class == dTriMeshClass) print.add(dGeomTriMeshGetData(geom));
   std::array<dReal, 6> bounds;
   dGeomGetAABB(geom, bounds.data());
@@ -139,7 +163,9 @@ void fetch(dGeomID geom) {
 
 bool is_space(int geom_class) { return geom_class >= dFirstSpaceClass && geom_class <= dLastSpaceClass; }
 
-Eigen::AlignedBox3d box_of(const std::array<dReal, 6>& b) { return {Vec3(b[0], b[2], b[4]), Vec3(b[1], b[3], b[5])}; }
+Eigen::AlignedBox3d box_of(const std::array<dReal, 6>& b) {
+  return {Vec3(b[0], b[2], b[4]), Vec3(b[1], b[3], b[5])};
+}
 
 void place(const Seen& seen, MirroredGeom& geom) {
   geom.bounds = box_of(seen.pose.bounds);
@@ -158,14 +184,16 @@ MirroredGeom mirror(const Seen& seen) {
   geom.category = is.category, geom.collide = is.collide;
   if (geom.kind == GeomKind::plane) geom.normal = to_vec3(is.sizes.data()), geom.offset = is.sizes[3];
   place(seen, geom);
-  geom.previous_position = geom.position, geom.previous_orientation = geom.orientation, geom.previous_bounds = geom.bounds;
+  geom.previous_position = geom.position, geom.previous_orientation = geom.orientation,
+  geom.previous_bounds = geom.bounds;
   return geom;
 }
 
 }  // namespace
 
 struct SpaceMirror::Impl {
-  explicit Impl(dSpaceID callers) : space(callers), probe(dCreateBox(nullptr, kEverywhere, kEverywhere, kEverywhere)) {}
+  explicit Impl(dSpaceID callers)
+      : space(callers), probe(dCreateBox(nullptr, kEverywhere, kEverywhere, kEverywhere)) {}
   ~Impl() { dGeomDestroy(probe); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -187,13 +215,13 @@ struct SpaceMirror::Impl {
   dGeomID probe;  // meets everything
   std::vector<dSpaceID> excluded;
   std::vector<MirroredGeom> geoms;
-  std::vector<Seen> seen;      // one of each slot
-  std::vector<Sight> sights;   // likewise
+  std::vector<Seen> seen;     // one of each slot
+  std::vector<Sight> sights;  // likewise
   std::unordered_map<dGeomID, std::uint32_t> slots;
   std::vector<Given> order, last_order;
-  std::size_t cursor = 0;                        // in last_order: which is expected next
+  std::size_t cursor = 0;  // in last_order: which is expected next
   std::vector<std::uint32_t> added, removed, moved, planes, bodied, free;
-  std::vector<Eigen::AlignedBox3d> followed;     // one of each in bodied
+  std::vector<Eigen::AlignedBox3d> followed;  // one of each in bodied
   std::vector<Eigen::AlignedBox3d> disturbed;
   BoxTree tree;
   std::uint64_t refreshes = 0;
@@ -211,7 +239,10 @@ void SpaceMirror::exclude(dxSpace* space) { impl_->excluded.push_back(space); }
 void SpaceMirror::refresh() {
   prepare();
   impl_->forget_moves();
-  impl_->walk(impl_->space, ~0u, ~0u, [this](dGeomID geom, int geom_class, unsigned category, unsigned collide) { return impl_->look_at(geom, geom_class, category, collide), true; });
+  impl_->walk(impl_->space, ~0u, ~0u,
+              [this](dGeomID geom, int geom_class, unsigned category, unsigned collide) {
+                return impl_->look_at(geom, geom_class, category, collide), true;
+              });
   impl_->drop_unseen();
   impl_->note_disturbed();
   impl_->update_tree();
@@ -221,7 +252,8 @@ void SpaceMirror::refresh() {
 void SpaceMirror::Impl::forget_moves() {
   for (const std::uint32_t slot : moved) {
     MirroredGeom& geom = geoms[slot];
-    geom.previous_position = geom.position, geom.previous_orientation = geom.orientation, geom.previous_bounds = geom.bounds;
+    geom.previous_position = geom.position, geom.previous_orientation = geom.orientation,
+    geom.previous_bounds = geom.bounds;
   }
   free.insert(free.end(), removed.rbegin(), removed.rend());
   added.clear(), removed.clear(), moved.clear();
@@ -231,8 +263,9 @@ void SpaceMirror::Impl::forget_moves() {
   ++refreshes;
 }
 
-// Visits every geom that may meet another, with its bits less those that the spaces around it lack, until a visit returns false.
-// dSpaceGetGeom fails an assertion on a quadtree; what a box without end meets there is all that a body could.
+// Visits every geom that may meet another, with its bits less those that the spaces around it lack, until a
+// visit returns false. dSpaceGetGeom fails an assertion on a quadtree; what a box without end meets there is
+// all that a body could.
 template <class Visit>
 bool SpaceMirror::Impl::walk(dSpaceID in, unsigned category, unsigned collide, const Visit& visit) const {
   if (std::ranges::find(excluded, in) != excluded.end()) return true;
@@ -242,8 +275,10 @@ bool SpaceMirror::Impl::walk(dSpaceID in, unsigned category, unsigned collide, c
   const auto enter = [&](dGeomID geom) {
     const int geom_class = dGeomGetClass(geom);
     if (is_space(geom_class)) return walk(reinterpret_cast<dSpaceID>(geom), category, collide, visit);
-    const unsigned own_category = category & unsigned(dGeomGetCategoryBits(geom)), own_collide = collide & unsigned(dGeomGetCollideBits(geom));
-    return geom_class == dRayClass || !dGeomIsEnabled(geom) || (own_category | own_collide) == 0 || visit(geom, geom_class, own_category, own_collide);
+    const unsigned own_category = category & unsigned(dGeomGetCategoryBits(geom)),
+                   own_collide = collide & unsigned(dGeomGetCollideBits(geom));
+    return geom_class == dRayClass || !dGeomIsEnabled(geom) || (own_category | own_collide) == 0 ||
+           visit(geom, geom_class, own_category, own_collide);
   };
   if (dSpaceGetClass(in) != dQuadTreeSpaceClass) {
     const int count = dSpaceGetNumGeoms(in);
@@ -264,6 +299,7 @@ bool SpaceMirror::Impl::walk(dSpaceID in, unsigned category, unsigned collide, c
 
 void SpaceMirror::Impl::look_at(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
   if (cursor + kAhead < last_order.size()) fetch(last_order[cursor + kAhead].geom);
+  if (is_spoilt(geom, geom_class)) return;
   const std::uint64_t print = print_of(geom, geom_class, category, collide);
   const Given* last = find_last(geom);
   if (last && last->print == print) return note(*last);
@@ -277,7 +313,8 @@ void SpaceMirror::Impl::look_at(dGeomID geom, int geom_class, unsigned category,
   moved.push_back(slot);
 }
 
-// As it was given out the last time; null: it was not. A space mostly gives its geoms out in the same order; one that was moved or is new may come earlier.
+// As it was given out the last time; null: it was not. A space mostly gives its geoms out in the same order;
+// one that was moved or is new may come earlier.
 const Given* SpaceMirror::Impl::find_last(dGeomID geom) {
   if (cursor == last_order.size() || last_order[cursor].geom != geom) {
     const auto found = slots.find(geom);
@@ -328,7 +365,8 @@ void SpaceMirror::Impl::note_disturbed() {
   disturbed.clear();
   const auto last_known = [this](std::uint32_t slot) {
     const auto found = std::ranges::lower_bound(bodied, slot);
-    return found != bodied.end() && *found == slot ? followed[std::size_t(found - bodied.begin())] : geoms[slot].previous_bounds;
+    return found != bodied.end() && *found == slot ? followed[std::size_t(found - bodied.begin())]
+                                                   : geoms[slot].previous_bounds;
   };
   for (const std::uint32_t slot : added) disturbed.push_back(geoms[slot].bounds);
   for (const std::uint32_t slot : removed) disturbed.push_back(last_known(slot));
@@ -354,12 +392,16 @@ void SpaceMirror::Impl::update_tree() {
   const auto is_plane = [this](std::uint32_t slot) { return geoms[slot].kind == GeomKind::plane; };
   std::vector<BoxTree::Entry> entries;
   for (const std::uint32_t slot : removed) {
-    if (is_plane(slot)) std::erase(planes, slot);
-    else tree.remove(slot);
+    if (is_plane(slot))
+      std::erase(planes, slot);
+    else
+      tree.remove(slot);
   }
   for (const std::uint32_t slot : added) {
-    if (is_plane(slot)) planes.push_back(slot);
-    else entries.push_back({slot, geoms[slot].bounds});
+    if (is_plane(slot))
+      planes.push_back(slot);
+    else
+      entries.push_back({slot, geoms[slot].bounds});
   }
   std::ranges::sort(planes);
   if (!entries.empty()) tree.add(entries);
@@ -391,21 +433,25 @@ void SpaceMirror::Impl::follow(std::size_t index) {
 
 void SpaceMirror::find_bodied_now(std::vector<std::uint32_t>& slots) const {
   const Impl& all = *impl_;
-  std::size_t cursor = 0, left = all.bodied.size();  // these are mostly the first that a space gives out, as they came last or move
-  if (left > 0) all.walk(all.space, ~0u, ~0u, [&](dGeomID geom, int, unsigned, unsigned) {
-    if (cursor == all.order.size() || all.order[cursor].geom != geom) {
-      const auto known = all.slots.find(geom);
-      if (known == all.slots.end()) return true;
-      cursor = all.sights[known->second].place;
-    }
-    const Given& given = all.order[cursor++];
-    if (given.body && dGeomGetBody(geom) == given.body) slots.push_back(given.slot), --left;
-    return left > 0;
-  });
+  std::size_t cursor = 0, left = all.bodied.size();  // these are mostly the first that a space gives out, as
+                                                     // they came last or move
+  if (left > 0)
+    all.walk(all.space, ~0u, ~0u, [&](dGeomID geom, int, unsigned, unsigned) {
+      if (cursor == all.order.size() || all.order[cursor].geom != geom) {
+        const auto known = all.slots.find(geom);
+        if (known == all.slots.end()) return true;
+        cursor = all.sights[known->second].place;
+      }
+      const Given& given = all.order[cursor++];
+      if (given.body && dGeomGetBody(geom) == given.body) slots.push_back(given.slot), --left;
+      return left > 0;
+    });
   std::ranges::sort(slots);
 }
 
-void SpaceMirror::find_followed(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const { impl_->tree.find(box, found); }
+void SpaceMirror::find_followed(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const {
+  impl_->tree.find(box, found);
+}
 
 void SpaceMirror::find_near(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const {
   found.clear();

@@ -1,5 +1,5 @@
-// What a caller's space holds, seen anew at the start of every step: its geoms may come, go and move at any time, so a pointer of the last step is only
-// ever compared with what the space holds now.
+// What a caller's space holds, seen anew at the start of every step: its geoms may come, go and move at any
+// time, so a pointer of the last step is only ever compared with what the space holds now.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,20 @@ struct dxBody;
 namespace lodestone {
 
 struct MirroredGeom {
-  dxGeom* geom = nullptr;  ///< null: removed; what else is known of it stays until its slot is taken again, a refresh later or more
+  dxGeom* geom = nullptr;  ///< null: removed; what else is known of it stays until its slot is taken again, a
+                           ///< refresh later or more
   dxBody* body = nullptr;  ///< null: static
   GeomKind kind = GeomKind::other;
-  bool dynamic = false;    ///< has a body that is not kinematic
+  bool dynamic = false;                ///< has a body that is not kinematic
   unsigned category = 0, collide = 0;  ///< bits, less those that the spaces around it lack
   Vec3 position = Vec3::Zero();        ///< m; a plane has none
   Quat orientation = Quat::Identity();
-  Eigen::AlignedBox3d bounds;          ///< m
+  Eigen::AlignedBox3d bounds;             ///< m
   Vec3 previous_position = Vec3::Zero();  ///< as of the refresh before; of an added one, as now
   Quat previous_orientation = Quat::Identity();
   Eigen::AlignedBox3d previous_bounds;
-  Vec3 normal = Vec3::UnitZ();         ///< of a plane: normal·x = offset, unit length
-  double offset = 0.0;                 ///< m
+  Vec3 normal = Vec3::UnitZ();  ///< of a plane: normal·x = offset, unit length
+  double offset = 0.0;          ///< m
 };
 
 class SpaceMirror {
@@ -42,14 +43,16 @@ class SpaceMirror {
   /// From now on leaves out `space` and what is in it.
   void exclude(dxSpace* space);
 
-  /// Looks at every geom of the space and the spaces in it, of whatever type, save rays, disabled ones and those without any category and collide bits. The
-  /// caller's space may be collided and changed at any time but during this.
+  /// Looks at every geom of the space and the spaces in it, of whatever type, save rays, disabled ones and
+  /// those without any category and collide bits. The caller's space may be collided and changed at any time
+  /// but during this.
   void refresh();
 
   /// By slot; removed ones among them.
   std::span<const MirroredGeom> geoms() const;
-  /// Slots, ascending, of what the last refresh found. A geom that became another (its size, mesh data, bits, body, dynamic or kinematic) is removed and
-  /// added, in another slot; one in the same state as before, at the same address, is taken for the same.
+  /// Slots, ascending, of what the last refresh found. A geom that became another (its size, mesh data, bits,
+  /// body, dynamic or kinematic) is removed and added, in another slot; one in the same state as before, at
+  /// the same address, is taken for the same.
   std::span<const std::uint32_t> added() const;
   std::span<const std::uint32_t> removed() const;
   std::span<const std::uint32_t> moved() const;  ///< position, orientation or bounds
@@ -61,14 +64,17 @@ class SpaceMirror {
   /// Slots, ascending, of the geoms, save planes, whose bounds meet `box` (m).
   void find_near(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const;
 
-  /// Appends the slots, ascending, of those of bodied() that the space holds now, at any time; nothing else changes. Costs a walk over the space's geoms, until all of them are found.
+  /// Appends the slots, ascending, of those of bodied() that the space holds now, at any time; nothing else
+  /// changes. Costs a walk over the space's geoms, until all of them are found.
   void find_bodied_now(std::vector<std::uint32_t>& slots) const;
 
   /// Looks where the world's step took the geoms of bodies; geoms() and moved() stay as of the last refresh.
   void follow();
-  /// Appends slots, in no order, of the geoms, save planes, whose bounds as followed last meet `box`, and of a few whose bounds do not.
+  /// Appends slots, in no order, of the geoms, save planes, whose bounds as followed last meet `box`, and of
+  /// a few whose bounds do not.
   void find_followed(const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& found) const;
-  /// The bounds of what the caller himself moved since the last follow() of it: of those in moved(), from where they were and where they are, and of what came or went.
+  /// The bounds of what the caller himself moved since the last follow() of it: of those in moved(), from
+  /// where they were and where they are, and of what came or went.
   std::span<const Eigen::AlignedBox3d> disturbed() const;
 
  private:

@@ -11,16 +11,20 @@ struct OdeSpacePairs::Impl {
   std::span<const double> x, y, z;
   std::vector<std::pair<std::uint32_t, std::uint32_t>>* found = nullptr;
 
-  static std::uint32_t number_of(dGeomID ball) { return std::uint32_t(reinterpret_cast<std::uintptr_t>(dGeomGetData(ball))); }
+  static std::uint32_t number_of(dGeomID ball) {
+    return std::uint32_t(reinterpret_cast<std::uintptr_t>(dGeomGetData(ball)));
+  }
   void meet(std::uint32_t a, std::uint32_t b) const {
     const double limit = radii[a] + radii[b];
     if (Vec3(x[a] - x[b], y[a] - y[b], z[a] - z[b]).squaredNorm() < limit * limit) found->emplace_back(a, b);
   }
 };
 
-OdeSpacePairs::OdeSpacePairs(OdeSpaceKind kind, std::span<const float> radii) : impl_(std::make_unique<Impl>()) {
+OdeSpacePairs::OdeSpacePairs(OdeSpaceKind kind, std::span<const float> radii)
+    : impl_(std::make_unique<Impl>()) {
   ode::prepare();
-  impl_->space = kind == OdeSpaceKind::hash ? dHashSpaceCreate(nullptr) : dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
+  impl_->space = kind == OdeSpaceKind::hash ? dHashSpaceCreate(nullptr)
+                                            : dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
   for (const float radius : radii) {
     const dGeomID ball = dCreateSphere(impl_->space, double(radius));
     dGeomSetData(ball, reinterpret_cast<void*>(std::uintptr_t(impl_->balls.size())));
@@ -42,7 +46,9 @@ void OdeSpacePairs::place(std::span<const double> x, std::span<const double> y, 
 
 void OdeSpacePairs::find(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
   impl_->found = &pairs;
-  const auto meet = [](void* impl, dGeomID a, dGeomID b) { static_cast<const Impl*>(impl)->meet(Impl::number_of(a), Impl::number_of(b)); };
+  const auto meet = [](void* impl, dGeomID a, dGeomID b) {
+    static_cast<const Impl*>(impl)->meet(Impl::number_of(a), Impl::number_of(b));
+  };
   dSpaceCollide(impl_->space, impl_.get(), meet);
 }
 

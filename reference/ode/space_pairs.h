@@ -1,4 +1,5 @@
-// The pairs of near balls as ODE's own broad phases find them: what the statistical level's cells are compared with.
+// The pairs of near balls as ODE's own broad phases find them: what the statistical level's cells are
+// compared with.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,8 @@ class OdeSpacePairs {
 
   /// One position a sphere, m.
   void place(std::span<const double> x, std::span<const double> y, std::span<const double> z);
-  /// Adds the pairs whose spheres meet, each once: those that ODE hands to its callback and that overlap indeed.
+  /// Adds the pairs whose spheres meet, each once: those that ODE hands to its callback and that overlap
+  /// indeed.
   void find(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs);
 
  private:

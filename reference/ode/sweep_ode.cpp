@@ -6,8 +6,9 @@
 namespace lodestone::ode {
 namespace {
 
-// Of the thickness: how far from the axis of the way the ring of rays is, and how far before what they meet the centre stops. The ball inscribed in
-// the body then reaches a little into it, so that the next collision detection finds a contact.
+// Of the thickness: how far from the axis of the way the ring of rays is, and how far before what they meet
+// the centre stops. The ball inscribed in the body then reaches a little into it, so that the next collision
+// detection finds a contact.
 constexpr double kRing = 0.8, kLeadOfCenter = 0.9, kLeadOfRing = 0.5;
 constexpr int kRingRays = 6;
 
@@ -15,7 +16,8 @@ Vec3 position_of(const Body& body) { return to_vec3(dBodyGetPosition(body.body))
 
 bool is_fast(const Body& body) {
   if (!body.body || !dBodyIsEnabled(body.body) || dBodyIsKinematic(body.body)) return false;
-  return (position_of(body) - body.before).squaredNorm() > body.thickness * body.thickness && dBodyGetNumJoints(body.body) == 0;
+  return (position_of(body) - body.before).squaredNorm() > body.thickness * body.thickness &&
+         dBodyGetNumJoints(body.body) == 0;
 }
 
 /// Whether the segment comes within `reach` of `center`.
@@ -25,12 +27,15 @@ bool comes_near(const Vec3& from, const Vec3& direction, double length, const Ve
 }
 
 bool touch(std::span<const OdeContact> contacts, OdeBodyId a, OdeBodyId b) {
-  return std::ranges::any_of(contacts, [&](const OdeContact& c) { return (c.first == a && c.second == b) || (c.first == b && c.second == a); });
+  return std::ranges::any_of(contacts, [&](const OdeContact& c) {
+    return (c.first == a && c.second == b) || (c.first == b && c.second == a);
+  });
 }
 
 }  // namespace
 
-Sweep::Sweep() : ray_(dCreateRay(nullptr, 1.0)), mesh_(dCreateTriMesh(nullptr, nullptr, nullptr, nullptr, nullptr)) {
+Sweep::Sweep()
+    : ray_(dCreateRay(nullptr, 1.0)), mesh_(dCreateTriMesh(nullptr, nullptr, nullptr, nullptr, nullptr)) {
   dGeomRaySetClosestHit(ray_, 1);
 }
 
@@ -51,7 +56,8 @@ int Sweep::stop_passing(Bodies& bodies, BroadPhase& broad_phase, std::span<const
   if (fast_.empty()) return 0;
   sort_by_reach(bodies);
   for (Body* body : fast_)
-    if (const double part = free_part(*body, broad_phase, contacts); part < 1.0) stopped_.emplace_back(body, part);
+    if (const double part = free_part(*body, broad_phase, contacts); part < 1.0)
+      stopped_.emplace_back(body, part);
   // Only now: the others' ways were measured to where all of them would have gone.
   for (const auto& [body, part] : stopped_) {
     const Vec3 place = body->before + part * (position_of(*body) - body->before);
@@ -84,26 +90,32 @@ Sweep::Reach Sweep::reach_of(Body& body) const {
 double Sweep::free_part(Body& body, BroadPhase& broad_phase, std::span<const OdeContact> contacts) {
   double part = 1.0;
   const Reach own = reach_of(body);
-  for (auto it = std::ranges::lower_bound(reaches_, own.from - longest_, {}, &Reach::from); it != reaches_.end() && it->from <= own.to; ++it)
-    if (it->body != &body && it->to >= own.from && broad_phase.lets_meet(body, *it->body)) part = std::min(part, free_part(body, *it->body, contacts));
+  for (auto it = std::ranges::lower_bound(reaches_, own.from - longest_, {}, &Reach::from);
+       it != reaches_.end() && it->from <= own.to; ++it)
+    if (it->body != &body && it->to >= own.from && broad_phase.lets_meet(body, *it->body))
+      part = std::min(part, free_part(body, *it->body, contacts));
 
   const Vec3 end = position_of(body), whole = end - body.before;
   const Way way{body.before, whole.normalized(), whole.norm(), body.thickness, touch(contacts, body.id, {})};
   Eigen::AlignedBox3d swept(body.before.cwiseMin(end), body.before.cwiseMax(end));
-  swept.extend(swept.min() - Vec3::Constant(way.thickness)).extend(swept.max() + Vec3::Constant(way.thickness));
-  for (const dGeomID geom : broad_phase.find_others(swept, body.properties)) part = std::min(part, free_part(way, geom));
+  swept.extend(swept.min() - Vec3::Constant(way.thickness))
+      .extend(swept.max() + Vec3::Constant(way.thickness));
+  for (const dGeomID geom : broad_phase.find_others(swept, body.properties))
+    part = std::min(part, free_part(way, geom));
   return part;
 }
 
 double Sweep::free_part(const Body& body, const Body& other, std::span<const OdeContact> contacts) {
-  const Vec3 end = position_of(body), center = position_of(other), relative = (end - body.before) - (center - other.before);
+  const Vec3 end = position_of(body), center = position_of(other),
+             relative = (end - body.before) - (center - other.before);
   const double length = relative.norm();
   if (length <= body.thickness) return 1.0;
   const Vec3 from = end - relative, direction = relative / length;
   if (!comes_near(from, direction, length, center, other.reach + body.thickness)) return 1.0;
   const Way way{from, direction, length, body.thickness, touch(contacts, body.id, other.id)};
   double part = 1.0;
-  for (dGeomID geom = dBodyGetFirstGeom(other.body); geom; geom = dBodyGetNextGeom(geom)) part = std::min(part, free_part(way, geom));
+  for (dGeomID geom = dBodyGetFirstGeom(other.body); geom; geom = dBodyGetNextGeom(geom))
+    part = std::min(part, free_part(way, geom));
   return part;
 }
 
@@ -114,7 +126,8 @@ double Sweep::free_part(const Way& way, dGeomID geom) {
     const auto distance = distance_to(geom, way.from + offset, way.direction, way.length);
     if (!distance) return;
     const double left = *distance - lead * way.thickness;
-    // What is nearer without touching stands in a hollow of the body: were it held there, no contact would ever let it go.
+    // What is nearer without touching stands in a hollow of the body: were it held there, no contact would
+    // ever let it go.
     if (left > 0.0 || way.touches) free = std::min(free, std::max(left, 0.0));
   };
   look(Vec3::Zero(), kLeadOfCenter);
@@ -125,7 +138,8 @@ double Sweep::free_part(const Way& way, dGeomID geom) {
   return free / way.length;
 }
 
-std::optional<double> Sweep::distance_to(dGeomID geom, const Vec3& from, const Vec3& direction, double length) {
+std::optional<double> Sweep::distance_to(dGeomID geom, const Vec3& from, const Vec3& direction,
+                                         double length) {
   dGeomRaySetLength(ray_, length);
   if (dGeomGetClass(geom) == dTriMeshClass) return distance_to_mesh(geom, from, direction);
   dGeomRaySet(ray_, from.x(), from.y(), from.z(), direction.x(), direction.y(), direction.z());
@@ -133,7 +147,8 @@ std::optional<double> Sweep::distance_to(dGeomID geom, const Vec3& from, const V
   return dCollide(ray_, geom, 1, &hit, sizeof hit) > 0 ? std::optional(hit.depth) : std::nullopt;
 }
 
-// OPCODE computes in float: about the start of the ray it is as precise far from the world's origin as near it.
+// OPCODE computes in float: about the start of the ray it is as precise far from the world's origin as near
+// it.
 std::optional<double> Sweep::distance_to_mesh(dGeomID mesh, const Vec3& from, const Vec3& direction) {
   const Vec3 place = to_vec3(dGeomGetPosition(mesh)) - from;
   dGeomTriMeshSetData(mesh_, dGeomTriMeshGetData(mesh));

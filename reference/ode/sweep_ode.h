@@ -1,6 +1,7 @@
-// Fast bodies. One whose centre goes farther in a substep than the body is thick can pass through another between two looks at it. Rays along
-// its way, relative to what else moves, find that; the body then ends the substep where it touches, its velocity untouched, for the next one's contacts.
-// The centre and a ring of six places around it are looked along: what only the outer tenth of a body would have grazed is missed.
+// Fast bodies. One whose centre goes farther in a substep than the body is thick can pass through another
+// between two looks at it. Rays along its way, relative to what else moves, find that; the body then ends the
+// substep where it touches, its velocity untouched, for the next one's contacts. The centre and a ring of six
+// places around it are looked along: what only the outer tenth of a body would have grazed is missed.
 #pragma once
 
 #include <optional>
@@ -21,8 +22,9 @@ class Sweep {
 
   /// Notes where every body is, before a substep.
   void begin(Bodies& bodies);
-  /// After the substep: stops the bodies that passed through something. Those held by a joint are left alone, and planes are no concern: they have
-  /// no other side. `contacts`: of the substep. Returns how many were stopped.
+  /// After the substep: stops the bodies that passed through something. Those held by a joint are left alone,
+  /// and planes are no concern: they have no other side. `contacts`: of the substep. Returns how many were
+  /// stopped.
   int stop_passing(Bodies& bodies, BroadPhase& broad_phase, std::span<const OdeContact> contacts);
 
  private:
@@ -49,8 +51,8 @@ class Sweep {
 
   dGeomID ray_, mesh_;
   int axis_ = 0;
-  std::vector<Reach> reaches_;                     // by where they begin
-  double longest_ = 0.0;                           // m, of those
+  std::vector<Reach> reaches_;  // by where they begin
+  double longest_ = 0.0;        // m, of those
   std::vector<Body*> fast_;
   std::vector<std::pair<Body*, double>> stopped_;  // with the part of their way that is free
 };

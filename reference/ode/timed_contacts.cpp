@@ -6,12 +6,14 @@
 namespace lodestone {
 namespace {
 
-constexpr double kFastImpact = 3.0;  // × g·h: what comes slower lands as ODE has it; of bodies at rest the answers to such would never end
+constexpr double kFastImpact = 3.0;  // × g·h: what comes slower lands as ODE has it; of bodies at rest the
+                                     // answers to such would never end
 constexpr double kTogether = 0.04;   // of a step: vertices that strike within it of the first strike with it
 
 class TimedContacts {
  public:
-  TimedContacts(std::span<const NearPoint> near, const TimedStep& step) : near_(near), step_(step), fall_(step.gravity * step.duration) {
+  TimedContacts(std::span<const NearPoint> near, const TimedStep& step)
+      : near_(near), step_(step), fall_(step.gravity * step.duration) {
     for (const NearPoint& point : near_)
       if (strikes(point)) first_ = std::min(first_, time_of(point));
   }
@@ -35,10 +37,13 @@ class TimedContacts {
   }
 
   /// From the start of the step; what is long inside counts as having come in during the last one.
-  double time_of(const NearPoint& point) const { return std::max(-step_.duration, -point.depth / approach(point)); }
+  double time_of(const NearPoint& point) const {
+    return std::max(-step_.duration, -point.depth / approach(point));
+  }
 
   bool strikes(const NearPoint& point) const {
-    return approach(point) > std::max(step_.bounce_velocity, kFastImpact * fall_) && time_of(point) < step_.duration;
+    return approach(point) > std::max(step_.bounce_velocity, kFastImpact * fall_) &&
+           time_of(point) < step_.duration;
   }
 
   bool is_held(const NearPoint& point) const {
@@ -46,13 +51,15 @@ class TimedContacts {
     return approach_now <= 0.0 && -point.depth < step_.duration * (approach_now + fall_);
   }
 
-  /// ODE gives it e times its approach at the start of the step, at the step's end. Gravity speeds it up until it strikes and pulls it back
-  /// afterwards; and ODE's velocities are those of the middle of the last step (it moves a body by the velocity that a step ends with). A bounce that
-  /// would be over before the end is none.
+  /// ODE gives it e times its approach at the start of the step, at the step's end. Gravity speeds it up
+  /// until it strikes and pulls it back afterwards; and ODE's velocities are those of the middle of the last
+  /// step (it moves a body by the velocity that a step ends with). A bounce that would be over before the end
+  /// is none.
   ContactPoint impact(const NearPoint& point) const {
     const double rebound = step_.restitution * approach(point), half = 0.5 * step_.duration;
     const double lift = step_.gravity * (step_.restitution * (half + first_) - (half - first_));
-    return {at(rotation_from_vector(first_ * step_.body.angular_velocity) * point.arm), step_.normal, 0.0, std::max(-rebound, lift)};
+    return {at(rotation_from_vector(first_ * step_.body.angular_velocity) * point.arm), step_.normal, 0.0,
+            std::max(-rebound, lift)};
   }
 
   Vec3 at(const Vec3& arm) const { return step_.body.position + arm; }
@@ -65,7 +72,8 @@ class TimedContacts {
 
 }  // namespace
 
-std::optional<double> append_timed_contacts(std::span<const NearPoint> near, const TimedStep& step, std::vector<ContactPoint>& contacts) {
+std::optional<double> append_timed_contacts(std::span<const NearPoint> near, const TimedStep& step,
+                                            std::vector<ContactPoint>& contacts) {
   return TimedContacts(near, step).append(contacts);
 }
 

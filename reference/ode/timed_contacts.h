@@ -1,10 +1,12 @@
 // Contacts of one body with a plane, answered at their own time within a step.
-// ODE answers a contact at the start of the step after it happened. At game rates a body is then up to v·h inside the plane, so an impact
-// of one vertex looks like one of a whole patch; and a rocking body, lifted off by next to nothing, falls freely for a step and loses the g·h
-// that it lands with: a bunny that rocks for five seconds lies still after three. So here
+// ODE answers a contact at the start of the step after it happened. At game rates a body is then up to v·h
+// inside the plane, so an impact of one vertex looks like one of a whole patch; and a rocking body, lifted
+// off by next to nothing, falls freely for a step and loses the g·h that it lands with: a bunny that rocks
+// for five seconds lies still after three. So here
 // - vertices that strike within the step bounce at the time of the first of them, later ones not yet;
-// - a vertex that gravity alone would bring back within the step is held: it may come down to the plane, and no farther.
-// All others are ODE's: a slow landing sinks in and is lifted out, at small steps as at large ones.
+// - a vertex that gravity alone would bring back within the step is held: it may come down to the plane, and
+// no farther. All others are ODE's: a slow landing sinks in and is lifted out, at small steps as at large
+// ones.
 #pragma once
 
 #include <optional>
@@ -32,9 +34,10 @@ struct NearPoint {
   double depth;  ///< m below the plane; negative above it
 };
 
-/// Appends the contacts among `near` to `contacts`. Returns when within the step they strike (s after its start, negative for one noticed
-/// late); nothing where none strikes.
-std::optional<double> append_timed_contacts(std::span<const NearPoint> near, const TimedStep& step, std::vector<ContactPoint>& contacts);
+/// Appends the contacts among `near` to `contacts`. Returns when within the step they strike (s after its
+/// start, negative for one noticed late); nothing where none strikes.
+std::optional<double> append_timed_contacts(std::span<const NearPoint> near, const TimedStep& step,
+                                            std::vector<ContactPoint>& contacts);
 
 /// A step takes its impulses at its start. Where it ends if they came `time` after the start instead.
 RigidState end_of_step(const RigidState& start, const RigidState& end, double time);

@@ -7,20 +7,25 @@
 
 namespace lodestone::ode {
 
-void Touches::begin_step() {
-  touches_.clear(), hardest_.clear(), index_.clear(), watched_.clear();
-}
+void Touches::begin_step() { touches_.clear(), hardest_.clear(), index_.clear(), watched_.clear(); }
 
 std::size_t Touches::touch_of(const ContactSide& ours, const ContactSide& other) {
-  const auto [entry, is_new] = index_.try_emplace({ours.id.value, other.id.value, other.ground.value, other.callers_geom}, touches_.size());
+  const auto [entry, is_new] = index_.try_emplace(
+      {ours.id.value, other.id.value, other.ground.value, other.callers_geom}, touches_.size());
   if (is_new) {
-    touches_.push_back({.first = ours.id, .second = other.id, .ground = other.ground, .callers_geom = other.callers_geom, .first_material = ours.material, .second_material = other.material});
+    touches_.push_back({.first = ours.id,
+                        .second = other.id,
+                        .ground = other.ground,
+                        .callers_geom = other.callers_geom,
+                        .first_material = ours.material,
+                        .second_material = other.material});
     hardest_.push_back(-1.0);
   }
   return entry->second;
 }
 
-void Touches::watch(dJointID joint, const ContactSide& first, const ContactSide& second, const ContactPoint& point, double approach) {
+void Touches::watch(dJointID joint, const ContactSide& first, const ContactSide& second,
+                    const ContactPoint& point, double approach) {
   const bool in_order = bool(first.id);  // a touch names this world's body first
   Watched& watched = watched_.emplace_back();
   watched.touch = in_order ? touch_of(first, second) : touch_of(second, first);

@@ -15,7 +15,8 @@ class Touches {
   void begin_step();
   void begin_substep() { watched_.clear(); }
   /// A contact of the substep to come; the joint must live until end_substep.
-  void watch(dJointID joint, const ContactSide& first, const ContactSide& second, const ContactPoint& point, double approach);
+  void watch(dJointID joint, const ContactSide& first, const ContactSide& second, const ContactPoint& point,
+             double approach);
   /// `h`: the substep that ended, s.
   void end_substep(double h);
 
@@ -33,9 +34,9 @@ class Touches {
   std::size_t touch_of(const ContactSide& ours, const ContactSide& other);
 
   std::vector<OdeTouch> touches_;
-  std::vector<double> hardest_;      // N s, of a single contact of each
+  std::vector<double> hardest_;  // N s, of a single contact of each
   std::map<Pair, std::size_t> index_;
-  std::deque<Watched> watched_;      // whose addresses ODE keeps
+  std::deque<Watched> watched_;  // whose addresses ODE keeps
 };
 
 }  // namespace lodestone::ode

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "reference/ode/collision_ode.h"
@@ -29,11 +30,14 @@ struct OdeWorld::Impl {
   // A substep: contacts, ODE's own step (or the caller's), and putting right what came of it.
   void begin_substep(double h, int attempt);
   bool advance(double h);
+  [[noreturn]] void fail(const std::string& message);
   void end_substep(double h);
 
   void look_at_callers_space();
   void push_bodies();
   void take_back_bodies();
+  void put_back(ode::Body& body);
+  void put_back_unsound();
   void recover_bodies();
   void count_uneven_contacts();
   void wake_neighbors(const ode::Body& body);
@@ -54,9 +58,11 @@ struct OdeWorld::Impl {
   OdeCounters counters;
   OdeTimes times;
   std::uint64_t quick_steps = 0;
-  bool has_looked = false;           // since the last step
-  double callers_step_s = 0.0;          // between begin_callers_step and end_callers_step; else 0
-  std::vector<Eigen::AlignedBox3d> vacated;  // m, by bodies that were removed between steps: the caller's near there wake once they are known again
+  bool has_looked = false;                   // since the last step
+  std::string failure = {};                  // why ODE gave up; empty: it has not
+  double callers_step_s = 0.0;               // between begin_callers_step and end_callers_step; else 0
+  std::vector<Eigen::AlignedBox3d> vacated;  // m, by bodies that were removed between steps: the caller's
+                                             // near there wake once they are known again
 };
 
 }  // namespace lodestone

@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
 #include "reference/ode/islands.h"
 #include "reference/ode/world_ode.h"
+#include "reference/simulation_error.h"
 
 namespace lodestone {
 
@@ -10,13 +13,16 @@ using namespace ode;
 
 namespace {
 
-constexpr double kUneven = 100.0;  // QuickStep's iterations carry a weight through a body a hundredth of it no more
+constexpr double kUneven =
+    100.0;  // QuickStep's iterations carry a weight through a body a hundredth of it no more
 
 // Adds the time that it lives to a sum.
 class Timing {
  public:
   explicit Timing(double& sum_ms) : sum_ms_(sum_ms) {}
-  ~Timing() { sum_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+  ~Timing() {
+    sum_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
   Timing(const Timing&) = delete;
   Timing& operator=(const Timing&) = delete;
 
@@ -27,7 +33,8 @@ class Timing {
 
 }  // namespace
 
-OdeWorld::Impl::Impl(dWorldID callers_world, dSpaceID callers_space, const OdeSettings& s, const MaterialTable& materials)
+OdeWorld::Impl::Impl(dWorldID callers_world, dSpaceID callers_space, const OdeSettings& s,
+                     const MaterialTable& materials)
     : settings(s),
       mirror(callers_space ? std::make_unique<SpaceMirror>(callers_space) : nullptr),
       own_world(callers_world ? nullptr : dWorldCreate()),
@@ -51,16 +58,21 @@ void OdeWorld::Impl::set_up_own_world() {
   threading = std::make_unique<StepThreading>(world);
   dWorldSetGravity(world, settings.gravity.x(), settings.gravity.y(), settings.gravity.z());
   dWorldSetQuickStepNumIterations(world, settings.quick_step_iterations);
-  if (settings.cfm > 0.0) dWorldSetCFM(world, settings.cfm);  // friction's; without any its rows may come to depend on each other
+  if (settings.cfm > 0.0)
+    dWorldSetCFM(world, settings.cfm);  // friction's; without any its rows may come to depend on each other
 }
 
 // Nothing moves where all sleep, save in a caller's world, whose other bodies are unknown.
 bool OdeWorld::Impl::has_work() {
-  return !own_world || std::ranges::any_of(bodies.slots(), [](const Body& body) { return body.body && dBodyIsEnabled(body.body); });
+  return !own_world || std::ranges::any_of(bodies.slots(), [](const Body& body) {
+    return body.body && dBodyIsEnabled(body.body);
+  });
 }
 
 void OdeWorld::Impl::look_at_callers_space() {
-  if (!mirror || has_looked) return;
+  if (has_looked) return;
+  put_back_unsound();
+  if (!mirror) return;
   mirror->refresh();
   collision.note_changes(bodies);
   for (const Eigen::AlignedBox3d& box : vacated) collision.broad_phase().wake_callers(box);
@@ -69,6 +81,7 @@ void OdeWorld::Impl::look_at_callers_space() {
 }
 
 void OdeWorld::Impl::begin_step(double h) {
+  if (!failure.empty()) throw SimulationError(failure);
   look_at_callers_space();
   times = {};
   touches.begin_step();
@@ -84,9 +97,10 @@ void OdeWorld::Impl::end_step() {
   has_looked = false;
 }
 
-// ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in a message and leaving the
-// bodies without their contact forces. Such a substep is taken back and repeated with contacts a little softer and more uneven. Not in a caller's world,
-// whose other bodies cannot be taken back.
+// ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in
+// a message and leaving the bodies without their contact forces. Such a substep is taken back and repeated
+// with contacts a little softer and more uneven. Not in a caller's world, whose other bodies cannot be taken
+// back.
 void OdeWorld::Impl::substep(double h) {
   constexpr int kAttempts = 3;
   sweep.begin(bodies);
@@ -128,7 +142,8 @@ void OdeWorld::Impl::push_bodies() {
   for (const Body& body : bodies.slots()) {
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
     if (!body.force.isZero(0.0)) dBodyAddForce(body.body, body.force.x(), body.force.y(), body.force.z());
-    if (!body.torque.isZero(0.0)) dBodyAddTorque(body.body, body.torque.x(), body.torque.y(), body.torque.z());
+    if (!body.torque.isZero(0.0))
+      dBodyAddTorque(body.body, body.torque.x(), body.torque.y(), body.torque.z());
   }
 }
 
@@ -137,16 +152,47 @@ bool OdeWorld::Impl::advance(double h) {
   const Timing timing(times.response_ms);
   const std::int64_t messages_before = messages_of_this_thread();
   const std::span<const OdeContact> contacts = joints.contacts();
-  const bool too_many = int(contacts.size()) > settings.direct_contacts_max && largest_island(contacts) > settings.direct_contacts_max;
-  if (settings.quick_step || too_many) {
-    ++counters.quick_steps;
-    count_uneven_contacts();
-    const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++quick_steps);
-    dWorldQuickStep(world, h);
-  } else {
-    dWorldStep(world, h);
+  const bool too_many = int(contacts.size()) > settings.direct_contacts_max &&
+                        largest_island(contacts) > settings.direct_contacts_max;
+  try {
+    const RecoverableScope scope;
+    if (settings.quick_step || too_many) {
+      ++counters.quick_steps;
+      count_uneven_contacts();
+      const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++quick_steps);
+      dWorldQuickStep(world, h);
+    } else {
+      dWorldStep(world, h);
+    }
+  } catch (const AssertionFailed& failed) {
+    fail(failed.message);
   }
   return messages_of_this_thread() == messages_before;
+}
+
+// ODE's step was left half-way. Suspected is a body whose state it has spoilt, else the lightest of those
+// awake.
+void OdeWorld::Impl::fail(const std::string& message) {
+  const auto mass_of = [](const Body& body) {
+    dMass mass;
+    dBodyGetMass(body.body, &mass);
+    return mass.mass;
+  };
+  const Body* suspect = nullptr;
+  for (const Body& body : bodies.slots()) {
+    if (!body.body || !dBodyIsEnabled(body.body)) continue;
+    if (!is_sound(state_of(body.body))) {
+      suspect = &body;
+      break;
+    }
+    if (!suspect || mass_of(body) < mass_of(*suspect)) suspect = &body;
+  }
+  failure = suspect
+                ? fmt::format("ODE gave up in a step ({}), most likely over the body of shape {} and {:g} kg",
+                              message, suspect->shape->name, mass_of(*suspect))
+                : fmt::format("ODE gave up in a step ({}), over a body of the caller's own", message);
+  if (threading) threading->abandon();
+  throw SimulationError(failure, suspect ? suspect->id.value : 0);
 }
 
 void OdeWorld::Impl::count_uneven_contacts() {
@@ -170,13 +216,32 @@ void OdeWorld::Impl::recover_bodies() {
     if (!body.was_enabled) continue;
     RigidState now = state_of(body.body);
     if (is_sound(now)) {
-      if (body.impact_time) ode::set_state(body.body, now = end_of_step(body.last_good, now, *body.impact_time));
+      if (body.impact_time)
+        ode::set_state(body.body, now = end_of_step(body.last_good, now, *body.impact_time));
       body.last_good = now;
       continue;
     }
-    body.last_good.velocity = body.last_good.angular_velocity = Vec3::Zero();
-    ode::set_state(body.body, body.last_good);
-    ++counters.states_recovered;
+    put_back(body);
+  }
+}
+
+void OdeWorld::Impl::put_back(Body& body) {
+  body.last_good.velocity = body.last_good.angular_velocity = Vec3::Zero();
+  ode::set_state(body.body, body.last_good);
+  ++counters.states_recovered;
+}
+
+// What the caller did to a body by himself since the last step (dBodySetPosition, dBodyAddForce), before it
+// can reach another.
+void OdeWorld::Impl::put_back_unsound() {
+  for (Body& body : bodies.slots()) {
+    if (!body.body) continue;
+    const bool pushed =
+        !to_vec3(dBodyGetForce(body.body)).allFinite() || !to_vec3(dBodyGetTorque(body.body)).allFinite();
+    if (pushed) dBodySetForce(body.body, 0, 0, 0), dBodySetTorque(body.body, 0, 0, 0);
+    if (!pushed && is_sound(state_of(body.body))) continue;
+    put_back(body);
+    collision.broad_phase().forget(body);
   }
 }
 
@@ -184,8 +249,10 @@ void OdeWorld::Impl::recover_bodies() {
 void OdeWorld::Impl::wake_neighbors(const Body& body) {
   const Eigen::AlignedBox3d box = bounds_of(body);
   collision.broad_phase().wake_ours(bodies, box);
-  if (mirror && has_looked) collision.broad_phase().wake_callers(box);
-  else if (mirror) vacated.push_back(box);
+  if (mirror && has_looked)
+    collision.broad_phase().wake_callers(box);
+  else if (mirror)
+    vacated.push_back(box);
   for (int i = 0; i < dBodyGetNumJoints(body.body); ++i)
     for (const int end : {0, 1})
       if (const dBodyID other = dJointGetBody(dBodyGetJoint(body.body, i), end)) dBodyEnable(other);

@@ -9,7 +9,6 @@
 namespace lodestone {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kFirstBatch = 24;  // trials that an adaptive cell's first estimate is made of
 // Keys of what is no cell.
 constexpr std::uint64_t kHeldOutKey = 1ull << 41, kHeldOutConditionKey = 1ull << 42;
@@ -28,7 +27,9 @@ struct Moments {
     mean += before / count;
     products += before * (x - mean).transpose();
   }
-  Matrix6 covariance() const { return count > 1 ? Matrix6(products / (count - 1)) : Matrix6(Matrix6::Zero()); }
+  Matrix6 covariance() const {
+    return count > 1 ? Matrix6(products / (count - 1)) : Matrix6(Matrix6::Zero());
+  }
 };
 
 struct ApproachMoments {
@@ -47,7 +48,8 @@ ResponseFactor factor_of(const Matrix6& covariance) {
     const double pivot = covariance(j, j) - lower.row(j).squaredNorm();
     if (pivot <= 1e-12 * covariance(j, j)) continue;
     lower(j, j) = std::sqrt(pivot);
-    for (int i = j + 1; i < 6; ++i) lower(i, j) = (covariance(i, j) - lower.row(i).dot(lower.row(j))) / lower(j, j);
+    for (int i = j + 1; i < 6; ++i)
+      lower(i, j) = (covariance(i, j) - lower.row(i).dot(lower.row(j))) / lower(j, j);
   }
   ResponseFactor factor{};
   for (int row = 0, k = 0; row < 6; ++row)
@@ -72,7 +74,8 @@ void set_moments(const Moments& moments, CellUnit& unit) {
 
 class CellMeasuring {
  public:
-  CellMeasuring(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell, const CellSampling& sampling)
+  CellMeasuring(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell,
+                const CellSampling& sampling)
       : trial_(trial), center_(center), cell_(cell), sampling_(sampling) {}
 
   CellUnit measure() {
@@ -91,8 +94,10 @@ class CellMeasuring {
   void run_until(int end) {
     for (; next_ < end; ++next_) {
       const CellTrial start = cell_trial(center_, cell_, std::uint32_t(next_), sampling_);
-      if (const auto outcome = trial_.run(start.configuration, start.orientation)) add(*outcome);
-      else ++unit_.missed;
+      if (const auto outcome = trial_.run(start.configuration, start.orientation))
+        add(*outcome);
+      else
+        ++unit_.missed;
     }
   }
 
@@ -124,10 +129,11 @@ double between_logarithms(double low, double high, double part) { return low * s
 
 }  // namespace
 
-CellTrial cell_trial(const CollisionConfiguration& center, std::int64_t cell, std::uint32_t k, const CellSampling& sampling) {
+CellTrial cell_trial(const CollisionConfiguration& center, std::int64_t cell, std::uint32_t k,
+                     const CellSampling& sampling) {
   RandomStream random(sampling.seed, std::uint64_t(cell), k);
   CellTrial start{center, random.orientation()};
-  if (sampling.every_psi) start.configuration.psi = random.uniform(0.0, 2.0 * kPi);
+  if (sampling.every_psi) start.configuration.psi = random.uniform(0.0, 2.0 * std::numbers::pi);
   return start;
 }
 
@@ -139,17 +145,19 @@ CellUnit make_cell_unit(std::span<const Response> responses) {
   return unit;
 }
 
-CellUnit measure_cell(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell, const CellSampling& sampling) {
+CellUnit measure_cell(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell,
+                      const CellSampling& sampling) {
   return CellMeasuring(trial, center, cell, sampling).measure();
 }
 
-HeldOutUnit measure_held_out(CollisionTrial& trial, const CollisionConfiguration& c, std::int64_t number, std::uint64_t seed, bool every_psi) {
+HeldOutUnit measure_held_out(CollisionTrial& trial, const CollisionConfiguration& c, std::int64_t number,
+                             std::uint64_t seed, bool every_psi) {
   HeldOutUnit unit{c, {}};
   for (std::uint32_t i = 0; i < kHeldOutTrials; ++i) {
     RandomStream random(seed, std::uint64_t(number) | kHeldOutKey, i);
     CollisionConfiguration start = c;
     const Quat orientation = random.orientation();
-    if (every_psi) start.psi = random.uniform(0.0, 2.0 * kPi);
+    if (every_psi) start.psi = random.uniform(0.0, 2.0 * std::numbers::pi);
     if (const auto outcome = trial.run(start, orientation)) unit.responses.push_back(outcome->end.response);
   }
   return unit;
@@ -157,9 +165,10 @@ HeldOutUnit measure_held_out(CollisionTrial& trial, const CollisionConfiguration
 
 CollisionConfiguration held_out_condition(std::int64_t number, std::uint64_t seed) {
   RandomStream random(seed, std::uint64_t(number) | kHeldOutConditionKey, 0);
-  const double alpha = random.uniform(0.0, kPi / 2);
+  const double alpha = random.uniform(0.0, std::numbers::pi / 2);
   CollisionConfiguration c{.speed = std::cos(alpha), .spin = std::sin(alpha)};
-  c.theta = random.uniform(0.0, kPi / 2), c.phi = random.uniform(0.0, kPi), c.psi = random.uniform(0.0, 2.0 * kPi);
+  c.theta = random.uniform(0.0, std::numbers::pi / 2), c.phi = random.uniform(0.0, std::numbers::pi),
+  c.psi = random.uniform(0.0, 2.0 * std::numbers::pi);
   return c;
 }
 

@@ -11,10 +11,10 @@ namespace lodestone {
 /// How the cells of a table are sampled.
 struct CellSampling {
   std::uint64_t seed = 1;
-  int trials = 60;                 ///< of each cell; where `error` is asked for, the first batch
-  double error = 0.0;              ///< above 0: batches until no mean has a greater standard error, over s
+  int trials = 60;     ///< of each cell; where `error` is asked for, the first batch
+  double error = 0.0;  ///< above 0: batches until no mean has a greater standard error, over s
   int most_trials = 4000;
-  bool every_psi = true;           ///< ψ is drawn; else the centre's
+  bool every_psi = true;  ///< ψ is drawn; else the centre's
   bool keep_responses = false;
 };
 
@@ -25,18 +25,23 @@ struct CellTrial {
 };
 
 /// Trial k of cell `cell`: its orientation (and ψ) drawn from the key (seed, cell, k).
-CellTrial cell_trial(const CollisionConfiguration& center, std::int64_t cell, std::uint32_t k, const CellSampling& sampling);
+CellTrial cell_trial(const CollisionConfiguration& center, std::int64_t cell, std::uint32_t k,
+                     const CellSampling& sampling);
 
 /// The mean, spread and count of these responses; the rest of the unit is left as it is made.
 CellUnit make_cell_unit(std::span<const Response> responses);
 
-/// Trial k of cell `cell` has its orientation (and ψ) from the key (seed, cell, k), so a cell is the same wherever it is measured.
-CellUnit measure_cell(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell, const CellSampling& sampling);
+/// Trial k of cell `cell` has its orientation (and ψ) from the key (seed, cell, k), so a cell is the same
+/// wherever it is measured.
+CellUnit measure_cell(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell,
+                      const CellSampling& sampling);
 
-inline constexpr int kHeldOutTrials = 16;  ///< at each condition: enough to tell the error of a mean from the spread of the trials
+inline constexpr int kHeldOutTrials =
+    16;  ///< at each condition: enough to tell the error of a mean from the spread of the trials
 
 /// Trials at `c`, from the keys (seed, number, 0 …); with `every_psi` each draws a ψ of its own.
-HeldOutUnit measure_held_out(CollisionTrial& trial, const CollisionConfiguration& c, std::int64_t number, std::uint64_t seed, bool every_psi);
+HeldOutUnit measure_held_out(CollisionTrial& trial, const CollisionConfiguration& c, std::int64_t number,
+                             std::uint64_t seed, bool every_psi);
 
 /// Condition `number`: random over all that a table covers.
 CollisionConfiguration held_out_condition(std::int64_t number, std::uint64_t seed);

@@ -9,7 +9,8 @@
 namespace lodestone {
 namespace {
 
-constexpr std::uint64_t kHeldOutDraws = 1ull << 43;  // key of the draws that held-out trials are compared with
+constexpr std::uint64_t kHeldOutDraws = 1ull
+                                        << 43;  // key of the draws that held-out trials are compared with
 
 void add_trials(std::span<const CellUnit> units, TableCertificate& c) {
   c.fewest_trials = ~0u;
@@ -17,7 +18,8 @@ void add_trials(std::span<const CellUnit> units, TableCertificate& c) {
   double mean_v = 0.0, deviation_v = 0.0, squares = 0.0, greatest_variance = 0.0;
   for (const CellUnit& unit : units) {
     c.trials += unit.trials, c.missed += unit.missed;
-    c.fewest_trials = std::min(c.fewest_trials, unit.trials), c.most_trials = std::max(c.most_trials, unit.trials);
+    c.fewest_trials = std::min(c.fewest_trials, unit.trials),
+    c.most_trials = std::max(c.most_trials, unit.trials);
     into_plane_first += unit.into_plane_first, into_plane += unit.into_plane, impulses += unit.impulses;
     c.energy_ratio_first += unit.energy_ratio_first, c.energy_ratio += unit.energy_ratio;
     mean_v += unit.mean.head<3>().norm(), deviation_v += unit.deviation.head<3>().norm();
@@ -27,15 +29,20 @@ void add_trials(std::span<const CellUnit> units, TableCertificate& c) {
     greatest_variance = std::max(greatest_variance, double(unit.deviation.cwiseAbs2().maxCoeff()));
   }
   const double trials = std::max(1.0, double(c.trials)), cells = std::max(1.0, double(units.size()));
-  c.into_plane_first = double(into_plane_first) / trials, c.into_plane = double(into_plane) / trials, c.impulses = double(impulses) / trials;
+  c.into_plane_first = double(into_plane_first) / trials, c.into_plane = double(into_plane) / trials,
+  c.impulses = double(impulses) / trials;
   c.energy_ratio_first /= trials, c.energy_ratio /= trials;
   c.mean_over_deviation = deviation_v > 0.0 ? mean_v / deviation_v : 0.0;
   c.standard_error = std::sqrt(squares / cells);
-  if (c.greatest_standard_error > 0.0) c.uniform_trials = cells * std::ceil(greatest_variance / (c.greatest_standard_error * c.greatest_standard_error));
+  if (c.greatest_standard_error > 0.0)
+    c.uniform_trials =
+        cells * std::ceil(greatest_variance / (c.greatest_standard_error * c.greatest_standard_error));
 }
 
 // What of velocities after a collision is compared: normal speed, speed, spin, over s.
-std::array<double, 3> measures_of(const DrawnVelocities& v) { return {v.linear.x(), v.linear.norm(), v.angular.norm()}; }
+std::array<double, 3> measures_of(const DrawnVelocities& v) {
+  return {v.linear.x(), v.linear.norm(), v.angular.norm()};
+}
 
 DrawnVelocities velocities_of(const Response& response, const CollisionConfiguration& c, double restitution) {
   const double speed = c.speed / c.speed_unit();
@@ -43,8 +50,8 @@ DrawnVelocities velocities_of(const Response& response, const CollisionConfigura
   return {particle + response.head<3>().cast<double>(), response.tail<3>().cast<double>()};
 }
 
-// Of one component of `mean`, without bias: the spread of n trials about it, less the part that is their own, from Σ_{i≠j} (x_i − m)·(x_j − m). May be
-// negative.
+// Of one component of `mean`, without bias: the spread of n trials about it, less the part that is their own,
+// from Σ_{i≠j} (x_i − m)·(x_j − m). May be negative.
 double squared_error_of_mean(std::span<const Response> trials, const Response& mean) {
   Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
   double squares = 0.0;
@@ -56,11 +63,14 @@ double squared_error_of_mean(std::span<const Response> trials, const Response& m
   return (sum.squaredNorm() - squares) / (n * (n - 1.0)) / 6.0;
 }
 
-void add_held_out(std::span<const HeldOutUnit> units, TableKind kind, const Signature& signature, TableCertificate& c) {
+void add_held_out(std::span<const HeldOutUnit> units, TableKind kind, const Signature& signature,
+                  TableCertificate& c) {
   HeldOutComparison compared = compare_held_out(units, kind, signature);
   c.held_out = compared.held_out[0].size();
   c.held_out_error = compared.error_of_mean;
-  for (std::size_t k = 0; k < 3; ++k) c.held_out_ks = std::max(c.held_out_ks, kolmogorov_smirnov(std::move(compared.drawn[k]), std::move(compared.held_out[k])));
+  for (std::size_t k = 0; k < 3; ++k)
+    c.held_out_ks = std::max(
+        c.held_out_ks, kolmogorov_smirnov(std::move(compared.drawn[k]), std::move(compared.held_out[k])));
 }
 
 }  // namespace
@@ -72,7 +82,8 @@ TableCertificate certify_table(const TableUnits& units, TableKind kind, const Si
   return certificate;
 }
 
-HeldOutComparison compare_held_out(std::span<const HeldOutUnit> units, TableKind kind, const Signature& signature) {
+HeldOutComparison compare_held_out(std::span<const HeldOutUnit> units, TableKind kind,
+                                   const Signature& signature) {
   const double bounce_velocity = kind == TableKind::non_bouncing ? 1e300 : 0.0;
   const double restitution = kind == TableKind::non_bouncing ? 0.0 : signature.settings.law.restitution;
   HeldOutComparison compared;
@@ -87,8 +98,10 @@ HeldOutComparison compare_held_out(std::span<const HeldOutUnit> units, TableKind
     RandomStream random(signature.settings.seed, kHeldOutDraws | i, std::uint32_t(kind));
     for (const Response& response : unit.responses) {
       const auto truth = measures_of(velocities_of(response, unit.configuration, restitution));
-      const auto draw = measures_of(draw_response(found, unit.configuration, restitution, signature.settings.draw, random));
-      for (std::size_t k = 0; k < 3; ++k) compared.held_out[k].push_back(truth[k]), compared.drawn[k].push_back(draw[k]);
+      const auto draw =
+          measures_of(draw_response(found, unit.configuration, restitution, signature.settings.draw, random));
+      for (std::size_t k = 0; k < 3; ++k)
+        compared.held_out[k].push_back(truth[k]), compared.drawn[k].push_back(draw[k]);
     }
   }
   compared.error_of_mean = conditions ? std::sqrt(std::max(0.0, squared_errors / conditions)) : 0.0;

@@ -1,5 +1,5 @@
-// One collision of a body with a plane, found exactly and answered by ODE: the trials behind the tables of section 3.2.2. No gravity, as in
-// the paper.
+// One collision of a body with a plane, found exactly and answered by ODE: the trials behind the tables of
+// section 3.2.2. No gravity, as in the paper.
 #pragma once
 
 #include <memory>
@@ -20,9 +20,9 @@ struct CollisionEnd {
 
 /// What a trial gave.
 struct CollisionOutcome {
-  CollisionEnd first;        ///< after the first impulse
-  CollisionEnd end;          ///< where the trial ends
-  double approach = 0.0;     ///< of the contact point towards the plane before the first impulse, over s
+  CollisionEnd first;     ///< after the first impulse
+  CollisionEnd end;       ///< where the trial ends
+  double approach = 0.0;  ///< of the contact point towards the plane before the first impulse, over s
   int impulses = 1;
 };
 
@@ -30,9 +30,11 @@ struct CollisionOutcome {
 class CollisionTrial {
  public:
   /// `bounce_velocity`: ODE's, m/s; an approach slower than that has restitution 0.
-  CollisionTrial(std::shared_ptr<const Shape> shape, const ContactLaw& law, TrialEnd end, double bounce_velocity);
+  CollisionTrial(std::shared_ptr<const Shape> shape, const ContactLaw& law, TrialEnd end,
+                 double bounce_velocity);
 
-  /// A body of this orientation, its bounding sphere touching the plane, and what comes of it. None where it never touches the plane.
+  /// A body of this orientation, its bounding sphere touching the plane, and what comes of it. None where it
+  /// never touches the plane.
   std::optional<CollisionOutcome> run(const CollisionConfiguration& configuration, const Quat& orientation);
 
   /// The same from any state above the plane; `state` ends as the trial does.

@@ -38,17 +38,25 @@ Response response_of(const MeasuredCollision& c, double radius, double restituti
   const double unit = std::hypot(c.velocity_before.norm(), radius * c.angular_velocity_before.norm());
   const Vec3 particle = c.velocity_before - (1.0 + restitution) * c.velocity_before.dot(c.normal) * c.normal;
   Eigen::Matrix<double, 6, 1> response;
-  response << into_frame * (c.velocity_after - particle) / unit, into_frame * c.angular_velocity_after * (radius / unit);
+  response << into_frame * (c.velocity_after - particle) / unit,
+      into_frame * c.angular_velocity_after * (radius / unit);
   return response.cast<float>();
 }
 
-MeasuredCollision collision_with(const CollisionConfiguration& c, const Response& response, double radius, double restitution) {
-  const Vec3 along(std::sin(c.theta), 0.0, -std::cos(c.theta)), across = Vec3::UnitY(), in_plane = across.cross(along);
+MeasuredCollision collision_with(const CollisionConfiguration& c, const Response& response, double radius,
+                                 double restitution) {
+  const Vec3 along(std::sin(c.theta), 0.0, -std::cos(c.theta)), across = Vec3::UnitY(),
+                                                                in_plane = across.cross(along);
   MeasuredCollision collision;
   collision.velocity_before = c.speed * along;
-  collision.angular_velocity_before = c.spin / radius * (std::cos(c.phi) * along + std::sin(c.phi) * (std::cos(c.psi) * in_plane + std::sin(c.psi) * across));
-  const Vec3 particle = collision.velocity_before - (1.0 + restitution) * collision.velocity_before.z() * Vec3::UnitZ();
-  const auto in_world = [](const Vec3& v) { return Vec3(v.y(), v.z(), v.x()); };  // from (e1, e2, e3) = (z, x, y)
+  collision.angular_velocity_before =
+      c.spin / radius *
+      (std::cos(c.phi) * along + std::sin(c.phi) * (std::cos(c.psi) * in_plane + std::sin(c.psi) * across));
+  const Vec3 particle =
+      collision.velocity_before - (1.0 + restitution) * collision.velocity_before.z() * Vec3::UnitZ();
+  const auto in_world = [](const Vec3& v) {
+    return Vec3(v.y(), v.z(), v.x());
+  };  // from (e1, e2, e3) = (z, x, y)
   collision.velocity_after = particle + c.speed_unit() * in_world(response.head<3>().cast<double>());
   collision.angular_velocity_after = c.speed_unit() / radius * in_world(response.tail<3>().cast<double>());
   return collision;

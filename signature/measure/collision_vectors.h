@@ -1,4 +1,5 @@
-// A collision's vectors and its numbers: the working plane of response.h, with e1 = n = z, e2 = x, e3 = y where a frame is chosen.
+// A collision's vectors and its numbers: the working plane of response.h, with e1 = n = z, e2 = x, e3 = y
+// where a frame is chosen.
 #pragma once
 
 #include "signature/measure/measured_trials.h"
@@ -13,6 +14,7 @@ CollisionConfiguration configuration_of(const MeasuredCollision& collision, doub
 Response response_of(const MeasuredCollision& collision, double radius, double restitution);
 
 /// The collision with these numbers and this response, in the frame e1 = z, e2 = x, e3 = y.
-MeasuredCollision collision_with(const CollisionConfiguration& configuration, const Response& response, double radius, double restitution);
+MeasuredCollision collision_with(const CollisionConfiguration& configuration, const Response& response,
+                                 double radius, double restitution);
 
 }  // namespace lodestone

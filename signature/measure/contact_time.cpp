@@ -1,4 +1,5 @@
-// n: the plane's normal; a point r of the body is at height z + r·n and moves vertically with v_z + r·(n × ω), all in body axes.
+// n: the plane's normal; a point r of the body is at height z + r·n and moves vertically with v_z + r·(n ×
+// ω), all in body axes.
 #include "signature/measure/contact_time.h"
 
 #include <cmath>
@@ -8,14 +9,14 @@
 namespace lodestone {
 namespace {
 
-constexpr double kTouch = 1e-6;        // over R: a gap this small is contact
-constexpr double kClosing = 1e-9;      // of the speed unit: a slower approach is a rest
-constexpr double kMaxTurn = 0.15;      // rad a step
-constexpr double kMinTurn = 1e-4;      // rad a step: a point that just left the plane gets away from it
-constexpr double kWholeTurn = 6.3;     // rad, in which a rising body would have touched again
+constexpr double kTouch = 1e-6;     // over R: a gap this small is contact
+constexpr double kClosing = 1e-9;   // of the speed unit: a slower approach is a rest
+constexpr double kMaxTurn = 0.15;   // rad a step
+constexpr double kMinTurn = 1e-4;   // rad a step: a point that just left the plane gets away from it
+constexpr double kWholeTurn = 6.3;  // rad, in which a rising body would have touched again
 constexpr int kMaxSteps = 5000;
-// Acceleration of a point of a free body over ω²R. Centripetal 1; ω̇ at most ω²/√3 (Euler's equations with |I₁ − I₂| ≤ I₃); and ω grows by 1.09
-// at most over kMaxTurn.
+// Acceleration of a point of a free body over ω²R. Centripetal 1; ω̇ at most ω²/√3 (Euler's equations with
+// |I₁ − I₂| ≤ I₃); and ω grows by 1.09 at most over kMaxTurn.
 constexpr double kAcceleration = 1.9;
 
 /// Height and vertical velocity of a point now.
@@ -31,9 +32,11 @@ double earliest_touch(const Point& p, double acceleration) {
   return acceleration > 0.0 ? (p.velocity + root) / acceleration : 1e300;
 }
 
-// The orientation `time` seconds later, to fourth order: a free body's spin is constant, its angular velocity a function of the orientation (Celledoni,
-// Marthinsen, Owren, Commutator-free Lie group methods, 2003). The midpoint rule would leave gaps of 1e-4 R at these steps.
-Quat advance_precisely(const Quat& orientation, const Vec3& now, const Vec3& spin, const Shape& shape, double time) {
+// The orientation `time` seconds later, to fourth order: a free body's spin is constant, its angular velocity
+// a function of the orientation (Celledoni, Marthinsen, Owren, Commutator-free Lie group methods, 2003). The
+// midpoint rule would leave gaps of 1e-4 R at these steps.
+Quat advance_precisely(const Quat& orientation, const Vec3& now, const Vec3& spin, const Shape& shape,
+                       double time) {
   const auto turn = [&](const Vec3& by, const Quat& q) { return rotation_from_vector(time * by) * q; };
   const Vec3& k1 = now;
   const Quat half = turn(0.5 * k1, orientation);
@@ -41,7 +44,8 @@ Quat advance_precisely(const Quat& orientation, const Vec3& now, const Vec3& spi
   const Vec3 k3 = angular_velocity(turn(0.5 * k2, orientation), spin, shape);
   const Vec3 k4 = angular_velocity(turn(k3 - 0.5 * k1, half), spin, shape);
   const Vec3 middle = 2.0 * (k2 + k3);
-  return turn((middle - k1 + 3.0 * k4) / 12.0, turn((middle - k4 + 3.0 * k1) / 12.0, orientation)).normalized();
+  return turn((middle - k1 + 3.0 * k4) / 12.0, turn((middle - k4 + 3.0 * k1) / 12.0, orientation))
+      .normalized();
 }
 
 bool advance_sphere(double radius, RigidState& state) {
@@ -73,8 +77,8 @@ bool ContactTime::advance(RigidState& state) {
     if (lowest.height < kTouch * radius && lowest.velocity < -closing) return true;
     if (state.velocity.z() >= 0.0 && (state.position.z() >= radius || turned > kWholeTurn)) return false;
 
-    // The longest time for which no point, at its velocity and the bound on its acceleration, touches: from above, as the lowest point then
-    // bounds it.
+    // The longest time for which no point, at its velocity and the bound on its acceleration, touches: from
+    // above, as the lowest point then bounds it.
     const double speed = omega.norm(), acceleration = kAcceleration * speed * speed * radius;
     double time = speed > 0.0 ? kMaxTurn / speed : 1e300;
     if (speed == 0.0) time = earliest_touch(lowest, 0.0);

@@ -10,7 +10,8 @@ namespace lodestone {
 
 struct SettlingRecord;
 
-/// Makes `count` clips of the records that choose_clips picks, with their entries. The signature's rest poses must be there.
+/// Makes `count` clips of the records that choose_clips picks, with their entries. The signature's rest poses
+/// must be there.
 void add_clips(std::span<const SettlingRecord> records, const Shape& shape, int count, Signature& signature);
 
 }  // namespace lodestone

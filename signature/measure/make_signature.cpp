@@ -39,7 +39,8 @@ ResponseCells make_cells(std::span<const CellUnit> units, ResponseDraw draw) {
   cells.sample_range = range_of(units);
   cells.first_sample.push_back(0);
   for (const CellUnit& unit : units) {
-    for (std::size_t i = 0; i < unit.responses.size(); ++i) cells.sample.push_back(pack(unit.responses[i], unit.approaches[i], cells.sample_range));
+    for (std::size_t i = 0; i < unit.responses.size(); ++i)
+      cells.sample.push_back(pack(unit.responses[i], unit.approaches[i], cells.sample_range));
     cells.first_sample.push_back(std::uint32_t(cells.sample.size()));
   }
   return cells;
@@ -72,7 +73,8 @@ Signature make_signature(const Shape& shape, const SignatureSettings& settings, 
   Signature signature;
   signature.shape_hash = measured->content_hash;
   signature.shape_name = shape.name;
-  signature.mesh_vertices = std::uint32_t(shape.mesh.vertices.size()), signature.mesh_faces = std::uint32_t(shape.mesh.faces.size());
+  signature.mesh_vertices = std::uint32_t(shape.mesh.vertices.size()),
+  signature.mesh_faces = std::uint32_t(shape.mesh.faces.size());
   signature.versions = measuring_versions();
   signature.settings = settings;
   for (const HeightUnit& unit : m.heights) {
@@ -81,14 +83,17 @@ Signature make_signature(const Shape& shape, const SignatureSettings& settings, 
   }
   add_responses(settings, m, signature);
   signature.rest_poses = find_rest_poses(m.settlings, *measured, settings.rest_pose_frequency_min);
-  signature.rest_poses_above_5_percent = int(std::ranges::count_if(signature.rest_poses, [](const RestPose& p) { return p.frequency > 0.05; }));
+  signature.rest_poses_above_5_percent =
+      int(std::ranges::count_if(signature.rest_poses, [](const RestPose& p) { return p.frequency > 0.05; }));
   if (!measured->sphere_radius) {
     signature.support_map_error = find_lookup_error(measured->hull, SupportMap(measured->hull));
-    signature.support_map_error.mean /= measured->radius, signature.support_map_error.greatest /= measured->radius;
+    signature.support_map_error.mean /= measured->radius,
+        signature.support_map_error.greatest /= measured->radius;
   }
   add_clips(m.settlings, *measured, settings.clips, signature);
-  signature.trials = std::uint64_t(settings.height_samples) * std::uint64_t(settings.height_trials) + count_trials(m.bouncing) +
-                     count_trials(m.non_bouncing) + count_trials(m.by_speed) + m.settlings.size();
+  signature.trials = std::uint64_t(settings.height_samples) * std::uint64_t(settings.height_trials) +
+                     count_trials(m.bouncing) + count_trials(m.non_bouncing) + count_trials(m.by_speed) +
+                     m.settlings.size();
   return signature;
 }
 

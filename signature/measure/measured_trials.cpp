@@ -16,8 +16,10 @@ namespace lodestone {
 namespace {
 
 constexpr std::string_view kHeading =
-    "kind,vx_before_m_per_s,vy_before_m_per_s,vz_before_m_per_s,wx_before_rad_per_s,wy_before_rad_per_s,wz_before_rad_per_s,nx,ny,nz,"
-    "vx_after_m_per_s,vy_after_m_per_s,vz_after_m_per_s,wx_after_rad_per_s,wy_after_rad_per_s,wz_after_rad_per_s";
+    "kind,vx_before_m_per_s,vy_before_m_per_s,vz_before_m_per_s,wx_before_rad_per_s,wy_before_rad_per_s,wz_"
+    "before_rad_per_s,nx,ny,nz,"
+    "vx_after_m_per_s,vy_after_m_per_s,vz_after_m_per_s,wx_after_rad_per_s,wy_after_rad_per_s,wz_after_rad_"
+    "per_s";
 constexpr std::size_t kColumns = 16, kNormal = 7;
 
 // Where an error is: the file and the line.
@@ -34,7 +36,8 @@ std::array<std::string_view, kColumns> split(std::string_view row, const Place& 
   for (std::size_t i = 0; i < kColumns; ++i) {
     const std::size_t comma = row.find(',');
     cells[i] = row.substr(0, comma);
-    if ((comma == std::string_view::npos) != (i + 1 == kColumns)) place.fail("a row of another length", fmt::format("{} columns", kColumns));
+    if ((comma == std::string_view::npos) != (i + 1 == kColumns))
+      place.fail("a row of another length", fmt::format("{} columns", kColumns));
     if (comma != std::string_view::npos) row.remove_prefix(comma + 1);
   }
   return cells;
@@ -53,7 +56,8 @@ Vec3 vector_from(const std::array<std::string_view, kColumns>& cells, std::size_
 
 Vec3 normal_from(const std::array<std::string_view, kColumns>& cells, const Place& place) {
   const Vec3 normal = vector_from(cells, kNormal, place);
-  if (!(std::abs(normal.norm() - 1.0) <= 1e-3)) place.fail(fmt::format("a normal of length {}", normal.norm()), "unit length");
+  if (!(std::abs(normal.norm() - 1.0) <= 1e-3))
+    place.fail(fmt::format("a normal of length {}", normal.norm()), "unit length");
   return normal.normalized();
 }
 
@@ -61,10 +65,12 @@ void add_row(std::string_view row, const Place& place, MeasuredTrials& trials) {
   const auto cells = split(row, place);
   if (cells[0] == "rest") {
     for (std::size_t i = 1; i < kColumns; ++i)
-      if ((i < kNormal || i >= kNormal + 3) && !cells[i].empty()) place.fail(fmt::format("'{}' in column {} of a rest", cells[i], i + 1), "nothing but a normal");
+      if ((i < kNormal || i >= kNormal + 3) && !cells[i].empty())
+        place.fail(fmt::format("'{}' in column {} of a rest", cells[i], i + 1), "nothing but a normal");
     trials.rest_normals.push_back(normal_from(cells, place));
   } else if (cells[0] == "collision") {
-    trials.collisions.push_back({vector_from(cells, 1, place), vector_from(cells, 4, place), normal_from(cells, place), vector_from(cells, 10, place),
+    trials.collisions.push_back({vector_from(cells, 1, place), vector_from(cells, 4, place),
+                                 normal_from(cells, place), vector_from(cells, 10, place),
                                  vector_from(cells, 13, place)});
   } else {
     place.fail(fmt::format("'{}' in column 1", cells[0]), "collision or rest");
@@ -79,7 +85,9 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-void append(std::string& to, const Vec3& v) { fmt::format_to(std::back_inserter(to), ",{},{},{}", v.x(), v.y(), v.z()); }
+void append(std::string& to, const Vec3& v) {
+  fmt::format_to(std::back_inserter(to), ",{},{},{}", v.x(), v.y(), v.z());
+}
 
 }  // namespace
 
@@ -102,7 +110,9 @@ void save_trials(const MeasuredTrials& trials, const std::filesystem::path& file
   text += '\n';
   for (const MeasuredCollision& c : trials.collisions) {
     text += "collision";
-    for (const Vec3& v : {c.velocity_before, c.angular_velocity_before, c.normal, c.velocity_after, c.angular_velocity_after}) append(text, v);
+    for (const Vec3& v :
+         {c.velocity_before, c.angular_velocity_before, c.normal, c.velocity_after, c.angular_velocity_after})
+      append(text, v);
     text += '\n';
   }
   for (const Vec3& normal : trials.rest_normals) {

@@ -1,5 +1,6 @@
-// Collisions and rests that were measured, by whatever means (section 5.3), as rows of a CSV file: the source of a signature's tables that is not ODE.
-// The columns, of which a collision leaves none empty and a rest all but the normal:
+// Collisions and rests that were measured, by whatever means (section 5.3), as rows of a CSV file: the source
+// of a signature's tables that is not ODE. The columns, of which a collision leaves none empty and a rest all
+// but the normal:
 //
 //   kind (collision or rest), v⁻ x y z, ω⁻ x y z, n x y z, v⁺ x y z, ω⁺ x y z
 //
@@ -24,7 +25,8 @@ struct MeasuredTrials {
   std::vector<Vec3> rest_normals;
 };
 
-/// Throws InputError, with file and line, for anything but the columns above, finite numbers and normals of unit length within 1e-3 (they are normalised).
+/// Throws InputError, with file and line, for anything but the columns above, finite numbers and normals of
+/// unit length within 1e-3 (they are normalised).
 MeasuredTrials load_trials(const std::filesystem::path& file);
 
 /// Numbers are written so that they read back the same. Throws InputError where the file cannot be written.

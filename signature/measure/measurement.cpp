@@ -29,8 +29,11 @@ Measurement make_empty_measurement(const SignatureSettings& settings, const Shar
     units.cells.resize(std::size_t(cells));
     units.held_out.resize(std::size_t(settings.held_out_conditions));
   };
-  if (settings.paper_grid) make_room(m.by_speed, make_speed_grid(settings).size());
-  else for (TableUnits* units : {&m.bouncing, &m.non_bouncing}) make_room(*units, make_response_grid(settings).size());
+  if (settings.paper_grid)
+    make_room(m.by_speed, make_speed_grid(settings).size());
+  else
+    for (TableUnits* units : {&m.bouncing, &m.non_bouncing})
+      make_room(*units, make_response_grid(settings).size());
   m.settlings.resize(std::size_t(settings.settling_trials));
   return m;
 }

@@ -1,5 +1,5 @@
-// What the trials of a signature gave, unit by unit: raw, so that units measured on different machines can be put together before a signature is
-// made of them.
+// What the trials of a signature gave, unit by unit: raw, so that units measured on different machines can be
+// put together before a signature is made of them.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,13 @@ struct CellUnit {
   Response mean = Response::Zero(), deviation = Response::Zero();
   ResponseFactor factor{};
   Approach approach;
-  std::uint32_t trials = 0, missed = 0;                         ///< `missed`: never touched the plane
-  std::uint32_t into_plane_first = 0, into_plane = 0;           ///< trials that move into the plane after the first impulse, and at the end
+  std::uint32_t trials = 0, missed = 0;  ///< `missed`: never touched the plane
+  std::uint32_t into_plane_first = 0,
+                into_plane = 0;  ///< trials that move into the plane after the first impulse, and at the end
   std::uint64_t impulses = 0;
-  double energy_ratio_first = 0.0, energy_ratio = 0.0;          ///< summed over the trials
-  std::vector<Response> responses;                              ///< of each trial, for empirical draws only,
-  std::vector<float> approaches;                                ///< with the approach of its contact point over s
+  double energy_ratio_first = 0.0, energy_ratio = 0.0;  ///< summed over the trials
+  std::vector<Response> responses;                      ///< of each trial, for empirical draws only,
+  std::vector<float> approaches;                        ///< with the approach of its contact point over s
 };
 
 /// Trials at one random condition, kept out of the tables.
@@ -36,7 +37,17 @@ struct HeldOutUnit {
 };
 
 /// What a unit is of; its number counts within its kind.
-enum class UnitKind : std::uint32_t { height, bouncing, bouncing_held_out, non_bouncing, non_bouncing_held_out, by_speed, by_speed_held_out, settling, end };
+enum class UnitKind : std::uint32_t {
+  height,
+  bouncing,
+  bouncing_held_out,
+  non_bouncing,
+  non_bouncing_held_out,
+  by_speed,
+  by_speed_held_out,
+  settling,
+  end
+};
 
 /// The units of one table.
 struct TableUnits {
@@ -62,8 +73,12 @@ struct Measurement {
 Measurement make_empty_measurement(const SignatureSettings& settings, const Share& share = {});
 
 /// Trials behind a unit.
-inline std::uint64_t trials_of(const HeightUnit&, const SignatureSettings& settings) { return std::uint64_t(settings.height_trials); }
-inline std::uint64_t trials_of(const CellUnit& unit, const SignatureSettings&) { return std::uint64_t(unit.trials) + unit.missed; }
+inline std::uint64_t trials_of(const HeightUnit&, const SignatureSettings& settings) {
+  return std::uint64_t(settings.height_trials);
+}
+inline std::uint64_t trials_of(const CellUnit& unit, const SignatureSettings&) {
+  return std::uint64_t(unit.trials) + unit.missed;
+}
 std::uint64_t trials_of(const HeldOutUnit& unit, const SignatureSettings& settings);
 inline std::uint64_t trials_of(const SettlingRecord&, const SignatureSettings&) { return 1; }
 

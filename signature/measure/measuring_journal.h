@@ -1,7 +1,8 @@
-// The units that an interrupted measurement had finished, in a file beside the one that is being made. The file is also the lock: one process measures,
-// others wait for what it makes.
+// The units that an interrupted measurement had finished, in a file beside the one that is being made. The
+// file is also the lock: one process measures, others wait for what it makes.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -14,11 +15,23 @@
 
 namespace lodestone {
 
+/// Who holds a journal.
+struct JournalHolder {
+  long pid = 0;
+  std::string host;
+  bool is_stopped = false;  ///< known of this machine's processes only
+};
+
+/// Of the journal `file`, which another process holds; none where it has not said so (yet).
+std::optional<JournalHolder> find_holder(const std::filesystem::path& file);
+
 class MeasuringJournal {
  public:
-  /// Opens `file`, or makes it, for this process alone; null while another one holds it. Units that belong to `identity` are kept, a record cut
-  /// short is dropped, a journal of anything else is begun anew. Throws InputError where the file cannot be written.
-  static std::unique_ptr<MeasuringJournal> try_open(const std::filesystem::path& file, const MeasurementIdentity& identity);
+  /// Opens `file`, or makes it, for this process alone; null while another one holds it. Units that belong to
+  /// `identity` are kept, a record cut short is dropped, a journal of anything else is begun anew. Throws
+  /// InputError where the file cannot be written.
+  static std::unique_ptr<MeasuringJournal> try_open(const std::filesystem::path& file,
+                                                    const MeasurementIdentity& identity);
   ~MeasuringJournal();
   MeasuringJournal(const MeasuringJournal&) = delete;
   MeasuringJournal& operator=(const MeasuringJournal&) = delete;
@@ -30,17 +43,22 @@ class MeasuringJournal {
   }
   /// Appends a finished unit. From any thread. A full disk ends the journal, not the measurement.
   template <class Unit>
-  void note(UnitKind kind, std::int64_t unit, const Unit& finished) { append(kind, unit, encode_unit(finished)); }
+  void note(UnitKind kind, std::int64_t unit, const Unit& finished) {
+    if (append(kind, unit, encode_unit(finished))) trials_noted_ += trials_of(finished, settings_);
+  }
 
   /// Trials behind the units that were here from the start.
   std::uint64_t trials_found(const SignatureSettings& settings) const;
-  double seconds() const;                          ///< of measuring, all sessions together
-  void remove();                                   ///< of no more use: what was to be made is there
+  /// And behind those that were appended since, and are in the file.
+  std::uint64_t trials_noted() const { return trials_noted_; }
+  double seconds() const;  ///< of measuring, all sessions together
+  void remove();           ///< of no more use: what was to be made is there
 
  private:
-  MeasuringJournal(std::filesystem::path file, int descriptor) : file_(std::move(file)), descriptor_(descriptor) {}
+  MeasuringJournal(std::filesystem::path file, int descriptor, const SignatureSettings& settings)
+      : file_(std::move(file)), descriptor_(descriptor), settings_(settings) {}
   void read(const MeasurementIdentity& identity);
-  void append(UnitKind kind, std::int64_t unit, std::span<const std::byte> bytes);
+  bool append(UnitKind kind, std::int64_t unit, std::span<const std::byte> bytes);
   template <class Read>
   bool take_bytes(UnitKind kind, std::int64_t unit, Read read) const {
     const auto found = found_.find({kind, unit});
@@ -49,11 +67,13 @@ class MeasuringJournal {
 
   std::filesystem::path file_;
   int descriptor_ = -1;
+  SignatureSettings settings_;
   std::vector<std::byte> content_;  // which `found_` points into
   std::map<std::pair<UnitKind, std::int64_t>, std::span<const std::byte>> found_;
   double seconds_before_ = 0.0, opened_ = 0.0;
   std::mutex mutex_;
   bool writable_ = true;
+  std::atomic<std::uint64_t> trials_noted_ = 0;
 };
 
 }  // namespace lodestone

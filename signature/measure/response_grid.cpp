@@ -9,7 +9,8 @@ constexpr int kPaperSpeeds = 26, kPaperSpins = 16, kPaperTrials = 30;
 constexpr double kSlowest = 0.02, kFastest = 10.0, kFastestSpin = 5.0;  // m/s
 
 void append_logarithmic(std::vector<float>& samples, double last, int count) {
-  for (int i = 0; i < count; ++i) samples.push_back(float(kSlowest * std::pow(last / kSlowest, double(i) / (count - 1))));
+  for (int i = 0; i < count; ++i)
+    samples.push_back(float(kSlowest * std::pow(last / kSlowest, double(i) / (count - 1))));
 }
 
 }  // namespace

@@ -8,11 +8,12 @@ namespace lodestone {
 
 ResponseTable make_response_grid(const SignatureSettings& settings);
 
-/// The paper's θ 7 × φ 10 × ‖V‖ 26 × ‖Ω‖ 16. It does not say which speeds: here .02 to 10 m/s, and for R‖Ω‖ 0 and .02 to 5 m/s, evenly in the
-/// logarithm, so on both sides of ODE's bounce_vel (.05 m/s).
+/// The paper's θ 7 × φ 10 × ‖V‖ 26 × ‖Ω‖ 16. It does not say which speeds: here .02 to 10 m/s, and for R‖Ω‖ 0
+/// and .02 to 5 m/s, evenly in the logarithm, so on both sides of ODE's bounce_vel (.05 m/s).
 SpeedTable make_speed_grid(const SignatureSettings& settings);
 
-inline constexpr double kAlwaysBounces = 1e-9;  ///< bounce_vel of the scale-free tables' trials, m/s: far below their speeds
+inline constexpr double kAlwaysBounces =
+    1e-9;  ///< bounce_vel of the scale-free tables' trials, m/s: far below their speeds
 
 CellSampling make_cell_sampling(const SignatureSettings& settings);
 

@@ -12,10 +12,12 @@ namespace lodestone {
 
 struct SettlingRecord;
 
-inline constexpr double kSamePose = 12.0 * std::numbers::pi / 180.0;  ///< rad: resting normals this near are one pose
+inline constexpr double kSamePose =
+    12.0 * std::numbers::pi / 180.0;  ///< rad: resting normals this near are one pose
 
-/// Clusters the resting normals, most frequent first, and keeps those of at least `frequency_min` of all records. Their basins come from the hull of `shape`
-/// (0 for a sphere).
-std::vector<RestPose> find_rest_poses(std::span<const SettlingRecord> records, const Shape& shape, double frequency_min);
+/// Clusters the resting normals, most frequent first, and keeps those of at least `frequency_min` of all
+/// records. Their basins come from the hull of `shape` (0 for a sphere).
+std::vector<RestPose> find_rest_poses(std::span<const SettlingRecord> records, const Shape& shape,
+                                      double frequency_min);
 
 }  // namespace lodestone

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "reference/allowed_threads.h"
 #include "reference/random.h"
 #include "signature/measure/cell_trials.h"
 #include "signature/measure/collision_vectors.h"
@@ -47,7 +48,8 @@ class RowTables {
   }
 
  private:
-  void replace_cells(std::vector<CellUnit>& units, const std::vector<CellRows>& table, TrialCoverage& coverage) const {
+  void replace_cells(std::vector<CellUnit>& units, const std::vector<CellRows>& table,
+                     TrialCoverage& coverage) const {
     for (std::size_t i = 0; i < units.size(); ++i) {
       ++coverage.cells;
       if (table[i].responses.empty()) continue;
@@ -66,7 +68,8 @@ class RowTables {
   const SignatureSettings& settings_;
   ResponseTable grid_ = make_response_grid(settings_);
   SpeedTable speeds_ = make_speed_grid(settings_);
-  std::vector<CellRows> bouncing_ = std::vector<CellRows>(std::size_t(grid_.size())), non_bouncing_ = bouncing_;
+  std::vector<CellRows> bouncing_ = std::vector<CellRows>(std::size_t(grid_.size())),
+                        non_bouncing_ = bouncing_;
   std::vector<CellRows> by_speed_ = std::vector<CellRows>(std::size_t(speeds_.size()));
 };
 
@@ -75,21 +78,25 @@ void set_rest_poses(std::span<const Vec3> normals, const Shape& shape, Signature
   for (const Vec3& normal : normals) {
     RigidState state;
     state.orientation = Quat(Eigen::Quaterniond::FromTwoVectors(normal, Vec3::UnitZ()));
-    records.push_back({.rests = true, .normal = normal, .height = -gap_over_ground(shape, state), .states = {}});
+    records.push_back(
+        {.rests = true, .normal = normal, .height = -gap_over_ground(shape, state), .states = {}});
   }
   signature.rest_poses = find_rest_poses(records, shape, signature.settings.rest_pose_frequency_min);
-  signature.rest_poses_above_5_percent = int(std::ranges::count_if(signature.rest_poses, [](const RestPose& p) { return p.frequency > 0.05; }));
+  signature.rest_poses_above_5_percent =
+      int(std::ranges::count_if(signature.rest_poses, [](const RestPose& p) { return p.frequency > 0.05; }));
 }
 
 // Runs a table's trials again.
 template <class Grid>
-void append_table(const Shape& shape, const SignatureSettings& settings, const Grid& grid, std::span<const CellUnit> units, bool bounces, double speed_factor,
+void append_table(const Shape& shape, const SignatureSettings& settings, const Grid& grid,
+                  std::span<const CellUnit> units, bool bounces, double speed_factor,
                   std::vector<MeasuredCollision>& into) {
   const auto measured = make_measuring_shape(shape);
   const CellSampling sampling = make_cell_sampling(settings);
   const ContactLaw law = {bounces ? settings.law.restitution : 0.0, settings.law.friction};
   const double bounce_velocity = settings.paper_grid ? OdeSettings{}.bounce_velocity : kAlwaysBounces;
-  tbb::enumerable_thread_specific<CollisionTrial> trials([&] { return CollisionTrial(measured, law, settings.trial_end, bounce_velocity); });
+  tbb::enumerable_thread_specific<CollisionTrial> trials(
+      [&] { return CollisionTrial(measured, law, settings.trial_end, bounce_velocity); });
   std::vector<std::vector<MeasuredCollision>> of_cell(units.size());
   tbb::parallel_for(std::size_t(0), units.size(), [&](std::size_t cell) {
     for (std::uint32_t k = 0; k < units[cell].trials + units[cell].missed; ++k) {
@@ -106,11 +113,13 @@ void append_table(const Shape& shape, const SignatureSettings& settings, const G
 
 }  // namespace
 
-Signature make_signature_from_trials(const Shape& shape, const SignatureSettings& settings, const MeasuredTrials& trials, const MeasureOptions& options,
+Signature make_signature_from_trials(const Shape& shape, const SignatureSettings& settings,
+                                     const MeasuredTrials& trials, const MeasureOptions& options,
                                      TrialCoverage* coverage) {
   TrialCoverage counted;
   RowTables tables(shape.radius, settings);
-  for (const MeasuredCollision& collision : trials.collisions) ++(tables.add(collision) ? counted.collisions : counted.left_out);
+  for (const MeasuredCollision& collision : trials.collisions)
+    ++(tables.add(collision) ? counted.collisions : counted.left_out);
   Measurement m = measure_units(shape, settings, {}, options);
   tables.replace_cells(m, counted);
   Signature signature = make_signature(shape, settings, m);
@@ -120,16 +129,20 @@ Signature make_signature_from_trials(const Shape& shape, const SignatureSettings
   return signature;
 }
 
-MeasuredTrials list_trials(const Shape& shape, const SignatureSettings& settings, const Measurement& m, int threads) {
+MeasuredTrials list_trials(const Shape& shape, const SignatureSettings& settings, const Measurement& m,
+                           int threads) {
   MeasuredTrials trials;
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(allowed_threads(threads));
   arena.execute([&] {
     if (settings.paper_grid) {
-      append_table(shape, settings, make_speed_grid(settings), m.by_speed.cells, true, 1.0, trials.collisions);
+      append_table(shape, settings, make_speed_grid(settings), m.by_speed.cells, true, 1.0,
+                   trials.collisions);
       return;
     }
-    append_table(shape, settings, make_response_grid(settings), m.bouncing.cells, true, 1.0, trials.collisions);
-    append_table(shape, settings, make_response_grid(settings), m.non_bouncing.cells, false, 0.5 * kFastestWithoutBounce, trials.collisions);
+    append_table(shape, settings, make_response_grid(settings), m.bouncing.cells, true, 1.0,
+                 trials.collisions);
+    append_table(shape, settings, make_response_grid(settings), m.non_bouncing.cells, false,
+                 0.5 * kFastestWithoutBounce, trials.collisions);
   });
   for (const SettlingRecord& record : m.settlings)
     if (record.rests) trials.rest_normals.push_back(record.normal);

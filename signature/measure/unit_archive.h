@@ -9,39 +9,57 @@
 namespace lodestone {
 
 template <class Archive>
-void archive(Archive& a, Archived<RigidState> auto& s) { a(s.position, s.orientation, s.velocity, s.angular_velocity); }
+void archive(Archive& a, Archived<RigidState> auto& s) {
+  a(s.position, s.orientation, s.velocity, s.angular_velocity);
+}
 
 template <class Archive>
-void archive(Archive& a, Archived<HeightUnit> auto& u) { a(u.mean, u.deviation); }
+void archive(Archive& a, Archived<HeightUnit> auto& u) {
+  a(u.mean, u.deviation);
+}
 
 template <class Archive>
-void archive(Archive& a, Archived<Approach> auto& u) { a(u.mean, u.deviation); }
+void archive(Archive& a, Archived<Approach> auto& u) {
+  a(u.mean, u.deviation);
+}
 
 template <class Archive>
 void archive(Archive& a, Archived<CellUnit> auto& u) {
-  a(u.mean, u.deviation, u.factor, u.approach, u.trials, u.missed, u.into_plane_first, u.into_plane, u.impulses);
+  a(u.mean, u.deviation, u.factor, u.approach, u.trials, u.missed, u.into_plane_first, u.into_plane,
+    u.impulses);
   a(u.energy_ratio_first, u.energy_ratio, u.responses, u.approaches);
 }
 
 template <class Archive>
-void archive(Archive& a, Archived<CollisionConfiguration> auto& c) { a(c.theta, c.phi, c.psi, c.speed, c.spin); }
+void archive(Archive& a, Archived<CollisionConfiguration> auto& c) {
+  a(c.theta, c.phi, c.psi, c.speed, c.spin);
+}
 
 template <class Archive>
-void archive(Archive& a, Archived<HeldOutUnit> auto& u) { a(u.configuration, u.responses); }
+void archive(Archive& a, Archived<HeldOutUnit> auto& u) {
+  a(u.configuration, u.responses);
+}
 
 template <class Archive>
-void archive(Archive& a, Archived<SettlingRecord> auto& r) { a(r.rests, r.normal, r.height, r.states); }
+void archive(Archive& a, Archived<SettlingRecord> auto& r) {
+  a(r.rests, r.normal, r.height, r.states);
+}
 
 template <class Archive>
-void archive(Archive& a, Archived<Share> auto& s) { a(s.index, s.count); }
+void archive(Archive& a, Archived<Share> auto& s) {
+  a(s.index, s.count);
+}
 
 template <class Archive>
-void archive(Archive& a, Archived<Hull> auto& h) { a(h.vertices, h.faces, h.neighbor_start, h.neighbor, h.face_start, h.incident_face); }
+void archive(Archive& a, Archived<Hull> auto& h) {
+  a(h.vertices, h.faces, h.neighbor_start, h.neighbor, h.face_start, h.incident_face);
+}
 
 /// What make_signature looks at; not the mesh.
 template <class Archive>
 void archive(Archive& a, Archived<Shape> auto& s) {
-  a(s.name, s.hull, s.inertia_per_mass, s.inverse_inertia_per_mass, s.radius, s.sphere_radius, s.content_hash);
+  a(s.name, s.hull, s.inertia_per_mass, s.inverse_inertia_per_mass, s.radius, s.sphere_radius,
+    s.content_hash);
 }
 
 template <class Unit>

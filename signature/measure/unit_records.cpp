@@ -12,12 +12,13 @@
 namespace lodestone {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x0a545250'45444f4cull;  // "LODEPRT\n" in a file
+constexpr std::uint64_t kPartMagic = 0x0a545250'45444f4cull;  // "LODEPRT\n" in a file
 constexpr std::size_t kHeadNumbers = 3 * sizeof(std::uint64_t), kRecordNumbers = 4 * sizeof(std::uint64_t);
 
 template <class Archive>
 void archive(Archive& a, Archived<MeasurementIdentity> auto& identity) {
-  a(identity.versions, identity.settings, identity.share, identity.shape, identity.mesh_vertices, identity.mesh_faces);
+  a(identity.versions, identity.settings, identity.share, identity.shape, identity.mesh_vertices,
+    identity.mesh_faces);
 }
 
 std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
@@ -27,7 +28,7 @@ std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(by
 std::vector<std::byte> encode_head(const MeasurementIdentity& identity) {
   ByteWriter content, head;
   archive(content, identity);
-  head(kMagic, std::uint64_t(content.bytes.size()), checksum(content.bytes));
+  head(kPartMagic, std::uint64_t(content.bytes.size()), checksum(content.bytes));
   head.bytes.insert(head.bytes.end(), content.bytes.begin(), content.bytes.end());
   return std::move(head.bytes);
 }
@@ -35,14 +36,18 @@ std::vector<std::byte> encode_head(const MeasurementIdentity& identity) {
 MeasurementIdentity decode_head(std::span<const std::byte>& bytes, const std::string& name) {
   std::uint64_t magic = 0, length = 0, expected = 0;
   ByteReader(bytes.first(std::min(bytes.size(), kHeadNumbers)))(magic, length, expected);
-  if (magic != kMagic) throw InputError(fmt::format("{}: found a file of another kind, expected a part of a signature (sign --shard)", name));
-  if (bytes.size() < kHeadNumbers || length > bytes.size() - kHeadNumbers) throw InputError(fmt::format("{}: found its end in the middle of a value, expected a whole part", name));
+  if (magic != kPartMagic)
+    throw InputError(
+        fmt::format("{}: found a file of another kind, expected a part of a signature (sign --shard)", name));
+  if (bytes.size() < kHeadNumbers || length > bytes.size() - kHeadNumbers)
+    throw InputError(fmt::format("{}: found its end in the middle of a value, expected a whole part", name));
   bytes = bytes.subspan(kHeadNumbers);
   const std::span<const std::byte> content = bytes.first(length);
   MeasurementIdentity identity;
   ByteReader reader(content);
   if (checksum(content) == expected) archive(reader, identity);
-  if (!reader.whole()) throw InputError(fmt::format("{}: found a checksum that does not match, expected undamaged bytes", name));
+  if (!reader.whole())
+    throw InputError(fmt::format("{}: found a checksum that does not match, expected undamaged bytes", name));
   bytes = bytes.subspan(length);
   return identity;
 }

@@ -1,4 +1,5 @@
-// Units of a measurement as records of bytes: the content of a part (measurement_part.h) and of a journal (measuring_journal.h).
+// Units of a measurement as records of bytes: the content of a part (measurement_part.h) and of a journal
+// (measuring_journal.h).
 #pragma once
 
 #include <cstddef>
@@ -14,10 +15,10 @@ namespace lodestone {
 
 /// What units belong to: parts of one measurement differ in `share.index` alone.
 struct MeasurementIdentity {
-  std::string versions;        ///< measuring_versions()
+  std::string versions;  ///< measuring_versions()
   SignatureSettings settings;
   Share share;
-  Shape shape;                 ///< what make_signature looks at; without its mesh
+  Shape shape;  ///< what make_signature looks at; without its mesh
   std::uint32_t mesh_vertices = 0, mesh_faces = 0;
 };
 
@@ -25,14 +26,15 @@ struct MeasurementIdentity {
 struct UnitRecord {
   UnitKind kind = UnitKind::end;
   std::int64_t unit = 0;
-  double seconds = 0.0;        ///< measured so far when it was written
+  double seconds = 0.0;  ///< measured so far when it was written
   std::span<const std::byte> bytes;
 };
 
 /// The head of a file of records: a magic, its length, the identity and a checksum.
 std::vector<std::byte> encode_head(const MeasurementIdentity& identity);
 
-/// Reads the head and takes it off `bytes`. Throws InputError, with `name` at its head, for anything that encode_head did not make.
+/// Reads the head and takes it off `bytes`. Throws InputError, with `name` at its head, for anything that
+/// encode_head did not make.
 MeasurementIdentity decode_head(std::span<const std::byte>& bytes, const std::string& name);
 
 std::vector<std::byte> encode_record(const UnitRecord& record);

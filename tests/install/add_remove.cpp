@@ -1,12 +1,12 @@
 // Bodies that come and go all the time, as level streaming has it: nothing is left of those that are gone.
 #include <malloc.h>
+#include <ode/ode.h>
 
 #include <algorithm>
 #include <chrono>
 #include <memory>
 #include <vector>
 
-#include <ode/ode.h>
 #include "check.h"
 #include "lod/manager.h"
 
@@ -16,7 +16,10 @@ namespace {
 
 constexpr int kBodies = 3000, kChurned = 167;
 
-double milliseconds() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double milliseconds() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
 
 double heap_mib() {
   const auto held = mallinfo2();
@@ -25,7 +28,9 @@ double heap_mib() {
 
 struct Streaming {
   explicit Streaming(LevelChoice rung)
-      : rung_(rung), manager_({.policy = {.policy = DistancePolicy{.full_within = 1.0, .support_within = 100.0}}, .signature_timing = SignatureTiming::in_step}) {
+      : rung_(rung),
+        manager_({.policy = {.policy = DistancePolicy{.full_within = 1.0, .support_within = 100.0}},
+                  .signature_timing = SignatureTiming::in_step}) {
     manager_.add_plane(Vec3::UnitZ(), 0.0);
     for (int i = 0; i < kBodies; ++i) bodies_.push_back(add(i));
     manager_.step(1.0 / 60);
@@ -34,8 +39,13 @@ struct Streaming {
   // Every body of a shape, a size and a mass that no other ever has.
   BodyId add(int place) {
     ++added_;
-    const auto shape = added_ % 7 == 0 ? std::make_shared<const Shape>(scale_shape(*crate_, 1.0 + 1e-5 * double(added_))) : crate_;
-    return manager_.add_body({.shape = shape, .state = {.position = Vec3(1.5 * (place % 60), 1.5 * (place / 60), 0.3)}, .mass = 1.0 + 1e-3 * double(added_), .level = rung_});
+    const auto shape = added_ % 7 == 0
+                           ? std::make_shared<const Shape>(scale_shape(*crate_, 1.0 + 1e-5 * double(added_)))
+                           : crate_;
+    return manager_.add_body({.shape = shape,
+                              .state = {.position = Vec3(1.5 * (place % 60), 1.5 * (place / 60), 0.3)},
+                              .mass = 1.0 + 1e-3 * double(added_),
+                              .level = rung_});
   }
 
   void stream(int frames) {
@@ -50,7 +60,8 @@ struct Streaming {
   }
 
   LevelChoice rung_;
-  std::shared_ptr<const Shape> crate_ = std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4})));
+  std::shared_ptr<const Shape> crate_ =
+      std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4})));
   Manager manager_;
   std::vector<BodyId> bodies_;
   std::int64_t added_ = 0;
@@ -76,7 +87,9 @@ void measure(LevelChoice rung, const char* memory, const char* time) {
 
 int main() {
   dInitODE2(0);
-  measure(LevelChoice::support, "MiB that the heap grew by, support", "ms in which 167 were removed and added, at most, support");
-  measure(LevelChoice::tables, "MiB that the heap grew by, tables", "ms in which 167 were removed and added, at most, tables");
+  measure(LevelChoice::support, "MiB that the heap grew by, support",
+          "ms in which 167 were removed and added, at most, support");
+  measure(LevelChoice::tables, "MiB that the heap grew by, tables",
+          "ms in which 167 were removed and added, at most, tables");
   return check::result();
 }

@@ -362,11 +362,25 @@ static void check_signatures_and_audit(void) {
   that(audit.rest_time_s.full > 0 && audit.rest_time_s.difference_least <= audit.rest_time_s.difference_most && audit.drift_least <= audit.drift_most, "its figures and intervals");
   lodestone_destroy(manager);
 
-  settings.signatures_context = NULL;
-  DO(lodestone_create(&settings, &manager));
   lodestone_body_definition definition = lodestone_default_body(crate);
   definition.level = LODESTONE_CHOOSE_TABLES;
   lodestone_body body;
+  DO(lodestone_create(&settings, &manager));
+  DO(lodestone_add_plane(manager, (lodestone_vec3){0, 0, 1}, 0.0, 0, NULL));
+  definition.state.position = (lodestone_vec3){0.0, 0.0, 0.6};
+  definition.state.angular_velocity = (lodestone_vec3){3.0, 2.0, 1.0};
+  DO(lodestone_add_body(manager, &definition, &body));
+  for (int i = 0; i < 600; ++i) DO(lodestone_step(manager, 1.0 / 60.0, NULL));
+  lodestone_state lying;
+  DO(lodestone_get_state(manager, body, &lying));
+  const double height = lying.position.z, face = height < 0.125 ? 0.1 : height < 0.175 ? 0.15 : 0.2;
+  within(height, face - 0.002, face + 0.002, "m, height of a crate at tables on one of its faces, as the default options have it");
+  lodestone_destroy(manager);
+
+  settings.signatures_context = NULL;
+  DO(lodestone_create(&settings, &manager));
+  definition = lodestone_default_body(crate);
+  definition.level = LODESTONE_CHOOSE_TABLES;
   DO(lodestone_add_body(manager, &definition, &body));
   refused(lodestone_step(manager, 1.0 / 60.0, NULL), "tables", "a body at tables without a signature");
   DO(lodestone_set_level(manager, body, LODESTONE_CHOOSE_SUPPORT));

@@ -1,4 +1,5 @@
-// What these programs find out about an installed Lodestone: each check says what was asked and what came of it, and a failed one makes the program fail.
+// What these programs find out about an installed Lodestone: each check says what was asked and what came of
+// it, and a failed one makes the program fail.
 #pragma once
 
 #include <cstdio>

@@ -1,8 +1,9 @@
-// What a user's first program may look like: a world of plain ODE, whose bodies a manager looks after. README shows the includes and play(),
-// to the letter (readme_test.cpp).
+// What a user's first program may look like: a world of plain ODE, whose bodies a manager looks after. README
+// shows the includes and play(), to the letter (readme_test.cpp).
 #include <algorithm>
 #include <cstdio>
 
+// clang-format off
 #include <memory>
 #include <vector>
 #include <ode/ode.h>
@@ -13,7 +14,8 @@ using namespace lodestone;
 void draw(const RigidState& state, Level level);
 
 void play(dWorldID world, dSpaceID space) {
-  Manager manager(world, space, {.policy = {.policy = DistancePolicy{.full_within = 3.0}}, .signature_timing = SignatureTiming::in_step});
+  Manager manager(world, space, {.policy = {.policy = DistancePolicy{.full_within = 3.0}},
+                                 .signature_timing = SignatureTiming::in_step});
   const auto crate = std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4})));
   std::vector<BodyId> bodies;
   for (int i = 0; i < 100; ++i)
@@ -31,23 +33,32 @@ void play(dWorldID world, dSpaceID space) {
 int full = 0, statistical = 0;
 double lowest = 1.0;  // m
 
+// clang-format on
+
 void draw(const RigidState& state, Level level) {
   ++(level == Level::full ? full : statistical);
   lowest = std::min(lowest, state.position.z());
 }
 
-struct Rungs { int tables = 0, support = 0, full = 0; };
+struct Rungs {
+  int tables = 0, support = 0, full = 0;
+};
 
 Rungs count(const Manager& manager, const std::vector<BodyId>& bodies) {
   Rungs rungs;
-  for (const BodyId body : bodies) ++(manager.rung(body) == Rung::full ? rungs.full : manager.rung(body) == Rung::support ? rungs.support : rungs.tables);
+  for (const BodyId body : bodies)
+    ++(manager.rung(body) == Rung::full      ? rungs.full
+       : manager.rung(body) == Rung::support ? rungs.support
+                                             : rungs.tables);
   return rungs;
 }
 
 // Crates on all three rungs, while the camera leaves and comes back; then under a budget.
 bool climbs(dWorldID world, dSpaceID space) {
   Manager manager(world, space,
-                  {.policy = {.policy = DistancePolicy{.full_within = 1.5, .support_within = 5.0}, .max_transitions_per_frame = 20}, .signature_timing = SignatureTiming::in_step});
+                  {.policy = {.policy = DistancePolicy{.full_within = 1.5, .support_within = 5.0},
+                              .max_transitions_per_frame = 20},
+                   .signature_timing = SignatureTiming::in_step});
   const auto crate = std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4})));
   std::vector<BodyId> bodies;
   for (int i = 0; i < 100; ++i)
@@ -65,10 +76,14 @@ bool climbs(dWorldID world, dSpaceID space) {
   manager.set_policy({.policy = BudgetPolicy{.budget_ms = 4.0}});
   const Rungs budgeted = stay(here);
   const StepReport& report = manager.report();
-  std::printf("full, support, tables: %d, %d, %d here; %d, %d, %d away; %d, %d, %d back; %d, %d, %d with 4 ms, of which the last step took %.3f, foretold %.3f\n", before.full,
-              before.support, before.tables, gone.full, gone.support, gone.tables, back.full, back.support, back.tables, budgeted.full, budgeted.support, budgeted.tables,
-              report.measured_ms, report.predicted_ms);
-  return before.full > 0 && before.support > 0 && before.tables > 0 && gone.tables == 100 && back.full > 0 && back.support > 0 && budgeted.full > 0 && report.measured_ms > 0.0;
+  std::printf(
+      "full, support, tables: %d, %d, %d here; %d, %d, %d away; %d, %d, %d back; %d, %d, %d with 4 ms, of "
+      "which the last step took %.3f, foretold %.3f\n",
+      before.full, before.support, before.tables, gone.full, gone.support, gone.tables, back.full,
+      back.support, back.tables, budgeted.full, budgeted.support, budgeted.tables, report.measured_ms,
+      report.predicted_ms);
+  return before.full > 0 && before.support > 0 && before.tables > 0 && gone.tables == 100 && back.full > 0 &&
+         back.support > 0 && budgeted.full > 0 && report.measured_ms > 0.0;
 }
 
 int main() {
@@ -81,7 +96,8 @@ int main() {
   const bool climbed = climbs(world, space);
   dSpaceDestroy(space);
   dWorldDestroy(world);
-  std::printf("drawn %d times full, %d times statistical; lowest centre of mass at %.3f m\n", full, statistical, lowest);
+  std::printf("drawn %d times full, %d times statistical; lowest centre of mass at %.3f m\n", full,
+              statistical, lowest);
   const bool fell_and_was_held = lowest > 0.08 && lowest < 0.3;
   return full > 0 && statistical > 0 && fell_and_was_held && climbed ? 0 : 1;
 }

@@ -1,9 +1,11 @@
-// What touched what: between any two rungs and the ground; when it begins, how hard it hits, when it ends; nothing where nobody asks.
+// What touched what: between any two rungs and the ground; when it begins, how hard it hits, when it ends;
+// nothing where nobody asks.
+#include <ode/ode.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
-#include <ode/ode.h>
 
 #include "check.h"
 #include "crate.h"
@@ -29,7 +31,9 @@ Told watch(Manager& manager, BodyId first, BodyId second, double seconds) {
       if (event.phase == ContactPhase::begin) ++told.begins;
       if (event.phase == ContactPhase::end) ++told.ends;
       if (event.phase != ContactPhase::hit) continue;
-      if (told.hits++ == 0) told.impulse = event.impulse, told.speed = event.speed, told.point = event.point, told.normal = event.normal;
+      if (told.hits++ == 0)
+        told.impulse = event.impulse, told.speed = event.speed, told.point = event.point,
+        told.normal = event.normal;
     }
   }
   return told;
@@ -52,7 +56,8 @@ void ground(LevelChoice level, const char* what, double tolerance) {
   const double speed = std::sqrt(2 * 9.81 * 0.5), impulse = manager.mass(body) * speed * 1.4;
   check::within(told.speed, speed * (1 - tolerance), speed * (1 + tolerance), "m/s at the first hit");
   check::within(told.impulse, impulse * (1 - 2 * tolerance), impulse * (1 + 2 * tolerance), "N s of it");
-  check::within((told.normal - Vec3::UnitZ()).norm() + std::abs(told.point.z()), 0, 0.06, "off the ground and its normal");
+  check::within((told.normal - Vec3::UnitZ()).norm() + std::abs(told.point.z()), 0, 0.06,
+                "off the ground and its normal");
   check::within(told.begins - told.ends, 1, 1, "begins less ends of one that lies there at last");
   check::within(told.hits, 2, 6, "hits above .5 m/s");
 }
@@ -61,12 +66,14 @@ void ground(LevelChoice level, const char* what, double tolerance) {
 void pair(LevelChoice upper, LevelChoice lower, const char* what) {
   Manager manager(settings());
   manager.add_plane({0, 0, 1}, 0.0);
-  const BodyId below = manager.add_body({.shape = crate, .state = at(0, 0.15), .level = lower}), above = manager.add_body({.shape = crate, .state = at(0.01, 0.75), .level = upper});
+  const BodyId below = manager.add_body({.shape = crate, .state = at(0, 0.15), .level = lower}),
+               above = manager.add_body({.shape = crate, .state = at(0.01, 0.75), .level = upper});
   const Told told = watch(manager, below, above, 3.0);
   std::printf("     %s: %d begins, %d hits, %d ends\n", what, told.begins, told.hits, told.ends);
   const double speed = std::sqrt(2 * 9.81 * 0.3);
   check::within(told.speed, 0.8 * speed, 1.1 * speed, "m/s at the first hit");
-  check::within(told.impulse, 0.3 * manager.mass(above) * speed, 2.0 * manager.mass(above) * speed, "N s of it");
+  check::within(told.impulse, 0.3 * manager.mass(above) * speed, 2.0 * manager.mass(above) * speed,
+                "N s of it");
   check::that(told.normal.z() < -0.9, "the normal points into the first");
   check::within(told.begins - told.ends, 1, 1, "begins less ends of two that lie on each other at last");
 }
@@ -74,9 +81,11 @@ void pair(LevelChoice upper, LevelChoice lower, const char* what) {
 void sleepers_and_removal() {
   Manager manager(settings());
   manager.add_plane({0, 0, 1}, 0.0);
-  const BodyId body = manager.add_body({.shape = crate, .state = at(0, 0.151), .level = LevelChoice::support});
+  const BodyId body =
+      manager.add_body({.shape = crate, .state = at(0, 0.151), .level = LevelChoice::support});
   const Told before = watch(manager, body, {}, 2.0);
-  check::that(before.begins == 1 && before.ends == 0 && manager.asleep(body), "one that sleeps where it lies touches still");
+  check::that(before.begins == 1 && before.ends == 0 && manager.asleep(body),
+              "one that sleeps where it lies touches still");
   manager.wake(body);
   const Told woken = watch(manager, body, {}, 0.5);
   check::within(woken.begins + woken.ends, 0, 0, "and begins nothing as it wakes");
@@ -113,7 +122,9 @@ std::vector<ContactEvent> collect(int threads) {
   Manager manager(s);
   manager.add_plane({0, 0, 1}, 0.0);
   for (int i = 0; i < 200; ++i)
-    manager.add_body({.shape = crate, .state = {Vec3(i % 5 * 0.31, i / 5 % 5 * 0.31, 0.3 + 0.35 * (i / 25)), Quat::Identity(), Vec3::Zero(), Vec3::Zero()},
+    manager.add_body({.shape = crate,
+                      .state = {Vec3(i % 5 * 0.31, i / 5 % 5 * 0.31, 0.3 + 0.35 * (i / 25)), Quat::Identity(),
+                                Vec3::Zero(), Vec3::Zero()},
                       .level = i % 3 ? LevelChoice::support : LevelChoice::tables});
   std::vector<ContactEvent> all;
   for (int i = 0; i < 60; ++i) {
@@ -137,8 +148,11 @@ int main() {
   const std::vector<ContactEvent> one = collect(1), two = collect(2);
   bool same = one.size() == two.size();
   for (std::size_t i = 0; same && i < one.size(); ++i)
-    same = one[i].phase == two[i].phase && one[i].first.body == two[i].first.body && one[i].second.body == two[i].second.body && one[i].impulse == two[i].impulse && one[i].point == two[i].point;
-  check::within(double(one.size()), 200, 100000, "events of 200 bodies that fall into a heap, on two statistical rungs");
+    same = one[i].phase == two[i].phase && one[i].first.body == two[i].first.body &&
+           one[i].second.body == two[i].second.body && one[i].impulse == two[i].impulse &&
+           one[i].point == two[i].point;
+  check::within(double(one.size()), 200, 100000,
+                "events of 200 bodies that fall into a heap, on two statistical rungs");
   check::that(same, "the same on two threads");
   return check::result();
 }

@@ -1,4 +1,5 @@
-// Forces and motors of a game's own bodies, and on ours through ode_body, act for the whole of a step, however many substeps it has.
+// Forces and motors of a game's own bodies, and on ours through ode_body, act for the whole of a step,
+// however many substeps it has.
 #include <ode/ode.h>
 
 #include <cmath>
@@ -44,7 +45,8 @@ Speeds push_for_half_a_second(int substeps) {
     const auto crate = std::make_shared<const Shape>(make_shape("crate", make_box({0.3, 0.3, 0.3})));
     RigidState state;
     state.position = Vec3(10, 0, 5);
-    const BodyId body = manager.add_body({.shape = crate, .state = state, .mass = 27.0, .level = LevelChoice::full});
+    const BodyId body =
+        manager.add_body({.shape = crate, .state = state, .mass = 27.0, .level = LevelChoice::full});
     manager.include_body(ghost);
     for (int frame = 0; frame < 30; ++frame) {
       dBodyAddForce(ghost, 4, 0, 0);
@@ -53,7 +55,8 @@ Speeds push_for_half_a_second(int substeps) {
       dBodyAddForce(manager.ode_body(body), 27, 0, 0);
       manager.step(kStep);
     }
-    speeds = {dBodyGetLinearVel(ball)[0], std::abs(dBodyGetAngularVel(wheel)[2]), manager.state(body).velocity.x(), dBodyGetLinearVel(ghost)[0]};
+    speeds = {dBodyGetLinearVel(ball)[0], std::abs(dBodyGetAngularVel(wheel)[2]),
+              manager.state(body).velocity.x(), dBodyGetLinearVel(ghost)[0]};
     manager.exclude_body(ghost);
   }
   dGeomDestroy(ghosts);
@@ -69,10 +72,14 @@ int main() {
   for (const int substeps : {1, 4, 8}) {
     const auto [pushed, turned, ours, named] = push_for_half_a_second(substeps);
     std::printf("%d substeps\n", substeps);
-    check::within(pushed, 1.0 - 1e-9, 1.0 + 1e-9, "m/s of a body of the game's own after half a second of 2 N/kg");
-    check::within(named, 1.0 - 1e-9, 1.0 + 1e-9, "m/s of one of whose geom his space knows nothing, and which was named");
-    check::within(turned, 0.5 - 1e-6, 0.5 + 1e-6, "rad/s of a wheel after half a second of a motor of 1 rad/s²");
-    check::within(ours, 0.5 - 1e-9, 0.5 + 1e-9, "m/s of a full body after half a second of 1 N/kg through ode_body");
+    check::within(pushed, 1.0 - 1e-9, 1.0 + 1e-9,
+                  "m/s of a body of the game's own after half a second of 2 N/kg");
+    check::within(named, 1.0 - 1e-9, 1.0 + 1e-9,
+                  "m/s of one of whose geom his space knows nothing, and which was named");
+    check::within(turned, 0.5 - 1e-6, 0.5 + 1e-6,
+                  "rad/s of a wheel after half a second of a motor of 1 rad/s²");
+    check::within(ours, 0.5 - 1e-9, 0.5 + 1e-9,
+                  "m/s of a full body after half a second of 1 N/kg through ode_body");
   }
   return check::result();
 }

@@ -1,8 +1,10 @@
-// Bodies that belong together: joints of the caller's pin a body at the full level; a group changes rung together, and with joints leaves the full level only while it sleeps, to the bit.
+// Bodies that belong together: joints of the caller's pin a body at the full level; a group changes rung
+// together, and with joints leaves the full level only while it sleeps, to the bit.
+#include <ode/ode.h>
+
 #include <cmath>
 #include <memory>
 #include <vector>
-#include <ode/ode.h>
 
 #include "check.h"
 #include "lod/manager.h"
@@ -27,8 +29,14 @@ struct World {
   }
 };
 
-PolicySettings by_distance(double full_within = 5.0) { return {.policy = DistancePolicy{.full_within = full_within, .support_within = 20}, .min_dwell_frames = 0, .max_transitions_per_frame = 4}; }
-ManagerSettings settings(const PolicySettings& policy) { return {.policy = policy, .signature_timing = SignatureTiming::in_step}; }
+PolicySettings by_distance(double full_within = 5.0) {
+  return {.policy = DistancePolicy{.full_within = full_within, .support_within = 20},
+          .min_dwell_frames = 0,
+          .max_transitions_per_frame = 4};
+}
+ManagerSettings settings(const PolicySettings& policy) {
+  return {.policy = policy, .signature_timing = SignatureTiming::in_step};
+}
 
 void look_from(Manager& manager, double x) {
   const Vec3 camera(x, 0, 1);
@@ -51,7 +59,8 @@ void joints_pin() {
   dJointSetHingeAxis(hinge, 0, 1, 0);
   look_from(manager, 500);
   run(manager, 120);
-  check::that(manager.rung(lamp) == Rung::full && manager.explain(lamp).rule == Rule::joined, "a jointed body stays full though the camera left, and why() says joined");
+  check::that(manager.rung(lamp) == Rung::full && manager.explain(lamp).rule == Rule::joined,
+              "a jointed body stays full though the camera left, and why() says joined");
   manager.set_level(lamp, LevelChoice::tables);
   run(manager, 5);
   check::that(manager.rung(lamp) == Rung::full, "even where the caller asks for another rung");
@@ -65,7 +74,8 @@ void groups_change_together() {
   World w;
   Manager manager(w.world, w.space, settings(by_distance()));
   std::vector<BodyId> caravan;
-  for (int i = 0; i < 8; ++i) caravan.push_back(manager.add_body({.shape = kCrate, .state = {.position = {1.0 * i, 0, 0.21}}}));
+  for (int i = 0; i < 8; ++i)
+    caravan.push_back(manager.add_body({.shape = kCrate, .state = {.position = {1.0 * i, 0, 0.21}}}));
   const GroupId group = manager.make_group(caravan);
   int mixed = 0;
   const auto one_rung = [&] {
@@ -78,10 +88,13 @@ void groups_change_together() {
     manager.step(kFrame);
     mixed += !one_rung();
   }
-  check::within(mixed, 0, 0, "frames in which a group of 8 was on two rungs, the camera passing by, with 4 changes a frame");
+  check::within(
+      mixed, 0, 0,
+      "frames in which a group of 8 was on two rungs, the camera passing by, with 4 changes a frame");
   look_from(manager, 11);
   run(manager, 60);
-  check::that(manager.rung(caravan[0]) == Rung::full, "the nearest of them decides for all (4 m away; the farthest is 11 m away)");
+  check::that(manager.rung(caravan[0]) == Rung::full,
+              "the nearest of them decides for all (4 m away; the farthest is 11 m away)");
   check::that(manager.explain(caravan[3]).group == group, "explain() names the group");
   bool refused = false;
   try {
@@ -92,7 +105,8 @@ void groups_change_together() {
   check::that(refused, "a body is in one group at most");
   manager.dissolve_group(group);
   run(manager, 30);
-  check::that(manager.rung(caravan[0]) != Rung::full && manager.rung(caravan[7]) == Rung::full, "dissolved, each goes its way");
+  check::that(manager.rung(caravan[0]) != Rung::full && manager.rung(caravan[7]) == Rung::full,
+              "dissolved, each goes its way");
 }
 
 // A chain of four on ball joints, which the caller takes off and puts on again.
@@ -132,7 +146,8 @@ struct Chain {
     double widest = 0;
     for (std::size_t i = 0; i + 1 < links.size(); ++i) {
       const RigidState a = manager.state(links[i]), b = manager.state(links[i + 1]);
-      const Vec3 of_a = a.position + a.orientation * anchors[i], of_b = b.position + b.orientation * others[i];
+      const Vec3 of_a = a.position + a.orientation * anchors[i],
+                 of_b = b.position + b.orientation * others[i];
       widest = std::max(widest, (of_a - of_b).norm());
     }
     return widest;
@@ -145,18 +160,22 @@ void jointed_groups_sleep_and_wake_as_one() {
   Manager manager(w.world, w.space, settings(by_distance()));
   look_from(manager, 0);
   Chain chain{w, manager, {}, {}, 0, 0, {}, {}};
-  for (int i = 0; i < 4; ++i) chain.links.push_back(manager.add_body({.shape = kCrate, .state = {.position = {0.45 * i, 0, 0.6}}}));
+  for (int i = 0; i < 4; ++i)
+    chain.links.push_back(manager.add_body({.shape = kCrate, .state = {.position = {0.45 * i, 0, 0.6}}}));
   run(manager, 1);
   chain.join();
-  manager.make_group(chain.links, {.before_demotion = [&](GroupId) { ++chain.off, chain.part(); }, .after_promotion = [&](GroupId) { ++chain.on, chain.join(); }});
+  manager.make_group(chain.links, {.before_demotion = [&](GroupId) { ++chain.off, chain.part(); },
+                                   .after_promotion = [&](GroupId) { ++chain.on, chain.join(); }});
   look_from(manager, 500);
   run(manager, 5);
-  check::that(chain.off == 0 && manager.rung(chain.links[0]) == Rung::full, "a joined group that is awake stays full, however far");
+  check::that(chain.off == 0 && manager.rung(chain.links[0]) == Rung::full,
+              "a joined group that is awake stays full, however far");
   int frames = 0;
   while (chain.off == 0 && frames < 3000) run(manager, 1), ++frames;
   check::within(frames, 10, 2000, "frames until the chain lay still and left the full level");
   bool all_down = true;
-  for (const BodyId link : chain.links) all_down &= manager.rung(link) != Rung::full && manager.asleep(link) && !manager.ode_body(link);
+  for (const BodyId link : chain.links)
+    all_down &= manager.rung(link) != Rung::full && manager.asleep(link) && !manager.ode_body(link);
   check::that(all_down, "as one, asleep");
   const double gap_before = chain.gap();
   run(manager, 200);
@@ -173,7 +192,8 @@ void jointed_groups_sleep_and_wake_as_one() {
     all_up = true;
     for (const BodyId link : chain.links) all_up &= manager.rung(link) == Rung::full && !manager.asleep(link);
   }
-  check::that(all_up && chain.on == 1, "a hit on one brings all back, at once, and the caller has joined them again");
+  check::that(all_up && chain.on == 1,
+              "a hit on one brings all back, at once, and the caller has joined them again");
   check::within(widest, 0.0, 0.01, "m, widest gap of a joint through sleep, hit and after");
   check::within(gap_before, 0.0, 0.005, "m, gap while it slept");
 
@@ -185,8 +205,10 @@ void jointed_groups_sleep_and_wake_as_one() {
   look_from(manager, 0);
   run(manager, 3);
   double moved = 0;
-  for (std::size_t i = 0; i < before.size(); ++i) moved = std::max(moved, (manager.state(chain.links[i]).position - before[i].position).norm());
-  check::that(chain.on == 2 && manager.rung(chain.links[0]) == Rung::full, "the camera's return brings a sleeping chain back");
+  for (std::size_t i = 0; i < before.size(); ++i)
+    moved = std::max(moved, (manager.state(chain.links[i]).position - before[i].position).norm());
+  check::that(chain.on == 2 && manager.rung(chain.links[0]) == Rung::full,
+              "the camera's return brings a sleeping chain back");
   check::within(moved, 0.0, 0.0, "m that its links moved by that");
   check::that(manager.asleep(chain.links[0]), "and it sleeps on");
 }

@@ -1,4 +1,5 @@
-// A game that keeps its own dSpaceCollide and dWorldStep, with a manager before and after; and ground of the manager's that moves, comes and goes.
+// A game that keeps its own dSpaceCollide and dWorldStep, with a manager before and after; and ground of the
+// manager's that moves, comes and goes.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -48,7 +49,8 @@ struct Game {
     for (int i = 0; i < count; ++i) {
       contact[i].surface.mode = dContactApprox1;
       contact[i].surface.mu = 0.5;
-      dJointAttach(dJointCreateContact(game.world, game.contacts, &contact[i]), dGeomGetBody(a), dGeomGetBody(b));
+      dJointAttach(dJointCreateContact(game.world, game.contacts, &contact[i]), dGeomGetBody(a),
+                   dGeomGetBody(b));
     }
   }
   void step() {
@@ -67,8 +69,10 @@ void own_loop() {
   Manager manager(game.world, game.space, measured());
   std::vector<BodyId> bodies;
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
-    bodies.push_back(manager.add_body({.shape = crate, .state = at(-2.0 * double(bodies.size()), 1.0), .level = level}));
-  const BodyId under_ball = manager.add_body({.shape = crate, .state = at(5, 0.15), .level = LevelChoice::support});
+    bodies.push_back(
+        manager.add_body({.shape = crate, .state = at(-2.0 * double(bodies.size()), 1.0), .level = level}));
+  const BodyId under_ball =
+      manager.add_body({.shape = crate, .state = at(5, 0.15), .level = LevelChoice::support});
   int misused = 0, hits = 0;
   const auto misuse = [&](const auto& act) {
     try {
@@ -84,12 +88,17 @@ void own_loop() {
     if (i == 0) misuse([&] { manager.step(kFrame); });
     game.step();
     manager.after_world_step();
-    for (const ContactEvent& event : manager.contact_events()) hits += event.phase == ContactPhase::hit && event.first.body == under_ball && event.second.callers == game.ball;
+    for (const ContactEvent& event : manager.contact_events())
+      hits += event.phase == ContactPhase::hit && event.first.body == under_ball &&
+              event.second.callers == game.ball;
   }
   check::within(misused, 3, 3, "calls out of turn, refused");
-  for (const BodyId body : bodies) check::within(manager.state(body).position.z(), 0.14, 0.16, "m, height of a crate at rest on the caller's plane, one on each rung");
+  for (const BodyId body : bodies)
+    check::within(manager.state(body).position.z(), 0.14, 0.16,
+                  "m, height of a crate at rest on the caller's plane, one on each rung");
   check::within(double(manager.report().step), 240, 240, "steps");
-  check::within(dBodyGetPosition(game.ball)[2], 0.24, 0.56, "m, height of the caller's ball, that fell on a crate at support");
+  check::within(dBodyGetPosition(game.ball)[2], 0.24, 0.56,
+                "m, height of the caller's ball, that fell on a crate at support");
   check::within(hits, 1, 4, "hits told of the two");
   misuse([&] { Manager().before_world_step(kFrame); });
   check::within(misused, 4, 4, "and in a world of the manager's own");
@@ -111,16 +120,19 @@ void moving_ground(LevelChoice level, const char* rung) {
   }
   manager.move_ground(platform, at(0.5, 1));
   for (int i = 0; i < 30; ++i) manager.step(kFrame);
-  check::within(manager.state(rider).position.x() - from, 0.47, 0.53, (std::string("m that a crate rode on a platform which moved .5 m, at ") + rung).c_str());
+  check::within(manager.state(rider).position.x() - from, 0.47, 0.53,
+                (std::string("m that a crate rode on a platform which moved .5 m, at ") + rung).c_str());
   check::within(manager.state(rider).position.z(), 1.24, 1.27, "m, its height");
   for (int i = 0; i < 120; ++i) manager.step(kFrame);
   check::that(manager.asleep(rider), "it sleeps on the platform that stands");
   const auto hit = manager.cast_ray({.from = {0.5, 0.9, 5}});
-  check::that(hit && hit->who.ground == platform && std::abs(hit->distance - 3.9) < 1e-9, "a ray meets the platform where it is, by its id");
+  check::that(hit && hit->who.ground == platform && std::abs(hit->distance - 3.9) < 1e-9,
+              "a ray meets the platform where it is, by its id");
   manager.remove_ground(platform);
   check::that(!manager.valid(platform), "a removed platform's id is not valid");
   for (int i = 0; i < 120; ++i) manager.step(kFrame);
-  check::within(manager.state(rider).position.z(), 0.14, 0.17, "m, height of who lay on a platform that was taken away");
+  check::within(manager.state(rider).position.z(), 0.14, 0.17,
+                "m, height of who lay on a platform that was taken away");
   int refused = 0;
   try {
     manager.remove_ground(platform);

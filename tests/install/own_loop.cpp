@@ -1,4 +1,5 @@
-// A game that keeps its own loop: its dSpaceCollide, its contacts and its dWorldStep, with a call to the manager before and one after.
+// A game that keeps its own loop: its dSpaceCollide, its contacts and its dWorldStep, with a call to the
+// manager before and one after.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -38,7 +39,8 @@ struct Game {
 
   void collide() {
     met = 0;
-    dSpaceCollide(space, this, [](void* game, dGeomID a, dGeomID b) { static_cast<Game*>(game)->meet(a, b); });
+    dSpaceCollide(space, this,
+                  [](void* game, dGeomID a, dGeomID b) { static_cast<Game*>(game)->meet(a, b); });
   }
   void meet(dGeomID a, dGeomID b) {
     if (!dGeomGetBody(a) && !dGeomGetBody(b)) return;
@@ -91,7 +93,9 @@ Outcome play(LevelChoice level, bool own_loop) {
     dJointGroupEmpty(game.contacts);
     outcome.joints_left += dBodyGetNumJoints(game.ball);
   }
-  for (const BodyId body : bodies) outcome.x.push_back(manager.state(body).position.x()), outcome.z.push_back(manager.state(body).position.z());
+  for (const BodyId body : bodies)
+    outcome.x.push_back(manager.state(body).position.x()),
+        outcome.z.push_back(manager.state(body).position.z());
   outcome.ball_x = dBodyGetPosition(game.ball)[0];
   outcome.steps = manager.report().step;
   return outcome;
@@ -110,7 +114,8 @@ int main() {
     check::within(own.joints_left, 0, 0, "contact joints of the manager's left on the game's ball");
     check::within(own.x[0], -0.4, 100, "m, where the first crate is that the ball hit, from -.5");
     check::within(*std::ranges::min_element(own.z), 0.05, 0.5, "m, the lowest crate");
-    check::that(own.x == step.x && own.z == step.z && own.ball_x == step.ball_x, "to the bit what step() gives with one substep");
+    check::that(own.x == step.x && own.z == step.z && own.ball_x == step.ball_x,
+                "to the bit what step() gives with one substep");
   }
   return check::result();
 }

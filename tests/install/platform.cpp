@@ -72,6 +72,7 @@ double carried_by_plain_ode() {
 int main() {
   const double plain = carried_by_plain_ode();
   std::printf("plain ODE carries a crate %.4f m of .5 m\n", plain);
-  check::within(carried_by_manager(LevelChoice::full), plain - 0.02, 0.5 + 1e-3, "m that a full crate that slept is carried, of .5 m");
+  check::within(carried_by_manager(LevelChoice::full), plain - 0.02, 0.5 + 1e-3,
+                "m that a full crate that slept is carried, of .5 m");
   return check::result();
 }

@@ -1,4 +1,5 @@
-// The policies that a game may choose from: size in the picture, frusta, ranges of rungs, significance, look-ahead; and what explain() says of a body.
+// The policies that a game may choose from: size in the picture, frusta, ranges of rungs, significance,
+// look-ahead; and what explain() says of a body.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -29,7 +30,8 @@ void run(Manager& manager, int frames) {
 }
 
 void sizes_in_the_picture() {
-  Manager manager = on_floor({.policy = ProjectedSizePolicy{.full_above_px = 100, .support_above_px = 20}, .max_transitions_per_frame = 100});
+  Manager manager = on_floor({.policy = ProjectedSizePolicy{.full_above_px = 100, .support_above_px = 20},
+                              .max_transitions_per_frame = 100});
   const Viewpoint camera{.position = {0, 0, 1}, .vertical_fov_rad = 1.0, .height_px = 1080};
   manager.set_viewpoints({camera});
   std::vector<BodyId> row;
@@ -51,19 +53,29 @@ void sizes_in_the_picture() {
 }
 
 void frusta() {
-  PolicySettings policy{.policy = DistancePolicy{.full_within = 5, .support_within = 50}, .min_dwell_frames = 0, .max_transitions_per_frame = 100, .out_of_view_factor = 1e3};
+  PolicySettings policy{.policy = DistancePolicy{.full_within = 5, .support_within = 50},
+                        .min_dwell_frames = 0,
+                        .max_transitions_per_frame = 100,
+                        .out_of_view_factor = 1e3};
   Manager manager = on_floor(policy);
-  const auto look = [&](const Vec3& direction) { manager.set_viewpoints({Viewpoint{.position = {0, 0, 1}, .direction = direction}}); };
+  const auto look = [&](const Vec3& direction) {
+    manager.set_viewpoints({Viewpoint{.position = {0, 0, 1}, .direction = direction}});
+  };
   look({1, 0, 0});
-  const BodyId before = add(manager, {3, 0, 0.2}), behind = add(manager, {-3, 0, 0.2}), far_behind = add(manager, {-20, 0, 0.2});
+  const BodyId before = add(manager, {3, 0, 0.2}), behind = add(manager, {-3, 0, 0.2}),
+               far_behind = add(manager, {-20, 0, 0.2});
   run(manager, 2);
-  check::that(manager.rung(before) == Rung::full && manager.rung(behind) == Rung::tables, "in view full, behind the camera at tables");
-  check::that(manager.explain(behind).rule == Rule::out_of_view && !manager.explain(behind).in_view, "explain() says that it is out of view");
+  check::that(manager.rung(before) == Rung::full && manager.rung(behind) == Rung::tables,
+              "in view full, behind the camera at tables");
+  check::that(manager.explain(behind).rule == Rule::out_of_view && !manager.explain(behind).in_view,
+              "explain() says that it is out of view");
   run(manager, 300);
   check::that(manager.asleep(behind) && manager.asleep(far_behind), "what is behind the camera is asleep");
   look({-1, 0, 0});
   run(manager, 2);
-  check::that(manager.rung(behind) == Rung::full && manager.rung(far_behind) == Rung::support && manager.rung(before) == Rung::tables, "the camera turns round, and sleepers follow at once");
+  check::that(manager.rung(behind) == Rung::full && manager.rung(far_behind) == Rung::support &&
+                  manager.rung(before) == Rung::tables,
+              "the camera turns round, and sleepers follow at once");
   bool curtain = true;
   policy.visible = [&](const Vec3&, double) { return !curtain; };
   manager.set_policy(policy);
@@ -76,22 +88,31 @@ void frusta() {
   policy.visible = {};
   manager.set_policy(policy);
   std::vector<BodyId> away;
-  for (int i = 0; i < 200; ++i) away.push_back(manager.add_body({.shape = kCrate, .state = {.position = {500.0 + i, 0, 0.1}}}));
+  for (int i = 0; i < 200; ++i)
+    away.push_back(manager.add_body({.shape = kCrate, .state = {.position = {500.0 + i, 0, 0.1}}}));
   run(manager, 400);
   const auto before_turning = manager.report().counters.levels_considered;
   for (int i = 0; i < 100; ++i) look({std::cos(0.1 * i), std::sin(0.1 * i), 0}), run(manager, 1);
-  check::within(double(manager.report().counters.levels_considered - before_turning) / 100, 0, 8, "bodies looked at in a step of a turning camera, 203 in the world");
+  check::within(double(manager.report().counters.levels_considered - before_turning) / 100, 0, 8,
+                "bodies looked at in a step of a turning camera, 203 in the world");
 }
 
 void ranges() {
-  Manager manager = on_floor({.policy = DistancePolicy{.full_within = 5, .support_within = 10}, .max_transitions_per_frame = 100});
+  Manager manager = on_floor(
+      {.policy = DistancePolicy{.full_within = 5, .support_within = 10}, .max_transitions_per_frame = 100});
   manager.set_viewpoints({Viewpoint{.position = {0, 0, 1}}});
   const auto at = [&](double x, Rung least, Rung greatest) {
-    return manager.add_body({.shape = kCrate, .state = {.position = {x, 0, 0.3}}, .least_rung = least, .greatest_rung = greatest});
+    return manager.add_body({.shape = kCrate,
+                             .state = {.position = {x, 0, 0.3}},
+                             .least_rung = least,
+                             .greatest_rung = greatest});
   };
-  const BodyId extra = at(2, Rung::tables, Rung::support), hero = at(100, Rung::full, Rung::full), prop = at(101, Rung::support, Rung::full);
+  const BodyId extra = at(2, Rung::tables, Rung::support), hero = at(100, Rung::full, Rung::full),
+               prop = at(101, Rung::support, Rung::full);
   run(manager, 2);
-  check::that(manager.rung(extra) == Rung::support && manager.rung(hero) == Rung::full && manager.rung(prop) == Rung::support, "a body stays between its least and its greatest rung");
+  check::that(manager.rung(extra) == Rung::support && manager.rung(hero) == Rung::full &&
+                  manager.rung(prop) == Rung::support,
+              "a body stays between its least and its greatest rung");
   check::that(manager.explain(hero).rule == Rule::rung_range, "explain() says that one rung was left");
   manager.set_rung_range(prop, Rung::tables, Rung::full);
   run(manager, 40);
@@ -108,7 +129,8 @@ void significance() {
   dull = add(manager, {2, 0, 0.3});
   const BodyId other = add(manager, {0, 2, 0.3});
   run(manager, 2);
-  check::that(manager.rung(dull) == Rung::support && manager.rung(other) == Rung::full, "significance scales the distance");
+  check::that(manager.rung(dull) == Rung::support && manager.rung(other) == Rung::full,
+              "significance scales the distance");
   run(manager, 300);
   asked = 0;
   run(manager, 100);
@@ -117,13 +139,18 @@ void significance() {
 
 /// m: how far from the full target a fast ball is when it becomes full; negative: it did not before it hit.
 double distance_at_promotion(double look_ahead_s) {
-  Manager manager = on_floor({.policy = DistancePolicy{.full_within = 1, .support_within = 100}, .max_transitions_per_frame = 100, .look_ahead_s = look_ahead_s});
+  Manager manager = on_floor({.policy = DistancePolicy{.full_within = 1, .support_within = 100},
+                              .max_transitions_per_frame = 100,
+                              .look_ahead_s = look_ahead_s});
   manager.set_viewpoints({Viewpoint{.position = {0, 0, 1}}});
-  const BodyId target = manager.add_body({.shape = kCrate, .state = {.position = {0, 0, 0.21}}, .level = LevelChoice::full});
-  const BodyId shot = manager.add_body({.shape = kCrate, .state = {.position = {-12, 0, 1.0}, .velocity = {20, 0, 1}}});
+  const BodyId target =
+      manager.add_body({.shape = kCrate, .state = {.position = {0, 0, 0.21}}, .level = LevelChoice::full});
+  const BodyId shot =
+      manager.add_body({.shape = kCrate, .state = {.position = {-12, 0, 1.0}, .velocity = {20, 0, 1}}});
   for (int i = 0; i < 60; ++i) {
     manager.step(kFrame);
-    const double apart = (manager.state(shot).position - manager.state(target).position).norm() - 2 * kCrate->radius;
+    const double apart =
+        (manager.state(shot).position - manager.state(target).position).norm() - 2 * kCrate->radius;
     if (manager.rung(shot) == Rung::full) return apart;
     if (apart < 0) break;
   }
@@ -131,15 +158,19 @@ double distance_at_promotion(double look_ahead_s) {
 }
 
 void budgets() {
-  Manager manager = on_floor({.policy = ErrorBudgetPolicy{.budget_work = 20000}, .max_transitions_per_frame = 100});
+  Manager manager =
+      on_floor({.policy = ErrorBudgetPolicy{.budget_work = 20000}, .max_transitions_per_frame = 100});
   manager.set_viewpoints({Viewpoint{.position = {0, 0, 1}}});
   std::vector<BodyId> row;
   for (int i = 0; i < 100; ++i) row.push_back(add(manager, {1.0 + 0.7 * i, 0, 2.0}));
   run(manager, 10);
   const Why why = manager.explain(row[0]);
-  check::that(why.predicted_error > 0 && why.predicted_error_pixels > 0 && why.cost_work > 0, "explain() has error and cost");
-  check::within(why.predicted_error_pixels / why.pixels, 0.05, 1.0, "predicted error of a body, over its size");
-  check::that(manager.why(row[0]) == std::string(name_of(why.rung)) + ": " + std::string(text_of(why.rule)), "the sentence stays");
+  check::that(why.predicted_error > 0 && why.predicted_error_pixels > 0 && why.cost_work > 0,
+              "explain() has error and cost");
+  check::within(why.predicted_error_pixels / why.pixels, 0.05, 1.0,
+                "predicted error of a body, over its size");
+  check::that(manager.why(row[0]) == std::string(name_of(why.rung)) + ": " + std::string(text_of(why.rule)),
+              "the sentence stays");
 }
 
 void wrong_values() {

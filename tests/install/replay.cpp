@@ -1,4 +1,5 @@
-// What is done to a manager is recorded and done again: the same to the bit, or else the first step and body that come out otherwise are named.
+// What is done to a manager is recorded and done again: the same to the bit, or else the first step and body
+// that come out otherwise are named.
 #include <lodestone/lodestone.h>
 
 #include <string>
@@ -17,11 +18,16 @@ constexpr double kStep = 1.0 / 60.0;
 constexpr int kSteps = 120;
 
 Shapes make_shapes() {
-  return {std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4}))), std::make_shared<const Shape>(make_shape("letter", make_l(0.3, 0.2, 0.08, 0.1)))};
+  return {std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4}))),
+          std::make_shared<const Shape>(make_shape("letter", make_l(0.3, 0.2, 0.08, 0.1)))};
 }
 
 Manager make_manager(int threads) {
-  Manager manager({.seed = 3, .threads = threads, .policy = {.policy = DistancePolicy{.full_within = 1.2, .support_within = 2.5}, .max_transitions_per_frame = 8}, .signature_timing = SignatureTiming::in_step});
+  Manager manager({.seed = 3,
+                   .threads = threads,
+                   .policy = {.policy = DistancePolicy{.full_within = 1.2, .support_within = 2.5},
+                              .max_transitions_per_frame = 8},
+                   .signature_timing = SignatureTiming::in_step});
   manager.add_plane(Vec3::UnitZ(), 0.0);
   return manager;
 }
@@ -30,7 +36,11 @@ Manager make_manager(int threads) {
 void play(Manager& manager, const Shapes& shapes) {
   std::vector<BodyId> bodies;
   for (int i = 0; i < 60; ++i)
-    bodies.push_back(manager.add_body({.shape = shapes[std::size_t(i) % 2], .state = {.position = Vec3(0.45 * (i % 6) - 1.2, 0.45 * (i / 6 % 5) - 1.0, 0.6 + 0.5 * (i / 30)), .orientation = Quat(0.7 + 1e-3 * i, 0.3, -0.2, 0.1 * (i % 7)).normalized()}, .importance = 1.0 + 0.1 * (i % 3)}));
+    bodies.push_back(manager.add_body(
+        {.shape = shapes[std::size_t(i) % 2],
+         .state = {.position = Vec3(0.45 * (i % 6) - 1.2, 0.45 * (i / 6 % 5) - 1.0, 0.6 + 0.5 * (i / 30)),
+                   .orientation = Quat(0.7 + 1e-3 * i, 0.3, -0.2, 0.1 * (i % 7)).normalized()},
+         .importance = 1.0 + 0.1 * (i % 3)}));
   for (int i = 0; i < kSteps; ++i) {
     const Vec3 camera(std::sin(0.03 * i), std::cos(0.03 * i), 0.5);
     const BodyId body = bodies[std::size_t(7 * i) % bodies.size()];
@@ -43,7 +53,9 @@ void play(Manager& manager, const Shapes& shapes) {
     if (i == 50) manager.add_body({.shape = shapes[1], .state = {.position = Vec3(0, 0, 2)}, .mass = 5.0});
     if (i == 60) manager.remove_body(bodies.back()), bodies.pop_back();
     if (i == 70) manager.sleep(body);
-    if (i == 75) manager.set_policy({.policy = DistancePolicy{.full_within = 0.9, .support_within = 1.8}, .max_transitions_per_frame = 8});
+    if (i == 75)
+      manager.set_policy({.policy = DistancePolicy{.full_within = 0.9, .support_within = 1.8},
+                          .max_transitions_per_frame = 8});
     if (i == 80) manager.wake(body);
     if (i == 90) manager.set_full_substeps(3);
     if (i == 95) manager.set_importance(body, 3.0);
@@ -59,7 +71,9 @@ int main() {
   Bytes recording;
   Manager manager = make_manager(1);
   for (int i = 0; i < 3; ++i) manager.step(kStep);
-  manager.set_record([&](std::span<const std::byte> bytes) { recording.insert(recording.end(), bytes.begin(), bytes.end()); });
+  manager.set_record([&](std::span<const std::byte> bytes) {
+    recording.insert(recording.end(), bytes.begin(), bytes.end());
+  });
   play(manager, shapes);
   manager.set_record({});
   const std::size_t length = recording.size();
@@ -83,7 +97,8 @@ int main() {
 
   // Another policy, which no snapshot has.
   Manager other = make_manager(1);
-  other.set_policy({.policy = DistancePolicy{.full_within = 0.5, .support_within = 2.5}, .max_transitions_per_frame = 8});
+  other.set_policy(
+      {.policy = DistancePolicy{.full_within = 0.5, .support_within = 2.5}, .max_transitions_per_frame = 8});
   const ReplayResult differs = other.replay(recording, own);
   std::printf("%s\n", differs.text.c_str());
   check::that(!differs.same && differs.body, "where it comes out otherwise a body is named");
@@ -91,8 +106,11 @@ int main() {
 
   // A policy with a function, which the reader must bring.
   Bytes with_function;
-  const PolicySettings significant = {.policy = DistancePolicy{.full_within = 1.0}, .significance = [](BodyId) { return 0.5; }};
-  manager.set_record([&](std::span<const std::byte> bytes) { with_function.insert(with_function.end(), bytes.begin(), bytes.end()); });
+  const PolicySettings significant = {.policy = DistancePolicy{.full_within = 1.0},
+                                      .significance = [](BodyId) { return 0.5; }};
+  manager.set_record([&](std::span<const std::byte> bytes) {
+    with_function.insert(with_function.end(), bytes.begin(), bytes.end());
+  });
   manager.set_policy(significant);
   for (int i = 0; i < 10; ++i) manager.step(kStep);
   manager.set_record({});
@@ -100,7 +118,9 @@ int main() {
   check::that(again.replay(with_function, own).same, "the function is the reader's");
   again.set_policy({});
 
-  for (const auto& [bytes, because] : {std::pair(with_function, "a function for `significance`"), std::pair(Bytes(20), "it begins otherwise"), {Bytes(recording.begin(), recording.begin() + 8), "no beginning"}}) {
+  for (const auto& [bytes, because] : {std::pair(with_function, "a function for `significance`"),
+                                       std::pair(Bytes(20), "it begins otherwise"),
+                                       {Bytes(recording.begin(), recording.begin() + 8), "no beginning"}}) {
     std::string said;
     try {
       again.replay(bytes, own);

@@ -1,8 +1,9 @@
-// A heap on all three rungs is stepped, kept, stepped on; restored, in the same manager and in another one, the same steps give the same states, to the bit.
+// A heap on all three rungs is stepped, kept, stepped on; restored, in the same manager and in another one,
+// the same steps give the same states, to the bit.
 #include <lodestone/lodestone.h>
+#include <ode/ode.h>
 
 #include <cstring>
-#include <ode/ode.h>
 #include <string>
 #include <vector>
 
@@ -17,21 +18,26 @@ constexpr double kStep = 1.0 / 60.0;
 using Shapes = std::vector<std::shared_ptr<const Shape>>;
 
 Shapes make_shapes() {
-  return {std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4}))), std::make_shared<const Shape>(make_shape("letter", make_l(0.3, 0.2, 0.08, 0.1))),
+  return {std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.4}))),
+          std::make_shared<const Shape>(make_shape("letter", make_l(0.3, 0.2, 0.08, 0.1))),
           std::make_shared<const Shape>(make_sphere_shape(0.15))};
 }
 
 ManagerSettings settings_of(const decltype(PolicySettings::policy)& policy, int threads) {
-  return {.seed = 7, .threads = threads, .policy = {.policy = policy, .min_dwell_frames = 10, .max_transitions_per_frame = 8}, .signature_timing = SignatureTiming::in_step};
+  return {.seed = 7,
+          .threads = threads,
+          .policy = {.policy = policy, .min_dwell_frames = 10, .max_transitions_per_frame = 8},
+          .signature_timing = SignatureTiming::in_step};
 }
 
 void fill(Manager& manager, const Shapes& shapes, int count) {
   for (int i = 0; i < count; ++i) {
     const double turn = 0.7 * i;
-    manager.add_body({.shape = shapes[std::size_t(i) % shapes.size()],
-                      .state = {.position = Vec3(0.42 * (i % 9) - 1.7, 0.42 * (i / 9 % 9) - 1.7, 0.5 + 0.45 * (i / 81)),
-                                .orientation = Quat(std::cos(turn), 0.0, std::sin(turn), 0.0),
-                                .velocity = Vec3(0.1 * (i % 5), -0.1 * (i % 7), 0.0)}});
+    manager.add_body(
+        {.shape = shapes[std::size_t(i) % shapes.size()],
+         .state = {.position = Vec3(0.42 * (i % 9) - 1.7, 0.42 * (i / 9 % 9) - 1.7, 0.5 + 0.45 * (i / 81)),
+                   .orientation = Quat(std::cos(turn), 0.0, std::sin(turn), 0.0),
+                   .velocity = Vec3(0.1 * (i % 5), -0.1 * (i % 7), 0.0)}});
   }
 }
 
@@ -42,7 +48,9 @@ void play(Manager& manager, const Shapes& shapes, const std::vector<BodyId>& pus
     manager.set_viewpoints({&camera, 1});
     const BodyId body = pushed[std::size_t(i) % pushed.size()];
     if (i % 11 == 0 && manager.valid(body)) manager.add_force(body, Vec3(0.0, 0.0, 400.0));
-    if (i % 37 == 0) manager.add_body({.shape = shapes[std::size_t(i) % shapes.size()], .state = {.position = Vec3(0.0, 0.0, 3.0)}});
+    if (i % 37 == 0)
+      manager.add_body(
+          {.shape = shapes[std::size_t(i) % shapes.size()], .state = {.position = Vec3(0.0, 0.0, 3.0)}});
     if (i % 53 == 0 && manager.valid(body)) manager.remove_body(body);
     manager.step(kStep);
   }
@@ -54,7 +62,8 @@ struct Kept {
 };
 
 template <class MakeManager>
-void check_heap(const char* name, const Shapes& shapes, int count, int before, int after, const MakeManager& make) {
+void check_heap(const char* name, const Shapes& shapes, int count, int before, int after,
+                const MakeManager& make) {
   std::vector<BodyId> ids;
   Manager manager = make(1);
   fill(manager, shapes, count);
@@ -62,7 +71,8 @@ void check_heap(const char* name, const Shapes& shapes, int count, int before, i
   play(manager, shapes, ids, 0, before);
   Kept kept{.bytes = manager.snapshot(), .then = manager.state_hash()};
   const StepReport report = manager.report();
-  std::printf("%s: %d full, %d support, %d tables, %d asleep; %zu bytes\n", name, report.full, report.support, report.tables, report.asleep, kept.bytes.size());
+  std::printf("%s: %d full, %d support, %d tables, %d asleep; %zu bytes\n", name, report.full, report.support,
+              report.tables, report.asleep, kept.bytes.size());
   check::that(report.full > 0 && report.support > 0 && report.tables > 0, "bodies are on all three rungs");
   play(manager, shapes, ids, before, 1);
   kept.later = manager.state_hash();
@@ -71,11 +81,14 @@ void check_heap(const char* name, const Shapes& shapes, int count, int before, i
   const std::int64_t changes = manager.report().step;
 
   const auto repeats = [&](Manager& other, const std::string& who) {
-    check::that(other.state_hash() == kept.then && other.report().counters.promotions_put_off == report.counters.promotions_put_off, (who + ": the state that was kept").c_str());
+    check::that(other.state_hash() == kept.then &&
+                    other.report().counters.promotions_put_off == report.counters.promotions_put_off,
+                (who + ": the state that was kept").c_str());
     play(other, shapes, ids, before, 1);
     check::that(other.state_hash() == kept.later, (who + ": the next step").c_str());
     play(other, shapes, ids, before + 1, after - 1);
-    check::that(other.state_hash() == kept.last && other.report().step == changes, (who + ": all the steps").c_str());
+    check::that(other.state_hash() == kept.last && other.report().step == changes,
+                (who + ": all the steps").c_str());
   };
   manager.restore(kept.bytes);
   repeats(manager, std::string(name) + ", the same manager");
@@ -100,14 +113,19 @@ int found_where_they_are(const Manager& manager, const std::vector<BodyId>& bodi
 
 // What is kept of places for later questions must not outlive the places.
 void check_places(const Shapes& shapes) {
-  Manager manager({.policy = {.policy = DistancePolicy{.full_within = 1e3}}, .signature_timing = SignatureTiming::in_step});
+  Manager manager({.policy = {.policy = DistancePolicy{.full_within = 1e3}},
+                   .signature_timing = SignatureTiming::in_step});
   manager.add_plane(Vec3::UnitZ(), 0.0);
   const Vec3 camera(0, 0, 1);
   manager.set_viewpoints({&camera, 1});
   std::vector<BodyId> bodies;
   for (int i = 0; i < 50; ++i) {
-    const LevelChoice level = i < 40 ? LevelChoice::full : i < 45 ? LevelChoice::support : LevelChoice::tables;
-    bodies.push_back(manager.add_body({.shape = shapes[0], .state = {.position = Vec3((i < 40 ? 0.3 : 2.0) * i, 0.0, 0.2)}, .level = level}));
+    const LevelChoice level = i < 40   ? LevelChoice::full
+                              : i < 45 ? LevelChoice::support
+                                       : LevelChoice::tables;
+    bodies.push_back(manager.add_body({.shape = shapes[0],
+                                       .state = {.position = Vec3((i < 40 ? 0.3 : 2.0) * i, 0.0, 0.2)},
+                                       .level = level}));
   }
   manager.step(kStep);
   for (const BodyId body : bodies) manager.sleep(body);
@@ -126,7 +144,9 @@ void check_places(const Shapes& shapes) {
   check::within(found_where_they_are(manager, bodies), 50, 50, "bodies met where they fall");
   manager.set_state(bodies[0], manager.state(bodies[0]));
   manager.restore(kept);
-  check::that(manager.moved().empty() && manager.woke().empty() && manager.fell_asleep().empty() && manager.rung_changes().empty(), "a restored manager tells of no step");
+  check::that(manager.moved().empty() && manager.woke().empty() && manager.fell_asleep().empty() &&
+                  manager.rung_changes().empty(),
+              "a restored manager tells of no step");
   check::within(found_where_they_are(manager, bodies), 50, 50, "bodies met where they are again");
   const Ray across{.from = {-5, 40, 1.2}, .direction = {1, 0, 0}, .length = 200};
   check::that(!manager.cast_ray(across), "none where they fell");
@@ -148,7 +168,9 @@ void check_audit(const Shapes& shapes) {
   const std::vector<std::byte> kept = manager.snapshot();
   Vec3 camera(0, 0, 0.5);
   manager.set_viewpoints({&camera, 1});
-  for (int i = 0; i < 20; ++i) manager.add_body({.shape = shapes[0], .state = {.position = Vec3(0.5 * (i % 5) - 1.0, 0.5 * (i / 5) - 0.75, 1.0)}});
+  for (int i = 0; i < 20; ++i)
+    manager.add_body(
+        {.shape = shapes[0], .state = {.position = Vec3(0.5 * (i % 5) - 1.0, 0.5 * (i / 5) - 0.75, 1.0)}});
   for (int i = 0; i < 20; ++i) manager.step(kStep);
   camera = Vec3(100, 0, 0.5);
   manager.set_viewpoints({&camera, 1});
@@ -158,7 +180,8 @@ void check_audit(const Shapes& shapes) {
   manager.restore(kept);
   manager.step(kStep);
   check::within(manager.report().audit.watched, 0, 0, "watched of a world that was left");
-  check::within(manager.report().audit.left_out, left_out + watched, left_out + watched, "left out of the comparison");
+  check::within(manager.report().audit.left_out, left_out + watched, left_out + watched,
+                "left out of the comparison");
 }
 
 bool refuses(Manager& manager, std::span<const std::byte> bytes, const char* because) {
@@ -175,7 +198,9 @@ bool refuses(Manager& manager, std::span<const std::byte> bytes, const char* bec
 
 void check_refusals(const Shapes& shapes) {
   const auto make = [&](std::uint64_t seed) {
-    Manager manager({.seed = seed, .policy = {.policy = DistancePolicy{.full_within = 2.0}}, .signature_timing = SignatureTiming::in_step});
+    Manager manager({.seed = seed,
+                     .policy = {.policy = DistancePolicy{.full_within = 2.0}},
+                     .signature_timing = SignatureTiming::in_step});
     manager.add_plane(Vec3::UnitZ(), 0.0);
     const Vec3 camera(0, 0, 1);
     manager.set_viewpoints({&camera, 1});
@@ -188,8 +213,10 @@ void check_refusals(const Shapes& shapes) {
   manager.step(kStep);
 
   int refused = 0;
-  for (std::size_t length = 0; length < good.size(); length += 397) refused += refuses(manager, std::span(good).first(length), "");
-  check::within(refused, double((good.size() + 396) / 397), double((good.size() + 396) / 397), "snapshots cut short that were refused");
+  for (std::size_t length = 0; length < good.size(); length += 397)
+    refused += refuses(manager, std::span(good).first(length), "");
+  check::within(refused, double((good.size() + 396) / 397), double((good.size() + 396) / 397),
+                "snapshots cut short that were refused");
   int damaged = 0, places = 0;
   for (std::size_t at = 0; at < good.size(); at += 431, ++places) {
     std::vector<std::byte> bytes = good;
@@ -220,8 +247,10 @@ int main() {
       return manager;
     };
   };
-  check_heap("distance", shapes, 70, 100, 200, own_world(DistancePolicy{.full_within = 1.2, .support_within = 2.0}));
-  check_heap("distance, late", shapes, 60, 300, 60, own_world(DistancePolicy{.full_within = 1.2, .support_within = 2.0}));
+  check_heap("distance", shapes, 70, 100, 200,
+             own_world(DistancePolicy{.full_within = 1.2, .support_within = 2.0}));
+  check_heap("distance, late", shapes, 60, 300, 60,
+             own_world(DistancePolicy{.full_within = 1.2, .support_within = 2.0}));
   check_heap("work budget", shapes, 90, 60, 60, own_world(WorkPolicy{.budget_work = 3000.0}));
 
   dInitODE2(0);

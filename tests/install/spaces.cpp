@@ -18,7 +18,10 @@ const char* const kTypes[] = {"simple", "hash", "sweep and prune", "quadtree"};
 
 dSpaceID make_space(int type, dSpaceID in = nullptr) {
   const dVector3 center = {0, 0, 0}, half = {120, 120, 120};
-  return type == 0 ? dSimpleSpaceCreate(in) : type == 1 ? dHashSpaceCreate(in) : type == 2 ? dSweepAndPruneSpaceCreate(in, dSAP_AXES_XYZ) : dQuadTreeSpaceCreate(in, center, half, 6);
+  return type == 0   ? dSimpleSpaceCreate(in)
+         : type == 1 ? dHashSpaceCreate(in)
+         : type == 2 ? dSweepAndPruneSpaceCreate(in, dSAP_AXES_XYZ)
+                     : dQuadTreeSpaceCreate(in, center, half, 6);
 }
 
 dGeomID add_box(dSpaceID space, const Vec3& sides, const Vec3& position) {
@@ -46,17 +49,21 @@ void rests_everywhere(int type) {
   std::vector<BodyId> crates;
   {
     Manager manager(world, space, {.signature_timing = SignatureTiming::in_step});
-    for (int inner = 0; inner < 4; ++inner) {  // pads in the space itself and in two of each type within it, the second without cleanup
+    for (int inner = 0; inner < 4;
+         ++inner) {  // pads in the space itself and in two of each type within it, the second without cleanup
       const dSpaceID within = make_space(inner, space), deeper = make_space(3 - inner, within);
       dSpaceSetCleanup(deeper, 0);
-      for (const dSpaceID in : {space, within, deeper}) pads.push_back(add_box(in, {1, 1, 1}, {2.0 * double(pads.size()), 0, -0.5}));
+      for (const dSpaceID in : {space, within, deeper})
+        pads.push_back(add_box(in, {1, 1, 1}, {2.0 * double(pads.size()), 0, -0.5}));
     }
-    for (std::size_t i = 0; i < pads.size(); ++i) crates.push_back(add_crate(manager, {2.0 * double(i), 0.1, 0.3}));
+    for (std::size_t i = 0; i < pads.size(); ++i)
+      crates.push_back(add_crate(manager, {2.0 * double(i), 0.1, 0.3}));
     steps(manager, 120);
     double highest = -1e9, lowest = 1e9;
     int asleep = 0;
     for (const BodyId body : crates) {
-      highest = std::max(highest, manager.state(body).position.z()), lowest = std::min(lowest, manager.state(body).position.z());
+      highest = std::max(highest, manager.state(body).position.z()),
+      lowest = std::min(lowest, manager.state(body).position.z());
       asleep += manager.asleep(body);
     }
     check::within(lowest, 0.149, highest, "m, the lowest crate on a pad");
@@ -66,7 +73,8 @@ void rests_everywhere(int type) {
     dGeomSetPosition(pads[1], 2, 0, -1.0);
     steps(manager, 60);
     check::within(manager.state(crates[0]).position.z(), -1e9, -1.0, "m, a crate whose pad went");
-    check::within(manager.state(crates[1]).position.z(), -0.36, -0.34, "m, a crate whose pad sank by half a metre");
+    check::within(manager.state(crates[1]).position.z(), -0.36, -0.34,
+                  "m, a crate whose pad sank by half a metre");
     check::that(manager.asleep(crates[2]), "its neighbour sleeps on");
   }
   for (std::size_t i = 1; i < pads.size(); ++i) dGeomDestroy(pads[i]);
@@ -94,7 +102,8 @@ void meet_plainly(void* data, dGeomID a, dGeomID b) {
   }
 }
 
-// 100 crates on a floor of 10,000 boxes. Timings are printed, not judged: `lodestone bench attached` is for that.
+// 100 crates on a floor of 10,000 boxes. Timings are printed, not judged: `lodestone bench attached` is for
+// that.
 void time_a_level(int type, bool managed) {
   const dWorldID world = dWorldCreate();
   dWorldSetGravity(world, 0, 0, -9.81);
@@ -131,7 +140,8 @@ void time_a_level(int type, bool managed) {
       if (&phase == ms)
         for (int i = 0; i < 60; ++i) step();
     }
-    std::printf("     %s, %s: %.2f ms a step falling, %.2f ms asleep\n", kTypes[type], managed ? "full bodies of the manager's, 4 substeps" : "plain ODE, 1 step", ms[0], ms[1]);
+    std::printf("     %s, %s: %.2f ms a step falling, %.2f ms asleep\n", kTypes[type],
+                managed ? "full bodies of the manager's, 4 substeps" : "plain ODE, 1 step", ms[0], ms[1]);
   }
   dJointGroupDestroy(plain.contacts);
   dSpaceDestroy(space);

@@ -1,4 +1,5 @@
-// A game's own level under a manager: boxes, meshes, height fields, convexes, capsules, planes and dynamic bodies of the caller's, met by bodies on every rung.
+// A game's own level under a manager: boxes, meshes, height fields, convexes, capsules, planes and dynamic
+// bodies of the caller's, met by bodies on every rung.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -43,8 +44,10 @@ constexpr std::array<const char*, 3> kNames{"tables", "support", "full"};
 
 double height_of(const Vec3& position) { return position.z(); }
 
-/// Drops a crate on each rung onto what `build` makes and tells where it comes to rest: at what `height` of it.
-void drop_onto(const char* what, const std::function<void(Level&)>& build, double least, double most, const Vec3& from = Vec3(0, 0, 2), double (*height)(const Vec3&) = height_of) {
+/// Drops a crate on each rung onto what `build` makes and tells where it comes to rest: at what `height` of
+/// it.
+void drop_onto(const char* what, const std::function<void(Level&)>& build, double least, double most,
+               const Vec3& from = Vec3(0, 0, 2), double (*height)(const Vec3&) = height_of) {
   for (std::size_t i = 0; i < kRungs.size(); ++i) {
     Level level;
     build(level);
@@ -58,48 +61,74 @@ void drop_onto(const char* what, const std::function<void(Level&)>& build, doubl
 }
 
 void static_geoms() {
-  drop_onto("a static box", [](Level& l) { dGeomSetPosition(dCreateBox(l.space, 4, 4, 1), 0, 0, 0.5); }, 1.14, 1.16);
-  drop_onto("a tilted stack of boxes", [](Level& l) {
-    for (int i = 0; i < 3; ++i) dGeomSetPosition(dCreateBox(l.space, 4, 4, 0.2), 0, 0, 0.1 + 0.2 * i);
-  }, 0.74, 0.76);
-  drop_onto("a great sphere", [](Level& l) { dGeomSetPosition(dCreateSphere(l.space, 20), 0, 0, -20); }, 0.14, 0.16, Vec3(0, 0, 2),
-            [](const Vec3& position) { return (position - Vec3(0, 0, -20)).norm() - 20.0; });
-  drop_onto("a lying capsule in a trough", [](Level& l) {
-    for (const double y : {-0.26, 0.26}) {
-      const dGeomID geom = dCreateCapsule(l.space, 0.25, 4);
-      const dQuaternion turned = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};
-      dGeomSetQuaternion(geom, turned);
-      dGeomSetPosition(geom, 0, y, 0.25);
-    }
-  }, 0.3, 0.7);
-  drop_onto("a cylinder on end", [](Level& l) { dGeomSetPosition(dCreateCylinder(l.space, 1.5, 1), 0, 0, 0.5); }, 1.14, 1.16);
-  drop_onto("a convex", [](Level& l) {
-    static const dReal planes[] = {1, 0, 0, 2, -1, 0, 0, 2, 0, 1, 0, 2, 0, -1, 0, 2, 0, 0, 1, 0.5, 0, 0, -1, 0.5};
-    static const dReal points[] = {-2, -2, -0.5, 2, -2, -0.5, 2, 2, -0.5, -2, 2, -0.5, -2, -2, 0.5, 2, -2, 0.5, 2, 2, 0.5, -2, 2, 0.5};
-    static const unsigned polygons[] = {4, 1, 2, 6, 5, 4, 0, 4, 7, 3, 4, 2, 3, 7, 6, 4, 0, 1, 5, 4, 4, 4, 5, 6, 7, 4, 0, 3, 2, 1};
-    dGeomSetPosition(dCreateConvex(l.space, planes, 6, points, 8, polygons), 0, 0, 0.5);
-  }, 1.13, 1.17);
-  drop_onto("a plane", [](Level& l) { dCreatePlane(l.space, 0, 0, 1, 0.25); }, 0.39, 0.41);
-  drop_onto("a triangle mesh", [](Level& l) {
-    static const float vertices[] = {-3, -3, 1, 3, -3, 1, 3, 3, 1, -3, 3, 1};
-    static const dTriIndex faces[] = {0, 1, 2, 0, 2, 3};
-    const dTriMeshDataID data = dGeomTriMeshDataCreate();
-    dGeomTriMeshDataBuildSingle(data, vertices, 3 * sizeof(float), 4, faces, 6, 3 * sizeof(dTriIndex));
-    dCreateTriMesh(l.space, data, nullptr, nullptr, nullptr);
-  }, 1.13, 1.17);
-  drop_onto("a height field", [](Level& l) {
-    static std::array<float, 33 * 33> heights;
-    for (int z = 0; z < 33; ++z)
-      for (int x = 0; x < 33; ++x) heights[std::size_t(33 * z + x)] = 0.02f * float(std::abs(x - 16));  // a valley along x = 0
-    const dHeightfieldDataID data = dGeomHeightfieldDataCreate();
-    dGeomHeightfieldDataBuildSingle(data, heights.data(), 0, 16, 16, 33, 33, 1, 0, 1, 0);
-    const dGeomID geom = dCreateHeightfield(l.space, data, 1);
-    const dQuaternion upright = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};  // its y axis up
-    dGeomSetQuaternion(geom, upright);
-  }, 0.1, 0.3);
+  drop_onto(
+      "a static box", [](Level& l) { dGeomSetPosition(dCreateBox(l.space, 4, 4, 1), 0, 0, 0.5); }, 1.14,
+      1.16);
+  drop_onto(
+      "a tilted stack of boxes",
+      [](Level& l) {
+        for (int i = 0; i < 3; ++i) dGeomSetPosition(dCreateBox(l.space, 4, 4, 0.2), 0, 0, 0.1 + 0.2 * i);
+      },
+      0.74, 0.76);
+  drop_onto(
+      "a great sphere", [](Level& l) { dGeomSetPosition(dCreateSphere(l.space, 20), 0, 0, -20); }, 0.14, 0.16,
+      Vec3(0, 0, 2), [](const Vec3& position) { return (position - Vec3(0, 0, -20)).norm() - 20.0; });
+  drop_onto(
+      "a lying capsule in a trough",
+      [](Level& l) {
+        for (const double y : {-0.26, 0.26}) {
+          const dGeomID geom = dCreateCapsule(l.space, 0.25, 4);
+          const dQuaternion turned = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};
+          dGeomSetQuaternion(geom, turned);
+          dGeomSetPosition(geom, 0, y, 0.25);
+        }
+      },
+      0.3, 0.7);
+  drop_onto(
+      "a cylinder on end", [](Level& l) { dGeomSetPosition(dCreateCylinder(l.space, 1.5, 1), 0, 0, 0.5); },
+      1.14, 1.16);
+  drop_onto(
+      "a convex",
+      [](Level& l) {
+        static const dReal planes[] = {1, 0,  0, 2, -1, 0, 0, 2,   0, 1, 0,  2,
+                                       0, -1, 0, 2, 0,  0, 1, 0.5, 0, 0, -1, 0.5};
+        static const dReal points[] = {-2, -2, -0.5, 2, -2, -0.5, 2, 2, -0.5, -2, 2, -0.5,
+                                       -2, -2, 0.5,  2, -2, 0.5,  2, 2, 0.5,  -2, 2, 0.5};
+        static const unsigned polygons[] = {4, 1, 2, 6, 5, 4, 0, 4, 7, 3, 4, 2, 3, 7, 6,
+                                            4, 0, 1, 5, 4, 4, 4, 5, 6, 7, 4, 0, 3, 2, 1};
+        dGeomSetPosition(dCreateConvex(l.space, planes, 6, points, 8, polygons), 0, 0, 0.5);
+      },
+      1.13, 1.17);
+  drop_onto(
+      "a plane", [](Level& l) { dCreatePlane(l.space, 0, 0, 1, 0.25); }, 0.39, 0.41);
+  drop_onto(
+      "a triangle mesh",
+      [](Level& l) {
+        static const float vertices[] = {-3, -3, 1, 3, -3, 1, 3, 3, 1, -3, 3, 1};
+        static const dTriIndex faces[] = {0, 1, 2, 0, 2, 3};
+        const dTriMeshDataID data = dGeomTriMeshDataCreate();
+        dGeomTriMeshDataBuildSingle(data, vertices, 3 * sizeof(float), 4, faces, 6, 3 * sizeof(dTriIndex));
+        dCreateTriMesh(l.space, data, nullptr, nullptr, nullptr);
+      },
+      1.13, 1.17);
+  drop_onto(
+      "a height field",
+      [](Level& l) {
+        static std::array<float, 33 * 33> heights;
+        for (int z = 0; z < 33; ++z)
+          for (int x = 0; x < 33; ++x)
+            heights[std::size_t(33 * z + x)] = 0.02f * float(std::abs(x - 16));  // a valley along x = 0
+        const dHeightfieldDataID data = dGeomHeightfieldDataCreate();
+        dGeomHeightfieldDataBuildSingle(data, heights.data(), 0, 16, 16, 33, 33, 1, 0, 1, 0);
+        const dGeomID geom = dCreateHeightfield(l.space, data, 1);
+        const dQuaternion upright = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};  // its y axis up
+        dGeomSetQuaternion(geom, upright);
+      },
+      0.1, 0.3);
 }
 
-// A body asleep on a static box: the box goes, and it falls, on every rung; the box comes back under it before it can.
+// A body asleep on a static box: the box goes, and it falls, on every rung; the box comes back under it
+// before it can.
 void streaming() {
   for (std::size_t i = 0; i < kRungs.size(); ++i) {
     Level level;
@@ -156,7 +185,9 @@ void dynamic_body() {
     for (int step = 0; step < 60; ++step) manager.step(kStep);
     const double theirs = dBodyGetLinearVel(body)[0], ours = manager.state(crate).velocity.x();
     char text[160];
-    std::snprintf(text, sizeof text, "a crate at rung %s strikes a body of the caller's of the same mass: it moves on at (m/s)", kNames[i]);
+    std::snprintf(text, sizeof text,
+                  "a crate at rung %s strikes a body of the caller's of the same mass: it moves on at (m/s)",
+                  kNames[i]);
     check::within(theirs, 1.6, 3.0, text);
     std::snprintf(text, sizeof text, "rung %s: momentum lost (of 81 kg m/s)", kNames[i]);
     check::within(std::abs(27.0 * (theirs + ours) - 81.0), 0.0, 1e-9, text);
@@ -179,9 +210,11 @@ void camera_leaves() {
     manager.set_viewpoints({&camera, 1});
     manager.step(kStep);
     lowest = std::min(lowest, manager.state(body).position.z());
-    was_full |= manager.rung(body) == Rung::full, was_support |= manager.rung(body) == Rung::support, was_tables |= manager.rung(body) == Rung::tables;
+    was_full |= manager.rung(body) == Rung::full, was_support |= manager.rung(body) == Rung::support,
+        was_tables |= manager.rung(body) == Rung::tables;
   }
-  check::that(was_full && was_support && was_tables, "while the camera flies, the crate on the roof is on every rung");
+  check::that(was_full && was_support && was_tables,
+              "while the camera flies, the crate on the roof is on every rung");
   check::within(lowest, 2.12, 2.2, "its lowest height meanwhile (m)");
 }
 

@@ -1,11 +1,10 @@
-#include "reference/trial.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "reference/random.h"
+#include "reference/trial.h"
 #include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {
@@ -15,7 +14,8 @@ using namespace testing;
 
 double lowest_point(const Shape& shape, const RigidState& state, const Vec3& normal) {
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Vec3& v : shape.mesh.vertices) lowest = std::min(lowest, normal.dot(state.position + state.orientation * v));
+  for (const Vec3& v : shape.mesh.vertices)
+    lowest = std::min(lowest, normal.dot(state.position + state.orientation * v));
   return lowest;
 }
 
@@ -27,7 +27,8 @@ TEST(DropState, StaysWithinItsConditions) {
     const double low = lowest_point(*shape, state, Vec3::UnitZ());
     least = std::min(least, low), most = std::max(most, low);
     fastest_spin = std::max(fastest_spin, state.angular_velocity.norm());
-    slowest_fall = std::min(slowest_fall, -state.velocity.z()), fastest_fall = std::max(fastest_fall, -state.velocity.z());
+    slowest_fall = std::min(slowest_fall, -state.velocity.z()),
+    fastest_fall = std::max(fastest_fall, -state.velocity.z());
     ASSERT_LE(state.velocity.head<2>().cwiseAbs().maxCoeff(), 1.0);
     ASSERT_NEAR(state.orientation.norm(), 1.0, 1e-12);
   }
@@ -49,7 +50,8 @@ TEST(DropState, DependsOnSeedAndTrialAlone) {
   EXPECT_FALSE(same_bits(drop_state(*shape, {}, 1, 7), drop_state(*shape, {}, 2, 7)));
 }
 
-// Beyond .4 m lengths go with λ, times with √λ: a body four times as large starts from the same drop seen at half the pace.
+// Beyond .4 m lengths go with λ, times with √λ: a body four times as large starts from the same drop seen at
+// half the pace.
 TEST(DropState, ScalesWithTheBody) {
   const auto small = box_shape({0.3, 0.4, 0.35}), large = box_shape({1.2, 1.6, 1.4});
   const RigidState a = drop_state(*small, {}, 1, 3), b = drop_state(*large, {}, 1, 3);
@@ -68,7 +70,7 @@ TEST(DropState, StartsAboveATiltedPlane) {
   for (std::uint32_t trial = 0; trial < 50; ++trial) {
     const double low = lowest_point(*shape, drop_state(*shape, conditions, 1, trial), normal);
     EXPECT_GE(low, 0.3 - 1e-12);
-  EXPECT_LE(low, 0.8);
+    EXPECT_LE(low, 0.8);
   }
 }
 
@@ -106,11 +108,13 @@ TEST(SimulateDrop, HullAndMeshContactsEndAlike) {
     for (const bool hull : {false, true}) {
       OdeWorld world({.plane_contacts_from_hull = hull}, materials);
       world.add_plane(Vec3::UnitZ(), 0.0, 0);
-      const OdeBodyId body = world.add_body({.shape = shape, .mass = 24.0, .state = drop_state(*shape, {}, 1, trial)});
+      const OdeBodyId body =
+          world.add_body({.shape = shape, .mass = 24.0, .state = drop_state(*shape, {}, 1, trial)});
       simulate_drop(world, body, 4.0, 33, [](double, const RigidState&) { return true; });
       height[hull] = world.state(body).position.z();
     }
-    for (const double h : height) EXPECT_TRUE(std::abs(h - 0.1) < 1e-3 || std::abs(h - 0.15) < 1e-3 || std::abs(h - 0.2) < 1e-3) << h;
+    for (const double h : height)
+      EXPECT_TRUE(std::abs(h - 0.1) < 1e-3 || std::abs(h - 0.15) < 1e-3 || std::abs(h - 0.2) < 1e-3) << h;
     alike += std::abs(height[0] - height[1]) < 1e-3;
   }
   EXPECT_GE(alike, 8);

@@ -7,7 +7,8 @@
 namespace lodestone {
 namespace {
 
-constexpr std::size_t kFull = std::size_t(Rung::full), kSupport = std::size_t(Rung::support), kTables = std::size_t(Rung::tables);
+constexpr std::size_t kFull = std::size_t(Rung::full), kSupport = std::size_t(Rung::support),
+                      kTables = std::size_t(Rung::tables);
 
 // Twenty steps: the first nine far over any budget, then 1, 2, … 11 ms, foretold as half a millisecond more.
 struct TwentySteps {
@@ -58,7 +59,8 @@ TEST(BudgetFigures, WorkIsNotTime) {
 TEST(BudgetFigures, NoneWithoutABudgetAndNoStepsInAShortRun) {
   const TwentySteps run;
   EXPECT_FALSE(find_budget_figures({.policy = DistancePolicy{}}, run.reports, run.step_ms));
-  const auto figures = find_budget_figures({.policy = BudgetPolicy{8.0}}, std::span(run.reports).first(9), std::span(run.step_ms).first(9));
+  const auto figures = find_budget_figures({.policy = BudgetPolicy{8.0}}, std::span(run.reports).first(9),
+                                           std::span(run.step_ms).first(9));
   ASSERT_TRUE(figures);
   EXPECT_EQ(figures->steps, 0);
   EXPECT_EQ(figures->over, 0);

@@ -28,7 +28,8 @@ TEST(Camera, LooksDownToo) {
 
 TEST(CameraRotation, KeepsZUpwards) {
   const Quat rotation = camera_rotation({1, 2, 3}, {-4, 1, 0});
-  const Vec3 right = rotation * Vec3::UnitX(), up = rotation * Vec3::UnitY(), forward = rotation * -Vec3::UnitZ();
+  const Vec3 right = rotation * Vec3::UnitX(), up = rotation * Vec3::UnitY(),
+             forward = rotation * -Vec3::UnitZ();
   EXPECT_NEAR(right.z(), 0.0, 1e-12);
   EXPECT_GT(up.z(), 0.0);
   EXPECT_LT((forward - Vec3(-5, -1, -3).normalized()).norm(), 1e-12);

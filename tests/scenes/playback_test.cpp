@@ -39,7 +39,11 @@ std::vector<std::uint8_t> inflated(const Playback& playback, const char* name) {
   const auto& place = playback.header["blobs"][name];
   std::vector<std::uint8_t> raw(place["raw_bytes"].get<std::size_t>());
   uLongf size = raw.size();
-  EXPECT_EQ(uncompress(raw.data(), &size, reinterpret_cast<const Bytef*>(playback.blobs.data()) + place["offset"].get<std::size_t>(), place["bytes"].get<uLong>()), Z_OK);
+  EXPECT_EQ(
+      uncompress(raw.data(), &size,
+                 reinterpret_cast<const Bytef*>(playback.blobs.data()) + place["offset"].get<std::size_t>(),
+                 place["bytes"].get<uLong>()),
+      Z_OK);
   return raw;
 }
 
@@ -62,11 +66,13 @@ TEST_F(SavedPlayback, HoldsEveryFrameOfEveryBody) {
   std::int32_t last = 0, before = 0;
   for (std::size_t frame = 0; frame < 21; ++frame) {
     std::uint32_t difference = 0;
-    for (std::size_t byte = 0; byte < 4; ++byte) difference |= std::uint32_t(raw[frame * 40 + 2 * byte + 1]) << (8 * byte);  // x of the second body
+    for (std::size_t byte = 0; byte < 4; ++byte)
+      difference |= std::uint32_t(raw[frame * 40 + 2 * byte + 1]) << (8 * byte);  // x of the second body
     const auto now = std::int32_t(difference) + (frame == 0 ? 0 : frame == 1 ? last : 2 * last - before);
     before = last, last = now;
   }
-  EXPECT_NEAR(last * header["unit_m"].get<double>(), result.states[1].position.x(), header["unit_m"].get<double>());
+  EXPECT_NEAR(last * header["unit_m"].get<double>(), result.states[1].position.x(),
+              header["unit_m"].get<double>());
 }
 
 TEST_F(SavedPlayback, SceneWithoutViewpointIsFramed) {
@@ -80,9 +86,13 @@ TEST_F(SavedPlayback, SceneWithoutViewpointIsFramed) {
 TEST_F(SavedPlayback, WhatIsNoneIsRefused) {
   run();
   std::filesystem::resize_file(file(), std::filesystem::file_size(file()) - 9);
-  EXPECT_NE(error_of_loading().find("found a playback file cut short"), std::string::npos) << error_of_loading();
+  EXPECT_NE(error_of_loading().find("found a playback file cut short"), std::string::npos)
+      << error_of_loading();
   std::ofstream(file()) << "something else";
-  EXPECT_NE(error_of_loading().find("found no playback file, expected what `lodestone run SCENE --out DIR` writes"), std::string::npos) << error_of_loading();
+  EXPECT_NE(
+      error_of_loading().find("found no playback file, expected what `lodestone run SCENE --out DIR` writes"),
+      std::string::npos)
+      << error_of_loading();
   std::filesystem::remove(file());
   EXPECT_NE(error_of_loading(), "no error");
 }
@@ -97,8 +107,10 @@ viewpoints: [{position_m: [0, -2, 1]}]
 lod: {policy: distance, full_within_m: 100}
 output: {every_n_steps: 1}
 )");
-  const RunResult plain = run_scene(scene), same = run_scene(scene, {.level = LevelChoice::full, .fork_step = 10}),
-                  other = run_scene(scene, {.level = LevelChoice::support, .fork_step = 10, .out = folder() / "out"});
+  const RunResult plain = run_scene(scene),
+                  same = run_scene(scene, {.level = LevelChoice::full, .fork_step = 10}),
+                  other = run_scene(
+                      scene, {.level = LevelChoice::support, .fork_step = 10, .out = folder() / "out"});
   ASSERT_TRUE(same.fork && other.fork);
   EXPECT_EQ(same.state_hash, plain.state_hash);
   EXPECT_EQ(other.state_hash, plain.state_hash);  // the first future knows nothing of the second

@@ -39,8 +39,10 @@ TEST(DepthBelow, IsThatOfTheDeepestVertex) {
     double deepest = -1e9;
     for (const Vec3& vertex : l.mesh.vertices)
       deepest = std::max(deepest, 0.05 - normal.dot(state.position + state.orientation * vertex));
-    if (normal.dot(state.position) - 0.05 > l.radius) EXPECT_LE(deepest, 0);
-    else EXPECT_NEAR(depth_below(l, state, normal, 0.05), deepest, 1e-12);
+    if (normal.dot(state.position) - 0.05 > l.radius)
+      EXPECT_LE(deepest, 0);
+    else
+      EXPECT_NEAR(depth_below(l, state, normal, 0.05), deepest, 1e-12);
   }
 }
 

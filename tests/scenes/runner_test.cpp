@@ -6,6 +6,7 @@
 
 #include "signature/measure/measure.h"
 #include "tests/scenes/scene_fixture.h"
+#include "tools/bench/heap_memory.h"
 
 namespace lodestone {
 namespace {
@@ -25,7 +26,7 @@ check: {max_penetration_m: 0.05, all_asleep_by_s: 60}
 using Runner = SceneFixture;
 
 TEST_F(Runner, ReportsEveryStepAndWritesFiles) {
-  const RunResult result = run_scene(load(kFalling), {.out = folder() / "out"});
+  const RunResult result = run_scene(load(kFalling), {.out = folder() / "out", .keep_steps = true});
   EXPECT_EQ(result.steps, 50);
   EXPECT_EQ(result.bodies, 2);
   EXPECT_EQ(result.reports.size(), 50u);
@@ -40,7 +41,8 @@ TEST_F(Runner, ReportsEveryStepAndWritesFiles) {
   EXPECT_TRUE(heading.starts_with("step,time_s,total_ms,choose_ms,"));
   EXPECT_TRUE(heading.ends_with(",energy_j,penetration_m,support,tables,predicted_ms,measured_ms"));
   int rows = 0;
-  for (std::string row; std::getline(csv, row); ++rows) EXPECT_EQ(std::ranges::count(row, ','), std::ranges::count(heading, ',')) << row;
+  for (std::string row; std::getline(csv, row); ++rows)
+    EXPECT_EQ(std::ranges::count(row, ','), std::ranges::count(heading, ',')) << row;
   EXPECT_EQ(rows, 50);
 }
 
@@ -89,7 +91,8 @@ TEST_F(Runner, ChecksCanFail) {
 
 std::shared_ptr<const Signature> coarse_signature(const Shape& shape, const ContactLaw&) {
   SignatureSettings coarse;
-  coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8, coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
+  coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8,
+  coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
   return std::make_shared<const Signature>(measure_signature(shape, coarse, 1));
 }
 
@@ -119,10 +122,12 @@ check: {max_penetration_m: 0.025, max_tables_penetration_m: 0.04}
 
 TEST_F(Runner, RefusesSettingsOutOfRange) {
   const Scene scene = load(kFalling);
-  for (double dt : {0.0, -0.01, 0.2, std::numeric_limits<double>::quiet_NaN()}) EXPECT_THROW(run_scene(scene, {.dt_s = dt}), InputError);
+  for (double dt : {0.0, -0.01, 0.2, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(run_scene(scene, {.dt_s = dt}), InputError);
   EXPECT_THROW(run_scene(scene, {.steps = 0}), InputError);
   EXPECT_THROW(run_scene(scene, {.threads = 0}), InputError);
-  for (double budget : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (double budget :
+       {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(run_scene(scene, {.budget_ms = budget}), InputError);
     EXPECT_THROW(run_scene(scene, {.budget_work = budget}), InputError);
   }
@@ -141,7 +146,8 @@ TEST_F(Runner, RefusesATrajectoryBeyondFourGigabytes) {
   }
 }
 
-// The viewpoint goes from one ball to the other: the first is full and then statistical, the second the other way round.
+// The viewpoint goes from one ball to the other: the first is full and then statistical, the second the other
+// way round.
 TEST_F(Runner, ViewpointsMoveAndDecideLevels) {
   const Scene scene = load(R"(version: 1
 step: {dt_s: 0.01, steps: 100, full_substeps: 1, gravity_m_per_s2: [0, 0, 0]}
@@ -151,8 +157,10 @@ viewpoints: [{path: [{time_s: 0, position_m: [0, 0, 1]}, {time_s: 0.9, position_
 lod: {full_within_m: 2, min_dwell_frames: 5}
 )");
   int asked = 0;
-  const auto none = [&](const Shape&, const ContactLaw&) { return ++asked, std::shared_ptr<const Signature>{}; };
-  const RunResult result = run_scene(scene, {.signatures = none});
+  const auto none = [&](const Shape&, const ContactLaw&) {
+    return ++asked, std::shared_ptr<const Signature>{};
+  };
+  const RunResult result = run_scene(scene, {.signatures = none, .keep_steps = true});
   EXPECT_EQ(result.reports.front().full, 1);
   EXPECT_EQ(result.reports[50].full, 0);
   EXPECT_EQ(result.last().full, 1);
@@ -164,7 +172,8 @@ lod: {full_within_m: 2, min_dwell_frames: 5}
 
 TEST_F(Runner, FollowsProgress) {
   std::vector<int> steps;
-  run_scene(load(kFalling), {.steps = 4, .progress = [&](const RunProgress& run) { steps.push_back(run.step); }});
+  run_scene(load(kFalling),
+            {.steps = 4, .progress = [&](const RunProgress& run) { steps.push_back(run.step); }});
   EXPECT_EQ(steps, (std::vector{1, 2, 3, 4}));
 }
 
@@ -178,7 +187,8 @@ bodies:
   - {shape: ball, position_m: [0, 0, 1], level: full}
   - {shape: ball, position_m: [9, 0, 1], level: full}
   - {shape: ball, position_m: [0, 1, 1], level: support}
-viewpoints: [{look_at_m: [0, 0, 1], )" + position + "}]\n");
+viewpoints: [{look_at_m: [0, 0, 1], )" +
+                position + "}]\n");
   };
   const auto none = [](const Shape&, const ContactLaw&) { return std::shared_ptr<const Signature>{}; };
   const auto seen = run_scene(scene_of("position_m: [0, -3, 1]"), {.signatures = none}).in_picture;
@@ -186,7 +196,11 @@ viewpoints: [{look_at_m: [0, 0, 1], )" + position + "}]\n");
   EXPECT_EQ(seen->min_full, 1);
   EXPECT_EQ(seen->mean_full, 1.0);
   // Far away both are in it; the last of the six steps that end at .5 s or later begins at .9 s.
-  const auto moved = run_scene(scene_of("path: [{time_s: 0.85, position_m: [0, -3, 1]}, {time_s: 0.86, position_m: [0, -90, 1]}]"), {.signatures = none}).in_picture;
+  const auto moved =
+      run_scene(
+          scene_of("path: [{time_s: 0.85, position_m: [0, -3, 1]}, {time_s: 0.86, position_m: [0, -90, 1]}]"),
+          {.signatures = none})
+          .in_picture;
   ASSERT_TRUE(moved);
   EXPECT_EQ(moved->min_full, 1);
   EXPECT_NEAR(moved->mean_full, 7.0 / 6, 1e-12);
@@ -197,7 +211,8 @@ viewpoints: [{look_at_m: [0, 0, 1], )" + position + "}]\n");
 TEST_F(Runner, ABudgetReplacesTheScenesPolicy) {
   const Scene scene = load(kFalling);
   EXPECT_FALSE(run_scene(scene, {.steps = 3}).budget);
-  const RunResult timed = run_scene(scene, {.steps = 20, .budget_ms = 5.0}), worked = run_scene(scene, {.steps = 20, .budget_work = 500.0});
+  const RunResult timed = run_scene(scene, {.steps = 20, .budget_ms = 5.0}),
+                  worked = run_scene(scene, {.steps = 20, .budget_work = 500.0});
   ASSERT_TRUE(timed.budget && worked.budget);
   EXPECT_EQ(timed.budget->budget_ms, 5.0);
   EXPECT_EQ(timed.budget->steps, 11);
@@ -205,6 +220,37 @@ TEST_F(Runner, ABudgetReplacesTheScenesPolicy) {
   EXPECT_EQ(worked.budget->budget_work, 500.0);
   EXPECT_FALSE(worked.budget->over);
   EXPECT_GT(timed.processor_ms.max, 0.0);
+}
+
+// What a run holds does not grow with its steps, but for the times that are kept exactly.
+TEST_F(Runner, HoldsNoStepsUnlessAsked) {
+  RunSettings settings{.steps = 3000};
+  double early = 0, late = 0;
+  settings.watch = [&](const WatchedStep& step) {
+    if (step.manager.report().step == 1000) early = heap_bytes();
+    if (step.manager.report().step == 3000) late = heap_bytes();
+  };
+  const RunResult result = run_scene(load(kFalling), settings);
+  EXPECT_EQ(result.steps, 3000);
+  EXPECT_TRUE(result.reports.empty());
+  EXPECT_TRUE(result.step_processor_ms.empty());
+  EXPECT_EQ(result.last().step, 3000);
+  EXPECT_GT(result.mean_ms(&StageTimes::total_ms), 0.0);
+  EXPECT_LT(
+      late - early,
+      2.0 * 2 * 8 * 4096);  // two series of doubles, in capacities of powers of two; reports would be 1.2 MB
+  settings.keep_steps = true, settings.steps = 5;
+  EXPECT_EQ(run_scene(load(kFalling), settings).reports.size(), 5u);
+}
+
+TEST_F(Runner, StopsAfterAStep) {
+  int asked = 0;
+  const RunResult result = run_scene(load(kFalling), {.stop = [&] { return ++asked == 3; }});
+  EXPECT_EQ(result.steps, 3);
+  EXPECT_TRUE(result.incomplete);
+  EXPECT_FALSE(run_scene(load(kFalling), {.steps = 3, .stop = [] { return false; }}).incomplete);
+  const RunResult one = run_scene(load(kFalling), {.stop = [] { return true; }});
+  EXPECT_EQ(one.steps, 1);
 }
 
 }  // namespace

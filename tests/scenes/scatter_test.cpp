@@ -20,7 +20,8 @@ TEST(Scatter, KeepsBoundingSpheresApart) {
   ASSERT_EQ(centers.size(), 300u);
   EXPECT_GE(least_distance(centers), 0.24);
   EXPECT_LT(least_distance(centers), 0.26);  // or the region would not be used well
-  for (const Vec3& c : centers) EXPECT_TRUE((c.array() >= Vec3(-1, -1, 0).array()).all() && (c.array() <= Vec3(1, 1, 3).array()).all());
+  for (const Vec3& c : centers)
+    EXPECT_TRUE((c.array() >= Vec3(-1, -1, 0).array()).all() && (c.array() <= Vec3(1, 1, 3).array()).all());
 }
 
 TEST(Scatter, KeepsSpacingAndStaysAboveGround) {
@@ -49,7 +50,8 @@ TEST(Scatter, SameSeedSamePlaces) {
   const std::vector<Vec3> first = place_scatter(kBox, 0.1, {}, a), second = place_scatter(moved, 0.1, {}, b);
   EXPECT_NE(first, place_scatter(other, 0.1, {}, c));
   ASSERT_EQ(first.size(), second.size());
-  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_LT((second[i] - first[i] - Vec3(100, 0, 0)).norm(), 1e-12);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    EXPECT_LT((second[i] - first[i] - Vec3(100, 0, 0)).norm(), 1e-12);
   EXPECT_EQ(scatter_orientation(kBox, 7).coeffs(), scatter_orientation(moved, 7).coeffs());
   EXPECT_NE(scatter_orientation(kBox, 7).coeffs(), scatter_orientation(kBox, 8).coeffs());
 }
@@ -71,7 +73,8 @@ TEST(Scatter, FillsACylinderEvenly) {
 
 TEST(Scatter, StopsWhereNoRoomIsLeft) {
   PlacedSpheres placed(0.5);
-  const std::vector<Vec3> centers = place_scatter({.count = 100, .region = ScatterBox{{0, 0, 0}, {1, 1, 1}}, .seed = 1}, 0.5, {}, placed);
+  const std::vector<Vec3> centers =
+      place_scatter({.count = 100, .region = ScatterBox{{0, 0, 0}, {1, 1, 1}}, .seed = 1}, 0.5, {}, placed);
   EXPECT_GE(centers.size(), 1u);
   EXPECT_LE(centers.size(), 8u);
 }

@@ -12,9 +12,9 @@
 
 namespace lodestone {
 
-class SceneFixture : public testing::Test {
+class SceneFixture : public ::testing::Test {
  protected:
-  SceneFixture() : folder_(std::filesystem::path(testing::TempDir()) / ("scene_" + name_of_test())) {
+  SceneFixture() : folder_(std::filesystem::path(::testing::TempDir()) / ("scene_" + name_of_test())) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
@@ -24,7 +24,9 @@ class SceneFixture : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
   }
-  Scene load(const std::string& text, const SceneLoadSettings& settings = {}) const { return load_scene(write(text), settings); }
+  Scene load(const std::string& text, const SceneLoadSettings& settings = {}) const {
+    return load_scene(write(text), settings);
+  }
 
   /// The message without the folder, or "no error".
   std::string error_of(const std::string& text, const SceneLoadSettings& settings = {}) const {
@@ -41,7 +43,7 @@ class SceneFixture : public testing::Test {
 
  private:
   static std::string name_of_test() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     return std::string(info->test_suite_name()) + "_" + info->name();
   }
   std::filesystem::path folder_;

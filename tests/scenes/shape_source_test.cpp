@@ -23,14 +23,16 @@ TEST_F(ShapeSource, MassOverrideReachesSolidsAndTheBunny) {
   EXPECT_FALSE(ball.sphere_radius);
   EXPECT_EQ(ball.center_of_mass_in_mesh, Vec3(0, 0, 0.01));
   const Shape plain = make_shape_from_text("bunny", {.size_m = 0.2, .faces = 1000});
-  const Shape moved = make_shape_from_text("bunny", {.size_m = 0.2, .faces = 1000},
-                                           {.center_of_mass_m = plain.center_of_mass_in_mesh + Vec3(0, 0, 0.01), .inertia_per_mass_m2 = {}});
+  const Shape moved = make_shape_from_text(
+      "bunny", {.size_m = 0.2, .faces = 1000},
+      {.center_of_mass_m = plain.center_of_mass_in_mesh + Vec3(0, 0, 0.01), .inertia_per_mass_m2 = {}});
   EXPECT_LT((moved.mesh.vertices[0] - plain.mesh.vertices[0] + Vec3(0, 0, 0.01)).norm(), 1e-9);
 }
 
 TEST_F(ShapeSource, RefusesOtherForms) {
-  for (const char* text : {"", "box", "box:", "box:1,2", "box:1,2,3,4", "box:1,2,x", "box:1,2,3,", "box:1,-2,3", "box:1,nan,3", "box:1,inf,3",
-                           "box:0,1,1", "sphere:0", "l:1,1,1,1", "cube:1", "foo", "foo:1", "sphere:1e9"})
+  for (const char* text :
+       {"", "box", "box:", "box:1,2", "box:1,2,3,4", "box:1,2,x", "box:1,2,3,", "box:1,-2,3", "box:1,nan,3",
+        "box:1,inf,3", "box:0,1,1", "sphere:0", "l:1,1,1,1", "cube:1", "foo", "foo:1", "sphere:1e9"})
     EXPECT_THROW(make_shape_from_text(text), InputError) << text;
 }
 

@@ -42,8 +42,11 @@ double lowest_point(const Scene& scene) {
   return lowest;
 }
 
-struct Shipped { std::string name; int bodies; };
-class ShippedScene : public testing::TestWithParam<Shipped> {};
+struct Shipped {
+  std::string name;
+  int bodies;
+};
+class ShippedScene : public ::testing::TestWithParam<Shipped> {};
 
 TEST_P(ShippedScene, LoadsAndStartsApart) {
   const Scene scene = load(GetParam().name);
@@ -55,8 +58,10 @@ TEST_P(ShippedScene, LoadsAndStartsApart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
-                         testing::Values(Shipped{"bunnies", 1000}, Shipped{"drop", 1}, Shipped{"boxes", 100}, Shipped{"l_shapes", 300},
-                                         Shipped{"side_by_side", 100}, Shipped{"ten_thousand", 10000}, Shipped{"forced", 1000}, Shipped{"heap", 2000}),
+                         ::testing::Values(Shipped{"bunnies", 1000}, Shipped{"drop", 1},
+                                           Shipped{"boxes", 100}, Shipped{"l_shapes", 300},
+                                           Shipped{"side_by_side", 100}, Shipped{"ten_thousand", 10000},
+                                           Shipped{"forced", 1000}, Shipped{"heap", 2000}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(ShippedScenes, TheCityHasTenThousandBodiesOfFiveShapesAndFourRagdolls) {
@@ -65,7 +70,8 @@ TEST(ShippedScenes, TheCityHasTenThousandBodiesOfFiveShapesAndFourRagdolls) {
   EXPECT_EQ(scene.groups.size(), 4u);
   EXPECT_EQ(std::get<BudgetPolicy>(scene.lod.policy).budget_ms, 8.0);
   Scene strewn = scene;  // the limbs of a ragdoll are nearer to each other than their bounding spheres
-  std::erase_if(strewn.bodies, [](const SceneBody& body) { return body.definition.level == LevelChoice::full; });
+  std::erase_if(strewn.bodies,
+                [](const SceneBody& body) { return body.definition.level == LevelChoice::full; });
   EXPECT_EQ(strewn.bodies.size(), 9975u);
   EXPECT_EQ(count_overlaps(strewn), 0);
   std::set<const Shape*> shapes;
@@ -74,8 +80,10 @@ TEST(ShippedScenes, TheCityHasTenThousandBodiesOfFiveShapesAndFourRagdolls) {
   const GroundHeights heights(scene.ground);
   for (const SceneBody& body : strewn.bodies) {
     const Vec3& place = body.definition.state.position;
-    if (body.asleep) EXPECT_GT(place.z(), *heights.highest_under(place, 0));
-    else EXPECT_GE(place.z() - body.definition.shape->radius, *heights.highest_under(place, 0) - 1e-9);
+    if (body.asleep)
+      EXPECT_GT(place.z(), *heights.highest_under(place, 0));
+    else
+      EXPECT_GE(place.z() - body.definition.shape->radius, *heights.highest_under(place, 0) - 1e-9);
   }
 }
 
@@ -83,7 +91,8 @@ TEST(ShippedScenes, NoneIsLeftOut) {
   for (const fs::directory_entry& entry : fs::directory_iterator(kFolder)) {
     if (entry.path().extension() != ".yaml" || entry.path().stem() == "armadillo") continue;
     ASSERT_NO_THROW(load(entry.path().stem().string())) << entry.path();
-    EXPECT_FALSE(load(entry.path().stem().string()).viewpoints.empty()) << entry.path() << ": a scene is seen from somewhere";
+    EXPECT_FALSE(load(entry.path().stem().string()).viewpoints.empty())
+        << entry.path() << ": a scene is seen from somewhere";
   }
 }
 
@@ -110,9 +119,14 @@ TEST(ShippedScenes, TheBunniesNearestToTheViewpointAreInItsPicture) {
       if (time > 0.0) places.back().z() = std::max(0.1, places.back().z() - 0.5 * 9.81 * time * time);
     }
     std::ranges::sort(places, {}, [&](const Vec3& place) { return (place - eye).norm(); });
-    EXPECT_LT((places[std::size_t(scene.lod.most_full) - 1] - eye).norm(), std::get<DistancePolicy>(scene.lod.policy).full_within) << time;
+    EXPECT_LT((places[std::size_t(scene.lod.most_full) - 1] - eye).norm(),
+              std::get<DistancePolicy>(scene.lod.policy).full_within)
+        << time;
     const Camera camera(eye, viewpoint.look_at_m);
-    EXPECT_GE(std::count_if(places.begin(), places.begin() + scene.lod.most_full, [&](const Vec3& place) { return camera.sees(place); }), 10) << time;
+    EXPECT_GE(std::count_if(places.begin(), places.begin() + scene.lod.most_full,
+                            [&](const Vec3& place) { return camera.sees(place); }),
+              10)
+        << time;
   }
 }
 
@@ -131,9 +145,13 @@ TEST(ShippedScenes, TheHeapsViewpointJumps) {
 
 TEST(ShippedScenes, ForcedOnesAreFarAndNear) {
   const Scene scene = load("forced");
-  const auto distance = [&](int i) { return (scene.bodies[i].definition.state.position - scene.viewpoints[0].position_m).norm(); };
-  for (int i : {0, 1}) EXPECT_TRUE(scene.bodies[i].definition.level == LevelChoice::full && distance(i) >= 100);
-  for (int i : {2, 3}) EXPECT_TRUE(scene.bodies[i].definition.level == LevelChoice::statistical && distance(i) < 1);
+  const auto distance = [&](int i) {
+    return (scene.bodies[i].definition.state.position - scene.viewpoints[0].position_m).norm();
+  };
+  for (int i : {0, 1})
+    EXPECT_TRUE(scene.bodies[i].definition.level == LevelChoice::full && distance(i) >= 100);
+  for (int i : {2, 3})
+    EXPECT_TRUE(scene.bodies[i].definition.level == LevelChoice::statistical && distance(i) < 1);
 }
 
 TEST(ShippedScenes, ArmadilloSaysWhereToGetTheMesh) {
@@ -142,7 +160,9 @@ TEST(ShippedScenes, ArmadilloSaysWhereToGetTheMesh) {
     FAIL() << "found a mesh that is not part of the project";
   } catch (const InputError& error) {
     const std::string what = error.what();
-    EXPECT_NE(what.find("armadillo.yaml:7: shapes.armadillo.mesh: found no armadillo.obj in"), std::string::npos) << what;
+    EXPECT_NE(what.find("armadillo.yaml:7: shapes.armadillo.mesh: found no armadillo.obj in"),
+              std::string::npos)
+        << what;
     EXPECT_NE(what.find("Stanford 3D Scanning Repository"), std::string::npos) << what;
     EXPECT_NE(what.find("--mesh-path"), std::string::npos) << what;
   }

@@ -52,7 +52,10 @@ Trajectory record() {
   for (int frame = 0; frame < kFrames; ++frame) {
     std::vector<RigidState> states;
     for (int body = 0; body < 3; ++body) states.push_back(pose(frame, body));
-    trajectory.add_frame(frame / 30.0, states, std::vector<BodyStatus>{{.rung = rung_of_hero(frame)}, {.rung = Rung::full, .asleep = frame >= 10}, {.rung = Rung::tables}});
+    trajectory.add_frame(frame / 30.0, states,
+                         std::vector<BodyStatus>{{.rung = rung_of_hero(frame)},
+                                                 {.rung = Rung::full, .asleep = frame >= 10},
+                                                 {.rung = Rung::tables}});
   }
   return trajectory;
 }
@@ -73,18 +76,22 @@ struct Loaded {
   }
   const tinygltf::AnimationSampler* sampler(int node_index, const std::string& path) const {
     for (const tinygltf::AnimationChannel& channel : model.animations.at(0).channels)
-      if (channel.target_node == node_index && channel.target_path == path) return &model.animations[0].samplers.at(std::size_t(channel.sampler));
+      if (channel.target_node == node_index && channel.target_path == path)
+        return &model.animations[0].samplers.at(std::size_t(channel.sampler));
     return nullptr;
   }
   template <class Number>
   std::vector<Number> numbers(int accessor_index) const {
     const tinygltf::Accessor& accessor = model.accessors.at(std::size_t(accessor_index));
     const tinygltf::BufferView& view = model.bufferViews.at(std::size_t(accessor.bufferView));
-    std::vector<Number> values(accessor.count * std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type))));
+    std::vector<Number> values(accessor.count *
+                               std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type))));
     const std::vector<unsigned char>& data = model.buffers.at(0).data;
-    EXPECT_EQ(sizeof(Number), std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType))));
+    EXPECT_EQ(sizeof(Number),
+              std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType))));
     EXPECT_LE(accessor.byteOffset + values.size() * sizeof(Number), view.byteLength);
-    std::memcpy(values.data(), data.data() + view.byteOffset + accessor.byteOffset, values.size() * sizeof(Number));
+    std::memcpy(values.data(), data.data() + view.byteOffset + accessor.byteOffset,
+                values.size() * sizeof(Number));
     return values;
   }
 
@@ -113,7 +120,8 @@ TEST_F(SavedTrajectory, HoldsPosesWithinQuantization) {
   const auto* translation = loaded.sampler(hero, "translation");
   const auto* rotation = loaded.sampler(hero, "rotation");
   ASSERT_TRUE(translation && rotation);
-  const auto times = loaded.numbers<float>(translation->input), places = loaded.numbers<float>(translation->output);
+  const auto times = loaded.numbers<float>(translation->input),
+             places = loaded.numbers<float>(translation->output);
   const auto turns = loaded.numbers<std::int16_t>(rotation->output);
   EXPECT_TRUE(loaded.model.accessors[std::size_t(rotation->output)].normalized);
   ASSERT_EQ(times.size(), std::size_t(kFrames));
@@ -153,13 +161,15 @@ TEST_F(SavedTrajectory, ShowsRungs) {
   ASSERT_EQ(sleeper.children.size(), 2u);
   EXPECT_EQ(material_of(sleeper.children[0]), "full");
   EXPECT_EQ(material_of(sleeper.children[1]), "full asleep");
-  EXPECT_FLOAT_EQ(loaded.numbers<float>(loaded.sampler(sleeper.children[1], "scale")->input)[1], float(10 / 30.0));
+  EXPECT_FLOAT_EQ(loaded.numbers<float>(loaded.sampler(sleeper.children[1], "scale")->input)[1],
+                  float(10 / 30.0));
   EXPECT_EQ(material_of(loaded.node("body 2")), "tables");
   const tinygltf::Node& hero = loaded.model.nodes[std::size_t(loaded.node("hero"))];
   EXPECT_EQ(hero.mesh, -1);
   ASSERT_EQ(hero.children.size(), 3u);
   // From frame 0, 5, 20 and 25 on.
-  std::map<std::string, std::vector<float>> shown = {{"full", {0, 1, 0, 0}}, {"support", {1, 0, 1, 0}}, {"tables", {0, 0, 0, 1}}};
+  std::map<std::string, std::vector<float>> shown = {
+      {"full", {0, 1, 0, 0}}, {"support", {1, 0, 1, 0}}, {"tables", {0, 0, 0, 1}}};
   for (int child : hero.children) {
     const auto* scale = loaded.sampler(child, "scale");
     ASSERT_TRUE(scale);
@@ -170,7 +180,8 @@ TEST_F(SavedTrajectory, ShowsRungs) {
     EXPECT_FLOAT_EQ(times[2], float(20 / 30.0));
     EXPECT_FLOAT_EQ(times[3], float(25 / 30.0));
     const std::vector<float>& scale_of = shown[material_of(child)];
-    for (std::size_t i = 0; i < scales.size(); ++i) EXPECT_EQ(scales[i], scale_of[i / 3]) << material_of(child) << ' ' << i;
+    for (std::size_t i = 0; i < scales.size(); ++i)
+      EXPECT_EQ(scales[i], scale_of[i / 3]) << material_of(child) << ' ' << i;
     shown.erase(material_of(child));
   }
 }
@@ -188,13 +199,16 @@ TEST_F(SavedTrajectory, SharesArraysOfAShape) {
   for (const int position : positions) EXPECT_EQ(position, positions[0]);
 }
 
-// To those who lack a kind of cone, by Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color vision deficiency (2009), table 1:
-// what they see of linear red, green and blue.
+// To those who lack a kind of cone, by Machado, Oliveira and Fernandes, A physiologically-based model for
+// simulation of color vision deficiency (2009), table 1: what they see of linear red, green and blue.
 Vec3 seen_color(const Vec3& rgb, int lacking) {
   Mat3 sees = Mat3::Identity();
-  if (lacking == 1) sees << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998;
-  if (lacking == 2) sees << 0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940, 0.968881;
-  if (lacking == 3) sees << 1.255528, -0.076749, -0.178779, -0.078411, 0.930809, 0.147602, 0.004733, 0.691367, 0.303900;
+  if (lacking == 1)
+    sees << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998;
+  if (lacking == 2)
+    sees << 0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940, 0.968881;
+  if (lacking == 3)
+    sees << 1.255528, -0.076749, -0.178779, -0.078411, 0.930809, 0.147602, 0.004733, 0.691367, 0.303900;
   return (sees * rgb).cwiseMax(0.0).cwiseMin(1.0);
 }
 
@@ -219,7 +233,9 @@ TEST_F(SavedTrajectory, RungsAreToldApartWhateverConesOneHas) {
   const auto nearest_two = [&](const std::vector<Vec3>& colors, int lacking) {
     double least = 1e9;
     for (std::size_t i = 0; i < colors.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) least = std::min(least, (lab_of(seen_color(colors[i], lacking)) - lab_of(seen_color(colors[j], lacking))).norm());
+      for (std::size_t j = 0; j < i; ++j)
+        least = std::min(
+            least, (lab_of(seen_color(colors[i], lacking)) - lab_of(seen_color(colors[j], lacking))).norm());
     return least;
   };
   for (int lacking = 0; lacking < 4; ++lacking) {

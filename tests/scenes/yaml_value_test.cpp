@@ -35,7 +35,8 @@ TEST(YamlValue, ExpandsAliases) {
 }
 
 TEST(YamlValue, RefusesWhatYamlCppLetsPass) {
-  EXPECT_EQ(error_of("a: 1\nb: 2\na: 3\n"), "s.yaml:3: a: found the key a second time, expected it once (first in line 1)");
+  EXPECT_EQ(error_of("a: 1\nb: 2\na: 3\n"),
+            "s.yaml:3: a: found the key a second time, expected it once (first in line 1)");
   EXPECT_EQ(error_of("a: 1\n---\nb: 2\n").substr(0, 33), "s.yaml:2: document: found a secon");
   EXPECT_EQ(error_of("a: &x\n  b: *x\n").substr(0, 16), "s.yaml:2: alias:");
   EXPECT_EQ(error_of("a: &x [[*x]]\n").substr(0, 16), "s.yaml:1: alias:");
@@ -48,7 +49,9 @@ TEST(YamlValue, RefusesWhatYamlCppLetsPass) {
 }
 
 TEST(YamlValue, LimitsNesting) {
-  const auto nested = [](int depth) { return std::string(std::size_t(depth), '[') + std::string(std::size_t(depth), ']'); };
+  const auto nested = [](int depth) {
+    return std::string(std::size_t(depth), '[') + std::string(std::size_t(depth), ']');
+  };
   EXPECT_EQ(error_of(nested(32)), "no error");
   EXPECT_EQ(error_of(nested(33)), "s.yaml:1: nesting: found more levels, expected at most 32");
   EXPECT_EQ(error_of(nested(100'000)).substr(0, 18), "s.yaml:1: nesting:");
@@ -70,7 +73,7 @@ TEST(YamlValue, LimitsExpansion) {
 
 TEST(YamlValue, RefusesWhatIsNoFile) {
   EXPECT_THROW(load_yaml("/nonexistent/scene.yaml"), InputError);
-  EXPECT_THROW(load_yaml(testing::TempDir()), InputError);
+  EXPECT_THROW(load_yaml(::testing::TempDir()), InputError);
   EXPECT_THROW(load_yaml("/dev/zero"), InputError);
 }
 

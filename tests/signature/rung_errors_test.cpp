@@ -1,7 +1,6 @@
 #include "signature/rung_errors.h"
 
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <fstream>
@@ -21,7 +20,8 @@ class RungErrorsFile : public ::testing::Test {
   void write(const std::string& content) const { std::ofstream(file(), std::ios::binary) << content; }
 
  private:
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lodestone-errors-" + std::to_string(::getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("lodestone-errors-" + std::to_string(::getpid()));
 };
 
 TEST_F(RungErrorsFile, ComesBackAsItWas) {

@@ -18,7 +18,9 @@ TEST(SettlingClips, PosesAreSmoothAndImpactsSudden) {
   Signature signature;
   signature.clips = {{.first_frame = 0, .frames = 3, .extent = 1.0f}};
   const double heights[] = {1.0, 0.8, 0.9}, speeds[] = {-1.0, 0.5, 0.4};
-  for (int i = 0; i < 3; ++i) signature.clip_frames.push_back(encode_frame({{0, 0, heights[i]}, Quat::Identity(), {0, 0, speeds[i]}, Vec3::Zero()}, 1.0f));
+  for (int i = 0; i < 3; ++i)
+    signature.clip_frames.push_back(
+        encode_frame({{0, 0, heights[i]}, Quat::Identity(), {0, 0, speeds[i]}, Vec3::Zero()}, 1.0f));
   const auto at = [&](double frame) { return find_clip_state(signature, signature.clips[0], frame); };
   EXPECT_NEAR(at(0.5).position.z(), 0.9, 1e-3);
   EXPECT_NEAR(at(0.9).velocity.z(), -1.0, 1e-3);

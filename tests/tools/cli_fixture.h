@@ -30,7 +30,8 @@ inline Ended run_shell(const std::string& command) {
   Ended ended;
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> buffer;
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) ended.out.append(buffer.data(), count);
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    ended.out.append(buffer.data(), count);
   const int status = pclose(pipe);
   ended.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;  // −1: killed by a signal
   return ended;
@@ -50,15 +51,19 @@ class CliTest : public ::testing::Test {
   std::filesystem::path at(const std::string& name) const { return folder_ / name; }
   /// The command as the shell takes it, its cache in folder `cache`.
   std::string command(const std::string& arguments, const std::string& cache = "cache") const {
-    return "XDG_CACHE_HOME=" + quoted(at(cache).string()) + " exec " + quoted(LODESTONE_CLI) + ' ' + arguments;
+    return "XDG_CACHE_HOME=" + quoted(at(cache).string()) + " exec " + quoted(LODESTONE_CLI) + ' ' +
+           arguments;
   }
   /// With stderr joined.
-  Ended run(const std::string& arguments, const std::string& cache = "cache") const { return run_shell(command(arguments, cache) + " 2>&1"); }
+  Ended run(const std::string& arguments, const std::string& cache = "cache") const {
+    return run_shell(command(arguments, cache) + " 2>&1");
+  }
   std::string name(const std::string& file) const { return quoted(at(file).string()); }
 
  private:
   std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                  ("lodestone-test-" + std::to_string(::getpid()) + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+                                  ("lodestone-test-" + std::to_string(::getpid()) +
+                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 }  // namespace lodestone::testing

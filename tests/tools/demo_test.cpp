@@ -38,18 +38,32 @@ TEST(DemoBudgets, AreThreeOfOneScene) {
 
 TEST(DemoReport, ShowsBudgetsAndThePictureWhereThereAreAny) {
   DemoResult result;
-  result.rows.push_back({.name = "full", .whole_ms = std::nullopt, .processor_ms = std::nullopt, .busy_ms = {.p50 = 1.0}, .most_full = 2});
+  result.rows.push_back({.name = "full",
+                         .whole_ms = std::nullopt,
+                         .processor_ms = std::nullopt,
+                         .busy_ms = {.p50 = 1.0},
+                         .most_full = 2});
   result.mixed.reports.resize(1);
   result.drop.shape = two_crates().bodies[0].definition.shape;
   EXPECT_EQ(text_of(result).find("What a budget buys"), std::string::npos);
   EXPECT_EQ(text_of(result).find("in the picture"), std::string::npos);
   result.budget_scene = "heap.yaml";
   result.budgets.resize(1);
-  result.budgets[0].budget = BudgetFigures{.budget_ms = 4.0, .budget_work = std::nullopt, .steps = 591, .over = 7, .step_ms = {.p50 = 1.25, .p99 = 3.5, .max = 4.75}, .mean_bodies = {70.0, 20.0, 10.0}};
+  result.budgets[0].budget = BudgetFigures{.budget_ms = 4.0,
+                                           .budget_work = std::nullopt,
+                                           .steps = 591,
+                                           .over = 7,
+                                           .step_ms = {.p50 = 1.25, .p99 = 3.5, .max = 4.75},
+                                           .mean_bodies = {70.0, 20.0, 10.0}};
   result.mixed.in_picture = {.min_full = 8, .mean_full = 9.5};
   const std::string text = text_of(result);
-  EXPECT_NE(text.find("What a budget buys: heap.yaml, processor time of 591 steps from step 10 on"), std::string::npos) << text;
-  EXPECT_NE(text.find("at least 8 full bodies are in the picture of the scene's viewpoint (60 deg high, 16 : 9), on average 9.5"), std::string::npos) << text;
+  EXPECT_NE(text.find("What a budget buys: heap.yaml, processor time of 591 steps from step 10 on"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("at least 8 full bodies are in the picture of the scene's viewpoint (60 deg high, 16 : "
+                      "9), on average 9.5"),
+            std::string::npos)
+      << text;
   const auto json = json_of(result);
   EXPECT_EQ(json["budgets"][0]["over"], 7);
   EXPECT_EQ(json["budgets"][0]["mean_full"], 10.0);
@@ -70,7 +84,15 @@ TEST(DemoReport, HasARowForEachStepOfEachRun) {
   result.budgets[0].budget = BudgetFigures{.budget_ms = 4.0, .budget_work = std::nullopt, .over = 0};
   const auto rows = step_rows_of(result);
   ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(rows[0], (nlohmann::ordered_json{{"scene", "bunnies.yaml"}, {"budget_ms", nullptr}, {"dt_s", 0.01}, {"step", 1}, {"full", 1}, {"support", 2}, {"tables", 4}, {"asleep", 3}, {"processor_ms", 0.5}}));
+  EXPECT_EQ(rows[0], (nlohmann::ordered_json{{"scene", "bunnies.yaml"},
+                                             {"budget_ms", nullptr},
+                                             {"dt_s", 0.01},
+                                             {"step", 1},
+                                             {"full", 1},
+                                             {"support", 2},
+                                             {"tables", 4},
+                                             {"asleep", 3},
+                                             {"processor_ms", 0.5}}));
   EXPECT_EQ(rows[1]["step"], 2);
   EXPECT_EQ(rows[2]["budget_ms"], 4.0);
   EXPECT_EQ(rows[2]["dt_s"], 0.02);

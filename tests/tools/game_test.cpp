@@ -25,7 +25,8 @@ Picture load_picture(const std::filesystem::path& file) {
   if (bytes.size() < 54 || !bytes.starts_with("BM")) return {};
   std::int32_t pixels = 0, width = 0, height = 0;
   std::int16_t bits = 0;
-  std::memcpy(&pixels, &bytes[10], 4), std::memcpy(&width, &bytes[18], 4), std::memcpy(&height, &bytes[22], 4), std::memcpy(&bits, &bytes[28], 2);
+  std::memcpy(&pixels, &bytes[10], 4), std::memcpy(&width, &bytes[18], 4),
+      std::memcpy(&height, &bytes[22], 4), std::memcpy(&bits, &bytes[28], 2);
   const std::size_t row = (std::size_t(width) * 3 + 3) / 4 * 4;
   if (bits != 24 || bytes.size() < std::size_t(pixels) + row * std::size_t(height)) return {};
   Picture picture{width, height, {}};
@@ -57,12 +58,17 @@ class Game : public testing::CliTest {
   }
 #ifdef LODESTONE_GAME
   testing::Ended start(const std::string& how, const std::string& arguments) const {
-    return testing::run_shell("XDG_CACHE_HOME=" + testing::quoted(at("cache").string()) + ' ' + how + ' ' + testing::quoted(LODESTONE_GAME) + ' ' + arguments + " 2>&1");
+    return testing::run_shell("XDG_CACHE_HOME=" + testing::quoted(at("cache").string()) + ' ' + how + ' ' +
+                              testing::quoted(LODESTONE_GAME) + ' ' + arguments + " 2>&1");
   }
 #else
   testing::Ended start(const std::string&, const std::string&) const { return {}; }
 #endif
-  testing::Ended play(const std::string& arguments) const { return start("LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -f " + name("xauthority") + " -s '-screen 0 1280x720x24'", arguments); }  // with a file of its own it has none to fail at removing
+  testing::Ended play(const std::string& arguments) const {
+    return start(
+        "LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -f " + name("xauthority") + " -s '-screen 0 1280x720x24'",
+        arguments);
+  }  // with a file of its own it has none to fail at removing
 };
 
 TEST_F(Game, RunsOnAVirtualDisplayAndShowsItsWorld) {
@@ -71,10 +77,14 @@ TEST_F(Game, RunsOnAVirtualDisplayAndShowsItsWorld) {
   Figures f;
   const auto line = ended.out.find("frames ");
   ASSERT_NE(line, std::string::npos) << ended.out;
-  ASSERT_EQ(std::sscanf(&ended.out[line], "frames %d full %d support %d tables %d asleep %d p50_ms %lf p99_ms %lf", &f.frames, &f.full, &f.support, &f.tables, &f.asleep, &f.p50_ms, &f.p99_ms), 7);
+  ASSERT_EQ(
+      std::sscanf(&ended.out[line], "frames %d full %d support %d tables %d asleep %d p50_ms %lf p99_ms %lf",
+                  &f.frames, &f.full, &f.support, &f.tables, &f.asleep, &f.p50_ms, &f.p99_ms),
+      7);
   EXPECT_EQ(f.frames, 120);
   EXPECT_GE(f.full, 11) << "the parts of a ragdoll are always full";
-  EXPECT_EQ(f.full + f.support + f.tables, 6 * 80 + 11 + 4) << "heaps, a ragdoll and the balls thrown; nothing fell out of the world";
+  EXPECT_EQ(f.full + f.support + f.tables, 6 * 80 + 11 + 4)
+      << "heaps, a ragdoll and the balls thrown; nothing fell out of the world";
   EXPECT_GT(f.p50_ms, 0.0);
   EXPECT_GE(f.p99_ms, f.p50_ms);
 
@@ -82,10 +92,15 @@ TEST_F(Game, RunsOnAVirtualDisplayAndShowsItsWorld) {
   ASSERT_EQ(picture.width, 1280);
   ASSERT_EQ(picture.height, 720);
   EXPECT_GT(std::set<Color>(picture.pixels.begin(), picture.pixels.end()).size(), 500U);
-  EXPECT_GT(share_of(picture, [](const Color& c) { return c[2] > c[0] + 20 && c[2] > 180 && c[0] > 140; }), 0.05) << "sky";
-  EXPECT_GT(share_of(picture, [](const Color& c) { return c[0] > c[2] + 15 && c[0] < c[2] + 60; }), 0.15) << "ground";
-  EXPECT_GT(share_of(picture, [](const Color& c) { return c[0] > c[2] + 110; }), 0.001) << "full bodies, orange";
-  EXPECT_GT(share_of(picture, [](const Color& c) { return std::max(c[1], c[2]) > c[0] + 60; }), 0.005) << "bodies on the statistical rungs, light blue or, once their signatures are measured, green";
+  EXPECT_GT(share_of(picture, [](const Color& c) { return c[2] > c[0] + 20 && c[2] > 180 && c[0] > 140; }),
+            0.05)
+      << "sky";
+  EXPECT_GT(share_of(picture, [](const Color& c) { return c[0] > c[2] + 15 && c[0] < c[2] + 60; }), 0.15)
+      << "ground";
+  EXPECT_GT(share_of(picture, [](const Color& c) { return c[0] > c[2] + 110; }), 0.001)
+      << "full bodies, orange";
+  EXPECT_GT(share_of(picture, [](const Color& c) { return std::max(c[1], c[2]) > c[0] + 60; }), 0.005)
+      << "bodies on the statistical rungs, light blue or, once their signatures are measured, green";
 }
 
 TEST_F(Game, SaysWhatItCannotDo) {

@@ -11,7 +11,10 @@ using testing::Ended;
 class Inspect : public testing::CliTest {
  protected:
   void SetUp() override {
-    const Ended ended = run("sign box:0.2,0.3,0.4 --cell-trials 2 --height-trials 20 --settling-trials 12 --clips 3 --no-cache -o " + name("box.sig"));
+    const Ended ended =
+        run("sign box:0.2,0.3,0.4 --cell-trials 2 --height-trials 20 --settling-trials 12 --clips 3 "
+            "--no-cache -o " +
+            name("box.sig"));
     ASSERT_EQ(ended.exit_code, 0) << ended.out;
   }
 };
@@ -29,13 +32,16 @@ TEST_F(Inspect, JsonSaysWhatTheFileIsMadeOf) {
   EXPECT_EQ(json["seven_spheres_bytes"], 112);
   EXPECT_EQ(json["collision_heights"]["mean"].size(), 16U);
   EXPECT_NE(json["versions"].get<std::string>().find("ode "), std::string::npos);
-  for (const char* key : {"tables", "rest_poses", "held_out_ks", "restitution", "friction", "clips", "shape_hash"}) EXPECT_TRUE(json.contains(key)) << key;
+  for (const char* key :
+       {"tables", "rest_poses", "held_out_ks", "restitution", "friction", "clips", "shape_hash"})
+    EXPECT_TRUE(json.contains(key)) << key;
 }
 
 TEST_F(Inspect, OnePageShowsEverything) {
   const Ended ended = run("inspect " + name("box.sig"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
-  for (const char* part : {"box:0.2,0.3,0.4", "versions", "valid for", "held-out KS", "std. error", "energy", "rest pose", "collision height over R", "settling clips", "seven spheres",
+  for (const char* part : {"box:0.2,0.3,0.4", "versions", "valid for", "held-out KS", "std. error", "energy",
+                           "rest pose", "collision height over R", "settling clips", "seven spheres",
                            "mesh of 8 vertices and 12 faces", "support map"})
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
 }
@@ -57,7 +63,8 @@ TEST_F(Inspect, DamageIsBadInput) {
 
 TEST(HeightPlot, RisesFromLeftToRightWithTheHeights) {
   CollisionHeights heights;
-  for (int i = 0; i < 16; ++i) heights.mean.push_back(0.5f + 0.02f * float(i)), heights.deviation.push_back(0.0f);
+  for (int i = 0; i < 16; ++i)
+    heights.mean.push_back(0.5f + 0.02f * float(i)), heights.deviation.push_back(0.0f);
   const std::string plot = text_plot(heights);
   std::size_t last = std::string::npos;  // column of the lowest star is the first
   std::size_t begin = plot.find('\n') + 1;

@@ -24,18 +24,22 @@ std::string quoted(const std::string& path) {
 
 // Runs `lodestone` with `arguments`; stderr is joined where asked for.
 Ended run(const std::string& arguments, bool with_errors = false) {
-  const std::string command = quoted(LODESTONE_CLI) + ' ' + arguments + (with_errors ? " 2>&1" : " 2>/dev/null");
+  const std::string command =
+      quoted(LODESTONE_CLI) + ' ' + arguments + (with_errors ? " 2>&1" : " 2>/dev/null");
   Ended ended;
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> buffer;
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) ended.out.append(buffer.data(), count);
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    ended.out.append(buffer.data(), count);
   const int status = pclose(pipe);
   ended.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return ended;
 }
 
 TEST(Program, HelpIsDone) {
-  for (const char* arguments : {"--help", "run --help", "sign --help", "merge --help", "inspect --help", "compare drop --help", "demo --help", "bench hard_cases --help", "bench budget --help", "bench rungs --help"}) {
+  for (const char* arguments :
+       {"--help", "run --help", "sign --help", "merge --help", "inspect --help", "compare drop --help",
+        "demo --help", "bench hard_cases --help", "bench budget --help", "bench rungs --help"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.exit_code, 0) << arguments;
     EXPECT_FALSE(ended.out.empty()) << arguments;
@@ -43,10 +47,29 @@ TEST(Program, HelpIsDone) {
 }
 
 TEST(Program, WrongUsageIsTwoAndSilentOnStdout) {
-  for (const char* arguments : {"", "nonsense", "run", "compare", "compare drop", "run a.yaml --steps 0", "run a.yaml --level fast", "run a.yaml --model full", "run a.yaml --budget-ms 0", "run a.yaml --budget-ms nan", "run a.yaml --budget-work inf",
-                                "run a.yaml --budget-work -4", "run a.yaml --budget-ms 4 --budget-work 2000", "bench budget --budgets 0", "bench rungs --shape cube", "run a.yaml --dt 0",
-                                "compare drop box:1,1,1 --trials 1", "compare drop box:1,1,1 --dt 1/0", "compare drop box:1,1,1 --methods nonsense",
-                                "compare drop box:1,1,1 --restitution 2", "sign box:1,1,1 --threads -1", "bench", "bench hard_cases --only nonsense"}) {
+  for (const char* arguments : {"",
+                                "nonsense",
+                                "run",
+                                "compare",
+                                "compare drop",
+                                "run a.yaml --steps 0",
+                                "run a.yaml --level fast",
+                                "run a.yaml --model full",
+                                "run a.yaml --budget-ms 0",
+                                "run a.yaml --budget-ms nan",
+                                "run a.yaml --budget-work inf",
+                                "run a.yaml --budget-work -4",
+                                "run a.yaml --budget-ms 4 --budget-work 2000",
+                                "bench budget --budgets 0",
+                                "bench rungs --shape cube",
+                                "run a.yaml --dt 0",
+                                "compare drop box:1,1,1 --trials 1",
+                                "compare drop box:1,1,1 --dt 1/0",
+                                "compare drop box:1,1,1 --methods nonsense",
+                                "compare drop box:1,1,1 --restitution 2",
+                                "sign box:1,1,1 --threads -1",
+                                "bench",
+                                "bench hard_cases --only nonsense"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.exit_code, 2) << arguments;
     EXPECT_EQ(ended.out, "") << arguments;
@@ -55,8 +78,9 @@ TEST(Program, WrongUsageIsTwoAndSilentOnStdout) {
 }
 
 TEST(Program, BadInputIsThreeAndSilentOnStdout) {
-  for (const char* arguments : {"run /nowhere/scene.yaml --json", "sign box:1,2 --json", "sign nowhere.obj", "inspect /nowhere/file.sig --json",
-                                "compare drop cube:1 --json", "demo /nowhere/scene.yaml"}) {
+  for (const char* arguments :
+       {"run /nowhere/scene.yaml --json", "sign box:1,2 --json", "sign nowhere.obj",
+        "inspect /nowhere/file.sig --json", "compare drop cube:1 --json", "demo /nowhere/scene.yaml"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.exit_code, 3) << arguments;
     EXPECT_EQ(ended.out, "") << arguments;
@@ -65,7 +89,8 @@ TEST(Program, BadInputIsThreeAndSilentOnStdout) {
 }
 
 TEST(Program, CompareDropPrintsOneJsonObjectAndNothingElse) {
-  const Ended ended = run("compare drop box:0.2,0.3,0.4 --trials 4 --methods full_1,hull --dt 1/60,1/120 --json", true);
+  const Ended ended =
+      run("compare drop box:0.2,0.3,0.4 --trials 4 --methods full_1,hull --dt 1/60,1/120 --json", true);
   EXPECT_EQ(ended.exit_code, 0);
   const auto json = nlohmann::json::parse(ended.out);
   ASSERT_EQ(json["rows"].size(), 4U);
@@ -82,25 +107,33 @@ TEST(Program, ListsDoNotSwallowTheShape) {
 }
 
 TEST(Program, RunPrintsOneJsonObjectAndNothingElse) {
-  const Ended ended = run("run " + quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml") + " --level full --steps 5 --dt 1/120 --json", true);
+  const Ended ended = run(
+      "run " + quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml") + " --level full --steps 5 --dt 1/120 --json",
+      true);
   EXPECT_EQ(ended.exit_code, 0);
   const auto json = nlohmann::json::parse(ended.out);
-  for (const char* key : {"steps", "bodies", "state_hash", "step_ms", "levels", "transitions", "counters"}) EXPECT_TRUE(json.contains(key)) << key;
-  for (const char* key : {"p50", "p95", "p99", "mean", "max"}) EXPECT_TRUE(json["step_ms"].contains(key)) << key;
+  for (const char* key : {"steps", "bodies", "state_hash", "step_ms", "levels", "transitions", "counters"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  for (const char* key : {"p50", "p95", "p99", "mean", "max"})
+    EXPECT_TRUE(json["step_ms"].contains(key)) << key;
   EXPECT_EQ(json["steps"], 5);
-  EXPECT_EQ(json["levels"]["full"].get<int>() + json["levels"]["statistical"].get<int>(), json["bodies"].get<int>());
+  EXPECT_EQ(json["levels"]["full"].get<int>() + json["levels"]["statistical"].get<int>(),
+            json["bodies"].get<int>());
   EXPECT_EQ(json["counters"]["signatures_loaded"], 0);
-  for (const char* key : {"full", "statistical", "support", "tables", "asleep"}) EXPECT_TRUE(json["levels"].contains(key)) << key;
+  for (const char* key : {"full", "statistical", "support", "tables", "asleep"})
+    EXPECT_TRUE(json["levels"].contains(key)) << key;
   EXPECT_FALSE(json.contains("budget"));
 }
 
 TEST(Program, RunTakesABudget) {
-  const std::string scene = "run " + quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml") + " --level full --steps 20 --json";
+  const std::string scene =
+      "run " + quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml") + " --level full --steps 20 --json";
   const auto timed = nlohmann::json::parse(run(scene + " --budget-ms 4").out)["budget"];
   EXPECT_EQ(timed["ms"], 4.0);
   EXPECT_EQ(timed["steps"], 11);
   EXPECT_EQ(timed["mean_full"], 1.0);
-  for (const char* key : {"over", "p50", "p99", "max", "mean_support"}) EXPECT_TRUE(timed[key].is_number()) << key;
+  for (const char* key : {"over", "p50", "p99", "max", "mean_support"})
+    EXPECT_TRUE(timed[key].is_number()) << key;
   const auto worked = nlohmann::json::parse(run(scene + " --budget-work 2000").out)["budget"];
   EXPECT_EQ(worked["work"], 2000.0);
   EXPECT_TRUE(worked["over"].is_null());

@@ -10,8 +10,8 @@
 
 #include "reference/error.h"
 #include "tests/tools/browser.h"
-#include "tools/bench/hard_case_report.h"
 #include "tools/compare/drop_report.h"
+#include "tools/hard_cases/hard_case_report.h"
 #include "tools/report/sections.h"
 #include "tools/report/square_heights.h"
 
@@ -21,21 +21,34 @@ namespace {
 using nlohmann::ordered_json;
 
 TEST(ReportTable, ReadsWhatIsWritten) {
-  const ReportTable table = parse_report_table("t.csv", "# command: build/lodestone a --b\n# command: c\n# commit: 12ab\n# machine: m, 2 cores\n# date: 2026-11-21\n"
-                                                        "name,value,flag,list\n\"a, \"\"b\"\"\",-1.5e3,true,1 2\n\"\",,false,ff12\n");
+  const ReportTable table =
+      parse_report_table("t.csv",
+                         "# command: build/lodestone a --b\n# command: c\n# commit: 12ab\n# machine: m, 2 "
+                         "cores\n# date: 2026-11-21\n"
+                         "name,value,flag,list\n\"a, \"\"b\"\"\",-1.5e3,true,1 2\n\"\",,false,ff12\n");
   EXPECT_EQ(table.made.commands, (std::vector<std::string>{"build/lodestone a --b", "c"}));
   EXPECT_EQ(table.made.commit, "12ab");
   EXPECT_EQ(table.made.machine, "m, 2 cores");
   EXPECT_EQ(table.made.date, "2026-11-21");
   ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_EQ(table.rows[0], (ordered_json{{"name", "a, \"b\""}, {"value", -1500.0}, {"flag", true}, {"list", "1 2"}}));
-  EXPECT_EQ(table.rows[1], (ordered_json{{"name", ""}, {"value", nullptr}, {"flag", false}, {"list", "ff12"}}));
+  EXPECT_EQ(table.rows[0],
+            (ordered_json{{"name", "a, \"b\""}, {"value", -1500.0}, {"flag", true}, {"list", "1 2"}}));
+  EXPECT_EQ(table.rows[1],
+            (ordered_json{{"name", ""}, {"value", nullptr}, {"flag", false}, {"list", "ff12"}}));
 }
 
 TEST(ReportTable, ReadsWhatTheProgramSaves) {
-  const HardCaseResult result = {.id = "F1", .rows = {{.what = "a \"quoted\" one, with a comma", .value = 2.5, .bound = 1e-9, .unit = "m/s", .side = BoundSide::at_least, .odes_own = ""},
-                                                     {.what = "ODE's", .value = 3.0, .bound = 2.0, .odes_own = "why, and how"}}};
-  const auto file = std::filesystem::temp_directory_path() / ("report-" + std::to_string(::getpid()) + ".csv");
+  const HardCaseResult result = {
+      .id = "F1",
+      .rows = {{.what = "a \"quoted\" one, with a comma",
+                .value = 2.5,
+                .bound = 1e-9,
+                .unit = "m/s",
+                .side = BoundSide::at_least,
+                .odes_own = ""},
+               {.what = "ODE's", .value = 3.0, .bound = 2.0, .odes_own = "why, and how"}}};
+  const auto file =
+      std::filesystem::temp_directory_path() / ("report-" + std::to_string(::getpid()) + ".csv");
   save_csv(std::span(&result, 1), file);
   const ReportTable table = parse_report_table("cases", testing::bytes_of(file));
   EXPECT_EQ(table.rows, json_of(std::span(&result, 1))["cases"]);
@@ -74,7 +87,9 @@ TEST(ReportTable, ALineOfOtherLengthIsNamed) {
 TEST(SquareHeights, TheExactMeanIsWhatIsMeasured) {
   constexpr int kTrials = 4000;
   for (const double ratio : {0.0, 0.5, 1.9, 2.1, 3.0, 6.0, 20.0, 100.0})
-    EXPECT_NEAR(measure_square_height(ratio, kTrials), mean_square_height(ratio), 4.0 * 0.0622 / std::sqrt(double(kTrials))) << ratio;
+    EXPECT_NEAR(measure_square_height(ratio, kTrials), mean_square_height(ratio),
+                4.0 * 0.0622 / std::sqrt(double(kTrials)))
+        << ratio;
   EXPECT_DOUBLE_EQ(mean_square_height(2.0), 2.0 / std::numbers::pi);
   EXPECT_NEAR(mean_square_height(2.0 + 1e-9), 2.0 / std::numbers::pi, 1e-6);
   EXPECT_NEAR(mean_square_height(1e6), std::numbers::sqrt2 / 2, 1e-3);
@@ -88,7 +103,9 @@ ReportSettings without_signatures() {
 
 const ordered_json* find_row(const ordered_json& rows, std::string_view method, std::string_view model = "") {
   for (const ordered_json& row : rows)
-    if (row["method"] == method && (model.empty() || row["model"] == model) && std::abs(row["dt_s"].get<double>() - 1.0 / 60.0) < 1e-4) return &row;
+    if (row["method"] == method && (model.empty() || row["model"] == model) &&
+        std::abs(row["dt_s"].get<double>() - 1.0 / 60.0) < 1e-4)
+      return &row;
   return nullptr;
 }
 
@@ -99,7 +116,8 @@ TEST(ReportData, BaselinesSayHowTheyWereMadeAndHoldWhatThePageShows) {
     EXPECT_GT(shape["floor"]["score"], 0.0);
     const ordered_json* ours = find_row(shape["rows"], "statistical", "support");
     ASSERT_TRUE(ours);
-    EXPECT_NEAR((*ours)["ns_per_frame"].get<double>(), (*ours)["ns_per_body_step"].get<double>(), 1e-3 * (*ours)["ns_per_frame"].get<double>());  // a frame is such a step
+    EXPECT_NEAR((*ours)["ns_per_frame"].get<double>(), (*ours)["ns_per_body_step"].get<double>(),
+                1e-3 * (*ours)["ns_per_frame"].get<double>());  // a frame is such a step
     EXPECT_TRUE(find_row(shape["rows"], "full_1"));
   }
   EXPECT_EQ(data["budget"]["runs"].size(), 4u);
@@ -108,10 +126,13 @@ TEST(ReportData, BaselinesSayHowTheyWereMadeAndHoldWhatThePageShows) {
     EXPECT_EQ(int(run["full"].size()) - 9, run["counted_steps"].get<int>());
   }
   const ordered_json& cases = data["hard_cases"];
-  EXPECT_EQ(cases["figures"].get<int>(), cases["kept"].get<int>() + cases["odes_own"].get<int>() + cases["failed"].get<int>());
-  for (const ordered_json* made : {&data["curve"]["shapes"][0]["made"], &data["budget"]["made"], &data["table1"]["made"], &cases["made"]}) {
+  EXPECT_EQ(cases["figures"].get<int>(),
+            cases["kept"].get<int>() + cases["odes_own"].get<int>() + cases["failed"].get<int>());
+  for (const ordered_json* made : {&data["curve"]["shapes"][0]["made"], &data["budget"]["made"],
+                                   &data["table1"]["made"], &cases["made"]}) {
     EXPECT_FALSE((*made)["commands"].empty());
-    for (const char* key : {"commit", "machine", "date"}) EXPECT_FALSE((*made)[key].get<std::string>().empty()) << key;
+    for (const char* key : {"commit", "machine", "date"})
+      EXPECT_FALSE((*made)[key].get<std::string>().empty()) << key;
     EXPECT_FALSE((*made)["fresh"].get<bool>());
   }
   EXPECT_FALSE(data["machine"]["commit"].get<std::string>().empty());
@@ -121,12 +142,22 @@ TEST(ReportData, FreshFiguresAreMarkedAndTakeThePlaceOfTheBaselinesRuns) {
   ReportSettings settings = without_signatures();
   FreshResults fresh;
   fresh.scores.made.fresh = fresh.steps.made.fresh = true;
-  const ordered_json floor = {{"shape", "crate"}, {"trials", 30}, {"method", "noise_floor"}, {"model", nullptr}, {"dt_s", 0.0005}, {"score", 0.05}, {"ns_per_body_step", nullptr}};
+  const ordered_json floor = {{"shape", "crate"},           {"trials", 30},   {"method", "noise_floor"},
+                              {"model", nullptr},           {"dt_s", 0.0005}, {"score", 0.05},
+                              {"ns_per_body_step", nullptr}};
   ordered_json row = floor;
   row["method"] = "full_1", row["dt_s"] = 1.0 / 120, row["ns_per_body_step"] = 700.0;
   fresh.scores.rows = {floor, row};
   for (int step = 1; step <= 12; ++step)
-    fresh.steps.rows.push_back({{"scene", "s.yaml"}, {"budget_ms", 2.0}, {"dt_s", 0.01}, {"step", step}, {"full", 1}, {"support", 2}, {"tables", 3}, {"asleep", 0}, {"processor_ms", step < 10 ? 50.0 : step - 9.0}});
+    fresh.steps.rows.push_back({{"scene", "s.yaml"},
+                                {"budget_ms", 2.0},
+                                {"dt_s", 0.01},
+                                {"step", step},
+                                {"full", 1},
+                                {"support", 2},
+                                {"tables", 3},
+                                {"asleep", 0},
+                                {"processor_ms", step < 10 ? 50.0 : step - 9.0}});
   settings.fresh = fresh;
   const ordered_json data = gather_report(settings);
   ASSERT_EQ(data["curve"]["shapes"].size(), 4u);
@@ -174,22 +205,35 @@ TEST_F(ReportSignature, HasHeightsResponsesAndRestPosesOfAShape) {
   EXPECT_EQ(box["heights"]["mean"].size(), box["heights"]["alpha_deg"].size());
   for (const ordered_json& measure : box["responses"]["measures"]) {
     double share = 0.0;
-    for (const ordered_json& bin : measure["trials"]) share += bin.get<double>() * measure["high"].get<double>() / box["responses"]["bins"].get<double>();
+    for (const ordered_json& bin : measure["trials"])
+      share += bin.get<double>() * measure["high"].get<double>() / box["responses"]["bins"].get<double>();
     EXPECT_GT(share, 0.95) << measure["name"];
     EXPECT_LT(share, 1.0 + 1e-3);
     EXPECT_LT(measure["ks"], 0.15) << measure["name"];  // the certificate's for a box is .04
   }
-  for (std::size_t i = 0; i < signature["square"]["measured"].size(); ++i) EXPECT_LE(signature["square"]["measured"][i][1], 1.0 + 1e-4);
+  for (std::size_t i = 0; i < signature["square"]["measured"].size(); ++i)
+    EXPECT_LE(signature["square"]["measured"][i][1], 1.0 + 1e-4);
 }
 
 // A shape that needs no measuring: a tetrahedron that lies on a face and on its tip.
 ordered_json small_signature() {
-  const ordered_json measure = {{"name", "speed"}, {"high", 1.0}, {"trials", {1.0, 1.0}}, {"draws", {0.5, 1.5}}, {"ks", 0.25}};
-  return {{"name", "tetrahedron"}, {"radius_m", 0.1}, {"restitution", 0.4}, {"friction", 0.5}, {"settling_trials", 10},
-          {"heights", {{"alpha_deg", {0.0, 45.0, 90.0}}, {"mean", {0.7, 0.8, 1.0}}, {"deviation", {0.1, 0.1, 0.0}}}},
-          {"responses", {{"trials", 20}, {"conditions", 2}, {"bins", 2}, {"measures", {measure, measure, measure}}}},
-          {"rest_poses", {{{"normal", {0.0, 0.0, 1.0}}, {"height_over_radius", 0.33}, {"frequency", 0.9}}, {{"normal", {0.0, 0.0, -1.0}}, {"height_over_radius", 1.0}, {"frequency", 0.1}}}},
-          {"mesh", {{"vertices", {0.9, 0.0, -0.33, -0.45, 0.8, -0.33, -0.45, -0.8, -0.33, 0.0, 0.0, 1.0}}, {"faces", {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3}}}}};
+  const ordered_json measure = {
+      {"name", "speed"}, {"high", 1.0}, {"trials", {1.0, 1.0}}, {"draws", {0.5, 1.5}}, {"ks", 0.25}};
+  return {{"name", "tetrahedron"},
+          {"radius_m", 0.1},
+          {"restitution", 0.4},
+          {"friction", 0.5},
+          {"settling_trials", 10},
+          {"heights",
+           {{"alpha_deg", {0.0, 45.0, 90.0}}, {"mean", {0.7, 0.8, 1.0}}, {"deviation", {0.1, 0.1, 0.0}}}},
+          {"responses",
+           {{"trials", 20}, {"conditions", 2}, {"bins", 2}, {"measures", {measure, measure, measure}}}},
+          {"rest_poses",
+           {{{"normal", {0.0, 0.0, 1.0}}, {"height_over_radius", 0.33}, {"frequency", 0.9}},
+            {{"normal", {0.0, 0.0, -1.0}}, {"height_over_radius", 1.0}, {"frequency", 0.1}}}},
+          {"mesh",
+           {{"vertices", {0.9, 0.0, -0.33, -0.45, 0.8, -0.33, -0.45, -0.8, -0.33, 0.0, 0.0, 1.0}},
+            {"faces", {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3}}}}};
 }
 
 class ReportPage : public ::testing::Test {
@@ -204,12 +248,17 @@ class ReportPage : public ::testing::Test {
 };
 
 TEST_F(ReportPage, HoldsItsDataAndAsksTheNetworkForNothing) {
-  EXPECT_NE(page_.find("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:\">"), std::string::npos);
+  EXPECT_NE(page_.find("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+                       "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:\">"),
+            std::string::npos);
   const ordered_json* ours = find_row(data_["curve"]["shapes"][0]["rows"], "statistical", "support");
   ASSERT_TRUE(ours);
   EXPECT_NE(page_.find((*ours)["score"].dump()), std::string::npos);
-  for (const char* request : {"src=\"http", "href=\"http", "url(http", "@import"}) EXPECT_EQ(page_.find(request), std::string::npos) << request;
-  EXPECT_EQ(page_.find("{{"  "text:"), std::string::npos);
+  for (const char* request : {"src=\"http", "href=\"http", "url(http", "@import"})
+    EXPECT_EQ(page_.find(request), std::string::npos) << request;
+  EXPECT_EQ(page_.find("{{"
+                       "text:"),
+            std::string::npos);
 }
 
 std::string value_after(const std::string& said, const std::string& name) {
@@ -264,17 +313,24 @@ TEST_F(ReportPage, ItsChartsHoldTheNumbersAndAnswerToKeys) {
   EXPECT_EQ(value_after(said, "ready"), "yes") << said;
   const int charts = 1 + 2 * 4 + 1 + 2 + 3;
   EXPECT_EQ(value_after(said, "charts"), std::to_string(charts) + " of " + std::to_string(charts)) << said;
-  for (const char* name : {"labelled", "lettered", "redrawn"}) EXPECT_EQ(value_after(said, name), std::to_string(charts)) << name;
+  for (const char* name : {"labelled", "lettered", "redrawn"})
+    EXPECT_EQ(value_after(said, name), std::to_string(charts)) << name;
   const ordered_json& shapes = data_["curve"]["shapes"];
-  EXPECT_DOUBLE_EQ(std::stod(value_after(said, "score")), (*find_row(shapes[0]["rows"], "statistical", "support"))["score"].get<double>());
-  EXPECT_DOUBLE_EQ(std::stod(value_after(said, "cost")), (*find_row(shapes[0]["rows"], "statistical", "support"))["ns_per_frame"].get<double>());
-  EXPECT_DOUBLE_EQ(std::stod(value_after(said, "third")), (*find_row(shapes[2]["rows"], "statistical", "support"))["score"].get<double>());
-  for (const char* name : {"support", "tables", "full", "Bullet hull"}) EXPECT_NE(value_after(said, "names").find(name), std::string::npos) << name;
+  EXPECT_DOUBLE_EQ(std::stod(value_after(said, "score")),
+                   (*find_row(shapes[0]["rows"], "statistical", "support"))["score"].get<double>());
+  EXPECT_DOUBLE_EQ(std::stod(value_after(said, "cost")),
+                   (*find_row(shapes[0]["rows"], "statistical", "support"))["ns_per_frame"].get<double>());
+  EXPECT_DOUBLE_EQ(std::stod(value_after(said, "third")),
+                   (*find_row(shapes[2]["rows"], "statistical", "support"))["score"].get<double>());
+  for (const char* name : {"support", "tables", "full", "Bullet hull"})
+    EXPECT_NE(value_after(said, "names").find(name), std::string::npos) << name;
   EXPECT_EQ(value_after(said, "moved"), "true");
   EXPECT_EQ(value_after(said, "parts"), "true");
   EXPECT_EQ(value_after(said, "left"), "0");
   EXPECT_EQ(value_after(said, "pressed"), "false false true");
-  const ordered_json& first_budget = *std::ranges::find_if(data_["budget"]["runs"], [](const ordered_json& run) { return !run["budget_ms"].is_null(); });  // which stand first on the page
+  const ordered_json& first_budget = *std::ranges::find_if(
+      data_["budget"]["runs"],
+      [](const ordered_json& run) { return !run["budget_ms"].is_null(); });  // which stand first on the page
   EXPECT_DOUBLE_EQ(std::stod(value_after(said, "step")), first_budget["processor_ms"][42].get<double>());
   EXPECT_EQ(std::stoi(value_after(said, "rungs")), first_budget["full"][42].get<int>());
   double support_ms = 0.0;
@@ -296,7 +352,8 @@ TEST_F(ReportPage, FitsAPhone) {
     redrawCharts();
     const wide = [...document.querySelectorAll("body *")].filter(element => !element.closest(".scroll, .unseen, .skip, pre") && element.getBoundingClientRect().right > 391 && element.getBoundingClientRect().width > 0);
     say("wide " + wide.length + " " + wide.slice(0, 3).map(element => element.tagName + "#" + element.id + "." + element.className).join(" "));
-  )", "500,900");
+  )",
+                                                          "500,900");
   EXPECT_EQ(value_after(said, "wide").substr(0, 2), "0 ") << said;
 }
 

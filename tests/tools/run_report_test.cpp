@@ -12,14 +12,13 @@ RunResult three_steps() {
   result.steps = 3;
   result.bodies = 10;
   result.state_hash = 0xabc;
-  result.reports.resize(3);
-  result.reports.back().full = 4;
-  result.reports.back().statistical = 6;
-  result.reports.back().support = 5;
-  result.reports.back().tables = 1;
-  result.reports.back().asleep = 2;
-  result.reports.back().counters.energy_clamps = 7;
-  for (StepReport& report : result.reports) report.times.full_ms = 1.5;
+  result.last_report.full = 4;
+  result.last_report.statistical = 6;
+  result.last_report.support = 5;
+  result.last_report.tables = 1;
+  result.last_report.asleep = 2;
+  result.last_report.counters.energy_clamps = 7;
+  result.stage_ms.full_ms = 4.5;
   return result;
 }
 
@@ -35,13 +34,14 @@ TEST(RunReport, JsonSpeaksOfTheLastStep) {
 TEST(RunReport, RungsAddUp) {
   const auto levels = json_of(three_steps())["levels"];
   EXPECT_EQ(levels["support"].get<int>() + levels["tables"].get<int>(), levels["statistical"].get<int>());
-  EXPECT_NE(text_of(three_steps()).find("rungs        4 full, 5 support, 1 tables\n"), std::string::npos) << text_of(three_steps());
+  EXPECT_NE(text_of(three_steps()).find("rungs        4 full, 5 support, 1 tables\n"), std::string::npos)
+      << text_of(three_steps());
 }
 
 TEST(RunReport, TheAuditIsThereOnceItHasABody) {
   RunResult result = three_steps();
   EXPECT_FALSE(json_of(result).contains("audit"));
-  AuditReport& audit = result.reports.back().audit;
+  AuditReport& audit = result.last_report.audit;
   audit.watched = 2;
   EXPECT_EQ(json_of(result)["audit"]["watched"], 2);
   EXPECT_EQ(text_of(result).find("audit"), std::string::npos) << "nothing was compared yet";
@@ -54,15 +54,23 @@ TEST(RunReport, TheAuditIsThereOnceItHasABody) {
   EXPECT_EQ(json["rest_time_s"]["full"], 0.9);
   EXPECT_EQ(json["rest_time_s"]["demoted"], 1.0);
   EXPECT_EQ(json["drift_interval"][1], 0.4);
-  EXPECT_NE(text_of(result).find("audit        5 demoted bodies beside themselves in full"), std::string::npos) << text_of(result);
+  EXPECT_NE(text_of(result).find("audit        5 demoted bodies beside themselves in full"),
+            std::string::npos)
+      << text_of(result);
 }
 
 TEST(RunReport, ABudgetHasItsFiguresAndAnotherPolicyNone) {
   RunResult result = three_steps();
   EXPECT_FALSE(json_of(result).contains("budget"));
   EXPECT_EQ(text_of(result).find("budget"), std::string::npos);
-  result.budget = {.budget_ms = 4.0, .budget_work = std::nullopt, .steps = 591, .over = 2, .step_ms = {.p50 = 1.5, .p99 = 3.5, .max = 4.5}, .mean_bodies = {900.0, 90.0, 10.0}};
-  result.budget->mean_cost[std::size_t(Rung::full)] = {.predicted_ms = 1.25, .measured_ms = 1.5, .work = 1200};
+  result.budget = {.budget_ms = 4.0,
+                   .budget_work = std::nullopt,
+                   .steps = 591,
+                   .over = 2,
+                   .step_ms = {.p50 = 1.5, .p99 = 3.5, .max = 4.5},
+                   .mean_bodies = {900.0, 90.0, 10.0}};
+  result.budget->mean_cost[std::size_t(Rung::full)] = {
+      .predicted_ms = 1.25, .measured_ms = 1.5, .work = 1200};
   const auto json = json_of(result)["budget"];
   EXPECT_EQ(json["ms"], 4.0);
   EXPECT_EQ(json["steps"], 591);
@@ -74,17 +82,24 @@ TEST(RunReport, ABudgetHasItsFiguresAndAnotherPolicyNone) {
   EXPECT_EQ(json["mean_support"], 90.0);
   EXPECT_EQ(json["mean_tables"], 900.0);
   EXPECT_EQ(json["rungs"]["full"]["measured_ms"], 1.5);
-  EXPECT_NE(text_of(result).find("budget       4 ms: 2 of 591 steps over;"), std::string::npos) << text_of(result);
+  EXPECT_NE(text_of(result).find("budget       4 ms: 2 of 591 steps over;"), std::string::npos)
+      << text_of(result);
 }
 
 TEST(RunReport, ABudgetOfWorkIsNotTimed) {
   RunResult result = three_steps();
-  result.budget = {.budget_ms = std::nullopt, .budget_work = 2000.0, .steps = 591, .over = std::nullopt, .mean_work = 1900.0};
+  result.budget = {.budget_ms = std::nullopt,
+                   .budget_work = 2000.0,
+                   .steps = 591,
+                   .over = std::nullopt,
+                   .mean_work = 1900.0};
   const auto json = json_of(result)["budget"];
   EXPECT_EQ(json["work"], 2000.0);
   EXPECT_FALSE(json.contains("ms"));
   EXPECT_TRUE(json["over"].is_null());
-  EXPECT_NE(text_of(result).find("budget       2000 units: 1900 foretold, mean of 591 steps;"), std::string::npos) << text_of(result);
+  EXPECT_NE(text_of(result).find("budget       2000 units: 1900 foretold, mean of 591 steps;"),
+            std::string::npos)
+      << text_of(result);
 }
 
 TEST(RunReport, PictureOfTheViewpoint) {

@@ -9,14 +9,16 @@ namespace {
 using testing::Ended;
 
 // Cheap: a few trials of everything.
-const std::string kBox = "sign box:0.2,0.3,0.4 --cell-trials 2 --height-trials 20 --settling-trials 7 --clips 3 ";
+const std::string kBox =
+    "sign box:0.2,0.3,0.4 --cell-trials 2 --height-trials 20 --settling-trials 7 --clips 3 ";
 
 class Shard : public testing::CliTest {
  protected:
   void sign_parts(int count, const std::string& more = "") {
     for (int i = 1; i <= count; ++i) {
       const std::string part = std::to_string(i) + "/" + std::to_string(count);
-      const Ended ended = run(kBox + more + " --threads " + std::to_string(1 + i % 2) + " --shard " + part + " -o " + name("part" + std::to_string(i)));
+      const Ended ended = run(kBox + more + " --threads " + std::to_string(1 + i % 2) + " --shard " + part +
+                              " -o " + name("part" + std::to_string(i)));
       ASSERT_EQ(ended.exit_code, 0) << ended.out;
     }
   }
@@ -56,7 +58,8 @@ TEST_F(Shard, APartSaysWhatItMeasured) {
 
 TEST_F(Shard, PartsThatDoNotBelongTogetherAreNamed) {
   sign_parts(2);
-  const auto expect_error = [&](const std::string& files, const std::string& culprit, const std::string& reason) {
+  const auto expect_error = [&](const std::string& files, const std::string& culprit,
+                                const std::string& reason) {
     const Ended ended = run("merge " + files + " -o " + name("merged.sig"));
     EXPECT_EQ(ended.exit_code, 3) << reason;
     EXPECT_NE(ended.out.find(culprit), std::string::npos) << ended.out;
@@ -69,7 +72,11 @@ TEST_F(Shard, PartsThatDoNotBelongTogetherAreNamed) {
   expect_error(name("part1") + " " + name("seed"), "seed", "other settings");
   ASSERT_EQ(run(kBox + "--shard 2/3 -o " + name("thirds")).exit_code, 0);
   expect_error(name("part1") + " " + name("thirds"), "thirds", "found part 2 of 3, expected a part of 2");
-  ASSERT_EQ(run("sign box:0.2,0.3,0.5 --cell-trials 2 --height-trials 20 --settling-trials 7 --clips 3 --shard 2/2 -o " + name("longer")).exit_code, 0);
+  ASSERT_EQ(run("sign box:0.2,0.3,0.5 --cell-trials 2 --height-trials 20 --settling-trials 7 --clips 3 "
+                "--shard 2/2 -o " +
+                name("longer"))
+                .exit_code,
+            0);
   expect_error(name("part1") + " " + name("longer"), "longer", "found shape box:0.2,0.3,0.5");
   expect_error(name("part1") + " " + name("nowhere"), "nowhere", "found no such file");
   ASSERT_EQ(run(kBox + "--no-cache -o " + name("whole.sig")).exit_code, 0);
@@ -79,7 +86,8 @@ TEST_F(Shard, PartsThatDoNotBelongTogetherAreNamed) {
 }
 
 TEST_F(Shard, SharesThatAreNoneAreWrongUsage) {
-  for (const char* share : {"0/2", "3/2", "1/0", "1", "a/b", "-1/2", "1/2/3"}) EXPECT_EQ(run(kBox + "-o x --shard " + share).exit_code, 2) << share;
+  for (const char* share : {"0/2", "3/2", "1/0", "1", "a/b", "-1/2", "1/2/3"})
+    EXPECT_EQ(run(kBox + "-o x --shard " + share).exit_code, 2) << share;
   EXPECT_EQ(run(kBox + "--shard 1/2").exit_code, 2);  // nowhere to put it
 }
 

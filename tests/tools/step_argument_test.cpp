@@ -13,7 +13,8 @@ TEST(StepArgument, DecimalsAndFractions) {
 }
 
 TEST(StepArgument, FaultsNameWhatWasFound) {
-  for (const char* text : {"", "0", "-0.01", "0.2", "1/0", "1/", "/60", "1/60s", "nan", "inf", "1/nan", "a"}) {
+  for (const char* text :
+       {"", "0", "-0.01", "0.2", "1/0", "1/", "/60", "1/60s", "nan", "inf", "1/nan", "a"}) {
     const std::string fault = find_step_fault(text);
     EXPECT_NE(fault.find(std::string("'") + text + "'"), std::string::npos) << text << ": " << fault;
   }

@@ -18,13 +18,16 @@ Balls lattice(int balls, std::uint64_t seed, double spacing, std::array<int, 3> 
   for (int i = 0; i < balls; ++i) {
     RandomStream random = stream(seed, i);
     const Vec3 place(i % places[0], i / places[0] % places[1], i / places[0] / places[1]);
-    const Vec3 off(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), places[2] == 1 ? 0.0 : random.uniform(-0.2, 0.2));
+    const Vec3 off(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2),
+                   places[2] == 1 ? 0.0 : random.uniform(-0.2, 0.2));
     all.add(spacing * (place + off), kReach);
   }
   return all;
 }
 
-int root_of(int balls, double power) { return std::max(1, int(std::ceil(std::pow(double(balls), power) - 1e-9))); }
+int root_of(int balls, double power) {
+  return std::max(1, int(std::ceil(std::pow(double(balls), power) - 1e-9)));
+}
 
 Balls layer(int balls, std::uint64_t seed) {
   const int side = root_of(balls, 0.5);
@@ -48,14 +51,16 @@ Balls sparse(int balls, std::uint64_t seed) {
   return all;
 }
 
-// On the ground, a hundred in a square metre: pebbles of 1 cm; every 100th a stone of 10 cm, every 1,000th one of 1 m, every 30,000th, at least one, a boulder of 10 m.
+// On the ground, a hundred in a square metre: pebbles of 1 cm; every 100th a stone of 10 cm, every 1,000th
+// one of 1 m, every 30,000th, at least one, a boulder of 10 m.
 Balls mixed(int balls, std::uint64_t seed) {
   const double side = 0.1 * std::sqrt(double(balls));
   Balls all;
   for (int i = 0; i < balls; ++i) {
     RandomStream random = stream(seed, i);
     const double size = i % 30'000 == 0 ? 10.0 : i % 1'000 == 1 ? 1.0 : i % 100 == 2 ? 0.1 : 0.01;
-    const double radius = 0.5 * size * random.uniform(0.8, 1.0), x = random.uniform(0.0, side), y = random.uniform(0.0, side);
+    const double radius = 0.5 * size * random.uniform(0.8, 1.0), x = random.uniform(0.0, side),
+                 y = random.uniform(0.0, side);
     all.add({x, y, radius}, 1.05 * radius);
   }
   return all;
@@ -74,16 +79,19 @@ Balls outliers(int balls, std::uint64_t seed) {
   return all;
 }
 
-constexpr std::array<BallLayout, 6> kLayouts = {{{"layer", "one layer of touching balls", layer},
-                                                 {"pile", "a cube of touching balls", pile},
-                                                 {"sparse", "a ball in 8 m3 of air", sparse},
-                                                 {"mixed", "pebbles of 1 cm, stones of 10 cm and 1 m, boulders of 10 m on the ground", mixed},
-                                                 {"line", "all in one row", line},
-                                                 {"outliers", "a layer, and a few balls 100 km away and more", outliers}}};
+constexpr std::array<BallLayout, 6> kLayouts = {
+    {{"layer", "one layer of touching balls", layer},
+     {"pile", "a cube of touching balls", pile},
+     {"sparse", "a ball in 8 m3 of air", sparse},
+     {"mixed", "pebbles of 1 cm, stones of 10 cm and 1 m, boulders of 10 m on the ground", mixed},
+     {"line", "all in one row", line},
+     {"outliers", "a layer, and a few balls 100 km away and more", outliers}}};
 
 }  // namespace
 
-void Balls::add(const Vec3& center, double radius) { x.push_back(center.x()), y.push_back(center.y()), z.push_back(center.z()), reach.push_back(float(radius)); }
+void Balls::add(const Vec3& center, double radius) {
+  x.push_back(center.x()), y.push_back(center.y()), z.push_back(center.z()), reach.push_back(float(radius));
+}
 
 bool Balls::meet(std::size_t a, std::size_t b) const {
   const double limit = double(reach[a]) + double(reach[b]);

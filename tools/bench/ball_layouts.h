@@ -30,7 +30,8 @@ struct BallLayout {
 /// layer, pile, sparse, mixed, line, outliers.
 std::span<const BallLayout> ball_layouts();
 
-/// Where the balls of `first` are after `steps` steps of 1/60 s: each flies at `speed` m/s, its own way, and back after four steps.
+/// Where the balls of `first` are after `steps` steps of 1/60 s: each flies at `speed` m/s, its own way, and
+/// back after four steps.
 Balls move(const Balls& first, double speed, int steps, std::uint64_t seed);
 
 }  // namespace lodestone

@@ -41,16 +41,17 @@ double measure_bandwidth(std::size_t bytes, int threads) {
   for (int round = 0; round < 8 || spent_s < kRoundsS; ++round) {
     const auto start = std::chrono::steady_clock::now();
     jobs(threads, TaskRef([&](std::int64_t part) {
-      const std::size_t begin = count * std::size_t(part) / std::size_t(threads), end = count * std::size_t(part + 1) / std::size_t(threads);
-      for (int repeat = 0; repeat < repeats; ++repeat) {
-        const double scale = 0.5 + repeat;  // so that no repeat can be left out
-        double* to = a.data();
-        const double *x = b.data(), *y = c.data();
+           const std::size_t begin = count * std::size_t(part) / std::size_t(threads),
+                             end = count * std::size_t(part + 1) / std::size_t(threads);
+           for (int repeat = 0; repeat < repeats; ++repeat) {
+             const double scale = 0.5 + repeat;  // so that no repeat can be left out
+             double* to = a.data();
+             const double *x = b.data(), *y = c.data();
 #pragma GCC ivdep
-        for (std::size_t i = begin; i < end; ++i) to[i] = x[i] + scale * y[i];
-        asm volatile("" : : "r"(to) : "memory");
-      }
-    }));
+             for (std::size_t i = begin; i < end; ++i) to[i] = x[i] + scale * y[i];
+             asm volatile("" : : "r"(to) : "memory");
+           }
+         }));
     const double s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     best_s = std::min(best_s, s / repeats), spent_s += s;
   }
@@ -59,7 +60,8 @@ double measure_bandwidth(std::size_t bytes, int threads) {
 
 Bandwidth measure_bandwidth(int threads) {
   const std::size_t large = std::max<std::size_t>(64 << 20, 4 * level3_bytes()), small = level2_bytes() / 2;
-  return {threads, measure_bandwidth(large, 1), measure_bandwidth(large, threads), measure_bandwidth(small, 1), measure_bandwidth(small * std::size_t(threads), threads)};
+  return {threads, measure_bandwidth(large, 1), measure_bandwidth(large, threads),
+          measure_bandwidth(small, 1), measure_bandwidth(small * std::size_t(threads), threads)};
 }
 
 }  // namespace lodestone

@@ -10,6 +10,7 @@
 #include "tools/bench/bullet_pairs.h"
 #include "tools/compare/bullet_world.h"
 #include "tools/compare/processor_time.h"
+#include "tools/interrupt.h"
 #include "tools/median.h"
 
 namespace lodestone {
@@ -19,7 +20,10 @@ using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 constexpr int kPlainMost = 10'000;  // balls that are tried each with each
 
-double clock_ns() { return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double clock_ns() {
+  return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
 
 void put_in_order(Pairs& pairs) {
   for (auto& [a, b] : pairs)
@@ -30,7 +34,8 @@ void put_in_order(Pairs& pairs) {
 /// The cells as the tables model uses them.
 class Cells {
  public:
-  Cells(const BroadPhaseSettings& settings) : jobs_(make_job_runner(settings.threads)), threads_(settings.threads) {}
+  Cells(const BroadPhaseSettings& settings)
+      : jobs_(make_job_runner(settings.threads)), threads_(settings.threads) {}
 
   void step(const Balls& balls) {
     const auto now = threads_ == 1 ? processor_ns : clock_ns;
@@ -39,9 +44,9 @@ class Cells {
     const double filled = now();
     if (parts_.size() < std::size_t(grid_.parts())) parts_.resize(std::size_t(grid_.parts()));
     jobs_(grid_.parts(), TaskRef([this](std::int64_t part) {
-      parts_[std::size_t(part)].clear();
-      grid_.find_pairs(part, parts_[std::size_t(part)]);
-    }));
+            parts_[std::size_t(part)].clear();
+            grid_.find_pairs(part, parts_[std::size_t(part)]);
+          }));
     fill_ns.push_back(filled - start);
     pairs_ns.push_back(now() - filled);
   }
@@ -79,11 +84,15 @@ class Row {
   BroadPhaseRow measure() {
     measure_cells();
     const std::span<const float> reach = first_.reach;
-    if (may_try(&BroadPhaseRow::ode_hash_ns)) row_.ode_hash_ns = measure_other<OdeSpacePairs>("hash", OdeSpaceKind::hash, reach);
-    if (may_try(&BroadPhaseRow::ode_sweep_ns)) row_.ode_sweep_ns = measure_other<OdeSpacePairs>("sweep", OdeSpaceKind::sweep_and_prune, reach);
-    if (bullet_available() && may_try(&BroadPhaseRow::bullet_tree_ns)) row_.bullet_tree_ns = measure_other<BulletPairs>("tree", reach);
+    if (may_try(&BroadPhaseRow::ode_hash_ns))
+      row_.ode_hash_ns = measure_other<OdeSpacePairs>("hash", OdeSpaceKind::hash, reach);
+    if (may_try(&BroadPhaseRow::ode_sweep_ns))
+      row_.ode_sweep_ns = measure_other<OdeSpacePairs>("sweep", OdeSpaceKind::sweep_and_prune, reach);
+    if (bullet_available() && may_try(&BroadPhaseRow::bullet_tree_ns))
+      row_.bullet_tree_ns = measure_other<BulletPairs>("tree", reach);
     for (const auto& ns : {row_.ode_hash_ns, row_.ode_sweep_ns, row_.bullet_tree_ns})
-      if (ns) row_.times_less = std::min(row_.times_less.value_or(1e300), *ns / (row_.fill_ns + row_.pairs_ns));
+      if (ns)
+        row_.times_less = std::min(row_.times_less.value_or(1e300), *ns / (row_.fill_ns + row_.pairs_ns));
     if (row_.bodies <= kPlainMost) compare(find_pairs_plainly(last_), "all");
     return row_;
   }
@@ -107,8 +116,9 @@ class Row {
     row_.bytes_per_body = double(cells.grid().bytes()) / row_.bodies;
   }
 
-  // Not where a step of fewer balls foretells, by its growth with their square, that one step alone would take too long.
-  bool may_try(std::optional<double> BroadPhaseRow::* ns) const {
+  // Not where a step of fewer balls foretells, by its growth with their square, that one step alone would
+  // take too long.
+  bool may_try(std::optional<double> BroadPhaseRow::*ns) const {
     if (!smaller_) return true;
     const double growth = double(row_.bodies) / smaller_->bodies;
     return smaller_->*ns && *(smaller_->*ns) * growth * row_.bodies < 1e9 * settings_.row_seconds;
@@ -137,7 +147,8 @@ class Row {
     return median_of({ns.begin() + 1, ns.end()}) / row_.bodies;
   }
 
-  // Each side has looked at the distances: a pair that one of them names is there, and who does not name it has missed it.
+  // Each side has looked at the distances: a pair that one of them names is there, and who does not name it
+  // has missed it.
   void compare(const Pairs& others, std::string_view by) {
     Pairs missed, missed_by_other;
     std::ranges::set_difference(others, found_, std::back_inserter(missed));
@@ -145,7 +156,9 @@ class Row {
     if (!row_.checked_by.empty()) row_.checked_by += ' ';
     row_.checked_by += by;
     if (!missed_by_other.empty()) row_.checked_by += fmt::format("-{}", missed_by_other.size());
-    if (!missed.empty()) add_fault(fmt::format("{} of the {} pairs that {} found were missed", missed.size(), others.size(), by));
+    if (!missed.empty())
+      add_fault(
+          fmt::format("{} of the {} pairs that {} found were missed", missed.size(), others.size(), by));
   }
 
   void add_fault(const std::string& fault) { row_.fault += (row_.fault.empty() ? "" : "; ") + fault; }
@@ -172,15 +185,17 @@ std::vector<BroadPhaseRow> bench_broad_phase(const BroadPhaseSettings& settings)
   std::ranges::sort(sizes);
   std::vector<BroadPhaseRow> rows;
   const std::size_t count = sizes.size() * settings.layouts.size();
-  for (const std::string& name : settings.layouts) {
+  const auto measure_rows_of = [&](const std::string& name) {
     const auto layout = std::ranges::find(ball_layouts(), name, &BallLayout::name);
     check_that(layout != ball_layouts().end(), "a layout of this name is known:", name);
     for (const int bodies : sizes) {
-      if (settings.progress) settings.progress(fmt::format("{} bodies, {}", bodies, name), double(rows.size()) / double(count));
+      if (settings.progress)
+        settings.progress(fmt::format("{} bodies, {}", bodies, name), double(rows.size()) / double(count));
       const bool first = rows.empty() || rows.back().layout != name;
       rows.push_back(Row(settings, *layout, bodies, first ? nullptr : &rows.back()).measure());
     }
-  }
+  };
+  until_interrupted([&] { std::ranges::for_each(settings.layouts, measure_rows_of); });
   return rows;
 }
 

@@ -9,21 +9,29 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json or_null(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(nullptr); }
-std::string or_blank(const std::optional<double>& value) { return value ? fmt::format("{:.0f}", *value) : "-"; }
+ordered_json or_null(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+std::string or_blank(const std::optional<double>& value) {
+  return value ? fmt::format("{:.0f}", *value) : "-";
+}
 
 }  // namespace
 
 std::string text_of(std::span<const BroadPhaseRow> rows) {
-  TextTable table({"layout", "bodies", "fill ns", "pairs ns", "both ns", "pairs/body", "cells", "grids", "flat", "bytes/body", "ODE hash", "ODE sweep", "Bullet tree",
-                   "x less", "checked by"});
+  TextTable table({"layout", "bodies", "fill ns", "pairs ns", "both ns", "pairs/body", "cells", "grids",
+                   "flat", "bytes/body", "ODE hash", "ODE sweep", "Bullet tree", "x less", "checked by"});
   std::string faults;
   for (const BroadPhaseRow& row : rows) {
-    table.add_row({row.layout, fmt::format("{}", row.bodies), fmt::format("{:.1f}", row.fill_ns), fmt::format("{:.1f}", row.pairs_ns),
-                   fmt::format("{:.1f}", row.fill_ns + row.pairs_ns), fmt::format("{:.2f}", row.pairs_per_body), fmt::format("{}", row.cells),
-                   fmt::format("{}", row.grids), row.flat ? "yes" : "no", fmt::format("{:.0f}", row.bytes_per_body), or_blank(row.ode_hash_ns),
-                   or_blank(row.ode_sweep_ns), or_blank(row.bullet_tree_ns), row.times_less ? fmt::format("{:.1f}", *row.times_less) : "-", row.checked_by});
-    if (!row.fault.empty()) faults += fmt::format("wrong: {} of {} bodies: {}\n", row.layout, row.bodies, row.fault);
+    table.add_row({row.layout, fmt::format("{}", row.bodies), fmt::format("{:.1f}", row.fill_ns),
+                   fmt::format("{:.1f}", row.pairs_ns), fmt::format("{:.1f}", row.fill_ns + row.pairs_ns),
+                   fmt::format("{:.2f}", row.pairs_per_body), fmt::format("{}", row.cells),
+                   fmt::format("{}", row.grids), row.flat ? "yes" : "no",
+                   fmt::format("{:.0f}", row.bytes_per_body), or_blank(row.ode_hash_ns),
+                   or_blank(row.ode_sweep_ns), or_blank(row.bullet_tree_ns),
+                   row.times_less ? fmt::format("{:.1f}", *row.times_less) : "-", row.checked_by});
+    if (!row.fault.empty())
+      faults += fmt::format("wrong: {} of {} bodies: {}\n", row.layout, row.bodies, row.fault);
   }
   return table.text() + (faults.empty() ? "" : '\n' + faults);
 }

@@ -25,19 +25,22 @@ struct BudgetBenchSettings {
   Progress progress = {};
 };
 
-/// Bunnies of .2 m, restitution .3, friction .5, all as the policy says. The viewpoint stands at six tenths of the heap's radius, .5 m above the ground, every
-/// two seconds at another place. Counted from kFirstBudgetStep on.
+/// Bunnies of .2 m, restitution .3, friction .5, all as the policy says. The viewpoint stands at six tenths
+/// of the heap's radius, .5 m above the ground, every two seconds at another place. Counted from
+/// kFirstBudgetStep on.
 struct BudgetBenchRow {
   BudgetFigures figures;
   int threads = 1;
   std::array<int, kRungs> least{}, most{};  ///< bodies at the end of a step, by Rung
-  double nearest = 0.0;          ///< of the n nearest bodies, where n are full, the part that is full: mean of steps
-  double nearest_settled = 0.0;  ///< the same without the half second after a jump
-  std::map<std::string, double> waiting;  ///< of the kNearest nearest, those that are not full, by their rung and why they have it: mean of steps
+  double nearest = 0.0;  ///< of the n nearest bodies, where n are full, the part that is full: mean of steps
+  double nearest_settled = 0.0;           ///< the same without the half second after a jump
+  std::map<std::string, double> waiting;  ///< of the kNearest nearest, those that are not full, by their rung
+                                          ///< and why they have it: mean of steps
   std::uint64_t state_hash = 0;
 };
 
-/// 99 % within 1.1 times the budget, at most 1 step in 100 over it, none over twice it. Of a budget of work always: nothing is asked of its time.
+/// 99 % within 1.1 times the budget, at most 1 step in 100 over it, none over twice it. Of a budget of work
+/// always: nothing is asked of its time.
 bool is_kept(const BudgetFigures& figures);
 
 /// The budgets of time in their order, then the four runs of the budget of work.

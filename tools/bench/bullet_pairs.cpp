@@ -21,11 +21,14 @@ struct BulletPairs::Impl {
 
   btVector3 corner(std::size_t i, float sign) const {
     const btVector3 half(radii[i], radii[i], radii[i]);
-    return (x.empty() ? btVector3(0, 0, 0) : btVector3(btScalar(x[i]), btScalar(y[i]), btScalar(z[i]))) + sign * half;
+    return (x.empty() ? btVector3(0, 0, 0) : btVector3(btScalar(x[i]), btScalar(y[i]), btScalar(z[i]))) +
+           sign * half;
   }
 };
 
-BulletPairs::BulletPairs(std::span<const float> radii) : impl_(std::make_unique<Impl>()) { impl_->radii.assign(radii.begin(), radii.end()); }
+BulletPairs::BulletPairs(std::span<const float> radii) : impl_(std::make_unique<Impl>()) {
+  impl_->radii.assign(radii.begin(), radii.end());
+}
 
 BulletPairs::~BulletPairs() {
   for (btBroadphaseProxy* box : impl_->boxes) impl_->broad_phase.destroyProxy(box, &impl_->dispatcher);
@@ -37,7 +40,8 @@ void BulletPairs::place(std::span<const double> x, std::span<const double> y, st
   for (std::size_t i = 0; i < impl_->radii.size(); ++i) {
     const btVector3 low = impl_->corner(i, -1.0f), high = impl_->corner(i, 1.0f);
     if (fresh)
-      impl_->boxes.push_back(impl_->broad_phase.createProxy(low, high, 0, reinterpret_cast<void*>(std::uintptr_t(i)), 1, 1, &impl_->dispatcher));
+      impl_->boxes.push_back(impl_->broad_phase.createProxy(
+          low, high, 0, reinterpret_cast<void*>(std::uintptr_t(i)), 1, 1, &impl_->dispatcher));
     else
       impl_->broad_phase.setAabb(impl_->boxes[i], low, high, &impl_->dispatcher);
   }
@@ -48,7 +52,9 @@ void BulletPairs::find(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pai
   impl_->broad_phase.calculateOverlappingPairs(&impl_->dispatcher);
   btOverlappingPairCache& kept = *impl_->broad_phase.getOverlappingPairCache();
   const btBroadphasePair* pair = kept.getOverlappingPairArrayPtr();
-  const auto number_of = [](const btBroadphaseProxy* box) { return std::uint32_t(reinterpret_cast<std::uintptr_t>(box->m_clientObject)); };
+  const auto number_of = [](const btBroadphaseProxy* box) {
+    return std::uint32_t(reinterpret_cast<std::uintptr_t>(box->m_clientObject));
+  };
   for (int i = 0; i < kept.getNumOverlappingPairs(); ++i) {
     const std::uint32_t a = number_of(pair[i].m_pProxy0), b = number_of(pair[i].m_pProxy1);
     const double limit = double(impl_->radii[a]) + double(impl_->radii[b]);

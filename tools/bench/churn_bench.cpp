@@ -9,16 +9,21 @@
 #include "lod/manager.h"
 #include "reference/random.h"
 #include "tools/bench/settled_bench.h"
+#include "tools/interrupt.h"
 #include "tools/median.h"
 
 namespace lodestone {
 namespace {
 
-constexpr double kFrame = 1.0 / 60, kApart = 2.0;  // s, m
+constexpr double kFrame = 1.0 / 60, kApart = 2.0;      // s, m
 constexpr int kSettlingMost = 120, kTimedBefore = 30;  // steps
-const Vec3 kSides(0.2, 0.3, 0.24);                 // m, of a crate
+const Vec3 kSides(0.2, 0.3, 0.24);                     // m, of a crate
 
-LevelChoice choice_of(Rung rung) { return rung == Rung::full ? LevelChoice::full : rung == Rung::support ? LevelChoice::support : LevelChoice::tables; }
+LevelChoice choice_of(Rung rung) {
+  return rung == Rung::full      ? LevelChoice::full
+         : rung == Rung::support ? LevelChoice::support
+                                 : LevelChoice::tables;
+}
 
 template <class Act>
 double time_ms(const Act& act) {
@@ -29,8 +34,12 @@ double time_ms(const Act& act) {
 
 class ChurnedWorld {
  public:
-  ChurnedWorld(const ChurnSettings& settings, Rung rung, bool asleep, std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature)
-      : settings_(settings), shape_(std::move(shape)), manager_(make_manager(settings, asleep, std::move(signature))), random_(settings.seed, 0, 0) {
+  ChurnedWorld(const ChurnSettings& settings, Rung rung, bool asleep, std::shared_ptr<const Shape> shape,
+               std::shared_ptr<const Signature> signature)
+      : settings_(settings),
+        shape_(std::move(shape)),
+        manager_(make_manager(settings, asleep, std::move(signature))),
+        random_(settings.seed, 0, 0) {
     row_.rung = rung, row_.asleep = asleep;
     row_.bodies = rung == Rung::full ? settings.full_bodies : settings.bodies;
     row_.churned = std::clamp(int(std::lround(settings.per_second * kFrame)), 1, row_.bodies);
@@ -46,20 +55,28 @@ class ChurnedWorld {
     std::vector<double> removals, additions, whole;
     std::vector<int> places;
     for (int frame = 0; frame < settings_.frames; ++frame) {
-      if (settings_.progress) settings_.progress(fmt::format("{}{}", name_of(row_.rung), row_.asleep ? " asleep" : ""), double(frame) / settings_.frames);
+      if (settings_.progress)
+        settings_.progress(fmt::format("{}{}", name_of(row_.rung), row_.asleep ? " asleep" : ""),
+                           double(frame) / settings_.frames);
       choose_places(places);
-      removals.push_back(1e3 / row_.churned * time_ms([&] { for (const int place : places) manager_.remove_body(bodies_[std::size_t(place)]); }));
-      additions.push_back(1e3 / row_.churned * time_ms([&] { for (const int place : places) bodies_[std::size_t(place)] = add(place); }));
+      removals.push_back(1e3 / row_.churned * time_ms([&] {
+                           for (const int place : places) manager_.remove_body(bodies_[std::size_t(place)]);
+                         }));
+      additions.push_back(1e3 / row_.churned * time_ms([&] {
+                            for (const int place : places) bodies_[std::size_t(place)] = add(place);
+                          }));
       whole.push_back(time_ms([this] { manager_.step(kFrame); }));
       settle();
     }
-    row_.removal_us = median_of(removals), row_.addition_us = median_of(additions), row_.churned_step_ms = median_of(whole);
+    row_.removal_us = median_of(removals), row_.addition_us = median_of(additions),
+    row_.churned_step_ms = median_of(whole);
     return row_;
   }
 
  private:
   // Without gravity what moves goes on for good.
-  static Manager make_manager(const ChurnSettings& settings, bool asleep, std::shared_ptr<const Signature> signature) {
+  static Manager make_manager(const ChurnSettings& settings, bool asleep,
+                              std::shared_ptr<const Signature> signature) {
     ManagerSettings manager;
     manager.seed = settings.seed, manager.threads = settings.threads, manager.full_substeps = 1;
     if (!asleep) manager.gravity = Vec3::Zero();
@@ -69,13 +86,18 @@ class ChurnedWorld {
 
   BodyId add(int place) {
     RigidState state;
-    state.position = {kApart * (place % side_), kApart * (place / side_), row_.asleep ? 0.5 * kSides.z() : 1.0};
+    state.position = {kApart * (place % side_), kApart * (place / side_),
+                      row_.asleep ? 0.5 * kSides.z() : 1.0};
     if (!row_.asleep) state.velocity = {0, 0, 0.3};
-    return manager_.add_body({.shape = shape_, .state = state, .mass = 10.0 + 1e-3 * double(added_++), .level = choice_of(row_.rung)});
+    return manager_.add_body({.shape = shape_,
+                              .state = state,
+                              .mass = 10.0 + 1e-3 * double(added_++),
+                              .level = choice_of(row_.rung)});
   }
 
   void settle() {
-    for (int step = 0; row_.asleep && step < kSettlingMost && manager_.report().asleep < row_.bodies; ++step) manager_.step(kFrame);
+    for (int step = 0; row_.asleep && step < kSettlingMost && manager_.report().asleep < row_.bodies; ++step)
+      manager_.step(kFrame);
   }
 
   // Each once.
@@ -108,8 +130,11 @@ std::vector<ChurnRow> bench_churn(const ChurnSettings& settings) {
   const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box(kSides)));
   const auto signature = make_coarse_signature(*shape);
   std::vector<ChurnRow> rows;
-  for (const Rung rung : {Rung::support, Rung::tables, Rung::full})
-    for (const bool asleep : {false, true}) rows.push_back(ChurnedWorld(settings, rung, asleep, shape, signature).measure());
+  until_interrupted([&] {
+    for (const Rung rung : {Rung::support, Rung::tables, Rung::full})
+      for (const bool asleep : {false, true})
+        rows.push_back(ChurnedWorld(settings, rung, asleep, shape, signature).measure());
+  });
   return rows;
 }
 

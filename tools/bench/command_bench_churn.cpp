@@ -1,12 +1,13 @@
 #include "tools/bench/command_bench_churn.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "tools/bench/churn_bench.h"
 #include "tools/progress.h"
+#include "tools/results.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -20,18 +21,28 @@ struct Arguments {
 };
 
 std::string text_of(const std::vector<ChurnRow>& rows) {
-  TextTable table({"rung", "asleep", "bodies", "first step ms", "a frame", "removal us", "addition us", "step ms", "while churned", "frame ms"});
+  TextTable table({"rung", "asleep", "bodies", "first step ms", "a frame", "removal us", "addition us",
+                   "step ms", "while churned", "frame ms"});
   for (const ChurnRow& row : rows)
-    table.add_row({std::string(name_of(row.rung)), row.asleep ? "yes" : "no", fmt::format("{}", row.bodies), fmt::format("{:.1f}", row.first_step_ms), fmt::format("{}", row.churned),
-                   fmt::format("{:.2f}", row.removal_us), fmt::format("{:.2f}", row.addition_us), fmt::format("{:.3f}", row.step_ms), fmt::format("{:.3f}", row.churned_step_ms),
+    table.add_row({std::string(name_of(row.rung)), row.asleep ? "yes" : "no", fmt::format("{}", row.bodies),
+                   fmt::format("{:.1f}", row.first_step_ms), fmt::format("{}", row.churned),
+                   fmt::format("{:.2f}", row.removal_us), fmt::format("{:.2f}", row.addition_us),
+                   fmt::format("{:.3f}", row.step_ms), fmt::format("{:.3f}", row.churned_step_ms),
                    fmt::format("{:.3f}", row.frame_ms())});
   return table.text();
 }
 
 ordered_json json_of(const ChurnRow& row) {
-  return {{"rung", name_of(row.rung)},         {"asleep", row.asleep},           {"bodies", row.bodies},   {"first_step_ms", row.first_step_ms},
-          {"churned", row.churned},            {"removal_us", row.removal_us},   {"addition_us", row.addition_us}, {"step_ms", row.step_ms},
-          {"churned_step_ms", row.churned_step_ms}, {"frame_ms", row.frame_ms()}};
+  return {{"rung", name_of(row.rung)},
+          {"asleep", row.asleep},
+          {"bodies", row.bodies},
+          {"first_step_ms", row.first_step_ms},
+          {"churned", row.churned},
+          {"removal_us", row.removal_us},
+          {"addition_us", row.addition_us},
+          {"step_ms", row.step_ms},
+          {"churned_step_ms", row.churned_step_ms},
+          {"frame_ms", row.frame_ms()}};
 }
 
 void run_bench(Arguments arguments) {
@@ -43,10 +54,13 @@ void run_bench(Arguments arguments) {
   }
   ordered_json json = {{"rows", ordered_json::array()}};
   for (const ChurnRow& row : rows) json["rows"].push_back(json_of(row));
-  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  if (arguments.json)
+    print_json(json);
   else
-    fmt::print("crates, each of a mass of its own, that come and go, {} of each a second: medians; the last column is what this takes in a frame, calls and step together\n\n{}",
-               arguments.bench.per_second, text_of(rows));
+    fmt::print(
+        "crates, each of a mass of its own, that come and go, {} of each a second: medians; the last column "
+        "is what this takes in a frame, calls and step together\n\n{}",
+        arguments.bench.per_second, text_of(rows));
 }
 
 }  // namespace
@@ -55,11 +69,21 @@ void add_bench_churn_command(CLI::App& bench, ExitCode& exit_code) {
   CLI::App* command = bench.add_subcommand("churn", "what it costs to add and remove bodies all the time");
   const auto arguments = std::make_shared<Arguments>();
   ChurnSettings& settings = arguments->bench;
-  command->add_option("--bodies", settings.bodies, "in the world")->check(CLI::Range(1, 4'000'000))->capture_default_str();
-  command->add_option("--full-bodies", settings.full_bodies, "in the world, where they are full")->check(CLI::Range(1, 100'000))->capture_default_str();
-  command->add_option("--per-second", settings.per_second, "bodies added, and as many removed")->check(CLI::Range(60, 1'000'000))->capture_default_str();
-  command->add_option("--frames", settings.frames, "of 1/60 s")->check(CLI::Range(1, 100'000))->capture_default_str();
-  command->add_option("--threads", settings.threads, "of the statistical level")->check(CLI::Range(1, 4096))->capture_default_str();
+  command->add_option("--bodies", settings.bodies, "in the world")
+      ->check(CLI::Range(1, 4'000'000))
+      ->capture_default_str();
+  command->add_option("--full-bodies", settings.full_bodies, "in the world, where they are full")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  command->add_option("--per-second", settings.per_second, "bodies added, and as many removed")
+      ->check(CLI::Range(60, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--frames", settings.frames, "of 1/60 s")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  command->add_option("--threads", settings.threads, "of the statistical level")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   command->callback([arguments, &exit_code] {
     run_bench(*arguments);

@@ -1,14 +1,15 @@
 #include "tools/bench/command_bench_rungs.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tools/bench/rungs_bench.h"
 #include "tools/csv_file.h"
 #include "tools/progress.h"
+#include "tools/results.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -23,19 +24,30 @@ struct Arguments {
   bool json = false;
 };
 
-double height_change_percent(const RungsHeap& heap) { return 100.0 * (heap.mean_height_after_m / heap.mean_height_before_m - 1.0); }
+double height_change_percent(const RungsHeap& heap) {
+  return 100.0 * (heap.mean_height_after_m / heap.mean_height_before_m - 1.0);
+}
 
 std::string text_of(const RungsHeap& heap) {
-  TextTable table({"change", "bodies", "median mm", "99 % mm", "99.9 % mm", "most mm", "unseen", "unexplained 99.9 %", "most", "others mm", "energy/mgR", "woken",
-                   "put off"});
+  TextTable table({"change", "bodies", "median mm", "99 % mm", "99.9 % mm", "most mm", "unseen",
+                   "unexplained 99.9 %", "most", "others mm", "energy/mgR", "woken", "put off"});
   for (const RungsRow& row : heap.rows)
-    table.add_row({row.change, fmt::format("{}", row.changes), fmt::format("{:.3f}", row.p50_mm), fmt::format("{:.2f}", row.p99_mm), fmt::format("{:.2f}", row.p999_mm),
-                   fmt::format("{:.2f}", row.max_mm), row.change == "none" ? "-" : is_unseen(row) ? "yes" : "NO", fmt::format("{:.2f}", row.unexplained_p999_mm), fmt::format("{:.2f}", row.unexplained_max_mm),
-                   fmt::format("{:.2f}", row.others_max_mm),
-                   fmt::format("{:.2g}", row.energy_rise), fmt::format("{}", row.woken), fmt::format("{}", row.put_off)});
-  return fmt::format("{} x {}, {}: {} asleep before, {} after; mean height {:.4f} m before, {:.4f} m after ({:+.2f} %)\n\n{}\n", heap.bodies, heap.shape,
-                     heap.kept_awake ? "kept awake" : "asleep", heap.asleep_before, heap.asleep_after, heap.mean_height_before_m, heap.mean_height_after_m,
-                     height_change_percent(heap), table.text());
+    table.add_row({row.change, fmt::format("{}", row.changes), fmt::format("{:.3f}", row.p50_mm),
+                   fmt::format("{:.2f}", row.p99_mm), fmt::format("{:.2f}", row.p999_mm),
+                   fmt::format("{:.2f}", row.max_mm),
+                   row.change == "none" ? "-"
+                   : is_unseen(row)     ? "yes"
+                                        : "NO",
+                   fmt::format("{:.2f}", row.unexplained_p999_mm),
+                   fmt::format("{:.2f}", row.unexplained_max_mm), fmt::format("{:.2f}", row.others_max_mm),
+                   fmt::format("{:.2g}", row.energy_rise), fmt::format("{}", row.woken),
+                   fmt::format("{}", row.put_off)});
+  return fmt::format(
+      "{} x {}, {}: {} asleep before, {} after; mean height {:.4f} m before, {:.4f} m after ({:+.2f} "
+      "%)\n\n{}\n",
+      heap.bodies, heap.shape, heap.kept_awake ? "kept awake" : "asleep", heap.asleep_before,
+      heap.asleep_after, heap.mean_height_before_m, heap.mean_height_after_m, height_change_percent(heap),
+      table.text());
 }
 
 ordered_json json_of(const RungsHeap& heap, const RungsRow& row) {
@@ -62,7 +74,8 @@ ordered_json json_of(const RungsHeap& heap, const RungsRow& row) {
 }
 
 bool is_seen(const RungsHeap& heap) {
-  return std::ranges::any_of(heap.rows, [](const RungsRow& row) { return row.change != "none" && !is_unseen(row); });
+  return std::ranges::any_of(heap.rows,
+                             [](const RungsRow& row) { return row.change != "none" && !is_unseen(row); });
 }
 
 ExitCode run_bench(Arguments arguments) {
@@ -73,18 +86,25 @@ ExitCode run_bench(Arguments arguments) {
     arguments.bench.progress = line.function();
     heaps = bench_rungs(arguments.bench);
   }
-  ordered_json json = {{"rounds", arguments.bench.rounds}, {"frames", arguments.bench.frames}, {"slice", arguments.bench.slice}, {"rows", ordered_json::array()}};
+  ordered_json json = {{"rounds", arguments.bench.rounds},
+                       {"frames", arguments.bench.frames},
+                       {"slice", arguments.bench.slice},
+                       {"rows", ordered_json::array()}};
   for (const RungsHeap& heap : heaps)
     for (const RungsRow& row : heap.rows) json["rows"].push_back(json_of(heap, row));
   if (!arguments.csv.empty()) save_csv(json["rows"], json_of(RungsHeap{}, RungsRow{}), arguments.csv);
   if (arguments.json) {
-    fmt::print("{}\n", json.dump(2));
+    print_json(json);
   } else {
-    fmt::print("heaps that came to rest at support, taken up and down the rungs {} times, {} frames of 1/60 s after each change, at most {} bodies full at a time\n"
-               "mm: of each body that changed, the worst frame's move beyond v dt, |dx - v dt| - g dt^2 / 2; unseen: 99.9 % within 5 mm, all within 20 mm\n"
-               "unexplained: beyond any velocity between the frame's first and last; others: bodies that did not change; energy: the heap's greatest rise after a change\n"
-               "none: as many frames without a change\n\n",
-               arguments.bench.rounds, arguments.bench.frames, arguments.bench.slice);
+    fmt::print(
+        "heaps that came to rest at support, taken up and down the rungs {} times, {} frames of 1/60 s after "
+        "each change, at most {} bodies full at a time\n"
+        "mm: of each body that changed, the worst frame's move beyond v dt, |dx - v dt| - g dt^2 / 2; "
+        "unseen: 99.9 % within 5 mm, all within 20 mm\n"
+        "unexplained: beyond any velocity between the frame's first and last; others: bodies that did not "
+        "change; energy: the heap's greatest rise after a change\n"
+        "none: as many frames without a change\n\n",
+        arguments.bench.rounds, arguments.bench.frames, arguments.bench.slice);
     for (const RungsHeap& heap : heaps) fmt::print("{}", text_of(heap));
   }
   return std::ranges::any_of(heaps, is_seen) ? ExitCode::check_failed : ExitCode::done;
@@ -93,18 +113,28 @@ ExitCode run_bench(Arguments arguments) {
 }  // namespace
 
 void add_bench_rungs_command(CLI::App& bench, ExitCode& exit_code) {
-  CLI::App* command = bench.add_subcommand("rungs", "what is seen when a heap, asleep or awake, is taken up and down the rungs");
+  CLI::App* command = bench.add_subcommand(
+      "rungs", "what is seen when a heap, asleep or awake, is taken up and down the rungs");
   const auto arguments = std::make_shared<Arguments>();
   RungsSettings& settings = arguments->bench;
-  command->add_option("--shape", arguments->shape, "a heap of these only")->check(CLI::IsMember({"bunny", "l"}));
-  command->add_option("--bodies", settings.bodies, "of each heap, instead of 1,000 bunnies and 300 L-shapes")->check(CLI::Range(1, 100'000));
-  command->add_option("--rounds", settings.rounds, "times that all rungs are gone through")->check(CLI::Range(1, 10'000))->capture_default_str();
-  command->add_option("--frames", settings.frames, "of 1/60 s, watched after each change")->check(CLI::Range(1, 10'000))->capture_default_str();
-  command->add_option("--slice", settings.slice, "bodies that are full at a time")->check(CLI::Range(1, 100'000))->capture_default_str();
+  command->add_option("--shape", arguments->shape, "a heap of these only")
+      ->check(CLI::IsMember({"bunny", "l"}));
+  command->add_option("--bodies", settings.bodies, "of each heap, instead of 1,000 bunnies and 300 L-shapes")
+      ->check(CLI::Range(1, 100'000));
+  command->add_option("--rounds", settings.rounds, "times that all rungs are gone through")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  command->add_option("--frames", settings.frames, "of 1/60 s, watched after each change")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  command->add_option("--slice", settings.slice, "bodies that are full at a time")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
   command->add_option("--seed", settings.seed, "of the heaps")->capture_default_str();
   command->add_option("--csv", arguments->csv, "file for the table, one line a row");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
-  command->footer("Exit code 1 where a change is seen: more than one in a thousand above 5 mm, or one above 20 mm.");
+  command->footer(
+      "Exit code 1 where a change is seen: more than one in a thousand above 5 mm, or one above 20 mm.");
   command->callback([arguments, &exit_code] { exit_code = run_bench(*arguments); });
 }
 

@@ -9,8 +9,9 @@
 namespace lodestone {
 
 struct FallingHeap {
-  double radius_m = 0.0;            ///< of the upright cylinder, twice as high as wide, out of which they fall at rest onto z = 0
-  std::vector<RigidState> starts;   ///< turned at random, none touching another
+  double radius_m =
+      0.0;  ///< of the upright cylinder, twice as high as wide, out of which they fall at rest onto z = 0
+  std::vector<RigidState> starts;  ///< turned at random, none touching another
 };
 
 FallingHeap make_falling_heap(int bodies, double body_radius_m, std::uint64_t seed);

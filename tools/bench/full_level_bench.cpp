@@ -6,15 +6,16 @@
 #include <chrono>
 #include <cmath>
 
-#include "reference/error.h"
+#include "reference/argument_error.h"
+#include "tools/interrupt.h"
 #include "tools/median.h"
 
 namespace lodestone {
 namespace {
 
 constexpr double kStep = 1.0 / 60;
-constexpr int kFallingSteps = 8;     // of drops from .3 m and more over a body's size of .2 m
-constexpr double kFarApart = 60.0;   // sizes of a body: farther than any drop goes
+constexpr int kFallingSteps = 8;    // of drops from .3 m and more over a body's size of .2 m
+constexpr double kFarApart = 60.0;  // sizes of a body: farther than any drop goes
 
 class BenchWorld {
  public:
@@ -55,18 +56,20 @@ struct StepTimes {
   std::vector<double> falling_ms, all_ms;
 };
 
-void time_steps(const DropJob& job, const OdeMethod& way, const FullLevelBenchSettings& settings, StepTimes& times) {
+void time_steps(const DropJob& job, const OdeMethod& way, const FullLevelBenchSettings& settings,
+                StepTimes& times) {
   BenchWorld world(job, way, settings);
   for (int step = 0; step < settings.steps; ++step) {
     const double ms = world.time_step_ms();
-    if (step > 0 && step < kFallingSteps) times.falling_ms.push_back(ms);  // the first one builds what later ones keep
+    if (step > 0 && step < kFallingSteps)
+      times.falling_ms.push_back(ms);  // the first one builds what later ones keep
     times.all_ms.push_back(ms);
   }
 }
 
 const OdeMethod& ode_of(const DropMethod& method) {
   const auto* way = std::get_if<OdeMethod>(&method.way);
-  if (!way) throw InputError(fmt::format("--methods: found '{}', expected methods of ODE", method.name));
+  if (!way) throw ArgumentError(fmt::format("--methods: found '{}', expected methods of ODE", method.name));
   return *way;
 }
 
@@ -75,14 +78,20 @@ const OdeMethod& ode_of(const DropMethod& method) {
 std::vector<FullLevelBenchRow> bench_full_level(const DropJob& job, const FullLevelBenchSettings& settings) {
   const auto methods = make_drop_methods(settings.methods, job, {}, 1, settings.progress);
   std::vector<StepTimes> times(methods.size());
-  for (int repeat = 0; repeat < settings.repeats; ++repeat)
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-      if (settings.progress) settings.progress(methods[i].name, (repeat + double(i) / double(methods.size())) / settings.repeats);
-      if (methods[i].left_out.empty()) time_steps(job, ode_of(methods[i]), settings, times[i]);
-    }
+  until_interrupted([&] {
+    for (int repeat = 0; repeat < settings.repeats; ++repeat)
+      for (std::size_t i = 0; i < methods.size(); ++i) {
+        if (settings.progress)
+          settings.progress(methods[i].name,
+                            (repeat + double(i) / double(methods.size())) / settings.repeats);
+        if (methods[i].left_out.empty()) time_steps(job, ode_of(methods[i]), settings, times[i]);
+      }
+  });
   std::vector<FullLevelBenchRow> rows;
   for (std::size_t i = 0; i < methods.size(); ++i) {
-    FullLevelBenchRow row{.method = methods[i].name, .substeps = methods[i].substeps(), .left_out = methods[i].left_out};
+    FullLevelBenchRow row{
+        .method = methods[i].name, .substeps = methods[i].substeps(), .left_out = methods[i].left_out};
+    if (row.left_out.empty() && times[i].falling_ms.empty()) row.left_out = "interrupted";
     if (row.left_out.empty()) {
       row.falling_ms = median_of(times[i].falling_ms);
       row.step_ms = median_of(times[i].all_ms);

@@ -1,4 +1,5 @@
-// What the full level costs: bodies that fall on a plane in one world, too far apart to touch, by each way of finding their contacts with it.
+// What the full level costs: bodies that fall on a plane in one world, too far apart to touch, by each way of
+// finding their contacts with it.
 #pragma once
 
 #include <string>
@@ -10,8 +11,8 @@ namespace lodestone {
 
 struct FullLevelBenchSettings {
   int bodies = 100;
-  int steps = 30;    ///< of 1/60 s, begun in the air: all have landed; nobody sleeps
-  int repeats = 3;   ///< of the whole, methods taking turns
+  int steps = 30;   ///< of 1/60 s, begun in the air: all have landed; nobody sleeps
+  int repeats = 3;  ///< of the whole, methods taking turns
   std::vector<std::string> methods = {"full_plain", "full_1", "full"};  ///< of compare drop, ODE's only
   std::uint64_t seed = 1;
   Progress progress;

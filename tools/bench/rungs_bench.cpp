@@ -11,7 +11,8 @@
 #include "lod/manager.h"
 #include "scenes/shape_source.h"
 #include "tools/bench/falling_heap.h"
-#include "tools/bench/statistical_case_parts.h"
+#include "tools/hard_cases/statistical_case_parts.h"
+#include "tools/interrupt.h"
 #include "tools/median.h"
 
 namespace lodestone {
@@ -19,9 +20,11 @@ namespace {
 
 constexpr int kSettlingMost = 1'800, kSettlingAwake = 60;  // steps
 
-/// m, of a move in one frame: beyond what gravity can have added, from a velocity at its start that was v0, or any between v0 and v1.
+/// m, of a move in one frame: beyond what gravity can have added, from a velocity at its start that was v0,
+/// or any between v0 and v1.
 double move_beyond(const Vec3& moved, const Vec3& v0, const Vec3& v1) {
-  return std::max(0.0, distance_beyond(moved, kCaseStep * v0, kCaseStep * v1) - 0.5 * kCaseGravity * kCaseStep * kCaseStep);
+  return std::max(0.0, distance_beyond(moved, kCaseStep * v0, kCaseStep * v1) -
+                           0.5 * kCaseGravity * kCaseStep * kCaseStep);
 }
 double move_beyond(const Vec3& moved, const Vec3& velocity) { return move_beyond(moved, velocity, velocity); }
 
@@ -44,25 +47,31 @@ RungsRow row_of(const std::string& name, Samples samples) {
   RungsRow row = samples.row;
   row.change = name, row.changes = std::int64_t(samples.moves.size());
   row.p50_mm = 1e3 * percentile_of(samples.moves, 0.5), row.p99_mm = 1e3 * percentile_of(samples.moves, 0.99);
-  row.p999_mm = 1e3 * percentile_of(samples.moves, 0.999), row.max_mm = 1e3 * percentile_of(samples.moves, 1.0);
-  row.unexplained_p999_mm = 1e3 * percentile_of(samples.unexplained, 0.999), row.unexplained_max_mm = 1e3 * percentile_of(samples.unexplained, 1.0);
+  row.p999_mm = 1e3 * percentile_of(samples.moves, 0.999),
+  row.max_mm = 1e3 * percentile_of(samples.moves, 1.0);
+  row.unexplained_p999_mm = 1e3 * percentile_of(samples.unexplained, 0.999),
+  row.unexplained_max_mm = 1e3 * percentile_of(samples.unexplained, 1.0);
   return row;
 }
 
 class RungsRun {
  public:
-  RungsRun(const RungsSettings& settings, std::string name, std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature, std::span<const RigidState> starts,
-           bool kept_awake)
-      : settings_(settings), shape_(std::move(shape)), manager_(make_manager(std::move(signature), kept_awake)) {
+  RungsRun(const RungsSettings& settings, std::string name, std::shared_ptr<const Shape> shape,
+           std::shared_ptr<const Signature> signature, std::span<const RigidState> starts, bool kept_awake)
+      : settings_(settings),
+        shape_(std::move(shape)),
+        manager_(make_manager(std::move(signature), kept_awake)) {
     manager_.add_plane(Vec3::UnitZ(), 0.0);
     heap_.shape = std::move(name), heap_.bodies = int(starts.size()), heap_.kept_awake = kept_awake;
-    for (const RigidState& start : starts) bodies_.push_back(manager_.add_body({.shape = shape_, .state = start, .level = LevelChoice::support}));
+    for (const RigidState& start : starts)
+      bodies_.push_back(manager_.add_body({.shape = shape_, .state = start, .level = LevelChoice::support}));
     before_.resize(bodies_.size()), after_.resize(bodies_.size());
   }
 
   /// Until all sleep.
   std::vector<RigidState> settle() {
-    for (int step = 0; step < kSettlingMost && (step == 0 || manager_.report().asleep < heap_.bodies); ++step) {
+    for (int step = 0; step < kSettlingMost && (step == 0 || manager_.report().asleep < heap_.bodies);
+         ++step) {
       show("comes to rest", double(step) / kSettlingMost);
       manager_.step(kCaseStep);
     }
@@ -80,14 +89,16 @@ class RungsRun {
     for (int round = 0; round < settings_.rounds; ++round) climb(round);
     heap_.mean_height_after_m = mean_height();
     heap_.asleep_after = manager_.report().asleep;
-    for (const char* name : {"none", "support to tables", "tables to support", "support to full", "full to support", "tables to full", "full to tables"})
+    for (const char* name : {"none", "support to tables", "tables to support", "support to full",
+                             "full to support", "tables to full", "full to tables"})
       heap_.rows.push_back(row_of(name, std::move(samples_[name])));
     return heap_;
   }
 
  private:
   static Manager make_manager(std::shared_ptr<const Signature> signature, bool kept_awake) {
-    return Manager({.sleeping = !kept_awake, .signatures = [signature](const Shape&, const ContactLaw&) { return signature; }});
+    return Manager({.sleeping = !kept_awake,
+                    .signatures = [signature](const Shape&, const ContactLaw&) { return signature; }});
   }
 
   void order_from_the_edge() {
@@ -103,7 +114,8 @@ class RungsRun {
   int slices() const { return (heap_.bodies + settings_.slice - 1) / settings_.slice; }
   std::span<const int> slice(int index) const {
     const int first = index * settings_.slice;
-    return std::span(order_).subspan(std::size_t(first), std::size_t(std::min(settings_.slice, heap_.bodies - first)));
+    return std::span(order_).subspan(std::size_t(first),
+                                     std::size_t(std::min(settings_.slice, heap_.bodies - first)));
   }
 
   void climb(int round) {
@@ -137,12 +149,14 @@ class RungsRun {
       for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Vec3 moved = after_[i].position - before_[i].position;
         moves[i] = std::max(moves[i], move_beyond(moved, before_[i].velocity));
-        unexplained[i] = std::max(unexplained[i], move_beyond(moved, before_[i].velocity, after_[i].velocity));
+        unexplained[i] =
+            std::max(unexplained[i], move_beyond(moved, before_[i].velocity, after_[i].velocity));
       }
       highest = std::max(highest, energy_of(after_));
       std::swap(before_, after_);
     }
-    const double rise = (highest - energy_before) / (manager_.mass(bodies_[0]) * kCaseGravity * shape_->radius);
+    const double rise =
+        (highest - energy_before) / (manager_.mass(bodies_[0]) * kCaseGravity * shape_->radius);
     const int woken = std::max(0, asleep - manager_.report().asleep);
     std::vector<bool> changed(bodies_.size());
     for (const Change& change : changes)
@@ -153,7 +167,8 @@ class RungsRun {
     for (const Change& change : changes) add(change, moves, unexplained, rise, woken, others);
   }
 
-  void add(const Change& change, std::span<const double> moves, std::span<const double> unexplained, double rise, int woken, double others) {
+  void add(const Change& change, std::span<const double> moves, std::span<const double> unexplained,
+           double rise, int woken, double others) {
     Samples& samples = samples_[change.name];
     RungsRow& row = samples.row;
     for (const int i : change.bodies) {
@@ -174,7 +189,8 @@ class RungsRun {
   double energy_of(std::span<const RigidState> states) const {
     const double mass = manager_.mass(bodies_[0]);
     double sum = 0.0;
-    for (const RigidState& state : states) sum += kinetic_energy(*shape_, mass, state) + mass * kCaseGravity * state.position.z();
+    for (const RigidState& state : states)
+      sum += kinetic_energy(*shape_, mass, state) + mass * kCaseGravity * state.position.z();
     return sum;
   }
 
@@ -186,16 +202,19 @@ class RungsRun {
   }
 
   void show(const std::string& what, double part) const {
-    if (settings_.progress) settings_.progress(fmt::format("{} x {}, {}: {}", heap_.bodies, heap_.shape, heap_.kept_awake ? "kept awake" : "asleep", what), part);
+    if (settings_.progress)
+      settings_.progress(fmt::format("{} x {}, {}: {}", heap_.bodies, heap_.shape,
+                                     heap_.kept_awake ? "kept awake" : "asleep", what),
+                         part);
   }
 
   const RungsSettings& settings_;
   std::shared_ptr<const Shape> shape_;
   Manager manager_;
   std::vector<BodyId> bodies_;
-  std::vector<int> order_;                     // nearest to the edge's place first
-  std::vector<RigidState> before_, after_;     // of a frame
-  std::map<std::string, Samples> samples_;     // by kind of change
+  std::vector<int> order_;                  // nearest to the edge's place first
+  std::vector<RigidState> before_, after_;  // of a frame
+  std::map<std::string, Samples> samples_;  // by kind of change
   RungsHeap heap_;
 };
 
@@ -212,16 +231,18 @@ bool is_unseen(const RungsRow& row) { return row.p999_mm <= 5.0 && row.max_mm <=
 
 std::vector<RungsHeap> bench_rungs(const RungsSettings& settings) {
   std::vector<RungsHeap> heaps;
-  for (const std::string& name : settings.shapes) {
+  const auto measure_heaps_of = [&](const std::string& name) {
     const bool bunny = name == "bunny";
     const auto shape = share(make_shape_from_text(bunny ? "bunny" : "l:0.3,0.2,0.08,0.1"));
     const auto signature = find_case_signature(*shape);
-    const FallingHeap falling = make_falling_heap(settings.bodies.value_or(bunny ? 1'000 : 300), shape->radius, settings.seed);
+    const FallingHeap falling =
+        make_falling_heap(settings.bodies.value_or(bunny ? 1'000 : 300), shape->radius, settings.seed);
     RungsRun asleep(settings, name, shape, signature, falling.starts, false);
     const std::vector<RigidState> settled = asleep.settle();
     heaps.push_back(asleep.measure());
     heaps.push_back(RungsRun(settings, name, shape, signature, settled, true).measure());
-  }
+  };
+  until_interrupted([&] { std::ranges::for_each(settings.shapes, measure_heaps_of); });
   return heaps;
 }
 

@@ -10,6 +10,7 @@
 #include "reference/random.h"
 #include "signature/measure/measure.h"
 #include "tools/bench/heap_memory.h"
+#include "tools/interrupt.h"
 #include "tools/median.h"
 
 namespace lodestone {
@@ -17,23 +18,32 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60, kApart = 0.5;  // s, m
 constexpr int kSettlingMost = 600;                 // steps
-constexpr double kHeight = 5.0, kSearched = 30.0;  // m: of the viewpoint, a little farther than anyone becomes full; about where a body falls, in which those woken are looked for
-const Vec3 kSides(0.2, 0.3, 0.24);                 // m, of a crate
+constexpr double kHeight = 5.0,
+                 kSearched = 30.0;  // m: of the viewpoint, a little farther than anyone becomes full; about
+                                    // where a body falls, in which those woken are looked for
+const Vec3 kSides(0.2, 0.3, 0.24);  // m, of a crate
 
 class SettledWorld {
  public:
-  SettledWorld(const SettledSettings& settings, StatisticalModel model, std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature)
-      : settings_(settings), shape_(std::move(shape)), heap_before_(heap_bytes()), manager_(make_manager(settings, model, std::move(signature))) {
+  SettledWorld(const SettledSettings& settings, StatisticalModel model, std::shared_ptr<const Shape> shape,
+               std::shared_ptr<const Signature> signature)
+      : settings_(settings),
+        shape_(std::move(shape)),
+        heap_before_(heap_bytes()),
+        manager_(make_manager(settings, model, std::move(signature))) {
     row_.model = model, row_.bodies = settings.bodies, row_.threads = settings.threads;
     manager_.add_plane(Vec3::UnitZ(), 0.0);
     side_ = int(std::ceil(std::sqrt(double(settings.bodies))));
-    for (int i = 0; i < settings.bodies; ++i) bodies_.push_back(manager_.add_body({.shape = shape_, .state = start(i)}));
+    for (int i = 0; i < settings.bodies; ++i)
+      bodies_.push_back(manager_.add_body({.shape = shape_, .state = start(i)}));
   }
 
   SettledRow measure() {
     settle();
     row_.settled_us = time_steps([](int) {});
-    row_.watched_us = time_steps([this](int step) { if (step == 0) view_from({0, 0, kHeight}); });
+    row_.watched_us = time_steps([this](int step) {
+      if (step == 0) view_from({0, 0, kHeight});
+    });
     row_.moving_us = time_steps([this](int step) { view_from({0.1 * (step + 1), 0, kHeight}); });
     manager_.set_viewpoints({});
     manager_.step(kFrame);
@@ -42,7 +52,8 @@ class SettledWorld {
   }
 
  private:
-  static Manager make_manager(const SettledSettings& settings, StatisticalModel model, std::shared_ptr<const Signature> signature) {
+  static Manager make_manager(const SettledSettings& settings, StatisticalModel model,
+                              std::shared_ptr<const Signature> signature) {
     ManagerSettings manager;
     manager.seed = settings.seed, manager.threads = settings.threads, manager.model = model;
     manager.signatures = [signature](const Shape&, const ContactLaw&) { return signature; };
@@ -55,7 +66,9 @@ class SettledWorld {
     return state;
   }
 
-  int count_awake() const { return manager_.report().statistical + manager_.report().full - manager_.report().asleep; }
+  int count_awake() const {
+    return manager_.report().statistical + manager_.report().full - manager_.report().asleep;
+  }
   void view_from(const Vec3& place) { manager_.set_viewpoints({&place, 1}); }
 
   double step_us() {
@@ -86,7 +99,10 @@ class SettledWorld {
   void disturb() {
     const std::vector<int> near = bodies_near_middle();
     RigidState falling;
-    falling.position = bodies_.empty() ? Vec3(0, 0, 1) : Vec3(manager_.state(bodies_[std::size_t(near.front())]).position + Vec3(0.05, 0.03, 0.5));
+    falling.position =
+        bodies_.empty()
+            ? Vec3(0, 0, 1)
+            : Vec3(manager_.state(bodies_[std::size_t(near.front())]).position + Vec3(0.05, 0.03, 0.5));
     falling.velocity = {0.3 * settings_.speed, 0, -settings_.speed};
     const BodyId fallen = manager_.add_body({.shape = shape_, .state = falling});
     std::vector<bool> woke(near.size());
@@ -103,7 +119,9 @@ class SettledWorld {
       row_.woken_unseen = std::max(row_.woken_unseen, awake - seen);
     }
     for (std::size_t i = 0; i < near.size(); ++i)
-      if (woke[i]) row_.farthest_woken_m = std::max(row_.farthest_woken_m, (start(near[i]).position - falling.position).norm());
+      if (woke[i])
+        row_.farthest_woken_m =
+            std::max(row_.farthest_woken_m, (start(near[i]).position - falling.position).norm());
     row_.disturbed_steps = int(us.size());
     row_.disturbed_us = median_of(us);
     row_.disturbed_most_us = std::ranges::max(us);
@@ -119,7 +137,9 @@ class SettledWorld {
   }
 
   void show(std::string_view what, double part) const {
-    if (settings_.progress) settings_.progress(fmt::format("{} {}", row_.model == StatisticalModel::tables ? "tables" : "support", what), part);
+    if (settings_.progress)
+      settings_.progress(
+          fmt::format("{} {}", row_.model == StatisticalModel::tables ? "tables" : "support", what), part);
   }
 
   const SettledSettings& settings_;
@@ -144,7 +164,10 @@ std::vector<SettledRow> bench_settled(const SettledSettings& settings) {
   const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box(kSides)));
   const auto signature = make_coarse_signature(*shape);
   std::vector<SettledRow> rows;
-  for (const StatisticalModel model : settings.models) rows.push_back(SettledWorld(settings, model, shape, signature).measure());
+  until_interrupted([&] {
+    for (const StatisticalModel model : settings.models)
+      rows.push_back(SettledWorld(settings, model, shape, signature).measure());
+  });
   return rows;
 }
 

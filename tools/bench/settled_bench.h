@@ -14,13 +14,14 @@ struct SettledSettings {
   int bodies = 1'000'000;
   std::vector<StatisticalModel> models = {StatisticalModel::tables, StatisticalModel::support};
   int threads = 1;
-  int steps = 200;       ///< of 1/60 s, timed in each state of the scene
-  double speed = 10.0;   ///< m/s, at which one more body falls among the others
+  int steps = 200;      ///< of 1/60 s, timed in each state of the scene
+  double speed = 10.0;  ///< m/s, at which one more body falls among the others
   std::uint64_t seed = 1;
   Progress progress = {};
 };
 
-/// Crates at rest on a plane, half a metre apart; the levels are the distance policy's, with viewpoints too far away for any to be full.
+/// Crates at rest on a plane, half a metre apart; the levels are the distance policy's, with viewpoints too
+/// far away for any to be full.
 struct SettledRow {
   StatisticalModel model = StatisticalModel::tables;
   int bodies = 0, threads = 1;

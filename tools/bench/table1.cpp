@@ -1,5 +1,4 @@
 #include "tools/bench/table1.h"
-#include "tools/median.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +6,16 @@
 #include <cmath>
 #include <map>
 
+#include "tools/interrupt.h"
+#include "tools/median.h"
+
 namespace lodestone {
 namespace {
 
 constexpr int kMeshBodiesMax = 1'000, kOtherBodiesMax = 10'000;
 constexpr int kLatestSteps = 10;  // whose mean predicts those to come
-constexpr double kPartToJudge = 0.1;  // of the time allowed is spent first: the steps in which all bodies land are the slowest
+constexpr double kPartToJudge =
+    0.1;  // of the time allowed is spent first: the steps in which all bodies land are the slowest
 
 bool is_mesh(const DropMethod& method) {
   const auto* ode = std::get_if<OdeMethod>(&method.way);
@@ -45,13 +48,15 @@ class Columns {
   void add(const StepMs& ms) {
     step_.push_back(ms.step);
     bytes_moved_.push_back(ms.bytes_moved);
-    for (const auto& [value, column] : {std::pair{&ms.collision, &collision_}, {&ms.response, &response_}, {&ms.rest, &rest_}})
+    for (const auto& [value, column] :
+         {std::pair{&ms.collision, &collision_}, {&ms.response, &response_}, {&ms.rest, &rest_}})
       if (*value) column->push_back(**value);
   }
   void give_to(Table1Row& row) const {
     row.step_ms = median_of(step_);
     row.bytes_moved_per_body = median_of(bytes_moved_) / row.bodies;
-    for (const auto& [column, value] : {std::pair{&collision_, &row.collision_ms}, {&response_, &row.response_ms}, {&rest_, &row.rest_ms}})
+    for (const auto& [column, value] :
+         {std::pair{&collision_, &row.collision_ms}, {&response_, &row.response_ms}, {&rest_, &row.rest_ms}})
       if (!column->empty()) *value = median_of(*column);
   }
 
@@ -63,7 +68,10 @@ class Table1 {
  public:
   explicit Table1(const Table1Settings& settings) : settings_(settings), job_(make_table1_job()) {
     methods_ = make_drop_methods(settings.methods, job_, settings.measuring, 0, settings.progress);
-    if (!settings.model.empty()) std::erase_if(methods_, [&](const DropMethod& method) { return !method.model().empty() && method.model() != settings.model; });
+    if (!settings.model.empty())
+      std::erase_if(methods_, [&](const DropMethod& method) {
+        return !method.model().empty() && method.model() != settings.model;
+      });
   }
 
   std::vector<Table1Row> rows() {
@@ -72,7 +80,9 @@ class Table1 {
     std::vector<Table1Row> rows;
     for (const int bodies : sizes) {
       const std::size_t first = rows.size();
-      for (const DropMethod& method : methods_) rows.push_back(measure(method, bodies));
+      until_interrupted([&] {
+        for (const DropMethod& method : methods_) rows.push_back(measure(method, bodies));
+      });
       compare(std::span(rows).subspan(first));
     }
     return rows;
@@ -80,7 +90,11 @@ class Table1 {
 
  private:
   Table1Row measure(const DropMethod& method, int bodies) {
-    Table1Row row{.bodies = bodies, .method = method.name, .model = method.model(), .threads = 1, .left_out = find_reason(method, bodies)};
+    Table1Row row{.bodies = bodies,
+                  .method = method.name,
+                  .model = method.model(),
+                  .threads = 1,
+                  .left_out = find_reason(method, bodies)};
     if (std::holds_alternative<StatisticalMethod>(method.way)) row.threads = settings_.threads;
     if (!row.left_out.empty()) return row;
     double seconds = run(method, row, settings_.row_seconds);
@@ -92,19 +106,27 @@ class Table1 {
   // Why not even to try; empty where there is no reason.
   std::string find_reason(const DropMethod& method, int bodies) const {
     if (!method.left_out.empty()) return method.left_out;
-    if (is_mesh(method) && bodies > kMeshBodiesMax) return fmt::format("trimeshes: {} bodies at most", kMeshBodiesMax);
-    if (!std::holds_alternative<StatisticalMethod>(method.way) && bodies > kOtherBodiesMax) return fmt::format("{} bodies at most", kOtherBodiesMax);
+    if (is_mesh(method) && bodies > kMeshBodiesMax)
+      return fmt::format("trimeshes: {} bodies at most", kMeshBodiesMax);
+    if (!std::holds_alternative<StatisticalMethod>(method.way) && bodies > kOtherBodiesMax)
+      return fmt::format("{} bodies at most", kOtherBodiesMax);
     const auto smaller = last_.find(method.name + method.model());
     if (smaller == last_.end()) return "";
-    const double seconds = smaller->second.seconds * bodies / smaller->second.bodies;  // at least: no method's time grows less
+    const double seconds =
+        smaller->second.seconds * bodies / smaller->second.bodies;  // at least: no method's time grows less
     if (seconds <= settings_.row_seconds) return "";
-    return fmt::format("would take {:.0f} s or more by the row of {} bodies", seconds, smaller->second.bodies);
+    return fmt::format("would take {:.0f} s or more by the row of {} bodies", seconds,
+                       smaller->second.bodies);
   }
 
   // Returns the seconds that all steps took; where they would be more than `limit_s`, `row` says so instead.
   double run(const DropMethod& method, Table1Row& row, double limit_s) const {
     Table1World world(job_, method,
-                      {.bodies = row.bodies, .threads = row.threads, .sleeping = settings_.sleeping, .hash_space = row.hash_space, .seed = settings_.seed});
+                      {.bodies = row.bodies,
+                       .threads = row.threads,
+                       .sleeping = settings_.sleeping,
+                       .hash_space = row.hash_space,
+                       .seed = settings_.seed});
     Clock clock;
     Columns columns;
     for (int step = 0; step < kTable1Steps; ++step) {
@@ -115,7 +137,8 @@ class Table1 {
       if (step == 60) row.awake[0] = world.awake();
       if (step == 120) row.awake[1] = world.awake();
       if (clock.predicted_s() > limit_s && clock.spent_s() > kPartToJudge * limit_s) {
-        row.left_out = fmt::format("would take {:.0f} s, as predicted after {} steps", clock.predicted_s(), step + 1);
+        row.left_out =
+            fmt::format("would take {:.0f} s, as predicted after {} steps", clock.predicted_s(), step + 1);
         return clock.predicted_s();
       }
     }
@@ -129,7 +152,11 @@ class Table1 {
 
   // The same again with ODE's other space: the row shows the faster.
   void try_hash_space(const DropMethod& method, Table1Row& row, double& seconds) const {
-    Table1Row other{.bodies = row.bodies, .method = row.method, .model = row.model, .threads = row.threads, .hash_space = true};
+    Table1Row other{.bodies = row.bodies,
+                    .method = row.method,
+                    .model = row.model,
+                    .threads = row.threads,
+                    .hash_space = true};
     const double other_seconds = run(method, other, std::min(settings_.row_seconds, 1.5 * seconds));
     if (!other.step_ms || (row.step_ms && *row.step_ms <= *other.step_ms)) return;
     row = std::move(other);
@@ -150,7 +177,9 @@ class Table1 {
   }
 
   void show(const Table1Row& row, int step) const {
-    if (settings_.progress) settings_.progress(fmt::format("{} bodies, {} {}", row.bodies, row.method, row.model), double(step) / kTable1Steps);
+    if (settings_.progress)
+      settings_.progress(fmt::format("{} bodies, {} {}", row.bodies, row.method, row.model),
+                         double(step) / kTable1Steps);
   }
 
   static std::string key_of(const Table1Row& row) { return row.method + row.model; }

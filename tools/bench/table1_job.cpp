@@ -39,7 +39,9 @@ constexpr std::array<PaperCell, 14> kPaper = {{
 }  // namespace
 
 DropJob make_table1_job() {
-  return {.shape = std::make_shared<const Shape>(make_bunny_shape(0.2)), .conditions = {}, .material = {.restitution = 0.3, .friction = 0.5}};
+  return {.shape = std::make_shared<const Shape>(make_bunny_shape(0.2)),
+          .conditions = {},
+          .material = {.restitution = 0.3, .friction = 0.5}};
 }
 
 RigidState table1_start(int index, int bodies, std::uint64_t seed) {
@@ -48,7 +50,8 @@ RigidState table1_start(int index, int bodies, std::uint64_t seed) {
   const int layer = index / (side * side), column = index % side, row = index / side % side;
   const double shift = (layer % 2 ? 0.5 : 0.0) - 0.5 * side;
   RigidState state;
-  state.position = {kCell * (column + shift), kCell * (row + shift), kLowest + kLayerHeight * layer + random.uniform(-kJitter, kJitter)};
+  state.position = {kCell * (column + shift), kCell * (row + shift),
+                    kLowest + kLayerHeight * layer + random.uniform(-kJitter, kJitter)};
   state.orientation = random.orientation();
   return state;
 }

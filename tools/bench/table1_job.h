@@ -1,18 +1,20 @@
-// The job behind table 1 of Hsu and Keyser: n bunnies fall on a plane, laid out so that figures compare across engines.
+// The job behind table 1 of Hsu and Keyser: n bunnies fall on a plane, laid out so that figures compare
+// across engines.
 #pragma once
 
 #include "tools/compare/drop_method.h"
 
 namespace lodestone {
 
-inline constexpr double kTable1Step = 1.0 / 60;   // s
+inline constexpr double kTable1Step = 1.0 / 60;  // s
 inline constexpr int kTable1Steps = 180;
-inline constexpr int kTable1FirstTimed = 60;      // before it most bodies are still in the air
+inline constexpr int kTable1FirstTimed = 60;  // before it most bodies are still in the air
 
 /// A bunny of .2 m, restitution .3, friction .5.
 DropJob make_table1_job();
 
-/// Where body `index` of `bodies` starts, at rest and turned at random: six layers of square cells, none touching another.
+/// Where body `index` of `bodies` starts, at rest and turned at random: six layers of square cells, none
+/// touching another.
 RigidState table1_start(int index, int bodies, std::uint64_t seed);
 
 /// What the paper printed, ms; 0 where it printed nothing.

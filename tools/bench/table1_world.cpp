@@ -13,7 +13,8 @@
 namespace lodestone {
 namespace {
 
-// Plain ODE, as the table's baselines are set: QuickStep with 20 iterations, eight contacts a pair, nothing of ours.
+// Plain ODE, as the table's baselines are set: QuickStep with 20 iterations, eight contacts a pair, nothing
+// of ours.
 OdeSettings baseline_settings(const Table1WorldSettings& settings) {
   return {.seed = settings.seed,
           .quick_step = true,
@@ -35,20 +36,29 @@ OdeSettings full_settings(OdeSettings ours, const Table1WorldSettings& settings)
 }
 
 // The name says which: `full` and full_N are our full level.
-bool is_baseline(const DropMethod& method) { return method.name == "full_plain" || !method.name.starts_with("full"); }
+bool is_baseline(const DropMethod& method) {
+  return method.name == "full_plain" || !method.name.starts_with("full");
+}
 
 }  // namespace
 
 Table1World::Table1World(const DropJob& job, const DropMethod& method, const Table1WorldSettings& settings)
-    : heap_before_(heap_bytes()), settings_(settings), method_(method), materials_(std::make_unique<MaterialTable>()) {
+    : heap_before_(heap_bytes()),
+      settings_(settings),
+      method_(method),
+      materials_(std::make_unique<MaterialTable>()) {
   materials_->replace(0, job.material);
-  if (const auto* ode = std::get_if<OdeMethod>(&method.way)) make_ode(job, *ode);
-  else if (const auto* bullet = std::get_if<BulletMethod>(&method.way)) make_bullet(job, *bullet);
-  else make_statistical(job, std::get<StatisticalMethod>(method.way));
+  if (const auto* ode = std::get_if<OdeMethod>(&method.way))
+    make_ode(job, *ode);
+  else if (const auto* bullet = std::get_if<BulletMethod>(&method.way))
+    make_bullet(job, *bullet);
+  else
+    make_statistical(job, std::get<StatisticalMethod>(method.way));
 }
 
 void Table1World::make_ode(const DropJob& job, const OdeMethod& way) {
-  const OdeSettings ode = is_baseline(method_) ? baseline_settings(settings_) : full_settings(way.settings, settings_);
+  const OdeSettings ode =
+      is_baseline(method_) ? baseline_settings(settings_) : full_settings(way.settings, settings_);
   ode_.emplace(OdeWorld(ode, *materials_), std::vector<OdeBodyId>());
   ode_->world.add_plane(Vec3::UnitZ(), 0.0, 0);
   for (int i = 0; i < settings_.bodies; ++i)
@@ -76,6 +86,7 @@ void Table1World::make_statistical(const DropJob& job, const StatisticalMethod& 
   manager.threads = settings_.threads;
   manager.sleeping = settings_.sleeping;
   manager.model = way.model;
+  manager.tables.published = way.published;
   manager.signatures = [signature = way.signature](const Shape&, const ContactLaw&) { return signature; };
   statistical_.emplace(Manager(manager), std::vector<BodyId>());
   statistical_->manager.materials().replace(0, job.material);
@@ -93,9 +104,12 @@ StepMs Table1World::step(double dt) {
   StepMs ms;
   const double processor_start = thread_time_ms();
   const auto start = std::chrono::steady_clock::now();
-  if (ode_) ode_->world.step(dt, method_.substeps());
-  else if (bullet_) bullet_->step(dt);
-  else statistical_->manager.step(dt);
+  if (ode_)
+    ode_->world.step(dt, method_.substeps());
+  else if (bullet_)
+    bullet_->step(dt);
+  else
+    statistical_->manager.step(dt);
   ms.step = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   if (settings_.threads == 1) ms.step = std::min(ms.step, thread_time_ms() - processor_start);
   if (ode_) {
@@ -133,13 +147,16 @@ std::uint64_t Table1World::state_hash() const {
   std::uint64_t hash = 0;
   for (int i = 0; i < settings_.bodies; ++i) {
     const auto [x, q, v, w] = state(i);
-    const std::array<double, 13> numbers{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
+    const std::array<double, 13> numbers{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(),
+                                         v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
     hash = XXH64(numbers.data(), sizeof numbers, hash);
   }
   return hash;
 }
 
-double Table1World::level_bytes_per_body() const { return statistical_ ? double(statistical_->manager.statistical_bytes()) / settings_.bodies : 0.0; }
+double Table1World::level_bytes_per_body() const {
+  return statistical_ ? double(statistical_->manager.statistical_bytes()) / settings_.bodies : 0.0;
+}
 
 double Table1World::bytes_per_body() const { return (heap_bytes() - heap_before_) / settings_.bodies; }
 

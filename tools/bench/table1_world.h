@@ -12,17 +12,18 @@ namespace lodestone {
 
 struct Table1WorldSettings {
   int bodies = 10;
-  int threads = 1;            ///< of the statistical level
+  int threads = 1;  ///< of the statistical level
   bool sleeping = false;
-  bool hash_space = false;    ///< of ODE's, instead of sweep and prune
+  bool hash_space = false;  ///< of ODE's, instead of sweep and prune
   std::uint64_t seed = 1;
 };
 
-/// Of a step, ms: on one thread processor time, which other work on the machine does not lengthen (wall time where that is less: reading its clock costs some .2 us); on several, wall time.
-/// The stages, in wall time, only where the method tells them apart; they are not all of a step.
+/// Of a step, ms: on one thread processor time, which other work on the machine does not lengthen (wall time
+/// where that is less: reading its clock costs some .2 us); on several, wall time. The stages, in wall time,
+/// only where the method tells them apart; they are not all of a step.
 struct StepMs {
   double step = 0.0;
-  double bytes_moved = 0.0;   ///< where the method counts them
+  double bytes_moved = 0.0;  ///< where the method counts them
   std::optional<double> collision = {}, response = {}, rest = {};
 };
 

@@ -9,9 +9,9 @@
 #include "reference/error.h"
 
 #ifdef LODESTONE_BULLET
-#include <Eigen/Eigenvalues>
-
 #include <btBulletDynamicsCommon.h>
+
+#include <Eigen/Eigenvalues>
 
 namespace lodestone {
 namespace {
@@ -20,12 +20,18 @@ namespace {
 constexpr double kMargin = 1e-3;  // × size
 
 btVector3 to_bullet(const Vec3& v) { return {btScalar(v.x()), btScalar(v.y()), btScalar(v.z())}; }
-btQuaternion to_bullet(const Quat& q) { return {btScalar(q.x()), btScalar(q.y()), btScalar(q.z()), btScalar(q.w())}; }
+btQuaternion to_bullet(const Quat& q) {
+  return {btScalar(q.x()), btScalar(q.y()), btScalar(q.z()), btScalar(q.w())};
+}
 Vec3 to_vec3(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 Quat to_quat(const btQuaternion& q) { return Quat(q.w(), q.x(), q.y(), q.z()).normalized(); }
 
-btScalar lower_restitution(const btCollisionObject* a, const btCollisionObject* b) { return std::min(a->getRestitution(), b->getRestitution()); }
-btScalar mean_friction(const btCollisionObject* a, const btCollisionObject* b) { return std::sqrt(a->getFriction() * b->getFriction()); }
+btScalar lower_restitution(const btCollisionObject* a, const btCollisionObject* b) {
+  return std::min(a->getRestitution(), b->getRestitution());
+}
+btScalar mean_friction(const btCollisionObject* a, const btCollisionObject* b) {
+  return std::sqrt(a->getFriction() * b->getFriction());
+}
 
 /// Bullet's bodies have diagonal inertias: `axes` turns the principal axes into the shape's.
 struct Principal {
@@ -49,9 +55,11 @@ struct Geometry {
 
 std::unique_ptr<btConvexShape> make_collision(const Shape& shape, BulletGeometry geometry, const Quat& axes) {
   if (geometry == BulletGeometry::sphere || shape.sphere_radius)
-    return std::make_unique<btSphereShape>(btScalar(std::cbrt(shape.volume * 3.0 / (4.0 * std::numbers::pi))));
+    return std::make_unique<btSphereShape>(
+        btScalar(std::cbrt(shape.volume * 3.0 / (4.0 * std::numbers::pi))));
   auto hull = std::make_unique<btConvexHullShape>();
-  for (const Vec3& vertex : shape.hull.vertices) hull->addPoint(to_bullet(Vec3(axes.conjugate() * vertex)), false);
+  for (const Vec3& vertex : shape.hull.vertices)
+    hull->addPoint(to_bullet(Vec3(axes.conjugate() * vertex)), false);
   hull->recalcLocalAabb();
   hull->setMargin(btScalar(kMargin * shape.size));
   return hull;
@@ -90,7 +98,8 @@ struct BulletWorld::Impl {
     return geometry;
   }
   const Body& find(int body) const {
-    check_that(body >= 0 && body < int(bodies.size()) && bodies[body].body, "the number is of a body in this world");
+    check_that(body >= 0 && body < int(bodies.size()) && bodies[body].body,
+               "the number is of a body in this world");
     return bodies[body];
   }
 
@@ -123,7 +132,8 @@ void BulletWorld::add_plane(const Vec3& normal, double offset, const Material& m
 int BulletWorld::add_body(const BulletBodyDefinition& definition) {
   const Geometry& geometry = impl_->geometry_of(definition);
   const Vec3 inertia = definition.mass * geometry.principal.inertia_per_mass;
-  btRigidBody::btRigidBodyConstructionInfo info(btScalar(definition.mass), nullptr, geometry.collision.get(), to_bullet(inertia));
+  btRigidBody::btRigidBodyConstructionInfo info(btScalar(definition.mass), nullptr, geometry.collision.get(),
+                                                to_bullet(inertia));
   info.m_restitution = btScalar(definition.material.restitution);
   info.m_friction = btScalar(definition.material.friction);
   const Quat orientation = definition.state.orientation * geometry.principal.axes;

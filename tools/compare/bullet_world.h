@@ -1,5 +1,5 @@
-// A world of Bullet's (Debian's single-precision build), to measure a peer on the same job in the same run. Where Lodestone is built
-// without it, `bullet_available` says so and nothing else may be called.
+// A world of Bullet's (Debian's single-precision build), to measure a peer on the same job in the same run.
+// Where Lodestone is built without it, `bullet_available` says so and nothing else may be called.
 #pragma once
 
 #include <memory>
@@ -11,12 +11,13 @@ namespace lodestone {
 
 bool bullet_available();
 
-/// `hull`: every corner of the shape's convex hull. `sphere`: of the shape's volume, with its mass distribution.
+/// `hull`: every corner of the shape's convex hull. `sphere`: of the shape's volume, with its mass
+/// distribution.
 enum class BulletGeometry { hull, sphere };
 
 struct BulletSettings {
-  Vec3 gravity{0, 0, -9.81};   ///< m/s²
-  int solver_iterations = 10;  ///< Bullet's default
+  Vec3 gravity{0, 0, -9.81};      ///< m/s²
+  int solver_iterations = 10;     ///< Bullet's default
   double bounce_velocity = 0.05;  ///< m/s, slower contacts do not bounce
   bool sleeping = false;
 };
@@ -29,7 +30,8 @@ struct BulletBodyDefinition {
   BulletGeometry geometry = BulletGeometry::hull;
 };
 
-/// A pair takes the lower restitution and the geometric mean of the frictions, as everywhere here. One thread.
+/// A pair takes the lower restitution and the geometric mean of the frictions, as everywhere here. One
+/// thread.
 class BulletWorld {
  public:
   explicit BulletWorld(const BulletSettings& settings);
@@ -37,8 +39,10 @@ class BulletWorld {
   BulletWorld(BulletWorld&&) noexcept;
   BulletWorld& operator=(BulletWorld&&) noexcept;
 
-  void add_plane(const Vec3& normal, double offset, const Material& material);  ///< normal·x = offset, normal of unit length
-  /// Returns the body's number: 0, 1, …; a removed body's is not used again. Bodies of one shape share its geometry.
+  void add_plane(const Vec3& normal, double offset,
+                 const Material& material);  ///< normal·x = offset, normal of unit length
+  /// Returns the body's number: 0, 1, …; a removed body's is not used again. Bodies of one shape share its
+  /// geometry.
   int add_body(const BulletBodyDefinition& definition);
   void remove_body(int body);
   void step(double dt);  ///< s, in one step of Bullet's

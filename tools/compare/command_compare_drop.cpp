@@ -1,13 +1,14 @@
 #include "tools/compare/command_compare_drop.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <numbers>
 
 #include "tools/compare/comparison_arguments.h"
 #include "tools/compare/drop_report.h"
 #include "tools/progress.h"
+#include "tools/results.h"
 #include "tools/shape_arguments.h"
 
 namespace lodestone {
@@ -41,19 +42,26 @@ void compare_drop(const Arguments& arguments) {
   }
   if (!arguments.out.empty()) save_drops(comparison, arguments.out);
   if (!arguments.csv.empty()) save_scores(comparison, arguments.csv);
-  if (arguments.json) fmt::print("{}\n", json_of(comparison).dump(2));
-  else fmt::print("{}", text_of(job, comparison));
+  if (arguments.json)
+    print_json(json_of(comparison));
+  else
+    fmt::print("{}", text_of(job, comparison));
 }
 
 }  // namespace
 
 void add_compare_drop_command(CLI::App& compare, ExitCode& exit_code) {
-  CLI::App* drop = compare.add_subcommand("drop", "single bodies dropped on a plane, by each method and by the truth");
+  CLI::App* drop =
+      compare.add_subcommand("drop", "single bodies dropped on a plane, by each method and by the truth");
   const auto arguments = std::make_shared<Arguments>();
   add_shape_arguments(*drop, arguments->shape);
   add_comparison_arguments(*drop, arguments->comparison);
-  drop->add_option("--speed-scale", arguments->speed_scale, "multiplies the starting speeds")->check(CLI::Range(0.0, 1e3))->capture_default_str();
-  drop->add_option("--slope-deg", arguments->slope_deg, "of the plane")->check(CLI::Range(0.0, 80.0))->capture_default_str();
+  drop->add_option("--speed-scale", arguments->speed_scale, "multiplies the starting speeds")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  drop->add_option("--slope-deg", arguments->slope_deg, "of the plane")
+      ->check(CLI::Range(0.0, 80.0))
+      ->capture_default_str();
   drop->add_option("--out", arguments->out, "folder for drops.csv, one line a drop");
   drop->add_option("--csv", arguments->csv, "file for the scores, one line a row");
   drop->add_flag("--json", arguments->json, "one JSON object on stdout");

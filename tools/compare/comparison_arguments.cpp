@@ -23,8 +23,13 @@ void add_comparison_arguments(CLI::App& command, ComparisonArguments& arguments)
   DropComparisonSettings& comparison = arguments.comparison;
   add_signature_arguments(command, arguments.signature);
   command.add_option("--dt", arguments.steps, "steps of the methods, s: 0.01 or 1/60, several with commas")
-      ->delimiter(',')->allow_extra_args(false)->check(find_step_fault, "SECONDS")->capture_default_str();
-  command.add_option("--trials", comparison.trials, "drops of each")->check(CLI::Range(2, 1'000'000))->capture_default_str();
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(find_step_fault, "SECONDS")
+      ->capture_default_str();
+  command.add_option("--trials", comparison.trials, "drops of each")
+      ->check(CLI::Range(2, 1'000'000))
+      ->capture_default_str();
   add_methods_argument(command, comparison.methods);
   add_starts_arguments(command, comparison.seed, comparison.threads);
 }

@@ -20,7 +20,8 @@ struct ComparisonArguments {
 /// Adds --seed and --threads to `command`.
 void add_starts_arguments(CLI::App& command, std::uint64_t& seed, int& threads);
 
-/// Adds --dt, --trials, --methods, --seed, --threads and the options of signatures to `command`, with the defaults in `arguments`, which outlives the parsing.
+/// Adds --dt, --trials, --methods, --seed, --threads and the options of signatures to `command`, with the
+/// defaults in `arguments`, which outlives the parsing.
 void add_comparison_arguments(CLI::App& command, ComparisonArguments& arguments);
 
 }  // namespace lodestone

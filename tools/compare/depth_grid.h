@@ -1,5 +1,5 @@
-// How deep points lie inside a closed mesh: signed distances on a grid, looked up between its nodes (Frisken et al., Adaptively sampled
-// distance fields, 2000, without the adaptation).
+// How deep points lie inside a closed mesh: signed distances on a grid, looked up between its nodes (Frisken
+// et al., Adaptively sampled distance fields, 2000, without the adaptation).
 #pragma once
 
 #include <vector>
@@ -14,7 +14,8 @@ class DepthGrid {
   /// `mesh`: closed, outward faces. `cells` along the longest side of its bounding box.
   explicit DepthGrid(const Mesh& mesh, int cells = 48);
 
-  /// m below the surface, negative outside; −∞ off the grid, which reaches a cell beyond the mesh. Off by a small part of a cell where the surface is smooth.
+  /// m below the surface, negative outside; −∞ off the grid, which reaches a cell beyond the mesh. Off by a
+  /// small part of a cell where the surface is smooth.
   double depth(const Vec3& point) const;
 
  private:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "reference/error.h"
+#include "tools/interrupt.h"
 
 namespace lodestone {
 namespace {
@@ -19,13 +20,16 @@ class Comparison {
 
   DropComparison run() {
     // Methods first: an unknown name or an unwritable cache is found before the truth's minutes are spent.
-    const auto methods = make_drop_methods(settings_.methods, job_, settings_.measuring, settings_.threads, settings_.progress);
+    const auto methods = make_drop_methods(settings_.methods, job_, settings_.measuring, settings_.threads,
+                                           settings_.progress);
     DropComparison result = compare_truth();
-    for (const DropMethod& method : methods)
-      for (const double dt_s : settings_.dt_s) result.rows.push_back(compare(method, dt_s, result));
-    if (!settings_.costs) return result;
-    for (std::size_t i = 0; i < result.rows.size(); ++i)  // in a pass of its own, with nothing else running
-      measure_cost(methods[i / settings_.dt_s.size()], result.rows[i]);
+    until_interrupted([&] {
+      for (const DropMethod& method : methods)
+        for (const double dt_s : settings_.dt_s) result.rows.push_back(compare(method, dt_s, result));
+      for (std::size_t i = 0; settings_.costs && i < result.rows.size();
+           ++i)  // in a pass of its own, with nothing else running
+        measure_cost(methods[i / settings_.dt_s.size()], result.rows[i]);
+    });
     return result;
   }
 
@@ -41,9 +45,14 @@ class Comparison {
   }
 
   DropRow compare(const DropMethod& method, double dt_s, const DropComparison& truth) {
-    DropRow row{.method = method.name, .model = method.model(), .dt_s = dt_s, .substeps = method.substeps(), .reason = method.left_out};
+    DropRow row{.method = method.name,
+                .model = method.model(),
+                .dt_s = dt_s,
+                .substeps = method.substeps(),
+                .reason = method.left_out};
     if (!row.reason.empty()) return row;
-    row.drops = observe(method, seed_of_truth_b(settings_.seed), dt_s, fmt::format("{} {} at {:.4g} s", row.method, row.model, dt_s));
+    row.drops = observe(method, seed_of_truth_b(settings_.seed), dt_s,
+                        fmt::format("{} {} at {:.4g} s", row.method, row.model, dt_s));
     row.score = score_drops(truth.truth_a, row.drops, settings_.seed);
     row.first_impacts = measure_impact_errors(truth.truth_b, row.drops);
     return row;
@@ -52,10 +61,12 @@ class Comparison {
   void measure_cost(const DropMethod& method, DropRow& row) {
     if (!row.reason.empty()) return;
     report("timing", 0.0);
-    row.ns_per_body_step = measure_ns_per_body_step(job_, method, batch(seed_of_truth_b(settings_.seed), row.dt_s), row.drops);
+    row.ns_per_body_step =
+        measure_ns_per_body_step(job_, method, batch(seed_of_truth_b(settings_.seed), row.dt_s), row.drops);
   }
 
-  std::vector<DropObservation> observe(const DropMethod& method, std::uint64_t seed, double dt_s, const std::string& stage) {
+  std::vector<DropObservation> observe(const DropMethod& method, std::uint64_t seed, double dt_s,
+                                       const std::string& stage) {
     return observe_drops(job_, method, batch(seed, dt_s), [&](double fraction) { report(stage, fraction); });
   }
 
@@ -79,6 +90,8 @@ std::int64_t DropRow::table_extrapolations() const {
   return sum;
 }
 
-DropComparison compare_drops(const DropJob& job, const DropComparisonSettings& settings) { return Comparison(job, settings).run(); }
+DropComparison compare_drops(const DropJob& job, const DropComparisonSettings& settings) {
+  return Comparison(job, settings).run();
+}
 
 }  // namespace lodestone

@@ -8,14 +8,16 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
 
-#include "reference/error.h"
+#include "reference/argument_error.h"
+#include "tools/warning.h"
 
 namespace lodestone {
 namespace {
 
 constexpr int kTruthSubsteps = 34;
-constexpr int kLowFaces = 194;   // the paper's low-resolution bunny
+constexpr int kLowFaces = 194;  // the paper's low-resolution bunny
 constexpr int kSphereCount = 7;
 
 DropMethod make_ode(std::string name, const DropJob& job, OdeMethod way) {
@@ -26,7 +28,8 @@ DropMethod make_ode(std::string name, const DropJob& job, OdeMethod way) {
 // Another mesh about the same centre of mass, with the same mass distribution.
 std::shared_ptr<const Shape> make_low_shape(const Shape& shape) {
   const MassOverride mass{.center_of_mass_m = Vec3::Zero(), .inertia_per_mass_m2 = shape.inertia_per_mass};
-  return std::make_shared<const Shape>(make_shape(shape.name + " low", simplify_mesh(shape.mesh, kLowFaces), mass));
+  return std::make_shared<const Shape>(
+      make_shape(shape.name + " low", simplify_mesh(shape.mesh, kLowFaces), mass));
 }
 
 // What ODE makes of a mesh over a plane by itself.
@@ -34,7 +37,8 @@ OdeSettings plain_settings() { return {.plane_contacts_from_hull = false}; }
 
 // A body is observed for ten seconds, awake.
 DropMethod make_full(std::string name, const DropJob& job, int substeps) {
-  return make_ode(std::move(name), job, {.substeps = substeps, .settings = ode_settings_of({.sleeping = false})});
+  return make_ode(std::move(name), job,
+                  {.substeps = substeps, .settings = ode_settings_of({.sleeping = false})});
 }
 
 DropMethod make_low(const DropJob& job) {
@@ -47,7 +51,8 @@ DropMethod make_low(const DropJob& job) {
 }
 
 DropMethod make_bullet(std::string name, BulletGeometry geometry) {
-  return {std::move(name), BulletMethod{geometry}, bullet_available() ? "" : "needs a build with Bullet (libbullet-dev)"};
+  return {std::move(name), BulletMethod{geometry},
+          bullet_available() ? "" : "needs a build with Bullet (libbullet-dev)"};
 }
 
 using Maker = DropMethod (*)(const DropJob&);
@@ -57,18 +62,28 @@ struct NamedMaker {
 };
 
 constexpr std::array<NamedMaker, 10> kEngineMethods = {{
-    {"full_plain", [](const DropJob& job) { return make_ode("full_plain", job, {.settings = plain_settings()}); }},
+    {"full_plain",
+     [](const DropJob& job) { return make_ode("full_plain", job, {.settings = plain_settings()}); }},
     {"full", [](const DropJob& job) { return make_full("full", job, ManagerSettings{}.full_substeps); }},
     {"full_1", [](const DropJob& job) { return make_ode("full_1", job, {}); }},
     {"low", make_low},
-    {"spheres7", [](const DropJob& job) {
-       return make_ode("spheres7", job, {.geometry = OdeGeometry::spheres, .spheres = fit_spheres(job.shape->mesh, kSphereCount)});
+    {"spheres7",
+     [](const DropJob& job) {
+       return make_ode(
+           "spheres7", job,
+           {.geometry = OdeGeometry::spheres, .spheres = fit_spheres(job.shape->mesh, kSphereCount)});
      }},
     {"sphere", [](const DropJob& job) { return make_ode("sphere", job, {.geometry = OdeGeometry::sphere}); }},
-    {"hull", [](const DropJob& job) { return make_ode("hull", job, {.settings = plain_settings(), .geometry = OdeGeometry::hull}); }},
+    {"hull",
+     [](const DropJob& job) {
+       return make_ode("hull", job, {.settings = plain_settings(), .geometry = OdeGeometry::hull});
+     }},
     {"bullet_hull", [](const DropJob&) { return make_bullet("bullet_hull", BulletGeometry::hull); }},
     {"bullet_sphere", [](const DropJob&) { return make_bullet("bullet_sphere", BulletGeometry::sphere); }},
-    {"waiting", [](const DropJob&) { return DropMethod{"waiting", StatisticalMethod{}, ""}; }},
+    {"waiting",
+     [](const DropJob&) {
+       return DropMethod{"waiting", StatisticalMethod{}, ""};
+     }},
 }};
 
 /// full_2 … full_64: the full level at that many substeps.
@@ -76,26 +91,34 @@ std::optional<int> substeps_named(std::string_view name) {
   constexpr std::string_view kPrefix = "full_";
   int substeps = 0;
   if (!name.starts_with(kPrefix)) return {};
-  const auto [end, error] = std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), substeps);
-  return error == std::errc() && end == name.data() + name.size() && substeps >= 2 && substeps <= 64 ? std::optional(substeps) : std::nullopt;
+  const auto [end, error] =
+      std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), substeps);
+  return error == std::errc() && end == name.data() + name.size() && substeps >= 2 && substeps <= 64
+             ? std::optional(substeps)
+             : std::nullopt;
 }
 
 constexpr std::string_view kStatistical = "statistical";
 
-std::vector<DropMethod> make_statistical(const DropJob& job, const SignatureSettings& measuring, int threads, const Progress& progress) {
+std::vector<DropMethod> make_statistical(const DropJob& job, const SignatureSettings& measuring, int threads,
+                                         const Progress& progress) {
   SignatureSourceSettings source;
   source.measuring = measuring;
   source.threads = threads;
   source.progress = progress;
+  source.warn = warn;
   const auto signature = find_or_measure_signature(*job.shape, job.law(), source).signature;
   std::vector<DropMethod> methods;
-  for (const StatisticalModel model : {StatisticalModel::tables, StatisticalModel::support})
-    methods.push_back({std::string(kStatistical), StatisticalMethod{model, signature}, ""});
+  for (const auto& [model, published] : {std::pair{StatisticalModel::tables, true},
+                                         {StatisticalModel::tables, false},
+                                         {StatisticalModel::support, true}})
+    methods.push_back({std::string(kStatistical), StatisticalMethod{model, signature, published}, ""});
   return methods;
 }
 
 [[noreturn]] void throw_unknown(const std::string& name) {
-  throw InputError(fmt::format("--methods: found '{}', expected some of {}", name, fmt::join(drop_method_names(), ", ")));
+  throw ArgumentError(
+      fmt::format("--methods: found '{}', expected some of {}", name, fmt::join(drop_method_names(), ", ")));
 }
 
 }  // namespace
@@ -108,7 +131,8 @@ int DropMethod::substeps() const {
 std::string DropMethod::model() const {
   const auto* statistical = std::get_if<StatisticalMethod>(&way);
   if (!statistical) return "";
-  return statistical->model == StatisticalModel::tables ? "tables" : "support";
+  if (statistical->model == StatisticalModel::support) return "support";
+  return statistical->published ? "tables" : "tables_on_hull";
 }
 
 // Small bodies move as fast in their own time, which is the shorter by √λ.
@@ -117,7 +141,9 @@ DropMethod make_truth(const DropJob& job) {
   return make_ode("truth", job, {.substeps = int(std::lround(kTruthSubsteps / std::sqrt(scale)))});
 }
 
-bool is_drop_method(const std::string& name) { return substeps_named(name) || std::ranges::count(drop_method_names(), name) > 0; }
+bool is_drop_method(const std::string& name) {
+  return substeps_named(name) || std::ranges::count(drop_method_names(), name) > 0;
+}
 
 std::vector<std::string> drop_method_names() {
   std::vector<std::string> names;
@@ -126,8 +152,9 @@ std::vector<std::string> drop_method_names() {
   return names;
 }
 
-std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job, const SignatureSettings& measuring,
-                                          int threads, const Progress& progress) {
+std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job,
+                                          const SignatureSettings& measuring, int threads,
+                                          const Progress& progress) {
   std::vector<DropMethod> methods;
   for (const std::string& name : names) {
     if (name == kStatistical) {

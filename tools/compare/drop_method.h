@@ -1,4 +1,5 @@
-// The ways to simulate a drop that `--methods` names, prepared for one shape: what each of them collides with, and how finely it steps.
+// The ways to simulate a drop that `--methods` names, prepared for one shape: what each of them collides
+// with, and how finely it steps.
 #pragma once
 
 #include <memory>
@@ -24,17 +25,19 @@ struct DropJob {
 
 /// ODE, with one or another collision geometry.
 struct OdeMethod {
-  int substeps = 1;                                  ///< ODE steps in a step
+  int substeps = 1;  ///< ODE steps in a step
   OdeSettings settings = {};
   OdeGeometry geometry = OdeGeometry::trimesh;
-  std::shared_ptr<const Shape> collision_shape = {};      ///< with the mass distribution of the job's shape
-  std::vector<Sphere> spheres = {};                  ///< for OdeGeometry::spheres
+  std::shared_ptr<const Shape> collision_shape = {};  ///< with the mass distribution of the job's shape
+  std::vector<Sphere> spheres = {};                   ///< for OdeGeometry::spheres
 };
 
 /// The statistical level.
 struct StatisticalMethod {
   StatisticalModel model = StatisticalModel::support;
-  std::shared_ptr<const Signature> signature = {};   ///< none: as a body is that waits for its first one, at `support`
+  std::shared_ptr<const Signature> signature =
+      {};                 ///< none: as a body is that waits for its first one, at `support`
+  bool published = true;  ///< `tables` as the paper has it
 };
 
 /// Bullet, where Lodestone is built with it.
@@ -48,23 +51,26 @@ struct DropMethod {
   std::string left_out = {};  ///< why it cannot be had for this shape; empty where it can
 
   int substeps() const;
-  std::string model() const;  ///< "tables" or "support"; empty for ODE
+  std::string model() const;  ///< "tables", "tables_on_hull" or "support"; empty for ODE
 };
 
-/// The ground truth: ODE at 34 steps in 1/60 s, just under .5 ms, so that 60 Hz falls on whole steps; for bodies below .2 m at
-/// the more, the smaller they are.
+/// The ground truth: ODE at 34 steps in 1/60 s, just under .5 ms, so that 60 Hz falls on whole steps; for
+/// bodies below .2 m at the more, the smaller they are.
 DropMethod make_truth(const DropJob& job);
 
-/// Whether `make_drop_methods` knows it: one of drop_method_names(), or full_2 to full_64, the full level at that many substeps.
+/// Whether `make_drop_methods` knows it: one of drop_method_names(), or full_2 to full_64, the full level at
+/// that many substeps.
 bool is_drop_method(const std::string& name);
 
-/// The names without a number of substeps. `full` is the full level with its default substeps, `full_1` ODE itself in one step,
-/// `waiting` is `support` while the shape's signature is being measured.
+/// The names without a number of substeps. `full` is the full level with its default substeps, `full_1` ODE
+/// itself in one step, `waiting` is `support` while the shape's signature is being measured.
 std::vector<std::string> drop_method_names();
 
-/// The methods of these names; `statistical` gives one for each model, with a signature from the cache or measured now as `measuring` says on `threads`
-/// threads (0: all cores). Throws InputError for an unknown name.
-std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job, const SignatureSettings& measuring,
-                                          int threads, const Progress& progress);
+/// The methods of these names; `statistical` gives one for each model, `tables` as published and on hulls,
+/// with a signature from the cache or measured now as `measuring` says on `threads` threads (0: all cores).
+/// Throws InputError for an unknown name.
+std::vector<DropMethod> make_drop_methods(const std::vector<std::string>& names, const DropJob& job,
+                                          const SignatureSettings& measuring, int threads,
+                                          const Progress& progress);
 
 }  // namespace lodestone

@@ -9,12 +9,12 @@
 namespace lodestone {
 namespace {
 
-constexpr double kHorizon = 10.0;        // s
-constexpr double kBounceRise = 0.3;      // m/s; a resting contact rises by gΔt = .16 m/s
-constexpr double kRestEnergy = 2e-3;     // J/kg
-constexpr double kRestDuration = 0.25;   // s, longer than a rocking body stands still at its turning points
-constexpr double kSettledEnergy = 1e-6;  // J/kg
-constexpr double kSettledDuration = 1.0; // s
+constexpr double kHorizon = 10.0;         // s
+constexpr double kBounceRise = 0.3;       // m/s; a resting contact rises by gΔt = .16 m/s
+constexpr double kRestEnergy = 2e-3;      // J/kg
+constexpr double kRestDuration = 0.25;    // s, longer than a rocking body stands still at its turning points
+constexpr double kSettledEnergy = 1e-6;   // J/kg
+constexpr double kSettledDuration = 1.0;  // s
 
 }  // namespace
 
@@ -24,7 +24,10 @@ double kinetic_energy_per_mass(const Shape& shape, const RigidState& state) {
 }
 
 DropObserver::DropObserver(const Shape& shape, const Vec3& plane_normal, double gravity_m_per_s2)
-    : shape_(shape), normal_(plane_normal), gravity_(gravity_m_per_s2), gravity_along_normal_(gravity_m_per_s2 * plane_normal.z()),
+    : shape_(shape),
+      normal_(plane_normal),
+      gravity_(gravity_m_per_s2),
+      gravity_along_normal_(gravity_m_per_s2 * plane_normal.z()),
       scale_(std::max(1.0, drop_scale(shape))) {
   kinetic_energy_.reserve(kKineticEnergySamples);
 }
@@ -32,7 +35,9 @@ DropObserver::DropObserver(const Shape& shape, const Vec3& plane_normal, double 
 void DropObserver::sample(double time_s, const RigidState& state) {
   if (samples_++ == 0) start_ = last_ = state;
   if (rise_above_free_flight(time_s, state) > kBounceRise * std::sqrt(scale_)) {
-    if (++bounces_ == 1) first_impact_ = FirstImpact{last_.velocity - gravity_ * (time_s - last_time_) * Vec3::UnitZ(), state.velocity};
+    if (++bounces_ == 1)
+      first_impact_ =
+          FirstImpact{last_.velocity - gravity_ * (time_s - last_time_) * Vec3::UnitZ(), state.velocity};
   }
   if (bounces_ == 1) rebound_ = std::max(rebound_, lowest_point(state));
   const double energy = kinetic_energy_per_mass(shape_, state);
@@ -55,15 +60,19 @@ double DropObserver::lowest_point(const RigidState& state) const {
   return normal_.dot(state.position) - down.dot(shape_.hull.vertices[vertex]);
 }
 
-// Where samples are farther apart than what is kept, the last one holds; where they are closer, the first counts.
+// Where samples are farther apart than what is kept, the last one holds; where they are closer, the first
+// counts.
 void DropObserver::keep_energy(double time_s, float energy) {
   const double interval = kObservationStep * std::sqrt(scale_);
   const auto index = std::min<std::size_t>(std::lround(time_s / interval), kKineticEnergySamples);
-  if (kinetic_energy_.size() < index) kinetic_energy_.resize(index, kinetic_energy_.empty() ? energy : kinetic_energy_.back());
+  if (kinetic_energy_.size() < index)
+    kinetic_energy_.resize(index, kinetic_energy_.empty() ? energy : kinetic_energy_.back());
   if (kinetic_energy_.size() == index && index < kKineticEnergySamples) kinetic_energy_.push_back(energy);
 }
 
-bool DropObserver::settled() const { return last_time_ - last_stir_time_ >= kSettledDuration * std::sqrt(scale_); }
+bool DropObserver::settled() const {
+  return last_time_ - last_stir_time_ >= kSettledDuration * std::sqrt(scale_);
+}
 
 double DropObserver::horizon_s() const { return kHorizon * std::sqrt(scale_); }
 

@@ -1,7 +1,8 @@
-// What is observed of a drop. Every method, truth included, is observed alike: states sampled at 60 Hz, whatever its own step.
-// On a slope "up" is the plane's normal, and only gravity's part along it counts where a bounce is told from free flight.
-// The thresholds are those of bodies up to .4 m; for larger ones speeds and times are multiplied by √λ, energies by λ (drop_scale). Smaller
-// ones keep them, because a slower bounce would drown in what gravity does between two samples.
+// What is observed of a drop. Every method, truth included, is observed alike: states sampled at 60 Hz,
+// whatever its own step. On a slope "up" is the plane's normal, and only gravity's part along it counts where
+// a bounce is told from free flight. The thresholds are those of bodies up to .4 m; for larger ones speeds
+// and times are multiplied by √λ, energies by λ (drop_scale). Smaller ones keep them, because a slower bounce
+// would drown in what gravity does between two samples.
 #pragma once
 
 #include <cstdint>
@@ -23,16 +24,20 @@ struct FirstImpact {
 
 /// What is kept of one drop.
 struct DropObservation {
-  int bounces = 0;             ///< pairs of successive samples between which the velocity along the normal rises by more than .3 m/s above free flight
-  double rest_time_s = 0;      ///< last time that the kinetic energy per mass is above 2e-3 J/kg
-  double distance_m = 0;       ///< from start to end, along the plane
-  double first_rebound_m = 0;  ///< greatest height of the lowest point between the first and the second bounce; 0 without a bounce
+  int bounces = 0;  ///< pairs of successive samples between which the velocity along the normal rises by more
+                    ///< than .3 m/s above free flight
+  double rest_time_s = 0;  ///< last time that the kinetic energy per mass is above 2e-3 J/kg
+  double distance_m = 0;   ///< from start to end, along the plane
+  double first_rebound_m =
+      0;  ///< greatest height of the lowest point between the first and the second bounce; 0 without a bounce
   std::optional<FirstImpact> first_impact = {};  ///< none without a bounce
-  bool at_rest = false;        ///< below 2e-3 J/kg for the last quarter of a second
-  std::int64_t table_extrapolations = 0;  ///< look-ups of the statistical level outside of what its signature was measured for
+  bool at_rest = false;                          ///< below 2e-3 J/kg for the last quarter of a second
+  std::int64_t table_extrapolations =
+      0;  ///< look-ups of the statistical level outside of what its signature was measured for
   Vec3 after_a_second = Vec3::Zero();  ///< m, where its centre of mass is then
-  Vec3 up_in_body = Vec3::UnitZ();    ///< the plane's normal in body axes at the end
-  std::vector<float> kinetic_energy;  ///< per mass, J/kg, kKineticEnergySamples values; the last state's goes on where a drop ends earlier
+  Vec3 up_in_body = Vec3::UnitZ();     ///< the plane's normal in body axes at the end
+  std::vector<float> kinetic_energy;  ///< per mass, J/kg, kKineticEnergySamples values; the last state's goes
+                                      ///< on where a drop ends earlier
 };
 
 /// Collects a DropObservation from samples. The plane goes through the origin.

@@ -1,12 +1,10 @@
 #include "tools/compare/drop_report.h"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
-#include <fstream>
 #include <numbers>
 
-#include "reference/error.h"
+#include "reference/output_file.h"
 #include "tools/compare/drop_row_report.h"
 #include "tools/csv_file.h"
 #include "tools/text_table.h"
@@ -16,13 +14,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-void write_drops(std::ostream& out, const std::string& method, const std::string& model, double dt_s,
+void write_drops(OutputFile& out, const std::string& method, const std::string& model, double dt_s,
                  const std::vector<DropObservation>& drops) {
   for (std::size_t i = 0; i < drops.size(); ++i) {
     const DropObservation& drop = drops[i];
-    fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{},{}\n", method, model, dt_s, i, drop.bounces, drop.rest_time_s,
-               drop.distance_m, drop.first_rebound_m, int(drop.at_rest), drop.up_in_body.x(), drop.up_in_body.y(),
-               drop.up_in_body.z());
+    out.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", method, model, dt_s, i, drop.bounces,
+                          drop.rest_time_s, drop.distance_m, drop.first_rebound_m, int(drop.at_rest),
+                          drop.up_in_body.x(), drop.up_in_body.y(), drop.up_in_body.z()));
   }
 }
 
@@ -33,13 +31,21 @@ std::string table_of(const DropComparison& comparison) {
   for (const DropRow& row : comparison.rows) {
     table.add_row(cells_of(row));
     const std::string line = fmt::format("{} left out: {} {}\n", row.method, comparison.shape, row.reason);
-    if (!row.reason.empty() && left_out.find(line) == std::string::npos) left_out += line;  // once for all steps
+    if (!row.reason.empty() && left_out.find(line) == std::string::npos)
+      left_out += line;  // once for all steps
   }
   return table.text() + left_out;
 }
 
-ordered_json score_row_of(const DropComparison& comparison, const std::string& method, const std::string& model, double dt_s, int substeps, const std::optional<ScoreWithInterval>& score) {
-  ordered_json row = {{"shape", comparison.shape}, {"trials", comparison.trials}, {"method", method}, {"model", model.empty() ? ordered_json(nullptr) : ordered_json(model)}, {"dt_s", dt_s}, {"substeps", substeps}};
+ordered_json score_row_of(const DropComparison& comparison, const std::string& method,
+                          const std::string& model, double dt_s, int substeps,
+                          const std::optional<ScoreWithInterval>& score) {
+  ordered_json row = {{"shape", comparison.shape},
+                      {"trials", comparison.trials},
+                      {"method", method},
+                      {"model", model.empty() ? ordered_json(nullptr) : ordered_json(model)},
+                      {"dt_s", dt_s},
+                      {"substeps", substeps}};
   row["score"] = score ? ordered_json(score->value.score) : ordered_json(nullptr);
   row["score_from"] = score ? ordered_json(score->interval[0]) : ordered_json(nullptr);
   row["score_to"] = score ? ordered_json(score->interval[1]) : ordered_json(nullptr);
@@ -50,9 +56,11 @@ ordered_json score_row_of(const DropComparison& comparison, const std::string& m
 }  // namespace
 
 std::string text_of(const DropJob& job, const DropComparison& comparison) {
-  return fmt::format("{}: {} drops, restitution {}, friction {}, slope {:.4g} deg; truth: ODE at {:.3g} ms\n\n", comparison.shape,
-                     comparison.trials, job.material.restitution, job.material.friction,
-                     job.conditions.slope * 180.0 / std::numbers::pi, 1e3 * kObservationStep / comparison.truth_substeps) +
+  return fmt::format(
+             "{}: {} drops, restitution {}, friction {}, slope {:.4g} deg; truth: ODE at {:.3g} ms\n\n",
+             comparison.shape, comparison.trials, job.material.restitution, job.material.friction,
+             job.conditions.slope * 180.0 / std::numbers::pi,
+             1e3 * kObservationStep / comparison.truth_substeps) +
          table_of(comparison) + '\n' + drop_row_footer();
 }
 
@@ -76,8 +84,12 @@ ordered_json score_rows_of(const DropComparison& comparison) {
     row["reason"] = reason.empty() ? ordered_json(nullptr) : ordered_json(reason);
     rows.push_back(std::move(row));
   };
-  add(score_row_of(comparison, "noise_floor", "", kObservationStep / comparison.truth_substeps, 1, comparison.floor), std::nullopt, "");
-  for (const DropRow& row : comparison.rows) add(score_row_of(comparison, row.method, row.model, row.dt_s, row.substeps, row.score), row.ns_per_body_step, row.reason);
+  add(score_row_of(comparison, "noise_floor", "", kObservationStep / comparison.truth_substeps, 1,
+                   comparison.floor),
+      std::nullopt, "");
+  for (const DropRow& row : comparison.rows)
+    add(score_row_of(comparison, row.method, row.model, row.dt_s, row.substeps, row.score),
+        row.ns_per_body_step, row.reason);
   return rows;
 }
 
@@ -87,16 +99,14 @@ void save_scores(const DropComparison& comparison, const std::filesystem::path& 
 }
 
 void save_drops(const DropComparison& comparison, const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  const std::filesystem::path file = folder / "drops.csv";
-  std::ofstream out(file);
-  out << "method,model,dt_s,trial,bounces,rest_time_s,distance_m,first_rebound_m,at_rest,up_x,up_y,up_z\n";
+  OutputFile out(folder / "drops.csv", "room for the drops");
+  out.write(
+      "method,model,dt_s,trial,bounces,rest_time_s,distance_m,first_rebound_m,at_rest,up_x,up_y,up_z\n");
   const double truth_step = kObservationStep / comparison.truth_substeps;
   write_drops(out, "truth_a", "", truth_step, comparison.truth_a);
   write_drops(out, "truth_b", "", truth_step, comparison.truth_b);
   for (const DropRow& row : comparison.rows) write_drops(out, row.method, row.model, row.dt_s, row.drops);
-  if (!out.flush()) throw InputError(fmt::format("{}: cannot be written", file.string()));
+  out.close();
 }
 
 }  // namespace lodestone

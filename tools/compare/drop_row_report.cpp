@@ -16,14 +16,17 @@ std::string text_of(std::optional<double> value, int digits) {
 // 1/60 where that is what it is.
 std::string text_of_step(double dt_s) {
   const double per_second = 1.0 / dt_s;
-  if (std::abs(per_second - std::round(per_second)) < 1e-3 * per_second) return fmt::format("1/{:.0f}", per_second);
+  if (std::abs(per_second - std::round(per_second)) < 1e-3 * per_second)
+    return fmt::format("1/{:.0f}", per_second);
   return fmt::format("{:.4g}", dt_s);
 }
 
 std::vector<std::string> cells_of(const ScoreWithInterval& scored) {
   const DropScore& score = scored.value;
-  std::vector<std::string> cells = {text_of(score.score, 3), text_of(scored.interval[0], 3), text_of(scored.interval[1], 3)};
-  for (const auto& part : {score.w_bounces, score.w_rest_time, score.w_distance, score.w_peak, score.ke_w, score.tv})
+  std::vector<std::string> cells = {text_of(score.score, 3), text_of(scored.interval[0], 3),
+                                    text_of(scored.interval[1], 3)};
+  for (const auto& part :
+       {score.w_bounces, score.w_rest_time, score.w_distance, score.w_peak, score.ke_w, score.tv})
     cells.push_back(text_of(part, 3));
   return cells;
 }
@@ -33,20 +36,28 @@ ordered_json json_or_null(std::optional<double> value) {
 }
 
 ordered_json json_of(const ImpactErrors& errors) {
-  return {{"impacts", errors.impacts},     {"impulse_error_10pct_median", errors.impulse_median}, {"impulse_error_10pct_mean", errors.impulse_mean},
-          {"unnoticed", errors.unnoticed}, {"angle_deg_median", errors.angle_deg},                {"speed_change_mean", errors.speed_change}};
+  return {{"impacts", errors.impacts},
+          {"impulse_error_10pct_median", errors.impulse_median},
+          {"impulse_error_10pct_mean", errors.impulse_mean},
+          {"unnoticed", errors.unnoticed},
+          {"angle_deg_median", errors.angle_deg},
+          {"speed_change_mean", errors.speed_change}};
 }
 
 }  // namespace
 
 std::vector<std::string> drop_row_heading() {
-  return {"method", "model", "step s", "substeps", "score", "from", "to", "bounces", "rest time", "distance", "rebound", "energy", "rest pose", "impact/10%", "ns/body-step"};
+  return {"method",    "model",    "step s",  "substeps", "score",     "from",       "to",          "bounces",
+          "rest time", "distance", "rebound", "energy",   "rest pose", "impact/10%", "ns/body-step"};
 }
 
 std::string drop_row_footer() {
-  return "score: mean of the parts to its right; its 95 % bootstrap interval from .. to; the noise floor is truth against truth with other starts\n"
-         "bounces .. rebound: Wasserstein-1 over the truth's deviation; energy: of the kinetic energy over 0-6 s; rest pose: total variation\n"
-         "impact/10%: median error of the first impact's impulse against the truth from the same start, in tenths of the impulse; viewers notice about one\n";
+  return "score: mean of the parts to its right; its 95 % bootstrap interval from .. to; the noise floor is "
+         "truth against truth with other starts\n"
+         "bounces .. rebound: Wasserstein-1 over the truth's deviation; energy: of the kinetic energy over "
+         "0-6 s; rest pose: total variation\n"
+         "impact/10%: median error of the first impact's impulse against the truth from the same start, in "
+         "tenths of the impulse; viewers notice about one\n";
 }
 
 std::vector<std::string> cells_of_floor(const ScoreWithInterval& floor) {
@@ -57,7 +68,8 @@ std::vector<std::string> cells_of_floor(const ScoreWithInterval& floor) {
 }
 
 std::vector<std::string> cells_of(const DropRow& row) {
-  std::vector<std::string> cells = {row.method, row.model, text_of_step(row.dt_s), fmt::format("{}", row.substeps)};
+  std::vector<std::string> cells = {row.method, row.model, text_of_step(row.dt_s),
+                                    fmt::format("{}", row.substeps)};
   if (row.score) {
     const std::vector<std::string> numbers = cells_of(*row.score);
     cells.insert(cells.end(), numbers.begin(), numbers.end());

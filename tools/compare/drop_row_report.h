@@ -1,4 +1,5 @@
-// The rows of a comparison of drops, as cells of a table for people and as JSON for programs: the same wherever drops are compared.
+// The rows of a comparison of drops, as cells of a table for people and as JSON for programs: the same
+// wherever drops are compared.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tools/compare/drop_row_report.h"
+#include "tools/interrupt.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -17,20 +20,24 @@ std::optional<double> score_over(const DropRow& row, const DropRow& first) {
 
 }  // namespace
 
-std::vector<DropComparison> compare_series(std::span<const DropCase> cases, const DropComparisonSettings& settings) {
+std::vector<DropComparison> compare_series(std::span<const DropCase> cases,
+                                           const DropComparisonSettings& settings) {
   std::vector<DropComparison> series;
-  for (const DropCase& one : cases) {
+  const auto compare = [&](const DropCase& one) {
     DropComparisonSettings with_name = settings;
     if (settings.progress)
       with_name.progress = [&](const std::string& stage, double fraction) {
-        settings.progress(fmt::format("{} of {}, {}: {}", series.size() + 1, cases.size(), one.name, stage), fraction);
+        settings.progress(fmt::format("{} of {}, {}: {}", series.size() + 1, cases.size(), one.name, stage),
+                          fraction);
       };
     series.push_back(compare_drops(one.job, with_name));
-  }
+  };
+  until_interrupted([&] { std::ranges::for_each(cases, compare); });
   return series;
 }
 
-std::string text_of(const std::string& what, std::span<const DropCase> cases, std::span<const DropComparison> series, bool over_first) {
+std::string text_of(const std::string& what, std::span<const DropCase> cases,
+                    std::span<const DropComparison> series, bool over_first) {
   std::vector<std::string> heading = {what};
   std::ranges::move(drop_row_heading(), std::back_inserter(heading));
   heading.insert(heading.begin() + 5, "floor");
@@ -43,14 +50,17 @@ std::string text_of(const std::string& what, std::span<const DropCase> cases, st
       std::ranges::move(cells_of(row), std::back_inserter(cells));
       if (row.score) {
         cells.insert(cells.begin() + 5, fmt::format("{:.3f}", series[i].floor.value.score));
-        if (over_first) cells.insert(cells.begin() + 7, fmt::format("{:.2f}", score_over(row, series[0].rows[k]).value_or(0.0)));
+        if (over_first)
+          cells.insert(cells.begin() + 7,
+                       fmt::format("{:.2f}", score_over(row, series[0].rows[k]).value_or(0.0)));
       }
       table.add_row(std::move(cells));
     }
   return table.text() + '\n' + drop_row_footer();
 }
 
-ordered_json json_of(const std::string& key, std::span<const DropCase> cases, std::span<const DropComparison> series, bool over_first) {
+ordered_json json_of(const std::string& key, std::span<const DropCase> cases,
+                     std::span<const DropComparison> series, bool over_first) {
   ordered_json json;
   json["trials"] = series.empty() ? 0 : series[0].trials;
   json["rows"] = ordered_json::array();

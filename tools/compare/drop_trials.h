@@ -16,17 +16,19 @@ struct DropBatch {
   int trials = 300;
   std::uint64_t seed = 1;  ///< of the starts: the same for every method that is to be compared start by start
   double dt_s = kObservationStep;
-  int threads = 0;         ///< 0: all cores; the result does not depend on it
+  int threads = 0;  ///< 0: all cores; the result does not depend on it
 };
 
 /// Simulates drops 0 … trials − 1 for 10 s, or until a body has settled, and observes each at 60 Hz.
 /// `progress` is called with the fraction done, from one thread at a time.
-std::vector<DropObservation> observe_drops(const DropJob& job, const DropMethod& method, const DropBatch& batch,
+std::vector<DropObservation> observe_drops(const DropJob& job, const DropMethod& method,
+                                           const DropBatch& batch,
                                            const std::function<void(double)>& progress = {});
 
-/// Processor time of a body's step, ns, over the steps in which it is awake, on one thread. ODE and Bullet: one body at a time, up to the rest that
-/// `observed` found; the median of some of the batch's drops. Statistical: a thousand bodies in one manager, too far apart to meet, without
-/// the phases that look for pairs.
+/// Processor time of a body's step, ns, over the steps in which it is awake, on one thread. ODE and Bullet:
+/// one body at a time, up to the rest that `observed` found; the median of some of the batch's drops.
+/// Statistical: a thousand bodies in one manager, too far apart to meet, without the phases that look for
+/// pairs.
 double measure_ns_per_body_step(const DropJob& job, const DropMethod& method, const DropBatch& batch,
                                 std::span<const DropObservation> observed);
 

@@ -17,7 +17,8 @@ Manager make_manager(const DropJob& job, const StatisticalMethod& method, std::u
   return manager;
 }
 
-// Draws are keyed by (seed, body, event), and the body is the first of its manager: each drop needs a seed of its own.
+// Draws are keyed by (seed, body, event), and the body is the first of its manager: each drop needs a seed of
+// its own.
 std::uint64_t seed_of_drop(std::uint64_t seed, std::uint32_t trial) {
   RandomStream random(seed, trial, 0x5eed);
   return std::uint64_t(random.uniform() * 0x1p53);
@@ -32,9 +33,12 @@ DropWorld::DropWorld(const DropJob& job, const DropMethod& method)
 
 void DropWorld::start(std::uint64_t seed, std::uint32_t trial) {
   const RigidState state = drop_state(*job_.shape, job_.conditions, seed, trial);
-  if (std::holds_alternative<OdeMethod>(method_.way)) start_ode(state);
-  else if (std::holds_alternative<BulletMethod>(method_.way)) start_bullet(state);
-  else start_statistical(state, seed, trial);
+  if (std::holds_alternative<OdeMethod>(method_.way))
+    start_ode(state);
+  else if (std::holds_alternative<BulletMethod>(method_.way))
+    start_bullet(state);
+  else
+    start_statistical(state, seed, trial);
 }
 
 void DropWorld::start_ode(const RigidState& state) {
@@ -61,9 +65,12 @@ void DropWorld::start_statistical(const RigidState& state, std::uint64_t seed, s
 }
 
 void DropWorld::step(double dt) {
-  if (ode_) ode_->world.step(dt, method_.substeps());
-  else if (bullet_) bullet_->world.step(dt);
-  else statistical_->manager.step(dt);
+  if (ode_)
+    ode_->world.step(dt, method_.substeps());
+  else if (bullet_)
+    bullet_->world.step(dt);
+  else
+    statistical_->manager.step(dt);
 }
 
 RigidState DropWorld::state() const {
@@ -71,7 +78,9 @@ RigidState DropWorld::state() const {
   return ode_ ? ode_->world.state(ode_->body) : statistical_->manager.state(statistical_->body);
 }
 
-std::int64_t DropWorld::table_extrapolations() const { return statistical_ ? statistical_->manager.report().counters.table_extrapolations : 0; }
+std::int64_t DropWorld::table_extrapolations() const {
+  return statistical_ ? statistical_->manager.report().counters.table_extrapolations : 0;
+}
 
 Manager make_many_drops(const DropJob& job, const StatisticalMethod& method, std::uint64_t seed, int bodies) {
   Manager manager = make_manager(job, method, seed);
@@ -79,7 +88,8 @@ Manager make_many_drops(const DropJob& job, const StatisticalMethod& method, std
   const int side = int(std::ceil(std::sqrt(double(bodies))));
   for (int i = 0; i < bodies; ++i) {
     RigidState state = drop_state(*job.shape, job.conditions, seed, i);
-    state.position += kFarApart * job.shape->size * ((i % side - side / 2) * across + (i / side - side / 2) * along);
+    state.position +=
+        kFarApart * job.shape->size * ((i % side - side / 2) * across + (i / side - side / 2) * along);
     manager.add_body(statistical_body_of(job, state));
   }
   return manager;

@@ -16,11 +16,13 @@ class DropWorld {
   /// `job` and `method` must outlive the world.
   DropWorld(const DropJob& job, const DropMethod& method);
 
-  /// Replaces the body by that of drop `trial`. What follows depends on (seed, trial) alone, not on earlier drops.
+  /// Replaces the body by that of drop `trial`. What follows depends on (seed, trial) alone, not on earlier
+  /// drops.
   void start(std::uint64_t seed, std::uint32_t trial);
   void step(double dt);
   RigidState state() const;
-  /// Since start(): look-ups outside of what the signature was measured for; 0 for other methods than `statistical`.
+  /// Since start(): look-ups outside of what the signature was measured for; 0 for other methods than
+  /// `statistical`.
   std::int64_t table_extrapolations() const;
 
  private:

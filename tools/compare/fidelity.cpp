@@ -173,7 +173,8 @@ Counts resample(std::size_t drops, RandomStream random) {
 std::array<double, 2> interval_of(std::vector<double> resampled, double score) {
   std::ranges::sort(resampled);
   const double last = double(resampled.size() - 1);
-  const double shift = score - std::accumulate(resampled.begin(), resampled.end(), 0.0) / double(resampled.size());
+  const double shift =
+      score - std::accumulate(resampled.begin(), resampled.end(), 0.0) / double(resampled.size());
   const double low = resampled[std::size_t(std::lround(0.025 * last))];
   const double high = resampled[std::size_t(std::lround(0.975 * last))];
   return {std::max(0.0, low + shift), high + shift};
@@ -183,14 +184,17 @@ std::array<double, 2> interval_of(std::vector<double> resampled, double score) {
 
 ScoreWithInterval score_drops(std::span<const DropObservation> truth, std::span<const DropObservation> method,
                               std::uint64_t seed, int bootstrap_samples) {
-  check_that(!truth.empty() && !method.empty() && bootstrap_samples > 0, "there are drops and resamples to score");
+  check_that(!truth.empty() && !method.empty() && bootstrap_samples > 0,
+             "there are drops and resamples to score");
   const Scoring scoring(truth, method);
   ScoreWithInterval result;
   result.value = scoring.score(Counts(truth.size(), 1), Counts(method.size(), 1));
   std::vector<double> resampled;
   for (int i = 0; i < bootstrap_samples; ++i)
-    resampled.push_back(scoring.score(resample(truth.size(), {seed, std::uint64_t(i), 0}),
-                                      resample(method.size(), {seed, std::uint64_t(i), 1})).score);
+    resampled.push_back(scoring
+                            .score(resample(truth.size(), {seed, std::uint64_t(i), 0}),
+                                   resample(method.size(), {seed, std::uint64_t(i), 1}))
+                            .score);
   result.interval = interval_of(std::move(resampled), result.value.score);
   return result;
 }

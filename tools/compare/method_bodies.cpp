@@ -6,6 +6,7 @@ ManagerSettings manager_settings_of(const StatisticalMethod& method, std::uint64
   ManagerSettings settings;
   settings.seed = seed;
   settings.model = method.model;
+  settings.tables.published = method.published;
   settings.signatures = [signature = method.signature](const Shape&, const ContactLaw&) { return signature; };
   return settings;
 }

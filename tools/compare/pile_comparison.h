@@ -1,9 +1,11 @@
-// Methods against the truth, pile by pile, as drop_comparison.h is for drops: two batches of truth with different starts, A and B; B against A is the
-// noise floor, and a method takes the starts of B and is compared with A.
+// Methods against the truth, pile by pile, as drop_comparison.h is for drops: two batches of truth with
+// different starts, A and B; B against A is the noise floor, and a method takes the starts of B and is
+// compared with A.
 //
-// The truth is ODE in steps of .49 ms, as for drops: dWorldStep while few contacts hang together, else QuickStep, since dWorldStep's time grows with the cube
-// of them (30 boxes in a bin: a quarter of an hour). QuickStep's friction follows the pressure of the moment, dWorldStep's that of a
-// frictionless impact: so single bodies are answered as drops are, heaps as nearly as ODE can.
+// The truth is ODE in steps of .49 ms, as for drops: dWorldStep while few contacts hang together, else
+// QuickStep, since dWorldStep's time grows with the cube of them (30 boxes in a bin: a quarter of an hour).
+// QuickStep's friction follows the pressure of the moment, dWorldStep's that of a frictionless impact: so
+// single bodies are answered as drops are, heaps as nearly as ODE can.
 #pragma once
 
 #include <optional>
@@ -16,34 +18,34 @@ namespace lodestone {
 
 struct PileComparisonSettings {
   PileConditions conditions;
-  int piles = 6;                                  ///< of each
-  std::vector<double> dt_s = {1.0 / 60.0};        ///< steps of the methods
+  int piles = 6;                            ///< of each
+  std::vector<double> dt_s = {1.0 / 60.0};  ///< steps of the methods
   std::vector<std::string> methods = {"full", "full_1", "statistical"};
-  SignatureSettings measuring = {};               ///< of the signature of `statistical`; its law is the job's
+  SignatureSettings measuring = {};  ///< of the signature of `statistical`; its law is the job's
   std::uint64_t seed = 1;
-  int threads = 0;                                ///< 0: all cores
+  int threads = 0;  ///< 0: all cores
   Progress progress;
 };
 
 /// Means over a batch, greatest values where the name says so, beside the truth.
 struct PileFigures {
-  double ke_l1 = 0;              ///< Σ |mean kinetic energy − truth's| / Σ truth's, over the samples
-  double sleep_time_s = 0, sleep_time_error = 0;    ///< error: relative to the truth
+  double ke_l1 = 0;  ///< Σ |mean kinetic energy − truth's| / Σ truth's, over the samples
+  double sleep_time_s = 0, sleep_time_error = 0;  ///< error: relative to the truth
   double mean_height_m = 0, mean_height_error = 0;
   double max_penetration_m = 0, penetration_over_size = 0;
-  double energy_rise = 0;        ///< greatest, over the energy at the start
-  int hovering = 0, escaped = 0; ///< of all piles together
+  double energy_rise = 0;         ///< greatest, over the energy at the start
+  int hovering = 0, escaped = 0;  ///< of all piles together
 };
 
 /// One method at one step.
 struct PileRow {
-  std::string method, model;                      ///< model "" for ODE
+  std::string method, model;  ///< model "" for ODE
   double dt_s = 1.0 / 60.0;
   int substeps = 1;
-  std::optional<PileFigures> figures = {};        ///< none where left out
+  std::optional<PileFigures> figures = {};  ///< none where left out
   double momentum_residual = 0;
   double ns_per_body_step = 0;
-  std::string reason = {};                        ///< why left out
+  std::string reason = {};  ///< why left out
   std::vector<PileObservation> piles = {};
 };
 
@@ -52,19 +54,21 @@ struct PileComparison {
   PileConditions conditions = {};
   int pile_count = 0;
   int truth_substeps = 0, truth_iterations = 0;
-  PileFigures truth = {}, floor = {};             ///< batch A beside itself; B beside A
+  PileFigures truth = {}, floor = {};  ///< batch A beside itself; B beside A
   double truth_momentum_residual = 0;
   std::vector<PileObservation> truth_a = {}, truth_b = {};
-  std::vector<PileRow> rows = {};                 ///< by method, then by step
+  std::vector<PileRow> rows = {};  ///< by method, then by step
 };
 
 /// ODE as in this file's head, stepped as for drops.
 DropMethod make_pile_truth(const DropJob& job);
 
 /// Neither empty.
-PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span<const PileObservation> piles, const Shape& shape);
+PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span<const PileObservation> piles,
+                               const Shape& shape);
 
-/// Throws InputError for an unknown method and for a bin too narrow for one body.
+/// As compare_drops where it is interrupted. Throws InputError for an unknown method and for a bin too narrow
+/// for one body.
 PileComparison compare_piles(const DropJob& job, const PileComparisonSettings& settings);
 
 }  // namespace lodestone

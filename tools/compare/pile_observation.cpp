@@ -20,7 +20,10 @@ constexpr int kOverlapInterval = 6;     // samples: a look at every pair costs m
 }  // namespace
 
 PileObserver::PileObserver(const Shape& shape, const PileOverlap& overlap, double gravity_m_per_s2)
-    : shape_(shape), overlap_(overlap), gravity_(gravity_m_per_s2), scale_(std::max(1.0, drop_scale(shape))) {}
+    : shape_(shape),
+      overlap_(overlap),
+      gravity_(gravity_m_per_s2),
+      scale_(std::max(1.0, drop_scale(shape))) {}
 
 void PileObserver::sample(double time_s, std::span<const RigidState> states) {
   observe_energy(time_s, states);
@@ -60,7 +63,8 @@ PileObservation PileObserver::result() const {
   pile.sleep_time_s = std::accumulate(last_stir_s_.begin(), last_stir_s_.end(), 0.0) / bodies;
   for (const RigidState& state : last_) pile.mean_height_m += state.position.z() / bodies;
   std::vector<char> at_rest;
-  for (const double stir : last_stir_s_) at_rest.push_back(last_time_s_ - stir >= kRestDuration * std::sqrt(scale_));
+  for (const double stir : last_stir_s_)
+    at_rest.push_back(last_time_s_ - stir >= kRestDuration * std::sqrt(scale_));
   pile.hovering = overlap_.count_hovering(last_, at_rest, kHoverDrop * shape_.size);
   return pile;
 }

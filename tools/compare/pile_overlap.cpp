@@ -19,17 +19,21 @@ void each_piece(const Shape& shape, const RigidState& state, const Visit& visit)
 
 }  // namespace
 
-double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state) {
+double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
+                            const RigidState& second_state) {
   const double of_hulls = measure_hull_overlap(first, first_state, second, second_state);
   if (of_hulls == 0.0 || (first.pieces.empty() && second.pieces.empty())) return of_hulls;
   double depth = 0.0;
   each_piece(first, first_state, [&](const Shape& a, const RigidState& at_a) {
-    each_piece(second, second_state, [&](const Shape& b, const RigidState& at_b) { depth = std::max(depth, measure_hull_overlap(a, at_a, b, at_b)); });
+    each_piece(second, second_state, [&](const Shape& b, const RigidState& at_b) {
+      depth = std::max(depth, measure_hull_overlap(a, at_a, b, at_b));
+    });
   });
   return depth;
 }
 
-PileOverlap::PileOverlap(const Shape& shape, std::vector<HalfSpace> planes) : shape_(shape), planes_(std::move(planes)) {
+PileOverlap::PileOverlap(const Shape& shape, std::vector<HalfSpace> planes)
+    : shape_(shape), planes_(std::move(planes)) {
   if (!shape.convex && !shape.sphere_radius && shape.pieces.empty()) grid_ = DepthGrid(shape.mesh);
 }
 
@@ -50,7 +54,8 @@ double PileOverlap::depth_of_vertices(const RigidState& of, const RigidState& in
 
 double PileOverlap::depth_in_planes(const RigidState& state) const {
   double depth = -1e300;
-  for (const HalfSpace& plane : planes_) depth = std::max(depth, measure_plane_overlap(shape_, state, plane.normal, plane.offset));
+  for (const HalfSpace& plane : planes_)
+    depth = std::max(depth, measure_plane_overlap(shape_, state, plane.normal, plane.offset));
   return depth;
 }
 
@@ -58,19 +63,22 @@ double PileOverlap::deepest(std::span<const RigidState> states) const {
   double depth = 0.0;
   for (std::size_t i = 0; i < states.size(); ++i) {
     depth = std::max(depth, depth_in_planes(states[i]));
-    for (std::size_t k = i + 1; k < states.size(); ++k) depth = std::max(depth, depth_of_pair(states[i], states[k]));
+    for (std::size_t k = i + 1; k < states.size(); ++k)
+      depth = std::max(depth, depth_of_pair(states[i], states[k]));
   }
   return depth;
 }
 
-int PileOverlap::count_hovering(std::span<const RigidState> states, std::span<const char> at_rest, double drop) const {
+int PileOverlap::count_hovering(std::span<const RigidState> states, std::span<const char> at_rest,
+                                double drop) const {
   int hovering = 0;
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!at_rest[i]) continue;
     RigidState lowered = states[i];
     lowered.position.z() -= drop;
     bool held = depth_in_planes(lowered) > 0.0;
-    for (std::size_t k = 0; k < states.size() && !held; ++k) held = k != i && depth_of_pair(lowered, states[k]) > 0.0;
+    for (std::size_t k = 0; k < states.size() && !held; ++k)
+      held = k != i && depth_of_pair(lowered, states[k]) > 0.0;
     hovering += !held;
   }
   return hovering;
@@ -78,7 +86,8 @@ int PileOverlap::count_hovering(std::span<const RigidState> states, std::span<co
 
 int PileOverlap::count_escaped(std::span<const RigidState> states) const {
   return int(std::ranges::count_if(states, [&](const RigidState& state) {
-    return std::ranges::any_of(planes_, [&](const HalfSpace& plane) { return plane.height_of(state.position) < 0.0; });
+    return std::ranges::any_of(planes_,
+                               [&](const HalfSpace& plane) { return plane.height_of(state.position) < 0.0; });
   }));
 }
 

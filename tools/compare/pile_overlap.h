@@ -1,5 +1,5 @@
-// How deep the bodies of a pile overlap, whatever method moved them: hulls of convex bodies; exact pieces of concave ones that have them
-// (Shape::pieces); otherwise the vertices of each mesh in the other.
+// How deep the bodies of a pile overlap, whatever method moved them: hulls of convex bodies; exact pieces of
+// concave ones that have them (Shape::pieces); otherwise the vertices of each mesh in the other.
 #pragma once
 
 #include <memory>
@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "lod/ground/ground.h"
-#include "tools/compare/depth_grid.h"
-
 #include "reference/shape.h"
+#include "tools/compare/depth_grid.h"
 
 namespace lodestone {
 
-/// m, of two bodies' hulls, or of their convex pieces where a concave one has some (Shape::pieces); 0 where they are apart.
-double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second, const RigidState& second_state);
+/// m, of two bodies' hulls, or of their convex pieces where a concave one has some (Shape::pieces); 0 where
+/// they are apart.
+double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
+                            const RigidState& second_state);
 
 class PileOverlap {
  public:

@@ -1,12 +1,10 @@
 #include "tools/compare/pile_report.h"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include <cmath>
-#include <fstream>
 
-#include "reference/error.h"
+#include "reference/output_file.h"
 #include "reference/trial.h"
 #include "tools/text_table.h"
 
@@ -18,14 +16,10 @@ using nlohmann::ordered_json;
 std::string percent(double fraction) { return fmt::format("{:+.1f}", 100.0 * fraction); }
 
 std::vector<std::string> cells_of(const PileFigures& f) {
-  return {fmt::format("{:.3f}", f.ke_l1),
-          fmt::format("{:.2f}", f.sleep_time_s),
-          percent(f.sleep_time_error),
-          fmt::format("{:.3f}", f.mean_height_m),
-          percent(f.mean_height_error),
-          fmt::format("{:.1f}", 100.0 * f.penetration_over_size),
-          fmt::format("{}", f.hovering),
-          fmt::format("{}", f.escaped),
+  return {fmt::format("{:.3f}", f.ke_l1),      fmt::format("{:.2f}", f.sleep_time_s),
+          percent(f.sleep_time_error),         fmt::format("{:.3f}", f.mean_height_m),
+          percent(f.mean_height_error),        fmt::format("{:.1f}", 100.0 * f.penetration_over_size),
+          fmt::format("{}", f.hovering),       fmt::format("{}", f.escaped),
           fmt::format("{:.1e}", f.energy_rise)};
 }
 
@@ -36,7 +30,8 @@ std::vector<std::string> row_of(std::vector<std::string> head, const PileFigures
 }
 
 std::vector<std::string> row_of(const PileRow& row) {
-  std::vector<std::string> cells = {row.method, row.model, fmt::format("1/{:.0f}", 1.0 / row.dt_s), fmt::format("{}", row.substeps)};
+  std::vector<std::string> cells = {row.method, row.model, fmt::format("1/{:.0f}", 1.0 / row.dt_s),
+                                    fmt::format("{}", row.substeps)};
   if (!row.figures) return cells;
   cells = row_of(std::move(cells), *row.figures);
   cells.push_back(fmt::format("{:.1e}", row.momentum_residual));
@@ -45,15 +40,16 @@ std::vector<std::string> row_of(const PileRow& row) {
 }
 
 std::string table_of(const PileComparison& comparison) {
-  TextTable table({"method", "model", "step s", "substeps", "KE-L1", "sleep s", "error %", "height m", "error %", "overlap %", "hover", "escaped",
-                   "energy rise", "momentum", "ns/body-step"});
+  TextTable table({"method", "model", "step s", "substeps", "KE-L1", "sleep s", "error %", "height m",
+                   "error %", "overlap %", "hover", "escaped", "energy rise", "momentum", "ns/body-step"});
   table.add_row(row_of({"truth", "", "", ""}, comparison.truth));
   table.add_row(row_of({"noise floor", "", "", ""}, comparison.floor));
   std::string left_out;
   for (const PileRow& row : comparison.rows) {
     table.add_row(row_of(row));
     const std::string line = fmt::format("{} left out: {} {}\n", row.method, comparison.shape, row.reason);
-    if (!row.reason.empty() && left_out.find(line) == std::string::npos) left_out += line;  // once for all steps
+    if (!row.reason.empty() && left_out.find(line) == std::string::npos)
+      left_out += line;  // once for all steps
   }
   return table.text() + left_out;
 }
@@ -97,16 +93,19 @@ ordered_json json_of(const PileRow& row, const PileFigures& floor) {
   return json;
 }
 
-void write_piles(std::ostream& out, const std::string& head, const std::vector<PileObservation>& piles) {
+void write_piles(OutputFile& out, const std::string& head, const std::vector<PileObservation>& piles) {
   for (std::size_t i = 0; i < piles.size(); ++i)
-    fmt::print(out, "{},{},{},{},{},{},{},{}\n", head, i, piles[i].sleep_time_s, piles[i].mean_height_m, piles[i].max_penetration_m,
-               piles[i].energy_rise, piles[i].hovering, piles[i].escaped);
+    out.write(fmt::format("{},{},{},{},{},{},{},{}\n", head, i, piles[i].sleep_time_s, piles[i].mean_height_m,
+                          piles[i].max_penetration_m, piles[i].energy_rise, piles[i].hovering,
+                          piles[i].escaped));
 }
 
-void write_energy(std::ostream& out, const std::string& head, const std::vector<PileObservation>& piles, double interval) {
+void write_energy(OutputFile& out, const std::string& head, const std::vector<PileObservation>& piles,
+                  double interval) {
   for (std::size_t i = 0; i < piles.size(); ++i)
     for (std::size_t k = 0; k < piles[i].kinetic_energy.size(); ++k)
-      fmt::print(out, "{},{},{:.6g},{:.6g}\n", head, i, double(k) * interval, piles[i].kinetic_energy[k]);
+      out.write(
+          fmt::format("{},{},{:.6g},{:.6g}\n", head, i, double(k) * interval, piles[i].kinetic_energy[k]));
 }
 
 std::string head_of(const PileRow& row) { return fmt::format("{},{},{}", row.method, row.model, row.dt_s); }
@@ -117,26 +116,33 @@ void each_batch(const PileComparison& comparison, Visit visit) {
   const double truth_step = kObservationStep / comparison.truth_substeps;
   visit(fmt::format("truth_a,,{}", truth_step), comparison.truth_a, kObservationStep);
   visit(fmt::format("truth_b,,{}", truth_step), comparison.truth_b, kObservationStep);
-  for (const PileRow& row : comparison.rows) visit(head_of(row), row.piles, std::max(kObservationStep, row.dt_s));
+  for (const PileRow& row : comparison.rows)
+    visit(head_of(row), row.piles, std::max(kObservationStep, row.dt_s));
 }
 
 template <class Write>
 void save(const std::filesystem::path& file, Write write) {
-  std::ofstream out(file);
+  OutputFile out(file, "room for the piles");
   write(out);
-  if (!out.flush()) throw InputError(fmt::format("{}: cannot be written", file.string()));
+  out.close();
 }
 
 }  // namespace
 
 std::string text_of(const DropJob& job, const PileComparison& comparison) {
-  return fmt::format("{}: {} piles of {} bodies in a bin of {:.4g} m, restitution {}, friction {}; truth: ODE at {:.3g} ms\n\n", comparison.shape,
-                     comparison.pile_count, comparison.conditions.bodies, comparison.conditions.side, job.material.restitution, job.material.friction,
-                     1e3 * kObservationStep / comparison.truth_substeps) +
+  return fmt::format(
+             "{}: {} piles of {} bodies in a bin of {:.4g} m, restitution {}, friction {}; truth: ODE at "
+             "{:.3g} ms\n\n",
+             comparison.shape, comparison.pile_count, comparison.conditions.bodies,
+             comparison.conditions.side, job.material.restitution, job.material.friction,
+             1e3 * kObservationStep / comparison.truth_substeps) +
          table_of(comparison) +
-         "\nKE-L1: sum over time of |mean kinetic energy - truth's| over the sum of the truth's; the noise floor is truth against truth with other starts\n"
-         "sleep: mean of the bodies' last time above 2 mJ/kg; height: mean of the centres at the end; overlap: greatest, over the size; hover: at rest on nothing\n"
-         "energy rise: greatest above an earlier sample, over that at the start; momentum: greatest change without ground and gravity, over the bodies' own\n";
+         "\nKE-L1: sum over time of |mean kinetic energy - truth's| over the sum of the truth's; the noise "
+         "floor is truth against truth with other starts\n"
+         "sleep: mean of the bodies' last time above 2 mJ/kg; height: mean of the centres at the end; "
+         "overlap: greatest, over the size; hover: at rest on nothing\n"
+         "energy rise: greatest above an earlier sample, over that at the start; momentum: greatest change "
+         "without ground and gravity, over the bodies' own\n";
 }
 
 ordered_json json_of(const PileComparison& comparison) {
@@ -145,7 +151,8 @@ ordered_json json_of(const PileComparison& comparison) {
   json["bodies"] = comparison.conditions.bodies;
   json["side_m"] = comparison.conditions.side;
   json["piles"] = comparison.pile_count;
-  json["truth"] = {{"step_s", kObservationStep / comparison.truth_substeps}, {"quick_step_iterations", comparison.truth_iterations}};
+  json["truth"] = {{"step_s", kObservationStep / comparison.truth_substeps},
+                   {"quick_step_iterations", comparison.truth_iterations}};
   add_figures(json["truth"], comparison.truth);
   json["floor"] = {{"ke_l1", comparison.floor.ke_l1}};
   add_figures(json["floor"], comparison.floor);
@@ -155,15 +162,17 @@ ordered_json json_of(const PileComparison& comparison) {
 }
 
 void save_piles(const PileComparison& comparison, const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  save(folder / "piles.csv", [&](std::ostream& out) {
-    out << "method,model,dt_s,pile,sleep_time_s,mean_height_m,max_penetration_m,energy_rise,hovering,escaped\n";
-    each_batch(comparison, [&](const std::string& head, const auto& piles, double) { write_piles(out, head, piles); });
+  save(folder / "piles.csv", [&](OutputFile& out) {
+    out.write(
+        "method,model,dt_s,pile,sleep_time_s,mean_height_m,max_penetration_m,energy_rise,hovering,escaped\n");
+    each_batch(comparison,
+               [&](const std::string& head, const auto& piles, double) { write_piles(out, head, piles); });
   });
-  save(folder / "pile_energy.csv", [&](std::ostream& out) {
-    out << "method,model,dt_s,pile,time_s,kinetic_energy_j_per_kg\n";
-    each_batch(comparison, [&](const std::string& head, const auto& piles, double interval) { write_energy(out, head, piles, interval); });
+  save(folder / "pile_energy.csv", [&](OutputFile& out) {
+    out.write("method,model,dt_s,pile,time_s,kinetic_energy_j_per_kg\n");
+    each_batch(comparison, [&](const std::string& head, const auto& piles, double interval) {
+      write_energy(out, head, piles, interval);
+    });
   });
 }
 

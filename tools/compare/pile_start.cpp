@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/error.h"
+#include "reference/argument_error.h"
 #include "reference/random.h"
 #include "reference/trial.h"
 
 namespace lodestone {
 namespace {
 
-constexpr double kCell = 2.1;           // over R: the least that leaves a bounding sphere room
-constexpr double kLowestCenter = 1.2;   // m
+constexpr double kCell = 2.1;          // over R: the least that leaves a bounding sphere room
+constexpr double kLowestCenter = 1.2;  // m
 constexpr std::uint32_t kPileStream = 0x911e, kConvergingStream = 0x911f;
 
 int cells_along(const Shape& shape, double side) { return int(std::floor(side / (kCell * shape.radius))); }
@@ -27,10 +27,12 @@ Vec3 draw_within(const Vec3& half_room, RandomStream& random) {
 
 void check_pile(const Shape& shape, const PileConditions& conditions) {
   if (cells_along(shape, conditions.side) < 1)
-    throw InputError(fmt::format("--side: found {:.4g} m, expected at least {:.4g} m for this shape", conditions.side, kCell * shape.radius));
+    throw ArgumentError(fmt::format("--side: found {:.4g} m, expected at least {:.4g} m for this shape",
+                                    conditions.side, kCell * shape.radius));
 }
 
-std::vector<RigidState> make_pile_start(const Shape& shape, const PileConditions& conditions, std::uint64_t seed) {
+std::vector<RigidState> make_pile_start(const Shape& shape, const PileConditions& conditions,
+                                        std::uint64_t seed) {
   check_pile(shape, conditions);
   const int along = cells_along(shape, conditions.side);
   const double cell = conditions.side / along, layer = kCell * shape.radius;
@@ -40,7 +42,8 @@ std::vector<RigidState> make_pile_start(const Shape& shape, const PileConditions
     RandomStream random(seed, std::uint64_t(i), kPileStream);
     const Vec3 place((i % along + 0.5) * cell, (i / along % along + 0.5) * cell, i / (along * along) * layer);
     RigidState& start = starts[std::size_t(i)];
-    start.position = place - Vec3(0.5 * conditions.side, 0.5 * conditions.side, -drop_scale(shape) * kLowestCenter);
+    start.position =
+        place - Vec3(0.5 * conditions.side, 0.5 * conditions.side, -drop_scale(shape) * kLowestCenter);
     start.position += draw_within(half_room, random);
     start.orientation = random.orientation();
   }
@@ -55,7 +58,8 @@ std::vector<RigidState> make_converging_start(const Shape& shape, int bodies, st
   for (int i = 0; i < bodies; ++i) {
     RandomStream random(seed, std::uint64_t(i), kConvergingStream);
     RigidState& start = starts[std::size_t(i)];
-    start.position = cell * (Vec3(i % along, i / along % along, i / (along * along)) - Vec3::Constant(0.5 * (along - 1)));
+    start.position =
+        cell * (Vec3(i % along, i / along % along, i / (along * along)) - Vec3::Constant(0.5 * (along - 1)));
     start.position += draw_within(half_room, random);
     start.velocity = -start.position;
     start.orientation = random.orientation();

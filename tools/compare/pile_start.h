@@ -17,11 +17,14 @@ struct PileConditions {
 /// Throws InputError where no body fits between the walls.
 void check_pile(const Shape& shape, const PileConditions& conditions);
 
-/// Layers over the bin as in table 1 (Hsu and Keyser, 2009): square cells that hold a bounding sphere each, a little room to place it in, the lowest
-/// centre 1.2 m (bodies of .2–.4 m; others scaled as drops are) above the floor. A function of the arguments alone.
-std::vector<RigidState> make_pile_start(const Shape& shape, const PileConditions& conditions, std::uint64_t seed);
+/// Layers over the bin as in table 1 (Hsu and Keyser, 2009): square cells that hold a bounding sphere each, a
+/// little room to place it in, the lowest centre 1.2 m (bodies of .2–.4 m; others scaled as drops are) above
+/// the floor. A function of the arguments alone.
+std::vector<RigidState> make_pile_start(const Shape& shape, const PileConditions& conditions,
+                                        std::uint64_t seed);
 
-/// The same bodies in a cube of cells about the origin, each on its way there: it would arrive after one second.
+/// The same bodies in a cube of cells about the origin, each on its way there: it would arrive after one
+/// second.
 std::vector<RigidState> make_converging_start(const Shape& shape, int bodies, std::uint64_t seed);
 
 }  // namespace lodestone

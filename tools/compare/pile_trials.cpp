@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <mutex>
 
+#include "reference/allowed_threads.h"
 #include "reference/trial.h"
 #include "tools/compare/processor_time.h"
+#include "tools/interrupt.h"
 
 namespace lodestone {
 namespace {
@@ -20,11 +22,14 @@ std::vector<RigidState> states_of(const PileWorld& world) {
   return states;
 }
 
-std::uint64_t seed_of_pile(const PileBatch& batch, int pile) { return 1000 * batch.seed + std::uint64_t(pile); }
+std::uint64_t seed_of_pile(const PileBatch& batch, int pile) {
+  return 1000 * batch.seed + std::uint64_t(pile);
+}
 
 PileWorld make_world(const DropJob& job, const DropMethod& method, const PileBatch& batch, int pile) {
   const std::uint64_t seed = seed_of_pile(batch, pile);
-  return {job, method, make_bin(batch.conditions.side), make_pile_start(*job.shape, batch.conditions, seed), seed};
+  return {job, method, make_bin(batch.conditions.side), make_pile_start(*job.shape, batch.conditions, seed),
+          seed};
 }
 
 // The observer sees the states that were reached by each 1/60 s.
@@ -48,22 +53,25 @@ Vec3 mean_velocity(const PileWorld& world) {
 
 }  // namespace
 
-std::vector<PileObservation> observe_piles(const DropJob& job, const DropMethod& method, const PileOverlap& overlap, const PileBatch& batch,
+std::vector<PileObservation> observe_piles(const DropJob& job, const DropMethod& method,
+                                           const PileOverlap& overlap, const PileBatch& batch,
                                            const std::function<void(double)>& progress) {
   std::vector<PileObservation> piles(std::size_t(batch.piles));
   std::mutex mutex;
   int done = 0;
   const auto run = [&](int pile) {
+    throw_if_interrupted();
     piles[std::size_t(pile)] = observe_pile(job, make_world(job, method, batch, pile), overlap, batch.dt_s);
     const std::scoped_lock lock(mutex);
     if (progress) progress(double(++done) / batch.piles);
   };
-  tbb::task_arena arena(batch.threads > 0 ? batch.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(allowed_threads(batch.threads));
   arena.execute([&] { tbb::parallel_for(0, batch.piles, run, tbb::simple_partitioner()); });
   return piles;
 }
 
-double measure_ns_per_body_step(const DropJob& job, const DropMethod& method, const PileBatch& batch, double until_s) {
+double measure_ns_per_body_step(const DropJob& job, const DropMethod& method, const PileBatch& batch,
+                                double until_s) {
   PileWorld world = make_world(job, method, batch, 0);
   double spent = 0.0, body_steps = 0.0;
   int awake = world.bodies();
@@ -76,7 +84,8 @@ double measure_ns_per_body_step(const DropJob& job, const DropMethod& method, co
 }
 
 double measure_momentum_residual(const DropJob& job, const DropMethod& method, const PileBatch& batch) {
-  const std::vector<RigidState> starts = make_converging_start(*job.shape, batch.conditions.bodies, batch.seed);
+  const std::vector<RigidState> starts =
+      make_converging_start(*job.shape, batch.conditions.bodies, batch.seed);
   PileWorld world(job, method, make_empty_space(), starts, batch.seed);
   double mean_speed = 0.0;
   for (const RigidState& start : starts) mean_speed += start.velocity.norm() / double(starts.size());

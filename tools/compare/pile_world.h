@@ -28,7 +28,8 @@ PileSurroundings make_empty_space();
 class PileWorld {
  public:
   /// `job` and `method` must outlive the world. What follows depends on the arguments alone.
-  PileWorld(const DropJob& job, const DropMethod& method, const PileSurroundings& surroundings, std::span<const RigidState> starts, std::uint64_t seed);
+  PileWorld(const DropJob& job, const DropMethod& method, const PileSurroundings& surroundings,
+            std::span<const RigidState> starts, std::uint64_t seed);
 
   void step(double dt);
   int bodies() const;
@@ -48,10 +49,13 @@ class PileWorld {
     BulletWorld world;
     std::vector<int> bodies;
   };
-  void fill_ode(const DropJob& job, const OdeMethod& way, const PileSurroundings& surroundings, std::span<const RigidState> starts, std::uint64_t seed);
-  void fill_statistical(const DropJob& job, const StatisticalMethod& way, const PileSurroundings& surroundings, std::span<const RigidState> starts,
+  void fill_ode(const DropJob& job, const OdeMethod& way, const PileSurroundings& surroundings,
+                std::span<const RigidState> starts, std::uint64_t seed);
+  void fill_statistical(const DropJob& job, const StatisticalMethod& way,
+                        const PileSurroundings& surroundings, std::span<const RigidState> starts,
                         std::uint64_t seed);
-  void fill_bullet(const DropJob& job, const BulletMethod& way, const PileSurroundings& surroundings, std::span<const RigidState> starts);
+  void fill_bullet(const DropJob& job, const BulletMethod& way, const PileSurroundings& surroundings,
+                   std::span<const RigidState> starts);
 
   int substeps_;
   std::unique_ptr<MaterialTable> materials_;  // outlives the ODE world, and stays where it is

@@ -30,7 +30,8 @@ RestClasses make_rest_classes(std::span<const Vec3> ups) {
 }
 
 std::optional<int> find_rest_class(const RestClasses& classes, const Vec3& up) {
-  const auto nearest = std::ranges::max_element(classes, {}, [&](const Vec3& center) { return center.dot(up); });
+  const auto nearest =
+      std::ranges::max_element(classes, {}, [&](const Vec3& center) { return center.dot(up); });
   if (nearest == classes.end() || nearest->dot(up) < kNear) return std::nullopt;
   return int(nearest - classes.begin());
 }

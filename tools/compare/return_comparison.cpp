@@ -7,12 +7,15 @@
 #include <cmath>
 #include <limits>
 
+#include "reference/allowed_threads.h"
 #include "reference/error.h"
 #include "signature/measure/certify.h"
 #include "tools/compare/fidelity.h"
 #include "tools/compare/method_bodies.h"
 #include "tools/compare/rest_classes.h"
 #include "tools/compare/wasserstein.h"
+#include "tools/interrupt.h"
+#include "tools/warning.h"
 
 namespace lodestone {
 namespace {
@@ -27,34 +30,46 @@ class Returning {
  public:
   Returning(const DropJob& job, const ReturnSettings& settings) : job_(job), settings_(settings) {
     SignatureSourceSettings source;
-    source.measuring = settings.measuring, source.threads = settings.threads, source.progress = settings.progress;
+    source.measuring = settings.measuring, source.threads = settings.threads,
+    source.progress = settings.progress, source.warn = warn;
     signature_ = find_or_measure_signature(*job.shape, job.law(), source).signature;
   }
 
   std::vector<Visit> run(bool leaves, std::uint64_t seed) const {
     std::vector<Visit> visits(std::size_t(settings_.runs));
-    tbb::task_arena arena(settings_.threads > 0 ? settings_.threads : tbb::task_arena::automatic);
-    arena.execute([&] { tbb::parallel_for(0, settings_.runs, [&](int i) { visits[std::size_t(i)] = observe(leaves, seed, std::uint32_t(i)); }); });
+    tbb::task_arena arena(allowed_threads(settings_.threads));
+    arena.execute([&] {
+      tbb::parallel_for(0, settings_.runs, [&](int i) {
+        throw_if_interrupted();
+        visits[std::size_t(i)] = observe(leaves, seed, std::uint32_t(i));
+      });
+    });
     return visits;
   }
 
  private:
   Visit observe(bool leaves, std::uint64_t seed, std::uint32_t trial) const {
-    ManagerSettings settings = manager_settings_of({.signature = signature_}, seed + 7919 * trial);
+    ManagerSettings settings =
+        manager_settings_of({.signature = signature_, .published = settings_.published}, seed + 7919 * trial);
     settings.model = {};
-    const double support_within = settings_.away == StatisticalModel::support ? std::numeric_limits<double>::infinity() : 1e3;
-    settings.policy = {.policy = DistancePolicy{.full_within = 1e3, .support_within = support_within}, .min_dwell_frames = 0};
+    const double support_within =
+        settings_.away == StatisticalModel::support ? std::numeric_limits<double>::infinity() : 1e3;
+    settings.policy = {.policy = DistancePolicy{.full_within = 1e3, .support_within = support_within},
+                       .min_dwell_frames = 0};
     Manager manager(settings);
     manager.materials().replace(0, job_.material);
     manager.add_plane(drop_plane_normal(job_.conditions), 0.0);
-    BodyDefinition definition = statistical_body_of(job_, drop_state(*job_.shape, job_.conditions, seed, trial));
+    BodyDefinition definition =
+        statistical_body_of(job_, drop_state(*job_.shape, job_.conditions, seed, trial));
     definition.level = LevelChoice::automatic;
     const BodyId body = manager.add_body(definition);
     DropObserver observer(*job_.shape, drop_plane_normal(job_.conditions));
     observer.sample(0.0, manager.state(body));
     Visit visit;
     const double back_s = settings_.leave_s + settings_.away_s;
-    for (int k = 1; k * kObservationStep <= observer.horizon_s() + 1e-9 && (!observer.settled() || (k - 1) * kObservationStep < back_s + 0.1); ++k) {
+    for (int k = 1; k * kObservationStep <= observer.horizon_s() + 1e-9 &&
+                    (!observer.settled() || (k - 1) * kObservationStep < back_s + 0.1);
+         ++k) {
       const double now = (k - 1) * kObservationStep;
       const bool away = leaves && now >= settings_.leave_s && now < back_s;
       const Vec3 viewpoint(away ? 1e5 : 0.0, 0.0, 0.0);
@@ -87,7 +102,9 @@ double deviation_of(const std::vector<double>& values) {
 }
 
 template <class Number>
-ReturnMeasure measure(const char* name, const std::vector<DropObservation>& full, const std::vector<DropObservation>& other, const std::vector<DropObservation>& returned, Number number) {
+ReturnMeasure measure(const char* name, const std::vector<DropObservation>& full,
+                      const std::vector<DropObservation>& other, const std::vector<DropObservation>& returned,
+                      Number number) {
   const auto values = [&](const std::vector<DropObservation>& drops) {
     std::vector<double> list;
     for (const DropObservation& drop : drops) list.push_back(double(number(drop)));
@@ -95,14 +112,27 @@ ReturnMeasure measure(const char* name, const std::vector<DropObservation>& full
   };
   const std::vector<double> a = values(full), b = values(other), r = values(returned);
   const double deviation = std::max(1e-12, deviation_of(a)), n = double(a.size());
-  return {.name = name, .mean_full = mean_of(a), .mean_returned = mean_of(r), .distance = kolmogorov_smirnov(a, r), .floor = kolmogorov_smirnov(a, b), .critical = 1.358 * std::sqrt(2.0 / n),
-          .w1_over_deviation = wasserstein_distance(a, r) / deviation, .w1_floor = wasserstein_distance(a, b) / deviation};
+  return {.name = name,
+          .mean_full = mean_of(a),
+          .mean_returned = mean_of(r),
+          .distance = kolmogorov_smirnov(a, r),
+          .floor = kolmogorov_smirnov(a, b),
+          .critical = 1.358 * std::sqrt(2.0 / n),
+          .w1_over_deviation = wasserstein_distance(a, r) / deviation,
+          .w1_floor = wasserstein_distance(a, b) / deviation};
 }
 
-double part_at_rest(const std::vector<DropObservation>& drops) { return double(std::ranges::count_if(drops, &DropObservation::at_rest)) / double(drops.size()); }
+double part_at_rest(const std::vector<DropObservation>& drops) {
+  return double(std::ranges::count_if(drops, &DropObservation::at_rest)) / double(drops.size());
+}
 
-ReturnMeasure measure_poses(const std::vector<DropObservation>& full, const DropScore& returned, const DropScore& floor, const std::vector<DropObservation>& of_returned) {
-  return {.name = "rest pose", .mean_full = part_at_rest(full), .mean_returned = part_at_rest(of_returned), .distance = returned.tv.value_or(0.0), .floor = floor.tv.value_or(0.0)};
+ReturnMeasure measure_poses(const std::vector<DropObservation>& full, const DropScore& returned,
+                            const DropScore& floor, const std::vector<DropObservation>& of_returned) {
+  return {.name = "rest pose",
+          .mean_full = part_at_rest(full),
+          .mean_returned = part_at_rest(of_returned),
+          .distance = returned.tv.value_or(0.0),
+          .floor = floor.tv.value_or(0.0)};
 }
 
 }  // namespace
@@ -119,16 +149,24 @@ ReturnComparison compare_return(const DropJob& job, const ReturnSettings& settin
     return drops;
   };
   report("full all the time", 0.0);
-  const std::vector<DropObservation> full = drops_of(returning.run(false, 2 * settings.seed)), other = drops_of(returning.run(false, 2 * settings.seed + 1));
+  const std::vector<DropObservation> full = drops_of(returning.run(false, 2 * settings.seed)),
+                                     other = drops_of(returning.run(false, 2 * settings.seed + 1));
   report("leaving and returning", 0.7);
   const std::vector<Visit> visits = returning.run(true, 2 * settings.seed + 1);
   const std::vector<DropObservation> returned = drops_of(visits);
-  const DropScore score = score_drops(full, returned, settings.seed).value, floor = score_drops(full, other, settings.seed).value;
-  ReturnComparison comparison{.runs = settings.runs, .score = score.score, .score_floor = floor.score, .measures = {}};
-  for (const Visit& visit : visits) comparison.mean_rung_changes += double(visit.changes) / settings.runs, comparison.all_full_again += double(visit.full_at_end) / settings.runs;
-  comparison.measures = {measure("distance m", full, other, returned, [](const DropObservation& d) { return d.distance_m; }),
-                         measure("time to rest s", full, other, returned, [](const DropObservation& d) { return d.rest_time_s; }),
-                         measure("bounces", full, other, returned, [](const DropObservation& d) { return d.bounces; }), measure_poses(full, score, floor, returned)};
+  const DropScore score = score_drops(full, returned, settings.seed).value,
+                  floor = score_drops(full, other, settings.seed).value;
+  ReturnComparison comparison{
+      .runs = settings.runs, .score = score.score, .score_floor = floor.score, .measures = {}};
+  for (const Visit& visit : visits)
+    comparison.mean_rung_changes += double(visit.changes) / settings.runs,
+        comparison.all_full_again += double(visit.full_at_end) / settings.runs;
+  comparison.measures = {
+      measure("distance m", full, other, returned, [](const DropObservation& d) { return d.distance_m; }),
+      measure("time to rest s", full, other, returned,
+              [](const DropObservation& d) { return d.rest_time_s; }),
+      measure("bounces", full, other, returned, [](const DropObservation& d) { return d.bounces; }),
+      measure_poses(full, score, floor, returned)};
   return comparison;
 }
 

@@ -1,4 +1,5 @@
-// Measures how far a shape's bodies are from the truth on each rung (signature/rung_errors.h): single drops, scored, and where each is after a second.
+// Measures how far a shape's bodies are from the truth on each rung (signature/rung_errors.h): single drops,
+// scored, and where each is after a second.
 #pragma once
 
 #include "signature/rung_errors.h"
@@ -9,7 +10,8 @@ namespace lodestone {
 struct RungErrorMeasurement {
   RungErrors errors;
   double floor = 0.0;        ///< score of truth against truth
-  double floor_drift = 0.0;  ///< of the full level at the truth's step: the least that a level that meets planes in its own way can have
+  double floor_drift = 0.0;  ///< of the full level at the truth's step: the least that a level that meets
+                             ///< planes in its own way can have
 };
 
 /// At 1/60 s, whatever steps and methods `settings` has.

@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-Vec3 on_circle(double radius, double turns, double z) { return {radius * std::cos(kTurn * turns), radius * std::sin(kTurn * turns), z}; }
+Vec3 on_circle(double radius, double turns, double z) {
+  return {radius * std::cos(kTurn * turns), radius * std::sin(kTurn * turns), z};
+}
 
 /// `a`, `b`, `c`, `d` counter-clockwise seen from outside.
 void add_quad(Mesh& mesh, int a, int b, int c, int d) {
@@ -48,7 +50,8 @@ std::vector<double> planes_of(const std::vector<double>& sides) {
 
 class CellMesh {
  public:
-  explicit CellMesh(const CellSolid& solid) : solid_(solid), planes_{planes_of(solid.x), planes_of(solid.y), planes_of(solid.z)} {}
+  explicit CellMesh(const CellSolid& solid)
+      : solid_(solid), planes_{planes_of(solid.x), planes_of(solid.y), planes_of(solid.z)} {}
 
   Mesh make() {
     for (int k = 0; k < cells(2); ++k)

@@ -16,11 +16,13 @@ constexpr double kSize = 0.3;  // m
 // Lengths in any unit: each is scaled to kSize.
 
 Mesh letter(std::vector<std::string> rows, std::vector<double> columns, std::vector<double> heights) {
-  return make_cell_mesh({.x = std::move(columns), .y = std::move(heights), .z = {1.0}, .layers = {std::move(rows)}});
+  return make_cell_mesh(
+      {.x = std::move(columns), .y = std::move(heights), .z = {1.0}, .layers = {std::move(rows)}});
 }
 
 Mesh chair() {
-  const std::vector<std::string> legs = {"#.#", "...", "#.#"}, seat = {"###", "###", "###"}, back = {"###", "...", "..."};
+  const std::vector<std::string> legs = {"#.#", "...", "#.#"}, seat = {"###", "###", "###"},
+                                 back = {"###", "...", "..."};
   return make_cell_mesh({.x = {1, 8, 1}, .y = {1, 8, 1}, .z = {9, 1, 9}, .layers = {legs, seat, back}});
 }
 
@@ -47,17 +49,38 @@ Mesh wedge() {
 }
 
 constexpr std::array kShapes = {
-    UnseenShape{"random_hull_10", [] { return make_random_hull(10, {1.0, 1.0, 1.0}, 1); }},
-    UnseenShape{"random_hull_40", [] { return make_random_hull(40, {1.0, 0.8, 0.6}, 2); }},
-    UnseenShape{"random_hull_flat", [] { return make_random_hull(30, {1.0, 0.7, 0.25}, 3); }},
+    UnseenShape{"random_hull_10",
+                [] {
+                  return make_random_hull(10, {1.0, 1.0, 1.0}, 1);
+                }},
+    UnseenShape{"random_hull_40",
+                [] {
+                  return make_random_hull(40, {1.0, 0.8, 0.6}, 2);
+                }},
+    UnseenShape{"random_hull_flat",
+                [] {
+                  return make_random_hull(30, {1.0, 0.7, 0.25}, 3);
+                }},
     UnseenShape{"torus", [] { return make_torus(1.0, 0.4, 32, 16); }},
     UnseenShape{"ring", [] { return make_torus(1.0, 0.12, 40, 10); }},
     UnseenShape{"chair", chair},
     UnseenShape{"table", table},
-    UnseenShape{"letter_t", [] { return letter({"###", ".#."}, {1, 1, 1}, {3, 1}); }},
-    UnseenShape{"letter_u", [] { return letter({"#.#", "###"}, {1, 2, 1}, {1, 3}); }},
-    UnseenShape{"letter_e", [] { return letter({"##", "#.", "##", "#.", "##"}, {1, 2}, {1, 1, 1, 1, 1}); }},
-    UnseenShape{"thin_plate", [] { return make_box({1.0, 0.7, 0.03}); }},
+    UnseenShape{"letter_t",
+                [] {
+                  return letter({"###", ".#."}, {1, 1, 1}, {3, 1});
+                }},
+    UnseenShape{"letter_u",
+                [] {
+                  return letter({"#.#", "###"}, {1, 2, 1}, {1, 3});
+                }},
+    UnseenShape{"letter_e",
+                [] {
+                  return letter({"##", "#.", "##", "#.", "##"}, {1, 2}, {1, 1, 1, 1, 1});
+                }},
+    UnseenShape{"thin_plate",
+                [] {
+                  return make_box({1.0, 0.7, 0.03});
+                }},
     UnseenShape{"needle", [] { return make_needle(1.0, 0.03); }},
     UnseenShape{"gear", gear},
     UnseenShape{"star", star},

@@ -1,4 +1,5 @@
-// Shapes on which nothing in Lodestone was tuned, made by code: what its error is on a shape that a user brings.
+// Shapes on which nothing in Lodestone was tuned, made by code: what its error is on a shape that a user
+// brings.
 #pragma once
 
 #include <memory>

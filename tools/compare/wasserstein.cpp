@@ -25,10 +25,13 @@ double SamplePair::wasserstein(std::span<const std::uint32_t> first_counts,
   // Counts below each value, as integers, so that the difference of the distribution functions ends at zero.
   std::uint64_t first_below = 0, second_below = 0;
   for (const Value& v : sorted_) {
-    distance += std::abs(double(first_below) * per_first - double(second_below) * per_second) * (v.value - previous);
+    distance +=
+        std::abs(double(first_below) * per_first - double(second_below) * per_second) * (v.value - previous);
     previous = v.value;
-    if (v.in_first) first_below += first_counts[v.index];
-    else second_below += second_counts[v.index];
+    if (v.in_first)
+      first_below += first_counts[v.index];
+    else
+      second_below += second_counts[v.index];
   }
   return distance;
 }

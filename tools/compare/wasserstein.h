@@ -1,4 +1,5 @@
-// Distance between two one-dimensional samples: by how much, on average, values must be moved to turn one sample into the other.
+// Distance between two one-dimensional samples: by how much, on average, values must be moved to turn one
+// sample into the other.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +14,10 @@ class SamplePair {
   /// Neither may be empty.
   SamplePair(std::span<const double> first, std::span<const double> second);
 
-  /// Wasserstein-1, ∫ |F_first − F_second| dx: exact, for unequal sizes too. `first_counts` and `second_counts` say how often
-  /// each value counts, in the order in which the samples were given.
-  double wasserstein(std::span<const std::uint32_t> first_counts, std::span<const std::uint32_t> second_counts) const;
+  /// Wasserstein-1, ∫ |F_first − F_second| dx: exact, for unequal sizes too. `first_counts` and
+  /// `second_counts` say how often each value counts, in the order in which the samples were given.
+  double wasserstein(std::span<const std::uint32_t> first_counts,
+                     std::span<const std::uint32_t> second_counts) const;
 
  private:
   struct Value {

@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 
 #include "tools/commands.h"
 #include "tools/compare/drop_report.h"
@@ -22,22 +23,35 @@ struct Arguments {
 };
 
 Provenance provenance_of(const Arguments& arguments) {
-  const std::string budgets = arguments.budget_scene.empty() ? "" : fmt::format(" --budget-scene {}", arguments.budget_scene.string());
-  return {.commands = {fmt::format("build/lodestone demo {}{} --trials {}", arguments.run.scene.string(), budgets, arguments.trials)},
-          .commit = program_commit(), .machine = describe_machine(), .date = today(), .fresh = true};
+  const std::string budgets = arguments.budget_scene.empty()
+                                  ? ""
+                                  : fmt::format(" --budget-scene {}", arguments.budget_scene.string());
+  return {.commands = {fmt::format("build/lodestone demo {}{} --trials {}", arguments.run.scene.string(),
+                                   budgets, arguments.trials)},
+          .commit = program_commit(),
+          .machine = describe_machine(),
+          .date = today(),
+          .fresh = true};
 }
 
 void save_report(const DemoResult& result, const Arguments& arguments, const Progress& progress) {
   const Provenance made = provenance_of(arguments);
   const Material& material = result.drop.material;
-  const FreshResults fresh = {.material = fmt::format("restitution {:g}, friction {:g}", material.restitution, material.friction), .scores = {made, score_rows_of(result.errors)}, .steps = {made, step_rows_of(result)}, .levels = {made, level_rows_of(result)}};
-  save_page(arguments.report, make_report(gather_report({.threads = arguments.run.running.threads, .progress = progress, .fresh = fresh})));
+  const FreshResults fresh = {
+      .material = fmt::format("restitution {:g}, friction {:g}", material.restitution, material.friction),
+      .scores = {made, score_rows_of(result.errors)},
+      .steps = {made, step_rows_of(result)},
+      .levels = {made, level_rows_of(result)}};
+  save_page(arguments.report,
+            make_report(gather_report(
+                {.threads = arguments.run.running.threads, .progress = progress, .fresh = fresh})));
 }
 
 ExitCode demo(const Arguments& arguments) {
   const Scene scene = load_scene(arguments.run.scene, arguments.run.loading);
   std::optional<Scene> budget_scene;
-  if (!arguments.budget_scene.empty()) budget_scene = load_scene(arguments.budget_scene, arguments.run.loading);
+  if (!arguments.budget_scene.empty())
+    budget_scene = load_scene(arguments.budget_scene, arguments.run.loading);
   DemoResult result;
   {
     ProgressLine line;
@@ -70,17 +84,24 @@ ExitCode demo(const Arguments& arguments) {
 }  // namespace
 
 void add_demo_command(CLI::App& program, ExitCode& exit_code) {
-  CLI::App* command = program.add_subcommand("demo", "one scene at every level: what a step costs, and what that costs in accuracy");
+  CLI::App* command = program.add_subcommand(
+      "demo", "one scene at every level: what a step costs, and what that costs in accuracy");
   const auto arguments = std::make_shared<Arguments>();
   arguments->run.running.out = "out";
   command->add_option("SCENE", arguments->run.scene, "a YAML file, such as scenes/bunnies.yaml")->required();
   add_run_arguments(*command, arguments->run);
-  command->add_option("--trials", arguments->trials, "single drops for the accuracy")->check(CLI::Range(2, 1'000'000))->capture_default_str();
-  command->add_option("--budget-scene", arguments->budget_scene, "another YAML file, run under budgets of 4, 8 and 16 ms, such as scenes/heap.yaml");
-  command->add_option("--out", arguments->run.running.out, "folder for the trajectory")->capture_default_str();
-  command->add_option("--steps-csv", arguments->steps_csv, "file for every step of the mixed run and of those under a budget");
+  command->add_option("--trials", arguments->trials, "single drops for the accuracy")
+      ->check(CLI::Range(2, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--budget-scene", arguments->budget_scene,
+                      "another YAML file, run under budgets of 4, 8 and 16 ms, such as scenes/heap.yaml");
+  command->add_option("--out", arguments->run.running.out, "folder for the trajectory")
+      ->capture_default_str();
+  command->add_option("--steps-csv", arguments->steps_csv,
+                      "file for every step of the mixed run and of those under a budget");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
-  command->add_option("--report", arguments->report, "file for the page of HTML; else report.html beside the trajectory");
+  command->add_option("--report", arguments->report,
+                      "file for the page of HTML; else report.html beside the trajectory");
   command->callback([arguments, &exit_code] {
     if (arguments->report.empty()) arguments->report = arguments->run.running.out / "report.html";
     exit_code = demo(*arguments);

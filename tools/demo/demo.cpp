@@ -20,13 +20,18 @@ int find_busy_step(const RunResult& result) {
 
 TimeSummary summarize_window(const RunResult& result, int first) {
   std::vector<double> ms;
-  for (int i = first; i < std::min(first + kBusySteps, result.steps); ++i) ms.push_back(result.reports[i].times.total_ms);
+  for (int i = first; i < std::min(first + kBusySteps, result.steps); ++i)
+    ms.push_back(result.reports[i].times.total_ms);
   return summarize(ms);
 }
 
 DemoRow make_row(std::string name, const RunResult& result, int busy_step) {
   const int most_full = std::ranges::max_element(result.reports, {}, &StepReport::full)->full;
-  return {.name = std::move(name), .whole_ms = result.step_ms, .processor_ms = result.processor_ms, .busy_ms = summarize_window(result, busy_step), .most_full = most_full};
+  return {.name = std::move(name),
+          .whole_ms = result.step_ms,
+          .processor_ms = result.processor_ms,
+          .busy_ms = summarize_window(result, busy_step),
+          .most_full = most_full};
 }
 
 class Demo {
@@ -50,14 +55,18 @@ class Demo {
     result.busy_step = find_busy_step(support);
     result.busy_steps = kBusySteps;
     result.rows.push_back(make_row("statistical, support", support, result.busy_step));
-    result.rows.push_back(make_row("statistical, tables", run_statistical(StatisticalModel::tables), result.busy_step));
+    result.rows.push_back(
+        make_row("statistical, tables", run_statistical(StatisticalModel::tables), result.busy_step));
     result.mixed = run_scene(scene_, reporting(settings_, "mixed"));
     result.rows.push_back(make_row("mixed", result.mixed, result.busy_step));
     result.rows.push_back(run_full(result.busy_step));
   }
 
   RunSettings reporting(RunSettings settings, const std::string& name) const {
-    settings.progress = [this, name](const RunProgress& run) { if (progress_) progress_(fmt::format("{}, {}", name, text_of(run)), double(run.step) / run.steps); };
+    settings.keep_steps = true;
+    settings.progress = [this, name](const RunProgress& run) {
+      if (progress_) progress_(fmt::format("{}, {}", name, text_of(run)), double(run.step) / run.steps);
+    };
     return settings;
   }
 
@@ -78,7 +87,11 @@ class Demo {
     RunSettings settings = at_level(LevelChoice::full, "full");
     settings.steps = kUntimedSteps + kBusySteps;
     const RunResult result = run_scene(scene_after(busy_step), settings);
-    return {.name = "full", .whole_ms = std::nullopt, .processor_ms = std::nullopt, .busy_ms = summarize_window(result, kUntimedSteps), .most_full = result.bodies};
+    return {.name = "full",
+            .whole_ms = std::nullopt,
+            .processor_ms = std::nullopt,
+            .busy_ms = summarize_window(result, kUntimedSteps),
+            .most_full = result.bodies};
   }
 
   // The scene as a statistical run leaves it.
@@ -127,7 +140,11 @@ std::vector<RunResult> run_budgets(const Scene& scene, RunSettings settings, con
   std::vector<RunResult> budgets;
   for (const double ms : kDemoBudgets) {
     settings.budget_ms = ms;
-    settings.progress = [&](const RunProgress& run) { if (progress) progress(fmt::format("a budget of {:g} ms, {}", ms, text_of(run)), double(run.step) / run.steps); };
+    settings.keep_steps = true;
+    settings.progress = [&](const RunProgress& run) {
+      if (progress)
+        progress(fmt::format("a budget of {:g} ms, {}", ms, text_of(run)), double(run.step) / run.steps);
+    };
     budgets.push_back(run_scene(scene, settings));
   }
   return budgets;

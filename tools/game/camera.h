@@ -11,7 +11,9 @@ struct Camera {
   lodestone::Vec3 position{-9.0, -11.0, 4.2};  // m
   double yaw = 0.9, pitch = -0.24;             // rad; of the direction of sight, from x towards y, and up
 
-  lodestone::Vec3 direction() const { return {std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch)}; }
+  lodestone::Vec3 direction() const {
+    return {std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch)};
+  }
   lodestone::Vec3 right() const { return {std::sin(yaw), -std::cos(yaw), 0.0}; }
   lodestone::Vec3 up() const { return right().cross(direction()); }
   void look_at(const lodestone::Vec3& target) {

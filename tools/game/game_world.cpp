@@ -16,7 +16,7 @@ using namespace lodestone;
 
 constexpr double kFrame = 1.0 / 60.0;  // s
 constexpr double kPi = std::numbers::pi;
-constexpr double kDoorSpring = 20.0;   // N m/rad
+constexpr double kDoorSpring = 20.0;  // N m/rad
 
 double thread_time_ms() {
   timespec now;
@@ -24,34 +24,55 @@ double thread_time_ms() {
   return 1e3 * double(now.tv_sec) + 1e-6 * double(now.tv_nsec);
 }
 
-std::shared_ptr<const Shape> shape_of(const char* name, const Mesh& mesh) { return std::make_shared<const Shape>(make_shape(name, mesh)); }
+std::shared_ptr<const Shape> shape_of(const char* name, const Mesh& mesh) {
+  return std::make_shared<const Shape>(make_shape(name, mesh));
+}
 
 }  // namespace
 
 void PolicyChoice::turn(bool up) {
   const double factor = up ? 1.25 : 0.8;
   switch (kind) {
-    case PolicyKind::distance: full_within_m = std::clamp(full_within_m * factor, 0.5, 60.0); break;
-    case PolicyKind::projected_size: full_above_px = std::clamp(full_above_px * factor, 5.0, 1000.0); break;
-    default: budget_ms = std::clamp(budget_ms * factor, 0.25, 30.0);
+    case PolicyKind::distance:
+      full_within_m = std::clamp(full_within_m * factor, 0.5, 60.0);
+      break;
+    case PolicyKind::projected_size:
+      full_above_px = std::clamp(full_above_px * factor, 5.0, 1000.0);
+      break;
+    default:
+      budget_ms = std::clamp(budget_ms * factor, 0.25, 30.0);
   }
 }
 
 std::string PolicyChoice::text() const {
   char line[80];
   switch (kind) {
-    case PolicyKind::distance: std::snprintf(line, sizeof line, "distance: full within %.1f m", full_within_m); break;
-    case PolicyKind::projected_size: std::snprintf(line, sizeof line, "size in picture: full above %.0f px", full_above_px); break;
-    case PolicyKind::budget: std::snprintf(line, sizeof line, "budget %.2f ms: nearest first", budget_ms); break;
-    case PolicyKind::error_budget: std::snprintf(line, sizeof line, "error budget %.2f ms", budget_ms);
+    case PolicyKind::distance:
+      std::snprintf(line, sizeof line, "distance: full within %.1f m", full_within_m);
+      break;
+    case PolicyKind::projected_size:
+      std::snprintf(line, sizeof line, "size in picture: full above %.0f px", full_above_px);
+      break;
+    case PolicyKind::budget:
+      std::snprintf(line, sizeof line, "budget %.2f ms: nearest first", budget_ms);
+      break;
+    case PolicyKind::error_budget:
+      std::snprintf(line, sizeof line, "error budget %.2f ms", budget_ms);
   }
   return line;
 }
 
 PolicySettings PolicyChoice::settings() const {
-  PolicySettings settings{.policy = BudgetPolicy{.budget_ms = budget_ms}, .min_dwell_frames = 20, .max_transitions_per_frame = 8, .out_of_view_factor = 3.0, .look_ahead_s = 0.2};
-  if (kind == PolicyKind::distance) settings.policy = DistancePolicy{.full_within = full_within_m, .support_within = 2.5 * full_within_m};
-  if (kind == PolicyKind::projected_size) settings.policy = ProjectedSizePolicy{.full_above_px = full_above_px, .support_above_px = 0.4 * full_above_px};
+  PolicySettings settings{.policy = BudgetPolicy{.budget_ms = budget_ms},
+                          .min_dwell_frames = 20,
+                          .max_transitions_per_frame = 8,
+                          .out_of_view_factor = 3.0,
+                          .look_ahead_s = 0.2};
+  if (kind == PolicyKind::distance)
+    settings.policy = DistancePolicy{.full_within = full_within_m, .support_within = 2.5 * full_within_m};
+  if (kind == PolicyKind::projected_size)
+    settings.policy =
+        ProjectedSizePolicy{.full_above_px = full_above_px, .support_above_px = 0.4 * full_above_px};
   if (kind == PolicyKind::error_budget) settings.policy = ErrorBudgetPolicy{.budget_ms = budget_ms};
   return settings;
 }
@@ -60,11 +81,16 @@ GameWorld::GameWorld() : world_(dWorldCreate()), space_(dHashSpaceCreate(nullptr
   dWorldSetGravity(world_, 0, 0, -9.81);
   add_buildings();
   add_door();
-  manager_ = std::make_unique<Manager>(world_, space_, ManagerSettings{.policy = policy_.settings(), .signature_timing = SignatureTiming::in_background});
+  manager_ = std::make_unique<Manager>(
+      world_, space_,
+      ManagerSettings{.policy = policy_.settings(), .signature_timing = SignatureTiming::in_background});
   cloth_ = manager_->materials().add({.restitution = 0.05, .friction = 0.8, .density = 800.0});
-  shapes_ = {shape_of("box", make_box({0.42, 0.32, 0.26})), shape_of("l", make_l(0.5, 0.4, 0.16, 0.14)), shape_of("needle", make_needle(0.8, 0.07)), shape_of("plate", make_box({0.5, 0.5, 0.09}))};
+  shapes_ = {shape_of("box", make_box({0.42, 0.32, 0.26})), shape_of("l", make_l(0.5, 0.4, 0.16, 0.14)),
+             shape_of("needle", make_needle(0.8, 0.07)), shape_of("plate", make_box({0.5, 0.5, 0.09}))};
   ball_ = std::make_shared<const Shape>(make_sphere_shape(0.18));
-  for (const Vec3& heap : {Vec3(-4.5, -4.0, 0.5), Vec3(4.5, -4.5, 0.5), Vec3(6.4, 3.5, 2.0), Vec3(-6.0, 4.5, 1.8), Vec3(1.0, 13.0, 0.5), Vec3(-15.0, -2.0, 0.5)}) add_heap(heap.x(), heap.y(), heap.z());
+  for (const Vec3& heap : {Vec3(-4.5, -4.0, 0.5), Vec3(4.5, -4.5, 0.5), Vec3(6.4, 3.5, 2.0),
+                           Vec3(-6.0, 4.5, 1.8), Vec3(1.0, 13.0, 0.5), Vec3(-15.0, -2.0, 0.5)})
+    add_heap(heap.x(), heap.y(), heap.z());
   drop_ragdoll({0.9, -1.9, 1.6});
 }
 
@@ -111,9 +137,12 @@ void GameWorld::add_door() {
 void GameWorld::add_heap(double x, double y, double above) {
   std::uniform_real_distribution<double> turn(-kPi, kPi);
   for (int i = 0; i < 80; ++i) {
-    const Vec3 position(x + 0.65 * (i % 4 - 1.5), y + 0.65 * (i / 4 % 4 - 1.5), Terrain::height(x, y) + above + 0.7 * (i / 16));
+    const Vec3 position(x + 0.65 * (i % 4 - 1.5), y + 0.65 * (i / 4 % 4 - 1.5),
+                        Terrain::height(x, y) + above + 0.7 * (i / 16));
     const double a = turn(random_), b = turn(random_), c = turn(random_);
-    bodies_.push_back(manager_->add_body({.shape = shapes_[i % shapes_.size()], .state = {.position = position, .orientation = rotation_from_vector({0.5 * a, 0.5 * b, 0.5 * c})}}));
+    bodies_.push_back(manager_->add_body(
+        {.shape = shapes_[i % shapes_.size()],
+         .state = {.position = position, .orientation = rotation_from_vector({0.5 * a, 0.5 * b, 0.5 * c})}}));
   }
 }
 
@@ -123,13 +152,18 @@ void GameWorld::set_policy(const PolicyChoice& choice) {
 }
 
 void GameWorld::throw_ball(const Camera& camera) {
-  bodies_.push_back(manager_->add_body({.shape = ball_, .state = {.position = camera.position + camera.direction(), .velocity = 16.0 * camera.direction() + Vec3(0, 0, 1.5)}, .importance = 3.0}));
+  bodies_.push_back(manager_->add_body({.shape = ball_,
+                                        .state = {.position = camera.position + camera.direction(),
+                                                  .velocity = 16.0 * camera.direction() + Vec3(0, 0, 1.5)},
+                                        .importance = 3.0}));
 }
 
 void GameWorld::drop_ragdoll(const Vec3& pelvis) {
   std::uniform_real_distribution<double> turn(-kPi, kPi);
   const double z = turn(random_), x = 0.2 * turn(random_);
-  std::ranges::copy(add_ragdoll(*manager_, world_, pelvis, rotation_from_vector({0, 0, z}) * rotation_from_vector({x, 0, 0}), cloth_), std::back_inserter(bodies_));
+  std::ranges::copy(add_ragdoll(*manager_, world_, pelvis,
+                                rotation_from_vector({0, 0, z}) * rotation_from_vector({x, 0, 0}), cloth_),
+                    std::back_inserter(bodies_));
 }
 
 // Over the edge of the world.
@@ -142,7 +176,10 @@ void GameWorld::remove_lost() {
 }
 
 double GameWorld::step(const Camera& camera, double height_px, double aspect) {
-  manager_->set_viewpoints({Viewpoint{.position = camera.position, .direction = camera.direction(), .height_px = height_px, .aspect = aspect}});
+  manager_->set_viewpoints({Viewpoint{.position = camera.position,
+                                      .direction = camera.direction(),
+                                      .height_px = height_px,
+                                      .aspect = aspect}});
   dJointAddHingeTorque(door_hinge_, -kDoorSpring * dJointGetHingeAngle(door_hinge_));
   const double before = thread_time_ms();
   manager_->step(kFrame);

@@ -1,4 +1,5 @@
-// What happens in the game: an ODE world and space of its own with hills, walls, stairs, a door on a hinge, and a manager attached to them with everything that falls.
+// What happens in the game: an ODE world and space of its own with hills, walls, stairs, a door on a hinge,
+// and a manager attached to them with everything that falls.
 #pragma once
 
 #include <lodestone/lodestone.h>
@@ -40,7 +41,8 @@ class GameWorld {
   GameWorld(const GameWorld&) = delete;
   GameWorld& operator=(const GameWorld&) = delete;
 
-  /// One frame of 1/60 s as seen by `camera`, whose picture is so many pixels high. Returns the processor time of the manager's step, ms.
+  /// One frame of 1/60 s as seen by `camera`, whose picture is so many pixels high. Returns the processor
+  /// time of the manager's step, ms.
   double step(const Camera& camera, double height_px, double aspect);
 
   void set_policy(const PolicyChoice& choice);

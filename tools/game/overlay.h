@@ -10,7 +10,8 @@
 namespace game {
 
 /// By Rung.
-inline constexpr std::array<lodestone::DebugColor, lodestone::kRungs> kRungColors{{{0.10f, 0.62f, 0.42f}, {0.35f, 0.70f, 0.90f}, {0.95f, 0.60f, 0.05f}}};
+inline constexpr std::array<lodestone::DebugColor, lodestone::kRungs> kRungColors{
+    {{0.10f, 0.62f, 0.42f}, {0.35f, 0.70f, 0.90f}, {0.95f, 0.60f, 0.05f}}};
 
 struct OverlayState {
   const lodestone::StepReport& report;

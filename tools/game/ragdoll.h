@@ -9,7 +9,8 @@
 namespace game {
 
 /// Standing, the middle of the pelvis at `pelvis` (m). The joints are the world's and go with it.
-std::vector<lodestone::BodyId> add_ragdoll(lodestone::Manager& manager, dWorldID world, const lodestone::Vec3& pelvis, const lodestone::Quat& orientation,
+std::vector<lodestone::BodyId> add_ragdoll(lodestone::Manager& manager, dWorldID world,
+                                           const lodestone::Vec3& pelvis, const lodestone::Quat& orientation,
                                            lodestone::MaterialId material);
 
 }  // namespace game

@@ -7,7 +7,8 @@
 
 namespace game {
 
-/// Flat about the origin, hills around, a rim at the edge. Owns the height field's data, which must outlive the geom.
+/// Flat about the origin, hills around, a rim at the edge. Owns the height field's data, which must outlive
+/// the geom.
 class Terrain {
  public:
   static constexpr double kSide = 64.0;  ///< m

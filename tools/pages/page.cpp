@@ -23,7 +23,8 @@ std::string read_library(std::string_view name) {
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad() || text.empty())
-    throw InputError(fmt::format("{}: cannot be read; it belongs to Debian's package libjs-{}", file.string(), name.substr(0, name.find('/'))));
+    throw InputError(fmt::format("{}: cannot be read; it belongs to Debian's package libjs-{}", file.string(),
+                                 name.substr(0, name.find('/'))));
   return text;
 }
 
@@ -36,20 +37,27 @@ std::string own_text(std::string_view name) {
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    if (c == '<') result += "&lt;";
-    else if (c == '&') result += "&amp;";
-    else if (c == '"') result += "&quot;";
-    else result += c;
+    if (c == '<')
+      result += "&lt;";
+    else if (c == '&')
+      result += "&amp;";
+    else if (c == '"')
+      result += "&quot;";
+    else
+      result += c;
   }
   return result;
 }
 
-/// Within a script no `</script>` or `<!--` may stand, wherever it comes from: in JSON every < may be written so.
+/// Within a script no `</script>` or `<!--` may stand, wherever it comes from: in JSON every < may be written
+/// so.
 std::string script_json(const nlohmann::ordered_json& data) {
   std::string result;
   for (const char c : data.dump()) {
-    if (c == '<') result += "\\u003c";
-    else result += c;
+    if (c == '<')
+      result += "\\u003c";
+    else
+      result += c;
   }
   return result;
 }
@@ -87,6 +95,8 @@ std::string make_page(std::string_view name, std::string_view title, const nlohm
   return PageMaker(title, data).expand(own_text(name));
 }
 
-void save_page(const fs::path& file, const std::string& page) { write_atomically(std::as_bytes(std::span(page)), file); }
+void save_page(const fs::path& file, const std::string& page) {
+  write_atomically(std::as_bytes(std::span(page)), file);
+}
 
 }  // namespace lodestone

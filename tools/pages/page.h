@@ -8,8 +8,10 @@
 
 namespace lodestone {
 
-/// The page whose text is tools/*/NAME, with its markers replaced: `{{text:FILE}}` by a text of the project's own (find_page_text), `{{library:FOLDER/FILE}}` by a file of Debian's
-/// libjs-… packages below /usr/share/javascript, `{{title}}` by `title`, and `{{data}}` by `data`, which a script finds as JSON. Throws InputError where a library is not installed.
+/// The page whose text is tools/*/NAME, with its markers replaced: `{{text:FILE}}` by a text of the project's
+/// own (find_page_text), `{{library:FOLDER/FILE}}` by a file of Debian's libjs-… packages below
+/// /usr/share/javascript, `{{title}}` by `title`, and `{{data}}` by `data`, which a script finds as JSON.
+/// Throws InputError where a library is not installed.
 std::string make_page(std::string_view name, std::string_view title, const nlohmann::ordered_json& data);
 
 /// Writes `page` through a temporary file beside it. Throws InputError where it cannot be written.

@@ -6,7 +6,8 @@
 
 namespace lodestone {
 
-/// The text of tools/*/NAME (.html, .css, .js) or tests/baselines/NAME (.csv); none where there is no such file.
+/// The text of tools/*/NAME (.html, .css, .js) or tests/baselines/NAME (.csv); none where there is no such
+/// file.
 std::optional<std::string_view> find_page_text(std::string_view name);
 
 }  // namespace lodestone

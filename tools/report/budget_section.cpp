@@ -10,17 +10,23 @@ using nlohmann::ordered_json;
 
 // Rows of one run, in the order of their steps.
 ordered_json run_of(const ordered_json& rows) {
-  ordered_json run = {{"scene", rows.front()["scene"]}, {"budget_ms", rows.front()["budget_ms"]}, {"dt_s", rows.front()["dt_s"]}};
+  ordered_json run = {{"scene", rows.front()["scene"]},
+                      {"budget_ms", rows.front()["budget_ms"]},
+                      {"dt_s", rows.front()["dt_s"]}};
   for (const char* key : {"full", "support", "tables", "asleep", "processor_ms"}) {
     run[key] = ordered_json::array();
     for (const ordered_json& row : rows) run[key].push_back(row[key]);
   }
   std::vector<double> ms = run["processor_ms"].get<std::vector<double>>();
-  ms.erase(ms.begin(), ms.begin() + std::min<std::ptrdiff_t>(kFirstBudgetStep - 1, std::ptrdiff_t(ms.size()) - 1));
+  ms.erase(ms.begin(),
+           ms.begin() + std::min<std::ptrdiff_t>(kFirstBudgetStep - 1, std::ptrdiff_t(ms.size()) - 1));
   const TimeSummary summary = summarize(ms);
   run["counted_steps"] = ms.size();
   run["p50_ms"] = summary.p50, run["p99_ms"] = summary.p99, run["max_ms"] = summary.max;
-  run["over"] = run["budget_ms"].is_null() ? ordered_json(nullptr) : ordered_json(std::ranges::count_if(ms, [&](double x) { return x > run["budget_ms"].get<double>(); }));
+  run["over"] = run["budget_ms"].is_null() ? ordered_json(nullptr)
+                                           : ordered_json(std::ranges::count_if(ms, [&](double x) {
+                                               return x > run["budget_ms"].get<double>();
+                                             }));
   return run;
 }
 

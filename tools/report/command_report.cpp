@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 
 #include "tools/commands.h"
 #include "tools/pages/page.h"
@@ -33,13 +34,21 @@ void report(Arguments arguments) {
 }  // namespace
 
 void add_report_command(CLI::App& program, ExitCode& exit_code) {
-  CLI::App* command = program.add_subcommand("report", "one page of HTML: speed against error, budgets, the paper's table, hard cases, signatures");
+  CLI::App* command = program.add_subcommand(
+      "report", "one page of HTML: speed against error, budgets, the paper's table, hard cases, signatures");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("-o,--out", arguments->out, "file for the page")->capture_default_str();
-  command->add_option("--shapes", arguments->settings.shapes, "whose signatures are shown; several with spaces")->capture_default_str();
-  command->add_option("--threads", arguments->settings.threads, "that measure signatures; 0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
-  command->add_flag("--json", arguments->json, "what the page shows as one JSON object on stdout, in place of the page");
-  command->footer("Figures that take long to measure are those of tests/baselines, each with its commit and machine; tools/baselines makes them anew.");
+  command
+      ->add_option("--shapes", arguments->settings.shapes, "whose signatures are shown; several with spaces")
+      ->capture_default_str();
+  command->add_option("--threads", arguments->settings.threads, "that measure signatures; 0: all cores")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json,
+                    "what the page shows as one JSON object on stdout, in place of the page");
+  command->footer(
+      "Figures that take long to measure are those of tests/baselines, each with its commit and machine; "
+      "tools/baselines makes them anew.");
   command->callback([arguments, &exit_code] {
     report(*arguments);
     exit_code = ExitCode::done;

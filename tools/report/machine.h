@@ -8,7 +8,8 @@ namespace lodestone {
 /// Processor, cores, system, compiler and ODE's version in a line.
 std::string describe_machine();
 
-/// Of the working copy that the program was built from, "+" after it where that was changed; "unknown" where it is no working copy.
+/// Of the working copy that the program was built from, "+" after it where that was changed; "unknown" where
+/// it is no working copy.
 std::string program_commit();
 
 /// UTC, as 2026-11-21.

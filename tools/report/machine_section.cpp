@@ -42,7 +42,8 @@ std::string compiler_name() {
 }  // namespace
 
 std::string describe_machine() {
-  return fmt::format("{}, {} cores, {}, {}, ODE {}", processor_name(), std::thread::hardware_concurrency(), system_name(), compiler_name(), LODESTONE_ODE_VERSION);
+  return fmt::format("{}, {} cores, {}, {}, ODE {}", processor_name(), std::thread::hardware_concurrency(),
+                     system_name(), compiler_name(), LODESTONE_ODE_VERSION);
 }
 
 std::string program_commit() { return LODESTONE_COMMIT; }
@@ -50,8 +51,13 @@ std::string program_commit() { return LODESTONE_COMMIT; }
 std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))); }
 
 ordered_json machine_section() {
-  return {{"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()}, {"system", system_name()}, {"compiler", compiler_name()}, {"ode", LODESTONE_ODE_VERSION},
-          {"commit", program_commit()}, {"date", today()}};
+  return {{"processor", processor_name()},
+          {"cores", std::thread::hardware_concurrency()},
+          {"system", system_name()},
+          {"compiler", compiler_name()},
+          {"ode", LODESTONE_ODE_VERSION},
+          {"commit", program_commit()},
+          {"date", today()}};
 }
 
 }  // namespace lodestone

@@ -17,6 +17,8 @@ nlohmann::ordered_json gather_report(const ReportSettings& settings) {
   return data;
 }
 
-std::string make_report(const nlohmann::ordered_json& data) { return make_page("report.html", "Lodestone: speed against error", data); }
+std::string make_report(const nlohmann::ordered_json& data) {
+  return make_page("report.html", "Lodestone: speed against error", data);
+}
 
 }  // namespace lodestone

@@ -30,10 +30,14 @@ std::vector<Cell> cells_of(std::string_view line) {
   bool inside = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
-    if (c == '"' && inside && i + 1 < line.size() && line[i + 1] == '"') cells.back().text += line[++i];  // two of them stand for one
-    else if (c == '"') inside = !inside, cells.back().quoted = true;
-    else if (c == ',' && !inside) cells.emplace_back();
-    else cells.back().text += c;
+    if (c == '"' && inside && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back().text += line[++i];  // two of them stand for one
+    else if (c == '"')
+      inside = !inside, cells.back().quoted = true;
+    else if (c == ',' && !inside)
+      cells.emplace_back();
+    else
+      cells.back().text += c;
   }
   return cells;
 }
@@ -49,7 +53,9 @@ ordered_json value_of(const Cell& cell) {
 }
 
 void read_comment(std::string_view line, Provenance& made) {
-  const auto value_after = [&](std::string_view key) { return line.starts_with(key) ? std::optional(std::string(line.substr(key.size()))) : std::nullopt; };
+  const auto value_after = [&](std::string_view key) {
+    return line.starts_with(key) ? std::optional(std::string(line.substr(key.size()))) : std::nullopt;
+  };
   if (const auto command = value_after("# command: ")) made.commands.push_back(*command);
   if (const auto commit = value_after("# commit: ")) made.commit = *commit;
   if (const auto machine = value_after("# machine: ")) made.machine = *machine;
@@ -67,7 +73,9 @@ ReportTable parse_report_table(std::string_view name, std::string_view csv) {
   while (!csv.empty()) {
     const std::vector<Cell> cells = cells_of(take_line(csv));
     ++number;
-    if (cells.size() != keys.size()) throw InputError(fmt::format("{}: line {}: found {} cells, expected {}", name, number, cells.size(), keys.size()));
+    if (cells.size() != keys.size())
+      throw InputError(
+          fmt::format("{}: line {}: found {} cells, expected {}", name, number, cells.size(), keys.size()));
     ordered_json row;
     for (std::size_t i = 0; i < keys.size(); ++i) row[keys[i].text] = value_of(cells[i]);
     table.rows.push_back(std::move(row));
@@ -82,7 +90,11 @@ ReportTable load_baseline(std::string_view name) {
 }
 
 ordered_json json_of(const Provenance& made) {
-  return {{"commands", made.commands}, {"commit", made.commit}, {"machine", made.machine}, {"date", made.date}, {"fresh", made.fresh}};
+  return {{"commands", made.commands},
+          {"commit", made.commit},
+          {"machine", made.machine},
+          {"date", made.date},
+          {"fresh", made.fresh}};
 }
 
 }  // namespace lodestone

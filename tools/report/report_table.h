@@ -20,8 +20,9 @@ struct ReportTable {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();  ///< objects, all with the same keys
 };
 
-/// Of CSV text whose first lines are comments, `# command: …` (any number), `# commit: …`, `# machine: …`, `# date: …`, then the keys, then a line a row. A cell is a number where it reads as one,
-/// null where it is empty, text in double quotes or not; `name` heads what InputError says is wrong.
+/// Of CSV text whose first lines are comments, `# command: …` (any number), `# commit: …`, `# machine: …`, `#
+/// date: …`, then the keys, then a line a row. A cell is a number where it reads as one, null where it is
+/// empty, text in double quotes or not; `name` heads what InputError says is wrong.
 ReportTable parse_report_table(std::string_view name, std::string_view csv);
 
 /// tests/baselines/NAME, which is in the program. Throws std::logic_error where there is no such file.

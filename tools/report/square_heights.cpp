@@ -15,7 +15,8 @@ constexpr double kHalfDiagonal = std::numbers::sqrt2 / 2;
 
 double phase_sum(double phi, double ratio) { return phi + ratio * kHalfDiagonal * std::cos(phi); }
 
-// Where the sum, a quarter of a turn later, comes to what it was at `last`: by bisection, since it rises from −π/4 to `last`.
+// Where the sum, a quarter of a turn later, comes to what it was at `last`: by bisection, since it rises from
+// −π/4 to `last`.
 double first_met(double last, double ratio) {
   double low = -kPi / 4, high = last;
   for (int i = 0; i < 60; ++i) {

@@ -5,7 +5,7 @@
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 
-#include "reference/error.h"
+#include "reference/argument_error.h"
 #include "scenes/playback.h"
 #include "tools/pages/page.h"
 
@@ -24,7 +24,9 @@ std::string base64_of(std::span<const std::byte> bytes) {
   return text;
 }
 
-ordered_json json_of(const Playback& playback) { return {{"header", playback.header}, {"blobs", base64_of(playback.blobs)}}; }
+ordered_json json_of(const Playback& playback) {
+  return {{"header", playback.header}, {"blobs", base64_of(playback.blobs)}};
+}
 
 ordered_json load_run(const fs::path& run) {
   const bool is_folder = fs::is_directory(run);
@@ -37,7 +39,8 @@ ordered_json load_run(const fs::path& run) {
 }  // namespace
 
 std::string make_view_page(std::span<const fs::path> runs, bool blind) {
-  if (blind && runs.size() != 2) throw InputError(fmt::format("--blind: found {} runs, expected two to be told apart", runs.size()));
+  if (blind && runs.size() != 2)
+    throw ArgumentError(fmt::format("--blind: found {} runs, expected two to be told apart", runs.size()));
   ordered_json data{{"blind", blind}, {"runs", ordered_json::array()}};
   std::string title;
   for (const fs::path& run : runs) {

@@ -7,8 +7,9 @@
 
 namespace lodestone {
 
-/// `runs` are one to three folders with a run.play, and a fork.play where the run was forked, or such files. `blind`: two runs whose names and places the page hides. Throws InputError for what
-/// cannot be read, for other than two runs to be told apart, and where Debian's libjs-three or libjs-chart.js is not installed.
+/// `runs` are one to three folders with a run.play, and a fork.play where the run was forked, or such files.
+/// `blind`: two runs whose names and places the page hides. Throws InputError for what cannot be read, for
+/// other than two runs to be told apart, and where Debian's libjs-three or libjs-chart.js is not installed.
 std::string make_view_page(std::span<const std::filesystem::path> runs, bool blind = false);
 
 }  // namespace lodestone

@@ -9,7 +9,8 @@ int main(int, char** arguments) {
   check::that(module, "a module with the engine in it is loaded");
   if (module) {
     const auto height = reinterpret_cast<double (*)(double)>(dlsym(module, "height_after_a_fall"));
-    check::within(height(0.5), 10 - 0.5 * 9.81 * 0.25 - 0.05, 10 - 0.5 * 9.81 * 0.25 + 0.05, "height after half a second of fall, m");
+    check::within(height(0.5), 10 - 0.5 * 9.81 * 0.25 - 0.05, 10 - 0.5 * 9.81 * 0.25 + 0.05,
+                  "height after half a second of fall, m");
   }
   return check::result();
 }

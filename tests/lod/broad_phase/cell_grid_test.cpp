@@ -1,4 +1,5 @@
-// The cells against every pair tried: the same pairs, each once, for layers, piles, sparse clouds and mixed sizes.
+// The cells against every pair tried: the same pairs, each once, for layers, piles, sparse clouds and mixed
+// sizes.
 #include "lod/broad_phase/cell_grid.h"
 
 #include <gtest/gtest.h>
@@ -16,10 +17,14 @@ using Pair = std::pair<std::uint32_t, std::uint32_t>;
 struct Balls {
   std::vector<double> x, y, z;
   std::vector<float> reach;
-  void add(const Vec3& p, double r) { x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z()), reach.push_back(float(r)); }
+  void add(const Vec3& p, double r) {
+    x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z()), reach.push_back(float(r));
+  }
   BallSpan span() const { return {x, y, z, reach}; }
   Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
-  double gap(std::size_t i, std::size_t j) const { return (at(i) - at(j)).norm() - double(reach[i]) - double(reach[j]); }
+  double gap(std::size_t i, std::size_t j) const {
+    return (at(i) - at(j)).norm() - double(reach[i]) - double(reach[j]);
+  }
 };
 
 Balls cloud(int count, const Vec3& sides, double least, double most, const Vec3& from = Vec3::Zero()) {
@@ -104,7 +109,8 @@ TEST(CellGrid, PebblesAmongBoulders) {
 
 Balls layer_with_strays(int side) {
   Balls balls = cloud(side * side, {0.2 * side, 0.2 * side, 0.1}, 0.1, 0.1);
-  for (const Vec3& far : {Vec3(3e5, -1e5, 2e4), Vec3(-2e4, 1e3, 4e5), Vec3(10, 2e5, -1e5), Vec3(5, 5, -1e3)}) balls.add(far, 0.1);
+  for (const Vec3& far : {Vec3(3e5, -1e5, 2e4), Vec3(-2e4, 1e3, 4e5), Vec3(10, 2e5, -1e5), Vec3(5, 5, -1e3)})
+    balls.add(far, 0.1);
   return balls;
 }
 

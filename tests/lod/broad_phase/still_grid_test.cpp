@@ -34,8 +34,10 @@ TEST(StillGrid, FindsWhatLiesNearWhoeverCameAndWent) {
     RandomStream random(9, round, 0);
     const auto body = std::uint32_t(random.uniform() * 1000);
     const Lying l = lying(body);
-    if (inside.erase(body)) grid.remove(body, l.position, l.radius);
-    else inside.insert(body), grid.insert(body, l.position, l.radius);
+    if (inside.erase(body))
+      grid.remove(body, l.position, l.radius);
+    else
+      inside.insert(body), grid.insert(body, l.position, l.radius);
     if (round % 100) continue;
     const Vec3 center(random.uniform(-22, 22), random.uniform(-22, 22), 0);
     const double reach = random.uniform(0.1, 3.0);
@@ -49,6 +51,42 @@ TEST(StillGrid, FindsWhatLiesNearWhoeverCameAndWent) {
   for (const std::uint32_t body : inside) grid.remove(body, lying(body).position, lying(body).radius);
   EXPECT_TRUE(grid.empty());
   EXPECT_TRUE(near(grid, Vec3::Zero(), 100.0).empty());
+}
+
+// Blocks answer as the cells do, in the same order, whoever came, went, or was restored.
+TEST(StillGrid, BlocksChangeNoAnswer) {
+  StillGrid plain, quick(true);
+  std::set<std::uint32_t> inside;
+  const auto list = [](const StillGrid& grid, const Vec3& center, double reach) {
+    std::vector<std::uint32_t> found;
+    grid.find_near(center, reach, [&](std::uint32_t body) { found.push_back(body); });
+    return found;
+  };
+  std::size_t found = 0;
+  for (std::uint32_t round = 0; round < 4000; ++round) {
+    RandomStream random(10, round, 0);
+    const auto body = std::uint32_t(random.uniform() * 500);
+    const Lying l = lying(body);
+    if (inside.erase(body))
+      plain.remove(body, l.position, l.radius), quick.remove(body, l.position, l.radius);
+    else
+      inside.insert(body), plain.insert(body, l.position, l.radius), quick.insert(body, l.position, l.radius);
+    if (round == 2000) {
+      StateArchive writer;
+      quick.archive(writer);
+      StateArchive reader(writer.bytes(), {});
+      quick = StillGrid(true);
+      quick.insert(7777, Vec3(1, 1, 0), 0.1);  // of another world
+      quick.archive(reader);
+    }
+    const Vec3 center(random.uniform(-22, 22), random.uniform(-22, 22), random.uniform(-1.5, 1.5));
+    for (const double reach : {0.02, 0.25, 0.7, 5.0}) {
+      const auto expected = list(plain, center, reach);
+      EXPECT_EQ(list(quick, center, reach), expected) << round << ' ' << reach;
+      found += expected.size();
+    }
+  }
+  EXPECT_GT(found, 4000u);
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ class OddGeoms : public ::testing::Test {
     dWorldDestroy(world_);
   }
   Manager& start() {
-    manager_ = std::make_unique<Manager>(world_, space_, ManagerSettings{.signature_timing = SignatureTiming::in_step});
+    manager_ = std::make_unique<Manager>(world_, space_,
+                                         ManagerSettings{.signature_timing = SignatureTiming::in_step});
     return *manager_;
   }
   BodyId add_box(const Vec3& position, LevelChoice level) {
@@ -49,10 +50,13 @@ TEST_F(OddGeoms, AHeightFieldThatRepeatsItselfIsGroundFarOutToo) {
   dGeomHeightfieldDataBuildCallback(data, nullptr, flat, 4, 4, 9, 9, 1, 0, 1, 1);
   const dQuaternion up = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
   dGeomSetQuaternion(dCreateHeightfield(space_, data, 1), up);
-  for (int i = 0; i < 40; ++i) dGeomSetPosition(dCreateBox(space_, 0.5, 0.5, 0.5), i - 20.0, 9.0, 0.2);  // so many that they are looked up in a tree
+  for (int i = 0; i < 40; ++i)
+    dGeomSetPosition(dCreateBox(space_, 0.5, 0.5, 0.5), i - 20.0, 9.0,
+                     0.2);  // so many that they are looked up in a tree
   Manager& manager = start();
   std::vector<BodyId> boxes;
-  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) boxes.push_back(add_box({30.0 + 2.0 * double(boxes.size()), 5.1, 0.6}, level));
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    boxes.push_back(add_box({30.0 + 2.0 * double(boxes.size()), 5.1, 0.6}, level));
   for (int i = 0; i < 240; ++i) manager.step(kFrame);
   for (const BodyId body : boxes) EXPECT_NEAR(manager.state(body).position.z(), 0.15, 0.01);
   manager_.reset();

@@ -31,12 +31,14 @@ Touching random_touch(const Shape& shape, RandomStream& random) {
   }
 }
 
-// The law that the closed form claims: dWorldStep's, with one contact (ODE sees the others only from the next step on).
+// The law that the closed form claims: dWorldStep's, with one contact (ODE sees the others only from the next
+// step on).
 TEST(ContactImpulse, MatchesDWorldStepInNearlyEveryRandomCase) {
   const auto shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
   int cases = 0, matches = 0;
   double worst = 0.0;
-  for (const ContactLaw law : {ContactLaw{0.4, 0.5}, ContactLaw{0.0, 0.2}, ContactLaw{0.8, 1.0}, ContactLaw{0.3, 0.0}}) {
+  for (const ContactLaw law :
+       {ContactLaw{0.4, 0.5}, ContactLaw{0.0, 0.2}, ContactLaw{0.8, 1.0}, ContactLaw{0.3, 0.0}}) {
     MaterialTable materials;
     materials.set_law(0, 0, law);
     OdeSettings settings;
@@ -48,7 +50,12 @@ TEST(ContactImpulse, MatchesDWorldStepInNearlyEveryRandomCase) {
     world.add_plane(Vec3::UnitZ(), 0.0, 0);
     RigidState start;
     start.position.z() = 1.0;
-    const OdeBodyId body = world.add_body({.shape = shape, .mass = 1.0, .material = 0, .state = start, .geometry = OdeGeometry::trimesh, .spheres = {}});
+    const OdeBodyId body = world.add_body({.shape = shape,
+                                           .mass = 1.0,
+                                           .material = 0,
+                                           .state = start,
+                                           .geometry = OdeGeometry::trimesh,
+                                           .spheres = {}});
     for (std::uint32_t i = 0; i < 2500; ++i) {
       RandomStream random(7, cases, 0);
       const Touching touching = random_touch(*shape, random);
@@ -61,9 +68,11 @@ TEST(ContactImpulse, MatchesDWorldStepInNearlyEveryRandomCase) {
       const Mat3 response = contact_response_matrix(1.0, inverse_inertia, touching.arm);
       const Vec3 at_contact = s.velocity + s.angular_velocity.cross(touching.arm);
       const Vec3 impulse = respond_contact(response, Vec3::UnitZ(), at_contact, law).impulse;
-      const Vec3 v = s.velocity + impulse, w = s.angular_velocity + inverse_inertia * touching.arm.cross(impulse);
+      const Vec3 v = s.velocity + impulse,
+                 w = s.angular_velocity + inverse_inertia * touching.arm.cross(impulse);
       const double speed = s.velocity.norm() + shape->radius * s.angular_velocity.norm();
-      const double error = ((v - by_ode.velocity).norm() + shape->radius * (w - by_ode.angular_velocity).norm()) / speed;
+      const double error =
+          ((v - by_ode.velocity).norm() + shape->radius * (w - by_ode.angular_velocity).norm()) / speed;
       ++cases;
       matches += error < 1e-6;
       worst = std::max(worst, error);
@@ -84,7 +93,8 @@ TEST(ContactImpulse, SlidingSphereLosesMuTimesItsNormalImpulse) {
   const double radius = 0.1, mu = 0.3, e = 0.5;
   const Mat3 inverse_inertia = Mat3::Identity() / (0.4 * radius * radius);
   const Vec3 arm(0, 0, -radius);
-  const ContactImpulse hit = respond_contact(contact_response_matrix(1.0, inverse_inertia, arm), Vec3::UnitZ(), {5, 0, -1}, {e, mu});
+  const ContactImpulse hit =
+      respond_contact(contact_response_matrix(1.0, inverse_inertia, arm), Vec3::UnitZ(), {5, 0, -1}, {e, mu});
   EXPECT_FALSE(hit.sticks);
   EXPECT_NEAR(hit.impulse.z(), 1.0 + e, 1e-12);
   EXPECT_NEAR(hit.impulse.x(), -mu * (1.0 + e), 1e-12);
@@ -98,7 +108,8 @@ TEST(ContactImpulse, SeparatingContactGetsNoResponse) {
 // S2: nearly head-on hits.
 TEST(ContactImpulse, FrameIsOrthonormalForEveryTilt) {
   for (double tilt = 0.1; tilt > 1e-17; tilt *= 0.1)
-    for (const Vec3& normal : {Vec3::UnitX().eval(), Vec3::UnitZ().eval(), Vec3(1, 2, 3).normalized().eval()}) {
+    for (const Vec3& normal :
+         {Vec3::UnitX().eval(), Vec3::UnitZ().eval(), Vec3(1, 2, 3).normalized().eval()}) {
       const Mat3 frame = contact_frame(normal, -normal + tilt * normal.unitOrthogonal());
       EXPECT_LT((frame.transpose() * frame - Mat3::Identity()).norm(), 1e-12);
       EXPECT_NEAR(frame.determinant(), 1.0, 1e-12);

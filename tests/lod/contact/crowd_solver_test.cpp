@@ -1,8 +1,9 @@
-// The crowd's solver: one result for every instruction set and number of threads, that of the plain solver once converged, momentum kept, no more manifolds side by
-// side than may be.
+// The crowd's solver: one result for every instruction set and number of threads, that of the plain solver
+// once converged, momentum kept, no more manifolds side by side than may be.
+#include "lod/contact/crowd_solver.h"
+
 #include <gtest/gtest.h>
 
-#include "lod/contact/crowd_solver.h"
 #include "reference/random.h"
 
 namespace lodestone {
@@ -13,11 +14,19 @@ struct Crowd {
   std::vector<CrowdManifold> manifolds;
   std::vector<CrowdPoint> points;
 
-  void add_manifold(std::int32_t first, std::int32_t second, const Vec3& normal, int count, RandomStream& random) {
-    manifolds.push_back({first, second, normal, {.restitution = 0.4, .friction = 0.5}, std::uint32_t(points.size()), std::uint32_t(count)});
+  void add_manifold(std::int32_t first, std::int32_t second, const Vec3& normal, int count,
+                    RandomStream& random) {
+    manifolds.push_back({first,
+                         second,
+                         normal,
+                         {.restitution = 0.4, .friction = 0.5},
+                         std::uint32_t(points.size()),
+                         std::uint32_t(count)});
     for (int i = 0; i < count; ++i) {
       CrowdPoint point;
-      point.arm_first = Vec3(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)) - 0.1 * normal;
+      point.arm_first =
+          Vec3(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)) -
+          0.1 * normal;
       point.arm_second = point.arm_first + 0.2 * normal;
       point.gap = random.uniform(-1e-3, 1e-3);
       point.guess = random.uniform(0.0, 0.2) * normal;
@@ -29,7 +38,9 @@ struct Crowd {
 // Bodies thrown at each other at random, some fixed and some on the ground.
 Crowd make_crowd(int bodies, int manifolds, bool ground) {
   RandomStream random(5, 1, 0);
-  const auto vector = [&](double size) { return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)); };
+  const auto vector = [&](double size) {
+    return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+  };
   Crowd crowd;
   for (int i = 0; i < bodies; ++i) {
     SolverBody body;
@@ -37,7 +48,8 @@ Crowd make_crowd(int bodies, int manifolds, bool ground) {
     body.angular_velocity = vector(5.0);
     if (i % 9 != 3 || !ground) {
       body.inverse_mass = random.uniform(0.1, 1.0);
-      const Vec3 inverse_moments = body.inverse_mass * Vec3(random.uniform(60, 100), random.uniform(60, 100), random.uniform(100, 130));
+      const Vec3 inverse_moments = body.inverse_mass * Vec3(random.uniform(60, 100), random.uniform(60, 100),
+                                                            random.uniform(100, 130));
       const Mat3 axes = random.orientation().toRotationMatrix();
       body.inverse_inertia = axes * inverse_moments.asDiagonal() * axes.transpose();
     } else {
@@ -46,8 +58,10 @@ Crowd make_crowd(int bodies, int manifolds, bool ground) {
     crowd.bodies.push_back(body);
   }
   for (int i = 0; i < manifolds; ++i) {
-    const auto first = std::int32_t(random.uniform(0, bodies)), second = std::int32_t((first + 1 + std::int32_t(random.uniform(0, bodies - 1))) % bodies);
-    crowd.add_manifold(first, ground && i % 4 == 0 ? -1 : second, random.orientation() * Vec3::UnitZ(), 1 + i % 4, random);
+    const auto first = std::int32_t(random.uniform(0, bodies)),
+               second = std::int32_t((first + 1 + std::int32_t(random.uniform(0, bodies - 1))) % bodies);
+    crowd.add_manifold(first, ground && i % 4 == 0 ? -1 : second, random.orientation() * Vec3::UnitZ(),
+                       1 + i % 4, random);
   }
   return crowd;
 }
@@ -55,14 +69,18 @@ Crowd make_crowd(int bodies, int manifolds, bool ground) {
 constexpr double kStep = 1.0 / 180.0;
 
 void solve(Crowd& crowd, Simd simd, int threads, const ContactSolverSettings& settings) {
-  CrowdSolver(simd).solve(crowd.bodies, crowd.manifolds, crowd.points, kStep, settings, make_job_runner(threads));
+  CrowdSolver(simd).solve(crowd.bodies, crowd.manifolds, crowd.points, kStep, settings,
+                          make_job_runner(threads));
 }
 
 bool same(const Crowd& a, const Crowd& b) {
   for (std::size_t i = 0; i < a.bodies.size(); ++i)
-    if (a.bodies[i].velocity != b.bodies[i].velocity || a.bodies[i].angular_velocity != b.bodies[i].angular_velocity) return false;
+    if (a.bodies[i].velocity != b.bodies[i].velocity ||
+        a.bodies[i].angular_velocity != b.bodies[i].angular_velocity)
+      return false;
   for (std::size_t i = 0; i < a.points.size(); ++i)
-    if (a.points[i].impulse != b.points[i].impulse || a.points[i].bounces != b.points[i].bounces) return false;
+    if (a.points[i].impulse != b.points[i].impulse || a.points[i].bounces != b.points[i].bounces)
+      return false;
   return true;
 }
 
@@ -89,7 +107,8 @@ std::vector<SolverContact> plain_contacts(const Crowd& crowd) {
     for (const CrowdPoint& point : std::span(crowd.points).subspan(m.begin, m.count)) {
       SolverContact& c = contacts.emplace_back();
       c.first = m.first, c.second = m.second, c.normal = m.normal, c.law = m.law;
-      c.arm_first = point.arm_first, c.arm_second = point.arm_second, c.gap = point.gap, c.guess = point.guess;
+      c.arm_first = point.arm_first, c.arm_second = point.arm_second, c.gap = point.gap,
+      c.guess = point.guess;
     }
   return contacts;
 }
@@ -126,7 +145,8 @@ TEST(CrowdSolver, KeepsMomentumAndBoundsFriction) {
     for (const CrowdPoint& point : std::span(crowd.points).subspan(m.begin, m.count)) {
       const double normal = point.impulse.dot(m.normal);
       EXPECT_GE(normal, 0.0);
-      EXPECT_LE((point.impulse - normal * m.normal).norm(), std::sqrt(2.0) * m.law.friction * normal + 1e-12);  // a bound along each of two axes
+      EXPECT_LE((point.impulse - normal * m.normal).norm(),
+                std::sqrt(2.0) * m.law.friction * normal + 1e-12);  // a bound along each of two axes
       pressing += normal > 0.0;
     }
   EXPECT_GT(pressing, 20);
@@ -178,12 +198,18 @@ TEST(CrowdSolver, AWeightChangesNothingElsewhere) {
   heavy.velocity = Vec3(0, 0, -1);
   const auto number = std::int32_t(beside.bodies.size());
   beside.bodies.push_back(light), beside.bodies.push_back(heavy);
-  beside.manifolds.push_back({number + 1, number, Vec3::UnitZ(), {.restitution = 0.0, .friction = 0.5}, std::uint32_t(beside.points.size()), 1});
+  beside.manifolds.push_back({number + 1,
+                              number,
+                              Vec3::UnitZ(),
+                              {.restitution = 0.0, .friction = 0.5},
+                              std::uint32_t(beside.points.size()),
+                              1});
   beside.points.emplace_back();
   const ContactSolverSettings settings{.sweeps = 10, .tolerance = 0.0};
   solve(plain, find_simd(), 1, settings);
   solve(beside, find_simd(), 1, settings);
-  for (std::size_t i = 0; i < plain.bodies.size(); ++i) EXPECT_EQ(plain.bodies[i].velocity, beside.bodies[i].velocity) << i;
+  for (std::size_t i = 0; i < plain.bodies.size(); ++i)
+    EXPECT_EQ(plain.bodies[i].velocity, beside.bodies[i].velocity) << i;
   EXPECT_GT(beside.bodies[std::size_t(number) + 1].velocity.z(), -1.0);
 }
 

@@ -11,7 +11,9 @@ namespace {
 Shape random_shape(RandomStream& random, int corners) {
   Mesh mesh;
   std::vector<Vec3> points;
-  for (int i = 0; i < corners; ++i) points.push_back(Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5).cwiseProduct(Vec3(1.0, 0.6, 0.3)));
+  for (int i = 0; i < corners; ++i)
+    points.push_back(Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5)
+                         .cwiseProduct(Vec3(1.0, 0.6, 0.3)));
   const Hull hull = make_hull(points);
   mesh.vertices = hull.vertices;
   mesh.faces = hull.faces;
@@ -19,7 +21,8 @@ Shape random_shape(RandomStream& random, int corners) {
 }
 
 Quat random_turn(RandomStream& random) {
-  return Quat(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5).normalized();
+  return Quat(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5)
+      .normalized();
 }
 
 struct Pair {
@@ -27,7 +30,8 @@ struct Pair {
   RigidState first_state() const { return {first.position, first.orientation}; }
   RigidState second_state() const { return {second.position, second.orientation}; }
   double overlap_after(const Vec3& shift) const {
-    return measure_hull_overlap(*first.shape, {first.position + shift, first.orientation}, *second.shape, second_state());
+    return measure_hull_overlap(*first.shape, {first.position + shift, first.orientation}, *second.shape,
+                                second_state());
   }
 };
 
@@ -43,9 +47,11 @@ class HullGapOfPairs : public ::testing::Test {
   }();
 
   Pair draw(double distance) {
-    const Shape &a = shapes_[std::size_t(random_.uniform() * double(shapes_.size()))], &b = shapes_[std::size_t(random_.uniform() * double(shapes_.size()))];
+    const Shape &a = shapes_[std::size_t(random_.uniform() * double(shapes_.size()))],
+                &b = shapes_[std::size_t(random_.uniform() * double(shapes_.size()))];
     const Vec3 towards = random_turn(random_) * Vec3::UnitX();
-    return {PlacedHull(a, distance * towards, random_turn(random_)), PlacedHull(b, Vec3::Zero(), random_turn(random_))};
+    return {PlacedHull(a, distance * towards, random_turn(random_)),
+            PlacedHull(b, Vec3::Zero(), random_turn(random_))};
   }
 };
 
@@ -63,7 +69,9 @@ TEST_F(HullGapOfPairs, ApartItIsTheirDistance) {
     EXPECT_NEAR(gap.normal.norm(), 1.0, 1e-12);
     EXPECT_EQ(pair.overlap_after(-(gap.gap - 1e-9) * gap.normal), 0.0);
     for (int k = 0; k < 40; ++k) {
-      const Vec3 beside = (gap.normal + std::pow(10.0, -4.0 * random_.uniform()) * (random_turn(random_) * Vec3::UnitX())).normalized();
+      const Vec3 beside =
+          (gap.normal + std::pow(10.0, -4.0 * random_.uniform()) * (random_turn(random_) * Vec3::UnitX()))
+              .normalized();
       EXPECT_LE(measure_hull_gap(pair.first, pair.second, beside, gap).gap, gap.gap + 1e-6);
     }
   }
@@ -95,7 +103,8 @@ TEST_F(HullGapOfPairs, AKnownAxisLeadsToTheSame) {
 }
 
 TEST_F(HullGapOfPairs, EndsEarlyWhereAnAxisPartsThemByEnough) {
-  const Pair pair{PlacedHull(shapes_[4], Vec3(0, 0, 5.0), Quat::Identity()), PlacedHull(shapes_[4], Vec3::Zero(), Quat::Identity())};
+  const Pair pair{PlacedHull(shapes_[4], Vec3(0, 0, 5.0), Quat::Identity()),
+                  PlacedHull(shapes_[4], Vec3::Zero(), Quat::Identity())};
   EXPECT_GT(find_hull_gap(pair.first, pair.second, {.normal = Vec3(0.6, 0.0, 0.8)}, 0.1).gap, 0.1);
   EXPECT_NEAR(measure_hull_gap(pair.first, pair.second, Vec3::UnitZ()).gap, 4.6, 1e-12);
 }

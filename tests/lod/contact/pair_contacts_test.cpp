@@ -7,7 +7,9 @@ namespace {
 
 constexpr double kMargin = 0.003;
 
-PairBody at(const Shape& shape, const Vec3& position, const Quat& orientation = Quat::Identity()) { return {&shape, position, orientation}; }
+PairBody at(const Shape& shape, const Vec3& position, const Quat& orientation = Quat::Identity()) {
+  return {&shape, position, orientation};
+}
 
 HullContactSearch search_afresh(const PairBody& first, const PairBody& second) {
   HullGap nowhere{.normal = Vec3::Zero()};
@@ -19,7 +21,8 @@ HullContactSearch search_afresh(const PairBody& first, const PairBody& second) {
 
 class LInL : public ::testing::Test {
  protected:
-  // Legs .3 and .2 m, bars .08 m wide, .1 m thick: the same way up, one's corner reaches into the other's notch.
+  // Legs .3 and .2 m, bars .08 m wide, .1 m thick: the same way up, one's corner reaches into the other's
+  // notch.
   Shape l_ = make_shape("l", make_l(0.3, 0.2, 0.08, 0.1));
   HullContactSearch search(const Vec3& shift) { return search_afresh(at(l_, shift), at(l_, Vec3::Zero())); }
 };
@@ -40,7 +43,8 @@ TEST_F(LInL, TheyTouchWhereTheirLegsDo) {
   EXPECT_NEAR(contact.normal.y(), 1.0, 1e-6);
   ASSERT_EQ(contact.manifold.count, 4);
   double least = 1.0, greatest = -1.0;  // along the long leg
-  for (const ManifoldPoint& p : contact.manifold.points) least = std::min(least, p.point.x()), greatest = std::max(greatest, p.point.x());
+  for (const ManifoldPoint& p : contact.manifold.points)
+    least = std::min(least, p.point.x()), greatest = std::max(greatest, p.point.x());
   EXPECT_NEAR(greatest - least, 0.2, 1e-6);
 }
 

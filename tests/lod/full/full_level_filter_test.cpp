@@ -16,7 +16,8 @@ TEST(FullLevel, AsksTheFilterByTheManagersIndices) {
   level.add_plane({}, HalfSpace{.normal = Vec3::UnitZ(), .offset = 0.0, .material = 0});
   const auto shape = box_shape({0.4, 0.4, 0.4});
   std::vector<OdeBodyId> bodies;
-  for (const auto& [owner, x, z] : {std::tuple(7u, 0.0, 0.2), std::tuple(9u, 0.0, 0.8), std::tuple(3u, 5.0, 0.2), std::tuple(4u, 5.0, 0.8)})
+  for (const auto& [owner, x, z] : {std::tuple(7u, 0.0, 0.2), std::tuple(9u, 0.0, 0.8),
+                                    std::tuple(3u, 5.0, 0.2), std::tuple(4u, 5.0, 0.8)})
     bodies.push_back(level.add(owner, {.shape = shape, .mass = 64.0, .state = at({x, 0, z})}, false));
   Counters counters;
   for (int i = 0; i < 120; ++i) level.step(1.0 / 60, counters);

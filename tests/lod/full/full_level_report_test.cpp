@@ -28,7 +28,8 @@ TEST(FullLevelReport, CountsOdesMessagesAndPrintsNone) {
 TEST(FullLevelReport, BodiesPlacedInEachOtherPartAtTheCorrectingVelocity) {
   Manager manager({.gravity = Vec3::Zero(), .policy = {}, .signatures = no_signature});
   const auto cube = box_shape({1, 1, 1});
-  const BodyId first = add(manager, cube, at({0, 0, 0}), LevelChoice::full), second = add(manager, cube, at({0.5, 0.01, 0.02}), LevelChoice::full);
+  const BodyId first = add(manager, cube, at({0, 0, 0}), LevelChoice::full),
+               second = add(manager, cube, at({0.5, 0.01, 0.02}), LevelChoice::full);
   double greatest = 0.0;
   for (int i = 0; i < 60; ++i) {
     manager.step(kFrame);
@@ -51,8 +52,13 @@ TEST(FullLevelReport, CountsPassesPrevented) {
 TEST(FullLevelReport, CountsUnevenContactsInALargePile) {
   Manager manager = on_floor();
   const auto cube = box_shape({0.2, 0.2, 0.2});
-  for (int i = 0; i < 64; ++i) manager.add_body({.shape = cube, .state = at({0.2 * (i % 8), 0.2 * (i / 8), 0.0999}), .level = LevelChoice::full});
-  const BodyId giant = manager.add_body({.shape = box_shape({1.6, 1.6, 0.2}), .state = at({0.7, 0.7, 0.2997}), .mass = 1e5, .level = LevelChoice::full});
+  for (int i = 0; i < 64; ++i)
+    manager.add_body(
+        {.shape = cube, .state = at({0.2 * (i % 8), 0.2 * (i / 8), 0.0999}), .level = LevelChoice::full});
+  const BodyId giant = manager.add_body({.shape = box_shape({1.6, 1.6, 0.2}),
+                                         .state = at({0.7, 0.7, 0.2997}),
+                                         .mass = 1e5,
+                                         .level = LevelChoice::full});
   run(manager, 0.1);
   EXPECT_GT(manager.report().counters.full_quick_steps, 0);
   EXPECT_GT(manager.report().counters.full_uneven_contacts, 0);

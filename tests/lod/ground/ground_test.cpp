@@ -12,7 +12,9 @@ namespace {
 Manager over_a_table(StatisticalModel model = StatisticalModel::support) {
   ManagerSettings settings;
   settings.model = model;
-  settings.signatures = [model](const Shape&, const ContactLaw&) { return model == StatisticalModel::tables ? std::make_shared<const Signature>() : nullptr; };
+  settings.signatures = [model](const Shape&, const ContactLaw&) {
+    return model == StatisticalModel::tables ? std::make_shared<const Signature>() : nullptr;
+  };
   Manager manager(settings);
   manager.add_plane(Vec3::UnitZ(), 0.0);
   return manager;
@@ -84,7 +86,8 @@ TEST(Ground, SupportStaysInATiltedCorner) {
   Manager manager = over_a_table();
   const Quat tilt = rotation_from_vector({0.3, 0.2, 0.0});
   manager.add_static_box({2, 2, 0.2}, tilt * Vec3(0, 0, -0.1) + Vec3(0, 0, 1), tilt);
-  manager.add_static_box({0.2, 2, 1}, tilt * Vec3(1.0, 0, 0.5) + Vec3(0, 0, 1), tilt);   // down the slope: +x, −y
+  manager.add_static_box({0.2, 2, 1}, tilt * Vec3(1.0, 0, 0.5) + Vec3(0, 0, 1),
+                         tilt);  // down the slope: +x, −y
   manager.add_static_box({2, 0.2, 1}, tilt * Vec3(0, -1.0, 0.5) + Vec3(0, 0, 1), tilt);
   std::vector<BodyId> crates;
   for (int i = 0; i < 5; ++i) crates.push_back(add_crate(manager, {0.5, -0.5, 1.6 + 0.3 * i}));
@@ -118,7 +121,8 @@ TEST(Ground, SupportSlidesOverTheSeamsOfAFlatMesh) {
     RigidState state;
     state.position = {-1.5, 0.03, 0.1};
     state.velocity = {3.0, 0.4, 0.0};
-    const BodyId body = manager->add_body({.shape = crate(), .state = state, .level = LevelChoice::statistical});
+    const BodyId body =
+        manager->add_body({.shape = crate(), .state = state, .level = LevelChoice::statistical});
     run(*manager, 3.0);
     distance[manager == &meshed] = (manager->state(body).position - state.position).norm();
     EXPECT_NEAR(manager->state(body).position.z(), 0.1, 0.003);
@@ -132,7 +136,9 @@ TEST(Ground, SupportRollsIntoTheValleyOfATerrain) {
   const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.1));
   std::vector<BodyId> bodies;
   for (int i = 0; i < 6; ++i)
-    bodies.push_back(manager.add_body({.shape = i % 2 ? ball : crate(), .state = {.position = Vec3(1.5 * std::cos(i), 1.5 * std::sin(i), 2.0)}, .level = LevelChoice::statistical}));
+    bodies.push_back(manager.add_body({.shape = i % 2 ? ball : crate(),
+                                       .state = {.position = Vec3(1.5 * std::cos(i), 1.5 * std::sin(i), 2.0)},
+                                       .level = LevelChoice::statistical}));
   run(manager, 5.0);
   for (const BodyId body : bodies) {
     const Vec3& p = manager.state(body).position;

@@ -13,7 +13,8 @@ namespace {
 
 using namespace testing;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                 kInfinity = std::numeric_limits<double>::infinity();
 
 std::string message_of(const std::function<void()>& act) {
   try {
@@ -28,7 +29,9 @@ std::string message_of(const std::function<void()>& act) {
 struct Scene {
   Manager manager = on_floor();
   std::shared_ptr<const Shape> shape = box_shape({0.2, 0.3, 0.4});
-  BodyId full = add(manager, shape, at({0, 0, 1}), LevelChoice::full), support = add(manager, shape, at({2, 0, 1}), LevelChoice::support), gone = add(manager, shape, at({4, 0, 1}));
+  BodyId full = add(manager, shape, at({0, 0, 1}), LevelChoice::full),
+         support = add(manager, shape, at({2, 0, 1}), LevelChoice::support),
+         gone = add(manager, shape, at({4, 0, 1}));
   Scene() {
     run(manager, 0.1);
     manager.remove_body(gone);
@@ -48,7 +51,10 @@ struct Scene {
 
 TEST(BadInput, Steps) {
   Scene scene;
-  for (const double dt : {-0.01, 10.5, kNan, kInfinity, -kInfinity}) scene.refuses([&] { scene.manager.step(dt); }, "", "0 … 10 s");
+  for (const double dt : {-0.01, 10.5, kNan, kInfinity, -kInfinity})
+    scene.refuses([&] { scene.manager.step(dt); }, "", "0 … 10 s");
+  for (const double dt : {5e-324, 1e-100})
+    scene.refuses([&] { scene.manager.step(dt); }, "", "0, or 1e-09 s or more");
 }
 
 TEST(BadInput, StaleIds) {
@@ -56,11 +62,30 @@ TEST(BadInput, StaleIds) {
   Manager& manager = scene.manager;
   EXPECT_FALSE(manager.valid(scene.gone));
   for (const BodyId id : {scene.gone, BodyId{}, BodyId{77, 1}, BodyId{0, 9}}) {
-    const std::function<void()> all[] = {[&] { manager.state(id); }, [&] { manager.mass(id); }, [&] { manager.rung(id); }, [&] { manager.why(id); }, [&] { manager.asleep(id); },
-                                         [&] { manager.ode_body(id); }, [&] { manager.shape(id); }, [&] { manager.user_data(id); }, [&] { manager.properties(id); },
-                                         [&] { manager.remove_body(id); }, [&] { manager.set_level(id, LevelChoice::full); }, [&] { manager.set_importance(id, 1.0); },
-                                         [&] { manager.set_state(id, at({0, 0, 0})); }, [&] { manager.add_force(id, {1, 0, 0}); }, [&] { manager.add_impulse(id, {1, 0, 0}, {0, 0, 0}); },
-                                         [&] { manager.sleep(id); }, [&] { manager.wake(id); }, [&] { manager.set_user_data(id, 1); }};
+    const std::function<void()> all[] = {[&] { manager.state(id); },
+                                         [&] { manager.mass(id); },
+                                         [&] { manager.rung(id); },
+                                         [&] { manager.why(id); },
+                                         [&] { manager.asleep(id); },
+                                         [&] { manager.ode_body(id); },
+                                         [&] { manager.shape(id); },
+                                         [&] { manager.user_data(id); },
+                                         [&] { manager.properties(id); },
+                                         [&] { manager.remove_body(id); },
+                                         [&] { manager.set_level(id, LevelChoice::full); },
+                                         [&] { manager.set_importance(id, 1.0); },
+                                         [&] {
+                                           manager.set_state(id, at({0, 0, 0}));
+                                         },
+                                         [&] {
+                                           manager.add_force(id, {1, 0, 0});
+                                         },
+                                         [&] {
+                                           manager.add_impulse(id, {1, 0, 0}, {0, 0, 0});
+                                         },
+                                         [&] { manager.sleep(id); },
+                                         [&] { manager.wake(id); },
+                                         [&] { manager.set_user_data(id, 1); }};
     for (const auto& call : all) scene.refuses(call, "the id", "that of a body");
     RigidState state;
     scene.refuses([&] { manager.read_states({&id, 1}, {&state, 1}); }, "the id", "that of a body");
@@ -73,18 +98,36 @@ TEST(BadInput, StatesAndDefinitions) {
   RigidState flat = at({0, 0, 0}), crooked = at({0, 0, 0});
   flat.orientation.coeffs().setZero();
   crooked.orientation.coeffs() *= 1.0 + 2e-3;
-  for (const auto& [state, found] : {std::pair{at({kNan, 0, 0}), "(nan, 0, 0)"}, {at({0, 2e8, 0}), "(0, 2e+08, 0)"}, {at({0, 0, 0}, {kInfinity, 0, 0}), "(inf, 0, 0)"},
-                                     {at({0, 0, 0}, {0, 0, 0}, {0, kNan, 0}), "(0, nan, 0)"}, {flat, "a quaternion of length 0"}, {crooked, "a quaternion of length 1.002"}}) {
+  for (const auto& [state, found] : {std::pair{at({kNan, 0, 0}), "(nan, 0, 0)"},
+                                     {at({0, 2e8, 0}), "(0, 2e+08, 0)"},
+                                     {at({0, 0, 0}, {kInfinity, 0, 0}), "(inf, 0, 0)"},
+                                     {at({0, 0, 0}, {0, 0, 0}, {0, kNan, 0}), "(0, nan, 0)"},
+                                     {flat, "a quaternion of length 0"},
+                                     {crooked, "a quaternion of length 1.002"}}) {
     scene.refuses([&, given = state] { add(manager, scene.shape, given); }, found, "");
     scene.refuses([&, given = state] { manager.set_state(scene.full, given); }, found, "");
     scene.refuses([&, given = state] { manager.set_state(scene.support, given); }, found, "");
   }
   const RigidState sound = at({9, 9, 9});
   scene.refuses([&] { add(manager, nullptr, sound); }, "none", "one");
-  scene.refuses([&] { manager.add_body({.shape = scene.shape, .state = sound, .mass = 0.0}); }, "0", "a positive");
-  scene.refuses([&] { manager.add_body({.shape = scene.shape, .state = sound, .material = 7}); }, "7", "0 … 0");
-  scene.refuses([&] { manager.add_body({.shape = scene.shape, .state = sound, .importance = kNan}); }, "nan", "a positive");
-  scene.refuses([&] { manager.add_body({.shape = scene.shape, .state = sound, .properties = {.linear_damping = -1.0}}); }, "-1", "a finite number");
+  scene.refuses([&] { manager.add_body({.shape = scene.shape, .state = sound, .mass = 0.0}); }, "0",
+                "a positive");
+  for (const double mass : {1e-30, 1e-8, 1e300})
+    scene.refuses([&, mass] { manager.add_body({.shape = scene.shape, .state = sound, .mass = mass}); }, "",
+                  "1e-06 … 1e+12 kg");
+  Shape thin = *scene.shape;
+  thin.inertia_per_mass = Vec3(1e-300, 1.0, 1.0).asDiagonal();
+  scene.refuses([&] { manager.add_body({.shape = std::make_shared<const Shape>(thin), .state = sound}); },
+                "a moment of 1e-300 m²", "");
+  scene.refuses([&] { manager.add_body({.shape = scene.shape, .state = sound, .material = 7}); }, "7",
+                "0 … 0");
+  scene.refuses([&] { manager.add_body({.shape = scene.shape, .state = sound, .importance = kNan}); }, "nan",
+                "a positive");
+  scene.refuses(
+      [&] {
+        manager.add_body({.shape = scene.shape, .state = sound, .properties = {.linear_damping = -1.0}});
+      },
+      "-1", "a finite number");
 }
 
 TEST(BadInput, NearlyUnitQuaternionIsNormalizedAndGreatSpeedIsBounded) {
@@ -104,8 +147,16 @@ TEST(BadInput, ForcesAndImpulses) {
   Scene scene;
   Manager& manager = scene.manager;
   scene.refuses([&] { manager.add_force(scene.full, {kNan, 0, 0}); }, "(nan, 0, 0)", "finite");
-  scene.refuses([&] { manager.add_force_at(scene.full, {1, 0, 0}, {kInfinity, 0, 0}); }, "(inf, 0, 0)", "finite");
-  scene.refuses([&] { manager.add_impulse(scene.support, {0, kInfinity, 0}, {0, 0, 0}); }, "(0, inf, 0)", "finite");
+  scene.refuses(
+      [&] {
+        manager.add_force_at(scene.full, {1, 0, 0}, {kInfinity, 0, 0});
+      },
+      "(inf, 0, 0)", "finite");
+  scene.refuses(
+      [&] {
+        manager.add_impulse(scene.support, {0, kInfinity, 0}, {0, 0, 0});
+      },
+      "(0, inf, 0)", "finite");
   manager.add_force(scene.full, {1e308, 0, 0});
   scene.refuses([&] { manager.add_force(scene.full, {1e308, 0, 0}); }, "a sum", "a finite one");
 }
@@ -121,21 +172,43 @@ TEST(BadInput, SettingsAndGround) {
   scene.refuses([&] { manager.set_policy(policy); }, "nan", "0 or more");
   const Vec3 nowhere(0, kNan, 0);
   scene.refuses([&] { manager.set_viewpoints({&nowhere, 1}); }, "(0, nan, 0)", "finite");
+  for (const double far : {1e300, -1e300}) {
+    const Vec3 beyond(far, 0, 0);
+    scene.refuses([&] { manager.set_viewpoints({&beyond, 1}); }, "", "a place within 1e+12 m");
+    scene.refuses([&] { manager.set_viewpoints({Viewpoint{.position = beyond}}); }, "",
+                  "a place within 1e+12 m");
+  }
   scene.refuses([&] { manager.add_plane({0, 0, 2}, 0.0); }, "(0, 0, 2)", "a vector of unit length");
   scene.refuses([&] { manager.add_plane({0, 0, 1}, kInfinity); }, "inf", "a finite");
   scene.refuses([&] { manager.add_static_box({1, 0, 1}, {0, 0, 0}, Quat::Identity()); }, "0", "a positive");
   scene.refuses([&] { manager.add_static_box({1, 1, 1}, {0, 0, 0}, Quat::Identity(), 3); }, "3", "0 … 0");
-  scene.refuses([&] { manager.add_static_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}}); }, "vertex 3", "0 … 2");
+  scene.refuses(
+      [&] {
+        manager.add_static_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}});
+      },
+      "vertex 3", "0 … 2");
   scene.refuses([&] { manager.add_static_mesh({}); }, "0 faces", "two or more");
   EXPECT_THROW(Manager({.gravity = {kNan, 0, 0}}), InputError);
   EXPECT_THROW(Manager({.full_substeps = 0}), InputError);
   EXPECT_THROW(Manager(nullptr, nullptr), InputError);
 }
 
+// An impulse that is refused is in no recording either: it would end the replay.
+TEST(BadInput, RefusedImpulseIsNotRecorded) {
+  Scene scene;
+  int chunks = 0;
+  scene.manager.set_record([&](std::span<const std::byte>) { ++chunks; });
+  const int before = chunks;
+  EXPECT_THROW(scene.manager.add_impulse(scene.support, {1e308, 1e308, 1e308}, {1e8, 0, 0}), InputError);
+  EXPECT_EQ(chunks, before);
+}
+
 TEST(BadInput, Materials) {
   MaterialTable table;
-  for (const Material& bad : {Material{.restitution = 1.1}, Material{.restitution = -0.1}, Material{.restitution = kNan}, Material{.friction = -1.0}, Material{.friction = kInfinity},
-                              Material{.density = 0.0}, Material{.density = kNan}}) {
+  for (const Material& bad :
+       {Material{.restitution = 1.1}, Material{.restitution = -0.1}, Material{.restitution = kNan},
+        Material{.friction = -1.0}, Material{.friction = kInfinity}, Material{.density = 0.0},
+        Material{.density = kNan}}) {
     EXPECT_THROW(table.add(bad), InputError);
     EXPECT_THROW(table.replace(0, bad), InputError);
   }
@@ -147,10 +220,12 @@ TEST(BadInput, Materials) {
   EXPECT_EQ(table.law(0, 0).restitution, Material{}.restitution);
 }
 
-// A source that fails once a body is to be demoted: nothing has moved, and the next step does what this one could not.
+// A source that fails once a body is to be demoted: nothing has moved, and the next step does what this one
+// could not.
 TEST(BadInput, StepThatThrowsForASignatureHasMovedNothing) {
   bool fails = true;
-  ManagerSettings settings = unmeasured({.policy = DistancePolicy{.full_within = 4.0}, .min_dwell_frames = 0});
+  ManagerSettings settings =
+      unmeasured({.policy = DistancePolicy{.full_within = 4.0}, .min_dwell_frames = 0});
   settings.signatures = [&](const Shape&, const ContactLaw&) -> std::shared_ptr<const Signature> {
     if (fails) throw InputError("no signature today");
     return nullptr;
@@ -175,7 +250,10 @@ TEST(BadInput, StepThatThrowsForASignatureHasMovedNothing) {
 TEST(BadInput, BodyForcedToTablesWithoutASignatureThatServes) {
   for (const bool of_another : {false, true}) {
     ManagerSettings settings = unmeasured();
-    if (of_another) settings.signatures = [](const Shape&, const ContactLaw& law) { return coarse_signature(*box_shape({0.1, 0.1, 0.5}), law); };
+    if (of_another)
+      settings.signatures = [](const Shape&, const ContactLaw& law) {
+        return coarse_signature(*box_shape({0.1, 0.1, 0.5}), law);
+      };
     Manager manager = on_floor(settings);
     const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 2}), LevelChoice::tables);
     EXPECT_THROW(manager.step(kFrame), InputError);
@@ -206,7 +284,9 @@ TEST(BadInput, CallersGravityThatIsNoNumberStopsTheStepBeforeItBegins) {
 
 TEST(AssertionDeathTest, HandlerIsCalledBeforeTheAbort) {
   const auto break_it = [] {
-    set_assertion_handler([](std::string_view message) { std::fprintf(stderr, "the handler read: %s", std::string(message).c_str()); });
+    set_assertion_handler([](std::string_view message) {
+      std::fprintf(stderr, "the handler read: %s", std::string(message).c_str());
+    });
     check_that(false, "one is two:", "1, 2");
   };
   EXPECT_DEATH(break_it(), "the handler read: .*one is two: 1, 2");

@@ -14,7 +14,9 @@ constexpr RungSet kSupportOrFull{Rung::support, Rung::full};
 const std::vector<Vec3> kAtOrigin{Vec3::Zero()};
 
 PolicySettings by_distance(double full_within = 4.0) { return {.policy = DistancePolicy{full_within}}; }
-PolicySettings by_budget(double milliseconds) { return {.policy = BudgetPolicy{milliseconds}, .max_transitions_per_frame = 1000}; }
+PolicySettings by_budget(double milliseconds) {
+  return {.policy = BudgetPolicy{milliseconds}, .max_transitions_per_frame = 1000};
+}
 
 LevelCandidate at(double distance, Rung rung = Rung::support, RungSet open = kSupportOrFull) {
   return {.position = {distance, 0, 0}, .cost = {0.0f, 0.0f, 1.0f}, .rung = rung, .open = open};
@@ -26,7 +28,8 @@ LevelCandidate on_ladder(double distance, Rung rung = Rung::tables) {
   return c;
 }
 
-LevelDecision choose(const std::vector<LevelCandidate>& candidates, const PolicySettings& settings, double others = 0.0) {
+LevelDecision choose(const std::vector<LevelCandidate>& candidates, const PolicySettings& settings,
+                     double others = 0.0) {
   return choose_levels(candidates, kAtOrigin, settings, {.others = others});
 }
 
@@ -39,10 +42,13 @@ Indices who(const std::vector<LevelDecision::Change>& changes) {
 void make_changes(const LevelDecision& decision, std::vector<LevelCandidate>& candidates) {
   for (LevelCandidate& c : candidates) ++c.frames_since_change;
   for (const auto* changes : {&decision.demote, &decision.promote})
-    for (const auto& [i, to] : *changes) candidates[std::size_t(i)].rung = to, candidates[std::size_t(i)].frames_since_change = 0;
+    for (const auto& [i, to] : *changes)
+      candidates[std::size_t(i)].rung = to, candidates[std::size_t(i)].frames_since_change = 0;
 }
 
-std::int64_t count_on(Rung rung, const std::vector<LevelCandidate>& candidates) { return std::ranges::count(candidates, rung, &LevelCandidate::rung); }
+std::int64_t count_on(Rung rung, const std::vector<LevelCandidate>& candidates) {
+  return std::ranges::count(candidates, rung, &LevelCandidate::rung);
+}
 
 TEST(DistancePolicy, PromotesNearAndDemotesFar) {
   const auto decision = choose({at(1), at(9), at(1, Rung::full), at(9, Rung::full)}, by_distance());
@@ -225,21 +231,27 @@ TEST(Policy, EveryReasonHasWords) {
 
 TEST(DistancePolicy, EachRungHasItsDistanceAndItsHysteresis) {
   const PolicySettings settings{.policy = DistancePolicy{.full_within = 4.0, .support_within = 12.0}};
-  const auto decision = choose({on_ladder(3), on_ladder(11), on_ladder(13), on_ladder(13, Rung::support), on_ladder(14, Rung::support), on_ladder(5, Rung::full)}, settings);
+  const auto decision = choose({on_ladder(3), on_ladder(11), on_ladder(13), on_ladder(13, Rung::support),
+                                on_ladder(14, Rung::support), on_ladder(5, Rung::full)},
+                               settings);
   EXPECT_EQ(decision.promote, (std::vector<LevelDecision::Change>{{0, Rung::full}, {1, Rung::support}}));
   EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{4, Rung::tables}, {5, Rung::support}}));
-  EXPECT_EQ(decision.reasons, (std::vector{Rule::near, Rule::near, Rule::far, Rule::within_hysteresis, Rule::far, Rule::near}));
+  EXPECT_EQ(decision.reasons,
+            (std::vector{Rule::near, Rule::near, Rule::far, Rule::within_hysteresis, Rule::far, Rule::near}));
 }
 
 TEST(DistancePolicy, AClosedRungIsPassedOver) {
   const PolicySettings settings{.policy = DistancePolicy{.full_within = 4.0, .support_within = 12.0}};
-  const auto decision = choose({at(8, Rung::full, {Rung::tables, Rung::full}), at(20, Rung::full), at(3, Rung::tables, {Rung::tables, Rung::support})}, settings);
+  const auto decision = choose({at(8, Rung::full, {Rung::tables, Rung::full}), at(20, Rung::full),
+                                at(3, Rung::tables, {Rung::tables, Rung::support})},
+                               settings);
   EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{1, Rung::support}, {0, Rung::tables}}));
   EXPECT_EQ(decision.promote, (std::vector<LevelDecision::Change>{{2, Rung::support}}));
 }
 
 TEST(DistancePolicy, BodiesThatStayPutAreThoseForWhomNothingChanges) {
-  const PolicySettings settings{.policy = DistancePolicy{.full_within = 4.0, .support_within = 12.0}, .min_dwell_frames = 0};
+  const PolicySettings settings{.policy = DistancePolicy{.full_within = 4.0, .support_within = 12.0},
+                                .min_dwell_frames = 0};
   const auto& policy = std::get<DistancePolicy>(settings.policy);
   int stay = 0;
   for (const Rung rung : {Rung::tables, Rung::support})
@@ -262,7 +274,9 @@ TEST(DistancePolicy, BodiesThatStayPutAreThoseForWhomNothingChanges) {
 
 TEST(Policy, MostOnARungIsNeverExceededAndTheNearestAreThere) {
   for (const bool budget : {false, true}) {
-    PolicySettings settings = budget ? by_budget(1e6) : PolicySettings{.policy = DistancePolicy{100.0, 200.0}, .max_transitions_per_frame = 1000};
+    PolicySettings settings =
+        budget ? by_budget(1e6)
+               : PolicySettings{.policy = DistancePolicy{100.0, 200.0}, .max_transitions_per_frame = 1000};
     settings.most_full = 5, settings.most_support = 7, settings.min_dwell_frames = 0;
     std::vector<LevelCandidate> candidates;
     for (int i = 0; i < 40; ++i) candidates.push_back(on_ladder(1 + i));
@@ -285,9 +299,10 @@ TEST(BudgetPolicy, TheNearestAreFullTheNextSupportTheRestTables) {
   const PolicySettings settings = by_budget(11.0);
   make_changes(choose(candidates, settings), candidates);
   const auto full = count_on(Rung::full, candidates), support = count_on(Rung::support, candidates);
-  EXPECT_EQ(full, 7);  // three quarters of 10, which leaves a tenth free
+  EXPECT_EQ(full, 7);      // three quarters of 10, which leaves a tenth free
   EXPECT_EQ(support, 24);  // with the rest
-  for (std::size_t i = 1; i < candidates.size(); ++i) EXPECT_LE(int(candidates[i].rung), int(candidates[i - 1].rung)) << i;
+  for (std::size_t i = 1; i < candidates.size(); ++i)
+    EXPECT_LE(int(candidates[i].rung), int(candidates[i - 1].rung)) << i;
 }
 
 TEST(BudgetPolicy, OverItTheFarthestGoDownAtOnceWhateverDwellAndCap) {
@@ -306,7 +321,8 @@ TEST(BudgetPolicy, OverItTheFarthestGoDownAtOnceWhateverDwellAndCap) {
 }
 
 TEST(BudgetPolicy, NothingIsLeftWhereOthersUseItUp) {
-  const auto decision = choose({on_ladder(1, Rung::full), on_ladder(2, Rung::support), on_ladder(3)}, by_budget(4.0), 5.0);
+  const auto decision =
+      choose({on_ladder(1, Rung::full), on_ladder(2, Rung::support), on_ladder(3)}, by_budget(4.0), 5.0);
   EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{1, Rung::tables}, {0, Rung::tables}}));
   EXPECT_TRUE(decision.promote.empty());
 }
@@ -315,7 +331,8 @@ TEST(BudgetPolicy, AMarginAndTheCostOfChangesKeepBodiesDown) {
   const std::vector<LevelCandidate> candidates(30, at(1));
   EXPECT_EQ(choose(candidates, by_budget(22.0)).promote.size(), 20u);
   EXPECT_EQ(choose_levels(candidates, kAtOrigin, by_budget(22.0), {.margin = 1.0}).promote.size(), 10u);
-  EXPECT_EQ(choose_levels(candidates, kAtOrigin, by_budget(22.0), {.change = {0, 0, 1.0}}).promote.size(), 11u);
+  EXPECT_EQ(choose_levels(candidates, kAtOrigin, by_budget(22.0), {.change = {0, 0, 1.0}}).promote.size(),
+            11u);
 }
 
 /// In a row, each touching the next; all of one mesh.
@@ -329,9 +346,12 @@ std::vector<LevelCandidate> a_row(int count, bool asleep = false) {
 }
 
 TEST(BudgetPolicy, APairOfFullBodiesIsChargedBesidesThem) {
-  const auto promoted = [](double budget, const StepOverhead& overhead, bool asleep = false) { return choose_levels(a_row(9, asleep), kAtOrigin, by_budget(budget), overhead).promote.size(); };
+  const auto promoted = [](double budget, const StepOverhead& overhead, bool asleep = false) {
+    return choose_levels(a_row(9, asleep), kAtOrigin, by_budget(budget), overhead).promote.size();
+  };
   EXPECT_EQ(promoted(11.0, {}), 9u);
-  EXPECT_EQ(promoted(16.6, {.pair = 2.0}), 7u);  // without the next but one it would meet the one before: 5 alone, of which 2 make pairs
+  EXPECT_EQ(promoted(16.6, {.pair = 2.0}),
+            7u);  // without the next but one it would meet the one before: 5 alone, of which 2 make pairs
   EXPECT_EQ(promoted(11.0, {.pair = 1e3}), 5u);  // every other one
   EXPECT_EQ(promoted(11.0, {.spike = 1e3}), 5u);
   EXPECT_EQ(promoted(11.0, {.spike = 1e3}, true), 9u);  // no pair of sleepers has a spike
@@ -364,9 +384,11 @@ TEST(BudgetPolicy, OverItThoseAwakeGoDownBeforeTheSleepers) {
   }
   PolicySettings settings = by_budget(12.6);
   settings.max_transitions_per_frame = 0;
-  EXPECT_EQ(who(choose(candidates, settings).demote), (Indices{18, 16, 19}));  // of the four that do not fit, as many as must
+  EXPECT_EQ(who(choose(candidates, settings).demote),
+            (Indices{18, 16, 19}));  // of the four that do not fit, as many as must
   settings.policy = BudgetPolicy{3.3};
-  EXPECT_EQ(who(choose(candidates, settings).demote), (Indices{18, 16, 14, 12, 10, 8, 6, 4, 19, 17, 15, 13, 11, 9, 7, 5}));
+  EXPECT_EQ(who(choose(candidates, settings).demote),
+            (Indices{18, 16, 14, 12, 10, 8, 6, 4, 19, 17, 15, 13, 11, 9, 7, 5}));
 }
 
 TEST(BudgetPolicy, ABodyThatIsPutOffGivesItsRoomToTheNext) {
@@ -381,7 +403,8 @@ TEST(BudgetPolicy, ReachOfFullIsWhereItsRoomEnds) {
   std::vector<LevelCandidate> candidates;
   for (int i = 0; i < 100; ++i) candidates.push_back(at(1 + i));
   EXPECT_EQ(reach_of_full(candidates, kAtOrigin, by_budget(11.0), {}), 11.0);  // ten fit
-  EXPECT_EQ(reach_of_full(candidates, kAtOrigin, by_budget(1e3), {}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(reach_of_full(candidates, kAtOrigin, by_budget(1e3), {}),
+            std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

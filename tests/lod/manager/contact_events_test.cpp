@@ -1,4 +1,5 @@
-// Contact events of bodies that sleep, wake, change rung and are removed: said once, and nothing said of what did not change.
+// Contact events of bodies that sleep, wake, change rung and are removed: said once, and nothing said of what
+// did not change.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -24,9 +25,11 @@ class Touching {
  public:
   void take(const Manager& manager) {
     for (const ContactEvent& event : manager.contact_events()) {
-      const auto key = std::tuple(event.first.body.index, event.second.kind, event.second.body.index, event.second.ground.index);
+      const auto key = std::tuple(event.first.body.index, event.second.kind, event.second.body.index,
+                                  event.second.ground.index);
       bool& touches = touching_[key];
-      EXPECT_EQ(touches, event.phase != ContactPhase::begin) << "begins twice, or ends or hits without a beginning";
+      EXPECT_EQ(touches, event.phase != ContactPhase::begin)
+          << "begins twice, or ends or hits without a beginning";
       touches = event.phase != ContactPhase::end;
       begins_ += event.phase == ContactPhase::begin, ends_ += event.phase == ContactPhase::end;
     }
@@ -37,7 +40,9 @@ class Touching {
       take(manager);
     }
   }
-  int pairs() const { return int(std::ranges::count_if(touching_, [](const auto& pair) { return pair.second; })); }
+  int pairs() const {
+    return int(std::ranges::count_if(touching_, [](const auto& pair) { return pair.second; }));
+  }
   int begins() const { return begins_; }
   int ends() const { return ends_; }
 
@@ -74,7 +79,8 @@ TEST_P(ContactEventsOnRungs, PileSleepsWakesAndIsTakenApart) {
   EXPECT_EQ(touching.ends(), touching.begins() - 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rungs, ContactEventsOnRungs, ::testing::Values(LevelChoice::full, LevelChoice::support));
+INSTANTIATE_TEST_SUITE_P(Rungs, ContactEventsOnRungs,
+                         ::testing::Values(LevelChoice::full, LevelChoice::support));
 
 // The camera comes and goes: nobody begins to touch what he lay on all along.
 TEST(ContactEvents, ChangesOfRungAreNoEvents) {

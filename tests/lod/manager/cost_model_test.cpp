@@ -13,7 +13,8 @@ namespace {
 
 using namespace testing;
 
-constexpr auto kTables = std::size_t(Rung::tables), kSupport = std::size_t(Rung::support), kFull = std::size_t(Rung::full);
+constexpr auto kTables = std::size_t(Rung::tables), kSupport = std::size_t(Rung::support),
+               kFull = std::size_t(Rung::full);
 
 StepCounts a_heap(int full = 5, int support = 100, int tables = 1000) {
   StepCounts counts;
@@ -28,7 +29,8 @@ StepMeasurement measure(const StepCounts& counts, double slower) {
   StepReport report;
   CostModel().predict(counts, report);
   StepMeasurement measured;
-  for (std::size_t rung = 0; rung < kRungs; ++rung) measured.rungs_ms[rung] = 1e-3 * slower * report.cost[rung].work;
+  for (std::size_t rung = 0; rung < kRungs; ++rung)
+    measured.rungs_ms[rung] = 1e-3 * slower * report.cost[rung].work;
   measured.others_ms = 0.05 * slower;
   return measured;
 }
@@ -68,7 +70,8 @@ TEST(CostModel, LearnsAMachineThatIsSlowerSoonAndOneThatIsFasterInTime) {
     const StepMeasurement measured = measure(a_heap(), slower);
     for (int i = 0; i < steps; ++i) model.learn(1.0, predict(model, a_heap()), a_heap(), measured);
     EXPECT_NEAR(predict(model, a_heap()) / measured.total_ms(), 1.0, 0.1) << slower;
-    EXPECT_GT(model.cost_of(Activity::crowded)[kFull], 0.9e-3 * slower * work_of(Rung::full, std::size_t(Activity::crowded)));
+    EXPECT_GT(model.cost_of(Activity::crowded)[kFull],
+              0.9e-3 * slower * work_of(Rung::full, std::size_t(Activity::crowded)));
   }
 }
 
@@ -86,10 +89,13 @@ TEST(CostModel, WhatABodyDoesIsTakenApartByTheSteps) {
   model.set_unit(CostModel::Unit::milliseconds);
   for (int i = 0; i < 400; ++i) {  // those alone are as they should be, those in the crowd four times as dear
     StepCounts counts;
-    counts.at(Rung::support, Activity::alone) = i % 2 ? 2000 : 100, counts.at(Rung::support, Activity::crowded) = i % 2 ? 5 : 200;
+    counts.at(Rung::support, Activity::alone) = i % 2 ? 2000 : 100,
+                             counts.at(Rung::support, Activity::crowded) = i % 2 ? 5 : 200;
     StepMeasurement measured;
-    measured.rungs_ms[kSupport] = 1e-3 * (work_of(Rung::support, std::size_t(Activity::alone)) * counts.at(Rung::support, Activity::alone) +
-                                          4.0 * work_of(Rung::support, std::size_t(Activity::crowded)) * counts.at(Rung::support, Activity::crowded));
+    measured.rungs_ms[kSupport] = 1e-3 * (work_of(Rung::support, std::size_t(Activity::alone)) *
+                                              counts.at(Rung::support, Activity::alone) +
+                                          4.0 * work_of(Rung::support, std::size_t(Activity::crowded)) *
+                                              counts.at(Rung::support, Activity::crowded));
     model.learn(1.0, predict(model, counts), counts, measured);
   }
   const auto over_work = [&](Activity activity) {
@@ -105,7 +111,9 @@ TEST(CostModel, WhatABodyDoesIsTakenApartByTheSteps) {
 
 TEST(CostModel, ASleeperIsChargedForItsWaking) {
   const CostModel model;
-  for (const Rung rung : {Rung::support, Rung::full}) EXPECT_GE(model.cost_of(Activity::asleep)[std::size_t(rung)], 0.5 * work_of(rung, std::size_t(Activity::crowded)));
+  for (const Rung rung : {Rung::support, Rung::full})
+    EXPECT_GE(model.cost_of(Activity::asleep)[std::size_t(rung)],
+              0.5 * work_of(rung, std::size_t(Activity::crowded)));
   EXPECT_EQ(model.cost_of(Activity::asleep)[kTables], 0.0f);
 }
 
@@ -150,11 +158,15 @@ TEST(CostModel, WhatArrivalsCostIsToldApartFromTheBodies) {
   for (int i = 0; i < 400; ++i) {  // now and then twenty arrive, each four times as dear as at first thought
     StepCounts counts = a_heap();
     StepMeasurement measured = measure(counts, 1.0);
-    if (i % 2) counts.rungs[kSupport][kArriving] = 20, measured.rungs_ms[kSupport] += 1e-3 * 20 * 4 * work_of(Rung::support, kArriving);
+    if (i % 2)
+      counts.rungs[kSupport][kArriving] = 20,
+      measured.rungs_ms[kSupport] += 1e-3 * 20 * 4 * work_of(Rung::support, kArriving);
     model.learn(1.0, predict(model, counts), counts, measured);
   }
   EXPECT_NEAR(model.cost_of_arriving(Rung::support) / (1e-3 * work_of(Rung::support, kArriving)), 4.0, 0.8);
-  EXPECT_NEAR(model.cost_of(Activity::crowded)[kSupport] / (1e-3 * work_of(Rung::support, std::size_t(Activity::crowded))), 1.0, 0.2);
+  EXPECT_NEAR(model.cost_of(Activity::crowded)[kSupport] /
+                  (1e-3 * work_of(Rung::support, std::size_t(Activity::crowded))),
+              1.0, 0.2);
 }
 
 // Under a budget in work units: what was chosen repeats exactly, and whatever the threads.
@@ -165,7 +177,8 @@ std::uint64_t hash_under_work(int threads) {
   settings.signatures = [](const Shape&, const ContactLaw&) { return signature; };
   Manager manager = on_floor(settings);
   const auto crate = box_shape({0.2, 0.3, 0.24});
-  for (int i = 0; i < 60; ++i) add(manager, crate, at({0.4 * (i % 4), 0.4 * (i / 4 % 4), 0.3 + 0.4 * (i / 16)}));
+  for (int i = 0; i < 60; ++i)
+    add(manager, crate, at({0.4 * (i % 4), 0.4 * (i / 4 % 4), 0.3 + 0.4 * (i / 16)}));
   double work = 0.0;
   int mixed = 0;
   for (int step = 0; step < 120; ++step) {
@@ -196,7 +209,9 @@ TEST(BudgetPolicy, TheReportTellsWhatAStepCost) {
   EXPECT_GT(report.predicted_ms, 0.0);
   EXPECT_GT(report.cost[kFull].measured_ms, 0.0);
   EXPECT_GT(report.cost[kFull].predicted_ms, 0.0);
-  EXPECT_LE(report.cost[kTables].measured_ms + report.cost[kSupport].measured_ms + report.cost[kFull].measured_ms, report.measured_ms);
+  EXPECT_LE(
+      report.cost[kTables].measured_ms + report.cost[kSupport].measured_ms + report.cost[kFull].measured_ms,
+      report.measured_ms);
 }
 
 }  // namespace

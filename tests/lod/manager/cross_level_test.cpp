@@ -1,4 +1,5 @@
-// Contacts between a full and a statistical body, and changes of level among bodies that touch: hard cases T4, T5, T6, T10.
+// Contacts between a full and a statistical body, and changes of level among bodies that touch: hard cases
+// T4, T5, T6, T10.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +20,8 @@ std::shared_ptr<const Signature> cube_signature(const Shape& shape, const Contac
   auto signature = std::make_shared<Signature>();
   signature->shape_hash = shape.content_hash;
   for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) signature->rest_poses.push_back({side * Vec3::Unit(axis), 1.0 / std::sqrt(3.0), 1.0 / 6.0});
+    for (const double side : {-1.0, 1.0})
+      signature->rest_poses.push_back({side * Vec3::Unit(axis), 1.0 / std::sqrt(3.0), 1.0 / 6.0});
   return signature;
 }
 
@@ -33,7 +35,8 @@ std::vector<BodyId> add_stack(Manager& manager, std::span<const LevelChoice> lev
   std::vector<BodyId> bodies;
   const auto cube = box_shape({kSide, kSide, kSide});
   for (std::size_t i = 0; i < levels.size(); ++i)
-    bodies.push_back(add(manager, cube, at({i % 2 ? offset : 0.0, 0, (0.5 + double(i)) * (kSide + 5e-4)}), levels[i]));
+    bodies.push_back(
+        add(manager, cube, at({i % 2 ? offset : 0.0, 0, (0.5 + double(i)) * (kSide + 5e-4)}), levels[i]));
   return bodies;
 }
 
@@ -58,8 +61,10 @@ TEST(CrossLevel, EachRestsOnTheOtherAndSleeps) {
 }
 
 TEST(CrossLevel, MixedStackStands) {
-  for (const auto& levels : {std::array{kFull, kStatistical, kFull, kStatistical}, std::array{kStatistical, kFull, kStatistical, kFull},
-                             std::array{kFull, kFull, kStatistical, kStatistical}, std::array{kStatistical, kStatistical, kFull, kFull}}) {
+  for (const auto& levels : {std::array{kFull, kStatistical, kFull, kStatistical},
+                             std::array{kStatistical, kFull, kStatistical, kFull},
+                             std::array{kFull, kFull, kStatistical, kStatistical},
+                             std::array{kStatistical, kStatistical, kFull, kFull}}) {
     Manager manager = on_floor(of_cubes());
     const auto stack = add_stack(manager, levels);
     run(manager, 3.0);
@@ -111,7 +116,8 @@ TEST(CrossLevel, T5StackChangesLevelOneByOneAndStands) {
       manager.set_level(stack[i], level);
       run(manager, 0.4);
       EXPECT_EQ(manager.level(stack[i]), level == kFull ? Level::full : Level::statistical);
-      for (std::size_t k = 0; k < stack.size(); ++k) EXPECT_NEAR(manager.state(stack[k]).position.z(), (0.5 + double(k)) * kSide, 0.01);
+      for (std::size_t k = 0; k < stack.size(); ++k)
+        EXPECT_NEAR(manager.state(stack[k]).position.z(), (0.5 + double(k)) * kSide, 0.01);
     }
   EXPECT_EQ(manager.report().counters.promotions_put_off, 0);
 }
@@ -127,7 +133,8 @@ Momentum momentum_of(const Manager& manager, std::span<const BodyId> bodies) {
     const double mass = manager.mass(body);
     sum.linear += mass * s.velocity;
     sum.angular += mass * s.position.cross(s.velocity) +
-                   mass * (s.orientation * (manager.shape(body).inertia_per_mass * (s.orientation.conjugate() * s.angular_velocity)));
+                   mass * (s.orientation * (manager.shape(body).inertia_per_mass *
+                                            (s.orientation.conjugate() * s.angular_velocity)));
   }
   return sum;
 }
@@ -138,7 +145,8 @@ struct Pair {
   bool met = false;
 };
 
-// Two cubes that fly into each other without gravity, turning at `spin` rad/s, until the frame in which they met.
+// Two cubes that fly into each other without gravity, turning at `spin` rad/s, until the frame in which they
+// met.
 Pair collide(LevelChoice first_level, LevelChoice second_level, std::uint32_t trial, double spin = 0.0) {
   RandomStream random(11, trial, 0);
   ManagerSettings settings = of_cubes();
@@ -147,9 +155,11 @@ Pair collide(LevelChoice first_level, LevelChoice second_level, std::uint32_t tr
   const auto cube = box_shape({kSide, kSide, kSide});
   const Vec3 off_axis = 0.15 * random.direction();
   RigidState first{{-0.6, 0, 0}, random.orientation(), {4, 0, 0}, spin * random.direction()};
-  RigidState second{{0.6, off_axis.y(), off_axis.z()}, random.orientation(), {-4, 0, 0}, spin * random.direction()};
-  const BodyId bodies[] = {manager.add_body({.shape = cube, .state = first, .mass = 2.0, .level = first_level}),
-                           manager.add_body({.shape = cube, .state = second, .mass = 3.0, .level = second_level})};
+  RigidState second{
+      {0.6, off_axis.y(), off_axis.z()}, random.orientation(), {-4, 0, 0}, spin * random.direction()};
+  const BodyId bodies[] = {
+      manager.add_body({.shape = cube, .state = first, .mass = 2.0, .level = first_level}),
+      manager.add_body({.shape = cube, .state = second, .mass = 3.0, .level = second_level})};
   Pair pair;
   pair.before = momentum_of(manager, bodies);
   for (int i = 0; i < 12 && !pair.met; ++i) {
@@ -168,7 +178,8 @@ TEST(CrossLevel, T10MomentumIsKept) {
     ASSERT_TRUE(pair.met);
     constexpr double kMeeting = 20.0;  // kg m/s
     EXPECT_LT((pair.after.linear - pair.before.linear).norm(), 1e-9 * kMeeting) << trial;
-    EXPECT_LT((pair.after.angular - pair.before.angular).norm(), 1e-3 * kMeeting * kSide) << trial;  // overlap is undone by moving
+    EXPECT_LT((pair.after.angular - pair.before.angular).norm(), 1e-3 * kMeeting * kSide)
+        << trial;  // overlap is undone by moving
   }
 }
 
@@ -178,7 +189,8 @@ TEST(CrossLevel, T10SameOutcomeWithTheRolesSwapped) {
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     const Pair one = collide(kFull, kStatistical, trial), other = collide(kStatistical, kFull, trial);
     ASSERT_TRUE(one.met && other.met);
-    same += (one.first.velocity - other.first.velocity).norm() < 1e-9 && (one.second.velocity - other.second.velocity).norm() < 1e-9 &&
+    same += (one.first.velocity - other.first.velocity).norm() < 1e-9 &&
+            (one.second.velocity - other.second.velocity).norm() < 1e-9 &&
             (one.first.angular_velocity - other.first.angular_velocity).norm() < 1e-8 &&
             (one.second.angular_velocity - other.second.angular_velocity).norm() < 1e-8;
   }
@@ -211,28 +223,34 @@ TEST(CrossLevel, T6PromotionInsideAPileDisturbsNobody) {
   std::vector<BodyId> bodies;
   for (std::uint32_t i = 0; i < 150; ++i) {
     RandomStream random(5, i, 0);
-    const RigidState state{{0.3 * (i % 5) + 0.02 * random.uniform(), 0.3 * (i / 5 % 5), 0.4 + 0.36 * (i / 25)}, random.orientation(),
-                           Vec3::Zero(), Vec3::Zero()};
+    const RigidState state{
+        {0.3 * (i % 5) + 0.02 * random.uniform(), 0.3 * (i / 5 % 5), 0.4 + 0.36 * (i / 25)},
+        random.orientation(),
+        Vec3::Zero(),
+        Vec3::Zero()};
     bodies.push_back(add(manager, cube, state, kStatistical));
   }
-  for (int second = 0; second < 20 && manager.report().asleep < int(bodies.size()); ++second) run(manager, 1.0);
+  for (int second = 0; second < 20 && manager.report().asleep < int(bodies.size()); ++second)
+    run(manager, 1.0);
   ASSERT_EQ(manager.report().asleep, int(bodies.size()));
   const auto top_speed = [&](BodyId but) {
-    double top = 0.0;
+    double fastest = 0.0;
     for (const BodyId body : bodies)
-      if (!(body == but)) top = std::max(top, manager.state(body).velocity.norm());
-    return top;
+      if (!(body == but)) fastest = std::max(fastest, manager.state(body).velocity.norm());
+    return fastest;
   };
   int promoted = 0;
+  double top = 0.0;  // m/s
   for (const int inside : {30, 60, 90, 120}) {
     manager.set_level(bodies[inside], kFull);
     for (int i = 0; i < 60; ++i) {
       manager.step(kFrame);
-      EXPECT_LT(top_speed(bodies[inside]), 1.0) << inside;
+      top = std::max(top, top_speed(bodies[inside]));
     }
     promoted += manager.level(bodies[inside]) == Level::full;
   }
   EXPECT_GT(promoted, 0);
+  EXPECT_LT(top, 0.05);
 }
 
 }  // namespace

@@ -3,12 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "lod/manager/choose_levels.h"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "lod/manager/choose_levels.h"
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
@@ -57,31 +56,40 @@ TEST(FarBodies, StaleTurnsDoNotPileUp) {
 
 // Crates in rows, and a viewpoint that goes among them.
 struct Scene {
-  explicit Scene(const PolicySettings& policy, int bodies, bool settled = true) : manager(on_floor(unmeasured(policy))) {
+  explicit Scene(const PolicySettings& policy, int bodies, bool settled = true)
+      : manager(on_floor(unmeasured(policy))) {
     const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box({0.2, 0.3, 0.24})));
     for (int i = 0; i < bodies; ++i) {
       RigidState state;
       state.position = {0.6 * (i % 40), 0.6 * (i / 40), 0.12};
       ids.push_back(manager.add_body({.shape = shape, .state = state, .importance = 1.0 + 0.5 * (i % 3)}));
     }
-    for (int i = 0; i < 90 && (i == 0 || (settled && manager.report().asleep < bodies)); ++i) manager.step(kFrame);
+    for (int i = 0; i < 90 && (i == 0 || (settled && manager.report().asleep < bodies)); ++i)
+      manager.step(kFrame);
   }
   LevelCandidate candidate(std::size_t i) const {
-    return {.position = manager.state(ids[i]).position, .radius = manager.shape(ids[i]).radius, .importance = 1.0 + 0.5 * double(i % 3), .rung = manager.rung(ids[i]), .open = {Rung::support, Rung::full}};
+    return {.position = manager.state(ids[i]).position,
+            .radius = manager.shape(ids[i]).radius,
+            .importance = 1.0 + 0.5 * double(i % 3),
+            .rung = manager.rung(ids[i]),
+            .open = {Rung::support, Rung::full}};
   }
   Manager manager;
   std::vector<BodyId> ids;
 };
 
-// Without a dwell or a cap, what the policy would say of all bodies is what they have after the step, whoever was looked at.
+// Without a dwell or a cap, what the policy would say of all bodies is what they have after the step, whoever
+// was looked at.
 void expect_levels_as_if_asked_about_all(bool settled) {
-  PolicySettings policy{.policy = DistancePolicy{1.5}, .min_dwell_frames = 0, .max_transitions_per_frame = 1'000'000};
+  PolicySettings policy{
+      .policy = DistancePolicy{1.5}, .min_dwell_frames = 0, .max_transitions_per_frame = 1'000'000};
   Scene scene(policy, 600, settled);
   ASSERT_EQ(scene.manager.report().asleep, settled ? 600 : 0);
   int changes = 0;
   for (int step = 0; step < 120; ++step) {
     const double along = 0.2 * step;
-    const std::vector<Vec3> viewpoints{{along, 4.0 + 3.0 * std::sin(0.3 * along), 0.5}, {23.0 - along, 1.0, 0.3}};
+    const std::vector<Vec3> viewpoints{{along, 4.0 + 3.0 * std::sin(0.3 * along), 0.5},
+                                       {23.0 - along, 1.0, 0.3}};
     scene.manager.set_viewpoints(viewpoints);
     std::vector<LevelCandidate> all;
     for (std::size_t i = 0; i < scene.ids.size(); ++i) all.push_back(scene.candidate(i));
@@ -92,18 +100,24 @@ void expect_levels_as_if_asked_about_all(bool settled) {
     for (const auto& change : wanted.demote) demoted.insert(change.candidate);
     changes += int(promoted.size() + demoted.size());
     for (std::size_t i = 0; i < scene.ids.size(); ++i) {
-      const bool was_full = all[i].rung == Rung::full, full = was_full ? !demoted.contains(int(i)) : promoted.contains(int(i));
-      ASSERT_EQ(scene.manager.level(scene.ids[i]) == Level::full, full) << "body " << i << ", step " << step << ": " << scene.manager.why(scene.ids[i]);
-      ASSERT_NE(scene.manager.why(scene.ids[i]).find(text_of(wanted.reasons[i])), std::string::npos) << "body " << i << ", step " << step;
+      const bool was_full = all[i].rung == Rung::full,
+                 full = was_full ? !demoted.contains(int(i)) : promoted.contains(int(i));
+      ASSERT_EQ(scene.manager.level(scene.ids[i]) == Level::full, full)
+          << "body " << i << ", step " << step << ": " << scene.manager.why(scene.ids[i]);
+      ASSERT_NE(scene.manager.why(scene.ids[i]).find(text_of(wanted.reasons[i])), std::string::npos)
+          << "body " << i << ", step " << step;
     }
   }
   EXPECT_GT(changes, 100);
 }
 
-TEST(LevelsOfSleepers, AreThoseThatThePolicyWouldGiveAskedAboutAll) { expect_levels_as_if_asked_about_all(true); }
+TEST(LevelsOfSleepers, AreThoseThatThePolicyWouldGiveAskedAboutAll) {
+  expect_levels_as_if_asked_about_all(true);
+}
 TEST(LevelsOfSleepers, AreSoTooWhereTheyFallAsleepUnderWay) { expect_levels_as_if_asked_about_all(false); }
 
-// How many a budget has room for hangs on measured times, here a hundred or a few tens; which three are next does not.
+// How many a budget has room for hangs on measured times, here a hundred or a few tens; which three are next
+// does not.
 TEST(LevelsOfSleepers, ABudgetTakesTheNearestWithoutALookAtAll) {
   PolicySettings policy{.policy = BudgetPolicy{10.0}, .min_dwell_frames = 0, .max_transitions_per_frame = 3};
   Scene scene(policy, 1'000);
@@ -112,15 +126,19 @@ TEST(LevelsOfSleepers, ABudgetTakesTheNearestWithoutALookAtAll) {
     const Vec3 eye(7.1 + step, 3.2, 0.4);
     view_from(scene.manager, eye);
     std::vector<LevelCandidate> all;
-    for (std::size_t i = 0; i < scene.ids.size(); ++i) all.push_back(scene.candidate(i)), all.back().cost[std::size_t(Rung::full)] = 0.1f;
+    for (std::size_t i = 0; i < scene.ids.size(); ++i)
+      all.push_back(scene.candidate(i)), all.back().cost[std::size_t(Rung::full)] = 0.1f;
     const LevelDecision wanted = choose_levels(all, std::vector{eye}, policy);
     const std::int64_t before = scene.manager.report().counters.levels_considered;
     scene.manager.step(kFrame);
     ASSERT_EQ(scene.manager.report().promotions, 3);
-    for (const auto& [body, to] : wanted.promote) EXPECT_EQ(scene.manager.rung(scene.ids[std::size_t(body)]), to) << body;
+    for (const auto& [body, to] : wanted.promote)
+      EXPECT_EQ(scene.manager.rung(scene.ids[std::size_t(body)]), to) << body;
     const std::int64_t looks = scene.manager.report().counters.levels_considered - before;
-    if (step == 0) EXPECT_EQ(looks, 1'000);  // the first viewpoint
-    else EXPECT_LT(looks, 600);
+    if (step == 0)
+      EXPECT_EQ(looks, 1'000);  // the first viewpoint
+    else
+      EXPECT_LT(looks, 600);
   }
 }
 

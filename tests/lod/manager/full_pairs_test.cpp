@@ -12,7 +12,9 @@ namespace {
 
 using namespace testing;
 
-FullPairs::Body body_at(const Vec3& position, bool asleep = false) { return {.position = position, .radius = 1.0, .mesh = 1.0f, .asleep = asleep}; }
+FullPairs::Body body_at(const Vec3& position, bool asleep = false) {
+  return {.position = position, .radius = 1.0, .mesh = 1.0f, .asleep = asleep};
+}
 
 PairWeights pair_of(const FullPairs::Body& first, const FullPairs::Body& second) {
   FullPairs pairs(2.0);
@@ -27,7 +29,8 @@ TEST(FullPairs, CountMoreTheDeeperTheyMeet) {
 }
 
 TEST(FullPairs, SleepersCountApart) {
-  const PairWeights one = pair_of(body_at({0, 0, 0}, true), body_at({1, 0, 0})), both = pair_of(body_at({0, 0, 0}, true), body_at({1, 0, 0}, true));
+  const PairWeights one = pair_of(body_at({0, 0, 0}, true), body_at({1, 0, 0})),
+                    both = pair_of(body_at({0, 0, 0}, true), body_at({1, 0, 0}, true));
   EXPECT_EQ(one.awake, 1.0);
   EXPECT_EQ(one.dearest, 1.0);
   EXPECT_EQ(both.awake, 0.0);
@@ -40,13 +43,15 @@ TEST(FullPairs, CellsFindAllThatMeet) {
   FullPairs pairs(1.0);
   std::vector<FullPairs::Body> bodies;
   for (int i = 0; i < 400; ++i) {
-    FullPairs::Body body = body_at(12.0 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5), i % 3 == 0);
+    FullPairs::Body body = body_at(
+        12.0 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5), i % 3 == 0);
     body.radius = 0.2 + 0.8 * random.uniform();
     const PairWeights met = pairs.meet(body);
     PairWeights expected;
     for (const FullPairs::Body& other : bodies) {
       const PairWeights pair = pair_of(other, body);
-      expected.awake += pair.awake, expected.asleep += pair.asleep, expected.dearest = std::max(expected.dearest, pair.dearest);
+      expected.awake += pair.awake, expected.asleep += pair.asleep,
+          expected.dearest = std::max(expected.dearest, pair.dearest);
     }
     EXPECT_NEAR(met.awake, expected.awake, 1e-9) << i;
     EXPECT_NEAR(met.asleep, expected.asleep, 1e-9) << i;

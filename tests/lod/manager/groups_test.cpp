@@ -7,7 +7,10 @@
 namespace lodestone::testing {
 namespace {
 
-PolicySettings by_distance() { return {.policy = DistancePolicy{.full_within = 5.0}, .min_dwell_frames = 0, .max_transitions_per_frame = 100}; }
+PolicySettings by_distance() {
+  return {
+      .policy = DistancePolicy{.full_within = 5.0}, .min_dwell_frames = 0, .max_transitions_per_frame = 100};
+}
 
 TEST(Groups, OneThatOverlapsKeepsAllWhereTheyAre) {
   Manager manager = on_floor(unmeasured(by_distance()));
@@ -96,8 +99,10 @@ TEST(ContactGroups, ChangeTogether) {
       for (const BodyId body : row) full += manager.rung(body) == Rung::full;
       mixed += full > 0 && full < 4, up += full == 4;
     }
-    if (together) EXPECT_GT(up, 0);
-    else EXPECT_GT(mixed, 0);
+    if (together)
+      EXPECT_GT(up, 0);
+    else
+      EXPECT_GT(mixed, 0);
   }
 }
 

@@ -14,12 +14,15 @@ inline std::shared_ptr<const Signature> no_signature(const Shape&, const Contact
 /// Measured in a moment: enough for `tables` to run.
 inline std::shared_ptr<const Signature> coarse_signature(const Shape& shape, const ContactLaw&) {
   SignatureSettings coarse;
-  coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8, coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
+  coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8,
+  coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
   return std::make_shared<const Signature>(measure_signature(shape, coarse, 1));
 }
 
 /// Signatures are not measured: the statistical bodies are those of `support` without settling clips.
-inline ManagerSettings unmeasured(const PolicySettings& policy = {}) { return {.policy = policy, .signatures = no_signature}; }
+inline ManagerSettings unmeasured(const PolicySettings& policy = {}) {
+  return {.policy = policy, .signatures = no_signature};
+}
 
 inline Manager on_floor(const ManagerSettings& settings = unmeasured()) {
   Manager manager(settings);

@@ -67,6 +67,28 @@ TEST(Manager, AllStatisticalSceneMakesNothingInOde) {
   EXPECT_EQ(manager.report().counters.trimeshes_built, 0);
 }
 
+// What is remembered of a pair goes by the bodies' indices: a body that took the place of another between two
+// steps was looked for at the other's vertices.
+TEST(Manager, ABodyInAnothersPlaceIsAnotherBody) {
+  const auto round = std::make_shared<const Shape>(make_shape("round", make_sphere(0.2, 2)));
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::full}) {
+    Manager manager = on_floor();
+    const BodyId beside = add(manager, round, at({0, 0, 0.19}), LevelChoice::support);
+    BodyId body = add(manager, round, at({0.41, 0, 0.19}), LevelChoice::support);
+    for (int i = 0; i < 4; ++i) {
+      run(manager, 2 * kFrame);
+      const BodyId before = body;
+      manager.remove_body(body);
+      body = add(manager, i % 2 == 0 ? box_shape({0.3, 0.3, 0.3}) : round, at({0.41, 0, 0.19}),
+                 i % 2 == 0 ? level : LevelChoice::support);
+      EXPECT_NE(body.index, before.index);
+    }
+    EXPECT_TRUE(manager.state(beside).position.allFinite());
+    run(manager, kFrame);
+    EXPECT_LT(add(manager, round, at({3, 0, 1})).index, 6u);  // they are given again
+  }
+}
+
 TEST(Manager, OneBodyHasNoPairPhase) {
   Manager manager = on_floor();
   add(manager, box_shape(kSides), at({0, 0, 0.5}));
@@ -138,6 +160,7 @@ TEST(Manager, RemovedBodysIdIsNeverValidAgain) {
   const BodyId first = add(manager, shape, at({0, 0, 1}), LevelChoice::full);
   manager.remove_body(first);
   EXPECT_FALSE(manager.valid(first));
+  manager.step(kFrame);  // an index is given again after a step without its body
   const BodyId second = add(manager, shape, at({0, 0, 1}));
   EXPECT_EQ(second.index, first.index);
   EXPECT_FALSE(manager.valid(first));
@@ -151,7 +174,8 @@ TEST(Manager, RemovalLeavesTheOtherBodiesAsTheyWere) {
   const auto shape = sphere_shape(0.1);
   std::vector<BodyId> bodies;
   for (int i = 0; i < 12; ++i)
-    bodies.push_back(add(manager, shape, at({1.0 * i, 0, 5}), i % 3 ? LevelChoice::statistical : LevelChoice::full));
+    bodies.push_back(
+        add(manager, shape, at({1.0 * i, 0, 5}), i % 3 ? LevelChoice::statistical : LevelChoice::full));
   manager.step(kFrame);
   for (const int gone : {1, 0, 11, 4, 6}) manager.remove_body(bodies[gone]);
   manager.add_force(bodies[2], {0, 0, 1});
@@ -174,7 +198,8 @@ TEST(Manager, ForceActsOverOneStepAtEveryLevel) {
     ManagerSettings settings = unmeasured();
     settings.gravity.setZero();
     Manager manager(settings);
-    const BodyId body = manager.add_body({.shape = sphere_shape(0.1), .state = at({0, 0, 0}), .mass = 2.0, .level = level});
+    const BodyId body =
+        manager.add_body({.shape = sphere_shape(0.1), .state = at({0, 0, 0}), .mass = 2.0, .level = level});
     manager.add_force(body, {12, 0, 0});
     manager.add_force(body, {12, 0, 0});
     manager.step(kFrame);
@@ -200,7 +225,8 @@ TEST(Manager, SetStateOfASupportWakesWhatRestsOnIt) {
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::statistical}) {
     Manager manager = on_floor();
     const auto shape = box_shape({0.4, 0.4, 0.4});
-    const BodyId lower = add(manager, shape, at({0, 0, 0.2}), level), upper = add(manager, shape, at({0, 0, 0.6}), level);
+    const BodyId lower = add(manager, shape, at({0, 0, 0.2}), level),
+                 upper = add(manager, shape, at({0, 0, 0.6}), level);
     run(manager, 2.0);
     manager.set_state(lower, at({5, 0, 0.2}));
     run(manager, 1.0);
@@ -251,7 +277,8 @@ TEST(Manager, OrientationIsNormalized) {
 
 TEST(Manager, SleeperInTheWayOfANewStaticBoxWakesAndGetsOut) {
   Manager manager = on_floor();
-  const BodyId near = add(manager, box_shape(kSides), at({0, 0, 0.2})), apart = add(manager, box_shape(kSides), at({9, 0, 0.2}));
+  const BodyId near = add(manager, box_shape(kSides), at({0, 0, 0.2})),
+               apart = add(manager, box_shape(kSides), at({9, 0, 0.2}));
   run(manager, 2.0);
   ASSERT_TRUE(manager.asleep(near));
   manager.add_static_box({1, 1, 1}, {0.55, 0, 0.5}, Quat::Identity());
@@ -281,14 +308,17 @@ std::uint64_t hash_of_a_heap(StatisticalModel model, const JobRunner& jobs) {
   settings.model = model;
   settings.signatures = [](const Shape& shape, const ContactLaw&) {
     SignatureSettings coarse;
-    coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8, coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
+    coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8,
+    coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
     return std::make_shared<const Signature>(measure_signature(shape, coarse, 1));
   };
   settings.threads = 2;
   settings.jobs = jobs;
   Manager manager = on_floor(settings);
   const auto shape = box_shape(kSides);
-  for (int i = 0; i < 1'200; ++i) add(manager, shape, at({0.5 * (i % 20), 0.5 * (i / 20 % 20), 0.4 + 0.5 * (i / 400)}), LevelChoice::statistical);
+  for (int i = 0; i < 1'200; ++i)
+    add(manager, shape, at({0.5 * (i % 20), 0.5 * (i / 20 % 20), 0.4 + 0.5 * (i / 400)}),
+        LevelChoice::statistical);
   run(manager, 0.5);
   return manager.state_hash();
 }

@@ -1,6 +1,10 @@
 // Hard case F15 within a run: bodies that no level can hold are put to rest and counted, and never reach ODE.
 #include <gtest/gtest.h>
+#include <ode/ode.h>
 
+#include <limits>
+
+#include "reference/simulation_error.h"
 #include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
@@ -10,7 +14,8 @@ using namespace testing;
 
 TEST(Recovery, AStatisticalBodyThatFliesTooFarComesToRestAtTheLimit) {
   Manager manager(unmeasured());
-  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({1e8 - 1e5, 5, 0}, {1e6, 0, 0}), LevelChoice::statistical);
+  const BodyId body =
+      add(manager, box_shape({0.2, 0.3, 0.4}), at({1e8 - 1e5, 5, 0}, {1e6, 0, 0}), LevelChoice::statistical);
   run(manager, 0.2);
   EXPECT_EQ(manager.state(body).position.x(), 1e8);
   EXPECT_EQ(manager.state(body).velocity.x(), 0.0);
@@ -29,16 +34,83 @@ TEST(Recovery, AForceBeyondAllBoundsStopsTheBodyAtEveryLevel) {
     manager.step(kFrame);
     manager.add_force(pushed, {1e300, 0, 0}, {0, 1e300, 0});
     manager.step(kFrame);
-    EXPECT_EQ(manager.report().counters.states_recovered, level == LevelChoice::full ? ManagerSettings{}.full_substeps : 1);
+    EXPECT_EQ(manager.report().counters.states_recovered,
+              level == LevelChoice::full ? ManagerSettings{}.full_substeps : 1);
     EXPECT_LT((manager.state(pushed).position - Vec3(1, 2, 3)).norm(), 0.1);
     EXPECT_LT((manager.state(beside).position - Vec3(1.5, 2, 3)).norm(), 0.1);
     EXPECT_TRUE(manager.state(pushed).orientation.coeffs().allFinite());
   }
 }
 
+// What the caller does to an ODE body himself, between two steps: it is put back, at rest, before its
+// neighbours can notice, who go on as if it had only been stopped.
+TEST(Recovery, BodyThatTheCallerSpoiltIsPutBackAtRest) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinity = std::numeric_limits<double>::infinity();
+  const auto shape = box_shape({0.2, 0.3, 0.4});
+  const std::function<void(dBodyID)> spoils[] = {
+      [](dBodyID body) { dBodySetPosition(body, kNan, 0, 0); },
+      [](dBodyID body) { dBodySetLinearVel(body, 0, kNan, 0); },
+      [](dBodyID body) { dBodySetAngularVel(body, 0, 0, kInfinity); },
+      [](dBodyID body) { dBodyAddForce(body, kNan, 0, 0); },
+      [](dBodyID body) { dBodyAddTorque(body, 0, -kInfinity, 0); }};
+  for (const auto& spoil : spoils) {
+    std::vector<RigidState> ends[2];
+    for (const bool spoilt : {false, true}) {
+      Manager manager = on_floor();
+      const BodyId lower = add(manager, shape, at({0, 0, 0.21}), LevelChoice::full),
+                   upper = add(manager, shape, at({0.02, 0, 0.63}), LevelChoice::full);
+      const BodyId hull = add(manager, shape, at({0.3, 0, 0.21}), LevelChoice::support);
+      run(manager, 0.2);
+      RigidState still = manager.state(lower);
+      still.velocity = still.angular_velocity = Vec3::Zero();
+      if (spoilt)
+        spoil(manager.ode_body(lower));
+      else
+        manager.set_state(lower, still);
+      manager.step(kFrame);
+      EXPECT_EQ(manager.report().counters.states_recovered, spoilt ? 1 : 0);
+      EXPECT_LT((manager.state(lower).position - still.position).norm(), 0.01);
+      run(manager, 0.2);
+      EXPECT_EQ(manager.report().counters.states_recovered, spoilt ? 1 : 0);
+      for (const BodyId body : {lower, upper, hull}) ends[spoilt].push_back(manager.state(body));
+    }
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_LT((ends[0][std::size_t(i)].position - ends[1][std::size_t(i)].position).norm(), 1e-9) << i;
+      EXPECT_LT((ends[0][std::size_t(i)].velocity - ends[1][std::size_t(i)].velocity).norm(), 1e-9) << i;
+    }
+  }
+}
+
+// An assertion inside ODE, here over a mass that the caller set himself: an error that names the body, and a
+// manager that can still be read and destroyed.
+TEST(Recovery, AssertionInsideOdeIsAnErrorThatNamesTheBody) {
+  Manager manager = on_floor();
+  const auto shape = box_shape({0.2, 0.3, 0.4});
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 4; ++i)
+    bodies.push_back(
+        add(manager, shape, at({0.03 * i, 0, 0.19 + 0.38 * i}, {0, 0, 0}, {1, 2, 3}), LevelChoice::full));
+  manager.step(kFrame);
+  dMass light;
+  dMassSetBoxTotal(&light, 1e-30, 0.2, 0.3, 0.4);
+  dBodySetMass(manager.ode_body(bodies[2]), &light);
+  std::string message;
+  try {
+    run(manager, 5.0);
+  } catch (const SimulationError& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("ODE gave up"), std::string::npos) << message;
+  EXPECT_NE(message.find("body 2"), std::string::npos) << message;
+  EXPECT_THROW(manager.step(kFrame), SimulationError);
+  EXPECT_EQ(manager.bodies(), 4);
+}
+
 TEST(Recovery, FastBodiesWithinTheLimitAreLeftAlone) {
   Manager manager(unmeasured());
-  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 0}, {1e6, 0, 0}, {0, 0, 1e3}), LevelChoice::statistical);
+  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 0}, {1e6, 0, 0}, {0, 0, 1e3}),
+                          LevelChoice::statistical);
   run(manager, 0.5);
   EXPECT_EQ(manager.report().counters.states_recovered, 0);
   EXPECT_NEAR(manager.state(body).velocity.x(), 1e6, 1e-6);

@@ -17,17 +17,22 @@ LevelCandidate body(float tables_px, float support_px, float full_px, Rung rung 
   return c;
 }
 
-std::vector<Rung> share(const std::vector<LevelCandidate>& bodies, double keep, double grow, ErrorShareLimits limits = {.most_full = 1000, .most_support = 1000, .hysteresis = 0.1}) {
+std::vector<Rung> share(const std::vector<LevelCandidate>& bodies, double keep, double grow,
+                        ErrorShareLimits limits = {
+                            .most_full = 1000, .most_support = 1000, .hysteresis = 0.1}) {
   return share_by_error(bodies, FullBill(bodies, kFree), {keep, grow}, limits);
 }
-std::vector<Rung> share(const std::vector<LevelCandidate>& bodies, double room) { return share(bodies, room, room); }
+std::vector<Rung> share(const std::vector<LevelCandidate>& bodies, double room) {
+  return share(bodies, room, room);
+}
 
 TEST(ShareByError, SpendsWhereItSavesMost) {
   const std::vector bodies{body(10, 5, 4), body(100, 50, 40), body(30, 15, 12)};
   EXPECT_EQ(share(bodies, 1.0), (std::vector{Rung::tables, Rung::support, Rung::tables}));
   EXPECT_EQ(share(bodies, 2.0), (std::vector{Rung::tables, Rung::support, Rung::support}));
   EXPECT_EQ(share(bodies, 3.0), (std::vector{Rung::support, Rung::support, Rung::support}));
-  EXPECT_EQ(share(bodies, 12.0), (std::vector{Rung::support, Rung::full, Rung::support}));  // 9 more for the one, which saves 10 px
+  EXPECT_EQ(share(bodies, 12.0), (std::vector{Rung::support, Rung::full,
+                                              Rung::support}));  // 9 more for the one, which saves 10 px
 }
 
 TEST(ShareByError, WhatSavesNothingIsNotBought) {
@@ -47,9 +52,11 @@ TEST(ShareByError, NoMoreThanTheLimits) {
 }
 
 TEST(ShareByError, OfTwoAlikeTheOneThatIsUpStaysUp) {
-  EXPECT_EQ(share({body(10, 5, 1), body(10, 5, 1, Rung::support)}, 1.0), (std::vector{Rung::tables, Rung::support}));
+  EXPECT_EQ(share({body(10, 5, 1), body(10, 5, 1, Rung::support)}, 1.0),
+            (std::vector{Rung::tables, Rung::support}));
   // Room to keep is not room to grow.
-  EXPECT_EQ(share({body(10, 5, 1, Rung::support), body(10, 5, 1)}, 2.0, 1.0), (std::vector{Rung::support, Rung::tables}));
+  EXPECT_EQ(share({body(10, 5, 1, Rung::support), body(10, 5, 1)}, 2.0, 1.0),
+            (std::vector{Rung::support, Rung::tables}));
 }
 
 // Against all ways to share, for a few bodies: greedy is within the dearest step of the best.
@@ -65,7 +72,9 @@ TEST(ShareByError, IsNearTheBestShare) {
     EXPECT_LE(cost, room);
     for (int code = 0; code < 243; ++code) {
       double c = 0, e = 0;
-      for (int i = 0, rest = code; i < 5; ++i, rest /= 3) c += bodies[std::size_t(i)].cost_at(Rung(rest % 3)), e += bodies[std::size_t(i)].error_at(Rung(rest % 3));
+      for (int i = 0, rest = code; i < 5; ++i, rest /= 3)
+        c += bodies[std::size_t(i)].cost_at(Rung(rest % 3)),
+            e += bodies[std::size_t(i)].error_at(Rung(rest % 3));
       if (c <= room) best = std::min(best, e);
     }
     EXPECT_LE(error, best + dearest) << room;

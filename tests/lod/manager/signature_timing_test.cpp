@@ -1,6 +1,6 @@
-// Signatures that take their time: the bodies that need them are at `support` without settling clips meanwhile.
+// Signatures that take their time: the bodies that need them are at `support` without settling clips
+// meanwhile.
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <atomic>
@@ -17,7 +17,8 @@ namespace {
 std::shared_ptr<const Signature> empty_signature(const Shape& shape) {
   Signature signature;
   signature.shape_hash = shape.content_hash;
-  signature.mesh_vertices = std::uint32_t(shape.mesh.vertices.size()), signature.mesh_faces = std::uint32_t(shape.mesh.faces.size());
+  signature.mesh_vertices = std::uint32_t(shape.mesh.vertices.size()),
+  signature.mesh_faces = std::uint32_t(shape.mesh.faces.size());
   return std::make_shared<const Signature>(std::move(signature));
 }
 
@@ -37,7 +38,9 @@ struct SlowSource {
   }
 };
 
-ManagerSettings with(SlowSource& source, SignatureTiming timing) { return {.signatures = source.function(), .signature_timing = timing}; }
+ManagerSettings with(SlowSource& source, SignatureTiming timing) {
+  return {.signatures = source.function(), .signature_timing = timing};
+}
 
 // Steps until the thread is done: how many steps that takes differs from run to run.
 void step_until_loaded(Manager& manager) {
@@ -51,11 +54,13 @@ TEST(SignatureTiming, BodiesAreAtSupportUntilTheThreadIsDone) {
   SlowSource source{.measured = true};
   Manager manager = on_floor(with(source, SignatureTiming::in_background));
   const auto box = box_shape({0.2, 0.3, 0.4});
-  const BodyId far = add(manager, box, at({0, 0, 1})), forced = add(manager, box, at({3, 0, 1}), LevelChoice::tables);
+  const BodyId far = add(manager, box, at({0, 0, 1})),
+               forced = add(manager, box, at({3, 0, 1}), LevelChoice::tables);
   run(manager, 0.1);  // returns, though the source does not
   for (const BodyId body : {far, forced}) EXPECT_EQ(manager.rung(body), Rung::support);
   EXPECT_EQ(manager.why(forced), "support: its signature is still being measured");
-  while (source.asked == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the thread may only just have begun
+  while (source.asked == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the thread may only just have begun
   EXPECT_EQ(source.asked, 1);
   EXPECT_NE(source.thread.load(), std::this_thread::get_id());
   source.done = true;
@@ -128,8 +133,11 @@ TEST(SignatureTiming, InStepTheStepWaits) {
 }
 
 TEST(SignatureTiming, ASignatureThatCannotBeHadIsSaidByTheStep) {
-  ManagerSettings settings{.signatures = [](const Shape&, const ContactLaw&) -> std::shared_ptr<const Signature> { throw InputError("no room"); },
-                           .signature_timing = SignatureTiming::in_background};
+  ManagerSettings settings{
+      .signatures = [](const Shape&, const ContactLaw&) -> std::shared_ptr<const Signature> {
+        throw InputError("no room");
+      },
+      .signature_timing = SignatureTiming::in_background};
   Manager manager = on_floor(settings);
   add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}));
   EXPECT_THROW(
@@ -140,9 +148,11 @@ TEST(SignatureTiming, ASignatureThatCannotBeHadIsSaidByTheStep) {
       InputError);
 }
 
-// The default source, which measures: the manager goes away in the middle of it, soon, and without a signature in the cache.
+// The default source, which measures: the manager goes away in the middle of it, soon, and without a
+// signature in the cache.
 TEST(SignatureTiming, AManagerDoesNotWaitForWhatItMeasures) {
-  const auto cache = std::filesystem::temp_directory_path() / ("lodestone-timing-" + std::to_string(::getpid()));
+  const auto cache =
+      std::filesystem::temp_directory_path() / ("lodestone-timing-" + std::to_string(::getpid()));
   const char* before = std::getenv("XDG_CACHE_HOME");
   const std::string kept = before ? before : "";
   std::filesystem::create_directories(cache);
@@ -153,10 +163,13 @@ TEST(SignatureTiming, AManagerDoesNotWaitForWhatItMeasures) {
     manager.step(kFrame);
     EXPECT_EQ(manager.rung(body), Rung::support);
   }
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(cache)) EXPECT_NE(entry.path().extension(), ".sig");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(cache))
+    EXPECT_NE(entry.path().extension(), ".sig");
   std::filesystem::remove_all(cache);
-  if (before) ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
-  else ::unsetenv("XDG_CACHE_HOME");
+  if (before)
+    ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
+  else
+    ::unsetenv("XDG_CACHE_HOME");
 }
 
 }  // namespace

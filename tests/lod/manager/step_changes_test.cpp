@@ -1,4 +1,5 @@
-// The lists of a step, against a look at every body before and after it; and queries against a look at every body, while all of them come, go, move and change rung.
+// The lists of a step, against a look at every body before and after it; and queries against a look at every
+// body, while all of them come, go, move and change rung.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -17,7 +18,8 @@ using Ids = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
 Ids ids_of(std::span<const BodyId> bodies) {
   Ids ids;
-  for (const BodyId body : bodies) EXPECT_TRUE(ids.emplace(body.index, body.generation).second) << "twice in the list";
+  for (const BodyId body : bodies)
+    EXPECT_TRUE(ids.emplace(body.index, body.generation).second) << "twice in the list";
   return ids;
 }
 
@@ -28,10 +30,14 @@ struct Known {
   RigidState state;
 };
 
-// A pile of balls and boxes; a camera that comes and goes; bodies pushed, laid to sleep, woken, moved, removed and added by the caller.
+// A pile of balls and boxes; a camera that comes and goes; bodies pushed, laid to sleep, woken, moved,
+// removed and added by the caller.
 class LivelyScene : public ::testing::Test {
  protected:
-  LivelyScene() : manager(on_floor(unmeasured({.policy = DistancePolicy{.full_within = 2.0}, .min_dwell_frames = 5, .max_transitions_per_frame = 20}))) {
+  LivelyScene()
+      : manager(on_floor(unmeasured({.policy = DistancePolicy{.full_within = 2.0},
+                                     .min_dwell_frames = 5,
+                                     .max_transitions_per_frame = 20}))) {
     for (int i = 0; i < 60; ++i) add_one();
   }
   void add_one() {
@@ -42,13 +48,20 @@ class LivelyScene : public ::testing::Test {
   BodyId any() { return bodies[std::size_t(random.uniform() * double(bodies.size()))]; }
   void meddle() {
     const double what = random.uniform();
-    if (what < 0.05) manager.sleep(any());
-    else if (what < 0.1) manager.wake(any());
-    else if (what < 0.15) manager.add_impulse(any(), {0, 0, 20}, {0, 0, 0});
-    else if (what < 0.2) manager.set_state(any(), at({random.uniform(-2, 2), random.uniform(-2, 2), 3}));
-    else if (what < 0.22) add_one();
-    else if (what < 0.24) remove_one();
-    else if (what < 0.26) manager.set_level(any(), random.uniform() < 0.5 ? LevelChoice::full : LevelChoice::automatic);
+    if (what < 0.05)
+      manager.sleep(any());
+    else if (what < 0.1)
+      manager.wake(any());
+    else if (what < 0.15)
+      manager.add_impulse(any(), {0, 0, 20}, {0, 0, 0});
+    else if (what < 0.2)
+      manager.set_state(any(), at({random.uniform(-2, 2), random.uniform(-2, 2), 3}));
+    else if (what < 0.22)
+      add_one();
+    else if (what < 0.24)
+      remove_one();
+    else if (what < 0.26)
+      manager.set_level(any(), random.uniform() < 0.5 ? LevelChoice::full : LevelChoice::automatic);
     view_from(manager, {3.0 * std::sin(0.02 * double(manager.report().step)), 0, 1});
   }
   void remove_one() {
@@ -58,7 +71,8 @@ class LivelyScene : public ::testing::Test {
   }
   std::vector<Known> look() const {
     std::vector<Known> all;
-    for (const BodyId body : bodies) all.push_back({body, manager.asleep(body), manager.rung(body), manager.state(body)});
+    for (const BodyId body : bodies)
+      all.push_back({body, manager.asleep(body), manager.rung(body), manager.state(body)});
     return all;
   }
 
@@ -110,7 +124,8 @@ TEST_F(LivelyScene, MovedIsNobodyWhereAllSleep) {
   EXPECT_TRUE(manager.moved().empty());
 }
 
-// Balls alone are asked about, whose distance is known in closed form; every few steps, so that the queries have to catch up.
+// Balls alone are asked about, whose distance is known in closed form; every few steps, so that the queries
+// have to catch up.
 TEST_F(LivelyScene, RaysMeetTheBodiesWhereTheyAreNow) {
   int met = 0;
   for (int i = 0; i < 600; ++i) {
@@ -118,13 +133,17 @@ TEST_F(LivelyScene, RaysMeetTheBodiesWhereTheyAreNow) {
     if (i % 4 != 3) manager.step(kFrame);
     if (i % 7 > 1) continue;
     for (int k = 0; k < 5; ++k) {
-      const Vec3 from = 4.0 * random.direction(), direction = (Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 0.5)) - from).normalized();
+      const Vec3 from = 4.0 * random.direction(),
+                 direction =
+                     (Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 0.5)) - from)
+                         .normalized();
       double nearest = 20.0;
       BodyId expected;
       for (const BodyId body : bodies) {
         const RigidState state = manager.state(body);
-        const auto hit = &manager.shape(body) == ball.get() ? meet_sphere(from, direction, nearest, state.position, 0.15)
-                                                            : std::optional<double>();
+        const auto hit = &manager.shape(body) == ball.get()
+                             ? meet_sphere(from, direction, nearest, state.position, 0.15)
+                             : std::optional<double>();
         if (hit && *hit > 0.0) nearest = *hit, expected = body;
       }
       std::vector<QueryHit> hits[1];

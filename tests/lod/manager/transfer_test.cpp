@@ -16,7 +16,8 @@ using namespace testing;
 
 RigidState random_state(std::uint32_t trial) {
   RandomStream random(7, trial, 0);
-  return {3.0 * random.direction(), random.orientation(), 5.0 * random.direction(), 20.0 * random.direction()};
+  return {3.0 * random.direction(), random.orientation(), 5.0 * random.direction(),
+          20.0 * random.direction()};
 }
 
 double largest_speed(const Manager& manager, std::span<const BodyId> bodies) {
@@ -39,12 +40,14 @@ TEST(Transfer, T1MidAirBothWaysChangesNoBit) {
   }
 }
 
-// A body that changes level in flight lands where one that does not would, to the levels' own accuracy in flight.
+// A body that changes level in flight lands where one that does not would, to the levels' own accuracy in
+// flight.
 TEST(Transfer, T1FlightGoesOnThroughChanges) {
   Manager manager{unmeasured()};
   const auto shape = box_shape({0.2, 0.3, 0.4});
   const RigidState start = at({0, 0, 0}, {1, 2, 3});
-  const BodyId changing = add(manager, shape, start), full = add(manager, shape, at({50, 0, 0}, {1, 2, 3}), LevelChoice::full);
+  const BodyId changing = add(manager, shape, start),
+               full = add(manager, shape, at({50, 0, 0}, {1, 2, 3}), LevelChoice::full);
   for (int frame = 0; frame < 60; ++frame) {
     manager.set_level(changing, frame / 7 % 2 ? LevelChoice::full : LevelChoice::statistical);
     manager.step(kFrame);
@@ -112,7 +115,8 @@ TEST(Transfer, T2ForcedOverlapPartsGently) {
       fastest = std::max(fastest, largest_speed(manager, bodies));
     }
     EXPECT_LE(fastest, 1.1) << overlap;
-    EXPECT_GT((manager.state(bodies[0]).position - manager.state(bodies[1]).position).norm(), 0.39) << overlap;
+    EXPECT_GT((manager.state(bodies[0]).position - manager.state(bodies[1]).position).norm(), 0.39)
+        << overlap;
   }
 }
 
@@ -124,7 +128,8 @@ TEST(Transfer, T3RestingBodyNeitherPopsNorGainsEnergy) {
     for (int change = 0; change < 6; ++change) {
       const RigidState before = manager.state(body);
       const double energy_before = energy(manager, body);
-      manager.set_level(body, manager.level(body) == Level::full ? LevelChoice::statistical : LevelChoice::full);
+      manager.set_level(body,
+                        manager.level(body) == Level::full ? LevelChoice::statistical : LevelChoice::full);
       for (int i = 0; i < 30; ++i) {
         manager.step(kFrame);
         EXPECT_LE((manager.state(body).position - before.position).norm(), 1e-3);
@@ -138,7 +143,8 @@ TEST(Transfer, T3RestingBodyNeitherPopsNorGainsEnergy) {
 TEST(Transfer, T5NeighborsWakeInTheFrameOfTheDemotion) {
   Manager manager = on_floor();
   const auto shape = box_shape({0.4, 0.4, 0.4});
-  const BodyId lower = add(manager, shape, at({0, 0, 0.2}), LevelChoice::full), upper = add(manager, shape, at({0, 0, 0.6}), LevelChoice::full);
+  const BodyId lower = add(manager, shape, at({0, 0, 0.2}), LevelChoice::full),
+               upper = add(manager, shape, at({0, 0, 0.6}), LevelChoice::full);
   const BodyId apart = add(manager, shape, at({3, 0, 0.2}), LevelChoice::full);
   run(manager, 2.0);
   ASSERT_TRUE(manager.asleep(lower) && manager.asleep(upper) && manager.asleep(apart));
@@ -155,14 +161,17 @@ TEST(Transfer, T12ASleepingPileChangesRungAndSleepsOn) {
   Manager manager = on_floor();
   const auto shape = box_shape({0.4, 0.4, 0.4});
   std::vector<BodyId> pile;
-  for (int i = 0; i < 12; ++i) pile.push_back(add(manager, shape, at({0.401 * (i % 2), 0.401 * (i / 2 % 2), 0.2 + 0.4 * (i / 4)}), LevelChoice::full));
+  for (int i = 0; i < 12; ++i)
+    pile.push_back(add(manager, shape, at({0.401 * (i % 2), 0.401 * (i / 2 % 2), 0.2 + 0.4 * (i / 4)}),
+                       LevelChoice::full));
   run(manager, 3.0);
   ASSERT_EQ(manager.report().asleep, 12);
   std::vector<RigidState> before;
   for (const BodyId body : pile) before.push_back(manager.state(body));
   int changes = 0;
   for (const LevelChoice to : {LevelChoice::support, LevelChoice::full, LevelChoice::support})
-    for (int one = 0; one < 12; one += changes < 12 ? 1 : 12) {  // first one after the other, then all at once
+    for (int one = 0; one < 12;
+         one += changes < 12 ? 1 : 12) {  // first one after the other, then all at once
       for (int i = one; i < (changes < 12 ? one + 1 : 12); ++i) manager.set_level(pile[std::size_t(i)], to);
       manager.step(kFrame);
       changes += manager.report().promotions + manager.report().demotions;
@@ -171,7 +180,8 @@ TEST(Transfer, T12ASleepingPileChangesRungAndSleepsOn) {
   EXPECT_EQ(changes, 36);
   run(manager, 0.5);
   EXPECT_EQ(manager.report().asleep, 12);
-  for (std::size_t i = 0; i < pile.size(); ++i) EXPECT_TRUE(same_bits(manager.state(pile[i]), before[i])) << i;
+  for (std::size_t i = 0; i < pile.size(); ++i)
+    EXPECT_TRUE(same_bits(manager.state(pile[i]), before[i])) << i;
 }
 
 TEST(Transfer, T5WhatRestedOnARemovedBodyFalls) {
@@ -179,7 +189,8 @@ TEST(Transfer, T5WhatRestedOnARemovedBodyFalls) {
     for (const LevelChoice above : {LevelChoice::full, LevelChoice::statistical}) {
       Manager manager = on_floor();
       const auto shape = box_shape({0.4, 0.4, 0.4});
-      const BodyId lower = add(manager, shape, at({0, 0, 0.2}), below), upper = add(manager, shape, at({0, 0, 0.6}), above);
+      const BodyId lower = add(manager, shape, at({0, 0, 0.2}), below),
+                   upper = add(manager, shape, at({0, 0, 0.6}), above);
       run(manager, 2.0);
       manager.remove_body(lower);
       run(manager, 1.0);
@@ -192,7 +203,8 @@ TEST(Transfer, T7CameraAboutTheThresholdKeepsEnergy) {
   settings.policy.hysteresis = 0.0;  // only the dwell holds changes back
   settings.gravity.setZero();
   Manager manager(settings);
-  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 0}, Vec3::Zero(), {3, 0, 0}));  // about the axis of greatest inertia
+  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}),
+                          at({0, 0, 0}, Vec3::Zero(), {3, 0, 0}));  // about the axis of greatest inertia
   const double radius = manager.shape(body).radius;
   view_from(manager, {4.2 + radius, 0, 0});
   manager.step(kFrame);
@@ -222,7 +234,8 @@ Teleport teleport_to_a_field_of_bodies() {
   Manager manager(settings);
   const auto shape = sphere_shape(0.1);
   std::vector<BodyId> bodies;
-  for (int i = 0; i < 1000; ++i) bodies.push_back(add(manager, shape, at({0.5 * (i % 32), 0.5 * (i / 32), 0})));
+  for (int i = 0; i < 1000; ++i)
+    bodies.push_back(add(manager, shape, at({0.5 * (i % 32), 0.5 * (i / 32), 0})));
   manager.step(kFrame);
   view_from(manager, {3, 4, 0});
   Teleport seen;
@@ -242,7 +255,8 @@ TEST(Transfer, T8ThousandPromotionsQueueInTheSameOrderEveryRun) {
   EXPECT_EQ(first.most_in_a_frame, 4);
   EXPECT_EQ(first.promoted.size(), 1000u);
   const int nearest = 8 * 32 + 6;
-  EXPECT_EQ((std::vector<int>(first.promoted.begin(), first.promoted.begin() + 4)), (std::vector{nearest - 32, nearest - 1, nearest, nearest + 1}));
+  EXPECT_EQ((std::vector<int>(first.promoted.begin(), first.promoted.begin() + 4)),
+            (std::vector{nearest - 32, nearest - 1, nearest, nearest + 1}));
   EXPECT_EQ(first.promoted, second.promoted);
   EXPECT_EQ(first.hash, second.hash);
 }
@@ -300,7 +314,8 @@ TEST(Transfer, T12SleepIsCarried) {
 
 // The spheres of two crates overlap before their hulls do: `support` takes them from there.
 TEST(Transfer, WhatOverlapsOnItsWayUpFromTablesTakesSupportFirst) {
-  ManagerSettings settings = unmeasured({.policy = DistancePolicy{.full_within = 4.0, .support_within = 6.0}});
+  ManagerSettings settings =
+      unmeasured({.policy = DistancePolicy{.full_within = 4.0, .support_within = 6.0}});
   settings.gravity.setZero();
   settings.signatures = coarse_signature;
   Manager manager(settings);
@@ -323,7 +338,8 @@ TEST(Transfer, T12PendingForceIsCarriedAndActsOnce) {
     ManagerSettings settings = unmeasured();
     settings.gravity.setZero();
     Manager manager(settings);
-    const BodyId body = manager.add_body({.shape = sphere_shape(0.1), .state = at({0, 0, 0}), .mass = 2.0, .level = first});
+    const BodyId body =
+        manager.add_body({.shape = sphere_shape(0.1), .state = at({0, 0, 0}), .mass = 2.0, .level = first});
     manager.step(kFrame);
     manager.add_force(body, {24, 0, 0}, {0, 0, 0.24});
     manager.set_level(body, first == LevelChoice::full ? LevelChoice::statistical : LevelChoice::full);

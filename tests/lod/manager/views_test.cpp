@@ -13,15 +13,22 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 Views looking(const Vec3& direction, double aspect = 2.0) {
-  const Viewpoint viewpoint{.position = {1, 2, 3}, .direction = direction, .vertical_fov_rad = kPi / 2, .height_px = 1000, .aspect = aspect};
+  const Viewpoint viewpoint{.position = {1, 2, 3},
+                            .direction = direction,
+                            .vertical_fov_rad = kPi / 2,
+                            .height_px = 1000,
+                            .aspect = aspect};
   return Views(std::span(&viewpoint, 1));
 }
 
 TEST(Views, AFrustumIsAsHighAndWideAsItsPicture) {
   const Views views = looking({5, 0, 0});  // half its height is its distance, half its width twice that
-  const auto sees = [&](double ahead, double left, double up) { return views.sees(Vec3(1 + ahead, 2 + left, 3 + up), 0.0); };
+  const auto sees = [&](double ahead, double left, double up) {
+    return views.sees(Vec3(1 + ahead, 2 + left, 3 + up), 0.0);
+  };
   EXPECT_TRUE(sees(10, 0, 0) && sees(10, 19.9, 9.9) && sees(10, -19.9, -9.9));
-  EXPECT_FALSE(sees(10, 20.1, 0) || sees(10, -20.1, 0) || sees(10, 0, 10.1) || sees(10, 0, -10.1) || sees(-1, 0, 0));
+  EXPECT_FALSE(sees(10, 20.1, 0) || sees(10, -20.1, 0) || sees(10, 0, 10.1) || sees(10, 0, -10.1) ||
+               sees(-1, 0, 0));
 }
 
 TEST(Views, ABallThatReachesIntoTheFrustumIsSeen) {
@@ -48,14 +55,19 @@ TEST(Views, OnlyTurningCounts) {
   EXPECT_FALSE(looking({7, 0, 0}).turned_since(ahead));
   EXPECT_TRUE(looking({1, 0.01, 0}).turned_since(ahead));
   EXPECT_TRUE(looking({1, 0, 0}, 1.5).turned_since(ahead));
-  const Viewpoint elsewhere{.position = {9, 9, 9}, .direction = Vec3(1, 0, 0), .vertical_fov_rad = kPi / 2, .height_px = 1000, .aspect = 2.0};
+  const Viewpoint elsewhere{.position = {9, 9, 9},
+                            .direction = Vec3(1, 0, 0),
+                            .vertical_fov_rad = kPi / 2,
+                            .height_px = 1000,
+                            .aspect = 2.0};
   EXPECT_FALSE(Views(std::span(&elsewhere, 1)).turned_since(ahead));
 }
 
 TEST(Remoteness, ASizeIsTheReciprocalOfPixels) {
   const Views views = looking({1, 0, 0});
   LevelCandidate ball{.position = Vec3(1 + 10, 2, 3), .radius = 0.5};
-  EXPECT_NEAR(1.0 / remoteness(ball, views, Measure::size), 50.0, 1e-9);  // 1 m of the 20 m that 1,000 pixels show there
+  EXPECT_NEAR(1.0 / remoteness(ball, views, Measure::size), 50.0,
+              1e-9);  // 1 m of the 20 m that 1,000 pixels show there
   ball.importance = 2.0;
   EXPECT_NEAR(1.0 / remoteness(ball, views, Measure::size), 100.0, 1e-9);
   ball.view_factor = 4.0;
@@ -63,7 +75,8 @@ TEST(Remoteness, ASizeIsTheReciprocalOfPixels) {
 }
 
 TEST(Remoteness, OutOfViewForGoodIsInfinitelyFar) {
-  LevelCandidate ball{.position = Vec3(10, 0, 0), .radius = 0.5, .view_factor = std::numeric_limits<double>::infinity()};
+  LevelCandidate ball{
+      .position = Vec3(10, 0, 0), .radius = 0.5, .view_factor = std::numeric_limits<double>::infinity()};
   EXPECT_EQ(remoteness(ball, std::vector<Vec3>{Vec3::Zero()}), std::numeric_limits<double>::infinity());
 }
 
@@ -87,11 +100,16 @@ TEST(Remoteness, NoBodyChangesBeforeTheViewpointHasTravelledSoFar) {
       const double travel = travel_until_change(ball, seen_from(0), limits, 0.1);
       ASSERT_GT(travel, 0.0) << i;
       if (travel > 1e6) continue;
-      const double way = rung == Rung::tables || remoteness(ball, seen_from(0.999 * travel), Measure::size) < remoteness(ball, seen_from(0), Measure::size) ? 0.999 * travel : -0.999 * travel;
+      const double way = rung == Rung::tables || remoteness(ball, seen_from(0.999 * travel), Measure::size) <
+                                                     remoteness(ball, seen_from(0), Measure::size)
+                             ? 0.999 * travel
+                             : -0.999 * travel;
       const double now = remoteness(ball, seen_from(way), Measure::size);
       EXPECT_GT(now, limits.full_within) << i;
-      if (rung == Rung::tables) EXPECT_GT(now, limits.support_within) << i;
-      else EXPECT_LE(now, limits.support_within * 1.1) << i;
+      if (rung == Rung::tables)
+        EXPECT_GT(now, limits.support_within) << i;
+      else
+        EXPECT_LE(now, limits.support_within * 1.1) << i;
     }
 }
 

@@ -11,11 +11,16 @@
 namespace lodestone {
 namespace {
 
-struct Ball { Vec3 position; double radius = 0.0; };
+struct Ball {
+  Vec3 position;
+  double radius = 0.0;
+};
 
 class BodyGridTest : public ::testing::Test {
  protected:
-  Vec3 somewhere(double reach) { return {random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, reach)}; }
+  Vec3 somewhere(double reach) {
+    return {random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, reach)};
+  }
   void put(std::uint32_t body, const Ball& ball) {
     if (balls.size() <= body) balls.resize(body + 1);
     balls[body] = ball;
@@ -28,7 +33,8 @@ class BodyGridTest : public ::testing::Test {
 
 // Of all sizes, some of which come and go and move between the questions.
 TEST_F(BodyGridTest, FindsAllThatBoxesAndRaysMeet) {
-  for (std::uint32_t body = 0; body < 1000; ++body) put(body, {somewhere(8.0), 0.1 * std::pow(30.0, random.uniform())});
+  for (std::uint32_t body = 0; body < 1000; ++body)
+    put(body, {somewhere(8.0), 0.1 * std::pow(30.0, random.uniform())});
   std::size_t met = 0;
   for (int round = 0; round < 200; ++round) {
     for (int k = 0; k < 50; ++k) {
@@ -44,9 +50,11 @@ TEST_F(BodyGridTest, FindsAllThatBoxesAndRaysMeet) {
       }
     }
     const Vec3 from = somewhere(10.0), direction = random.direction(), half = somewhere(3.0).cwiseAbs();
-    const double length = round % 10 ? random.uniform(0.0, 40.0) : 1e300, margin = round % 3 ? 0.0 : random.uniform(0.0, 2.0);
+    const double length = round % 10 ? random.uniform(0.0, 40.0) : 1e300,
+                 margin = round % 3 ? 0.0 : random.uniform(0.0, 2.0);
     std::set<std::uint32_t> along, near;
-    grid.find_along(from, direction, length, margin, [&](std::uint32_t body) { return along.insert(body), length; });
+    grid.find_along(from, direction, length, margin,
+                    [&](std::uint32_t body) { return along.insert(body), length; });
     const Eigen::AlignedBox3d box(from - half, from + half);
     grid.find_near(box, [&](std::uint32_t body) { near.insert(body); });
     for (std::uint32_t body = 0; body < balls.size(); ++body) {
@@ -55,7 +63,9 @@ TEST_F(BodyGridTest, FindsAllThatBoxesAndRaysMeet) {
         EXPECT_FALSE(along.contains(body) || near.contains(body));
         continue;
       }
-      const bool is_along = meet_sphere(from, direction, length, ball.position, ball.radius + margin).has_value(), is_near = box.exteriorDistance(ball.position) < ball.radius;
+      const bool is_along =
+                     meet_sphere(from, direction, length, ball.position, ball.radius + margin).has_value(),
+                 is_near = box.exteriorDistance(ball.position) < ball.radius;
       EXPECT_TRUE(!is_along || along.contains(body));
       EXPECT_TRUE(!is_near || near.contains(body));
       met += std::size_t(is_along) + std::size_t(is_near);
@@ -71,7 +81,8 @@ TEST_F(BodyGridTest, FindsAllThatBoxesAndRaysMeet) {
 TEST_F(BodyGridTest, RayStopsWhereItIsTold) {
   for (std::uint32_t body = 0; body < 1000; ++body) put(body, {Vec3(double(body), 0, 0), 0.2});
   int asked = 0;
-  grid.find_along({-1, 0, 0}, {1, 0, 0}, 1e4, 0.0, [&](std::uint32_t body) { return ++asked, body == 5 ? 6.0 : 1e4; });
+  grid.find_along({-1, 0, 0}, {1, 0, 0}, 1e4, 0.0,
+                  [&](std::uint32_t body) { return ++asked, body == 5 ? 6.0 : 1e4; });
   EXPECT_LE(asked, 20);
 }
 

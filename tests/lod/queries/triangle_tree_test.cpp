@@ -10,7 +10,9 @@ namespace {
 
 const Vec3 kSides{0.2, 0.3, 0.4};
 
-Vec3 random_point(RandomStream& random, double reach) { return {random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, reach)}; }
+Vec3 random_point(RandomStream& random, double reach) {
+  return {random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, reach)};
+}
 
 // m: of a point to the surface of a box; negative inside.
 double distance_to_box(const Vec3& p, const Vec3& sides) {
@@ -67,7 +69,8 @@ TEST(TriangleTree, SweptSphereStopsAtFirstTouch) {
     const auto hit = tree.sweep(from, direction, length, radius);
     const double until = hit ? hit->distance : length;
     double least = 1e9;
-    for (double at = 0.0; at < until - 1e-6; at += 0.01) least = std::min(least, tree.find_nearest(from + at * direction, 10.0)->distance);
+    for (double at = 0.0; at < until - 1e-6; at += 0.01)
+      least = std::min(least, tree.find_nearest(from + at * direction, 10.0)->distance);
     EXPECT_GT(least, radius - 1e-9);
     if (!hit) {
       ++passed;
@@ -88,7 +91,8 @@ TEST(TriangleTree, BoxesAgainstPointsOfBoth) {
   RandomStream random(5, 0, 0);
   int both = 0, neither = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 center = random_point(random, 0.5), half(random.uniform(0.02, 0.2), random.uniform(0.02, 0.2), random.uniform(0.02, 0.2));
+    const Vec3 center = random_point(random, 0.5),
+               half(random.uniform(0.02, 0.2), random.uniform(0.02, 0.2), random.uniform(0.02, 0.2));
     const Mat3 axes = random.orientation().toRotationMatrix();
     const bool meets = tree.meets_box(center, axes, half) || tree.contains(center);
     // Points within the one that lie within the other.

@@ -1,4 +1,5 @@
-// Bodies of `support`, `tables` and the full level in one world: they meet, momentum is exact, no energy comes of it, and who is on which rung or came first does not matter.
+// Bodies of `support`, `tables` and the full level in one world: they meet, momentum is exact, no energy
+// comes of it, and who is on which rung or came first does not matter.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,8 +32,10 @@ struct Motions {
 
 class Meeting : public ::testing::Test {
  protected:
-  StatisticalPlace add(StatisticalLevel& level, StatisticalModel model, const RigidState& state, bool asleep = false) {
-    return level.add(model, std::uint32_t(level.size()), box(), kMass, 0, state, asleep, box_signature(), asleep);
+  StatisticalPlace add(StatisticalLevel& level, StatisticalModel model, const RigidState& state,
+                       bool asleep = false) {
+    return level.add(model, std::uint32_t(level.size()), box(), kMass, 0, state, asleep, box_signature(),
+                     asleep);
   }
   /// 48 boxes in three layers, every third one of `support`.
   std::vector<StatisticalPlace> add_heap(StatisticalLevel& level) {
@@ -56,7 +59,9 @@ class Meeting : public ::testing::Test {
     RigidState& s = full.state;
     for (Impulse* impulse : {&full.hit, &full.push}) {
       s.velocity += impulse->linear / kMass;
-      s.angular_velocity += s.orientation * (box()->inverse_inertia_per_mass * (s.orientation.conjugate() * impulse->angular)) / kMass;
+      s.angular_velocity +=
+          s.orientation * (box()->inverse_inertia_per_mass * (s.orientation.conjugate() * impulse->angular)) /
+          kMass;
       *impulse = {};
     }
     s.position += full.shift + s.velocity * kFrame;
@@ -91,7 +96,8 @@ TEST_F(Meeting, ContactsOfAnyTwoRungsKeepMomentumAndAddNoEnergy) {
   for (std::uint32_t trial = 0; trial < 60; ++trial)
     for (const StatisticalModel second : {kSupport, kTables}) {
       StatisticalLevel level(settings_, none_, materials_);
-      const StatisticalPlace places[] = {add(level, kTables, thrown(trial, -1.0)), add(level, second, thrown(trial, 1.0))};
+      const StatisticalPlace places[] = {add(level, kTables, thrown(trial, -1.0)),
+                                         add(level, second, thrown(trial, 1.0))};
       const auto measure = [&] {
         Motions sum;
         for (const StatisticalPlace place : places) sum.add(level.state(place));
@@ -142,8 +148,10 @@ TEST_F(Meeting, WhoCameFirstDoesNotMatter) {
       const auto add_as = [&](StatisticalModel model, double side, std::uint32_t owner) {
         return level.add(model, owner, box(), kMass, 0, thrown(trial, side), false, box_signature());
       };
-      if (swapped) sphere = add_as(kTables, 1.0, 5), hull = add_as(kSupport, -1.0, 3);
-      else hull = add_as(kSupport, -1.0, 3), sphere = add_as(kTables, 1.0, 5);
+      if (swapped)
+        sphere = add_as(kTables, 1.0, 5), hull = add_as(kSupport, -1.0, 3);
+      else
+        hull = add_as(kSupport, -1.0, 3), sphere = add_as(kTables, 1.0, 5);
       for (int i = 0; i < 30; ++i) {
         StepReport report;
         level.step(kFrame, {}, report);
@@ -165,7 +173,8 @@ TEST_F(Meeting, SwappedRolesMeetAlike) {
   double speeds[2][2];
   for (const int swapped : {0, 1}) {
     StatisticalLevel level(settings_, none_, materials_);
-    const StatisticalPlace a = add(level, swapped ? kTables : kSupport, left), b = add(level, swapped ? kSupport : kTables, right);
+    const StatisticalPlace a = add(level, swapped ? kTables : kSupport, left),
+                           b = add(level, swapped ? kSupport : kTables, right);
     for (int i = 0; i < 30; ++i) {
       StepReport report;
       level.step(kFrame, {}, report);
@@ -184,7 +193,8 @@ TEST_F(Meeting, SleepersAreWokenFromEitherRung) {
     StatisticalLevel level(settings_, floor_, materials_);
     RigidState lying, falling, far;
     lying.position = {0, 0, 0.2}, falling.position = {0, 0, 1.2}, far.position = {5, 0, 0.2};
-    const StatisticalPlace struck = add(level, sleeping, lying, true), spared = add(level, sleeping, far, true);
+    const StatisticalPlace struck = add(level, sleeping, lying, true),
+                           spared = add(level, sleeping, far, true);
     const StatisticalPlace striker = add(level, sleeping == kSupport ? kTables : kSupport, falling);
     bool woke = false;
     for (int i = 0; i < 60; ++i) {
@@ -243,7 +253,8 @@ TEST_F(Meeting, SleepingSpheresLieStillBesideMovingHulls) {
   for (int i = 0; i < 600; ++i) {
     StepReport report;
     level.step(kFrame, {}, report);
-    const bool asleep = std::ranges::all_of(spheres, [&](StatisticalPlace place) { return level.asleep(place); });
+    const bool asleep =
+        std::ranges::all_of(spheres, [&](StatisticalPlace place) { return level.asleep(place); });
     if (!asleep || level.asleep(hull)) continue;
     ++asleep_for;
     EXPECT_LE(report.contacts, 8) << i;
@@ -302,17 +313,20 @@ TEST_F(Meeting, OverlapsThatArriveAreUndoneSlowly) {
   }
 }
 
-// Who touched another lately leans on it still, and sleeps soon once it is still: by seconds, whatever the step. Counted in steps, that ended four times too early at 240 Hz, and the
-// body lay awake for half a second.
+// Who touched another lately leans on it still, and sleeps soon once it is still: by seconds, whatever the
+// step. Counted in steps, that ended four times too early at 240 Hz, and the body lay awake for half a
+// second.
 TEST_F(Meeting, LeaningOnOthersIsCountedInSeconds) {
   settings_.gravity = Vec3(0, 0, -9.81);
   for (const StatisticalModel model : {kSupport, kTables})
     for (const double dt : {kFrame, kFrame / 4}) {
       StatisticalLevel level(settings_, floor_, materials_);
       RigidState lying, beside;
-      lying.position = {0, 0, 0.2}, beside.position = {model == kTables ? 0.4 : 0.2, 0, 0.2};  // spheres are as high as the box, .2 m
+      lying.position = {0, 0, 0.2},
+      beside.position = {model == kTables ? 0.4 : 0.2, 0, 0.2};  // spheres are as high as the box, .2 m
       const auto arrive = [&](const RigidState& state) {
-        return level.add(model, std::uint32_t(level.size()), box(), kMass, 0, state, false, box_signature(), true);
+        return level.add(model, std::uint32_t(level.size()), box(), kMass, 0, state, false, box_signature(),
+                         true);
       };
       const StatisticalPlace body = arrive(lying), other = arrive(beside);
       StepReport report;

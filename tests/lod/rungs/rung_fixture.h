@@ -1,4 +1,5 @@
-// For tests of the statistical rungs: a box with a signature of few trials, and a level whose bodies are all on one rung, known by their slots there.
+// For tests of the statistical rungs: a box with a signature of few trials, and a level whose bodies are all
+// on one rung, known by their slots there.
 #pragma once
 
 #include "lod/rungs/statistical_level.h"
@@ -23,15 +24,18 @@ inline std::shared_ptr<const Signature> box_signature() {
 
 class OneRung {
  public:
-  OneRung(StatisticalModel model, const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials)
+  OneRung(StatisticalModel model, const StatisticalSettings& settings, const Ground& ground,
+          const MaterialTable& materials)
       : model_(model), level_(settings, ground, materials) {}
 
-  int add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material, const RigidState& state, bool asleep,
-          std::shared_ptr<const Signature> signature) {
-    return level_.add(model_, owner, std::move(shape), mass, material, state, asleep, std::move(signature)).slot;
+  int add(std::uint32_t owner, std::shared_ptr<const Shape> shape, double mass, MaterialId material,
+          const RigidState& state, bool asleep, std::shared_ptr<const Signature> signature) {
+    return level_.add(model_, owner, std::move(shape), mass, material, state, asleep, std::move(signature))
+        .slot;
   }
   std::optional<std::uint32_t> remove(int slot) { return level_.remove(at(slot)); }
-  void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report, std::span<const FullContact> full_contacts = {}) {
+  void step(double dt, std::span<FullNeighbor> neighbors, StepReport& report,
+            std::span<const FullContact> full_contacts = {}) {
     level_.step(dt, neighbors, report, full_contacts);
   }
   std::size_t bytes() const { return level_.bytes(); }

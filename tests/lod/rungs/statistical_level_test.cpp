@@ -25,7 +25,9 @@ class Statistical : public ::testing::TestWithParam<StatisticalModel> {
     return level.add(std::uint32_t(level.size()), box(), 24.0, 0, state, false, box_signature());
   }
   static double energy_of(const RigidState& s) {
-    return 0.5 * (s.velocity.squaredNorm() + s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, *box()))) + 9.81 * s.position.z();
+    return 0.5 * (s.velocity.squaredNorm() +
+                  s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, *box()))) +
+           9.81 * s.position.z();
   }
   static std::vector<RigidState> crowd(int count, double side) {
     std::vector<RigidState> states;
@@ -115,7 +117,8 @@ TEST_P(Statistical, ACrowdStaysAboveTheGroundFiniteAndLosesEnergy) {
     double now = 0.0;
     for (int slot = 0; slot < level.size(); ++slot) {
       const RigidState s = level.state(slot);
-      ASSERT_TRUE(s.position.allFinite() && s.velocity.allFinite() && s.angular_velocity.allFinite()) << "step " << i;
+      ASSERT_TRUE(s.position.allFinite() && s.velocity.allFinite() && s.angular_velocity.allFinite())
+          << "step " << i;
       ASSERT_GT(s.position.z(), 0.05) << "step " << i;
       now += energy_of(s);
     }
@@ -178,8 +181,11 @@ TEST_P(Statistical, WithoutGravityAndMotionNothingHappens) {
   EXPECT_EQ(level.state(slot).orientation.coeffs(), start.orientation.coeffs());
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Statistical, ::testing::Values(StatisticalModel::support, StatisticalModel::tables),
-                         [](const auto& instance) { return instance.param == StatisticalModel::support ? "support" : "tables"; });
+INSTANTIATE_TEST_SUITE_P(Models, Statistical,
+                         ::testing::Values(StatisticalModel::support, StatisticalModel::tables),
+                         [](const auto& instance) {
+                           return instance.param == StatisticalModel::support ? "support" : "tables";
+                         });
 
 // The paper's rule for pairs (3.3.2) gains energy, which is why it is an option; the default does not.
 TEST(PairRule, OnlyThePapersGainsEnergy) {
@@ -208,7 +214,8 @@ TEST(PairRule, OnlyThePapersGainsEnergy) {
       }
       for (int slot = 0; slot < 2; ++slot) {
         const RigidState s = level.state(slot);
-        after += 0.5 * (s.velocity.squaredNorm() + s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, *box())));
+        after += 0.5 * (s.velocity.squaredNorm() +
+                        s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, *box())));
       }
     }
     return after / before;
@@ -223,7 +230,8 @@ TEST(Tables, ResponsesAddNoEnergyAndLeaveThePlane) {
   Ground ground;
   ground.add_plane({});
   const BodyKind kind = make_body_kind(box(), box_signature());
-  const StepWorld world{.gravity = Vec3(0, 0, -9.81), .planes = ground.planes(), .materials = &materials, .seed = 1};
+  const StepWorld world{
+      .gravity = Vec3(0, 0, -9.81), .planes = ground.planes(), .materials = &materials, .seed = 1};
   for (std::uint32_t trial = 0; trial < 100'000; ++trial) {
     RandomStream random(6, trial, 0);
     StatisticalBody body;

@@ -45,7 +45,8 @@ TEST(Kinds, GoWithTheirLastBody) {
 
 TEST(Kinds, DoNotGrowWhileOthersComeAndGo) {
   Kinds kinds;
-  for (int i = 0; i < 1000; ++i) kinds.give_back(kinds.take(StatisticalModel::support, make_crate(1.0 + 1e-3 * i), 0, nullptr));
+  for (int i = 0; i < 1000; ++i)
+    kinds.give_back(kinds.take(StatisticalModel::support, make_crate(1.0 + 1e-3 * i), 0, nullptr));
   EXPECT_EQ(kinds.size(), 1u);
 }
 

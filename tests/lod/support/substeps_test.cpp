@@ -24,7 +24,8 @@ class Bin : public ::testing::Test {
   }
 
   static constexpr double kSide = 1.2;
-  std::shared_ptr<const Shape> shape_ = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
+  std::shared_ptr<const Shape> shape_ =
+      std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
   Ground ground_;
   MaterialTable materials_;
   std::optional<testing::OneRung> level_;

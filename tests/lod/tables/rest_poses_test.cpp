@@ -1,4 +1,5 @@
-// The paper's figure 7: with rest poses a body ends on a face and its sphere fits it, without it ends as it came down.
+// The paper's figure 7: with rest poses a body ends on a face and its sphere fits it, without it ends as it
+// came down.
 #include <gtest/gtest.h>
 
 #include "reference/random.h"
@@ -9,8 +10,11 @@ namespace {
 
 using testing::box, testing::box_signature;
 
-// Of boxes that have come down for six seconds: how far the least tilted axis is from upright, and how far the sphere from the height of a face; means, of 1 and of the box's radius.
-struct Ended { double tilt = 0, misfit = 0; };
+// Of boxes that have come down for six seconds: how far the least tilted axis is from upright, and how far
+// the sphere from the height of a face; means, of 1 and of the box's radius.
+struct Ended {
+  double tilt = 0, misfit = 0;
+};
 
 Ended end_of_falls(bool rest_poses) {
   constexpr int kBoxes = 20;
@@ -35,7 +39,8 @@ Ended end_of_falls(bool rest_poses) {
   for (int i = 0; i < kBoxes; ++i) {
     const Vec3 up = level.state(i).orientation.conjugate() * Vec3::UnitZ();
     double misfit = 1e9;
-    for (const RestPose& pose : box_signature()->rest_poses) misfit = std::min(misfit, std::abs(level.sphere_radius(i) / box()->radius - pose.height));
+    for (const RestPose& pose : box_signature()->rest_poses)
+      misfit = std::min(misfit, std::abs(level.sphere_radius(i) / box()->radius - pose.height));
     ended.tilt += (1.0 - up.cwiseAbs().maxCoeff()) / kBoxes;
     ended.misfit += misfit / kBoxes;
   }

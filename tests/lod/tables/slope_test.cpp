@@ -1,4 +1,5 @@
-// The tables model on slopes: what friction and its own face hold comes to rest, what does not slides, and balls roll down.
+// The tables model on slopes: what friction and its own face hold comes to rest, what does not slides, and
+// balls roll down.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -36,8 +37,10 @@ class Slope : public ::testing::Test {
 
   void tilt(double degrees, Made made = Made::plane) {
     turn_ = Quat(Eigen::AngleAxisd(radians(degrees), Vec3::UnitY()));
-    if (made == Made::plane) ground_.add_plane({.normal = turn_ * Vec3::UnitZ()});
-    else ground_.add_box({60.0, 60.0, 2.0}, turn_ * Vec3(0, 0, -1), turn_, 0);
+    if (made == Made::plane)
+      ground_.add_plane({.normal = turn_ * Vec3::UnitZ()});
+    else
+      ground_.add_box({60.0, 60.0, 2.0}, turn_ * Vec3(0, 0, -1), turn_, 0);
   }
   testing::OneRung make(Simd simd = find_simd()) const {
     StatisticalSettings settings = settings_;
@@ -60,7 +63,9 @@ class Slope : public ::testing::Test {
     }
   }
   // Whether a face of the box lies on the slope.
-  bool lies(const RigidState& s) const { return (s.orientation.conjugate() * turn_ * Vec3::UnitZ()).cwiseAbs().maxCoeff() > std::cos(radians(2.0)); }
+  bool lies(const RigidState& s) const {
+    return (s.orientation.conjugate() * turn_ * Vec3::UnitZ()).cwiseAbs().maxCoeff() > std::cos(radians(2.0));
+  }
 
   StatisticalSettings settings_;
   Ground ground_;

@@ -37,7 +37,8 @@ Mesh extrude(const std::vector<std::array<double, 2>>& outline, const std::vecto
 }
 
 Mesh make_u() {
-  return extrude({{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, {{0, 5, 7}, {5, 6, 7}, {0, 1, 5}, {1, 4, 5}, {1, 2, 4}, {2, 3, 4}});
+  return extrude({{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},
+                 {{0, 5, 7}, {5, 6, 7}, {0, 1, 5}, {1, 4, 5}, {1, 2, 4}, {2, 3, 4}});
 }
 
 TEST(ConvexPieces, OfAConvexSolidAreItself) {
@@ -65,7 +66,8 @@ TEST(ConvexPieces, FillTheSolidAndNothingElse) {
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 point(random.uniform(-1.6, 1.6), random.uniform(-1.2, 1.2), random.uniform(-0.6, 0.6));
-    const bool covered = std::ranges::any_of(pieces, [&](const Hull& piece) { return is_inside(piece, point); });
+    const bool covered =
+        std::ranges::any_of(pieces, [&](const Hull& piece) { return is_inside(piece, point); });
     EXPECT_EQ(covered, winding_number(u.mesh, point) == 1) << point.transpose();
     inside += covered;
   }

@@ -13,14 +13,17 @@ namespace {
 
 using namespace testing;
 
-std::vector<ContactPoint> find_contacts(const Shape& first, const RigidState& a, const Shape& second, const RigidState& b) {
+std::vector<ContactPoint> find_contacts(const Shape& first, const RigidState& a, const Shape& second,
+                                        const RigidState& b) {
   std::vector<ContactPoint> contacts;
-  if (const auto overlap = find_hull_overlap(first, a, second, b)) find_hull_manifold(first, a, second, b, *overlap, contacts);
+  if (const auto overlap = find_hull_overlap(first, a, second, b))
+    find_hull_manifold(first, a, second, b, *overlap, contacts);
   return contacts;
 }
 
 bool holds(const std::vector<ContactPoint>& contacts, const Vec3& point) {
-  return std::ranges::any_of(contacts, [&](const ContactPoint& c) { return (c.point - point).norm() < 1e-9; });
+  return std::ranges::any_of(contacts,
+                             [&](const ContactPoint& c) { return (c.point - point).norm() < 1e-9; });
 }
 
 TEST(HullManifold, OfABoxOnALargerOneIsItsFourCorners) {
@@ -38,7 +41,8 @@ TEST(HullManifold, OfABoxOnALargerOneIsItsFourCorners) {
 TEST(HullManifold, OfCrossedFacesHasTheCrossingsOfTheirEdges) {
   const auto box = box_shape({1, 1, 1});
   const Quat turned(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitZ()));
-  const auto contacts = find_contacts(*box, at({0, 0, 0.99}, Vec3::Zero(), Vec3::Zero(), turned), *box, at(Vec3::Zero()));
+  const auto contacts =
+      find_contacts(*box, at({0, 0, 0.99}, Vec3::Zero(), Vec3::Zero(), turned), *box, at(Vec3::Zero()));
   const double along = std::sqrt(0.5) - 0.5;  // where |x| + |y| = √½ meets x = ½
   for (const double side : {-1.0, 1.0})
     for (const double other : {-along, along}) {
@@ -49,9 +53,11 @@ TEST(HullManifold, OfCrossedFacesHasTheCrossingsOfTheirEdges) {
 
 TEST(HullManifold, OfCrossedEdgesIsOnePoint) {
   const auto box = box_shape({1, 1, 1});
-  const Quat on_edge_x(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitX())), on_edge_y(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitY()));
-  const auto contacts = find_contacts(*box, at({0, 0, 2 * std::sqrt(0.5) - 0.01}, Vec3::Zero(), Vec3::Zero(), on_edge_x), *box,
-                                      at(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), on_edge_y));
+  const Quat on_edge_x(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitX())),
+      on_edge_y(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitY()));
+  const auto contacts =
+      find_contacts(*box, at({0, 0, 2 * std::sqrt(0.5) - 0.01}, Vec3::Zero(), Vec3::Zero(), on_edge_x), *box,
+                    at(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), on_edge_y));
   ASSERT_FALSE(contacts.empty());
   for (const ContactPoint& contact : contacts) {
     EXPECT_LT(contact.point.head<2>().norm(), 1e-9);
@@ -64,13 +70,15 @@ TEST(HullManifold, RolesSwappedMirrorTheContacts) {
   const auto box = box_shape({0.2, 0.3, 0.4});
   for (std::uint32_t pose = 0; pose < 200; ++pose) {
     RandomStream random(5, pose, 0);
-    const RigidState a = at(0.2 * random.direction(), Vec3::Zero(), Vec3::Zero(), random.orientation()), b = at(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), random.orientation());
+    const RigidState a = at(0.2 * random.direction(), Vec3::Zero(), Vec3::Zero(), random.orientation()),
+                     b = at(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), random.orientation());
     auto there = find_contacts(*box, a, *box, b), back = find_contacts(*box, b, *box, a);
     ASSERT_EQ(there.size(), back.size());
     if (there.empty()) continue;
     EXPECT_NEAR(there[0].normal.dot(back[0].normal), -1.0, 1e-9);
     for (const ContactPoint& contact : there)
-      EXPECT_TRUE(std::ranges::any_of(back, [&](const ContactPoint& c) { return (c.point - contact.point).norm() < 1e-6; }));
+      EXPECT_TRUE(std::ranges::any_of(
+          back, [&](const ContactPoint& c) { return (c.point - contact.point).norm() < 1e-6; }));
   }
 }
 
@@ -81,14 +89,16 @@ TEST(HullManifold, DepthsAreThoseOfTheWayOut) {
   for (std::uint32_t pose = 0; pose < 300; ++pose) {
     RandomStream random(6, pose, 0);
     const RigidState b = at(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), random.orientation());
-    RigidState a = at(random.uniform(0.1, 0.2) * random.direction(), Vec3::Zero(), Vec3::Zero(), random.orientation());
+    RigidState a =
+        at(random.uniform(0.1, 0.2) * random.direction(), Vec3::Zero(), Vec3::Zero(), random.orientation());
     const auto overlap = find_hull_overlap(*bunny, a, *bunny, b);
     if (!overlap) continue;
     ++met;
     std::vector<ContactPoint> contacts;
     find_hull_manifold(*bunny, a, *bunny, b, *overlap, contacts);
     ASSERT_FALSE(contacts.empty());
-    EXPECT_NEAR(std::ranges::max(contacts, {}, &ContactPoint::depth).depth, overlap->depth, 1e-6 * bunny->size);
+    EXPECT_NEAR(std::ranges::max(contacts, {}, &ContactPoint::depth).depth, overlap->depth,
+                1e-6 * bunny->size);
     a.position += (overlap->depth - 1e-9) * overlap->direction;
     EXPECT_TRUE(find_hull_overlap(*bunny, a, *bunny, b));
     a.position += 2e-9 * overlap->direction;

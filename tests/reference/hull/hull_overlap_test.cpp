@@ -13,7 +13,8 @@ using namespace testing;
 TEST(HullOverlap, IsTheDepthWhereFacesOverlapALittle) {
   const auto box = box_shape({0.2, 0.3, 0.4});
   for (const double depth : {1e-5, 1e-3, 5e-3})
-    EXPECT_NEAR(measure_hull_overlap(*box, at({7, 0, 0.2}), *box, at({7.02, 0.01, 0.6 - depth})), depth, 1e-3 * depth + 1e-9);
+    EXPECT_NEAR(measure_hull_overlap(*box, at({7, 0, 0.2}), *box, at({7.02, 0.01, 0.6 - depth})), depth,
+                1e-3 * depth + 1e-9);
 }
 
 TEST(HullOverlap, IsZeroApart) {
@@ -30,9 +31,11 @@ TEST(HullOverlap, TouchingIsNoOverlapWhereverItIs) {
     for (int i = 0; i < 400; ++i) {
       const double x = (i % 20 - 9.5) / 20 * sides.x(), y = (i / 20 - 9.5) / 20 * sides.y();
       for (const double depth : {0.0, 1e-12, 1e-6, 1e-2}) {
-        const double found = measure_hull_overlap(*crate, at({x, y, 0.2 - depth}), *slab, at({0, 0, -sides.z() / 2}));
+        const double found =
+            measure_hull_overlap(*crate, at({x, y, 0.2 - depth}), *slab, at({0, 0, -sides.z() / 2}));
         EXPECT_LE(found, depth + 1e-12) << x << " " << y << " on " << sides.transpose();
-        EXPECT_LE(measure_hull_overlap(*slab, at({0, 0, -sides.z() / 2}), *crate, at({x, y, 0.2 - depth})), depth + 1e-12);
+        EXPECT_LE(measure_hull_overlap(*slab, at({0, 0, -sides.z() / 2}), *crate, at({x, y, 0.2 - depth})),
+                  depth + 1e-12);
       }
     }
   }
@@ -46,11 +49,13 @@ TEST(HullOverlap, T2HullWhollyInsideAnotherOverlaps) {
 
 TEST(HullOverlap, SpheresOverlapByTheirRadii) {
   const auto ball = sphere_shape(0.1);
-  EXPECT_NEAR(measure_hull_overlap(*ball, at({0, 0, 0}), *ball, at({0.1, 0.1, 0.1})), 0.2 - 0.1 * std::sqrt(3.0), 1e-4);
+  EXPECT_NEAR(measure_hull_overlap(*ball, at({0, 0, 0}), *ball, at({0.1, 0.1, 0.1})),
+              0.2 - 0.1 * std::sqrt(3.0), 1e-4);
   EXPECT_EQ(measure_hull_overlap(*ball, at({0, 0, 0}), *ball, at({0.2001, 0, 0})), 0.0);
 }
 
-// Of random poses: no overlap is reported where some direction separates the hulls, and a reported depth is one that parts them.
+// Of random poses: no overlap is reported where some direction separates the hulls, and a reported depth is
+// one that parts them.
 TEST(HullOverlap, AgreesWithASweepOfDirections) {
   const auto box = box_shape({0.2, 0.3, 0.4});
   int overlapping = 0;

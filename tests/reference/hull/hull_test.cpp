@@ -138,16 +138,16 @@ TEST(Hull, OfSpheresPlatesAndNeedles) {
 }
 
 TEST(Hull, RefusesFlatAndFewPointsInSilence) {
-  testing::internal::CaptureStderr();
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
   EXPECT_THROW(make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), InputError);
   EXPECT_THROW(make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}),
                InputError);
   EXPECT_THROW(make_hull(std::vector<Vec3>(10, Vec3(1, 2, 3))), InputError);
   EXPECT_THROW(make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::nan("")}}),
                InputError);
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
 }
 
 TEST(Hull, IsTheSameFromSeveralThreadsAtOnce) {
@@ -177,12 +177,14 @@ TEST(SupportMap, StartsAtOrBesideTheFarthestVertex) {
   EXPECT_GT(exact, 7'000);
 }
 
-// A cube's nearest vertex is wrong only in cells that a plane of symmetry cuts, and these planes run between cells.
+// A cube's nearest vertex is wrong only in cells that a plane of symmetry cuts, and these planes run between
+// cells.
 TEST(SupportMap, LookupErrorIsThatOfTheCellsThatSeveralVerticesShare) {
   const Hull cube = make_hull(make_box({1, 1, 1}).vertices);
   EXPECT_EQ(find_lookup_error(cube, SupportMap(cube)).greatest, 0.0);
   const Shape bunny = make_bunny_shape(0.2);
-  const SupportMapError fine = find_lookup_error(bunny.hull, SupportMap(bunny.hull)), coarse = find_lookup_error(bunny.hull, SupportMap(bunny.hull, 4));
+  const SupportMapError fine = find_lookup_error(bunny.hull, SupportMap(bunny.hull)),
+                        coarse = find_lookup_error(bunny.hull, SupportMap(bunny.hull, 4));
   EXPECT_GT(fine.mean, 0.0);
   EXPECT_LT(fine.mean, 1e-3 * bunny.radius);
   EXPECT_GT(coarse.mean, 5.0 * fine.mean);

@@ -1,4 +1,5 @@
-// Each class of bad mesh, as a file: mended and reported where that is safe, else refused with an error that names the defect and its count.
+// Each class of bad mesh, as a file: mended and reported where that is safe, else refused with an error that
+// names the defect and its count.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class BadMeshFile : public testing::Test {
+class BadMeshFile : public ::testing::Test {
  protected:
   BadMeshFile() { fs::create_directories(folder_); }
   ~BadMeshFile() override { fs::remove_all(folder_); }
@@ -25,7 +26,8 @@ class BadMeshFile : public testing::Test {
   }
 
   /// What the error says after the file's name, which must be at its head.
-  std::string error_of(const std::string& bytes, const MassOverride& mass = {}, const std::string& name = "thing.obj") {
+  std::string error_of(const std::string& bytes, const MassOverride& mass = {},
+                       const std::string& name = "thing.obj") {
     try {
       make(bytes, mass, name);
     } catch (const InputError& error) {
@@ -41,21 +43,25 @@ class BadMeshFile : public testing::Test {
     return folder_ / name;
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("lodestone_bad_mesh_" + std::to_string(getpid()));
+  const fs::path folder_ =
+      fs::path(::testing::TempDir()) / ("lodestone_bad_mesh_" + std::to_string(getpid()));
   MeshReport report_;
 };
 
 std::string as_obj(const Mesh& mesh, double scale = 1.0) {
   std::ostringstream text;
   text.precision(9);
-  for (const Vec3& v : mesh.vertices) text << "v " << scale * v.x() << ' ' << scale * v.y() << ' ' << scale * v.z() << '\n';
+  for (const Vec3& v : mesh.vertices)
+    text << "v " << scale * v.x() << ' ' << scale * v.y() << ' ' << scale * v.z() << '\n';
   for (const auto& [a, b, c] : mesh.faces) text << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
   return text.str();
 }
 
 /// Binary: every face has corners of its own.
 std::string as_stl(std::span<const std::array<Vec3, 3>> triangles) {
-  const auto append = [](std::string& bytes, auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  const auto append = [](std::string& bytes, auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
   std::string bytes(80, '\0');
   append(bytes, std::uint32_t(triangles.size()));
   for (const auto& triangle : triangles) {
@@ -68,7 +74,8 @@ std::string as_stl(std::span<const std::array<Vec3, 3>> triangles) {
 }
 
 const Mesh kBox = make_box({1, 2, 3});
-const MassOverride kGivenMass{.center_of_mass_m = Vec3::Zero(), .inertia_per_mass_m2 = Mat3(Mat3::Identity())};
+const MassOverride kGivenMass{.center_of_mass_m = Vec3::Zero(),
+                              .inertia_per_mass_m2 = Mat3(Mat3::Identity())};
 
 TEST_F(BadMeshFile, Empty) {
   EXPECT_EQ(error_of("").substr(0, 13), "an empty file");
@@ -114,13 +121,15 @@ TEST_F(BadMeshFile, FacesWithoutAreaAreDropped) {
   const std::string extra = "v 0.1 0 0\nv 0.2 0 0\nv 0.3 0 0\nf 9 10 11\nf 1 1 2\nf 3 3 3\n";
   EXPECT_NEAR(make(as_obj(kBox) + extra).volume, 6.0, 1e-6);
   EXPECT_EQ(report_.degenerate_faces_dropped, 3);
-  EXPECT_EQ(error_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3\nf 2 3 4\nf 1 2 4\nf 1 3 4\n"), "0 faces, beside 4 without area, expected at least 4");
+  EXPECT_EQ(error_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3\nf 2 3 4\nf 1 2 4\nf 1 3 4\n"),
+            "0 faces, beside 4 without area, expected at least 4");
 }
 
 TEST_F(BadMeshFile, DuplicatesAndUnusedVerticesAreDropped) {
   EXPECT_NEAR(make(as_obj(kBox) + "v 9 9 9\nf 1 2 3\n").volume, 6.0, 1e-6);
   std::vector<std::array<Vec3, 3>> triangles;
-  for (const auto& [a, b, c] : kBox.faces) triangles.push_back({kBox.vertices[a], kBox.vertices[b], kBox.vertices[c]});
+  for (const auto& [a, b, c] : kBox.faces)
+    triangles.push_back({kBox.vertices[a], kBox.vertices[b], kBox.vertices[c]});
   triangles.push_back(triangles[4]);
   EXPECT_NEAR(make(as_stl(triangles), {}, "thing.stl").volume, 6.0, 1e-6);
   EXPECT_EQ(report_.duplicate_faces_dropped, 1);
@@ -133,7 +142,8 @@ TEST_F(BadMeshFile, WithoutVolume) {
   EXPECT_NE(error_of(as_obj(flat)).find("beside"), std::string::npos) << error_of(as_obj(flat));
   // A closed surface, folded flat: the top on another diagonal than the bottom.
   const std::string folded = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\nf 2 1 4\nf 2 4 3\n";
-  EXPECT_NE(error_of(folded).find("a volume of 0 m³, expected a solid"), std::string::npos) << error_of(folded);
+  EXPECT_NE(error_of(folded).find("a volume of 0 m³, expected a solid"), std::string::npos)
+      << error_of(folded);
 }
 
 TEST_F(BadMeshFile, VerticesThatAreNoNumbers) {
@@ -146,7 +156,8 @@ TEST_F(BadMeshFile, VerticesThatAreNoNumbers) {
 
 TEST_F(BadMeshFile, AMillionAndOneFaces) {
   const std::vector<std::array<Vec3, 3>> triangles(1'000'001, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)});
-  EXPECT_EQ(error_of(as_stl(triangles), {}, "thing.stl"), "1000001 faces, expected at most 1000000 (simplify the mesh first)");
+  EXPECT_EQ(error_of(as_stl(triangles), {}, "thing.stl"),
+            "1000001 faces, expected at most 1000000 (simplify the mesh first)");
 }
 
 TEST_F(BadMeshFile, WrongUnits) {
@@ -162,15 +173,19 @@ TEST(LongBadMeshFile, AMillionFacesAreTaken) {
   std::vector<std::array<Vec3, 3>> triangles;
   const auto sphere_of = [](const Vec3& v) { return Vec3(v.normalized()); };
   for (const auto& [a, b, c] : make_box({2, 2, 2}).faces) {
-    const Vec3 origin = make_box({2, 2, 2}).vertices[a], u = (make_box({2, 2, 2}).vertices[b] - origin) / kCells, v = (make_box({2, 2, 2}).vertices[c] - origin) / kCells;
+    const Vec3 origin = make_box({2, 2, 2}).vertices[a],
+               u = (make_box({2, 2, 2}).vertices[b] - origin) / kCells,
+               v = (make_box({2, 2, 2}).vertices[c] - origin) / kCells;
     for (int i = 0; i < kCells; ++i)
       for (int j = 0; i + j < kCells; ++j) {
         const Vec3 at = origin + i * u + j * v;
         triangles.push_back({sphere_of(at), sphere_of(at + u), sphere_of(at + v)});
-        if (i + j + 1 < kCells) triangles.push_back({sphere_of(at + u), sphere_of(at + u + v), sphere_of(at + v)});
+        if (i + j + 1 < kCells)
+          triangles.push_back({sphere_of(at + u), sphere_of(at + u + v), sphere_of(at + v)});
       }
   }
-  const fs::path file = fs::path(testing::TempDir()) / ("lodestone_million_" + std::to_string(getpid()) + ".stl");
+  const fs::path file =
+      fs::path(::testing::TempDir()) / ("lodestone_million_" + std::to_string(getpid()) + ".stl");
   std::ofstream(file, std::ios::binary) << as_stl(triangles);
   MeshReport report;
   const Shape ball = make_shape("ball", load_mesh(file), {}, &report);

@@ -18,16 +18,16 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// A folder of this test's own, gone with it; and silence on both streams, checked at the end.
-class MeshFile : public testing::Test {
+class MeshFile : public ::testing::Test {
  protected:
   MeshFile() {
     fs::create_directories(folder_);
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
   }
   ~MeshFile() override {
-    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
     fs::remove_all(folder_);
   }
 
@@ -49,7 +49,7 @@ class MeshFile : public testing::Test {
     return "no error";
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("lodestone_mesh_" + std::to_string(getpid()));
+  const fs::path folder_ = fs::path(::testing::TempDir()) / ("lodestone_mesh_" + std::to_string(getpid()));
 };
 
 void expect_unit_box(const Mesh& loaded, double volume = 1.0) {
@@ -222,6 +222,48 @@ TEST_F(MeshFile, ThatPromisesTooMuchIsRefused) {
   json gltf = as_gltf(make_box({1, 1, 1}), "box.bin", chain);
   gltf["scenes"][0]["nodes"] = {20'000};
   EXPECT_NE(error_of(write("chain.gltf", gltf.dump())).find("nodes with children"), std::string::npos);
+}
+
+TEST_F(MeshFile, WhoseListsPromiseTooMuchIsRefused) {
+  // The first asked assimp 5.2 for 32 GB.
+  const std::string box = as_ply(make_box({1, 1, 1}));
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string bad = box;
+    bad.replace(bad.find(from), from.size(), to);
+    return error_of(write("list.ply", bad));
+  };
+  const std::string face = "\n3 " + box.substr(box.rfind("\n3 ") + 3);
+  EXPECT_NE(with(face, "\n4000000000 0 1 3\n").find("a list of \"4000000000\""), std::string::npos);
+  EXPECT_NE(with(face, "\n-3 0 1 3\n").find("a list of \"-3\""), std::string::npos);
+  EXPECT_NE(with(face, "\n3 0 1\n"), "no error");
+  EXPECT_NE(with(face, "\n"), "no error");
+  EXPECT_NE(with("uchar int", "uchar quaternion").find("quaternion"), std::string::npos);
+  EXPECT_NE(with("uchar int", "float int").find("fractions"), std::string::npos);
+  EXPECT_NE(with("element face", "obj_info x\nelement face").find("obj_info"), std::string::npos);
+  std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty "
+      "float z\n"
+      "element face 12\nproperty list uint int vertex_indices\nend_header\n";
+  const Mesh solid = make_box({1, 1, 1});
+  for (const Vec3& vertex : solid.vertices)
+    for (const double coordinate : vertex) append_bytes(binary, float(coordinate));
+  const std::size_t first = binary.size();
+  for (const auto& corners : solid.faces) {
+    append_bytes(binary, std::uint32_t(3));
+    for (const int i : corners) append_bytes(binary, std::int32_t(i));
+  }
+  expect_unit_box(load_mesh(write("good.ply", binary)));
+  std::string bad = binary;
+  bad[first + 3] = char(0xee);
+  EXPECT_NE(error_of(write("list.ply", bad)).find("bytes for face 0"), std::string::npos);
+  EXPECT_NE(error_of(write("short.ply", binary.substr(0, binary.size() - 1))).find("bytes for face 11"),
+            std::string::npos);
+}
+
+TEST_F(MeshFile, WhoseTrianglesAreNotThereIsRefused) {
+  std::string box = as_stl(make_box({1, 1, 1}));
+  box[83] = char(0xee);
+  EXPECT_NE(error_of(write("boastful.stl", box)).find("triangles in 684 bytes"), std::string::npos);
 }
 
 TEST_F(MeshFile, OpensOnlyItsOwnFolder) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "reference/mesh/edge_collapse.h"
 #include "reference/error.h"
+#include "reference/mesh/edge_collapse.h"
 #include "reference/mesh/inside.h"
 #include "reference/mesh/mass_properties.h"
 #include "reference/shape.h"

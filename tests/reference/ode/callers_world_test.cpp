@@ -92,8 +92,8 @@ TEST_P(SpaceOfHis, WhatCameWentAndMovedWakesWhatLayThere) {
   step(ours, 60);
   for (const OdeBodyId crate : crates) ASSERT_TRUE(ours.asleep(crate));
 
-  dGeomDestroy(pads[0]);                   // goes
-  dGeomSetPosition(pads[1], 3, 0, -0.6);   // sinks by a tenth of a metre
+  dGeomDestroy(pads[0]);                     // goes
+  dGeomSetPosition(pads[1], 3, 0, -0.6);     // sinks by a tenth of a metre
   his.box({0.2, 0.2, 0.2}, {6.25, 0, 0.1});  // comes, a little into the third crate
   step(ours, 30);
   EXPECT_LT(ours.state(crates[0]).position.z(), -0.5);
@@ -102,7 +102,9 @@ TEST_P(SpaceOfHis, WhatCameWentAndMovedWakesWhatLayThere) {
   EXPECT_TRUE(ours.asleep(crates[3]));
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryType, SpaceOfHis, ::testing::Values(SpaceType::simple, SpaceType::hash, SpaceType::sweep, SpaceType::quadtree));
+INSTANTIATE_TEST_SUITE_P(EveryType, SpaceOfHis,
+                         ::testing::Values(SpaceType::simple, SpaceType::hash, SpaceType::sweep,
+                                           SpaceType::quadtree));
 
 TEST(CallersOdeWorld, OursAreNotInHisSpace) {
   His his;
@@ -114,19 +116,25 @@ TEST(CallersOdeWorld, OursAreNotInHisSpace) {
 TEST(CallersOdeWorld, HisConvexCapsuleAndHeightFieldHoldOurs) {
   His his;
   const dReal planes[] = {1, 0, 0, 1, -1, 0, 0, 1, 0, 1, 0, 1, 0, -1, 0, 1, 0, 0, 1, 1, 0, 0, -1, 1};
-  const dReal corners[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1};
-  const unsigned faces[] = {4, 1, 3, 7, 5, 4, 0, 4, 6, 2, 4, 2, 6, 7, 3, 4, 0, 1, 5, 4, 4, 4, 5, 7, 6, 4, 0, 2, 3, 1};
-  for (const double x : {0.0, 20.0}) dGeomSetPosition(dCreateConvex(his.space, planes, 6, corners, 8, faces), x, 0, -1);
+  const dReal corners[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
+                           -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
+  const unsigned faces[] = {4, 1, 3, 7, 5, 4, 0, 4, 6, 2, 4, 2, 6, 7, 3,
+                            4, 0, 1, 5, 4, 4, 4, 5, 7, 6, 4, 0, 2, 3, 1};
+  for (const double x : {0.0, 20.0})
+    dGeomSetPosition(dCreateConvex(his.space, planes, 6, corners, 8, faces), x, 0, -1);
   const dHeightfieldDataID heights = dGeomHeightfieldDataCreate();
-  dGeomHeightfieldDataBuildCallback(heights, nullptr, [](void*, int, int) { return dReal(0); }, 6, 6, 7, 7, 1, 0, 1, 0);
+  dGeomHeightfieldDataBuildCallback(
+      heights, nullptr, [](void*, int, int) { return dReal(0); }, 6, 6, 7, 7, 1, 0, 1, 0);
   const dGeomID field = dCreateHeightfield(his.space, heights, 1);
   const dQuaternion upright = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
   dGeomSetQuaternion(field, upright);
   dGeomSetPosition(field, 10, 0, 0);
   {
     OdeWorld ours(his.world, his.space, kSleeping, kMaterials);
-    const OdeBodyId on_convex = add_crate(ours, {0.2, 0.1, 0.25}), on_field = add_crate(ours, {10.2, 0.1, 0.25});
-    const auto bunny = std::make_shared<const Shape>(make_bunny_shape(0.3, 194));  // a mesh that is met as it is
+    const OdeBodyId on_convex = add_crate(ours, {0.2, 0.1, 0.25}),
+                    on_field = add_crate(ours, {10.2, 0.1, 0.25});
+    const auto bunny =
+        std::make_shared<const Shape>(make_bunny_shape(0.3, 194));  // a mesh that is met as it is
     const OdeBodyId bunny_on_convex = ours.add_body({.shape = bunny, .mass = 5.0, .state = at({20, 0, 0.3})});
     step(ours, 180);
     EXPECT_NEAR(ours.state(on_convex).position.z(), 0.2, 2e-3);
@@ -141,7 +149,8 @@ TEST(CallersOdeWorld, HisForcesActForTheWholeStep) {
   for (const int substeps : {1, 4}) {
     His his;
     dWorldSetGravity(his.world, 0, 0, 0);
-    const dBodyID ball = his.body(2.0, {0, 0, 5}), arm = his.body(2.0, {3, 0, 5}), alone = his.body(2.0, {6, 0, 5}), named = his.body(2.0, {9, 0, 5});
+    const dBodyID ball = his.body(2.0, {0, 0, 5}), arm = his.body(2.0, {3, 0, 5}),
+                  alone = his.body(2.0, {6, 0, 5}), named = his.body(2.0, {9, 0, 5});
     dGeomSetBody(dCreateSphere(his.space, 0.1), ball);
     const dJointID hinge = dJointCreateHinge(his.world, nullptr);
     dJointAttach(hinge, arm, ball);
@@ -159,7 +168,8 @@ TEST(CallersOdeWorld, HisForcesActForTheWholeStep) {
     EXPECT_EQ(dBodyGetLinearVel(alone)[2], 0.0);
     EXPECT_NEAR(ours.state(crate).velocity.x(), kFrame, 1e-12);
     EXPECT_NEAR(ours.state(crate).angular_velocity.z(), 3 * kFrame / (64 * 0.16 / 6), 1e-9);
-    for (const dBodyID body : {ball, arm, named}) EXPECT_EQ(dBodyGetForce(body)[0] + dBodyGetForce(body)[2], 0.0);
+    for (const dBodyID body : {ball, arm, named})
+      EXPECT_EQ(dBodyGetForce(body)[0] + dBodyGetForce(body)[2], 0.0);
     ours.step(kFrame, substeps);
     EXPECT_NEAR(dBodyGetLinearVel(named)[0], 6 * kFrame, 1e-12) << "and for that step alone";
   }
@@ -235,7 +245,8 @@ TEST(CallersOdeWorld, AMovingPlatformCarriesSleepers) {
   for (const double speed : {0.03, 0.25, 0.5})
     for (const int substeps : {1, 4, 8}) {
       const auto [lower, upper] = carried_by(speed, substeps);
-      const double slip = speed * speed / (2 * 0.5 * kGravity) + 0.5 * speed * kFrame;  // until friction has brought it to speed
+      const double slip = speed * speed / (2 * 0.5 * kGravity) +
+                          0.5 * speed * kFrame;  // until friction has brought it to speed
       EXPECT_NEAR(lower, 0.5, slip + 5e-3) << speed << " m/s, " << substeps;
       EXPECT_NEAR(upper, 0.5, 2 * slip + 5e-3) << speed << " m/s, " << substeps;
     }
@@ -251,7 +262,8 @@ TEST(CallersOdeWorld, ATurningTableAndALiftCarry) {
   dBodySetLinearVel(table, 0, 0, 0.3);
   step(ours, 60);
   const double angle = 0.5;
-  const Vec3 expected(0.5 * std::cos(angle) - 0.2 * std::sin(angle), 0.5 * std::sin(angle) + 0.2 * std::cos(angle), 0.5);
+  const Vec3 expected(0.5 * std::cos(angle) - 0.2 * std::sin(angle),
+                      0.5 * std::sin(angle) + 0.2 * std::cos(angle), 0.5);
   EXPECT_LT((ours.state(crate).position - expected).norm(), 0.02);
   dBodySetAngularVel(table, 0, 0, 0), dBodySetLinearVel(table, 0, 0, 0);
   step(ours, 60);
@@ -278,11 +290,15 @@ TEST(CallersOdeWorld, OneOfHisThatComesWakesASleeper) {
 TEST(OdeProperties, AreHonoured) {
   OdeWorld world({.auto_disable = true}, kMaterials);
   world.add_static_box({100, 100, 1}, {0, 0, -0.5}, Quat::Identity(), 0);
-  const OdeBodyId floats = add_crate(world, {0, 0, 1}, {.gravity = false}), kinematic = add_crate(world, {4, 0, 0.5}, {.kinematic = true});
-  const OdeBodyId on_it = add_crate(world, {4, 0, 0.9}), restless = add_crate(world, {8, 0, 0.2}, {.allow_sleep = false});
-  const OdeBodyId damped = add_crate(world, {12, 0, 5}, {.gravity = false, .linear_damping = 2.0, .angular_damping = 3.0});
+  const OdeBodyId floats = add_crate(world, {0, 0, 1}, {.gravity = false}),
+                  kinematic = add_crate(world, {4, 0, 0.5}, {.kinematic = true});
+  const OdeBodyId on_it = add_crate(world, {4, 0, 0.9}),
+                  restless = add_crate(world, {8, 0, 0.2}, {.allow_sleep = false});
+  const OdeBodyId damped =
+      add_crate(world, {12, 0, 5}, {.gravity = false, .linear_damping = 2.0, .angular_damping = 3.0});
   const OdeBodyId spinning = add_crate(world, {16, 0, 5}, {.gravity = false, .max_angular_speed = 2.0});
-  const OdeBodyId ghost = add_crate(world, {20, 0, 2}, {.category = 2, .collide = 0}), hers = add_crate(world, {20, 0, 0.2}, {.category = 1, .collide = 1});
+  const OdeBodyId ghost = add_crate(world, {20, 0, 2}, {.category = 2, .collide = 0}),
+                  hers = add_crate(world, {20, 0, 0.2}, {.category = 1, .collide = 1});
   world.set_state(kinematic, at({4, 0, 0.5}, {0.5, 0, 0}));
   world.set_state(damped, at({12, 0, 5}, {1, 0, 0}, {0, 0, 1}));
   world.set_state(spinning, at({16, 0, 5}, Vec3::Zero(), {0, 0, 7}));
@@ -295,7 +311,8 @@ TEST(OdeProperties, AreHonoured) {
   EXPECT_NEAR(world.state(damped).velocity.x(), std::exp(-2.0), 1e-9);
   EXPECT_NEAR(world.state(damped).angular_velocity.z(), std::exp(-3.0), 1e-9);
   EXPECT_LE(world.state(spinning).angular_velocity.norm(), 2.0 + 1e-9);
-  // Of category 2, which the other does not collide with: they pass through each other. The ground, of every bit, holds both.
+  // Of category 2, which the other does not collide with: they pass through each other. The ground, of every
+  // bit, holds both.
   EXPECT_NEAR(world.state(ghost).position.z(), 0.2, 0.01);
   EXPECT_NEAR(world.state(hers).position.z(), 0.2, 0.01);
   world.set_properties(floats, {});
@@ -311,7 +328,8 @@ TEST(OdeProperties, BitsHoldTowardsHisGeoms) {
   const dGeomID floor = his.box({10, 10, 1}, {0, 0, -0.5});
   dGeomSetCategoryBits(floor, 4), dGeomSetCollideBits(floor, 0);
   OdeWorld ours(his.world, his.space, {}, kMaterials);
-  const OdeBodyId through = add_crate(ours, {0, 0, 0.5}, {.category = 1, .collide = ~4u}), on_it = add_crate(ours, {2, 0, 0.5}, {.category = 1, .collide = 4});
+  const OdeBodyId through = add_crate(ours, {0, 0, 0.5}, {.category = 1, .collide = ~4u}),
+                  on_it = add_crate(ours, {2, 0, 0.5}, {.category = 1, .collide = 4});
   step(ours, 120);
   EXPECT_NEAR(ours.state(on_it).position.z(), 0.2, 1e-3);
   EXPECT_NEAR(ours.state(through).position.z(), -2.8, 1e-3);
@@ -321,7 +339,8 @@ TEST(OdeProperties, PairFilterLetsThrough) {
   OdeWorld world({}, kMaterials);
   world.add_plane({0, 0, 1}, 0, 0);
   const OdeBodyId lower = add_crate(world, {0, 0, 0.2}), upper = add_crate(world, {0, 0, 0.8});
-  world.set_pair_filter([&](OdeBodyId a, OdeBodyId b) { return !(a == lower && b == upper) && !(a == upper && b == lower); });
+  world.set_pair_filter(
+      [&](OdeBodyId a, OdeBodyId b) { return !(a == lower && b == upper) && !(a == upper && b == lower); });
   step(world, 120);
   EXPECT_NEAR(world.state(upper).position.z(), 0.2, 1e-3);
 }
@@ -354,7 +373,8 @@ TEST(OdeTouches, TellImpulsesAndApproach) {
 
 TEST(OdeGround, MovesCarriesAndGoes) {
   OdeWorld world(kSleeping, kMaterials);
-  const OdeGroundId plane = world.add_plane({0, 0, 1}, -2, 0), box = world.add_static_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity(), 0);
+  const OdeGroundId plane = world.add_plane({0, 0, 1}, -2, 0),
+                    box = world.add_static_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity(), 0);
   const OdeBodyId crate = add_crate(world, {0, 0, 0.2}), far = add_crate(world, {9, 0, -1.8});
   step(world, 60);
   ASSERT_TRUE(world.asleep(crate) && world.asleep(far));

@@ -32,17 +32,21 @@ struct FloorAndWall {
 };
 
 TEST(ContactFilter, KeepsContactsThatAgree) {
-  std::array<ContactPoint, 3> contacts{{{{0, 0, 0}, {0, 0, 1}, 1e-3}, {{1, 0, 0}, {0, 0, 1}, 2e-3}, {{0, 1, 0}, {0.1, 0, 0.995}, 1e-3}}};
+  std::array<ContactPoint, 3> contacts{
+      {{{0, 0, 0}, {0, 0, 1}, 1e-3}, {{1, 0, 0}, {0, 0, 1}, 2e-3}, {{0, 1, 0}, {0.1, 0, 0.995}, 1e-3}}};
   EXPECT_TRUE(plainly_believable(contacts, 1.0));
   const auto before = contacts;
   EXPECT_EQ(filter_contacts(contacts, 1.0, FloorAndWall{}), 3);
   for (const ContactPoint& c : before)
-    EXPECT_TRUE(std::ranges::any_of(contacts, [&](const ContactPoint& d) { return c.point == d.point && c.normal == d.normal; }));
+    EXPECT_TRUE(std::ranges::any_of(
+        contacts, [&](const ContactPoint& d) { return c.point == d.point && c.normal == d.normal; }));
 }
 
 TEST(ContactFilter, TurnsAFalseContactThroughTheBodyUpright) {
-  std::array<ContactPoint, 4> contacts{
-      {{{0, 0, 0}, {0, 0, 1}, 1e-3}, {{1, 0, 0}, {0, 0, 1}, 1e-3}, {{0, 1, 0}, {0, 0, 1}, 1e-3}, {{1, 1, 0}, {1, 0, 0}, 0.97}}};
+  std::array<ContactPoint, 4> contacts{{{{0, 0, 0}, {0, 0, 1}, 1e-3},
+                                        {{1, 0, 0}, {0, 0, 1}, 1e-3},
+                                        {{0, 1, 0}, {0, 0, 1}, 1e-3},
+                                        {{1, 1, 0}, {1, 0, 0}, 0.97}}};
   EXPECT_FALSE(plainly_believable(contacts, 1.0));
   ASSERT_EQ(filter_contacts(contacts, 1.0, FloorAndWall{}), 4);
   for (const ContactPoint& contact : contacts) {
@@ -72,14 +76,23 @@ TEST(ContactFilter, KeepsFloorAndWallOfACorner) {
   EXPECT_EQ(std::ranges::count(contacts, Vec3(0, 0, 1), &ContactPoint::normal), 6);
 }
 
-// Many false directions, which all want to be looked at: once the search has measured enough it takes the best that it has, which is upright.
+// Many false directions, which all want to be looked at: once the search has measured enough it takes the
+// best that it has, which is upright.
 TEST(ContactFilter, EndsTheSearchOnceEnoughWasMeasured) {
   const auto filter = [](int most_measures, int& measured) {
     std::vector<ContactPoint> contacts{{{0, 0, 0}, {0, 0, 1}, 1e-3}};
     for (int i = 1; i < 40; ++i)
-      contacts.push_back({{0.1 * (i % 7), 0.1 * (i / 7), 0}, Vec3(std::cos(i), std::sin(i), 0.3 * std::cos(3.0 * i)).normalized(), 0.2 + 0.01 * i});
-    const int kept = filter_contacts(contacts, 1.0, [&](const Vec3& place, const Vec3& direction) { return ++measured, FloorAndWall{}(place, direction); }, most_measures);
-    for (const ContactPoint& contact : std::span(contacts).first(std::size_t(kept))) EXPECT_GT(contact.normal.z(), 0.9);
+      contacts.push_back({{0.1 * (i % 7), 0.1 * (i / 7), 0},
+                          Vec3(std::cos(i), std::sin(i), 0.3 * std::cos(3.0 * i)).normalized(),
+                          0.2 + 0.01 * i});
+    const int kept = filter_contacts(
+        contacts, 1.0,
+        [&](const Vec3& place, const Vec3& direction) {
+          return ++measured, FloorAndWall{}(place, direction);
+        },
+        most_measures);
+    for (const ContactPoint& contact : std::span(contacts).first(std::size_t(kept)))
+      EXPECT_GT(contact.normal.z(), 0.9);
     return kept;
   };
   int all = 0, some = 0;
@@ -91,7 +104,8 @@ TEST(ContactFilter, EndsTheSearchOnceEnoughWasMeasured) {
 
 TEST(ContactReduction, TakesTheDeepestAndSpreadsTheRest) {
   std::vector<ContactPoint> contacts;
-  for (int i = 0; i < 100; ++i) contacts.push_back({{0.01 * (i % 10), 0.01 * (i / 10), 0}, {0, 0, 1}, i == 44 ? 2e-3 : 1e-3});
+  for (int i = 0; i < 100; ++i)
+    contacts.push_back({{0.01 * (i % 10), 0.01 * (i / 10), 0}, {0, 0, 1}, i == 44 ? 2e-3 : 1e-3});
   const int kept = reduce_contacts(contacts, 5, 1.0);
   ASSERT_EQ(kept, 5);
   EXPECT_EQ(contacts[0].depth, 2e-3);

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/shape.h"
 #include "reference/ode/callers_bodies.h"
+#include "reference/shape.h"
 #include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {
@@ -30,7 +30,8 @@ class GeomShapeOf : public ::testing::Test {
 };
 
 TEST_F(GeomShapeOf, Primitives) {
-  const dGeomID box = dCreateBox(nullptr, 1, 2, 3), ball = dCreateSphere(nullptr, 0.5), capsule = dCreateCapsule(nullptr, 0.25, 2), cylinder = dCreateCylinder(nullptr, 0.3, 4);
+  const dGeomID box = dCreateBox(nullptr, 1, 2, 3), ball = dCreateSphere(nullptr, 0.5),
+                capsule = dCreateCapsule(nullptr, 0.25, 2), cylinder = dCreateCylinder(nullptr, 0.3, 4);
   EXPECT_EQ(read_geom(box).sides, Vec3(1, 2, 3));
   EXPECT_EQ(read_geom(ball).radius, 0.5);
   EXPECT_EQ(read_geom(capsule).kind, GeomKind::capsule);
@@ -43,8 +44,10 @@ TEST_F(GeomShapeOf, Primitives) {
 
 TEST_F(GeomShapeOf, ConvexGivesItsCorners) {
   const dReal planes[] = {1, 0, 0, .5, -1, 0, 0, .5, 0, 1, 0, 1, 0, -1, 0, 1, 0, 0, 1, 1.5, 0, 0, -1, 1.5};
-  const dReal corners[] = {-.5, -1, -1.5, .5, -1, -1.5, -.5, 1, -1.5, .5, 1, -1.5, -.5, -1, 1.5, .5, -1, 1.5, -.5, 1, 1.5, .5, 1, 1.5};
-  const unsigned faces[] = {4, 1, 3, 7, 5, 4, 0, 4, 6, 2, 4, 2, 6, 7, 3, 4, 0, 1, 5, 4, 4, 4, 5, 7, 6, 4, 0, 2, 3, 1};
+  const dReal corners[] = {-.5, -1, -1.5, .5, -1, -1.5, -.5, 1, -1.5, .5, 1, -1.5,
+                           -.5, -1, 1.5,  .5, -1, 1.5,  -.5, 1, 1.5,  .5, 1, 1.5};
+  const unsigned faces[] = {4, 1, 3, 7, 5, 4, 0, 4, 6, 2, 4, 2, 6, 7, 3,
+                            4, 0, 1, 5, 4, 4, 4, 5, 7, 6, 4, 0, 2, 3, 1};
   const dGeomID convex = dCreateConvex(nullptr, planes, 6, corners, 8, faces);
   place(convex);
   const GeomShape shape = read_geom(convex);
@@ -53,11 +56,14 @@ TEST_F(GeomShapeOf, ConvexGivesItsCorners) {
   ASSERT_EQ(shape.vertices.size(), 8u);
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner(corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]);
-    EXPECT_TRUE(std::ranges::any_of(shape.vertices, [&](const Vec3& v) { return (v - corner).norm() < 1e-12; })) << corner.transpose();
+    EXPECT_TRUE(std::ranges::any_of(shape.vertices, [&](const Vec3& v) {
+      return (v - corner).norm() < 1e-12;
+    })) << corner.transpose();
   }
   EXPECT_EQ(shape.faces.size(), 12u);
   double volume = 0.0;
-  for (const auto& [a, b, c] : shape.faces) volume += shape.vertices[a].dot(shape.vertices[b].cross(shape.vertices[c])) / 6.0;
+  for (const auto& [a, b, c] : shape.faces)
+    volume += shape.vertices[a].dot(shape.vertices[b].cross(shape.vertices[c])) / 6.0;
   EXPECT_NEAR(volume, 6.0, 1e-12);
 }
 
@@ -73,7 +79,8 @@ TEST_F(GeomShapeOf, TrimeshGivesItsFaces) {
   dGeomTriMeshDataDestroy(data);
   ASSERT_EQ(shape.faces.size(), 4u);
   double volume = 0.0;
-  for (const auto& [a, b, c] : shape.faces) volume += shape.vertices[a].dot(shape.vertices[b].cross(shape.vertices[c])) / 6.0;
+  for (const auto& [a, b, c] : shape.faces)
+    volume += shape.vertices[a].dot(shape.vertices[b].cross(shape.vertices[c])) / 6.0;
   EXPECT_NEAR(volume, 1.0 / 6.0, 1e-6);
 }
 
@@ -85,7 +92,8 @@ TEST_F(GeomShapeOf, RaysMeetBoxMeshAndHeightField) {
   const dGeomID mesh = dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr);
   dGeomSetPosition(mesh, 1e5, 0, 2);
   const dHeightfieldDataID heights = dGeomHeightfieldDataCreate();
-  dGeomHeightfieldDataBuildCallback(heights, nullptr, [](void*, int x, int) { return dReal(x); }, 10, 10, 11, 11, 1, 0, 0, 0);
+  dGeomHeightfieldDataBuildCallback(
+      heights, nullptr, [](void*, int x, int) { return dReal(x); }, 10, 10, 11, 11, 1, 0, 0, 0);
   const dGeomID field = dCreateHeightfield(nullptr, heights, 1);
   const dQuaternion upright = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};  // ODE's height fields stand up along y
   dGeomSetQuaternion(field, upright);
@@ -122,7 +130,8 @@ TEST_F(GeomShapeOf, CallersBodyIsReadAndPushed) {
   callers::add_force(body, {1, 1, 1}, {0, 0, 5});
   callers::set_velocity(body, {4, 5, 6}, {7, 8, 9});
   EXPECT_EQ(callers::mass(body), 6.0);
-  EXPECT_TRUE(callers::inverse_inertia(body).isApprox(Vec3(1 / 6.5, 1 / 5.0, 1 / 2.5).asDiagonal().toDenseMatrix(), 1e-12));
+  EXPECT_TRUE(callers::inverse_inertia(body).isApprox(
+      Vec3(1 / 6.5, 1 / 5.0, 1 / 2.5).asDiagonal().toDenseMatrix(), 1e-12));
   EXPECT_EQ(callers::force(body), Vec3(2, 3, 4));
   EXPECT_EQ(callers::torque(body), Vec3(0, 0, 5));
   EXPECT_EQ(callers::state(body).velocity, Vec3(4, 5, 6));

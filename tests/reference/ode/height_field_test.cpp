@@ -1,4 +1,5 @@
-// Full bodies on a caller's height field: whatever their shape, dropped from two metres they rest on it and none sinks through.
+// Full bodies on a caller's height field: whatever their shape, dropped from two metres they rest on it and
+// none sinks through.
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
@@ -17,7 +18,8 @@ constexpr int kSamples = 25;
 
 // A bowl with hills, so that nothing leaves it; `cell` counted from the corner.
 dReal bowl(void*, int x, int z) {
-  const double along = kSide * (x / double(kSamples - 1) - 0.5), across = kSide * (z / double(kSamples - 1) - 0.5);
+  const double along = kSide * (x / double(kSamples - 1) - 0.5),
+               across = kSide * (z / double(kSamples - 1) - 0.5);
   return 0.03 * (along * along + across * across) + 0.15 * std::cos(2.0 * along) * std::cos(1.7 * across);
 }
 
@@ -88,17 +90,21 @@ TEST_P(OnHeightField, WhatIsDroppedFromTwoMetresStaysOnIt) {
   for (const OdeBodyId body : bodies) {
     const RigidState s = world.state(body);
     double gap = 1e9;  // between its lowest corner and the ground
-    if (dropped->sphere_radius) gap = s.position.z() - field.height(s.position.x(), s.position.y()) - *dropped->sphere_radius;
-    else for (const Vec3& corner : dropped->hull.vertices) {
-      const Vec3 point = s.position + s.orientation * corner;
-      gap = std::min(gap, point.z() - field.height(point.x(), point.y()));
-    }
+    if (dropped->sphere_radius)
+      gap = s.position.z() - field.height(s.position.x(), s.position.y()) - *dropped->sphere_radius;
+    else
+      for (const Vec3& corner : dropped->hull.vertices) {
+        const Vec3 point = s.position + s.orientation * corner;
+        gap = std::min(gap, point.z() - field.height(point.x(), point.y()));
+      }
     EXPECT_GT(gap, -0.02);
     EXPECT_LT(gap, 0.03);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, OnHeightField, ::testing::Values("ball", "sphere_mesh", "box", "plate", "corner"), [](const auto& shape) { return std::string(shape.param); });
+INSTANTIATE_TEST_SUITE_P(Shapes, OnHeightField,
+                         ::testing::Values("ball", "sphere_mesh", "box", "plate", "corner"),
+                         [](const auto& shape) { return std::string(shape.param); });
 
 }  // namespace
 }  // namespace lodestone

@@ -1,12 +1,11 @@
 // Trimesh–trimesh contacts of boxes against the exact least displacement (separating axes).
-#include "reference/ode/narrow_phase_ode.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "reference/ode/geometry_ode.h"
+#include "reference/ode/narrow_phase_ode.h"
 #include "reference/random.h"
 #include "tests/reference/ode/ode_fixture.h"
 
@@ -28,7 +27,8 @@ struct BoxPair {
     const auto try_axis = [&](const Vec3& raw) {
       if (raw.norm() < 1e-6) return;
       const Vec3 axis = raw.normalized();
-      least = std::min(least, reach(orientation, axis) + reach(Quat::Identity(), axis) - distance * std::abs(direction.dot(axis)));
+      least = std::min(least, reach(orientation, axis) + reach(Quat::Identity(), axis) -
+                                  distance * std::abs(direction.dot(axis)));
     };
     for (int i = 0; i < 3; ++i) {
       try_axis(Vec3::Unit(i)), try_axis(orientation * Vec3::Unit(i));
@@ -46,7 +46,8 @@ struct BoxPair {
 
 class BoxOracle : public ::testing::TestWithParam<double> {};
 
-// Hard case F9. Where an edge meets an edge ODE's places alone may leave a little too much: see the second bound.
+// Hard case F9. Where an edge meets an edge ODE's places alone may leave a little too much: see the second
+// bound.
 TEST_P(BoxOracle, ContactsAreNoDeeperThanTheTruth) {
   ode::prepare();
   const double depth = GetParam();
@@ -63,7 +64,8 @@ TEST_P(BoxOracle, ContactsAreNoDeeperThanTheTruth) {
     RandomStream random(3, pose, 0);
     const BoxPair pair{0.5 * sides, random.orientation(), random.direction()};
     const Vec3 position = pair.distance_for(depth) * pair.direction;
-    const dQuaternion q = {pair.orientation.w(), pair.orientation.x(), pair.orientation.y(), pair.orientation.z()};
+    const dQuaternion q = {pair.orientation.w(), pair.orientation.x(), pair.orientation.y(),
+                           pair.orientation.z()};
     dGeomSetPosition(first, position.x(), position.y(), position.z());
     dGeomSetQuaternion(first, q);
     found.clear();
@@ -87,7 +89,8 @@ TEST(NarrowPhase, ABallOverAnEdgeIsPushedToItsCentre) {
   const auto cube = std::make_shared<const Shape>(make_shape("cube", make_box(Vec3::Constant(0.3))));
   const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.5));
   const Vec3 out = Vec3(-0.9, 0.0, 0.4).normalized();
-  world.add_body({.shape = ball, .mass = 2000.0, .state = {.position = Vec3(-0.15, 0.02, 0.15) + 0.499 * out}});
+  world.add_body(
+      {.shape = ball, .mass = 2000.0, .state = {.position = Vec3(-0.15, 0.02, 0.15) + 0.499 * out}});
   world.add_body({.shape = cube, .mass = 10.0});
   world.step(1e-5);
   ASSERT_EQ(world.contacts().size(), 1u);

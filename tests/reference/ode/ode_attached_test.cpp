@@ -40,7 +40,8 @@ class AttachedOdeWorld : public ::testing::Test {
   void collide_his_own() {
     dJointGroupEmpty(contacts);
     met = 0;
-    dSpaceCollide(space, this, [](void* self, dGeomID a, dGeomID b) { static_cast<AttachedOdeWorld*>(self)->meet(a, b); });
+    dSpaceCollide(space, this,
+                  [](void* self, dGeomID a, dGeomID b) { static_cast<AttachedOdeWorld*>(self)->meet(a, b); });
   }
   void meet(dGeomID a, dGeomID b) {
     ++met;
@@ -93,7 +94,8 @@ TEST_F(AttachedOdeWorld, HisOwnContactsStayHis) {
   const dBodyID ball = add_sphere(0.1, 4.0, {3, 0, 0.1});
   {
     OdeWorld ours(world, space, {}, materials);
-    const OdeBodyId box = ours.add_body({.shape = box_shape({0.4, 0.4, 0.4}), .mass = 64.0, .state = at({0, 0, 0.2})});
+    const OdeBodyId box =
+        ours.add_body({.shape = box_shape({0.4, 0.4, 0.4}), .mass = 64.0, .state = at({0, 0, 0.2})});
     for (int i = 0; i < 60; ++i) {
       collide_his_own();
       EXPECT_EQ(met, 1) << "his collision detection met one of our geoms";
@@ -113,7 +115,9 @@ TEST_F(AttachedOdeWorld, HisOwnContactsStayHis) {
 TEST_F(AttachedOdeWorld, SettingsOfHisWorldStayHis) {
   dWorldSetContactMaxCorrectingVel(world, 3.0);
   dWorldSetQuickStepNumIterations(world, 33);
-  OdeWorld ours(world, space, {.gravity = Vec3::Zero(), .quick_step_iterations = 5, .max_correcting_velocity = 1.0}, materials);
+  OdeWorld ours(world, space,
+                {.gravity = Vec3::Zero(), .quick_step_iterations = 5, .max_correcting_velocity = 1.0},
+                materials);
   ours.step(1.0 / 60);
   dVector3 gravity;
   dWorldGetGravity(world, gravity);
@@ -137,7 +141,8 @@ TEST_F(AttachedOdeWorld, RemovalWakesHisBody) {
 
 TEST_F(AttachedOdeWorld, HisJointHoldsOurBody) {
   OdeWorld ours(world, space, {}, materials);
-  const OdeBodyId box = ours.add_body({.shape = box_shape({0.4, 0.4, 0.4}), .mass = 64.0, .state = at({0, 0, 5})});
+  const OdeBodyId box =
+      ours.add_body({.shape = box_shape({0.4, 0.4, 0.4}), .mass = 64.0, .state = at({0, 0, 5})});
   const dJointID joint = dJointCreateBall(world, nullptr);
   dJointAttach(joint, ours.ode_body(box), nullptr);
   dJointSetBallAnchor(joint, 0, 0, 5);

@@ -18,8 +18,8 @@ inline std::shared_ptr<const Shape> sphere_shape(double radius) {
   return std::make_shared<const Shape>(make_sphere_shape(radius));
 }
 
-inline RigidState at(const Vec3& position, const Vec3& velocity = Vec3::Zero(), const Vec3& spin = Vec3::Zero(),
-                     const Quat& orientation = Quat::Identity()) {
+inline RigidState at(const Vec3& position, const Vec3& velocity = Vec3::Zero(),
+                     const Vec3& spin = Vec3::Zero(), const Quat& orientation = Quat::Identity()) {
   return {position, orientation, velocity, spin};
 }
 
@@ -37,8 +37,8 @@ inline double energy_of(const Shape& shape, double mass, const RigidState& state
 }
 
 inline bool same_bits(const RigidState& a, const RigidState& b) {
-  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs() && a.velocity == b.velocity &&
-         a.angular_velocity == b.angular_velocity;
+  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs() &&
+         a.velocity == b.velocity && a.angular_velocity == b.angular_velocity;
 }
 
 }  // namespace lodestone::testing

@@ -1,9 +1,12 @@
-// What a world does to stay within bounds: correcting velocity, contacts per pair, the solver's random numbers.
+// What a world does to stay within bounds: correcting velocity, contacts per pair, the solver's random
+// numbers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
+#include "reference/error.h"
 #include "reference/hull/hull_overlap.h"
 #include "reference/random.h"
 #include "tests/reference/ode/ode_fixture.h"
@@ -18,7 +21,8 @@ double exit_speed(double max_correcting_velocity) {
   const MaterialTable materials = material(0.0, 0.0);
   OdeWorld world({.gravity = Vec3::Zero(), .max_correcting_velocity = max_correcting_velocity}, materials);
   const auto cube = box_shape({1, 1, 1});
-  const OdeBodyId first = world.add_body({.shape = cube}), second = world.add_body({.shape = cube, .state = at({0.5, 0.01, 0.02})});
+  const OdeBodyId first = world.add_body({.shape = cube}),
+                  second = world.add_body({.shape = cube, .state = at({0.5, 0.01, 0.02})});
   double greatest = 0.0;
   for (int i = 0; i < 240; ++i) {
     world.step(1.0 / 240);
@@ -52,6 +56,47 @@ TEST(OdeLimits, ContactsOfAPairAreCappedAndThoseDroppedAreCounted) {
   }
 }
 
+// From ten milligrams to a million tonnes: boxes that fall on each other give ODE's solver as little to
+// complain of as those of a kilogram do.
+TEST(OdeLimits, LightestAndHeaviestBodiesPile) {
+  for (const double mass : {1e-5, 1e-4, 1.0, 1e9}) {
+    const MaterialTable materials;
+    OdeWorld world({.direct_contacts_max = 150, .max_correcting_velocity = 1.0}, materials);
+    world.add_plane(Vec3::UnitZ(), 0.0, 0);
+    std::vector<OdeBodyId> pile;
+    for (int i = 0; i < 5; ++i)
+      pile.push_back(world.add_body({.shape = box_shape({0.2, 0.3, 0.4}),
+                                     .mass = mass,
+                                     .state = at({0.02 * i, 0, 0.24 + 0.42 * i}, Vec3::Zero(), {1, 2, 3},
+                                                 rotation_from_vector({0.1 * i, 0, 0}))}));
+    for (int i = 0; i < 200; ++i) world.step(1.0 / 60, 4);
+    for (const OdeBodyId body : pile) EXPECT_GT(world.state(body).position.z(), 0.09) << mass;
+    EXPECT_EQ(world.counters().messages, 0) << mass;
+    EXPECT_EQ(world.counters().states_recovered, 0) << mass;
+  }
+}
+
+TEST(OdeLimits, WhatOdeWouldAbortOnIsRefused) {
+  const MaterialTable materials;
+  OdeWorld world({}, materials);
+  const auto cube = box_shape({1, 1, 1});
+  for (const double mass : {0.0, 1e-30, 1e-8, 1e300})
+    EXPECT_THROW(world.add_body({.shape = cube, .mass = mass}), InputError) << mass;
+  Shape thin = *cube;
+  thin.inertia_per_mass = Mat3::Identity() * 1e-300;
+  EXPECT_THROW(world.add_body({.shape = std::make_shared<const Shape>(thin)}), InputError);
+  EXPECT_THROW(world.add_body({.shape = cube, .material = 7}), InputError);
+  EXPECT_THROW(world.add_plane(Vec3::UnitZ(), 0.0, 7), InputError);
+  EXPECT_THROW(world.add_static_box({1, 1, 1}, {0, 0, 0}, Quat::Identity(), -1), InputError);
+  EXPECT_THROW(world.add_static_mesh(make_box({1, 1, 1}), 1), InputError);
+  world.add_body({.shape = cube});
+  EXPECT_THROW(world.step(5e-324), InputError);
+  EXPECT_THROW(world.step(1e-3, 1 << 30), InputError);
+  EXPECT_THROW(OdeWorld({.gravity = {0, 0, std::numeric_limits<double>::quiet_NaN()}}, materials),
+               InputError);
+  EXPECT_THROW(OdeWorld({.gravity = {0, std::numeric_limits<double>::infinity(), 0}}, materials), InputError);
+}
+
 RigidState top_of_quick_stack(std::uint64_t seed) {
   const MaterialTable materials = material(0.0, 0.5);
   OdeWorld world({.seed = seed, .quick_step = true}, materials);
@@ -60,7 +105,8 @@ RigidState top_of_quick_stack(std::uint64_t seed) {
   OdeBodyId top;
   for (int i = 0; i < 4; ++i) {
     RandomStream random(9, i, 0);
-    top = world.add_body({.shape = cube, .mass = 125.0, .state = at({random.uniform(-0.05, 0.05), 0, 0.26 + 0.51 * i})});
+    top = world.add_body(
+        {.shape = cube, .mass = 125.0, .state = at({random.uniform(-0.05, 0.05), 0, 0.26 + 0.51 * i})});
   }
   for (int i = 0; i < 120; ++i) world.step(1.0 / 60);
   return world.state(top);

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <thread>
 
-#include "reference/random.h"
-#include "reference/hull/hull_overlap.h"
 #include "reference/error.h"
+#include "reference/hull/hull_overlap.h"
+#include "reference/random.h"
 #include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {
@@ -21,16 +21,22 @@ struct Stack {
   std::vector<OdeBodyId> bodies;
 };
 
-// Cubes on one another, each turned about the vertical and moved aside a little, dropped by a thousandth of their side.
-Stack make_stack(const MaterialTable& materials, const Mesh& cube, double side, int count, const OdeSettings& settings = {}) {
-  Stack stack{std::make_shared<const Shape>(make_shape("cube", cube)), std::make_unique<OdeWorld>(settings, materials), {}};
+// Cubes on one another, each turned about the vertical and moved aside a little, dropped by a thousandth of
+// their side.
+Stack make_stack(const MaterialTable& materials, const Mesh& cube, double side, int count,
+                 const OdeSettings& settings = {}) {
+  Stack stack{std::make_shared<const Shape>(make_shape("cube", cube)),
+              std::make_unique<OdeWorld>(settings, materials),
+              {}};
   stack.world->add_plane(Vec3::UnitZ(), 0.0, 0);
   for (int i = 0; i < count; ++i) {
     RandomStream random(7, i, 0);
     const Quat turned(Eigen::AngleAxisd(random.uniform(-0.3, 0.3), Vec3::UnitZ()));
     const Vec3 position(random.uniform(-0.03, 0.03) * side, 0.0, side * (0.5 + i + 1e-3 * (i + 1)));
-    stack.bodies.push_back(stack.world->add_body(
-        {.shape = stack.shape, .mass = 1000.0 * stack.shape->volume, .state = at(position, Vec3::Zero(), Vec3::Zero(), turned)}));
+    stack.bodies.push_back(
+        stack.world->add_body({.shape = stack.shape,
+                               .mass = 1000.0 * stack.shape->volume,
+                               .state = at(position, Vec3::Zero(), Vec3::Zero(), turned)}));
   }
   return stack;
 }
@@ -40,8 +46,10 @@ Mesh subdivide(const Mesh& mesh) {
   for (const auto& face : mesh.faces) {
     const int first = int(fine.vertices.size());
     for (const int i : face) fine.vertices.push_back(mesh.vertices[i]);
-    for (int i = 0; i < 3; ++i) fine.vertices.push_back(0.5 * (mesh.vertices[face[i]] + mesh.vertices[face[(i + 1) % 3]]));
-    for (const auto& f : {std::array{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}) fine.faces.push_back({first + f[0], first + f[1], first + f[2]});
+    for (int i = 0; i < 3; ++i)
+      fine.vertices.push_back(0.5 * (mesh.vertices[face[i]] + mesh.vertices[face[(i + 1) % 3]]));
+    for (const auto& f : {std::array{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}})
+      fine.faces.push_back({first + f[0], first + f[1], first + f[2]});
   }
   return fine;
 }
@@ -58,7 +66,8 @@ TEST_P(TrimeshStack, Stands) {
   double top_speed = 0.0;
   for (int i = 0; i < int(2.0 / dt); ++i) {
     stack.world->step(dt);
-    for (const OdeBodyId body : stack.bodies) top_speed = std::max(top_speed, stack.world->state(body).velocity.norm());
+    for (const OdeBodyId body : stack.bodies)
+      top_speed = std::max(top_speed, stack.world->state(body).velocity.norm());
   }
   const RigidState end = stack.world->state(stack.bodies.back());
   EXPECT_NEAR(end.position.z(), side * (count - 0.5), 2e-3 * side);
@@ -68,7 +77,8 @@ TEST_P(TrimeshStack, Stands) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OdePairs, TrimeshStack,
-                         ::testing::Combine(::testing::Values(2, 5), ::testing::Values(1.0, 0.2), ::testing::Values(1.0 / 60, 1.0 / 100, 1.0 / 500),
+                         ::testing::Combine(::testing::Values(2, 5), ::testing::Values(1.0, 0.2),
+                                            ::testing::Values(1.0 / 60, 1.0 / 100, 1.0 / 500),
                                             ::testing::Values(false, true)));
 
 // Hard case F14.
@@ -108,10 +118,12 @@ TEST(OdePairs, BoxPushedIntoTheCornerOfAnLIsHeldByBothLegs) {
   const auto box = box_shape({0.3, 0.3, 0.3});
   // Stood up: leg a along x is the floor, leg b the wall; the inner corner is at inner.
   const Quat upright(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
-  const OdeBodyId base = world.add_body({.shape = l, .mass = 1e6, .state = at(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), upright)});
+  const OdeBodyId base = world.add_body(
+      {.shape = l, .mass = 1e6, .state = at(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), upright)});
   world.set_asleep(base, true);
   const Vec3 corner = upright * (Vec3(-0.3, -0.3, 0.0) - l->center_of_mass_in_mesh);
-  const OdeBodyId body = world.add_body({.shape = box, .mass = 27.0, .state = at(corner + Vec3(0.2, 0.0, 0.2))});
+  const OdeBodyId body =
+      world.add_body({.shape = box, .mass = 27.0, .state = at(corner + Vec3(0.2, 0.0, 0.2))});
   for (int i = 0; i < 2000; ++i) {
     world.set_state(base, at(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), upright));
     world.add_force(body, {-500, 0, 0}, Vec3::Zero());
@@ -127,7 +139,8 @@ TEST(OdePairs, BoxPushedIntoTheCornerOfAnLIsHeldByBothLegs) {
 TEST(OdePairs, ABodyWhollyInsideAnotherIsNoticedAndPushedOut) {
   const MaterialTable materials = material(0.0, 0.3);
   OdeWorld world({.gravity = Vec3::Zero(), .max_correcting_velocity = 1.0}, materials);
-  const auto large = std::make_shared<const Shape>(make_bunny_shape(1.0, 500)), small = box_shape({0.1, 0.1, 0.1});
+  const auto large = std::make_shared<const Shape>(make_bunny_shape(1.0, 500)),
+             small = box_shape({0.1, 0.1, 0.1});
   const OdeBodyId around = world.add_body({.shape = large, .mass = 100.0});
   const OdeBodyId inside = world.add_body({.shape = small, .mass = 1.0});  // at the bunny's centre of mass
   world.step(1.0 / 240);
@@ -138,7 +151,9 @@ TEST(OdePairs, ABodyWhollyInsideAnotherIsNoticedAndPushedOut) {
     top_speed = std::max(top_speed, world.state(inside).velocity.norm());
   }
   EXPECT_FALSE(find_hull_overlap(*large, world.state(around), *small, world.state(inside)));
-  EXPECT_LT(top_speed, std::numbers::sqrt3 + 0.05);  // by contacts that do not oppose each other, each at the correcting velocity
+  EXPECT_LT(top_speed,
+            std::numbers::sqrt3 +
+                0.05);  // by contacts that do not oppose each other, each at the correcting velocity
 }
 
 TEST(OdePairs, SupportRemovedWakesWhatItHeld) {
@@ -163,7 +178,8 @@ TEST(OdePairs, SleepingWorldKeepsItsBitsAndWakesWhenAsked) {
   for (int i = 0; i < 1000; ++i) stack.world->step(1.0 / 60, 2);
   EXPECT_TRUE(same_bits(stack.world->state(stack.bodies[2]), before));
   EXPECT_TRUE(stack.world->contacts().empty());
-  stack.world->add_force(stack.bodies[2], {1e5, 0, 0}, Vec3::Zero());  // lost: it does not wake, and lasts one step
+  stack.world->add_force(stack.bodies[2], {1e5, 0, 0},
+                         Vec3::Zero());  // lost: it does not wake, and lasts one step
   stack.world->step(1.0 / 60);
   stack.world->set_asleep(stack.bodies[2], false);
   stack.world->step(1.0 / 60);
@@ -178,7 +194,9 @@ TEST(OdePairs, AlignedPileFallsAsleepAndStands) {
   world.add_plane(Vec3::UnitZ(), 0.0, 0);
   const auto shape = box_shape(Vec3::Constant(0.3));
   std::vector<OdeBodyId> bodies;
-  for (int i = 0; i < 12; ++i) bodies.push_back(world.add_body({.shape = shape, .mass = 27.0, .state = at({0.4 * (i % 4), 0, 0.16 + 0.31 * (i / 4)})}));
+  for (int i = 0; i < 12; ++i)
+    bodies.push_back(world.add_body(
+        {.shape = shape, .mass = 27.0, .state = at({0.4 * (i % 4), 0, 0.16 + 0.31 * (i / 4)})}));
   for (int i = 0; i < 120; ++i) world.step(1.0 / 60, 2);
   for (int i = 0; i < 12; ++i) {
     EXPECT_TRUE(world.asleep(bodies[i])) << i;
@@ -205,7 +223,10 @@ RigidState run_pile(std::uint32_t which) {
   std::vector<OdeBodyId> bodies;
   for (std::uint32_t i = 0; i < 6; ++i) {
     RandomStream random(5, i, which);
-    bodies.push_back(world.add_body({.shape = shape, .mass = 24.0, .state = at({random.uniform(0, 0.2), 0, 0.3 + 0.4 * i}, Vec3::Zero(), Vec3::Zero(), random.orientation())}));
+    bodies.push_back(world.add_body({.shape = shape,
+                                     .mass = 24.0,
+                                     .state = at({random.uniform(0, 0.2), 0, 0.3 + 0.4 * i}, Vec3::Zero(),
+                                                 Vec3::Zero(), random.orientation())}));
   }
   for (int i = 0; i < 60; ++i) world.step(1.0 / 60, 4);
   return world.state(bodies.front());

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "reference/error.h"
-#include "tests/reference/ode/ode_fixture.h"
 #include "reference/random.h"
+#include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {
 namespace {
@@ -38,7 +38,8 @@ TEST(OdeWorld, SphereReboundsToRestitutionSquared) {
   OdeWorld world({}, materials);
   world.add_plane(Vec3::UnitZ(), 0.0, 0);
   const double radius = 0.1, height = 1.0;
-  const OdeBodyId ball = world.add_body({.shape = sphere_shape(radius), .state = at({0, 0, radius + height})});
+  const OdeBodyId ball =
+      world.add_body({.shape = sphere_shape(radius), .state = at({0, 0, radius + height})});
   EXPECT_NEAR(rebound_height(world, ball, kTruthStep) - radius, 0.25 * height, 0.005);
 }
 
@@ -65,10 +66,12 @@ TEST(OdeWorld, CornerHitGivesTheFrictionlessImpulse) {
   for (const Vec3& v : shape->mesh.vertices)
     if (const Vec3 r = turned * v; r.z() < lowest) lowest = r.z(), corner = r;
   const Vec3 before(0.2, 0.1, -1.0);
-  const OdeBodyId box = world.add_body({.shape = shape, .mass = mass, .state = at({0, 0, -lowest + 2e-4}, before, Vec3::Zero(), turned)});
+  const OdeBodyId box = world.add_body(
+      {.shape = shape, .mass = mass, .state = at({0, 0, -lowest + 2e-4}, before, Vec3::Zero(), turned)});
   while (world.state(box).velocity == before) world.step(kTruthStep / 8);
 
-  const Mat3 inverse_inertia = turned.toRotationMatrix() * shape->inverse_inertia_per_mass / mass * turned.toRotationMatrix().transpose();
+  const Mat3 inverse_inertia = turned.toRotationMatrix() * shape->inverse_inertia_per_mass / mass *
+                               turned.toRotationMatrix().transpose();
   const Vec3 arm = corner.cross(Vec3::UnitZ());
   const double impulse = (1.0 + e) / (1.0 / mass + arm.dot(inverse_inertia * arm));
   EXPECT_NEAR((world.state(box).velocity - Vec3(0.2, 0.1, -1.0 + impulse / mass)).norm(), 0.0, 1e-6);
@@ -79,20 +82,23 @@ TEST(OdeWorld, FreeFlightIsAParabola) {
   const MaterialTable materials;
   OdeWorld world({}, materials);
   const Vec3 velocity(1, -2, 3);
-  const OdeBodyId box = world.add_body({.shape = box_shape({0.3, 0.3, 0.3}), .state = at(Vec3::Zero(), velocity, {0, 0, 2})});
+  const OdeBodyId box =
+      world.add_body({.shape = box_shape({0.3, 0.3, 0.3}), .state = at(Vec3::Zero(), velocity, {0, 0, 2})});
   const int steps = 1000;
   for (int i = 0; i < steps; ++i) world.step(1e-3);
   // ODE's semi-implicit Euler: after n steps the fall is g h² n (n + 1) / 2.
   const Vec3 expected = velocity - Vec3::UnitZ() * kGravity * 1e-6 * steps * (steps + 1) / 2.0;
   EXPECT_LT((world.state(box).position - expected).norm(), 1e-10);
-  EXPECT_NEAR(2.0 * std::atan2(world.state(box).orientation.z(), world.state(box).orientation.w()), 2.0, 1e-4);
+  EXPECT_NEAR(2.0 * std::atan2(world.state(box).orientation.z(), world.state(box).orientation.w()), 2.0,
+              1e-4);
 }
 
 TEST(OdeWorld, FreeTopNeverGainsEnergy) {
   const MaterialTable materials;
   OdeWorld world({.gravity = Vec3::Zero()}, materials);
   const auto shape = box_shape({1, 2, 0.5});
-  const OdeBodyId box = world.add_body({.shape = shape, .state = at(Vec3::Zero(), Vec3::Zero(), {0.01, 0.01, 10})});
+  const OdeBodyId box =
+      world.add_body({.shape = shape, .state = at(Vec3::Zero(), Vec3::Zero(), {0.01, 0.01, 10})});
   const double before = energy_of(*shape, 1.0, world.state(box));
   for (int i = 0; i < 10000; ++i) world.step(1e-3);
   EXPECT_LE(energy_of(*shape, 1.0, world.state(box)), before * (1.0 + 1e-3));
@@ -106,11 +112,14 @@ TEST_P(Slope, BoxSlidesOrSticksAsCoulombSays) {
   const double tilt = 25 * kDegree, seconds = 2.0;
   const MaterialTable materials = material(0.0, friction);
   OdeWorld world({}, materials);
-  const Quat turn = Quat(Eigen::AngleAxisd(azimuth * kDegree, Vec3::UnitZ())) * Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
+  const Quat turn = Quat(Eigen::AngleAxisd(azimuth * kDegree, Vec3::UnitZ())) *
+                    Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
   world.add_plane(turn * Vec3::UnitZ(), 0.0, 0);
   // The box's own sides stay along x and y as far as the slope lets them.
   const Quat flat = Quat::FromTwoVectors(Vec3::UnitZ(), turn * Vec3::UnitZ());
-  const OdeBodyId box = world.add_body({.shape = box_shape({0.4, 0.4, 0.2}), .state = at(turn * Vec3(0, 0, 0.1), Vec3::Zero(), Vec3::Zero(), flat)});
+  const OdeBodyId box =
+      world.add_body({.shape = box_shape({0.4, 0.4, 0.2}),
+                      .state = at(turn * Vec3(0, 0, 0.1), Vec3::Zero(), Vec3::Zero(), flat)});
   for (int i = 0; i < int(seconds / 1e-3); ++i) world.step(1e-3);
   const double expected = kGravity * (std::sin(tilt) - friction * std::cos(tilt)) * seconds;
   const double speed = world.state(box).velocity.norm();
@@ -120,7 +129,9 @@ TEST_P(Slope, BoxSlidesOrSticksAsCoulombSays) {
     EXPECT_LE(speed, 2e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(OdeWorld, Slope, ::testing::Combine(::testing::Values(0.45, 0.48, 0.55), ::testing::Values(0.0, 22.5, 45.0)));
+INSTANTIATE_TEST_SUITE_P(OdeWorld, Slope,
+                         ::testing::Combine(::testing::Values(0.45, 0.48, 0.55),
+                                            ::testing::Values(0.0, 22.5, 45.0)));
 
 TEST(OdeWorld, DropsLoseEnergy) {
   const MaterialTable materials;
@@ -130,7 +141,8 @@ TEST(OdeWorld, DropsLoseEnergy) {
   const OdeBodyId box = world.add_body({.shape = shape});
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     RandomStream random(1, trial, 0);
-    world.set_state(box, at({0, 0, 0.8}, random.direction(), 10.0 * random.direction(), random.orientation()));
+    world.set_state(box,
+                    at({0, 0, 0.8}, random.direction(), 10.0 * random.direction(), random.orientation()));
     const double before = energy_of(*shape, 1.0, world.state(box));
     for (int i = 0; i < 4000; ++i) world.step(kTruthStep);
     const RigidState end = world.state(box);
@@ -157,7 +169,8 @@ TEST(OdeWorld, StateComesBackBitForBit) {
   const OdeBodyId box = world.add_body({.shape = box_shape({1, 1, 1})});
   for (std::uint32_t i = 0; i < 100; ++i) {
     RandomStream random(3, i, 0);
-    const RigidState state = at(random.direction(), random.direction(), random.direction(), random.orientation());
+    const RigidState state =
+        at(random.direction(), random.direction(), random.direction(), random.orientation());
     world.set_state(box, state);
     EXPECT_TRUE(same_bits(world.state(box), state));
   }
@@ -200,9 +213,11 @@ TEST(OdeWorld, WhatCannotBeIsRefusedAndChangesNothing) {
   const auto shape = box_shape({1, 1, 1});
   const OdeBodyId box = world.add_body({.shape = shape});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double dt : {0.0, -0.1, nan, std::numeric_limits<double>::infinity()}) EXPECT_THROW(world.step(dt), InputError);
+  for (const double dt : {0.0, -0.1, nan, std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(world.step(dt), InputError);
   EXPECT_THROW(world.step(0.1, 0), InputError);
-  for (const double mass : {0.0, -1.0, nan}) EXPECT_THROW(world.add_body({.shape = shape, .mass = mass}), InputError);
+  for (const double mass : {0.0, -1.0, nan})
+    EXPECT_THROW(world.add_body({.shape = shape, .mass = mass}), InputError);
   EXPECT_THROW(world.add_body({.shape = nullptr}), InputError);
   EXPECT_THROW(world.set_state(box, at({nan, 0, 0})), InputError);
   EXPECT_THROW(world.set_state(box, at({2e8, 0, 0})), InputError);
@@ -211,7 +226,8 @@ TEST(OdeWorld, WhatCannotBeIsRefusedAndChangesNothing) {
   EXPECT_THROW(world.state({}), InputError);
   EXPECT_THROW(world.add_plane({0, 0, 2}, 0, 0), InputError);
   EXPECT_THROW(world.add_static_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, 0), InputError);
-  EXPECT_THROW(world.add_static_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}}, 0), InputError);
+  EXPECT_THROW(world.add_static_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}}, 0),
+               InputError);
   EXPECT_TRUE(same_bits(world.state(box), RigidState{}));
   world.remove_body(box);
   EXPECT_THROW(world.state(box), InputError);

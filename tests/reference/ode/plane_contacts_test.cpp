@@ -26,10 +26,13 @@ double deepest_by_ode(const Shape& shape, const Quat& orientation, double height
   std::vector<dReal> vertices;
   std::vector<dTriIndex> indices;
   for (const Vec3& v : shape.mesh.vertices) vertices.insert(vertices.end(), {v.x(), v.y(), v.z()});
-  for (const auto& f : shape.mesh.faces) indices.insert(indices.end(), {dTriIndex(f[0]), dTriIndex(f[1]), dTriIndex(f[2])});
+  for (const auto& f : shape.mesh.faces)
+    indices.insert(indices.end(), {dTriIndex(f[0]), dTriIndex(f[1]), dTriIndex(f[2])});
   const dTriMeshDataID data = dGeomTriMeshDataCreate();
-  dGeomTriMeshDataBuildDouble(data, vertices.data(), 3 * sizeof(dReal), int(shape.mesh.vertices.size()), indices.data(), int(indices.size()), 3 * sizeof(dTriIndex));
-  const dGeomID mesh = dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr), plane = dCreatePlane(nullptr, 0, 0, 1, 0);
+  dGeomTriMeshDataBuildDouble(data, vertices.data(), 3 * sizeof(dReal), int(shape.mesh.vertices.size()),
+                              indices.data(), int(indices.size()), 3 * sizeof(dTriIndex));
+  const dGeomID mesh = dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr),
+                plane = dCreatePlane(nullptr, 0, 0, 1, 0);
   dGeomSetPosition(mesh, 0, 0, height);
   const dQuaternion q = {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
   dGeomSetQuaternion(mesh, q);
@@ -68,16 +71,21 @@ TEST_P(PlaneContacts, FloodFindsWhatAScanFinds) {
     const double offset = -shape->radius * random.uniform(0.0, 1.0);
     std::vector<PlaneContact> expected;
     for (int i = 0; i < int(shape->hull.vertices.size()); ++i)
-      if (const double depth = offset - normal.dot(shape->hull.vertices[i]); depth > 0.0) expected.push_back({i, depth});
-    std::ranges::sort(expected, [](const auto& a, const auto& b) { return a.depth != b.depth ? a.depth > b.depth : a.vertex < b.vertex; });
+      if (const double depth = offset - normal.dot(shape->hull.vertices[i]); depth > 0.0)
+        expected.push_back({i, depth});
+    std::ranges::sort(expected, [](const auto& a, const auto& b) {
+      return a.depth != b.depth ? a.depth > b.depth : a.vertex < b.vertex;
+    });
     std::int64_t dropped = 0;
     const auto found = finder.find(shape->hull, normal, offset, 8, start, &dropped);
     ASSERT_EQ(found.size() + dropped, expected.size()) << "pose " << pose;
-    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].vertex, expected[i].vertex) << "pose " << pose;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      EXPECT_EQ(found[i].vertex, expected[i].vertex) << "pose " << pose;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, PlaneContacts, ::testing::Values("box", "l", "ball", "bunny"), [](const auto& shape) { return shape.param; });
+INSTANTIATE_TEST_SUITE_P(Shapes, PlaneContacts, ::testing::Values("box", "l", "ball", "bunny"),
+                         [](const auto& shape) { return shape.param; });
 
 TEST(PlaneContactFinder, ResultDoesNotDependOnTheStart) {
   const auto shape = shape_named("ball");

@@ -52,7 +52,8 @@ class SpaceMirrorOf : public ::testing::TestWithParam<SpaceType> {
 };
 
 TEST_P(SpaceMirrorOf, HoldsWhatTheSpaceHolds) {
-  const dGeomID box = dCreateBox(space, 1, 2, 3), plane = dCreatePlane(space, 0, 0, 1, -7), capsule = dCreateCapsule(space, 0.5, 2);
+  const dGeomID box = dCreateBox(space, 1, 2, 3), plane = dCreatePlane(space, 0, 0, 1, -7),
+                capsule = dCreateCapsule(space, 0.5, 2);
   dGeomSetPosition(box, 1, 2, 3);
   const dQuaternion turned = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
   dGeomSetQuaternion(box, turned);
@@ -100,9 +101,11 @@ TEST_P(SpaceMirrorOf, SpacesOfEveryTypeWithin) {
 }
 
 TEST_P(SpaceMirrorOf, BitsAreThoseThatTheSpacesAroundShare) {
-  const dSpaceID inner = make_space(SpaceType::hash, space), excluded = make_space(SpaceType::hash, space), hidden = make_space(SpaceType::hash, space);
+  const dSpaceID inner = make_space(SpaceType::hash, space), excluded = make_space(SpaceType::hash, space),
+                 hidden = make_space(SpaceType::hash, space);
   dGeomSetCategoryBits(reinterpret_cast<dGeomID>(inner), 6);
-  dGeomSetCategoryBits(reinterpret_cast<dGeomID>(hidden), 0), dGeomSetCollideBits(reinterpret_cast<dGeomID>(hidden), 0);
+  dGeomSetCategoryBits(reinterpret_cast<dGeomID>(hidden), 0),
+      dGeomSetCollideBits(reinterpret_cast<dGeomID>(hidden), 0);
   const dGeomID geom = ball(0, 0, 0, inner);
   dGeomSetCategoryBits(geom, 12), dGeomSetCollideBits(geom, 1);
   ball(0, 0, 0, excluded), ball(0, 0, 0, hidden);
@@ -120,8 +123,12 @@ TEST_P(SpaceMirrorOf, TellsWhatCameWentAndMoved) {
   SpaceMirror mirror(space);
   mirror.refresh();
   EXPECT_EQ(mirror.added().size(), 20u);
-  const auto slot_of = [&](dGeomID geom) { return std::uint32_t(std::ranges::find(mirror.geoms(), geom, &MirroredGeom::geom) - mirror.geoms().begin()); };
-  const std::uint32_t third = slot_of(balls[3]), fifth = slot_of(balls[5]), seventh = slot_of(balls[7]), ninth = slot_of(balls[9]);
+  const auto slot_of = [&](dGeomID geom) {
+    return std::uint32_t(std::ranges::find(mirror.geoms(), geom, &MirroredGeom::geom) -
+                         mirror.geoms().begin());
+  };
+  const std::uint32_t third = slot_of(balls[3]), fifth = slot_of(balls[5]), seventh = slot_of(balls[7]),
+                      ninth = slot_of(balls[9]);
 
   dGeomSetPosition(balls[3], 6, 4, 0);
   dGeomDestroy(balls[5]);
@@ -132,7 +139,8 @@ TEST_P(SpaceMirrorOf, TellsWhatCameWentAndMoved) {
   mirror.refresh();
   EXPECT_EQ(std::vector(mirror.moved().begin(), mirror.moved().end()), std::vector{third});
   EXPECT_EQ(std::set(mirror.removed().begin(), mirror.removed().end()), (std::set{fifth, seventh, ninth}));
-  EXPECT_EQ(std::set(mirror.added().begin(), mirror.added().end()), (std::set{slot_of(balls[7]), slot_of(balls[9]), slot_of(late)}));
+  EXPECT_EQ(std::set(mirror.added().begin(), mirror.added().end()),
+            (std::set{slot_of(balls[7]), slot_of(balls[9]), slot_of(late)}));
   EXPECT_EQ(mirror.geoms()[third].position, Vec3(6, 4, 0));
   EXPECT_EQ(mirror.geoms()[third].previous_position, Vec3(6, 0, 0));
   EXPECT_EQ(mirror.geoms()[fifth].geom, nullptr);
@@ -203,18 +211,22 @@ TEST_P(SpaceMirrorOf, FindsAsALookAtEachDoes) {
       std::vector<std::uint32_t> found, expected;
       mirror.find_near(box, found);
       for (std::uint32_t slot = 0; slot < mirror.geoms().size(); ++slot)
-        if (mirror.geoms()[slot].geom && mirror.geoms()[slot].bounds.intersects(box)) expected.push_back(slot);
+        if (mirror.geoms()[slot].geom && mirror.geoms()[slot].bounds.intersects(box))
+          expected.push_back(slot);
       ASSERT_EQ(found, expected);
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryType, SpaceMirrorOf, ::testing::Values(SpaceType::simple, SpaceType::hash, SpaceType::sweep, SpaceType::quadtree));
+INSTANTIATE_TEST_SUITE_P(EveryType, SpaceMirrorOf,
+                         ::testing::Values(SpaceType::simple, SpaceType::hash, SpaceType::sweep,
+                                           SpaceType::quadtree));
 
 TEST(BoxTree, BoxesWithoutEndAreFoundAnywhere) {
   BoxTree tree;
   const double endless = std::numeric_limits<double>::infinity();
-  const BoxTree::Entry entries[] = {{0, {Vec3(-endless, 0, 0), Vec3(endless, 1, 1)}}, {1, {Vec3::Zero(), Vec3::Ones()}}};
+  const BoxTree::Entry entries[] = {{0, {Vec3(-endless, 0, 0), Vec3(endless, 1, 1)}},
+                                    {1, {Vec3::Zero(), Vec3::Ones()}}};
   tree.add(entries);
   std::vector<std::uint32_t> found;
   tree.find({Vec3::Constant(50), Vec3::Constant(51)}, found);

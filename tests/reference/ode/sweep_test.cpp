@@ -14,7 +14,9 @@ constexpr double kStep = 1.0 / 60;
 const Vec3 kFast(200, 0, 0);
 
 // A wall of five centimetres across the x axis.
-void add_wall(OdeWorld& world, const Vec3& place) { world.add_static_box({0.05, 4, 4}, place, Quat::Identity(), 0); }
+void add_wall(OdeWorld& world, const Vec3& place) {
+  world.add_static_box({0.05, 4, 4}, place, Quat::Identity(), 0);
+}
 
 TEST(Sweep, BallBouncesOffAThinWallWithItsWholeSpeed) {
   const MaterialTable materials = material(1.0, 0.0);
@@ -41,7 +43,8 @@ TEST(Sweep, IsAsPreciseFarFromTheOrigin) {
   OdeWorld world({.gravity = Vec3::Zero()}, materials);
   const Vec3 far = Vec3::Constant(1e7);
   world.add_body({.shape = box_shape({0.05, 4, 4}), .mass = 1e6, .state = at(far + Vec3(1, 0, 0))});
-  const OdeBodyId ball = world.add_body({.shape = sphere_shape(0.1), .state = at(far - Vec3(1, 0, 0), kFast)});
+  const OdeBodyId ball =
+      world.add_body({.shape = sphere_shape(0.1), .state = at(far - Vec3(1, 0, 0), kFast)});
   world.step(kStep);
   EXPECT_NEAR(world.state(ball).position.x() - far.x(), 0.975 - 0.09, 1e-6);
 }
@@ -61,7 +64,10 @@ TEST(Sweep, LeavesBodiesAloneThatMoveLessThanTheirThickness) {
   OdeWorld world({}, materials);
   world.add_plane(Vec3::UnitZ(), 0.0, 0);
   add_wall(world, {1.0, 0, 0});
-  for (int i = 0; i < 5; ++i) world.add_body({.shape = box_shape(Vec3::Constant(0.2)), .mass = 8.0, .state = at({0, 0, 0.2 + 0.3 * i}, {3, 0, 0})});
+  for (int i = 0; i < 5; ++i)
+    world.add_body({.shape = box_shape(Vec3::Constant(0.2)),
+                    .mass = 8.0,
+                    .state = at({0, 0, 0.2 + 0.3 * i}, {3, 0, 0})});
   for (int i = 0; i < 300; ++i) world.step(1.0 / 240);
   EXPECT_EQ(world.counters().passes_prevented, 0);
 }
@@ -71,12 +77,15 @@ TEST(Sweep, NoneOfACrowdPassesThroughTheWallsOfABox) {
   const MaterialTable materials = material(1.0, 0.0);
   OdeWorld world({.gravity = Vec3::Zero()}, materials);
   for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) world.add_static_box(Vec3::Constant(4.2) - 4.15 * Vec3::Unit(axis), 2.1 * side * Vec3::Unit(axis), Quat::Identity(), 0);
+    for (const double side : {-1.0, 1.0})
+      world.add_static_box(Vec3::Constant(4.2) - 4.15 * Vec3::Unit(axis), 2.1 * side * Vec3::Unit(axis),
+                           Quat::Identity(), 0);
   std::vector<OdeBodyId> balls;
   for (std::uint32_t i = 0; i < 100; ++i) {
     RandomStream random(3, i, 0);
     const Vec3 place(0.6 * (i % 5) - 1.2, 0.6 * (i / 5 % 5) - 1.2, 0.6 * (i / 25) - 0.9);
-    balls.push_back(world.add_body({.shape = sphere_shape(0.05), .state = at(place, 100.0 * random.direction())}));
+    balls.push_back(
+        world.add_body({.shape = sphere_shape(0.05), .state = at(place, 100.0 * random.direction())}));
   }
   for (int i = 0; i < 60; ++i) world.step(kStep);
   for (const OdeBodyId ball : balls) EXPECT_LT(world.state(ball).position.lpNorm<Eigen::Infinity>(), 2.1);
@@ -117,17 +126,22 @@ TEST(Sweep, SeesTheCallersStaticGeoms) {
 }
 
 TEST(Sweep, HollowsLetGo) {
-  // The bar enters the corner of an L, where the L's centre of mass is in the air, and must not be held there.
+  // The bar enters the corner of an L, where the L's centre of mass is in the air, and must not be held
+  // there.
   const MaterialTable materials = material(0.0, 0.0);
   OdeWorld world({.gravity = Vec3::Zero()}, materials);
   const auto l = std::make_shared<const Shape>(make_shape("l", make_l(1.0, 1.0, 0.1, 0.1)));
   world.add_static_box({0.02, 0.02, 4.0}, {0, 0, 0}, Quat::Identity(), 0);
   const Vec3 way = Vec3(-1, -1, 0).normalized();  // with the open corner ahead
-  const OdeBodyId body = world.add_body({.shape = l, .mass = 1.0, .state = at(way * -3.0, 100.0 * way, Vec3::Zero(), Quat(Eigen::AngleAxisd(0.0, Vec3::UnitZ())))});
+  const OdeBodyId body = world.add_body(
+      {.shape = l,
+       .mass = 1.0,
+       .state = at(way * -3.0, 100.0 * way, Vec3::Zero(), Quat(Eigen::AngleAxisd(0.0, Vec3::UnitZ())))});
   for (int i = 0; i < 60; ++i) world.step(kStep);
   // Either it was struck or it is gone; it does not hang in the air with its speed.
   const RigidState end = world.state(body);
-  EXPECT_TRUE(end.velocity.norm() < 99.0 || end.position.norm() > 10.0) << end.position.transpose() << " / " << end.velocity.transpose();
+  EXPECT_TRUE(end.velocity.norm() < 99.0 || end.position.norm() > 10.0)
+      << end.position.transpose() << " / " << end.velocity.transpose();
 }
 
 TEST(OdeWorld, QuickStepCountsUnevenContacts) {
@@ -147,7 +161,8 @@ TEST(OdeWorld, BoxPrimitiveStacksAndBouncesAsItsShape) {
   const MaterialTable materials = material(0.5, 0.3);
   OdeWorld world({}, materials);
   world.add_plane(Vec3::UnitZ(), 0.0, 0);
-  const OdeBodyId box = world.add_body({.shape = box_shape({0.3, 0.2, 0.1}), .state = at({0, 0, 1.05}), .geometry = OdeGeometry::box});
+  const OdeBodyId box = world.add_body(
+      {.shape = box_shape({0.3, 0.2, 0.1}), .state = at({0, 0, 1.05}), .geometry = OdeGeometry::box});
   double top = 0.0;
   bool falling = true;
   for (int i = 0; i < 1500; ++i) {
@@ -162,7 +177,8 @@ TEST(OdeWorld, BoxPrimitiveStacksAndBouncesAsItsShape) {
 TEST(OdeWorldDeathTest, BoxPrimitiveNeedsItsCentreOfMassInTheMiddle) {
   const MaterialTable materials;
   OdeWorld world({}, materials);
-  const auto loaded = std::make_shared<const Shape>(make_shape("loaded", make_box({1, 1, 1}), {.center_of_mass_m = Vec3(0, 0, 0.2)}));
+  const auto loaded = std::make_shared<const Shape>(
+      make_shape("loaded", make_box({1, 1, 1}), {.center_of_mass_m = Vec3(0, 0, 0.2)}));
   EXPECT_DEATH(world.add_body({.shape = loaded, .geometry = OdeGeometry::box}), "in its middle");
 }
 

@@ -14,7 +14,10 @@ using namespace testing;
 constexpr double kStep = 1.0 / 240.0, kFall = kGravity * kStep;
 
 TimedStep falling_at(double speed, const Vec3& spin = Vec3::Zero()) {
-  return {.body = at({0, 0, 0.1}, {0, 0, -speed}, spin), .gravity = kGravity, .duration = kStep, .restitution = 0.5};
+  return {.body = at({0, 0, 0.1}, {0, 0, -speed}, spin),
+          .gravity = kGravity,
+          .duration = kStep,
+          .restitution = 0.5};
 }
 
 struct Answer {
@@ -41,10 +44,13 @@ TEST(TimedContacts, AVertexInsideStruckBeforeTheStepButNotLongBefore) {
 }
 
 TEST(TimedContacts, LaterVerticesWait) {
-  const Answer apart = answer({{{0, 0, -0.1}, -0.25 * kStep}, {{0.1, 0, -0.1}, -0.5 * kStep}}, falling_at(1.0));
+  const Answer apart =
+      answer({{{0, 0, -0.1}, -0.25 * kStep}, {{0.1, 0, -0.1}, -0.5 * kStep}}, falling_at(1.0));
   ASSERT_EQ(apart.contacts.size(), 1U);
   EXPECT_NEAR(apart.contacts[0].point.x(), 0.0, 1e-12);
-  EXPECT_EQ(answer({{{0, 0, -0.1}, -0.25 * kStep}, {{0.1, 0, -0.1}, -0.26 * kStep}}, falling_at(1.0)).contacts.size(), 2U);
+  EXPECT_EQ(answer({{{0, 0, -0.1}, -0.25 * kStep}, {{0.1, 0, -0.1}, -0.26 * kStep}}, falling_at(1.0))
+                .contacts.size(),
+            2U);
 }
 
 TEST(TimedContacts, TheContactIsWhereTheVertexStrikes) {
@@ -74,7 +80,8 @@ TEST(TimedContacts, SlowLandingsAreOdesOwn) {
 }
 
 TEST(TimedContacts, ALateImpulseMovesTheBodyForTheRestOfTheStepOnly) {
-  const RigidState start = at({0, 0, 1}, {0, 0, -2}), kicked = at({0, 0, 1 + kStep}, {0, 0, 1}, {3, 0, 0}, rotation_from_vector({3 * kStep, 0, 0}));
+  const RigidState start = at({0, 0, 1}, {0, 0, -2}), kicked = at({0, 0, 1 + kStep}, {0, 0, 1}, {3, 0, 0},
+                                                                  rotation_from_vector({3 * kStep, 0, 0}));
   const RigidState end = end_of_step(start, kicked, 0.25 * kStep);
   EXPECT_NEAR(end.position.z(), 1 - 2 * 0.25 * kStep + 0.75 * kStep, 1e-12);
   EXPECT_NEAR(2 * std::atan2(end.orientation.x(), end.orientation.w()), 3 * 0.75 * kStep, 1e-9);

@@ -11,7 +11,8 @@
 namespace lodestone {
 namespace {
 
-// Of 400 records a fifth end upright, the others on their side; they last 2 to 80 frames and go the farther the longer they last.
+// Of 400 records a fifth end upright, the others on their side; they last 2 to 80 frames and go the farther
+// the longer they last.
 std::vector<SettlingRecord> two_poses() {
   RandomStream random(7, 0, 0);
   std::vector<SettlingRecord> records(400);

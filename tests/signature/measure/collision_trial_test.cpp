@@ -19,7 +19,8 @@ std::shared_ptr<const Shape> box() {
 CollisionConfiguration random_configuration(RandomStream& random) {
   const double alpha = random.uniform(0.0, std::numbers::pi / 2);
   CollisionConfiguration c{.speed = std::cos(alpha), .spin = std::sin(alpha)};
-  c.theta = random.uniform(0.0, 1.5), c.phi = random.uniform(0.0, std::numbers::pi), c.psi = random.uniform(0.0, 2.0 * std::numbers::pi);
+  c.theta = random.uniform(0.0, 1.5), c.phi = random.uniform(0.0, std::numbers::pi),
+  c.psi = random.uniform(0.0, 2.0 * std::numbers::pi);
   return c;
 }
 
@@ -30,7 +31,8 @@ struct After {
 
 After after(const CollisionEnd& end, const CollisionConfiguration& c, double restitution) {
   const double speed = c.speed / c.speed_unit();
-  return {Vec3(restitution * speed * std::cos(c.theta), speed * std::sin(c.theta), 0.0) + end.response.head<3>().cast<double>(),
+  return {Vec3(restitution * speed * std::cos(c.theta), speed * std::sin(c.theta), 0.0) +
+              end.response.head<3>().cast<double>(),
           end.response.tail<3>().cast<double>()};
 }
 
@@ -49,7 +51,8 @@ TEST(CollisionTrial, SphereHasExactRestitutionAndFriction) {
 
     const double s = c.speed_unit(), v = c.speed / s, w = c.spin / s;
     const Vec3 along(-std::cos(c.theta), std::sin(c.theta), 0.0), across(0.0, 0.0, 1.0);
-    const Vec3 axis = std::cos(c.phi) * along + std::sin(c.phi) * (std::cos(c.psi) * across.cross(along) + std::sin(c.psi) * across);
+    const Vec3 axis = std::cos(c.phi) * along +
+                      std::sin(c.phi) * (std::cos(c.psi) * across.cross(along) + std::sin(c.psi) * across);
     const Vec3 arm(-1.0, 0.0, 0.0), slip = v * along + (w * axis).cross(arm) - v * along.x() * Vec3::UnitX();
     const double normal_impulse = (1.0 + law.restitution) * v * std::cos(c.theta);
     const double tangential = std::min(law.friction * normal_impulse, slip.norm() / 3.5);  // 1/m + R²/I = 7/2
@@ -83,14 +86,17 @@ TEST(CollisionTrial, BoxVertexWithoutFrictionFollowsTheClosedForm) {
 
     const auto outcome = trial.collide(state);
     ASSERT_TRUE(outcome);
-    EXPECT_NEAR(outcome->approach, approach / std::hypot(before.velocity.norm(), box()->radius * before.angular_velocity.norm()), 1e-9);
+    EXPECT_NEAR(outcome->approach,
+                approach / std::hypot(before.velocity.norm(), box()->radius * before.angular_velocity.norm()),
+                1e-9);
     EXPECT_LT((state.velocity - before.velocity - impulse * n).norm(), 1e-5) << i;
     EXPECT_LT((state.angular_velocity - before.angular_velocity - impulse * turning).norm(), 1e-4) << i;
   }
 }
 
 TEST(CollisionTrial, OneThatLeavesThePlaneNeverTouchesAgain) {
-  CollisionTrial first(box(), {0.4, 0.5}, TrialEnd::first_impulse, 1e-9), leaves(box(), {0.4, 0.5}, TrialEnd::leaves_plane, 1e-9);
+  CollisionTrial first(box(), {0.4, 0.5}, TrialEnd::first_impulse, 1e-9),
+      leaves(box(), {0.4, 0.5}, TrialEnd::leaves_plane, 1e-9);
   ContactTime contact_time(*box());
   int into_plane_first = 0, touches_again = 0, more_impulses = 0;
   constexpr int kTrials = 400;
@@ -122,17 +128,25 @@ TEST(CollisionTrial, ResponseIsTheSameAtEverySpeed) {
     c.speed *= 37.0, c.spin *= 37.0;
     const auto fast = trial.run(c, orientation);
     ASSERT_TRUE(slow && fast);
-    EXPECT_LT((slow->end.response - fast->end.response).norm(), 1e-5) << i;  // the touch itself is found to 1e-6 R
+    EXPECT_LT((slow->end.response - fast->end.response).norm(), 1e-5)
+        << i;  // the touch itself is found to 1e-6 R
   }
 }
 
 TEST(CollisionTrial, SlowApproachesDoNotBounce) {
-  CollisionTrial odes(box(), {0.4, 0.0}, TrialEnd::first_impulse, 0.05), dead(box(), {0.0, 0.0}, TrialEnd::first_impulse, 0.05);
+  CollisionTrial odes(box(), {0.4, 0.0}, TrialEnd::first_impulse, 0.05),
+      dead(box(), {0.0, 0.0}, TrialEnd::first_impulse, 0.05);
   CollisionConfiguration c{.speed = 0.04, .spin = 0.0};
   const Quat orientation = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
-  EXPECT_LT((after(odes.run(c, orientation)->end, c, 0.4).linear - after(dead.run(c, orientation)->end, c, 0.0).linear).norm(), 1e-6);
+  EXPECT_LT((after(odes.run(c, orientation)->end, c, 0.4).linear -
+             after(dead.run(c, orientation)->end, c, 0.0).linear)
+                .norm(),
+            1e-6);
   c.speed = 0.06;
-  EXPECT_GT((after(odes.run(c, orientation)->end, c, 0.4).linear - after(dead.run(c, orientation)->end, c, 0.0).linear).norm(), 1e-2);
+  EXPECT_GT((after(odes.run(c, orientation)->end, c, 0.4).linear -
+             after(dead.run(c, orientation)->end, c, 0.0).linear)
+                .norm(),
+            1e-2);
 }
 
 }  // namespace

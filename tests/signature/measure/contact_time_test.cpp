@@ -42,7 +42,9 @@ double lowest_gap_before(const Shape& shape, RigidState state, double time) {
 }
 
 TEST(ContactTime, StopsWhereTheBodyFirstTouches) {
-  for (const Shape& shape : {make_shape("box", make_box({0.2, 0.3, 0.4})), make_shape("l", make_l(0.3, 0.2, 0.08, 0.1)), make_shape("needle", make_needle(0.4, 0.01))}) {
+  for (const Shape& shape :
+       {make_shape("box", make_box({0.2, 0.3, 0.4})), make_shape("l", make_l(0.3, 0.2, 0.08, 0.1)),
+        make_shape("needle", make_needle(0.4, 0.01))}) {
     ContactTime contact_time(shape);
     for (std::uint32_t i = 0; i < 60; ++i) {
       RandomStream random(1, i, 0);
@@ -51,9 +53,11 @@ TEST(ContactTime, StopsWhereTheBodyFirstTouches) {
       ASSERT_TRUE(contact_time.advance(state)) << shape.name << i;
       EXPECT_NEAR(gap_of(shape, state), 0.0, 1e-5 * shape.radius) << shape.name << i;
       EXPECT_LT(contact_time.find_lowest(state).velocity, 0.0);
-      EXPECT_NEAR(spin_of(start.orientation, start.angular_velocity, shape).norm(), spin_of(state.orientation, state.angular_velocity, shape).norm(), 1e-9);
+      EXPECT_NEAR(spin_of(start.orientation, start.angular_velocity, shape).norm(),
+                  spin_of(state.orientation, state.angular_velocity, shape).norm(), 1e-9);
       const double time = (state.position.z() - start.position.z()) / start.velocity.z();
-      EXPECT_GT(lowest_gap_before(shape, start, time), -2e-3 * shape.radius) << shape.name << i;  // nothing touched before
+      EXPECT_GT(lowest_gap_before(shape, start, time), -2e-3 * shape.radius)
+          << shape.name << i;  // nothing touched before
     }
   }
 }
@@ -85,8 +89,10 @@ SquareHeights square_heights(double spin_over_speed, int trials) {
   for (std::uint32_t i = 0; i < std::uint32_t(trials); ++i) {
     RandomStream random(2, i, 0);
     RigidState state;
-    // Its length along y. Its height is far above the square's reach but the prism's bounding sphere is not to matter.
-    state.orientation = Quat(Eigen::AngleAxisd(random.uniform(0.0, 2.0 * std::numbers::pi), Vec3::UnitY()) * Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));
+    // Its length along y. Its height is far above the square's reach but the prism's bounding sphere is not
+    // to matter.
+    state.orientation = Quat(Eigen::AngleAxisd(random.uniform(0.0, 2.0 * std::numbers::pi), Vec3::UnitY()) *
+                             Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));
     state.position.z() = 1.0 + random.uniform();
     state.velocity = {0.0, 0.0, -1.0};
     state.angular_velocity = {0.0, spin_over_speed * (random.uniform() < 0.5 ? -1.0 : 1.0), 0.0};
@@ -103,7 +109,8 @@ TEST(ContactTime, SquareFallsFromHalfItsSideToHalfItsDiagonal) {
     EXPECT_GE(std::ranges::min(square.heights), low - 1e-4) << ratio;
     EXPECT_LE(std::ranges::max(square.heights), high + 1e-4) << ratio;
   }
-  // It turns by ω/v times what it falls through before a corner comes round again, and meets the line within that of its greatest height.
+  // It turns by ω/v times what it falls through before a corner comes round again, and meets the line within
+  // that of its greatest height.
   EXPECT_GT(square_heights(20.0, 400).mean(), high - 0.04);
   EXPECT_GT(square_heights(100.0, 100).mean(), high - 0.008);
 }
@@ -115,8 +122,10 @@ TEST(ContactTime, SquareWithoutSpinHasTheHeightsOfARandomOrientation) {
   std::ranges::sort(square.heights);
   double distance = 0.0;
   for (int i = 0; i < kTrials; ++i) {
-    const double expected = 1.0 - std::acos(std::min(1.0, std::numbers::sqrt2 * square.heights[i])) / (std::numbers::pi / 4);
-    distance = std::max({distance, std::abs(expected - double(i) / kTrials), std::abs(expected - (i + 1.0) / kTrials)});
+    const double expected =
+        1.0 - std::acos(std::min(1.0, std::numbers::sqrt2 * square.heights[i])) / (std::numbers::pi / 4);
+    distance = std::max(
+        {distance, std::abs(expected - double(i) / kTrials), std::abs(expected - (i + 1.0) / kTrials)});
   }
   EXPECT_LT(distance, 1.95 / std::sqrt(double(kTrials)));  // Kolmogorov–Smirnov, p .001
   EXPECT_NEAR(square.mean(), 2.0 / std::numbers::pi, 4.0 * 0.063 / std::sqrt(double(kTrials)));

@@ -14,7 +14,8 @@ namespace {
 SignatureSettings quick_settings() {
   SignatureSettings settings;
   settings.n_theta = 3, settings.n_phi = 3, settings.n_alpha = 8, settings.trials_per_cell = 24;
-  settings.held_out_conditions = 40, settings.height_trials = 50, settings.settling_trials = 24, settings.clips = 8;
+  settings.held_out_conditions = 40, settings.height_trials = 50, settings.settling_trials = 24,
+  settings.clips = 8;
   return settings;
 }
 
@@ -26,21 +27,26 @@ std::vector<std::byte> bytes_of(Signature signature) {
 }
 
 TEST(Measure, TheSameForEveryThreadCountAndScale) {
-  const Signature one = measure_signature(make_test_box(), quick_settings(), 1), two = measure_signature(make_test_box(), quick_settings(), 2);
+  const Signature one = measure_signature(make_test_box(), quick_settings(), 1),
+                  two = measure_signature(make_test_box(), quick_settings(), 2);
   EXPECT_EQ(bytes_of(one), bytes_of(two));
-  const Signature larger = measure_signature(make_shape("box", make_box({2.0, 3.0, 4.0})), quick_settings(), 2);
-  for (std::size_t cell = 0; cell < one.bouncing.cells.mean.size(); ++cell)  // scaled copies differ by rounding only
+  const Signature larger =
+      measure_signature(make_shape("box", make_box({2.0, 3.0, 4.0})), quick_settings(), 2);
+  for (std::size_t cell = 0; cell < one.bouncing.cells.mean.size();
+       ++cell)  // scaled copies differ by rounding only
     EXPECT_LT((one.bouncing.cells.mean[cell] - larger.bouncing.cells.mean[cell]).norm(), 0.05) << cell;
 }
 
 TEST(Measure, SharesPutTogetherGiveTheSameBytes) {
   for (const bool paper_grid : {false, true}) {
     SignatureSettings settings = quick_settings();
-    settings.n_theta = settings.n_phi = 1, settings.paper_grid = paper_grid, settings.draw = ResponseDraw::empirical;
+    settings.n_theta = settings.n_phi = 1, settings.paper_grid = paper_grid,
+    settings.draw = ResponseDraw::empirical;
     const Shape box = make_test_box();
     std::vector<Measurement> shares;
     for (const int i : {2, 0, 1}) shares.push_back(measure_units(box, settings, {i, 3}, {.threads = 1}));
-    EXPECT_EQ(bytes_of(make_signature(box, settings, merge_measurements(shares))), bytes_of(measure_signature(box, settings, 2)));
+    EXPECT_EQ(bytes_of(make_signature(box, settings, merge_measurements(shares))),
+              bytes_of(measure_signature(box, settings, 2)));
   }
 }
 
@@ -69,13 +75,15 @@ TEST(Measure, CollisionHeightGrowsWithSpin) {
   }
 }
 
-// How far the scale-free tables are from the paper's own, at the cells of the latter between two speeds: the mean square of the difference over what
-// sampling explains, and the root of what it does not explain, over s.
+// How far the scale-free tables are from the paper's own, at the cells of the latter between two speeds: the
+// mean square of the difference over what sampling explains, and the root of what it does not explain, over
+// s.
 struct Disagreement {
   double over_sampling = 0.0, unexplained = 0.0;
 };
 
-Disagreement compare_tables(const Signature& scale_free, const Signature& by_speed, double slowest, double fastest, double bounce_velocity) {
+Disagreement compare_tables(const Signature& scale_free, const Signature& by_speed, double slowest,
+                            double fastest, double bounce_velocity) {
   double over_sampling = 0.0, unexplained = 0.0;
   int count = 0;
   const SpeedTable& table = by_speed.by_speed;
@@ -84,7 +92,8 @@ Disagreement compare_tables(const Signature& scale_free, const Signature& by_spe
     if (c.speed < slowest || c.speed > fastest) continue;
     const FoundResponse found = find_response(scale_free, c, bounce_velocity);
     Response mean = found.mean;  // relative to a V_particle that bounces in part; the paper's always does
-    mean[0] -= float((1.0 - found.bouncing_part) * by_speed.settings.law.restitution * c.speed / c.speed_unit() * std::cos(c.theta));
+    mean[0] -= float((1.0 - found.bouncing_part) * by_speed.settings.law.restitution * c.speed /
+                     c.speed_unit() * std::cos(c.theta));
     const Response difference = mean - table.cells.mean[cell];
     const Response variance = (table.cells.deviation[cell].cwiseAbs2() / float(table.cells.trials[cell])) +
                               (found.deviation.cwiseAbs2() / float(scale_free.settings.trials_per_cell));
@@ -112,7 +121,8 @@ TEST(Measure, ScaleFreeTablesAgreeWithThePapersOnBothSidesOfBounceVel) {
   const Disagreement without_companion = compare_tables(scale_free, by_speed, 0.0, 0.2, 0.0);
   EXPECT_LT(across.over_sampling, 1.7);
   EXPECT_LT(across.unexplained, 0.02);
-  EXPECT_GT(without_companion.unexplained, 2.0 * across.unexplained) << without_companion.over_sampling << " " << across.over_sampling;
+  EXPECT_GT(without_companion.unexplained, 2.0 * across.unexplained)
+      << without_companion.over_sampling << " " << across.over_sampling;
 }
 
 TEST(Measure, TableErrorIsMetWithFewerTrialsThanAUniformGridTakes) {
@@ -130,7 +140,8 @@ TEST(Measure, CertificateSaysHowDrawsDifferFromTrialsOutsideTheTable) {
   SignatureSettings settings = quick_settings();
   settings.held_out_conditions = 200, settings.trials_per_cell = 60;
   std::array<double, 3> ks{};
-  for (const ResponseDraw draw : {ResponseDraw::independent, ResponseDraw::correlated, ResponseDraw::empirical}) {
+  for (const ResponseDraw draw :
+       {ResponseDraw::independent, ResponseDraw::correlated, ResponseDraw::empirical}) {
     settings.draw = draw;
     const TableCertificate c = measure_signature(make_test_box(), settings).bouncing_certificate;
     EXPECT_EQ(c.held_out, 200u * 16u);

@@ -8,8 +8,9 @@
 namespace lodestone {
 namespace {
 
-std::vector<SettlingRecord> settle(const Shape& shape, std::uint32_t count, bool whole = false) {
-  SettlingTrial trial(make_measuring_shape(shape), {0.4, 0.5});
+std::vector<SettlingRecord> settle(const Shape& shape, std::uint32_t count, bool whole = false,
+                                   double friction = 0.5) {
+  SettlingTrial trial(make_measuring_shape(shape), {0.4, friction});
   std::vector<SettlingRecord> records;
   for (std::uint32_t i = 0; i < count; ++i) records.push_back(trial.run(9, i, whole));
   return records;
@@ -18,7 +19,8 @@ std::vector<SettlingRecord> settle(const Shape& shape, std::uint32_t count, bool
 TEST(RestPoses, CubeRestsEvenlyOnItsSixFaces) {
   constexpr int kTrials = 1200;
   const Shape cube = make_shape("cube", make_box({0.3, 0.3, 0.3}));
-  const std::vector<RestPose> poses = find_rest_poses(settle(cube, kTrials), *make_measuring_shape(cube), 0.004);
+  const std::vector<RestPose> poses =
+      find_rest_poses(settle(cube, kTrials), *make_measuring_shape(cube), 0.004);
   ASSERT_EQ(poses.size(), 6u);
   double chi_squared = 0.0;
   for (const RestPose& pose : poses) {
@@ -42,7 +44,9 @@ TEST(RestPoses, LongBoxRarelyStandsOnItsEnd) {
 
 // Ending a drop where its pose is certain does not change the pose.
 TEST(RestPoses, ThePoseThatIsCertainIsThePoseAtRest) {
-  for (const Shape& shape : {make_shape("box", make_box({0.2, 0.3, 0.4})), make_shape("l", make_l(0.3, 0.2, 0.08, 0.1)), make_shape("needle", make_needle(0.4, 0.01))}) {
+  for (const Shape& shape :
+       {make_shape("box", make_box({0.2, 0.3, 0.4})), make_shape("l", make_l(0.3, 0.2, 0.08, 0.1)),
+        make_shape("needle", make_needle(0.4, 0.01))}) {
     const std::vector<SettlingRecord> certain = settle(shape, 100), whole = settle(shape, 100, true);
     for (std::size_t i = 0; i < whole.size(); ++i) {
       ASSERT_TRUE(whole[i].rests && certain[i].rests);
@@ -51,6 +55,29 @@ TEST(RestPoses, ThePoseThatIsCertainIsThePoseAtRest) {
       EXPECT_GE(whole[i].states.size(), 2u);
     }
   }
+}
+
+// It slides for ever; each drop took half a minute of the simulated world.
+TEST(RestPoses, ABoxWithoutFrictionHasThem) {
+  const Shape box = make_shape("box", make_box({0.2, 0.3, 0.4}));
+  for (const double friction : {0.0, 0.01}) {
+    int rest = 0;
+    for (const bool whole : {false, true})
+      for (const SettlingRecord& record : settle(box, 40, whole, friction)) {
+        rest += record.rests;
+        if (!record.rests) continue;
+        EXPECT_GT(record.normal.cwiseAbs().maxCoeff(), 0.99);
+        // What slides on is no clip.
+        if (record.states.empty()) continue;
+        EXPECT_LT(record.states.back().velocity.norm(), 0.05);
+      }
+    EXPECT_GT(rest, 72) << friction;
+  }
+}
+
+TEST(RestPoses, ABallHasNoneAndIsNotDropped) {
+  for (const SettlingRecord& record : settle(make_sphere_shape(0.1), 1'000'000, true))
+    ASSERT_FALSE(record.rests);
 }
 
 }  // namespace

@@ -18,14 +18,17 @@ namespace {
 SignatureSettings quick_settings() {
   SignatureSettings settings;
   settings.n_theta = 2, settings.n_phi = 2, settings.n_alpha = 3, settings.trials_per_cell = 8;
-  settings.held_out_conditions = 4, settings.height_trials = 20, settings.settling_trials = 12, settings.clips = 3;
+  settings.held_out_conditions = 4, settings.height_trials = 20, settings.settling_trials = 12,
+  settings.clips = 3;
   return settings;
 }
 
 Shape make_test_box() { return make_shape("box", make_box({0.2, 0.3, 0.4})); }
 
 std::filesystem::path file_for_test() {
-  return std::filesystem::temp_directory_path() / (std::string("lodestone-") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv");
+  return std::filesystem::temp_directory_path() /
+         (std::string("lodestone-") + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+          ".csv");
 }
 
 TEST(FindCell, IsTheInverseOfCenter) {
@@ -34,18 +37,23 @@ TEST(FindCell, IsTheInverseOfCenter) {
   const ResponseTable grid = make_response_grid(settings);
   for (std::int64_t cell = 0; cell < grid.size(); ++cell) ASSERT_EQ(grid.find_cell(grid.center(cell)), cell);
   const SpeedTable speeds = make_speed_grid(settings);
-  for (std::int64_t cell = 0; cell < speeds.size(); ++cell) ASSERT_EQ(speeds.find_cell(speeds.center(cell)), cell);
+  for (std::int64_t cell = 0; cell < speeds.size(); ++cell)
+    ASSERT_EQ(speeds.find_cell(speeds.center(cell)), cell);
 }
 
 TEST(CollisionVectors, ThereAndBackInAnyFrame) {
   for (std::uint32_t i = 0; i < 200; ++i) {
     RandomStream random(1, i, 0);
-    const CollisionConfiguration c{.theta = random.uniform(0.01, 1.5), .phi = random.uniform(0.1, 3.0), .psi = random.uniform(0.0, 6.28),
-                                   .speed = random.uniform(0.1, 5.0), .spin = random.uniform(0.1, 5.0)};
+    const CollisionConfiguration c{.theta = random.uniform(0.01, 1.5),
+                                   .phi = random.uniform(0.1, 3.0),
+                                   .psi = random.uniform(0.0, 6.28),
+                                   .speed = random.uniform(0.1, 5.0),
+                                   .spin = random.uniform(0.1, 5.0)};
     const Response response = Response::NullaryExpr([&] { return float(random.uniform(-1.0, 1.0)); });
     MeasuredCollision collision = collision_with(c, response, 0.3, 0.4);
     const Quat turn = random.orientation();
-    for (Vec3* v : {&collision.velocity_before, &collision.angular_velocity_before, &collision.normal, &collision.velocity_after, &collision.angular_velocity_after})
+    for (Vec3* v : {&collision.velocity_before, &collision.angular_velocity_before, &collision.normal,
+                    &collision.velocity_after, &collision.angular_velocity_after})
       *v = turn * *v;
     const CollisionConfiguration back = configuration_of(collision, 0.3);
     EXPECT_NEAR(back.theta, c.theta, 1e-9);
@@ -61,7 +69,8 @@ double greatest_difference(const ResponseCells& a, const ResponseCells& b) {
   double greatest = 0.0;
   EXPECT_EQ(a.trials, b.trials);
   for (std::size_t i = 0; i < a.mean.size(); ++i)
-    greatest = std::max({greatest, double((a.mean[i] - b.mean[i]).cwiseAbs().maxCoeff()), double((a.deviation[i] - b.deviation[i]).cwiseAbs().maxCoeff())});
+    greatest = std::max({greatest, double((a.mean[i] - b.mean[i]).cwiseAbs().maxCoeff()),
+                         double((a.deviation[i] - b.deviation[i]).cwiseAbs().maxCoeff())});
   return greatest;
 }
 
@@ -79,20 +88,23 @@ TEST(SignatureFromTrials, ExportedTrialsGiveTheSameTables) {
     SignatureSettings other = settings;
     other.seed = 77;
     TrialCoverage coverage;
-    const Signature again = make_signature_from_trials(box, other, load_trials(file_for_test()), {}, &coverage);
+    const Signature again =
+        make_signature_from_trials(box, other, load_trials(file_for_test()), {}, &coverage);
     EXPECT_EQ(coverage.measured_cells, coverage.cells);
     EXPECT_EQ(coverage.left_out, 0);
     EXPECT_LT(greatest_difference(ode.bouncing.cells, again.bouncing.cells), 2e-6);
     EXPECT_LT(greatest_difference(ode.non_bouncing.cells, again.non_bouncing.cells), 2e-6);
     EXPECT_LT(greatest_difference(ode.by_speed.cells, again.by_speed.cells), 2e-6);
     const Signature unlike = make_signature(box, other, measure_units(box, other, {}));
-    const auto& [a, b] = paper_grid ? std::tie(ode.by_speed.cells, unlike.by_speed.cells) : std::tie(ode.bouncing.cells, unlike.bouncing.cells);
+    const auto& [a, b] = paper_grid ? std::tie(ode.by_speed.cells, unlike.by_speed.cells)
+                                    : std::tie(ode.bouncing.cells, unlike.bouncing.cells);
     EXPECT_GT(greatest_difference(a, b), 0.01);
     ASSERT_EQ(ode.rest_poses.size(), again.rest_poses.size());
     for (std::size_t i = 0; i < ode.rest_poses.size(); ++i) {
       EXPECT_NEAR(ode.rest_poses[i].frequency, again.rest_poses[i].frequency, 1e-12);
       EXPECT_LT((ode.rest_poses[i].normal - again.rest_poses[i].normal).norm(), 1e-6);
-      EXPECT_NEAR(ode.rest_poses[i].height, again.rest_poses[i].height, 2e-3);  // of a body that ODE lets sink a little
+      EXPECT_NEAR(ode.rest_poses[i].height, again.rest_poses[i].height,
+                  2e-3);  // of a body that ODE lets sink a little
     }
   }
   std::filesystem::remove(file_for_test());
@@ -102,8 +114,13 @@ TEST(SignatureFromTrials, RowsThatDifferGiveOtherTables) {
   const Shape box = make_test_box();
   MeasuredTrials trials;
   for (int i = 0; i < 5; ++i)
-    trials.collisions.push_back({{0.5, 0.0, -1.0}, {0.0, 4.0, 0.1 * i}, Vec3::UnitZ(), {0.4, 0.0, 0.1 * i}, {0.0, 1.0, 0.0}});
-  trials.collisions.push_back({{0.5, 0.0, 1.0}, {0.0, 4.0, 0.0}, Vec3::UnitZ(), {0.4, 0.0, 0.1}, {0.0, 1.0, 0.0}});  // away from the plane
+    trials.collisions.push_back(
+        {{0.5, 0.0, -1.0}, {0.0, 4.0, 0.1 * i}, Vec3::UnitZ(), {0.4, 0.0, 0.1 * i}, {0.0, 1.0, 0.0}});
+  trials.collisions.push_back({{0.5, 0.0, 1.0},
+                               {0.0, 4.0, 0.0},
+                               Vec3::UnitZ(),
+                               {0.4, 0.0, 0.1},
+                               {0.0, 1.0, 0.0}});  // away from the plane
   trials.rest_normals = {Vec3::UnitX(), Vec3::UnitX(), -Vec3::UnitZ()};
   TrialCoverage coverage;
   const Signature signature = make_signature_from_trials(box, quick_settings(), trials, {}, &coverage);
@@ -113,7 +130,9 @@ TEST(SignatureFromTrials, RowsThatDifferGiveOtherTables) {
   const std::int64_t cell = signature.bouncing.find_cell(configuration_of(trials.collisions[2], box.radius));
   EXPECT_EQ(signature.bouncing.cells.trials[std::size_t(cell)], 5U);
   Response mean = Response::Zero();
-  for (int i = 0; i < 5; ++i) mean += response_of(trials.collisions[std::size_t(i)], box.radius, signature.settings.law.restitution) / 5.0f;
+  for (int i = 0; i < 5; ++i)
+    mean +=
+        response_of(trials.collisions[std::size_t(i)], box.radius, signature.settings.law.restitution) / 5.0f;
   EXPECT_LT((signature.bouncing.cells.mean[std::size_t(cell)] - mean).norm(), 1e-6f);
   ASSERT_EQ(signature.rest_poses.size(), 2U);
   EXPECT_NEAR(signature.rest_poses[0].frequency, 2.0 / 3.0, 1e-12);
@@ -139,11 +158,13 @@ TEST(MeasuredTrials, WhatIsWrongIsNamedWithItsLine) {
   expect_error("", ":1: found ''");
   expect_error("kind,x\n", "expected the heading");
   expect_error(heading, "found no row");
-  expect_error(heading + "rest,,,,,,,0,0,1,,,,,,\ncollision,1,2\n", ":3: found a row of another length, expected 16 columns");
+  expect_error(heading + "rest,,,,,,,0,0,1,,,,,,\ncollision,1,2\n",
+               ":3: found a row of another length, expected 16 columns");
   expect_error(heading + "rest,,,,,,,0,0,2,,,,,,\n", ":2: found a normal of length 2");
   expect_error(heading + "rest,1,,,,,,0,0,1,,,,,,\n", "nothing but a normal");
   expect_error(heading + "drop,,,,,,,0,0,1,,,,,,\n", "found 'drop' in column 1");
-  expect_error(heading + "collision,0,0,nan,0,0,0,0,0,1,0,0,0,0,0,0\n", "found 'nan' in column 4, expected a finite number");
+  expect_error(heading + "collision,0,0,nan,0,0,0,0,0,1,0,0,0,0,0,0\n",
+               "found 'nan' in column 4, expected a finite number");
   expect_error(heading + "collision,0,0,,0,0,0,0,0,1,0,0,0,0,0,0\n", "found '' in column 4");
   std::filesystem::remove(file);
 }

@@ -17,8 +17,10 @@ TEST(BroadPhaseBench, EveryLayoutHasThePairsThatOthersFind) {
   ASSERT_EQ(rows.size(), ball_layouts().size());
   for (const BroadPhaseRow& row : rows) {
     EXPECT_EQ(row.fault, "") << row.layout;
-    EXPECT_TRUE(row.checked_by.starts_with("hash") && row.checked_by.ends_with("all")) << row.layout << ": " << row.checked_by;
-    EXPECT_NE(row.checked_by.find(" sweep "), std::string::npos) << row.layout << ": " << row.checked_by;  // ODE's hash space itself misses some of mixed sizes
+    EXPECT_TRUE(row.checked_by.starts_with("hash") && row.checked_by.ends_with("all"))
+        << row.layout << ": " << row.checked_by;
+    EXPECT_NE(row.checked_by.find(" sweep "), std::string::npos)
+        << row.layout << ": " << row.checked_by;  // ODE's hash space itself misses some of mixed sizes
     EXPECT_GT(row.fill_ns, 0.0);
     EXPECT_GT(row.cells, 1) << row.layout;
     EXPECT_EQ(row.grids > 1, row.layout == "mixed") << row.layout;
@@ -58,7 +60,8 @@ TEST(BroadPhaseReport, NamesRowsWhosePairsDiffer) {
 using BroadPhaseCommand = testing::CliTest;
 
 TEST_F(BroadPhaseCommand, PrintsJsonAndWritesCsv) {
-  const auto ended = run("bench broad_phase --bodies 60,90 --layouts layer,mixed --steps 2 --json --csv " + name("figures.csv"));
+  const auto ended = run("bench broad_phase --bodies 60,90 --layouts layer,mixed --steps 2 --json --csv " +
+                         name("figures.csv"));
   EXPECT_EQ(ended.exit_code, 0) << ended.out;
   const auto json = nlohmann::json::parse(ended.out);
   ASSERT_EQ(json["rows"].size(), 4U);

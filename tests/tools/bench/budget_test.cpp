@@ -18,12 +18,17 @@ TEST(FallingHeap, BodiesStartApartAndAboveTheGround) {
   for (std::size_t i = 0; i < heap.starts.size(); ++i) {
     EXPECT_GE(heap.starts[i].position.z(), 0.15);
     EXPECT_LE(heap.starts[i].position.head<2>().norm(), heap.radius_m);
-    for (std::size_t j = 0; j < i; ++j) EXPECT_GE((heap.starts[i].position - heap.starts[j].position).norm(), 0.3);
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GE((heap.starts[i].position - heap.starts[j].position).norm(), 0.3);
   }
 }
 
 BudgetFigures figures(double p99, int over, double max) {
-  return {.budget_ms = 4.0, .budget_work = std::nullopt, .steps = 591, .over = over, .step_ms = {.p99 = p99, .max = max}};
+  return {.budget_ms = 4.0,
+          .budget_work = std::nullopt,
+          .steps = 591,
+          .over = over,
+          .step_ms = {.p99 = p99, .max = max}};
 }
 
 TEST(BudgetBench, KeptIsWhatItSays) {
@@ -65,15 +70,20 @@ TEST(BudgetBench, ItIsTheNearestThatAreFull) {
 using BudgetCommand = testing::CliTest;
 
 TEST_F(BudgetCommand, PrintsJsonAndWritesCsv) {
-  const auto ended = testing::run_shell(testing::quoted(LODESTONE_CLI) + " bench budget --bodies 20 --budgets 4,8 --work 500 --steps 30 --json --csv " + name("figures.csv") + " 2>&1");
-  EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 1) << ended.out;  // whether so short a run keeps its budget is the machine's matter
+  const auto ended =
+      testing::run_shell(testing::quoted(LODESTONE_CLI) +
+                         " bench budget --bodies 20 --budgets 4,8 --work 500 --steps 30 --json --csv " +
+                         name("figures.csv") + " 2>&1");
+  EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 1)
+      << ended.out;  // whether so short a run keeps its budget is the machine's matter
   const auto json = nlohmann::json::parse(ended.out);
   ASSERT_EQ(json["rows"].size(), 6u);
   EXPECT_EQ(json["rows"][1]["budget_ms"], 8.0);
   EXPECT_TRUE(json["rows"][2]["budget_ms"].is_null());
   EXPECT_TRUE(json["rows"][2]["over"].is_null());
   EXPECT_TRUE(json["work_repeats"].get<bool>());
-  EXPECT_TRUE(testing::bytes_of(at("figures.csv")).starts_with("budget_ms,budget_work,threads,steps,p50_ms,p99_ms,max_ms,over,"));
+  EXPECT_TRUE(testing::bytes_of(at("figures.csv"))
+                  .starts_with("budget_ms,budget_work,threads,steps,p50_ms,p99_ms,max_ms,over,"));
   EXPECT_EQ(run("bench budget --steps 9").exit_code, 2);
 }
 

@@ -17,9 +17,10 @@ TEST(SettledBench, ABodyThatFallsInWakesAFew) {
     EXPECT_EQ(row.awake, 0) << int(row.model);
     EXPECT_LT(row.settling_steps, 300);
     EXPECT_GT(row.woken, 1);  // the one that fell, and another
-    EXPECT_LT(row.woken, 40);
+    EXPECT_LE(row.woken, 8);  // 5 at tables, 2 at support (a million sleepers: 4 and 5)
     EXPECT_GT(row.farthest_woken_m, 0.0);
-    EXPECT_LT(row.farthest_woken_m, 10.0);
+    EXPECT_LT(row.farthest_woken_m,
+              row.model == StatisticalModel::tables ? 2.0 : 8.0);  // 1.07 and 4.1 (1.1 and 5.7)
     EXPECT_EQ(row.woken_unseen, 0);
     EXPECT_GT(row.settled_us, 0.0);
     EXPECT_GT(row.bytes_per_body, 100.0);

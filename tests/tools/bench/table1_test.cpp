@@ -19,7 +19,8 @@ TEST(Table1Job, NoTwoBodiesTouchAtTheStart) {
     for (int i = 0; i < bodies; ++i) centers.push_back(table1_start(i, bodies, 1).position);
     for (int i = 0; i < bodies; ++i) {
       EXPECT_GT(centers[i].z(), 2.0 * radius);
-      for (int j = 0; j < i; ++j) ASSERT_GT((centers[i] - centers[j]).norm(), 2.0 * radius) << i << ' ' << j << " of " << bodies;
+      for (int j = 0; j < i; ++j)
+        ASSERT_GT((centers[i] - centers[j]).norm(), 2.0 * radius) << i << ' ' << j << " of " << bodies;
     }
   }
 }
@@ -65,14 +66,26 @@ TEST(Table1, RowsThatWouldTakeTooLongAreLeftOut) {
   EXPECT_NE(measure_table1(settings)[0].left_out.find("1000 bodies"), std::string::npos);
 }
 
-TEST(Bandwidth, OfACacheIsNoLessThanAFewGigabytes) {
-  EXPECT_GT(measure_bandwidth(1 << 18, 1), 0.1);
+// Not in bytes, nor a thousand times too much: no bound of speed, which is the machine's.
+TEST(Bandwidth, OfACacheIsInGigabytesASecond) {
+  const double found = measure_bandwidth(1 << 18, 1);
+  EXPECT_GT(found, 0.1);
+  EXPECT_LT(found, 1e4);
   EXPECT_GT(level3_bytes(), level2_bytes());
 }
 
 TEST(Table1, WhatARowMovesIsSetBesideTheMachine) {
-  std::vector<Table1Row> rows = {{.bodies = 1'000, .method = "statistical", .model = "tables", .step_ms = 0.1, .bytes_moved_per_body = 1'000.0},
-                                 {.bodies = 1'000, .method = "statistical", .model = "tables", .threads = 2, .step_ms = 0.1, .bytes_moved_per_body = 1'000.0},
+  std::vector<Table1Row> rows = {{.bodies = 1'000,
+                                  .method = "statistical",
+                                  .model = "tables",
+                                  .step_ms = 0.1,
+                                  .bytes_moved_per_body = 1'000.0},
+                                 {.bodies = 1'000,
+                                  .method = "statistical",
+                                  .model = "tables",
+                                  .threads = 2,
+                                  .step_ms = 0.1,
+                                  .bytes_moved_per_body = 1'000.0},
                                  {.bodies = 1'000, .method = "sphere", .step_ms = 0.1}};
   compare_with({.threads = 2, .memory_one = 20.0, .memory = 40.0, .cache_one = 100.0, .cache = 200.0}, rows);
   EXPECT_DOUBLE_EQ(*rows[0].moved_gb_per_s, 10.0);
@@ -80,24 +93,32 @@ TEST(Table1, WhatARowMovesIsSetBesideTheMachine) {
   EXPECT_DOUBLE_EQ(*rows[1].share_of_memory, 0.25);
   EXPECT_DOUBLE_EQ(*rows[1].share_of_cache, 0.05);
   EXPECT_FALSE(rows[2].moved_gb_per_s);
-  const std::string text = roofline_text_of({.threads = 2, .memory_one = 20.0, .memory = 40.0, .cache_one = 100.0, .cache = 200.0}, rows);
+  const std::string text = roofline_text_of(
+      {.threads = 2, .memory_one = 20.0, .memory = 40.0, .cache_one = 100.0, .cache = 200.0}, rows);
   EXPECT_EQ(std::ranges::count(text, '\n'), 6) << text;  // the machine, a gap, a heading, a rule, two rows
 }
 
 TEST(Table1Report, CsvHasACellForEachKeyOfTheJson) {
   const std::vector<Table1Row> rows = {{.bodies = 10, .method = "full_plain", .left_out = "too slow"},
-                                       {.bodies = 10, .method = "statistical", .model = "tables", .step_ms = 0.5, .awake = {3, 2, 1}, .state_hash = 255}};
-  const auto file = std::filesystem::temp_directory_path() / ("table1-" + std::to_string(::getpid()) + ".csv");
+                                       {.bodies = 10,
+                                        .method = "statistical",
+                                        .model = "tables",
+                                        .step_ms = 0.5,
+                                        .awake = {3, 2, 1},
+                                        .state_hash = 255}};
+  const auto file =
+      std::filesystem::temp_directory_path() / ("table1-" + std::to_string(::getpid()) + ".csv");
   save_csv(rows, file);
   std::istringstream lines(testing::bytes_of(file));
   std::filesystem::remove(file);
   const auto json = json_of(rows);
-  for (std::string line; std::getline(lines, line);) EXPECT_EQ(std::size_t(std::ranges::count(line, ',')) + 1, json["rows"][0].size()) << line;
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_EQ(std::size_t(std::ranges::count(line, ',')) + 1, json["rows"][0].size()) << line;
   EXPECT_TRUE(json["rows"][0]["step_ms"].is_null());
   EXPECT_EQ(json["rows"][0]["reason"], "too slow");
   EXPECT_EQ(json["rows"][1]["state_hash"], "00000000000000ff");
   EXPECT_EQ(json["rows"][1]["awake"][2], 1);
-  EXPECT_THROW(save_csv(rows, "/no/such/folder/table.csv"), InputError);
+  EXPECT_THROW(save_csv(rows, "/dev/null/table.csv"), InputError);
 }
 
 }  // namespace

@@ -31,7 +31,9 @@ TEST(TransitionFigures, UnseenIsWhatItSays) {
   TransitionFigures within;
   within.changed.p99_px = 1.0, within.with_bodies.max = 0.05, within.gained_j = 0.001, within.scene_j = 1.0;
   EXPECT_TRUE(is_unseen(within));
-  for (const auto& spoil : {+[](TransitionFigures& f) { f.changed.p99_px = 1.01; }, +[](TransitionFigures& f) { f.with_bodies.max = 0.051; }, +[](TransitionFigures& f) { f.with_ground.max = 0.051; },
+  for (const auto& spoil : {+[](TransitionFigures& f) { f.changed.p99_px = 1.01; },
+                            +[](TransitionFigures& f) { f.with_bodies.max = 0.051; },
+                            +[](TransitionFigures& f) { f.with_ground.max = 0.051; },
                             +[](TransitionFigures& f) { f.gained_j = 0.00101; }}) {
     TransitionFigures beyond = within;
     spoil(beyond);

@@ -12,12 +12,15 @@ class Bullet : public ::testing::Test {
   void SetUp() override {
     if (!bullet_available()) GTEST_SKIP() << "built without Bullet";
   }
-  static std::shared_ptr<const Shape> share(Shape shape) { return std::make_shared<const Shape>(std::move(shape)); }
+  static std::shared_ptr<const Shape> share(Shape shape) {
+    return std::make_shared<const Shape>(std::move(shape));
+  }
 };
 
 TEST_F(Bullet, FliesInAParabola) {
   BulletWorld world({});
-  const int body = world.add_body({.shape = share(make_shape("l", make_l(0.3, 0.2, 0.08, 0.1))), .state = {.position = {0, 0, 10}, .velocity = {1, 0, 2}}});
+  const int body = world.add_body({.shape = share(make_shape("l", make_l(0.3, 0.2, 0.08, 0.1))),
+                                   .state = {.position = {0, 0, 10}, .velocity = {1, 0, 2}}});
   for (int i = 0; i < 100; ++i) world.step(0.01);
   EXPECT_NEAR(world.state(body).position.x(), 1.0, 1e-4);
   EXPECT_NEAR(world.state(body).position.z(), 10.0 + 2.0 - 0.5 * 9.81, 0.06);  // first order in the step
@@ -38,7 +41,10 @@ TEST_F(Bullet, BoxComesToRestOnThePlane) {
   BulletWorld world({});
   const Material material{.restitution = 0.0, .friction = 0.5};
   world.add_plane(Vec3::UnitZ(), 0.0, material);
-  const int body = world.add_body({.shape = share(make_shape("box", make_box({0.2, 0.3, 0.4}))), .mass = 24.0, .material = material, .state = {.position = {0, 0, 0.3}}});
+  const int body = world.add_body({.shape = share(make_shape("box", make_box({0.2, 0.3, 0.4}))),
+                                   .mass = 24.0,
+                                   .material = material,
+                                   .state = {.position = {0, 0, 0.3}}});
   for (int i = 0; i < 200; ++i) world.step(1.0 / 60);
   EXPECT_NEAR(world.state(body).position.z(), 0.2, 2e-3);
   EXPECT_LT(world.state(body).velocity.norm(), 1e-2);
@@ -47,7 +53,9 @@ TEST_F(Bullet, BoxComesToRestOnThePlane) {
 TEST_F(Bullet, RestitutionIsTheLowerOfThePair) {
   BulletWorld world({});
   world.add_plane(Vec3::UnitZ(), 0.0, {.restitution = 1.0, .friction = 0.0});
-  const int body = world.add_body({.shape = share(make_sphere_shape(0.1)), .material = {.restitution = 0.5, .friction = 0.0}, .state = {.position = {0, 0, 1.1}}});
+  const int body = world.add_body({.shape = share(make_sphere_shape(0.1)),
+                                   .material = {.restitution = 0.5, .friction = 0.0},
+                                   .state = {.position = {0, 0, 1.1}}});
   double highest = 0.0;
   bool bounced = false;
   for (int i = 0; i < 1000; ++i) {

@@ -26,7 +26,8 @@ DropComparisonSettings few_drops(std::vector<std::string> methods, double dt_s) 
   return settings;
 }
 
-// A method that takes the truth's steps is the truth: nothing in how methods are observed and scored adds to the floor.
+// A method that takes the truth's steps is the truth: nothing in how methods are observed and scored adds to
+// the floor.
 TEST(DropComparison, TheTruthAsAMethodScoresTheFloor) {
   const DropComparison comparison = compare_drops(box_job(), few_drops({"full_1"}, kObservationStep / 34));
   ASSERT_EQ(comparison.rows.size(), 1U);
@@ -81,8 +82,9 @@ TEST(DropReport, JsonHasTheKeysThatScriptsReadAndNullsForWhatIsUndefined) {
   const auto json = json_of(comparison);
   for (const char* key : {"shape", "trials", "rows"}) EXPECT_TRUE(json.contains(key)) << key;
   const auto row = json["rows"][0];
-  for (const char* key : {"method", "model", "dt_s", "substeps", "score", "score_ci", "floor", "floor_ci", "parts", "w_bounces",
-                          "w_rest_time", "w_distance", "w_peak", "ke_w", "tv", "ns_per_body_step"})
+  for (const char* key :
+       {"method", "model", "dt_s", "substeps", "score", "score_ci", "floor", "floor_ci", "parts", "w_bounces",
+        "w_rest_time", "w_distance", "w_peak", "ke_w", "tv", "ns_per_body_step"})
     EXPECT_TRUE(row.contains(key)) << key;
   EXPECT_TRUE(row["model"].is_null());
   EXPECT_TRUE(row["tv"].is_null());
@@ -95,7 +97,7 @@ TEST(DropReport, CsvHasALineForEachDrop) {
   comparison.truth_b.resize(2);
   comparison.rows.push_back({.method = "full", .model = ""});
   comparison.rows[0].drops.resize(2);
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "lodestone_drop_report";
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lodestone_drop_report";
   save_drops(comparison, folder);
   std::ifstream in(folder / "drops.csv");
   int lines = 0;

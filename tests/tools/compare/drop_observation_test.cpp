@@ -24,9 +24,11 @@ DropObservation observe(double seconds, Height height, Speed speed, const Vec3& 
   return observer.result();
 }
 
-// Without rotation, from rest at 1.1 m: the lowest point falls 1 m, then leaves with half its speed, for two bounces.
+// Without rotation, from rest at 1.1 m: the lowest point falls 1 m, then leaves with half its speed, for two
+// bounces.
 struct BouncingCube {
-  double fall = std::sqrt(2.0 / kGravity), impact = std::sqrt(2.0 * kGravity), second = fall + impact / kGravity;
+  double fall = std::sqrt(2.0 / kGravity), impact = std::sqrt(2.0 * kGravity),
+         second = fall + impact / kGravity;
   double height(double t) const {
     if (t < fall) return 1.1 - 0.5 * kGravity * t * t;
     if (t < second) return 0.1 + 0.5 * impact * (t - fall) - 0.5 * kGravity * (t - fall) * (t - fall);
@@ -40,7 +42,8 @@ struct BouncingCube {
 };
 
 TEST(DropObservation, FreeFallHasNoBounce) {
-  const DropObservation drop = observe(2.0, [](double t) { return 50 - 0.5 * kGravity * t * t; }, [](double t) { return -kGravity * t; });
+  const DropObservation drop = observe(
+      2.0, [](double t) { return 50 - 0.5 * kGravity * t * t; }, [](double t) { return -kGravity * t; });
   EXPECT_EQ(drop.bounces, 0);
   EXPECT_EQ(drop.first_rebound_m, 0.0);
   EXPECT_FALSE(drop.at_rest);
@@ -48,7 +51,8 @@ TEST(DropObservation, FreeFallHasNoBounce) {
 }
 
 TEST(DropObservation, LyingStillHasNoBounceAndRests) {
-  const DropObservation drop = observe(1.0, [](double) { return 0.1; }, [](double) { return 0.0; });
+  const DropObservation drop = observe(
+      1.0, [](double) { return 0.1; }, [](double) { return 0.0; });
   EXPECT_EQ(drop.bounces, 0);
   EXPECT_TRUE(drop.at_rest);
   EXPECT_EQ(drop.rest_time_s, 0.0);
@@ -56,7 +60,8 @@ TEST(DropObservation, LyingStillHasNoBounceAndRests) {
 
 TEST(DropObservation, CountsBouncesAndMeasuresTheFirstRebound) {
   const BouncingCube cube;
-  const DropObservation drop = observe(3.0, [&](double t) { return cube.height(t); }, [&](double t) { return cube.speed(t); });
+  const DropObservation drop = observe(
+      3.0, [&](double t) { return cube.height(t); }, [&](double t) { return cube.speed(t); });
   EXPECT_EQ(drop.bounces, 2);
   ASSERT_TRUE(drop.first_impact);
   EXPECT_LT((drop.first_impact->impulse() - Vec3(0, 0, 1.5 * cube.impact)).norm(), 1e-9);
@@ -67,7 +72,10 @@ TEST(DropObservation, CountsBouncesAndMeasuresTheFirstRebound) {
 
 TEST(DropObservation, UpwardStepsOfTheVelocityBelowTheThresholdAreNoBounces) {
   const auto rising = [](double rise) {
-    return observe(1.0, [](double) { return 0.1; }, [=](double t) { return t < 0.5 ? 0.0 : rise - kGravity * kStep; }).bounces;
+    return observe(
+               1.0, [](double) { return 0.1; },
+               [=](double t) { return t < 0.5 ? 0.0 : rise - kGravity * kStep; })
+        .bounces;
   };
   EXPECT_EQ(rising(0.29), 0);
   EXPECT_EQ(rising(0.31), 1);
@@ -77,8 +85,9 @@ TEST(DropObservation, UpwardStepsOfTheVelocityBelowTheThresholdAreNoBounces) {
 TEST(DropObservation, SlopeCountsAlongItsNormalOnly) {
   const double slope = std::numbers::pi / 4;
   const Vec3 normal(std::sin(slope), 0, std::cos(slope));
-  const DropObservation drop = observe(1.0, [](double t) { return 9 - 0.5 * kGravity * std::sqrt(0.5) * t * t; },
-                                       [](double t) { return -kGravity * std::sqrt(0.5) * t; }, normal);
+  const DropObservation drop = observe(
+      1.0, [](double t) { return 9 - 0.5 * kGravity * std::sqrt(0.5) * t * t; },
+      [](double t) { return -kGravity * std::sqrt(0.5) * t; }, normal);
   EXPECT_EQ(drop.bounces, 0);
   EXPECT_NEAR(drop.distance_m, 0.0, 1e-12);
   EXPECT_LT((drop.up_in_body - normal).norm(), 1e-12);
@@ -93,7 +102,8 @@ TEST(DropObservation, DistanceIsAlongThePlane) {
 }
 
 TEST(DropObservation, KineticEnergyOfAnEarlyEndGoesOn) {
-  const DropObservation drop = observe(1.0, [](double) { return 0.1; }, [](double) { return 2.0; });
+  const DropObservation drop = observe(
+      1.0, [](double) { return 0.1; }, [](double) { return 2.0; });
   ASSERT_EQ(int(drop.kinetic_energy.size()), kKineticEnergySamples);
   EXPECT_FLOAT_EQ(drop.kinetic_energy.front(), 2.0F);
   EXPECT_FLOAT_EQ(drop.kinetic_energy.back(), 2.0F);
@@ -103,7 +113,8 @@ TEST(DropObservation, KineticEnergyCountsRotation) {
   const Shape box = make_shape("box", make_box({0.2, 0.3, 0.4}));
   RigidState state{.velocity = {1, 2, 2}, .angular_velocity = {0, 0, 3}};
   EXPECT_NEAR(kinetic_energy_per_mass(box, state), 4.5 + 0.5 * 9 * (0.04 + 0.09) / 12, 1e-12);
-  state.orientation = Quat(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));  // the body's y axis points up
+  state.orientation =
+      Quat(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));  // the body's y axis points up
   EXPECT_NEAR(kinetic_energy_per_mass(box, state), 4.5 + 0.5 * 9 * (0.04 + 0.16) / 12, 1e-12);
 }
 

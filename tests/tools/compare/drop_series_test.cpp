@@ -7,7 +7,11 @@
 namespace lodestone {
 namespace {
 
-DropJob box_job() { return {.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))), .conditions = {}, .material = {}}; }
+DropJob box_job() {
+  return {.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))),
+          .conditions = {},
+          .material = {}};
+}
 
 DropComparisonSettings few_drops() {
   DropComparisonSettings settings;
@@ -27,8 +31,10 @@ TEST(DropConditions, ChangeOneThingEach) {
     const DropJob& job = cases[i].job;
     EXPECT_EQ(cases[i].name, names[i]);
     EXPECT_TRUE(seen.insert(names[i]).second) << names[i];
-    const int changes = (job.shape != usual.shape) + (job.material.restitution != usual.material.restitution) +
-                        (job.material.friction != usual.material.friction) + (job.conditions.slope != 0.0) + (job.conditions.speed_scale != 1.0);
+    const int changes = (job.shape != usual.shape) +
+                        (job.material.restitution != usual.material.restitution) +
+                        (job.material.friction != usual.material.friction) + (job.conditions.slope != 0.0) +
+                        (job.conditions.speed_scale != 1.0);
     EXPECT_EQ(changes, i == 0 ? 0 : 1) << names[i];
   }
   EXPECT_EQ(cases[0].name, "usual");
@@ -51,8 +57,10 @@ TEST(DropSeries, RowsBearTheNamesOfTheirCases) {
   EXPECT_EQ(json["rows"][0]["condition"], "usual");
   EXPECT_EQ(json["rows"][1]["condition"], "restitution=0");
   EXPECT_EQ(json["rows"][0]["score_over_first"], 1.0);
-  EXPECT_DOUBLE_EQ(json["rows"][1]["score_over_first"].get<double>(), json["rows"][1]["score"].get<double>() / json["rows"][0]["score"].get<double>());
-  for (const char* key : {"method", "model", "dt_s", "substeps", "score", "floor", "parts", "tv", "table_extrapolations"})
+  EXPECT_DOUBLE_EQ(json["rows"][1]["score_over_first"].get<double>(),
+                   json["rows"][1]["score"].get<double>() / json["rows"][0]["score"].get<double>());
+  for (const char* key :
+       {"method", "model", "dt_s", "substeps", "score", "floor", "parts", "tv", "table_extrapolations"})
     EXPECT_TRUE(json["rows"][0].contains(key)) << key;
   EXPECT_TRUE(json["rows"][0]["ns_per_body_step"].is_null());
   EXPECT_NE(text_of("condition", cases, series, true).find("restitution=0"), std::string::npos);
@@ -62,8 +70,16 @@ TEST(DropSeries, RowsBearTheNamesOfTheirCases) {
 TEST(DropSeries, TheTruthOfASmallBodyTakesShorterSteps) {
   const DropJob usual = box_job();
   EXPECT_EQ(make_truth(usual).substeps(), 34);
-  EXPECT_EQ(make_truth({.shape = std::make_shared<const Shape>(scale_shape(*usual.shape, 0.005)), .conditions = {}, .material = {}}).substeps(), 340);
-  EXPECT_EQ(make_truth({.shape = std::make_shared<const Shape>(scale_shape(*usual.shape, 25.0)), .conditions = {}, .material = {}}).substeps(), 34);
+  EXPECT_EQ(make_truth({.shape = std::make_shared<const Shape>(scale_shape(*usual.shape, 0.005)),
+                        .conditions = {},
+                        .material = {}})
+                .substeps(),
+            340);
+  EXPECT_EQ(make_truth({.shape = std::make_shared<const Shape>(scale_shape(*usual.shape, 25.0)),
+                        .conditions = {},
+                        .material = {}})
+                .substeps(),
+            34);
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ TEST(Fidelity, OfTruthWithItselfIsZero) {
 TEST(Fidelity, AShiftIsMeasuredInTheTruthsDeviations) {
   const auto truth = make_drops(2000, 1);
   auto shifted = truth;
-  for (DropObservation& drop : shifted) drop.distance_m += 0.2, drop.rest_time_s += 0.25, drop.first_rebound_m -= 0.02;
+  for (DropObservation& drop : shifted)
+    drop.distance_m += 0.2, drop.rest_time_s += 0.25, drop.first_rebound_m -= 0.02;
   const DropScore score = score_drops(truth, shifted, 1, 2).value;
   EXPECT_NEAR(*score.w_distance, 2.0, 0.06);
   EXPECT_NEAR(*score.w_rest_time, 0.5, 0.015);
@@ -59,8 +60,9 @@ TEST(Fidelity, KineticEnergyErrorIsRelative) {
 TEST(Fidelity, TotalVariationOfRestPoses) {
   const auto truth = make_drops(1000, 1);
   auto method = truth;
-  for (int i = 0; i < 100; ++i) method[i].at_rest = false;                        // "none"
-  for (int i = 100; i < 200; ++i) method[i].up_in_body = -Vec3::UnitY();          // a pose the truth has not: "none", too
+  for (int i = 0; i < 100; ++i) method[i].at_rest = false;  // "none"
+  for (int i = 100; i < 200; ++i)
+    method[i].up_in_body = -Vec3::UnitY();  // a pose the truth has not: "none", too
   EXPECT_NEAR(*score_drops(truth, method, 1, 2).value.tv, 0.2, 1e-12);
 }
 
@@ -98,12 +100,14 @@ TEST(Fidelity, UnequalSizesScoreAlike) {
   const auto method = make_drops(450, 2, 1.0);
   auto twice = method;
   twice.insert(twice.end(), method.begin(), method.end());
-  EXPECT_NEAR(score_drops(truth, twice, 1, 1).value.score, score_drops(truth, method, 1, 1).value.score, 1e-9);
+  EXPECT_NEAR(score_drops(truth, twice, 1, 1).value.score, score_drops(truth, method, 1, 1).value.score,
+              1e-9);
 }
 
 TEST(Fidelity, IntervalRepeatsAndHoldsTheScore) {
   const auto truth = make_drops(200, 1), method = make_drops(200, 2, 0.5);
-  const ScoreWithInterval first = score_drops(truth, method, 7, 50), again = score_drops(truth, method, 7, 50);
+  const ScoreWithInterval first = score_drops(truth, method, 7, 50),
+                          again = score_drops(truth, method, 7, 50);
   EXPECT_EQ(first.interval, again.interval);
   EXPECT_NE(first.interval, score_drops(truth, method, 8, 50).interval);
   EXPECT_LT(first.interval[0], first.value.score);
@@ -115,7 +119,8 @@ TEST(Fidelity, IntervalHasTheWidthOfTheSpreadOverFreshSamples) {
   std::vector<double> scores;
   double width = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    const ScoreWithInterval scored = score_drops(make_drops(100, 2 * seed), make_drops(100, 2 * seed + 1, 1.0), 1, 60);
+    const ScoreWithInterval scored =
+        score_drops(make_drops(100, 2 * seed), make_drops(100, 2 * seed + 1, 1.0), 1, 60);
     scores.push_back(scored.value.score);
     width += (scored.interval[1] - scored.interval[0]) / 40;
   }

@@ -15,7 +15,9 @@ DropObservation with_impact(const Vec3& before, const Vec3& after) {
 
 TEST(ImpactErrors, AreInTenthsOfTheTruthsImpulse) {
   const std::vector<DropObservation> truth(3, with_impact({0, 0, -2}, {0, 0, 2}));
-  const std::vector<DropObservation> method = {with_impact({0, 0, -2}, {0, 0, 2}), with_impact({0, 0, -2}, {0, 0.8, 2}), with_impact({0, 0, -2}, {0, 0, 1})};
+  const std::vector<DropObservation> method = {with_impact({0, 0, -2}, {0, 0, 2}),
+                                               with_impact({0, 0, -2}, {0, 0.8, 2}),
+                                               with_impact({0, 0, -2}, {0, 0, 1})};
   const auto errors = measure_impact_errors(truth, method);
   ASSERT_TRUE(errors);
   EXPECT_EQ(errors->impacts, 3);

@@ -62,7 +62,10 @@ TEST(PileTrials, SupportKeepsMomentum) {
   const DropJob job = box_job();
   const DropMethod support{"statistical", StatisticalMethod{StatisticalModel::support, nullptr}};
   for (std::uint64_t seed = 1; seed <= 8; ++seed)
-    EXPECT_LT(measure_momentum_residual(job, support, {.conditions = {.bodies = 27, .side = 1.6}, .seed = seed}), 1e-12) << seed;
+    EXPECT_LT(
+        measure_momentum_residual(job, support, {.conditions = {.bodies = 27, .side = 1.6}, .seed = seed}),
+        1e-12)
+        << seed;
 }
 
 TEST(PileComparison, UnknownMethodsAndNarrowBinsAreBadInput) {
@@ -77,7 +80,8 @@ TEST(PileComparison, UnknownMethodsAndNarrowBinsAreBadInput) {
 PileComparison two_rows() {
   PileComparison comparison{.shape = "box", .pile_count = 1, .truth_substeps = 34, .truth_iterations = 60};
   comparison.truth_a = comparison.truth_b = {pile({1.0, 0.5}, 1.0, 0.1)};
-  comparison.rows.push_back({.method = "full", .model = "", .figures = PileFigures{}, .piles = {pile({1.0, 0.5}, 1.0, 0.1)}});
+  comparison.rows.push_back(
+      {.method = "full", .model = "", .figures = PileFigures{}, .piles = {pile({1.0, 0.5}, 1.0, 0.1)}});
   comparison.rows.push_back({.method = "low", .model = "", .reason = "has too few faces"});
   return comparison;
 }
@@ -85,8 +89,10 @@ PileComparison two_rows() {
 TEST(PileReport, JsonHasTheKeysThatScriptsReadAndNullsForWhatIsLeftOut) {
   const auto json = json_of(two_rows());
   for (const auto& row : json["rows"])
-    for (const char* key : {"method", "model", "ke_l1", "sleep_time_s", "mean_height_m", "max_penetration_m", "momentum_residual", "floor_ke_l1",
-                            "sleep_time_error", "mean_height_error", "penetration_over_size", "hovering", "escaped", "energy_rise", "ns_per_body_step"})
+    for (const char* key :
+         {"method", "model", "ke_l1", "sleep_time_s", "mean_height_m", "max_penetration_m",
+          "momentum_residual", "floor_ke_l1", "sleep_time_error", "mean_height_error",
+          "penetration_over_size", "hovering", "escaped", "energy_rise", "ns_per_body_step"})
       EXPECT_TRUE(row.contains(key)) << key;
   EXPECT_EQ(json["rows"][0]["ke_l1"], 0.0);
   EXPECT_TRUE(json["rows"][1]["ke_l1"].is_null());
@@ -94,7 +100,7 @@ TEST(PileReport, JsonHasTheKeysThatScriptsReadAndNullsForWhatIsLeftOut) {
 }
 
 TEST(PileReport, CsvHasALineForEachPileAndForEachSample) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "lodestone_pile_report";
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lodestone_pile_report";
   save_piles(two_rows(), folder);
   const auto lines = [&](const char* name) {
     std::ifstream in(folder / name);

@@ -2,15 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include "reference/error.h"
 #include "tools/compare/pile_start.h"
 #include "tools/compare/pile_world.h"
-
-#include "reference/error.h"
 
 namespace lodestone {
 namespace {
 
-RigidState at(const Vec3& position, const Vec3& velocity = Vec3::Zero()) { return {.position = position, .velocity = velocity}; }
+RigidState at(const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  return {.position = position, .velocity = velocity};
+}
 
 class Boxes : public ::testing::Test {
  protected:
@@ -54,7 +55,8 @@ TEST_F(Boxes, ARiseOfEnergyIsOverTheLeastBefore) {
 
 TEST_F(Boxes, TheTimeToSleepIsTheMeanOfTheLastStirs) {
   const auto moving = at({0, 0, 0.1}, {0.1, 0, 0}), still = at({0.5, 0, 0.1});
-  EXPECT_NEAR(observe({{still, still}, {moving, still}, {moving, moving}, {still, moving}}).sleep_time_s, 2.5 / 60.0, 1e-12);
+  EXPECT_NEAR(observe({{still, still}, {moving, still}, {moving, moving}, {still, moving}}).sleep_time_s,
+              2.5 / 60.0, 1e-12);
 }
 
 TEST(PileOverlap, OfConcaveBodiesIsThatOfTheBodiesNotOfTheirHulls) {
@@ -81,7 +83,8 @@ TEST(PileStart, IsWithinTheBinWithoutOverlap) {
   ASSERT_EQ(starts.size(), 40U);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     EXPECT_LT(overlap.depth_in_planes(starts[i]), 0.0);
-    for (std::size_t k = 0; k < i; ++k) EXPECT_GE((starts[i].position - starts[k].position).norm(), 2.0 * shape.radius);
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_GE((starts[i].position - starts[k].position).norm(), 2.0 * shape.radius);
   }
 }
 

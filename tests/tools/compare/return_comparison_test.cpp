@@ -1,19 +1,24 @@
 // `compare return` and `compare errors`: what is compared, and what the commands print.
+#include "tools/compare/return_comparison.h"
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli_fixture.h"
-#include "tools/compare/return_comparison.h"
 
 namespace lodestone {
 namespace {
 
-const ReturnMeasure& measure_of(const ReturnComparison& comparison, const std::string& name) { return *std::ranges::find(comparison.measures, name, &ReturnMeasure::name); }
+const ReturnMeasure& measure_of(const ReturnComparison& comparison, const std::string& name) {
+  return *std::ranges::find(comparison.measures, name, &ReturnMeasure::name);
+}
 
 class ReturnComparisonTest : public testing::CliTest {};
 
 TEST_F(ReturnComparisonTest, ABodyThatIsAwayAtTablesIsToldFromOneAtSupport) {
-  const DropJob job{.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))), .conditions = {}, .material = {}};
+  const DropJob job{.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))),
+                    .conditions = {},
+                    .material = {}};
   ReturnSettings settings;
   settings.runs = 60;
   const ReturnComparison support = compare_return(job, settings);
@@ -29,11 +34,13 @@ TEST_F(ReturnComparisonTest, ABodyThatIsAwayAtTablesIsToldFromOneAtSupport) {
   EXPECT_NEAR(rest.critical, 0.248, 0.001);  // 1.358 √(2 / 60)
   EXPECT_LT(rest.distance, rest.critical);
   EXPECT_GT(measure_of(tables, "time to rest s").distance, rest.critical);
-  EXPECT_EQ(measure_of(tables, "time to rest s").floor, rest.floor) << "the same runs that are full all the time";
+  EXPECT_EQ(measure_of(tables, "time to rest s").floor, rest.floor)
+      << "the same runs that are full all the time";
 }
 
 TEST_F(ReturnComparisonTest, PrintsJson) {
-  const auto ended = run("compare return box:0.2,0.3,0.4 --runs 4 --leave 0.1 --away 0.2 --rung tables --json");
+  const auto ended =
+      run("compare return box:0.2,0.3,0.4 --runs 4 --leave 0.1 --away 0.2 --rung tables --json");
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   const auto json = nlohmann::json::parse(ended.out);
   EXPECT_EQ(json["runs"], 4);

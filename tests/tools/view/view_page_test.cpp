@@ -31,12 +31,17 @@ class ViewPage : public SceneFixture {
     last_ = run_scene(load(kScene), settings);
     return settings.out;
   }
-  std::string page(std::vector<std::filesystem::path> runs, bool blind = false) const { return make_view_page(runs, blind); }
+  std::string page(std::vector<std::filesystem::path> runs, bool blind = false) const {
+    return make_view_page(runs, blind);
+  }
   RunResult last_;
 };
 
-const std::string kReady = "while (!document.body.dataset.ready && !document.body.dataset.failed) await sleep(50);\nif (document.body.dataset.failed) say('FAILED ' + document.body.dataset.failed);\n"
-                           "const key = (name, more = {}) => document.dispatchEvent(new KeyboardEvent('keydown', {key: name, bubbles: true, ...more}));\n";
+const std::string kReady =
+    "while (!document.body.dataset.ready && !document.body.dataset.failed) await sleep(50);\nif "
+    "(document.body.dataset.failed) say('FAILED ' + document.body.dataset.failed);\n"
+    "const key = (name, more = {}) => document.dispatchEvent(new KeyboardEvent('keydown', {key: name, "
+    "bubbles: true, ...more}));\n";
 
 TEST_F(ViewPage, IsOneFileWithoutRequests) {
   const std::string text = page({run("a")});
@@ -64,7 +69,8 @@ TEST_F(ViewPage, PlaysWhatTheRunWas) {
     say(colors.size > 20 && moved > 100 ? "picture" : "no picture: " + colors.size + " colours, " + moved + " moved");
   )");
   const Vec3 p = last_.states[0].position;
-  EXPECT_EQ(said, fmt::format("{:.3f} {:.3f} {:.3f}\n51 frames, full, near a viewpoint\npicture\n", p.x(), p.y(), p.z() + 0.0));
+  EXPECT_EQ(said, fmt::format("{:.3f} {:.3f} {:.3f}\n51 frames, full, near a viewpoint\npicture\n", p.x(),
+                              p.y(), p.z() + 0.0));
 }
 
 TEST_F(ViewPage, ObeysTheKeyboard) {
@@ -109,7 +115,8 @@ TEST_F(ViewPage, BlindTestCountsWithAnExactInterval) {
     say(document.getElementById("score").textContent);
     say([...document.querySelectorAll("#labels span")].map(label => label.textContent).join(" "));
   )"),
-            "Which of two?\n0.4439 0.9748\n0.0000 0.3085\n10 of 10 right: 100 %, 95 % interval 69 % to 100 %. You can tell them apart.\nLeft Right\n");
+            "Which of two?\n0.4439 0.9748\n0.0000 0.3085\n10 of 10 right: 100 %, 95 % interval 69 % to 100 "
+            "%. You can tell them apart.\nLeft Right\n");
   EXPECT_THROW(make_view_page({runs.data(), 1}, true), InputError);
 }
 

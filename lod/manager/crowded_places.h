@@ -1,0 +1,25 @@
+// Bodies that were added at nearly one place: ten thousand of them would be fifty million pairs. They take
+// part a few at a time, in the order in which they came, while those before them are pushed apart; the others
+// wait as they were given.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lod/manager/levels.h"
+
+namespace lodestone {
+
+/// So many of one size at a time, nearer to each other than the radius of the ball inside them
+/// (Shape::inner_radius): stacks, of thin plates too, are none.
+inline constexpr int kBodiesOfAPlace = 4;
+
+/// The newcomers that wait, ascending. Whatever stays there (asleep, or let through by a filter), one more
+/// comes every eighth step. Those that meet none of their own kind never wait. Costs a look at every body in
+/// a step in which more than kBodiesOfAPlace newcomers are at one place, else one at the newcomers.
+std::vector<std::uint32_t> find_held_back(const Levels& levels);
+
+/// Whether a full body of `shape` at `position` (m) would be one too many, by the members that came last.
+bool is_full_place(const Levels& levels, const Vec3& position, const Shape& shape);
+
+}  // namespace lodestone

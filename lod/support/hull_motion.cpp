@@ -1,0 +1,60 @@
+#include "lod/support/hull_motion.h"
+
+#include <algorithm>
+
+#include "lod/contact/hull_contacts.h"
+
+namespace lodestone {
+namespace {
+
+// It rocks on the ground for as long as the clip plays.
+ContactRecord touch_of_clip(const StatisticalBody& body, const HalfSpace& ground) {
+  return {.first = body.owner,
+          .ground = ground.id,
+          .ground_material = ground.material,
+          .point = body.position - ground.height_of(body.position) * ground.normal,
+          .normal = ground.normal};
+}
+
+}  // namespace
+
+HullMotion move_on_hull(StatisticalBody& body, ClipPlayback& clip, const BodyKind& kind,
+                        const StepWorld& world, const Vec3& clip_gravity, double time, bool may_settle,
+                        const HullMotionSettings& settings) {
+  const double gravity = clip_gravity.norm();
+  // A clip plays on its own ground only: that of a static solid ends at an edge.
+  const auto same = [&](const HalfSpace& plane) {
+    return plane.normal == clip.ground.normal && plane.offset == clip.ground.offset;
+  };
+  if (body.motion == Motion::settling && std::ranges::none_of(world.planes, same))
+    body.motion = Motion::dynamic;
+  if (body.motion == Motion::settling) {
+    if (world.log) world.log->add(touch_of_clip(body, clip.ground));
+    return {.plays_clip = true, .clip_over = advance_clip(clip, body, kind, gravity, time, settings.clips)};
+  }
+  const ContactTally tally = step_support_body(body, kind, world, time, settings.support);
+  if (tally.touched_plane < 0 || !may_settle || !kind.clips || kind.clips->empty()) return {.tally = tally};
+  const HalfSpace& plane = world.planes[std::size_t(tally.touched_plane)];
+  if (!world.is_horizontal(plane)) return {.tally = tally};
+  const auto joined = find_clip(body, kind, plane, gravity, settings.clips);
+  if (!joined) return {.tally = tally};
+  clip = *joined;
+  body.motion = Motion::settling;
+  return {.tally = tally, .plays_clip = true};
+}
+
+bool stands_firmly(const StatisticalBody& body, const Shape& shape, std::span<const HalfSpace> planes) {
+  constexpr double kFlat = 0.02;  // over R
+  if (shape.sphere_radius) return true;
+  int vertices = 0;
+  for (const HalfSpace& plane : planes) {
+    const double height = plane.height_of(body.position), margin = kFlat * shape.radius;
+    if (height > shape.radius + margin) continue;
+    std::int32_t hint = body.support_hint;
+    const HullContacts low = find_hull_contacts(shape, body.orientation, plane.normal, height, margin, hint);
+    for (int i = 0; i < low.count; ++i) vertices += low.contact[std::size_t(i)].gap < margin;
+  }
+  return vertices >= 3;
+}
+
+}  // namespace lodestone

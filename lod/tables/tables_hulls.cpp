@@ -1,0 +1,134 @@
+// Of TablesLevel: bodies that touch no other move over level ground on their hulls, as those of `support` do,
+// with fewer and coarser contact steps. Departs from the paper's sphere of the mean height (3.3.1), which is
+// blind to the orientation: its first impulse is off by 36 to 47 %, and single drops by three times as much.
+#include "lod/contact/hull_contacts.h"
+#include "lod/tables/tables_level.h"
+
+namespace lodestone {
+
+// Those that touched no other for a while stand on their hulls; the others are spheres.
+void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
+  constexpr int kLeaning = int(1000.0 * RestLaw::kLeaningTime);  // ms
+  constexpr auto kFree = std::uint8_t(GroundState::free), kNear = std::uint8_t(GroundState::near);
+  constexpr auto kWithin = std::uint8_t(GroundState::within);
+  for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+    std::uint8_t& state = step_.on_ground[i];
+    const bool alone = !step_.touches(std::int64_t(i)) && spheres_.since_crowded[i] >= kLeaning;
+    const bool level =
+        state == kWithin || (state == kNear && planes_.slope[std::size_t(step_.plane[i])] == 0.0f);
+    if (alone && level && kinds_.hull_reach[spheres_.kind[i]] > 0.0f) {
+      state = std::uint8_t(GroundState::stands);
+    } else {
+      spheres_.on_hull[i] = HullStand::none;
+      if (state == kWithin) state = kFree;
+    }
+  }
+}
+
+// A slope or a wall near the body, too: the sphere's rules for these hold.
+bool TablesLevel::is_over_level_ground(const StatisticalBody& body, const StepWorld& around) const {
+  const double radius = all_kinds_[body.kind].shape->radius;
+  const double farthest = 1.01 * radius + body.velocity.norm() * constants_.wide_time;  // m
+  return std::ranges::all_of(around.planes, [&](const HalfSpace& plane) {
+    return around.is_horizontal(plane) || plane.height_of(body.position) > farthest;
+  });
+}
+
+void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
+  const auto i = std::size_t(place);
+  spheres_.on_hull[i] = HullStand::none;
+  if (spheres_.clip[i] < 0) return;
+  clips_[std::size_t(spheres_.clip[i])].state = PlayingClip::ended;
+  body.motion = Motion::dynamic;
+}
+
+// The sphere that others would meet is as high as the body stands.
+ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
+                                           bool rides, std::vector<PlayingClip>& joined) {
+  static const HullMotionSettings settings{
+      .support = {.contact_step = 0.2, .solver = {.sweeps = 4, .tolerance = 1e-2}}};
+  constexpr double kSunk = 0.01, kLeast = 0.02;  // over R
+  const auto i = std::size_t(place);
+  const Shape& shape = *kind_of(place).shape;
+  const double radius = shape.radius;
+  const auto is_sunk = [&] {
+    return std::ranges::any_of(around.planes, [&](const HalfSpace& p) {
+      const double height = p.height_of(body.position);
+      if (height > radius) return false;
+      const HullContact lowest =
+          find_lowest_point(shape, body.orientation, p.normal, height, body.support_hint);
+      return lowest.gap < -kSunk * radius;
+    });
+  };
+  HullStand& stand = spheres_.on_hull[i];
+  if (stand != HullStand::stands) stand = is_sunk() ? HullStand::rises : HullStand::stands;
+  const float eased = body.eased;
+  if (stand == HullStand::rises) body.eased = std::max(eased, 1.0f);
+  const std::int32_t clip = spheres_.clip[i];
+  const bool may_settle = !rides && stand == HullStand::stands;
+  if (clip < 0 || !may_settle)
+    body.motion = Motion::dynamic;  // it may have turned into a rest pose as a sphere
+  PlayingClip begun{.slot = spheres_.slot[i]};
+  PlayingClip& playing = clip < 0 ? begun : clips_[std::size_t(clip)];
+  const HullMotion moved = move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity,
+                                        constants_.wide_time, may_settle, settings);
+  body.eased = eased;
+  playing.state = !moved.plays_clip ? PlayingClip::ended
+                  : moved.clip_over ? PlayingClip::over
+                                    : PlayingClip::plays;
+  if (moved.plays_clip && clip < 0) joined.push_back(begun);
+  double height = radius;  // m
+  for (const HalfSpace& p : around.planes) height = std::min(height, p.height_of(body.position));
+  const bool touches = moved.plays_clip || moved.tally.touched_plane >= 0;
+  if (!touches) height = std::min(height, double(body.sphere_radius));
+  body.sphere_radius = float(std::max(height, kLeast * radius));
+  return moved.tally;
+}
+
+bool TablesLevel::stands(std::int64_t place) const {
+  if (spheres_.on_hull[std::size_t(place)] == HullStand::none) return true;
+  return stands_firmly(spheres_.body(place), *kind_of(place).shape,
+                       join_planes(ground_.planes(), faces_of(place)));
+}
+
+void TablesLevel::end_clip(std::int64_t place) {
+  const std::int32_t clip = std::exchange(spheres_.clip[std::size_t(place)], -1);
+  if (clip < 0) return;
+  if (std::size_t(clip) + 1 < clips_.size()) {
+    clips_[std::size_t(clip)] = clips_.back();
+    spheres_.clip[place_of(clips_[std::size_t(clip)].slot)] = clip;
+  }
+  clips_.pop_back();
+  Motion& motion = spheres_.motion[std::size_t(place)];
+  if (motion == Motion::settling) motion = Motion::dynamic;
+}
+
+void TablesLevel::end_all_clips() {
+  while (!clips_.empty()) end_clip(std::int64_t(place_of(clips_.back().slot)));
+}
+
+// Who is struck goes on as a sphere: a clip has no rest pose for it.
+void TablesLevel::end_clips_of_touched() {
+  for (auto clip = std::ssize(clips_) - 1; clip >= 0; --clip) {
+    const auto place = std::int64_t(place_of(clips_[std::size_t(clip)].slot));
+    if (step_.touches(place)) end_clip(place);
+  }
+}
+
+// After the bodies have moved, on any threads: by block, so that the order does not depend on these.
+void TablesLevel::update_clips() {
+  for (auto clip = std::ssize(clips_) - 1; clip >= 0; --clip) {
+    const PlayingClip& played = clips_[std::size_t(clip)];
+    if (played.state == PlayingClip::ended) end_clip(std::int64_t(place_of(played.slot)));
+  }
+  for (std::vector<PlayingClip>& joined : joined_) {
+    for (const PlayingClip& clip : joined) {
+      if (clips_.size() == clips_.capacity()) clips_.reserve(clips_.size() + clips_.size() / 8 + 16);
+      spheres_.clip[place_of(clip.slot)] = std::int32_t(clips_.size());
+      clips_.push_back(clip);
+    }
+    joined.clear();
+  }
+}
+
+}  // namespace lodestone

@@ -1,0 +1,86 @@
+#include "lod/contact/contact_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace lodestone {
+namespace {
+
+// Two pairs, the first with two manifolds, and one pair with the ground.
+struct Touching {
+  std::vector<ContactKey> keys;
+  std::vector<CrowdManifold> manifolds;
+  std::vector<CrowdPoint> points;
+  void add(ContactKey key, const std::vector<Vec3>& impulses) {
+    keys.push_back(key);
+    CrowdManifold& manifold = manifolds.emplace_back();
+    manifold.begin = std::uint32_t(points.size()), manifold.count = std::uint32_t(impulses.size());
+    for (const Vec3& impulse : impulses) points.emplace_back().impulse = impulse;
+  }
+};
+
+Touching touching() {
+  Touching t;
+  t.add(contact_key(1, 2), {{0, 0, 1}, {0, 0, 2}});
+  t.add(contact_key(1, 2), {{1, 0, 3}});
+  t.add(contact_key(2, 3), {{0, 5, 0}});
+  t.add(ground_key(3, 0), {{0, 0, 7}, {0, 0, 9}});
+  return t;
+}
+
+ContactMemory memory_of(const Touching& t, double step) {
+  ContactMemory memory;
+  memory.remember(t.keys, t.manifolds, t.points, step);
+  return memory;
+}
+
+TEST(ContactMemory, RecallsTheForcesPointByPoint) {
+  const Touching before = touching();
+  ContactMemory memory = memory_of(before, 0.02);
+  Touching now = touching();
+  memory.recall(now.keys, now.manifolds, now.points, 0.01);  // half as long: half the impulses
+  for (std::size_t i = 0; i < now.points.size(); ++i)
+    EXPECT_EQ(now.points[i].guess, 0.5 * before.points[i].impulse) << i;
+}
+
+TEST(ContactMemory, RecallsAPairWhereverItIsInTheList) {
+  ContactMemory memory = memory_of(touching(), 0.01);
+  Touching now;
+  now.add(ground_key(3, 0), {Vec3::Zero(), Vec3::Zero()});
+  now.add(contact_key(2, 3), {Vec3::Zero()});
+  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  EXPECT_EQ(now.points[1].guess, Vec3(0, 0, 9));
+  EXPECT_EQ(now.points[2].guess, Vec3(0, 5, 0));
+}
+
+TEST(ContactMemory, SharesTheForceInEqualPartsWhereThePointsAreOthers) {
+  ContactMemory memory = memory_of(touching(), 0.01);
+  Touching now;
+  now.add(contact_key(1, 2), {Vec3::Zero(), Vec3::Zero()});
+  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  for (const CrowdPoint& point : now.points)
+    EXPECT_LT((point.guess - Vec3(0.5, 0, 3)).norm(), 1e-12);  // of (1, 0, 6)
+}
+
+TEST(ContactMemory, LeavesWhatIsNewAsItIs) {
+  ContactMemory memory = memory_of(touching(), 0.01);
+  Touching now;
+  now.add(contact_key(2, 1), {Vec3::Zero()});  // another pair: the impulse's sign is that of the first
+  now.points[0].guess = Vec3(4, 4, 4);
+  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  EXPECT_EQ(now.points[0].guess, Vec3(4, 4, 4));
+}
+
+TEST(ContactMemory, ForgetsWhatWasBeforeTheLastStep) {
+  ContactMemory memory = memory_of(touching(), 0.01);
+  Touching other;
+  other.add(contact_key(8, 9), {{0, 0, 1}});
+  memory.remember(other.keys, other.manifolds, other.points, 0.01);
+  Touching now = touching();
+  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  for (const CrowdPoint& point : now.points) EXPECT_EQ(point.guess, Vec3::Zero());
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,140 @@
+#include "lod/contact/solid_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace lodestone {
+namespace {
+
+constexpr double kSolidStep = 1.0 / 60, kSide = 0.2;
+
+// A table of 2 × 2 × 1 m whose upper side is at z = 0, and a cube.
+class SolidContacts : public ::testing::Test {
+ protected:
+  SolidContacts() { ground_.add_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity(), 3); }
+
+  StatisticalBody body_at(const Vec3& position, const Vec3& velocity = Vec3::Zero()) const {
+    StatisticalBody body;
+    body.position = position;
+    body.velocity = velocity;
+    return body;
+  }
+  void find(const StatisticalBody& body) {
+    found_.clear(), planes_.clear();
+    find_solid_contacts(body, kind_, 5, ground_, 0.0, kSolidStep, found_, planes_);
+  }
+  void find_of_sphere(StatisticalBody body, double radius) {
+    body.sphere_radius = float(radius);
+    found_.clear(), planes_.clear();
+    find_sphere_contacts(body, kind_, 5, ground_, 0.0, kSolidStep, found_, planes_);
+  }
+
+  Ground ground_;
+  BodyKind kind_ =
+      make_body_kind(std::make_shared<const Shape>(make_shape("cube", make_box({kSide, kSide, kSide}))));
+  std::vector<SolidContact> found_;
+  std::vector<HalfSpace> planes_;
+};
+
+TEST_F(SolidContacts, OverTheInsideOfAFaceItIsAPlane) {
+  find(body_at({0.3, 0.2, 0.5 * kSide}));
+  EXPECT_TRUE(found_.empty());
+  ASSERT_EQ(planes_.size(), 1U);
+  EXPECT_LT((planes_[0].normal - Vec3::UnitZ()).norm(), 1e-9);
+  EXPECT_NEAR(planes_[0].offset, 0.0, 1e-9);
+  EXPECT_EQ(planes_[0].material, 3);
+}
+
+TEST_F(SolidContacts, AtAnEdgeItIsAContactOfHulls) {
+  find(body_at({1.02, 0.2, 0.5 * kSide}));  // its middle beyond the table's side
+  EXPECT_TRUE(planes_.empty());
+  ASSERT_EQ(found_.size(), 1U);
+  EXPECT_EQ(found_[0].slot, 5);
+  EXPECT_EQ(found_[0].material, 3);
+  EXPECT_NEAR(found_[0].contact.normal.z(), 1.0, 1e-6);
+  EXPECT_EQ(found_[0].contact.manifold.count, 4);
+  for (int i = 0; i < 4; ++i)
+    EXPECT_LT(found_[0].contact.manifold.points[std::size_t(i)].point.x(), 1.0 + 1e-5);  // on the table
+}
+
+TEST_F(SolidContacts, WhatDoesNotCloseWithinTheStepIsNone) {
+  const Vec3 above{1.02, 0.2, 0.5 * kSide + 0.05};
+  find(body_at(above));
+  EXPECT_TRUE(found_.empty());
+  find(body_at(above, {0, 0, -4}));  // .067 m in a step
+  EXPECT_EQ(found_.size(), 1U);
+  find(body_at(above, {0, 0, 4}));
+  EXPECT_TRUE(found_.empty());
+  find(body_at({8, 0, 0.1}));
+  EXPECT_TRUE(found_.empty() && planes_.empty());
+}
+
+TEST_F(SolidContacts, APartThatMovesIsNoPlane) {
+  Ground moving;
+  const GroundId id = moving.add_box({2, 2, 1}, Vec3::Zero(), Quat::Identity(), 0);
+  moving.move_part(id, {.position = {0, 0, -0.5}, .velocity = {0.5, 0, 0}});
+  find_solid_contacts(body_at({0.3, 0.2, 0.5 * kSide}), kind_, 5, moving, 0.0, kSolidStep, found_, planes_);
+  EXPECT_TRUE(planes_.empty());
+  ASSERT_EQ(found_.size(), 1U);
+  EXPECT_EQ(found_[0].part->velocity_at(Vec3::Zero()), Vec3(0.5, 0, 0));
+}
+
+TEST_F(SolidContacts, AFaceBelowIsFoundAwayFromTheEdgesOnly) {
+  std::vector<const GroundPart*> parts;
+  ground_.find_parts(Vec3::Zero(), 10.0, parts);
+  ASSERT_EQ(parts.size(), 1U);
+  std::vector<PlacedSolid> solids;
+  find_solids(*parts[0], Vec3::Zero(), 10.0, 0.0, solids);
+  ASSERT_EQ(solids.size(), 1U);
+  EXPECT_TRUE(find_face_below(solids[0], {0.3, 0.2, 0.1}, 0.2));
+  EXPECT_FALSE(find_face_below(solids[0], {0.9, 0.2, 0.1}, 0.2));   // .1 m from the side
+  EXPECT_FALSE(find_face_below(solids[0], {1.1, 0.2, 0.1}, 0.2));   // over an edge
+  EXPECT_FALSE(find_face_below(solids[0], {0.3, 0.2, -0.1}, 0.2));  // inside
+}
+
+TEST_F(SolidContacts, ASphereMeetsWhatIsNearestToIt) {
+  find_of_sphere(body_at({0.3, 0.2, 0.1}), 0.1);
+  EXPECT_TRUE(found_.empty());
+  ASSERT_EQ(planes_.size(), 1U);
+  EXPECT_NEAR(planes_[0].height_of({0.3, 0.2, 0.1}), 0.1, 1e-9);
+  find_of_sphere(body_at({1.06, 0.2, 0.08}), 0.1);  // .1 m from the edge at (1, .2, 0)
+  ASSERT_EQ(planes_.size(), 1U);
+  EXPECT_LT((planes_[0].normal - Vec3(0.6, 0, 0.8)).norm(), 1e-6);
+  EXPECT_NEAR(planes_[0].height_of({1.06, 0.2, 0.08}), 0.1, 1e-6);
+}
+
+// Where a wall stands on the table, one plane would let it sink into the other.
+TEST_F(SolidContacts, InACornerASphereHasAContactOfEach) {
+  ground_.add_box({1, 2, 1}, {-0.5, 0, 0.5}, Quat::Identity(), 0);
+  find_of_sphere(body_at({0.1, 0, 0.1}), 0.1);
+  EXPECT_TRUE(planes_.empty());
+  ASSERT_EQ(found_.size(), 2U);
+  EXPECT_LT((found_[0].contact.normal - Vec3::UnitZ()).norm(), 1e-9);
+  EXPECT_LT((found_[1].contact.normal - Vec3::UnitX()).norm(), 1e-9);
+  for (const SolidContact& contact : found_) EXPECT_NEAR(contact.contact.gap, 0.0, 1e-7);
+}
+
+TEST(HeldSeveralWays, IsACornerButNotAnEvenFloor) {
+  const std::vector<HalfSpace> floor{{.normal = Vec3::UnitZ()}},
+      corner{{.normal = Vec3::UnitZ()}, {.normal = Vec3::UnitX()}};
+  EXPECT_FALSE(is_held_several_ways({}, floor, {0.1, 0, 0.1}, 0.2));
+  EXPECT_TRUE(is_held_several_ways({}, corner, {0.1, 0, 0.1}, 0.2));
+  EXPECT_FALSE(is_held_several_ways({}, corner, {0.3, 0, 0.1}, 0.2));  // the wall is out of reach
+  const std::vector<GroundNear> same{{.normal = Vec3::UnitZ(), .height = 0.1}},
+      other{{.normal = Vec3::UnitY(), .height = 0.1}};
+  EXPECT_FALSE(is_held_several_ways(same, floor, {0.1, 0, 0.1}, 0.2));
+  EXPECT_TRUE(is_held_several_ways(other, floor, {0.1, 0, 0.1}, 0.2));
+}
+
+TEST(JoinedPlanes, AreThoseOfTheGroundAndTheFaces) {
+  const std::vector<HalfSpace> planes{{.offset = 1.0}}, faces{{.offset = 2.0}, {.offset = 3.0}};
+  EXPECT_EQ(join_planes(planes, {}).data(), planes.data());
+  const auto joined = join_planes(planes, faces);
+  ASSERT_EQ(joined.size(), 3U);
+  EXPECT_EQ(joined[0].offset, 1.0);
+  EXPECT_EQ(joined[2].offset, 3.0);
+}
+
+}  // namespace
+}  // namespace lodestone

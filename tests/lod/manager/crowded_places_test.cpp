@@ -1,0 +1,89 @@
+// Bodies that were added at one place come in a few at a time, on every rung.
+#include "lod/manager/crowded_places.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+std::vector<BodyId> add_at_one_place(Manager& manager, int count, LevelChoice level,
+                                     const BodyProperties& properties = {}) {
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < count; ++i)
+    bodies.push_back(manager.add_body({.shape = box_shape({0.2, 0.3, 0.4}),
+                                       .state = testing::at({0.1, 0.1, 1.0}),
+                                       .level = level,
+                                       .properties = properties}));
+  return bodies;
+}
+
+int placed(const Manager& manager, std::span<const BodyId> bodies) {
+  int count = 0;
+  for (const BodyId body : bodies) count += manager.explain(body).placed;
+  return count;
+}
+
+TEST(CrowdedPlaces, FewTakePartAtATimeAndAllInTheEnd) {
+  static const auto signature = coarse_signature(*box_shape({0.2, 0.3, 0.4}), {});
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables, LevelChoice::full}) {
+    ManagerSettings settings = unmeasured();
+    settings.signatures = [](const Shape&, const ContactLaw&) { return signature; };
+    Manager manager = on_floor(settings);
+    const std::vector<BodyId> bodies = add_at_one_place(manager, 24, level);
+    manager.step(kFrame);
+    EXPECT_EQ(placed(manager, bodies), kBodiesOfAPlace) << int(level);
+    EXPECT_EQ(manager.report().counters.bodies_held_back, 24 - kBodiesOfAPlace);
+    for (int i = 0; i < 300; ++i) {
+      const StepReport& report = manager.step(kFrame);
+      ASSERT_EQ(report.full + report.statistical, 24) << i;
+      ASSERT_EQ(report.support + report.tables, report.statistical) << i;
+    }
+    EXPECT_EQ(placed(manager, bodies), 24) << int(level);
+    const std::int64_t held = manager.report().counters.bodies_held_back;
+    manager.step(kFrame);
+    EXPECT_EQ(manager.report().counters.bodies_held_back, held);
+    for (const BodyId body : bodies) EXPECT_GT(manager.state(body).position.z(), 0.0) << int(level);
+  }
+}
+
+// That meet none of their kind, that are apart, if only by the thickness of a plate, and that come one after
+// the other.
+TEST(CrowdedPlaces, OthersDoNotWait) {
+  Manager manager = on_floor();
+  std::vector<BodyId> bodies =
+      add_at_one_place(manager, 12, LevelChoice::support, {.collide = 0u, .kinematic = true});
+  for (int i = 0; i < 200; ++i)
+    bodies.push_back(add(manager, box_shape({0.2, 0.3, 0.4}),
+                         testing::at({0.5 * (i % 20), 2.0 + 0.5 * (i / 20), 1.0}), LevelChoice::support));
+  for (int i = 0; i < 20; ++i)
+    bodies.push_back(add(manager, box_shape({0.2, 0.2, 0.004}), testing::at({-2, 0, 0.002 + 0.0041 * i}),
+                         i % 2 ? LevelChoice::support : LevelChoice::full));
+  manager.step(kFrame);
+  EXPECT_EQ(placed(manager, bodies), int(bodies.size()));
+  for (int i = 0; i < 6; ++i) {
+    const BodyId late =
+        add(manager, box_shape({0.2, 0.3, 0.4}), testing::at({-5, 0, 1}), LevelChoice::support);
+    manager.step(kFrame);
+    EXPECT_TRUE(manager.explain(late).placed);
+  }
+  EXPECT_EQ(manager.report().counters.bodies_held_back, 0);
+}
+
+TEST(CrowdedPlaces, WaitingBodiesArePartOfASnapshotAndMayBeRemoved) {
+  Manager manager = on_floor(), other = on_floor();
+  const std::vector<BodyId> bodies = add_at_one_place(manager, 12, LevelChoice::support);
+  manager.step(kFrame);
+  manager.remove_body(bodies[11]);
+  const std::shared_ptr<const Shape> shapes[] = {box_shape({0.2, 0.3, 0.4})};
+  other.restore(manager.snapshot(), shapes);
+  for (Manager* each : {&manager, &other}) run(*each, 1.0);
+  EXPECT_EQ(manager.state_hash(), other.state_hash());
+  EXPECT_EQ(placed(manager, std::span(bodies).first(11)), 11);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,153 @@
+// Bodies of `tables` that touch no other stand on the height that their hulls have; the paper's model as
+// published is an option.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lod/contact/hull_contacts.h"
+#include "reference/random.h"
+#include "tests/lod/rungs/rung_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using testing::box, testing::box_signature, testing::OneRung;
+
+constexpr double kFrame = 1.0 / 60;
+
+// m, of the hull's lowest point over the plane z = 0.
+double gap_of(const RigidState& s) {
+  std::int32_t hint = 0;
+  return find_lowest_point(*box(), s.orientation, Vec3::UnitZ(), s.position.z(), hint).gap;
+}
+
+bool lies_on_a_face(const RigidState& s) {
+  return (s.orientation.conjugate() * Vec3::UnitZ()).cwiseAbs().maxCoeff() > 0.999;
+}
+
+RigidState falling(int number) {
+  RandomStream random(11, std::uint64_t(number), 0);
+  RigidState s;
+  s.position = {2.0 * number, 0, 0.6};
+  s.orientation = random.orientation();
+  s.velocity = {random.uniform(-1, 1), random.uniform(-1, 1), 0};
+  s.angular_velocity = random.uniform(0, 8) * random.direction();
+  return s;
+}
+
+class HullStand : public ::testing::Test {
+ protected:
+  HullStand() {
+    ground_.add_plane({});
+    settings_.tables.published = false;
+  }
+  OneRung make(StatisticalModel model = StatisticalModel::tables) const {
+    return {model, settings_, ground_, materials_};
+  }
+  static int add(OneRung& level, const RigidState& state) {
+    return level.add(std::uint32_t(level.size()), box(), 24.0, 0, state, false, box_signature());
+  }
+  static void run(OneRung& level, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      StepReport report;
+      level.step(kFrame, {}, report);
+    }
+  }
+
+  StatisticalSettings settings_;
+  Ground ground_;
+  MaterialTable materials_;
+};
+
+// The sphere of the mean height leaves hulls in the ground by a third of R, and over it by as much.
+TEST_F(HullStand, ALoneBodySinksInByNothingAndLiesOnAFace) {
+  constexpr int kBoxes = 20;
+  OneRung level = make();
+  for (int i = 0; i < kBoxes; ++i) add(level, falling(i));
+  double deepest = 0.0;
+  for (int step = 0; step < 600; ++step) {
+    run(level, 1);
+    for (int slot = 0; slot < kBoxes; ++slot) deepest = std::max(deepest, -gap_of(level.state(slot)));
+  }
+  EXPECT_LT(deepest, 0.01 * box()->radius);
+  EXPECT_EQ(level.asleep_count(), kBoxes);
+  for (int slot = 0; slot < kBoxes; ++slot) {
+    EXPECT_TRUE(lies_on_a_face(level.state(slot))) << slot;
+    EXPECT_NEAR(gap_of(level.state(slot)), 0.0, 0.002) << slot;
+    EXPECT_NEAR(level.sphere_radius(slot), level.position(slot).z(), 1e-6) << slot;  // whom others meet
+  }
+}
+
+// The closed-form impulse at the lowest vertex, not one drawn from the tables. Orientations are floats here.
+TEST_F(HullStand, AFirstImpactIsThatOfSupport) {
+  OneRung tables = make(), support = make(StatisticalModel::support);
+  constexpr int kBoxes = 12;
+  for (int i = 0; i < kBoxes; ++i) add(tables, falling(i)), add(support, falling(i));
+  std::vector<bool> struck(kBoxes);
+  for (int step = 0; step < 60; ++step) {
+    run(tables, 1);
+    run(support, 1);
+    for (int slot = 0; slot < kBoxes; ++slot) {
+      const RigidState s = tables.state(slot), t = support.state(slot);
+      if (struck[std::size_t(slot)] || t.velocity.z() < -0.5) continue;
+      struck[std::size_t(slot)] = true;
+      EXPECT_LT((s.velocity - t.velocity).norm(), 2e-3) << slot;
+      EXPECT_LT((s.angular_velocity - t.angular_velocity).norm(), 2e-2) << slot;
+    }
+  }
+  EXPECT_EQ(std::ranges::count(struck, true), kBoxes);
+}
+
+TEST_F(HullStand, PublishedItIsTheSphereOfTheMeanHeight) {
+  settings_.tables.published = true;
+  OneRung level = make();
+  const int slot = add(level, {.position = Vec3(0, 0, box()->radius),
+                               .orientation = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()))});
+  double farthest = 0.0;  // m: of the hull's lowest point from the ground while the body is on it
+  for (int step = 0; step < 60; ++step) {
+    run(level, 1);
+    farthest = std::max(farthest, -gap_of(level.state(slot)));
+  }
+  EXPECT_GT(farthest, 0.02 * box()->radius);
+}
+
+TEST_F(HullStand, AnyOfThePapersOptionsAsksForThePapersModel) {
+  EXPECT_TRUE(TablesOptions{}.as_published());
+  EXPECT_FALSE(TablesOptions{.published = false}.as_published());
+  for (const TablesOptions& options : {TablesOptions{.interpolate = false, .published = false},
+                                       {.draw_height = true, .published = false},
+                                       {.radius_update_interval = 2, .published = false},
+                                       {.rest_poses = false, .published = false},
+                                       {.nearest_rest_pose = true, .published = false},
+                                       {.paper_pair_rule = true, .published = false},
+                                       {.published = true}})
+    EXPECT_TRUE(options.as_published());
+}
+
+// Struck while a clip brings it to rest a body is a sphere among others: a clip has no rest pose for it.
+// Bodies come and go meanwhile.
+TEST_F(HullStand, ABodyThatIsStruckOrRemovedLeavesItsClip) {
+  OneRung level = make();
+  constexpr int kBoxes = 24;
+  for (int i = 0; i < kBoxes; ++i) add(level, falling(i));
+  for (int step = 0; step < 900; ++step) {
+    run(level, 1);
+    if (step >= 30 && step < 120 && step % 6 == 0) {
+      const int target = (step / 6) % level.size();
+      RigidState above = level.state(target);
+      above.position.z() += 0.45;
+      above.velocity = {0, 0, -2.0};
+      add(level, above);
+    }
+    if (step >= 40 && step < 100 && step % 20 == 0) level.remove(step / 20);
+  }
+  EXPECT_EQ(level.asleep_count(), level.size());
+  for (int slot = 0; slot < level.size(); ++slot) {
+    EXPECT_TRUE(level.position(slot).allFinite()) << slot;
+    EXPECT_GT(level.position(slot).z(), 0.05) << slot;
+  }
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,95 @@
+#include "reference/output_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "reference/error.h"
+
+namespace lodestone {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputFileTest : public ::testing::Test {
+ protected:
+  OutputFileTest() { fs::create_directories(folder_); }
+  ~OutputFileTest() override { fs::remove_all(folder_); }
+  static std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  static std::string error_of(const auto& act) {
+    try {
+      act();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  const fs::path folder_ = fs::temp_directory_path() / ("lodestone-output-" + std::to_string(::getpid()));
+};
+
+TEST_F(OutputFileTest, WritesWhatItIsGiven) {
+  const fs::path file = folder_ / "inner" / "a.csv";  // whose folder is made
+  const std::string large(200'000, 'x');
+  OutputFile out(file);
+  out.write("one\n");
+  out.write(large);
+  out.write("two\n");
+  out.close();
+  EXPECT_EQ(text_of(file), "one\n" + large + "two\n");
+  OutputFile(file).close();
+  EXPECT_EQ(text_of(file), "");
+}
+
+TEST_F(OutputFileTest, AFullDeviceIsAnErrorOfTheFlush) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  OutputFile out("/dev/full", "room");
+  out.write("a line\n");
+  EXPECT_EQ(error_of([&] { out.close(); }), "/dev/full: found no space left on device, expected room");
+  OutputFile again("/dev/full", "room");
+  EXPECT_EQ(error_of([&] { again.write(std::string(1 << 20, 'x')); }),
+            "/dev/full: found no space left on device, expected room");
+}
+
+TEST_F(OutputFileTest, AFolderIsNoFile) {
+  EXPECT_EQ(error_of([&] { OutputFile out(folder_, "a table"); }),
+            folder_.string() + ": found is a directory, expected a table");
+  EXPECT_EQ(find_reading_fault(folder_), "is a directory");
+  EXPECT_EQ(find_reading_fault(folder_ / "none"), "no such file or directory");
+}
+
+// Files may grow to 1,000 bytes in the child: the lines that fit are there, whole.
+TEST_F(OutputFileTest, WhatIsWholeIsKept) {
+  const fs::path file = folder_ / "lines";
+  const std::string line = "a line of thirty-one characters\n";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1000, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    OutputFile out(file);
+    const std::string message = error_of([&] {
+      for (int i = 0; i < 5; ++i) out.write(line);
+      out.flush();
+      for (int i = 0; i < 10'000; ++i) out.write(line);
+    });
+    ::_exit(message.find("file too large") != message.npos ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  std::string lines;
+  for (int i = 0; i < 31; ++i) lines += line;  // 992 bytes
+  EXPECT_EQ(text_of(file), lines);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,174 @@
+// What cannot be written is said, and what is complete is kept.
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using testing::Ended;
+using testing::quoted;
+
+const std::string kScene = quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml");
+const std::string kRun = "run " + kScene + " --level full --steps 5 ";
+const std::string kSign =
+    "sign box:0.2,0.3,0.4 --cell-trials 2 --height-trials 20 --settling-trials 7 --clips 3 --threads 1 ";
+
+class Losses : public testing::CliTest {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  }
+  // A file of that name that has no room.
+  std::string full(const std::string& file) const {
+    std::filesystem::create_directories(at(file).parent_path());
+    std::filesystem::create_symlink("/dev/full", at(file));
+    return name(file);
+  }
+  void expect_no_room(const std::string& arguments, const std::string& where) const {
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.exit_code, 3) << arguments << '\n' << ended.out;
+    EXPECT_NE(ended.out.find("lodestone: "), ended.out.npos) << ended.out;
+    EXPECT_NE(ended.out.find(where + ": found no space left on device, expected "), ended.out.npos)
+        << arguments << '\n'
+        << ended.out;
+  }
+};
+
+TEST_F(Losses, StandardOutputIsChecked) {
+  for (const std::string& arguments :
+       {kRun, kRun + "--json ", kSign + "--json ", std::string("--help "), std::string("bench --help "),
+        "inspect " + name("a.sig") + " --json "}) {
+    if (arguments.starts_with("inspect")) {
+      ASSERT_EQ(run(kSign + "-o " + name("a.sig")).exit_code, 0);
+    }
+    const Ended ended = testing::run_shell(command(arguments + "2>&1 >/dev/full"));
+    EXPECT_EQ(ended.exit_code, 3) << arguments;
+    EXPECT_TRUE(ended.out.ends_with(
+        "lodestone: standard output: found no space left on device, expected room for the results\n"))
+        << arguments << ended.out;
+  }
+}
+
+TEST_F(Losses, EveryFileOfARunIsChecked) {
+  for (const char* file : {"steps.csv", "run.play"}) {
+    const std::string folder = std::string("out-") + file;
+    full(folder + "/" + file);
+    expect_no_room(kRun + "--out " + name(folder), file);
+  }
+  expect_no_room(kRun + "--record " + full("a.rec"), "a.rec");
+}
+
+TEST_F(Losses, EveryFileOfASignatureIsChecked) {
+  expect_no_room(kSign + "-o " + full("a.sig"), "a.sig");
+  expect_no_room(kSign + "--export-trials " + full("a.csv"), "a.csv");
+  expect_no_room(kSign + "--shard 1/2 -o " + full("a.part"), "a.part");
+  ASSERT_EQ(run(kSign + "-o " + name("b.sig")).exit_code, 0);
+  expect_no_room("inspect " + name("b.sig") + " --svg " + full("a.svg"), "a.svg");
+}
+
+TEST_F(Losses, EveryFileOfAComparisonIsChecked) {
+  const std::string compare = "compare drop box:0.2,0.3,0.4 --trials 2 --methods full_1 ";
+  expect_no_room(compare + "--csv " + full("a.csv"), "a.csv");
+  full("out/drops.csv");
+  expect_no_room(compare + "--out " + name("out"), "drops.csv");
+}
+
+// Files may grow to a few kB, of a report of 200 steps.
+TEST_F(Losses, ARunKeepsWhatIsCompleteAndSaysWhatItHas) {
+  const Ended ended = testing::run_shell("trap '' XFSZ; ulimit -f 16; " +
+                                         command("run " + kScene + " --level full --steps 400 --json --out " +
+                                                 name("out") + " 2>" + name("errors")));
+  EXPECT_EQ(ended.exit_code, 3);
+  const auto json = nlohmann::json::parse(ended.out);
+  EXPECT_EQ(json["incomplete"], true);
+  EXPECT_TRUE(json["steps"].get<int>() >= 1);
+  const std::string csv = testing::bytes_of(at("out/steps.csv"));
+  ASSERT_FALSE(csv.empty());
+  EXPECT_EQ(csv.back(), '\n');
+  const auto cells = [](const std::string& line) { return std::ranges::count(line, ','); };
+  EXPECT_EQ(cells(csv.substr(csv.rfind('\n', csv.size() - 2))), cells(csv.substr(0, csv.find('\n'))));
+  EXPECT_NE(testing::bytes_of(at("errors")).find("steps.csv: found file too large, expected room"),
+            std::string::npos)
+      << testing::bytes_of(at("errors"));
+}
+
+TEST_F(Losses, AnOutputThatIsNoFileIsWrittenThrough) {
+  ASSERT_EQ(run(kSign + "--no-cache -o " + name("plain.sig")).exit_code, 0);
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  const Ended ended = testing::run_shell("timeout 60 cat " + name("pipe") + " >" + name("copy") + " & " +
+                                         "(" + command(kSign + "--no-cache -o " + name("pipe")) +
+                                         ") >/dev/null; code=$?; wait; exit $code");
+  EXPECT_EQ(ended.exit_code, 0);
+  EXPECT_TRUE(std::filesystem::is_fifo(at("pipe")));
+  EXPECT_TRUE(testing::bytes_of(at("copy")) == testing::bytes_of(at("plain.sig")));
+}
+
+class Messages : public testing::CliTest {};
+
+TEST_F(Messages, AMeshNameBeyondWhatTheSystemTakes) {
+  for (const std::string& name :
+       {std::string(5000, 'a') + ".obj", std::string(300, 'a') + ".obj", "l:" + std::string(5000, 'a')}) {
+    const Ended ended = run("sign " + name);
+    EXPECT_EQ(ended.exit_code, 3) << ended.out;
+    EXPECT_TRUE(ended.out.starts_with("lodestone: ")) << ended.out;
+    EXPECT_LT(ended.out.size(), 1200U);
+    EXPECT_NE(ended.out.find("expected"), ended.out.npos) << ended.out;
+  }
+}
+
+TEST_F(Messages, ControlCharactersAreNotObeyed) {
+  const Ended ended = run("run \"$(printf 'a\\033[31m\\nb.yaml')\"");
+  EXPECT_EQ(ended.exit_code, 3);
+  EXPECT_NE(ended.out.find("a\\x1b[31m\\nb.yaml"), ended.out.npos) << ended.out;
+  EXPECT_EQ(ended.out.find('\x1b'), ended.out.npos);
+  const Ended usage = run("run a.yaml --steps \"$(printf '\\033[31m')\"");
+  EXPECT_EQ(usage.exit_code, 2);
+  EXPECT_EQ(usage.out.find('\x1b'), usage.out.npos) << usage.out;
+}
+
+TEST_F(Messages, WhyAFileCannotBeRead) {
+  std::filesystem::create_symlink("loop.yaml", at("loop.yaml"));
+  const Ended loop = run("run " + name("loop.yaml"));
+  EXPECT_EQ(loop.exit_code, 3);
+  EXPECT_NE(loop.out.find("too many levels of symbolic links"), loop.out.npos) << loop.out;
+  std::filesystem::create_symlink("loop.sig", at("loop.sig"));
+  const Ended signature = run("inspect " + name("loop.sig"));
+  EXPECT_EQ(signature.exit_code, 3);
+  EXPECT_NE(signature.out.find("too many levels of symbolic links"), signature.out.npos) << signature.out;
+  if (::geteuid() == 0) return;  // who may read everything
+  for (const char* file : {"s.yaml", "s.sig"}) {
+    std::ofstream(at(file)) << "version: 1\n";
+    std::filesystem::permissions(at(file), std::filesystem::perms::none);
+  }
+  for (const std::string& arguments : {"run " + name("s.yaml"), "inspect " + name("s.sig")}) {
+    const Ended denied = run(arguments);
+    EXPECT_EQ(denied.exit_code, 3);
+    EXPECT_NE(denied.out.find("found permission denied, expected"), denied.out.npos) << denied.out;
+  }
+}
+
+TEST_F(Messages, SettingsOutOfRangeAreUsageAndFilesAreInput) {
+  EXPECT_EQ(run(kRun + "--fork 5").exit_code, 2);
+  EXPECT_EQ(run("compare pile box:0.2,0.3,0.4 --side 0.1").exit_code, 2);
+  EXPECT_EQ(run("view a --blind").exit_code, 2);    // of one run there is nothing to tell apart
+  EXPECT_EQ(run("view a b --blind").exit_code, 3);  // there is no a
+  std::ofstream(at("bad.yaml")) << "version: 2\n";
+  EXPECT_EQ(run("run " + name("bad.yaml")).exit_code, 3);
+}
+
+TEST_F(Messages, NoneOfTheLibrariesOnThreads) {
+  const Ended ended =
+      run("sign box:0.2,0.3,0.4 --cell-trials 2 --height-trials 20 --settling-trials 7 --clips 3 --threads "
+          "500 --no-cache --json");  // stderr is joined
+  EXPECT_EQ(ended.exit_code, 0);
+  EXPECT_TRUE(nlohmann::json::accept(ended.out)) << ended.out;
+  const Ended stepped = run("run " + kScene + " --level full --steps 2 --threads 500 --json");
+  EXPECT_TRUE(nlohmann::json::accept(stepped.out)) << stepped.out;
+}
+
+}  // namespace
+}  // namespace lodestone

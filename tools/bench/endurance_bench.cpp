@@ -1,0 +1,144 @@
+#include "tools/bench/endurance_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "lod/manager.h"
+#include "lod/timing/thread_clock.h"
+#include "reference/random.h"
+#include "scenes/run_measures.h"
+#include "tools/bench/heap_memory.h"
+#include "tools/bench/settled_bench.h"
+#include "tools/hard_cases/resident_memory.h"
+#include "tools/interrupt.h"
+#include "tools/median.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kFrame = 1.0 / 60, kGravity = 9.81;  // s, m/s²
+constexpr double kCircle_m = 6.0, kCircle_s = 7.0;    // of the viewpoint: radius, and once round
+const Vec3 kSides(0.2, 0.3, 0.24);                    // m, of a crate
+
+class EndlessWorld {
+ public:
+  explicit EndlessWorld(const EnduranceSettings& settings)
+      : settings_(settings),
+        shape_(std::make_shared<const Shape>(make_shape("crate", make_box(kSides)))),
+        manager_(make_manager(settings, make_coarse_signature(*shape_))) {
+    manager_.add_plane(Vec3::UnitZ(), 0.0);
+    for (int i = 0; i < settings.bodies; ++i)
+      bodies_.push_back(manager_.add_body({.shape = shape_, .state = start(0, i)}));
+    const std::size_t rounds = std::size_t(settings.steps / kEnduranceRound);
+    step_us_.reserve(rounds), heap_.reserve(rounds), resident_.reserve(rounds);  // before memory is looked at
+  }
+
+  EnduranceFigures measure() {
+    until_interrupted([this] {
+      for (std::int64_t round = 0; (round + 1) * kEnduranceRound <= settings_.steps && figures_.finite;
+           ++round) {
+        if (settings_.progress)
+          settings_.progress(fmt::format("step {} of {}", figures_.steps, settings_.steps),
+                             double(figures_.steps) / double(settings_.steps));
+        run_round(round);
+      }
+    });
+    sum_up();
+    return figures_;
+  }
+
+ private:
+  static Manager make_manager(const EnduranceSettings& settings,
+                              const std::shared_ptr<const Signature>& signature) {
+    ManagerSettings manager;
+    manager.gravity = {0, 0, -kGravity};
+    manager.seed = settings.seed, manager.threads = settings.threads;
+    manager.policy = {.policy = DistancePolicy{.full_within = 5.0, .support_within = 7.0}};
+    manager.signatures = [signature](const Shape&, const ContactLaw&) { return signature; };
+    return Manager(manager);
+  }
+
+  // In a square of cells too wide for two to meet in the air.
+  RigidState start(std::int64_t round, int body) const {
+    RandomStream random(settings_.seed, std::uint64_t(round), std::uint32_t(body));
+    const int side = int(std::ceil(std::sqrt(double(settings_.bodies))));
+    RigidState state;
+    state.position = {0.6 * (body % side - 0.5 * side), 0.6 * (body / side - 0.5 * side),
+                      random.uniform(0.5, 1.5)};
+    state.orientation = random.orientation();
+    state.velocity = random.uniform(0.0, 1.0) * random.direction();
+    state.angular_velocity = random.uniform(0.0, 10.0) * random.direction();
+    return state;
+  }
+
+  void run_round(std::int64_t round) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) manager_.set_state(bodies_[i], start(round, int(i)));
+    const double energy_at_start = energy_j();
+    double spent_ms = 0;
+    for (int step = 0; step < kEnduranceRound && figures_.finite; ++step) {
+      const double angle = 2 * std::numbers::pi * std::fmod(double(figures_.steps) * kFrame / kCircle_s, 1.0);
+      const Vec3 viewpoint = kCircle_m * Vec3(std::cos(angle), std::sin(angle), 0.2);
+      manager_.set_viewpoints({&viewpoint, 1});
+      const double before_ms = thread_time_ms();
+      const StepReport& report = manager_.step(kFrame);
+      spent_ms += thread_time_ms() - before_ms;
+      ++figures_.steps;
+      figures_.changes += report.promotions + report.demotions;
+      figures_.states_recovered = report.counters.states_recovered;
+      figures_.energy_over_start = std::max(figures_.energy_over_start, energy_j() / energy_at_start);
+    }
+    step_us_.push_back(1e3 * spent_ms / kEnduranceRound);
+    heap_.push_back(heap_bytes()), resident_.push_back(resident_bytes());
+  }
+
+  double energy_j() {
+    double sum = 0;
+    for (const BodyId body : bodies_) {
+      const RigidState state = manager_.state(body);
+      figures_.finite = figures_.finite && is_finite(state);
+      sum += kinetic_energy(*shape_, manager_.mass(body), state) +
+             manager_.mass(body) * kGravity * state.position.z();
+    }
+    return sum;
+  }
+
+  void sum_up() {
+    if (step_us_.size() < 2) return;
+    const std::ptrdiff_t tenth = std::max<std::ptrdiff_t>(1, std::ptrdiff_t(step_us_.size() / 10));
+    const auto growth = [&](const std::vector<double>& bytes) {
+      return *std::ranges::max_element(bytes.begin() + tenth, bytes.end()) - bytes[std::size_t(tenth - 1)];
+    };
+    figures_.heap_growth_bytes = growth(heap_);
+    figures_.resident_growth_bytes = growth(resident_);
+    const auto second = step_us_.begin() + tenth;
+    figures_.first_step_us =
+        median_of(std::vector<double>(second, second + std::min(tenth, step_us_.end() - second)));
+    figures_.last_step_us = median_of(std::vector<double>(step_us_.end() - tenth, step_us_.end()));
+  }
+
+  const EnduranceSettings& settings_;
+  std::shared_ptr<const Shape> shape_;
+  Manager manager_;
+  std::vector<BodyId> bodies_;
+  std::vector<double> step_us_, heap_, resident_;  // of each round
+  EnduranceFigures figures_;
+};
+
+}  // namespace
+
+bool endures(const EnduranceFigures& figures) {
+  return figures.finite && figures.states_recovered == 0 && !(figures.heap_growth_bytes > kEnduranceMemory) &&
+         !(figures.resident_growth_bytes > kEnduranceMemory) &&
+         figures.energy_over_start <= kEnduranceEnergy &&
+         figures.last_step_us <= kEnduranceSlower * figures.first_step_us;
+}
+
+EnduranceFigures bench_endurance(const EnduranceSettings& settings) {
+  return EndlessWorld(settings).measure();
+}
+
+}  // namespace lodestone
