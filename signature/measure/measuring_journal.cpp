@@ -105,8 +105,8 @@ std::unique_ptr<MeasuringJournal> MeasuringJournal::try_open(const std::filesyst
                       file.string(), std::strerror(errno)));
     }
     if (!is_same_file(descriptor, file)) continue;
+    write_holder(file);  // before the journal has a byte: who finds one finds a name
     journal->read(identity);
-    write_holder(file);
     return journal;
   }
 }
