@@ -46,7 +46,7 @@ struct ManagerSettings {
   std::uint64_t seed = 1;
   int threads = 1;             ///< ≥ 1, for the statistical level; the results do not depend on it
   JobRunner jobs = {};         ///< an engine's own, for so many threads; empty: oneTBB's
-  int full_substeps = 4;       ///< ≥ 1, ODE steps per step
+  int full_substeps = 4;       ///< ≥ 1, ODE steps per step; 16 while thin bodies are awake among others
   bool sleeping = true;        ///< bodies at rest cost nothing until something wakes them
   SleepThresholds sleep = {};  ///< on every rung
   std::optional<StatisticalModel> model =

@@ -38,7 +38,7 @@ struct Counters {
                                       ///< deepest and those farthest apart stay, so that the pair is held
   std::int64_t states_recovered = 0;
   std::int64_t full_quick_steps =
-      0;  ///< substeps of the full level whose largest pile was too much for dWorldStep
+      0;  ///< substeps of the full level whose largest pile was too much for dWorldStep, or beyond it
   std::int64_t full_swallowed = 0;         ///< times that a full body was wholly inside another in a substep
   std::int64_t full_passes_prevented = 0;  ///< times that a full body, faster than it is thick in a substep,
                                            ///< was stopped at what it would have gone through

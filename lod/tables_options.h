@@ -3,9 +3,9 @@
 
 namespace lodestone {
 
-/// Of the rung `tables`. With `published` off a body alone on level ground stands on the height of its hull,
-/// and others are spheres: as near to ODE as `support` there, at its cost. The other options are the paper's,
-/// or matter for its model: who sets one asks for that model.
+/// Of the rung `tables`: a body alone on level ground stands on the height of its hull, one among others is a
+/// sphere. With `published` it is the paper's sphere everywhere. The other options are the paper's, or matter
+/// for its model: who sets one asks for that model.
 struct TablesOptions {
   bool interpolate = true;         ///< look-up between cells; else the nearest cell (3.3.1)
   bool draw_height = false;        ///< radius drawn from (μ, σ) at each contact instead of the mean
@@ -15,7 +15,7 @@ struct TablesOptions {
   bool nearest_rest_pose = false;  ///< rest in the pose that needs the smallest rotation (3.4); else in the
                                    ///< one that the body tips into
   bool paper_pair_rule = false;    ///< each body responds as against an immovable plane (3.3.2); gains energy
-  bool published = true;           ///< the paper's model: spheres of the mean height, drawn responses
+  bool published = false;          ///< the paper's model: spheres of the mean height, drawn responses
 
   /// Whether the model is the paper's: it was asked for, or one of its options was.
   bool as_published() const {

@@ -131,7 +131,7 @@ Shape make_shape(std::string name, Mesh mesh, const MassOverride& mass, MeshRepo
   shape.center_of_mass_in_mesh = properties.center_of_mass;
   shape.inertia_per_mass = properties.inertia_per_mass;
   for (Vec3& vertex : shape.mesh.vertices) vertex -= properties.center_of_mass;
-  for (Vec3& vertex : shape.hull.vertices) vertex -= properties.center_of_mass;
+  transform_hull(shape.hull, properties.center_of_mass, 1.0);
   finish(shape);
   if (found.closed() && !shape.convex) shape.pieces = make_pieces(shape);
   if (report) *report = found;
@@ -158,7 +158,7 @@ Shape scale_shape(const Shape& shape, double factor) {
     throw_input_error("scale factor", fmt::to_string(factor), "a positive, finite number");
   Shape scaled = shape;
   for (Vec3& vertex : scaled.mesh.vertices) vertex *= factor;
-  for (Vec3& vertex : scaled.hull.vertices) vertex *= factor;
+  transform_hull(scaled.hull, Vec3::Zero(), factor);
   scaled.volume *= factor * factor * factor;
   scaled.center_of_mass_in_mesh *= factor;
   scaled.inertia_per_mass *= factor * factor;

@@ -43,6 +43,14 @@ MassOverride load_mass_override(const YamlCursor& place, const std::optional<dou
   return result;
 }
 
+void check_inertia_at(const YamlCursor& key, const Shape& shape) {
+  try {
+    check_inertia(shape);
+  } catch (const InputError& error) {
+    fail_at(key, error);
+  }
+}
+
 Shape load_mesh_shape(const YamlCursor& place, ShapeOptions options, const MassOverride& mass,
                       bool has_mass) {
   place.expect_keys(
@@ -88,11 +96,12 @@ SceneShape load_shape(const std::string& name, const YamlCursor& place, const Sc
                      "material", "mass_kg", "inertia", "center_of_mass_m"});
   place.one_key_of({"mesh", "box_m", "sphere_m", "l_m", "plate_m", "needle_m"});
   SceneShape result{.material = load_material_id(place, scene)};
-  if (auto key = place.find("mass_kg")) result.mass = key->number(kPositive);
+  if (auto key = place.find("mass_kg")) result.mass = key->number(kMass);
   const MassOverride mass = load_mass_override(place, result.mass);
   std::optional<Shape> shape = load_solid(place, mass);
   if (!shape) shape = load_mesh_shape(place, search, mass, result.mass.has_value());
   shape->name = name;
+  if (auto key = place.find("inertia")) check_inertia_at(*key, *shape);
   result.shape = std::make_shared<const Shape>(std::move(*shape));
   return result;
 }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <numeric>
+#include <utility>
 
 namespace lodestone {
 namespace {
@@ -12,7 +13,7 @@ using Packed = std::array<std::int16_t, 3>;
 std::int16_t to_16_bits(double fraction) {
   return std::int16_t(std::lround(std::clamp(fraction, -1.0, 1.0) * 32767.0));
 }
-double from_16_bits(std::int16_t value) { return value / 32767.0; }
+double from_16_bits(std::int16_t value) { return value * (1.0 / 32767.0); }
 Packed pack(const Vec3& v, double range) {
   return {to_16_bits(v.x() / range), to_16_bits(v.y() / range), to_16_bits(v.z() / range)};
 }
@@ -20,30 +21,19 @@ Vec3 unpack(const Packed& p, double range) {
   return range * Vec3(from_16_bits(p[0]), from_16_bits(p[1]), from_16_bits(p[2]));
 }
 
+Vec3 position_of(const ClipFrame& frame, double extent) {
+  return unpack(frame.position, 1.0).cwiseProduct(Vec3(extent, extent, double(kClipHeightRange)));
+}
+// Of unit length but for the rounding to 16 bits.
+Quat orientation_of(const ClipFrame& frame) {
+  const auto& q = frame.orientation;
+  return {from_16_bits(q[0]), from_16_bits(q[1]), from_16_bits(q[2]), from_16_bits(q[3])};
+}
+
 // Between two frames, which differ by little: along the chord, with hardly an error against the arc.
 Quat blend(const Quat& a, const Quat& b, double part) {
   const double sign = a.dot(b) < 0.0 ? -1.0 : 1.0;
   return Quat((1.0 - part) * a.coeffs() + sign * part * b.coeffs()).normalized();
-}
-
-// The cell of a cube of directions: face, then position on it.
-int cube_cell(const Eigen::Vector3f& direction, int side) {
-  int axis = 0;
-  direction.cwiseAbs().maxCoeff(&axis);
-  const float largest = std::max(std::abs(direction[axis]), 1e-12f);
-  const auto along = [&](int i) {
-    return std::clamp(int((direction[(axis + i) % 3] / largest + 1.0f) * 0.5f * float(side)), 0, side - 1);
-  };
-  return ((2 * axis + (direction[axis] < 0.0f)) * side + along(1)) * side + along(2);
-}
-
-Eigen::Vector3f cube_cell_direction(int cell, int side) {
-  const int face = cell / (side * side), axis = face / 2;
-  Eigen::Vector3f direction;
-  direction[axis] = face % 2 ? -1.0f : 1.0f;
-  direction[(axis + 1) % 3] = (float(cell / side % side) + 0.5f) / float(side) * 2.0f - 1.0f;
-  direction[(axis + 2) % 3] = (float(cell % side) + 0.5f) / float(side) * 2.0f - 1.0f;
-  return direction.normalized();
 }
 
 SettlingKey key_of(const ClipState& s, const Mat3& inertia_per_mass) {
@@ -65,62 +55,88 @@ ClipFrame encode_frame(const ClipState& state, float extent) {
 }
 
 ClipState decode_frame(const ClipFrame& frame, float extent) {
-  ClipState state;
-  state.position = unpack(frame.position, 1.0).cwiseProduct(Vec3(extent, extent, kClipHeightRange));
-  state.orientation =
-      Quat(frame.orientation[0], frame.orientation[1], frame.orientation[2], frame.orientation[3])
-          .normalized();
-  state.velocity = unpack(frame.velocity, kClipSpeedRange);
-  state.angular_velocity = unpack(frame.angular_velocity, kClipSpeedRange);
-  return state;
+  return {position_of(frame, extent), orientation_of(frame).normalized(),
+          unpack(frame.velocity, kClipSpeedRange), unpack(frame.angular_velocity, kClipSpeedRange)};
 }
 
 ClipState find_clip_state(const Signature& signature, const SettlingClip& clip, double frame) {
   frame = std::clamp(frame, 0.0, clip.frames - 1.0);
   const auto index = std::uint32_t(frame);
-  ClipState state = decode_frame(signature.clip_frames[clip.first_frame + index], clip.extent);
+  const ClipFrame* const at = &signature.clip_frames[clip.first_frame + index];
   const double part = frame - index;
-  if (part <= 1e-9 || index + 1 >= clip.frames) return state;
-  const ClipState next = decode_frame(signature.clip_frames[clip.first_frame + index + 1], clip.extent);
-  state.position += part * (next.position - state.position);
-  state.orientation = blend(state.orientation, next.orientation, part);
+  if (part <= 1e-9 || index + 1 >= clip.frames) return decode_frame(at[0], clip.extent);
+  ClipState state;
+  state.position = (1.0 - part) * position_of(at[0], clip.extent) + part * position_of(at[1], clip.extent);
+  state.orientation = blend(orientation_of(at[0]), orientation_of(at[1]), part);
+  state.velocity = unpack(at->velocity, kClipSpeedRange);
+  state.angular_velocity = unpack(at->angular_velocity, kClipSpeedRange);
   return state;
 }
 
-ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance)
-    : max_distance_(max_distance) {
-  std::vector<Near> all;
-  for (const ClipEntry& entry : signature.clip_entries)
-    all.push_back(
-        {key_of(find_clip_state(signature, signature.clips[entry.clip], entry.frame), inertia_per_mass),
-         entry});
-  std::ranges::stable_sort(all, {}, [](const Near& n) { return n.key.energy; });
-  constexpr float kCellReach = 1.5f / kSide;  // no direction in a cell is farther from its middle than this
-  const float reach = kCellReach + 0.5f * std::sqrt(max_distance);
-  for (int cell = 0; cell < 6 * kSide * kSide; ++cell) {
-    start_.push_back(std::uint32_t(near_.size()));
-    const Eigen::Vector3f middle = cube_cell_direction(cell, kSide);
-    std::ranges::copy_if(all, std::back_inserter(near_),
-                         [&](const Near& n) { return (n.key.normal - middle).norm() < reach; });
+int ClipIndex::cell_along(float coordinate) {
+  return int(std::clamp((coordinate + 1.0f) * (0.5f * float(kSide)), 0.0f, float(kSide - 1)));
+}
+
+std::size_t ClipIndex::cell_of(const std::array<int, 3>& place) {
+  return std::size_t((place[0] * kSide + place[1]) * kSide + place[2]);
+}
+
+ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass) {
+  if (signature.clip_entries.empty()) return;
+  struct Placed {
+    Keyed keyed;
+    std::size_t cell;
+  };
+  std::vector<Placed> placed;
+  placed.reserve(signature.clip_entries.size());
+  for (const ClipEntry& entry : signature.clip_entries) {
+    const SettlingKey key =
+        key_of(find_clip_state(signature, signature.clips[entry.clip], entry.frame), inertia_per_mass);
+    const Eigen::Vector3f& n = key.normal;
+    placed.push_back({{key, entry}, cell_of({cell_along(n.x()), cell_along(n.y()), cell_along(n.z())})});
   }
-  start_.push_back(std::uint32_t(near_.size()));
+  std::ranges::stable_sort(placed, {}, [](const Placed& p) { return std::pair(p.cell, p.keyed.key.energy); });
+  start_.assign(kSide * kSide * kSide + 1, 0);
+  entries_.reserve(placed.size());
+  for (const Placed& p : placed) {
+    entries_.push_back(p.keyed);
+    ++start_[p.cell + 1];
+  }
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+}
+
+void ClipIndex::search(std::size_t cell, const SettlingKey& key, float greatest_energy,
+                       Nearest& nearest) const {
+  for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
+    const SettlingKey& other = entries_[i].key;
+    if (other.energy > greatest_energy) return;
+    const float from_normal = 4.0f * (other.normal - key.normal).squaredNorm();
+    if (from_normal >= nearest.distance) continue;
+    const float distance = from_normal + (other.velocity - key.velocity).squaredNorm() +
+                           (other.angular_velocity - key.angular_velocity).squaredNorm();
+    if (distance < nearest.distance) nearest = {distance, &entries_[i]};
+  }
 }
 
 std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float energy_slack,
                                                  float distance_limit) const {
   if (empty()) return {};
-  const int cell = cube_cell(key.normal, kSide);
-  std::optional<ClipEntry> best;
-  float best_distance = std::min(max_distance_, distance_limit);
-  for (const Near& n : std::span(near_).subspan(start_[cell], start_[cell + 1] - start_[cell])) {
-    if (n.key.energy > key.energy + energy_slack) break;
-    const float from_normal = 4.0f * (n.key.normal - key.normal).squaredNorm();
-    if (from_normal >= best_distance) continue;
-    const float distance = from_normal + (n.key.velocity - key.velocity).squaredNorm() +
-                           (n.key.angular_velocity - key.angular_velocity).squaredNorm();
-    if (distance < best_distance) best_distance = distance, best = n.entry;
+  const float reach = 0.5f * std::sqrt(distance_limit);
+  std::array<int, 3> first, last;
+  for (int axis = 0; axis < 3; ++axis) {
+    first[std::size_t(axis)] = cell_along(key.normal[axis] - reach);
+    last[std::size_t(axis)] = cell_along(key.normal[axis] + reach);
   }
-  return best;
+  Nearest nearest{distance_limit};
+  for (int x = first[0]; x <= last[0]; ++x)
+    for (int y = first[1]; y <= last[1]; ++y) {
+      const std::size_t begin = cell_of({x, y, first[2]}), end = cell_of({x, y, last[2]}) + 1;
+      if (start_[begin] == start_[end]) continue;  // most lie off the sphere
+      for (std::size_t cell = begin; cell < end; ++cell)
+        search(cell, key, key.energy + energy_slack, nearest);
+    }
+  if (!nearest.entry) return {};
+  return nearest.entry->entry;
 }
 
 }  // namespace lodestone

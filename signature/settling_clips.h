@@ -2,6 +2,7 @@
 // and rolls to rest. Dimensionless as the rest of the signature, so they serve every size.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -39,24 +40,30 @@ struct SettlingKey {
 class ClipIndex {
  public:
   ClipIndex() = default;
-  /// `inertia_per_mass`: of the shape, over R²; `max_distance`: of what find_nearest may return.
-  ClipIndex(const Signature& signature, const Mat3& inertia_per_mass, float max_distance);
+  /// `inertia_per_mass`: of the shape, over R².
+  ClipIndex(const Signature& signature, const Mat3& inertia_per_mass);
 
   /// The entry nearest to `key` by 4|Δn|² + |Δv|² + |Δω|², of an energy at most `key`'s plus `energy_slack`;
-  /// none beyond `distance_limit`, which is at most `max_distance`.
+  /// none beyond `distance_limit`.
   std::optional<ClipEntry> find_nearest(const SettlingKey& key, float energy_slack,
                                         float distance_limit) const;
-  bool empty() const { return near_.empty(); }
+  bool empty() const { return entries_.empty(); }
 
  private:
-  struct Near {
+  struct Keyed {
     SettlingKey key;
     ClipEntry entry;
   };
-  static constexpr int kSide = 8;  // cells along an edge of the cube of normals
-  float max_distance_ = 0.0f;
-  std::vector<std::uint32_t> start_;  // of each cell's run of `near_`
-  std::vector<Near> near_;            // what is within reach of the cell, of least energy first
+  struct Nearest {
+    float distance;
+    const Keyed* entry = nullptr;
+  };
+  static constexpr int kSide = 24;  // cells along an edge of the cube that holds the sphere of normals
+  static int cell_along(float coordinate);
+  static std::size_t cell_of(const std::array<int, 3>& place);
+  void search(std::size_t cell, const SettlingKey& key, float greatest_energy, Nearest& nearest) const;
+  std::vector<std::uint32_t> start_;  // of each cell's run of `entries_`
+  std::vector<Keyed> entries_;        // by cell, in a cell of least energy first
 };
 
 }  // namespace lodestone

@@ -1,38 +1,40 @@
-// The subcommands of `lodestone`. Each adds its options to the program and, once chosen, runs when the
-// arguments are parsed.
+// The commands of `lodestone`, each a file of that name in commands/.
 #pragma once
 
-namespace CLI {
-class App;
-}
+#include "tools/command.h"
 
 namespace lodestone {
 
-/// What scripts can rely on. `usage`: the command line is wrong, a name or a value in it. `bad_input`: what
-/// it names cannot be used: a shape, or a file that cannot be read, is wrong, or cannot be written (standard
-/// output among them).
-enum class ExitCode {
-  done = 0,
-  check_failed = 1,
-  usage = 2,
-  bad_input = 3,
-  diverged = 4,
-  interrupted = 130,
-  terminated = 143
-};
+void add_run_command(Command& program);
+void add_view_command(Command& program);
+void add_replay_command(Command& program);
+void add_sign_command(Command& program);
+void add_merge_command(Command& program);
+void add_inspect_command(Command& program);
+void add_demo_command(Command& program);
+void add_report_command(Command& program);
 
-/// `exit_code` receives how the chosen command ended; it outlives the program's parsing. InputError passes
-/// through.
-void add_run_command(CLI::App& program, ExitCode& exit_code);
-void add_view_command(CLI::App& program, ExitCode& exit_code);
-void add_replay_command(CLI::App& program, ExitCode& exit_code);
-void add_sign_command(CLI::App& program, ExitCode& exit_code);
-void add_merge_command(CLI::App& program, ExitCode& exit_code);
-void add_inspect_command(CLI::App& program, ExitCode& exit_code);
-void add_compare_command(CLI::App& program, ExitCode& exit_code);
-void add_demo_command(CLI::App& program, ExitCode& exit_code);
-void add_bench_command(CLI::App& program, ExitCode& exit_code);
-void add_report_command(CLI::App& program, ExitCode& exit_code);
+void add_compare_drop_command(Command& compare);
+void add_compare_pile_command(Command& compare);
+void add_compare_return_command(Command& compare);
+void add_compare_errors_command(Command& compare);
+void add_compare_shapes_command(Command& compare);
+void add_compare_conditions_command(Command& compare);
+
+void add_bench_hard_cases_command(Command& bench);
+void add_bench_full_level_command(Command& bench);
+void add_bench_table1_command(Command& bench);
+void add_bench_broad_phase_command(Command& bench);
+void add_bench_settled_command(Command& bench);
+void add_bench_budget_command(Command& bench);
+void add_bench_rungs_command(Command& bench);
+void add_bench_transitions_command(Command& bench);
+void add_bench_attached_command(Command& bench);
+void add_bench_churn_command(Command& bench);
+void add_bench_endurance_command(Command& bench);
+
+/// All of them, in the order in which --help lists them.
+void add_commands(Command& program);
 
 /// The whole program: parses the arguments, runs one command and says on stderr what went wrong.
 ExitCode run_lodestone(int argc, char** argv);

@@ -55,7 +55,7 @@ std::vector<std::string> draw_rows(const CollisionHeights& heights, const Range&
   return rows;
 }
 
-std::string escaped(const std::string& text) {
+std::string escaped_svg(const std::string& text) {
   std::string out;
   for (const char c : text) {
     if (c == '<')
@@ -131,7 +131,7 @@ std::string svg_plot(const CollisionHeights& heights, const std::string& title) 
       "<svg xmlns='http://www.w3.org/2000/svg' width='640' height='400' font-family='sans-serif' "
       "font-size='13'>\n"
       "<rect width='640' height='400' fill='white'/>\n<text x='{}' y='24' font-size='15'>{}</text>\n",
-      kLeft, escaped(title));
+      kLeft, escaped_svg(title));
   svg += canvas.axes();
   svg += fmt::format("<polygon points='{}{}' fill='#4477aa' fill-opacity='0.25'/>\n",
                      canvas.curve(heights, 1.0, false), canvas.curve(heights, -1.0, true));

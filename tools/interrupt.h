@@ -3,7 +3,7 @@
 
 #include <exception>
 
-#include "tools/commands.h"
+#include "tools/command.h"
 
 namespace lodestone {
 

@@ -1,11 +1,17 @@
-// The median and other percentiles of what was measured.
+// The mean, the median and other percentiles of what was measured.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace lodestone {
+
+/// There must be at least one.
+inline double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
 
 /// Of an even number the upper one in the middle. There must be at least one.
 inline double median_of(std::vector<double> values) {

@@ -8,16 +8,17 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "reference/argument_error.h"
 #include "reference/output_file.h"
 #include "reference/simulation_error.h"
-#include "tools/argument_checks.h"
+#include "tools/command.h"
 #include "tools/commands.h"
 #include "tools/interrupt.h"
-#include "tools/printable.h"
 #include "tools/results.h"
+#include "tools/terminal.h"
 
 namespace lodestone {
 namespace {
@@ -42,7 +43,7 @@ ExitCode explain(const CLI::App& program, const CLI::ParseError& error) {
 }
 
 // "Permission denied" within a sentence.
-std::string words_for(const std::error_code& error) {
+std::string words_of_error(const std::error_code& error) {
   std::string words = error.message();
   if (!words.empty()) words[0] = char(std::tolower(static_cast<unsigned char>(words[0])));
   return words;
@@ -51,7 +52,7 @@ std::string words_for(const std::error_code& error) {
 // Names the place that `error` does not name first, as the messages of ours do.
 std::string text_of(const std::filesystem::filesystem_error& error) {
   return fmt::format("{}: found {}, expected a file that can be used", error.path1().string(),
-                     words_for(error.code()));
+                     words_of_error(error.code()));
 }
 
 bool wants_json(const CLI::App& command) {
@@ -82,7 +83,31 @@ void check_standard_output() {
     throw_file_error("standard output", errno != 0 ? errno : EIO, "room for the results");
 }
 
+void add_compare_commands(Command& program) {
+  Command compare = program.add_group("compare", "error against the truth, beside cost");
+  for (const auto add :
+       {add_compare_drop_command, add_compare_pile_command, add_compare_return_command,
+        add_compare_errors_command, add_compare_shapes_command, add_compare_conditions_command})
+    add(compare);
+}
+
+void add_bench_commands(Command& program) {
+  Command bench = program.add_group("bench", "what the engine withstands, and what it costs");
+  for (const auto add : {add_bench_hard_cases_command, add_bench_full_level_command, add_bench_table1_command,
+                         add_bench_broad_phase_command, add_bench_settled_command, add_bench_budget_command,
+                         add_bench_rungs_command, add_bench_transitions_command, add_bench_attached_command,
+                         add_bench_churn_command, add_bench_endurance_command})
+    add(bench);
+}
+
 }  // namespace
+
+void add_commands(Command& program) {
+  for (const auto add :
+       {add_run_command, add_view_command, add_replay_command, add_compare_commands, add_sign_command,
+        add_merge_command, add_inspect_command, add_demo_command, add_bench_commands, add_report_command})
+    add(program);
+}
 
 ExitCode run_lodestone(int argc, char** argv) {
   ExitCode exit_code = ExitCode::done;
@@ -90,10 +115,8 @@ ExitCode run_lodestone(int argc, char** argv) {
     CLI::App program("Simulation level of detail for rigid bodies, on ODE", "lodestone");
     program.require_subcommand(1);
     program.footer(kExitCodes);
-    for (const auto add :
-         {add_run_command, add_view_command, add_replay_command, add_compare_command, add_sign_command,
-          add_merge_command, add_inspect_command, add_demo_command, add_bench_command, add_report_command})
-      add(program, exit_code);
+    Command commands(program, exit_code);
+    add_commands(commands);
     check_numbers(program);
     parse(program, argc, argv, exit_code);
     check_standard_output();
@@ -105,7 +128,7 @@ ExitCode run_lodestone(int argc, char** argv) {
     return ExitCode::bad_input;
   } catch (const std::system_error& error) {
     complain(std::ferror(stdout) ? fmt::format("standard output: found {}, expected room for the results",
-                                               words_for(error.code()))
+                                               words_of_error(error.code()))
                                  : error.what());
     return ExitCode::bad_input;
   } catch (const std::bad_alloc&) {

@@ -9,7 +9,7 @@
 #include <cstdio>
 
 #include "tools/interrupt.h"
-#include "tools/printable.h"
+#include "tools/terminal.h"
 
 namespace lodestone {
 namespace {

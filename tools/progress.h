@@ -33,4 +33,12 @@ class ProgressLine {
   double start_s_ = 0.0, last_fraction_ = 2.0;  // of what counts from 0 to 1 now
 };
 
+/// What `measure` makes of `settings`, their `progress` shown on a line meanwhile.
+template <class Settings, class Measure>
+auto with_progress(Settings settings, Measure measure) {
+  ProgressLine line;
+  settings.progress = line.function();
+  return measure(settings);
+}
+
 }  // namespace lodestone

@@ -2,25 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <thread>
 
 #include "tools/scene_signatures.h"
+#include "tools/shape_arguments.h"
 #include "tools/step_argument.h"
 
 namespace lodestone {
 namespace {
-
-const std::map<std::string, LevelChoice> kLevels = {{"auto", LevelChoice::automatic},
-                                                    {"full", LevelChoice::full},
-                                                    {"statistical", LevelChoice::statistical},
-                                                    {"support", LevelChoice::support},
-                                                    {"tables", LevelChoice::tables}};
-const std::map<std::string, StatisticalModel> kModels = {{"tables", StatisticalModel::tables},
-                                                         {"support", StatisticalModel::support}};
 
 /// What is wrong with `text` as a budget; empty where nothing is.
 std::string find_budget_fault(const std::string& text) {
@@ -38,52 +29,45 @@ int threads_of(int asked) {
 
 }  // namespace
 
-void add_run_arguments(CLI::App& command, RunArguments& arguments) {
+void add_run_arguments(Command& command, RunArguments& arguments) {
   RunSettings& running = arguments.running;
-  command.add_option("--steps", running.steps, "instead of the scene's")->check(CLI::Range(1, 100'000'000));
+  command.add_option("--steps", running.steps, "instead of the scene's").within(1, 100'000'000);
   command.add_option("--dt", arguments.step, "step, s: 0.01 or 1/60, instead of the scene's")
-      ->check(find_step_fault, "SECONDS");
+      .checked(find_step_fault, "SECONDS");
   command.add_option("--seed", arguments.loading.seed, "instead of the scene's, for scatters too");
-  command.add_option("--threads", running.threads, "of the statistical level; 0: all cores")
-      ->check(CLI::Range(0, 4096))
-      ->capture_default_str();
-  command
-      .add_option_function<std::string>(
-          "--level", [&](const std::string& name) { running.level = kLevels.at(name); },
-          "auto: the scene's policy; statistical: it says which of support and tables; else one rung for "
-          "every body")
-      ->check(CLI::IsMember({"auto", "full", "support", "tables", "statistical"}));
-  command
-      .add_option_function<std::string>(
-          "--model", [&](const std::string& name) { running.model = kModels.at(name); },
-          "of all statistical bodies, whatever the policy says")
-      ->check(CLI::IsMember({"tables", "support"}));
-  CLI::Option* ms = command
-                        .add_option("--budget-ms", running.budget_ms,
-                                    "processor time of a step, instead of the scene's policy")
-                        ->check(find_budget_fault, "MS");
-  CLI::Option* work =
-      command
-          .add_option("--budget-work", running.budget_work, "the same in work units, which repeat exactly")
-          ->check(find_budget_fault, "UNITS")
-          ->excludes(ms);
+  command.add_option("--threads", running.threads, "of the statistical level; 0: all cores").within(0, 4096);
+  command.add_choice<LevelChoice>(
+      "--level", running.level,
+      {{"auto", LevelChoice::automatic},
+       {"full", LevelChoice::full},
+       {"support", LevelChoice::support},
+       {"tables", LevelChoice::tables},
+       {"statistical", LevelChoice::statistical}},
+      "auto: the scene's policy; statistical: it says which of support and tables; else one rung for every "
+      "body");
+  command.add_choice<StatisticalModel>(
+      "--model", running.model,
+      {{"tables", StatisticalModel::tables}, {"support", StatisticalModel::support}},
+      "of all statistical bodies, whatever the policy says");
+  Option ms = command
+                  .add_option("--budget-ms", running.budget_ms,
+                              "processor time of a step, instead of the scene's policy")
+                  .checked(find_budget_fault, "MS");
+  Option work =
+      command.add_option("--budget-work", running.budget_work, "the same in work units, which repeat exactly")
+          .checked(find_budget_fault, "UNITS")
+          .excludes(ms);
   command
       .add_option("--full-within-m", running.full_within_m,
                   "policy distance with this, instead of the scene's policy")
-      ->check(CLI::NonNegativeNumber)
-      ->excludes(ms)
-      ->excludes(work);
+      .from_zero()
+      .excludes(ms)
+      .excludes(work);
   command
       .add_option("--audit-ms", running.audit_ms,
                   "processor time of each step for simulating demoted bodies on in full, beside the world")
-      ->check(CLI::Range(0.0, 1e6));
-  command
-      .add_option("--mesh-path", arguments.loading.mesh_paths, "folders in which mesh files are looked up")
-      ->delimiter(':')
-      ->allow_extra_args(false);
-  command.add_flag(
-      "--untrusted", arguments.loading.untrusted,
-      "read mesh files, which may come from strangers, in a child process with limits of memory and time");
+      .within(0.0, 1e6);
+  add_mesh_arguments(command, arguments.loading.mesh_paths, arguments.loading.untrusted);
   command.add_flag("--no-cache", arguments.no_cache, "measure the signatures anew and leave the cache alone");
 }
 

@@ -6,11 +6,8 @@
 
 #include "scenes/runner.h"
 #include "scenes/scene_file.h"
+#include "tools/command.h"
 #include "tools/progress.h"
-
-namespace CLI {
-class App;
-}
 
 namespace lodestone {
 
@@ -24,7 +21,7 @@ struct RunArguments {
 
 /// Adds --steps, --dt, --seed, --threads, --level, --model, --budget-ms, --budget-work, --mesh-path,
 /// --no-cache to `command`. `arguments` outlives the parsing.
-void add_run_arguments(CLI::App& command, RunArguments& arguments);
+void add_run_arguments(Command& command, RunArguments& arguments);
 
 /// The settings that the arguments ask for, with progress and the measuring of signatures shown on `line`,
 /// which outlives the run.

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/duration_text.h"
 #include "tools/interrupt.h"
 #include "tools/terminal.h"
+#include "tools/text_table.h"
 
 namespace lodestone {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "signature/signature_source.h"
 #include "tools/interrupt.h"
-#include "tools/warning.h"
+#include "tools/terminal.h"
 
 namespace lodestone {
 namespace {

@@ -6,10 +6,7 @@
 
 #include "reference/material.h"
 #include "scenes/shape_source.h"
-
-namespace CLI {
-class App;
-}
+#include "tools/command.h"
 
 namespace lodestone {
 
@@ -21,11 +18,14 @@ struct ShapeArguments {
 };
 
 /// Adds --restitution, --friction and --density to `command`. `material` outlives the parsing.
-void add_material_arguments(CLI::App& command, Material& material);
+void add_material_arguments(Command& command, Material& material);
 
 /// Adds SHAPE, --size, --faces, --mesh-path and those of the material to `command`. `arguments` outlives the
 /// parsing.
-void add_shape_arguments(CLI::App& command, ShapeArguments& arguments);
+void add_shape_arguments(Command& command, ShapeArguments& arguments);
+
+/// Adds --mesh-path and --untrusted to `command`; what they fill outlives the parsing.
+void add_mesh_arguments(Command& command, std::vector<std::filesystem::path>& folders, bool& untrusted);
 
 /// Throws InputError for a shape that does not exist. `report`: what was mended of a mesh, where one is read.
 std::shared_ptr<const Shape> make_shape_from_arguments(const ShapeArguments& arguments,

@@ -3,11 +3,9 @@
 
 #include <optional>
 
+#include "signature/measure/measurement.h"
 #include "signature/signature.h"
-
-namespace CLI {
-class App;
-}
+#include "tools/command.h"
 
 namespace lodestone {
 
@@ -21,6 +19,10 @@ struct SignatureArguments {
 
 /// Adds --paper-grid, --trial-end, --psi, --draw, --table-error, --cell-trials, --height-trials,
 /// --settling-trials and --clips to `command`. `arguments` outlives the parsing.
-void add_signature_arguments(CLI::App& command, SignatureArguments& arguments);
+void add_signature_arguments(Command& command, SignatureArguments& arguments);
+
+/// Adds --shard I/N, I from 1 to N, to `command`: which share of a measurement. `share` outlives the parsing
+/// and stays empty where it is not given.
+Option add_share_argument(Command& command, std::optional<Share>& share);
 
 }  // namespace lodestone

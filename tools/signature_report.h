@@ -13,4 +13,8 @@ namespace lodestone {
 std::string text_of(const Signature& signature, std::size_t bytes);
 nlohmann::ordered_json json_of(const Signature& signature, std::size_t bytes);
 
+/// `bytes`: of its file.
+std::string page_of(const Signature& signature, std::size_t bytes);
+nlohmann::ordered_json full_json_of(const Signature& signature, std::size_t bytes);
+
 }  // namespace lodestone

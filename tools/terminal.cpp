@@ -4,9 +4,72 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdlib>
 
 namespace lodestone {
+namespace {
+
+constexpr std::size_t kLongest = 1000,
+                      kShown = 400;  // bytes: of a text, and of each of its ends where it is longer
+
+unsigned char byte_at(std::string_view text, std::size_t i) {
+  return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+}
+
+// Bytes of the UTF-8 character that begins at `i`, or 0 where none does (RFC 3629: no overlong form, no
+// surrogate, up to U+10FFFF).
+std::size_t character_bytes(std::string_view text, std::size_t i) {
+  const unsigned char first = byte_at(text, i), second = byte_at(text, i + 1);
+  if (first < 0x80) return 1;
+  const std::size_t count = first >= 0xc2 && first <= 0xdf   ? 2
+                            : first >= 0xe0 && first <= 0xef ? 3
+                            : first >= 0xf0 && first <= 0xf4 ? 4
+                                                             : 0;
+  for (std::size_t k = 1; k < count; ++k)
+    if ((byte_at(text, i + k) & 0xc0) != 0x80) return 0;
+  const bool is_wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
+                        (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
+  return is_wrong ? 0 : count;
+}
+
+bool is_control(std::string_view character) {
+  const unsigned char first = byte_at(character, 0);
+  return first < 0x20 || first == 0x7f || (first == 0xc2 && byte_at(character, 1) < 0xa0);
+}
+
+std::string in_escapes(std::string_view bytes) {
+  if (bytes == "\n") return "\\n";
+  if (bytes == "\t") return "\\t";
+  if (bytes == "\r") return "\\r";
+  std::string text;
+  for (const char byte : bytes) text += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
+  return text;
+}
+
+std::string escape_all(std::string_view text) {
+  std::string shown;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t count = character_bytes(text, i);
+    const std::string_view character = text.substr(i, count == 0 ? 1 : count);
+    shown += count == 0 || is_control(character) ? in_escapes(character) : std::string(character);
+    i += character.size();
+  }
+  return shown;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  if (text.size() <= kLongest) return escape_all(text);
+  return fmt::format("{} ... ({} bytes) ... {}", escape_all(text.substr(0, kShown)), text.size() - 2 * kShown,
+                     escape_all(text.substr(text.size() - kShown)));
+}
+
+void warn(const std::string& message) {
+  fmt::print(stderr, "{}lodestone: warning: {}\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "",
+             printable(message));
+}
 
 bool stdout_has_styles() {
   static const bool has_styles = [] {

@@ -1,10 +1,19 @@
-// Text as a terminal shows it.
+// Text as a terminal may be given it, and as it shows it.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 namespace lodestone {
+
+/// Texts of strangers (names of files, arguments, what stands in a scene): `text` in one line, with every
+/// byte that a terminal obeys or that is no UTF-8 written as \n, \t or \x1b: the control characters of ASCII
+/// and those from U+0080 to U+009F. Of a text of over 1,000 bytes, such as the name of a file may be, the
+/// middle is left out.
+std::string printable(std::string_view text);
+
+/// What goes on in spite of something: a line on stderr, in place of a line of progress that may stand there.
+void warn(const std::string& message);
 
 enum class Style { heading, good, bad };
 

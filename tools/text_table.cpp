@@ -44,4 +44,8 @@ std::string TextTable::text() const {
   return text;
 }
 
+std::string text_of_ms(double ms) {
+  return ms >= 0.1 || ms <= 0.0 ? fmt::format("{:.2f}", ms) : fmt::format("{:.2g}", ms);
+}
+
 }  // namespace lodestone

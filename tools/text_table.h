@@ -21,4 +21,7 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
+/// Milliseconds: two decimals, and below a tenth of a millisecond two digits, so that nothing reads as 0.00.
+std::string text_of_ms(double ms);
+
 }  // namespace lodestone

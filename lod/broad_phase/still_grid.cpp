@@ -41,6 +41,8 @@ void StillGrid::insert(std::uint32_t body, const Vec3& position, double radius) 
   cell.head = body;
   ++bodies_;
   ++of_level_[level + 64];
+  lowest_level_ = std::min(lowest_level_, level);
+  highest_level_ = std::max(highest_level_, level);
 }
 
 void StillGrid::remove(std::uint32_t body, const Vec3& position, double radius) {
@@ -66,6 +68,37 @@ void StillGrid::grow() {
   used_ = lived_in;
   for (const Cell& cell : old)
     if (cell.head != kNone) cells_[place_of(cell.key)] = cell;
+  count_groups();
+}
+
+// A group is four cells wide along each axis.
+std::size_t StillGrid::group_of(const Key& cell) const {
+  return hash_of({cell.x >> 2, cell.y >> 2, cell.z >> 2, cell.level}) & (groups_.size() - 1);
+}
+
+// Anew, from the cells.
+void StillGrid::count_groups() {
+  groups_.assign(with_blocks_ ? 0 : cells_.size(), 0);
+  if (with_blocks_) return;
+  for (const Cell& cell : cells_)
+    if (cell.head != kNone) mark(cell.key);
+}
+
+void StillGrid::find_levels() {
+  lowest_level_ = 64, highest_level_ = -64;
+  for (int level = -64; level < 64; ++level) {
+    if (of_level_[std::size_t(level + 64)] == 0) continue;
+    lowest_level_ = std::min(lowest_level_, level);
+    highest_level_ = level;
+  }
+}
+
+bool StillGrid::is_empty(const Range& range, std::int32_t level) const {
+  for (std::int32_t z = range.low[2] >> 2; z <= range.high[2] >> 2; ++z)
+    for (std::int32_t y = range.low[1] >> 2; y <= range.high[1] >> 2; ++y)
+      for (std::int32_t x = range.low[0] >> 2; x <= range.high[0] >> 2; ++x)
+        if (groups_[group_of({4 * x, 4 * y, 4 * z, level})] != 0) return false;
+  return true;
 }
 
 std::size_t StillGrid::block_of(const Key& block) const {
@@ -87,7 +120,11 @@ void StillGrid::each_block(const Key& cell, const Act& act) {
 }
 
 void StillGrid::mark(const Key& cell) {
-  if (!with_blocks_) return;
+  if (!with_blocks_) {
+    std::uint8_t& count = groups_[group_of(cell)];
+    if (count < kMany) ++count;
+    return;
+  }
   if (2 * (used_blocks_ + 8) > blocks_.size()) grow_blocks();
   each_block(cell, [this](const Key& key, std::uint64_t bit) {
     Block& block = blocks_[block_of(key)];
@@ -98,7 +135,10 @@ void StillGrid::mark(const Key& cell) {
 
 void StillGrid::unmark(const Key& cell) {
   if (with_blocks_)
-    each_block(cell, [this](const Key& key, std::uint64_t bit) { blocks_[block_of(key)].lived_in &= ~bit; });
+    return each_block(cell,
+                      [this](const Key& key, std::uint64_t bit) { blocks_[block_of(key)].lived_in &= ~bit; });
+  std::uint8_t& count = groups_[group_of(cell)];
+  if (count < kMany) --count;
 }
 
 // Blocks in which nobody lies any more are left out.
@@ -115,6 +155,7 @@ void StillGrid::grow_blocks() {
 void StillGrid::make_blocks() {
   blocks_.clear();
   used_blocks_ = 0;
+  if (!with_blocks_) return;
   for (const Cell& cell : cells_)
     if (cell.head != kNone) mark(cell.key);
 }

@@ -1,6 +1,7 @@
 // Where bodies lie that sleep: cells in a hash table, so that one falls asleep or wakes without a look at the
-// others. Bodies of other sizes have cells of other sizes, each edge twice the one before. Blocks of cells,
-// where they are kept, tell at one look which cells about a place are lived in.
+// others. Bodies of other sizes have cells of other sizes, each edge twice the one before. Groups of cells
+// tell at a few looks that nobody lies about a place; blocks, where they are kept instead, at one which cells
+// are lived in.
 #pragma once
 
 #include <algorithm>
@@ -27,11 +28,11 @@ class StillGrid {
   bool empty() const { return bodies_ == 0; }
   void archive(StateArchive& a) {
     a(cells_, used_, bodies_, next_, of_level_);
-    if (a.reading()) make_blocks();
+    if (a.reading()) make_blocks(), count_groups(), find_levels();
   }
   std::size_t bytes() const {
     return cells_.capacity() * sizeof(Cell) + next_.capacity() * sizeof(std::uint32_t) +
-           blocks_.capacity() * sizeof(Block);
+           blocks_.capacity() * sizeof(Block) + groups_.capacity();
   }
 
   /// Calls found(body) for every body whose ball may meet this one, and for some a cell beyond, in an order
@@ -57,6 +58,7 @@ class StillGrid {
     std::uint64_t lived_in = 0;  // a bit for each cell: x + 4 y + 16 z
   };
   static constexpr std::int32_t kNoLevel = -1000;
+  static constexpr std::uint8_t kMany = 255;
   struct Range {
     std::array<std::int32_t, 3> low, high;
   };
@@ -88,8 +90,14 @@ class StillGrid {
   static void each_block(const Key& cell, const Act& act);
   void make_blocks();
   void grow_blocks();
+  std::size_t group_of(const Key& cell) const;
+  void count_groups();
+  void find_levels();
+  bool is_empty(const Range& range, std::int32_t level) const;
   void mark(const Key& cell);
   void unmark(const Key& cell);
+  template <class Found>
+  void visit_all(const Range& range, std::int32_t level, const Found& found) const;
   template <class Found>
   void visit_by_blocks(const Range& range, std::int32_t level, const Found& found) const;
   template <class Found>
@@ -99,8 +107,11 @@ class StillGrid {
 
   std::vector<Cell> cells_;  // a power of two
   std::size_t used_ = 0, bodies_ = 0;
-  std::vector<std::uint32_t> next_;            // of each body, the next one in its cell
-  std::array<std::uint32_t, 128> of_level_{};  // bodies
+  std::vector<std::uint8_t> groups_;  // as many, by a group's hash: cells of it, and of others with that
+                                      // hash, that are lived in; kMany for as many or more
+  std::vector<std::uint32_t> next_;   // of each body, the next one in its cell
+  std::array<std::uint32_t, 128> of_level_{};    // bodies
+  int lowest_level_ = 64, highest_level_ = -64;  // that any body was ever of
   bool with_blocks_;
   std::vector<Block> blocks_;  // a power of two, or none
   std::size_t used_blocks_ = 0;
@@ -109,9 +120,8 @@ class StillGrid {
 template <class Found>
 void StillGrid::find_near(const Vec3& center, double reach, const Found& found) const {
   if (empty()) return;
-  for (int index = 0; index < int(of_level_.size()); ++index) {
-    if (of_level_[index] == 0) continue;
-    const int level = index - 64;
+  for (int level = lowest_level_; level <= highest_level_; ++level) {
+    if (of_level_[std::size_t(level + 64)] == 0) continue;
     const double inverse = 1.0 / edge_of(level), span = reach + 0.5 * edge_of(level);
     const Vec3 low = (center - Vec3::Constant(span)) * inverse,
                high = (center + Vec3::Constant(span)) * inverse;
@@ -121,20 +131,25 @@ void StillGrid::find_near(const Vec3& center, double reach, const Found& found) 
         if (cell.key.level == level) visit(cell, found);
       continue;
     }
-    if (with_blocks_) {
-      visit_by_blocks({{along(low.x()), along(low.y()), along(low.z())},
-                       {along(high.x()), along(high.y()), along(high.z())}},
-                      level, found);
-      continue;
-    }
-    for (std::int32_t z = along(low.z()); z <= along(high.z()); ++z)
-      for (std::int32_t y = along(low.y()); y <= along(high.y()); ++y)
-        for (std::int32_t x = along(low.x()); x <= along(high.x()); ++x)
-          visit(cells_[place_of({x, y, z, level})], found);
+    const Range range{{along(low.x()), along(low.y()), along(low.z())},
+                      {along(high.x()), along(high.y()), along(high.z())}};
+    if (with_blocks_)
+      visit_by_blocks(range, level, found);
+    else if (!is_empty(range, level))
+      visit_all(range, level, found);
   }
 }
 
 // In the order of cells: x first, then y, then z.
+template <class Found>
+void StillGrid::visit_all(const Range& range, std::int32_t level, const Found& found) const {
+  for (std::int32_t z = range.low[2]; z <= range.high[2]; ++z)
+    for (std::int32_t y = range.low[1]; y <= range.high[1]; ++y)
+      for (std::int32_t x = range.low[0]; x <= range.high[0]; ++x)
+        visit(cells_[place_of({x, y, z, level})], found);
+}
+
+// In the same order.
 template <class Found>
 void StillGrid::visit_by_blocks(const Range& range, std::int32_t level, const Found& found) const {
   if (blocks_.empty()) return;
@@ -162,11 +177,7 @@ void StillGrid::visit_by_blocks(const Range& range, std::int32_t level, const Fo
         const Key block{x, y, z, level};
         any = (blocks_[block_of(block)].lived_in & bits_of(range, block)) != 0;
       }
-  if (!any) return;
-  for (std::int32_t z = range.low[2]; z <= range.high[2]; ++z)
-    for (std::int32_t y = range.low[1]; y <= range.high[1]; ++y)
-      for (std::int32_t x = range.low[0]; x <= range.high[0]; ++x)
-        visit(cells_[place_of({x, y, z, level})], found);
+  if (any) visit_all(range, level, found);
 }
 
 }  // namespace lodestone

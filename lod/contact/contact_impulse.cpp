@@ -44,11 +44,17 @@ ContactImpulse respond_contact(const Mat3& response, const Vec3& normal, const V
                                const ContactLaw& law) {
   const double approach = velocity.dot(normal);
   if (!(approach < 0.0)) return {};
+  const double target = -law.restitution * approach;  // normal velocity afterwards
+  const double bound =
+      law.friction * (target - approach) / normal.dot(response * normal);  // μ × frictionless normal impulse
+  // Most hits stick, and then the frame of the slip does not matter.
+  const Vec3 stop = response.inverse() * (target * normal - velocity);
+  const double along = stop.dot(normal);
+  if (along >= 0.0 && (stop - along * normal).squaredNorm() < bound * bound) return {stop, true};
+
   const Mat3 frame = contact_frame(normal, velocity);
   const Mat3 k = frame.transpose() * response * frame;
   const Vec3 u = frame.transpose() * velocity;
-  const double target = -law.restitution * approach;                  // normal velocity afterwards
-  const double bound = law.friction * (target - approach) / k(0, 0);  // μ × frictionless normal impulse
   const double tolerance = 1e-12 * u.norm();
 
   // Each tangential impulse is free (0) or at a bound (±1). The likely sets come first: sticking, then

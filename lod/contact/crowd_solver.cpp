@@ -21,7 +21,7 @@ constexpr double kUneven =
     20.0;  // a body that weighs as many times another makes all that hangs together with them uneven
 constexpr double kMostUnevenSweeps =
     80.0;  // times as many as elsewhere; for a ratio r about √(r / 2) times, as such an iteration asks for
-constexpr double kUnevenTolerance = 3e-3;  // of what gravity adds to a velocity in the step
+constexpr double kUnevenTolerance = 1e-4;  // of what gravity adds to a velocity in the step
 
 LODESTONE_INLINE D4 inverse_mass_along(const D4& inverse_mass, const Tensor4& inverse_inertia, const V4& arm,
                                        const V4& axis) {

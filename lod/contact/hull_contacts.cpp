@@ -1,101 +1,141 @@
 #include "lod/contact/hull_contacts.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 
 #include "lod/statistical/parting.h"
 
 namespace lodestone {
 namespace {
 
-// Vertices of the hull below the margin, found by walking its edges from the lowest one: below a plane they
-// are connected.
-struct Submerged {
-  static constexpr int kCapacity = 64;
+// Vertices with a gap below `margin`, now or after the change, in the hull's order.
+struct Below {
+  static constexpr std::size_t kCapacity = 256;  // of more, the first ones serve
   std::array<std::int32_t, kCapacity> vertex;
-  std::array<double, kCapacity> gap;
-  int count = 0;
-  std::size_t vertices;  // of the hull
-
-  // Marks by the vertex's low bits tell newcomers at once; where so many vertices share marks, the list
-  // decides.
-  static constexpr std::uint32_t kMarks = 2048;
-  std::array<std::uint64_t, kMarks / 64> marks;
-  explicit Submerged(std::size_t of_hull) : vertices(of_hull) {
-    std::fill_n(marks.begin(), std::min<std::size_t>(kMarks, of_hull + 63) / 64, 0);
-  }
-  bool holds(std::int32_t v) const {
-    if (!(marks[std::uint32_t(v) % kMarks / 64] >> std::uint32_t(v) % 64 & 1)) return false;
-    return vertices <= kMarks ||
-           std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
-  }
-  void add(std::int32_t v, double height) {
-    marks[std::uint32_t(v) % kMarks / 64] |= std::uint64_t(1) << std::uint32_t(v) % 64;
-    vertex[count] = v;
-    gap[count++] = height;
-  }
+  std::array<float, kCapacity> x, y, z;  // m, body axes
+  std::size_t count = 0;
 };
 
-void walk_below(const Shape& shape, const Vec3& normal_in_body, double height, double margin,
-                Submerged& found) {
-  for (int visited = 0; visited < found.count; ++visited) {
-    for (const std::int32_t next : shape.hull.neighbors(found.vertex[visited])) {
-      if (found.count == Submerged::kCapacity) return;
-      const double gap = height + shape.hull.vertices[next].dot(normal_in_body);
-      if (gap >= margin || found.holds(next)) continue;
-      found.add(next, gap);
+// The lesser gap, now or then, of each vertex.
+void find_gaps(const float* x, const float* y, const float* z, std::size_t size,
+               const Eigen::Vector3f& normal, float height, const Eigen::Vector3f& of_arm, float of_center,
+               float* gap) {
+  for (std::size_t i = 0; i < size; ++i) {
+    const float change = of_center + x[i] * of_arm[0] + y[i] * of_arm[1] + z[i] * of_arm[2];
+    gap[i] = height + x[i] * normal[0] + y[i] * normal[1] + z[i] * normal[2] + std::min(0.0f, change);
+  }
+}
+
+void find_below(const Hull& hull, const Vec3& normal_in_body, double height, double margin,
+                const GapChange& change, Below& below) {
+  constexpr std::size_t kBlock = 64;
+  std::array<float, kBlock> gap;
+  std::array<std::uint8_t, kBlock> is_below;
+  const Eigen::Vector3f normal = normal_in_body.cast<float>(), of_arm = change.of_arm.cast<float>();
+  const auto limit = float(margin);
+  const VertexLanes& lanes = hull.lanes;
+  for (std::size_t begin = 0; begin < lanes.x.size(); begin += kBlock) {
+    const std::size_t size = std::min(kBlock, lanes.x.size() - begin);
+    if (below.count + size > Below::kCapacity) return;
+    find_gaps(lanes.x.data() + begin, lanes.y.data() + begin, lanes.z.data() + begin, size, normal,
+              float(height), of_arm, float(change.of_center), gap.data());
+    std::fill(gap.begin() + std::ptrdiff_t(size), gap.end(), limit);
+    for (std::size_t i = 0; i < kBlock; ++i) is_below[i] = std::uint8_t(gap[i] < limit);
+    for (std::size_t eight = 0; eight < size; eight += 8) {
+      std::uint64_t flags;  // a byte each
+      std::memcpy(&flags, &is_below[eight], sizeof flags);
+      for (; flags != 0; flags &= flags - 1) {
+        const std::size_t vertex = begin + eight + std::size_t(std::countr_zero(flags)) / 8;
+        below.vertex[below.count] = std::int32_t(vertex);
+        below.x[below.count] = lanes.x[vertex];
+        below.y[below.count] = lanes.y[vertex];
+        below.z[below.count++] = lanes.z[vertex];
+      }
     }
   }
 }
 
-// Greatest of `measure` over the submerged vertices, body axes.
-template <class Measure>
-int find_greatest(const Shape& shape, const Submerged& found, Measure measure) {
-  int best = 0;
-  double best_value = -1.0;
-  for (int i = 0; i < found.count; ++i) {
-    const double value = measure(shape.hull.vertices[std::size_t(found.vertex[i])]);
-    if (value > best_value) best_value = value, best = i;
+// Below a plane vertices are connected by edges.
+bool is_lowest_alone(const Hull& hull, std::int32_t lowest, const Vec3& normal_in_body, double height,
+                     double margin) {
+  return std::ranges::none_of(hull.neighbors(lowest), [&](std::int32_t next) {
+    return height + hull.vertices[std::size_t(next)].dot(normal_in_body) < margin;
+  });
+}
+
+// A few vertices in the order in which a walk along edges from the lowest meets them, without that one. Which
+// contact a solver meets first matters where it does not converge, as under a slab of a thousand times a
+// mass.
+std::span<const std::int32_t> around(const Hull& hull, std::int32_t lowest, Below& below) {
+  const auto begin = below.vertex.begin(), end = begin + std::ptrdiff_t(below.count);
+  auto met = std::ranges::find(begin, end, lowest);
+  if (met == end) met = begin;  // it is not below, by rounding
+  std::iter_swap(begin, met);
+  auto next = begin + (*begin == lowest ? 1 : 0);
+  const std::int32_t* const from = below.vertex.data();
+  for (auto visited = begin; visited != next && next != end; ++visited)
+    for (const std::int32_t neighbor : hull.neighbors(*visited)) {
+      const auto found = std::ranges::find(next, end, neighbor);
+      if (found != end) std::iter_swap(next++, found);
+    }
+  return {from + (*begin == lowest ? 1 : 0), below.vertex.data() + below.count};
+}
+
+std::int32_t find_greatest(const Below& below, const std::array<float, Below::kCapacity>& value) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < below.count; ++i) best = value[i] > value[best] ? i : best;
+  return below.vertex[best];
+}
+
+std::int32_t find_farthest(const Below& below, const Eigen::Vector3f& from) {
+  std::array<float, Below::kCapacity> square;
+  for (std::size_t i = 0; i < below.count; ++i) {
+    const float x = below.x[i] - from[0], y = below.y[i] - from[1], z = below.z[i] - from[2];
+    square[i] = x * x + y * y + z * z;
   }
-  return best;
+  return find_greatest(below, square);
+}
+
+// The farthest along `side`, and the farthest the other way.
+std::array<std::int32_t, 2> find_ends(const Below& below, const Eigen::Vector3f& side) {
+  std::array<float, Below::kCapacity> along, against;
+  for (std::size_t i = 0; i < below.count; ++i) {
+    along[i] = below.x[i] * side[0] + below.y[i] * side[1] + below.z[i] * side[2];
+    against[i] = -along[i];
+  }
+  return {find_greatest(below, along), find_greatest(below, against)};
 }
 
 }  // namespace
 
 HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal,
-                                double height, double margin, std::int32_t& hint) {
+                                double height, double margin, std::int32_t& hint, const GapChange& change) {
   HullContacts result;
   result.count = 1;
-  if (shape.sphere_radius) {
-    result.contact[0] = find_lowest_point(shape, orientation, normal, height, hint);
-    return result;
-  }
+  result.contact[0] = find_lowest_point(shape, orientation, normal, height, hint);
+  if (shape.sphere_radius) return result;
+  const std::int32_t lowest = hint;
   const Vec3 normal_in_body = orientation.conjugate() * normal;
-  hint = find_support(shape.hull, -normal_in_body, hint);
-  const Vec3 arm = orientation * shape.hull.vertices[std::size_t(hint)];
-  result.contact[0] = {arm, height + arm.dot(normal), hint};
-
-  Submerged found(shape.hull.vertices.size());
-  found.add(hint, result.contact[0].gap);
-  walk_below(shape, normal_in_body, height, margin, found);
-  if (found.count == 1) return result;
-  const Mat3 rotation = orientation.toRotationMatrix();
-  const auto keep = [&](int i) {
-    const std::int32_t vertex = found.vertex[i];
-    result.contact[result.count++] = {rotation * shape.hull.vertices[std::size_t(vertex)], found.gap[i],
-                                      vertex};
+  if (change.is_none() && is_lowest_alone(shape.hull, lowest, normal_in_body, height, margin)) return result;
+  Below below;
+  find_below(shape.hull, normal_in_body, height, margin, change, below);
+  const auto keep = [&](std::int32_t vertex) {
+    const Vec3 arm = orientation * shape.hull.vertices[std::size_t(vertex)];
+    result.contact[std::size_t(result.count++)] = {arm, height + arm.dot(normal), vertex};
   };
-  if (found.count <= kMaxGroundContacts) {
-    for (int i = 1; i < found.count; ++i) keep(i);
+  if (below.count <= kMaxGroundContacts) {
+    for (const std::int32_t vertex : around(shape.hull, lowest, below))
+      if (result.count < kMaxGroundContacts) keep(vertex);
     return result;
   }
   // The widest support: farthest from the lowest, then farthest to either side of the line between those two.
-  const Vec3& first = shape.hull.vertices[std::size_t(hint)];
-  const int second = find_greatest(shape, found, [&](const Vec3& v) { return (v - first).squaredNorm(); });
-  const Vec3 side = normal_in_body.cross(shape.hull.vertices[std::size_t(found.vertex[second])] - first);
-  const int left = find_greatest(shape, found, [&](const Vec3& v) { return (v - first).dot(side); });
-  const int right = find_greatest(shape, found, [&](const Vec3& v) { return (first - v).dot(side); });
-  for (const int i : {second, left, right})
-    if (i != 0 && (result.count < 2 || i != second)) keep(i);
+  const Vec3& first = shape.hull.vertices[std::size_t(lowest)];
+  const std::int32_t second = find_farthest(below, first.cast<float>());
+  const Vec3 side = normal_in_body.cross(shape.hull.vertices[std::size_t(second)] - first);
+  keep(second);
+  for (const std::int32_t vertex : find_ends(below, side.cast<float>()))
+    if (vertex != lowest && vertex != second) keep(vertex);
   return result;
 }
 

@@ -32,10 +32,18 @@ struct HullContacts {
   int count = 0;
 };
 
-/// The lowest point, and up to three more vertices with a gap below `margin`, chosen to span the widest area
-/// of support.
+/// How the gaps of a body's points change in a step, to first order.
+struct GapChange {
+  double of_center = 0.0;      ///< m, of the centre of mass
+  Vec3 of_arm = Vec3::Zero();  ///< by its arm, body axes: a point's further change over its arm
+  bool is_none() const { return of_center == 0.0 && of_arm.isZero(0.0); }
+};
+
+/// The lowest point, and up to three more vertices with a gap below `margin`, now or after the `change`,
+/// chosen to span the widest area of support.
 HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal,
-                                double height, double margin, std::int32_t& hint);
+                                double height, double margin, std::int32_t& hint,
+                                const GapChange& change = {});
 
 /// m: how far a body may be lifted out of the ground in `time` seconds; no bound unless it brought the
 /// overlap from another rung.

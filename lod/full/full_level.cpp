@@ -28,6 +28,12 @@ constexpr int kMostMeshMeasures = 600;
 // other.
 constexpr double kTimedContactsAbove = 7e-4;  // s
 
+// ODE knows a contact once bodies overlap. Plates that overlap by more than half are parted the wrong way,
+// and a blow goes through a stack by one plate a substep while the others fall on (20 of 4 mm, in 4 substeps:
+// energy × 4).
+constexpr double kThin = 0.05;     // inner radius over radius; of a box .2 × .3 × .4 m it is .37
+constexpr int kThinSubsteps = 16;  // of thin bodies that are awake among others
+
 }  // namespace
 
 OdeSettings ode_settings_of(const FullSettings& settings) {
@@ -169,7 +175,7 @@ std::int32_t FullLevel::index_of(OdeBodyId body) const {
 void FullLevel::step(double dt, Counters& counters) {
   if (!world_) return;
   try {
-    world_->step(dt, settings_.substeps);
+    world_->step(dt, substeps_of(dt));
   } catch (const SimulationError& error) {
     const std::int32_t index = index_of(OdeBodyId{error.body()});
     if (index < 0) throw;
@@ -177,6 +183,28 @@ void FullLevel::step(double dt, Counters& counters) {
                           error.body());
   }
   add_new_counts(counters);
+}
+
+int FullLevel::substeps_of(double dt) const {
+  const bool thin_among_others = std::ranges::any_of(members_, [&](const Member& member) {
+    const Shape& shape = world_->shape(member.id);
+    return shape.inner_radius < kThin * shape.radius && !world_->asleep(member.id) &&
+           is_near_another(member.id, dt);
+  });
+  return thin_among_others ? std::max(settings_.substeps, kThinSubsteps) : settings_.substeps;
+}
+
+/// Whether it may meet another within `dt` seconds.
+bool FullLevel::is_near_another(OdeBodyId body, double dt) const {
+  const RigidState own = world_->state(body);
+  const double radius = world_->shape(body).radius, fall = 0.5 * settings_.gravity.norm() * dt * dt;
+  return std::ranges::any_of(members_, [&](const Member& other) {
+    if (other.id == body) return false;
+    const RigidState state = world_->state(other.id);
+    const double reach =
+        radius + world_->shape(other.id).radius + fall + (own.velocity - state.velocity).norm() * dt;
+    return (own.position - state.position).squaredNorm() < reach * reach;
+  });
 }
 
 void FullLevel::begin_callers_step(double dt) { world_->begin_callers_step(dt); }

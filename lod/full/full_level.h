@@ -102,6 +102,9 @@ class FullLevel {
   void lay(Piece& piece);
   void filter_pairs();
   void make_world();
+  /// As many as were set, or more while thin bodies are awake among others.
+  int substeps_of(double dt) const;
+  bool is_near_another(OdeBodyId body, double dt) const;
   void add_new_counts(Counters& counters);
 
   FullSettings settings_;

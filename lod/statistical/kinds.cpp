@@ -21,7 +21,7 @@ std::shared_ptr<const RestingFaces> make_faces(const std::shared_ptr<const Shape
     std::shared_ptr<const Shape> shape;
     RestingFaces faces;
   };
-  const auto held = std::make_shared<const Held>(shape, RestingFaces(shape->hull));
+  const auto held = std::make_shared<const Held>(Held{shape, RestingFaces(shape->hull)});
   return {held, &held->faces};
 }
 
@@ -112,7 +112,7 @@ void Kinds::prepare(StatisticalModel model, BodyKind& kind) {
     const double radius = kind.shape->radius;
     if (!kind.clips)
       known = kind.clips = std::make_shared<const ClipIndex>(
-          *kind.signature, kind.shape->inertia_per_mass / (radius * radius), kGreatestClipDistance);
+          *kind.signature, kind.shape->inertia_per_mass / (radius * radius));
   }
 }
 

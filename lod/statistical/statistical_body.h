@@ -13,9 +13,6 @@
 
 namespace lodestone {
 
-/// How far from a body an entry of a clip may be for the body to join there (ClipIndex::find_nearest).
-inline constexpr float kGreatestClipDistance = 0.1f;
-
 /// What all bodies of one shape and material share.
 struct BodyKind {
   std::shared_ptr<const Shape> shape;

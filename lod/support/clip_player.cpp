@@ -24,11 +24,15 @@ Vec3 rotation_vector(const Quat& q) {
 RigidState state_of(const ClipPlayback& p, const BodyKind& kind, double gravity) {
   const ClipState clip = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
   const double radius = kind.shape->radius, speed_unit = std::sqrt(gravity * radius);
+  const Mat3 yaw = p.yaw.toRotationMatrix();
+  RigidState state{p.origin + yaw * (clip.position * radius), p.yaw * clip.orientation,
+                   yaw * (clip.velocity * speed_unit), yaw * (clip.angular_velocity * (speed_unit / radius))};
+  if (p.residual_left <= 0.0) return state;
   // Smoothstep, 3s² − 2s³: the residual begins and ends to fade without a jump of its speed.
   const double fade = p.residual_left * p.residual_left * (3.0 - 2.0 * p.residual_left);
-  return {p.origin + p.yaw * (clip.position * radius) + fade * p.residual_position,
-          rotation_from_vector(fade * p.residual_rotation) * (p.yaw * clip.orientation),
-          p.yaw * (clip.velocity * speed_unit), p.yaw * (clip.angular_velocity * (speed_unit / radius))};
+  state.position += fade * p.residual_position;
+  state.orientation = rotation_from_vector(fade * p.residual_rotation) * state.orientation;
+  return state;
 }
 
 }  // namespace
@@ -36,17 +40,18 @@ RigidState state_of(const ClipPlayback& p, const BodyKind& kind, double gravity)
 std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKind& kind,
                                       const HalfSpace& ground, double gravity, const ClipSettings& settings) {
   const Shape& shape = *kind.shape;
-  const double radius = shape.radius, speed_unit = std::sqrt(gravity * radius);
-  const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
-  const double kinetic = 0.5 * (body.velocity.squaredNorm() + body.spin.dot(omega));
-  if (kinetic > settings.energy_limit * gravity * radius) return {};
+  const double radius = shape.radius, greatest = settings.energy_limit * gravity * radius;
+  const double of_velocity = 0.5 * body.velocity.squaredNorm();
+  if (of_velocity > greatest) return {};
+  const Mat3 to_body = body.orientation.toRotationMatrix().transpose();
+  const Vec3 spin = to_body * body.spin, omega = shape.inverse_inertia_per_mass * spin;
+  const double kinetic = of_velocity + 0.5 * spin.dot(omega);
+  if (kinetic > greatest) return {};
 
-  const Quat to_body = body.orientation.conjugate();
-  const double height = ground.height_of(body.position);
-  const SettlingKey key{(to_body * ground.normal).cast<float>(),
-                        (to_body * body.velocity / speed_unit).cast<float>(),
-                        (to_body * omega * (radius / speed_unit)).cast<float>(),
-                        float(kinetic / (gravity * radius) + height / radius)};
+  const double height = ground.height_of(body.position), speed_unit = std::sqrt(gravity * radius);
+  const SettlingKey key{
+      (to_body * ground.normal).cast<float>(), (to_body * (body.velocity / speed_unit)).cast<float>(),
+      (omega * (radius / speed_unit)).cast<float>(), float(kinetic / (gravity * radius) + height / radius)};
   const auto energy = float(kinetic / (gravity * radius));
   const float distance =
       std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);

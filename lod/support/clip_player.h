@@ -27,9 +27,8 @@ struct ClipSettings {
   float distance_over_energy = 0.5f;  ///< how far the nearest entry may be, in ClipIndex::find_nearest's
                                       ///< measure, over the body's kinetic energy over m g R,
   float least_distance = 0.002f,
-        greatest_distance =
-            kGreatestClipDistance;  ///< … within these: what differs by more than it moves is another motion
-  double fade_time = 0.15;          ///< s at R = .2 m and 9.81 m/s², scaled with √(R/g)
+        greatest_distance = 0.1f;  ///< … within these: what differs by more than it moves is another motion
+  double fade_time = 0.15;         ///< s at R = .2 m and 9.81 m/s², scaled with √(R/g)
 };
 
 /// The clip that `body`, touching `ground` (horizontal), may join; none where it moves too fast or nothing

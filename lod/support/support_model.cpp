@@ -5,97 +5,67 @@
 #include <cmath>
 
 #include "lod/contact/contact_impulse.h"
-#include "lod/contact/contact_solver.h"
+#include "lod/contact/ground_solver.h"
 #include "lod/contact/hull_contacts.h"
-#include "lod/statistical/flight.h"
+#include "lod/support/hull_flight.h"
 
 namespace lodestone {
 namespace {
 
-constexpr double kTouching = 1e-4;  // over R: a gap that is none
-
-struct LowestPoint {
-  int plane = -1;  // −1: no plane within reach
-  HullContact contact;
-};
-
-// The lowest point over the plane it is nearest to (or deepest in); planes out of reach are not looked at.
-LowestPoint find_lowest(StatisticalBody& body, const BodyKind& kind, std::span<const HalfSpace> planes) {
-  LowestPoint lowest;
-  lowest.contact.gap = 1e300;
-  for (int i = 0; i < int(planes.size()); ++i) {
-    const HalfSpace& plane = planes[std::size_t(i)];
-    const double height = plane.height_of(body.position);
-    if (height > kind.shape->radius || height - kind.shape->radius > lowest.contact.gap) continue;
-    const HullContact contact =
-        find_lowest_point(*kind.shape, body.orientation, plane.normal, height, body.support_hint);
-    if (contact.gap < lowest.contact.gap) lowest = {i, contact};
-  }
-  return lowest;
-}
-
-Vec3 velocity_at(const StatisticalBody& body, const BodyKind& kind, const Vec3& arm) {
-  return body.velocity + angular_velocity(body.orientation, body.spin, *kind.shape).cross(arm);
-}
-
-struct Impact {
-  double time = 0.0;
-  StatisticalBody body;  // at that time
-  LowestPoint lowest;
-};
-
-// When, between a body clear of the ground and the same body inside it after `time` seconds, the gap closes:
-// bisection first, for the gap may rise before it falls (another vertex has just left), then false position.
-Impact find_impact(const StatisticalBody& start, const StatisticalBody& end, const LowestPoint& end_lowest,
-                   const BodyKind& kind, const StepWorld& world, double time) {
-  const double tolerance = kTouching * kind.shape->radius;
-  Impact before{0.0, start, {}}, after{time, end, end_lowest};
-  double gap_before = 0.0, gap_after = end_lowest.contact.gap;
-  for (int i = 0; i < 12 && gap_after < -tolerance; ++i) {
-    const double fraction =
-        i < 2 || gap_before <= 0.0 ? 0.5 : std::clamp(gap_before / (gap_before - gap_after), 0.1, 0.9);
-    Impact middle{before.time + fraction * (after.time - before.time), start, {}};
-    advance_flight(middle.body, kind, world.gravity, middle.time);
-    middle.lowest = find_lowest(middle.body, kind, world.planes);
-    if (middle.lowest.contact.gap < 0.0) {
-      gap_after = middle.lowest.contact.gap;
-      after = middle;
-    } else {
-      gap_before = middle.lowest.contact.gap;
-      before = middle;
-    }
-  }
-  return after;
-}
-
 // Whether the vertex that is lowest at the step's end touches already: then nothing strikes, the body only
 // leans on.
-bool touches_already(const StatisticalBody& body, const BodyKind& kind, const HalfSpace& plane,
-                     std::int32_t vertex, double bounce_velocity) {
-  if (kind.shape->sphere_radius)
-    return plane.height_of(body.position) - *kind.shape->sphere_radius < kTouching * kind.shape->radius;
-  const Vec3 arm = body.orientation * kind.shape->hull.vertices[vertex];
-  return plane.height_of(body.position) + arm.dot(plane.normal) < kTouching * kind.shape->radius &&
-         velocity_at(body, kind, arm).dot(plane.normal) > -bounce_velocity;
+bool touches_already(const HullFlight& flight, const StatisticalBody& body, const Shape& shape,
+                     const HalfSpace& plane, LowestPoint lowest, double bounce_velocity) {
+  const HullPose now{body.position, body.orientation};
+  lowest.normal = now.orientation.conjugate() * plane.normal;
+  if (shape.sphere_radius) lowest.arm = -*shape.sphere_radius * lowest.normal;
+  const bool touches =
+      plane.height_of(now.position) + lowest.arm.dot(lowest.normal) < kTouching * shape.radius;
+  return touches && (shape.sphere_radius || flight.gap_motion(now, lowest, 0.0).velocity > -bounce_velocity);
+}
+
+// A body that moves against the ground, in its own axes.
+struct OnGround {
+  Mat3 rotation;  // body axes to the world's
+  GroundMotion motion;
+  OnGround(const StatisticalBody& body, const Shape& shape) : rotation(body.orientation.toRotationMatrix()) {
+    motion.velocity = rotation.transpose() * body.velocity;
+    motion.angular_velocity = shape.inverse_inertia_per_mass * (rotation.transpose() * body.spin);
+  }
+};
+
+Vec3 arm_of(const HullContact& contact, const Shape& shape, const Vec3& normal_in_body) {
+  if (shape.sphere_radius) return -*shape.sphere_radius * normal_in_body;
+  return shape.hull.vertices[std::size_t(contact.vertex)];
+}
+
+// What the contacts gave it.
+void take_impulses(StatisticalBody& body, const OnGround& on, std::span<const GroundContact> contacts) {
+  Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();
+  for (const GroundContact& c : contacts) {
+    impulse += c.impulse();
+    turning += c.arm.cross(c.impulse());
+  }
+  body.velocity += on.rotation * impulse;
+  body.spin += on.rotation * turning;
 }
 
 // The impulses of several vertices that strike at once, an edge's or a face's.
 void respond_together(StatisticalBody& body, const BodyKind& kind, const HullContacts& found,
                       const Vec3& normal, const ContactLaw& law, const SupportSettings& settings) {
-  std::array<SolverBody, 1> bodies{SolverBody{body.velocity,
-                                              angular_velocity(body.orientation, body.spin, *kind.shape), 1.0,
-                                              inverse_inertia_world(body.orientation, *kind.shape)}};
-  std::array<SolverContact, kMaxGroundContacts> contacts;
-  for (int i = 0; i < found.count; ++i) {
-    contacts[i].normal = normal;
-    contacts[i].arm_first = found.contact[i].arm;
+  OnGround on(body, *kind.shape);
+  const Vec3 normal_in_body = on.rotation.transpose() * normal;
+  std::array<GroundContact, kMaxGroundContacts> all;
+  const auto contacts = std::span(all).first(std::size_t(found.count));
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    contacts[i].normal = normal_in_body;
+    contacts[i].arm = arm_of(found.contact[i], *kind.shape, normal_in_body);
     contacts[i].law = law;
   }
   constexpr double kInstant = 1e-9;  // s: no gap is closed meanwhile
-  solve_contacts(bodies, std::span(contacts).first(std::size_t(found.count)), kInstant,
-                 settings.impact_solver);
-  body.velocity = bodies[0].velocity;
-  for (int i = 0; i < found.count; ++i) body.spin += contacts[i].arm_first.cross(impulse_of(contacts[i]));
+  solve_ground_contacts(on.motion, kind.shape->inverse_inertia_per_mass, contacts, kInstant,
+                        settings.impact_solver);
+  take_impulses(body, on, contacts);
 }
 
 // ODE's law itself adds energy in some hits of high restitution: there the impulse, which gave `body` its
@@ -116,23 +86,41 @@ void clamp_energy(const Vec3& velocity_before, const Vec3& spin_before, Statisti
   ++tally.energy_clamps;
 }
 
-void respond(StatisticalBody& body, const BodyKind& kind, const HullContact& contact, const HalfSpace& plane,
-             const ContactLaw& law, double gravity, const SupportSettings& settings) {
+// One vertex strikes, all in body axes: respond_contact's impulse, less of it where that would add energy. Of
+// the share s the energy is that of a parabola, s J·u + s² J·K J / 2.
+void respond_alone(StatisticalBody& body, const Shape& shape, const LowestPoint& lowest,
+                   const ContactLaw& law, ContactTally& tally) {
+  const Quat to_body = body.orientation.conjugate();
+  const Vec3 spin = to_body * body.spin;
+  const Vec3 velocity = to_body * body.velocity + (shape.inverse_inertia_per_mass * spin).cross(lowest.arm);
+  const Mat3 response = contact_response_matrix(1.0, shape.inverse_inertia_per_mass, lowest.arm);
+  Vec3 impulse = respond_contact(response, lowest.normal, velocity, law).impulse;
+  const double linear = impulse.dot(velocity), square = impulse.dot(response * impulse);
+  if (linear + 0.5 * square > 1e-12 * square) {
+    impulse *= std::clamp(-2.0 * linear / square, 0.0, 1.0);
+    ++tally.energy_clamps;
+  }
+  body.velocity += body.orientation * impulse;
+  body.spin += body.orientation * lowest.arm.cross(impulse);
+}
+
+// `lowest` strikes, and with it what is about to.
+void respond(StatisticalBody& body, const BodyKind& kind, const LowestPoint& lowest, double approach,
+             const StepWorld& world, const SupportSettings& settings, ContactTally& tally) {
+  const HalfSpace& plane = world.planes[std::size_t(lowest.plane)];
   const double height = plane.height_of(body.position), radius = kind.shape->radius;
-  const double approach = std::max(0.0, -velocity_at(body, kind, contact.arm).dot(plane.normal));
-  const double sunk = settings.impact_lag * std::sqrt(radius / std::max(1e-9, gravity)) * approach;
+  const double sunk =
+      settings.impact_lag * std::sqrt(radius / std::max(1e-9, world.gravity_strength())) * approach;
   const double margin =
       std::clamp(sunk, settings.impact_margin * radius, settings.greatest_impact_margin * radius);
   const HullContacts together = find_hull_contacts(*kind.shape, body.orientation, plane.normal, height,
-                                                   contact.gap + margin, body.support_hint);
+                                                   lowest.gap + margin, body.support_hint);
   ++body.events;
-  if (together.count > 1) return respond_together(body, kind, together, plane.normal, law, settings);
-  const Mat3 response =
-      contact_response_matrix(1.0, inverse_inertia_world(body.orientation, *kind.shape), contact.arm);
-  const Vec3 impulse =
-      respond_contact(response, plane.normal, velocity_at(body, kind, contact.arm), law).impulse;
-  body.velocity += impulse;
-  body.spin += contact.arm.cross(impulse);
+  const ContactLaw law = world.law(kind, plane);
+  if (together.count == 1) return respond_alone(body, *kind.shape, lowest, law, tally);
+  const Vec3 velocity = body.velocity, spin = body.spin;
+  respond_together(body, kind, together, plane.normal, law, settings);
+  clamp_energy(velocity, spin, body, *kind.shape, tally);
 }
 
 // What held a vertex in the contact step before: where the solver begins in the next.
@@ -159,70 +147,86 @@ void write_touch(const StatisticalBody& body, const StepWorld& world, int plane,
                   .approach = std::max(0.0, approach)});
 }
 
+// The contacts of a step: of each plane in reach the vertices that may meet it.
+struct StepContacts {
+  static constexpr std::size_t kCapacity = 3 * kMaxGroundContacts;
+  std::array<GroundContact, kCapacity> contact;
+  std::array<std::int32_t, kCapacity> vertex;
+  std::array<int, kCapacity> plane;
+  std::size_t count = 0;
+  double deepest = 0.0;  // m, 0 or less
+  std::span<GroundContact> contacts() { return std::span(contact).first(count); }
+};
+
+// For a body that gravity has been given to.
+void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                        const OnGround& on, double time, double least_margin, const HeldVertices& held,
+                        StepContacts& found) {
+  const Shape& shape = *kind.shape;
+  for (std::size_t i = 0; i < world.planes.size(); ++i) {
+    if (found.count + kMaxGroundContacts > StepContacts::kCapacity) return;
+    const HalfSpace& plane = world.planes[i];
+    const double height = plane.height_of(body.position), drop = body.velocity.dot(plane.normal) * time;
+    // What the ground gives one point may turn another down as fast as the body fell.
+    const double fall = std::max(0.0, -drop), margin = least_margin + fall;
+    const Vec3 normal = on.rotation.transpose() * plane.normal;
+    const GapChange change{drop, normal.cross(on.motion.angular_velocity) * time};
+    const double reach = margin + fall + change.of_arm.norm() * shape.radius;
+    if (height > shape.radius + reach) continue;
+    const HullContacts low =
+        find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint, change);
+    for (int k = 0; k < low.count; ++k) {
+      const HullContact& point = low.contact[std::size_t(k)];
+      if (point.gap > reach) continue;
+      found.contact[found.count] = {.normal = normal,
+                                    .arm = arm_of(point, shape, normal),
+                                    .gap = point.gap,
+                                    .law = world.law(kind, plane),
+                                    .guess = on.rotation.transpose() * held.find(point.vertex)};
+      found.vertex[found.count] = point.vertex;
+      found.plane[found.count++] = int(i);
+      found.deepest = std::min(found.deepest, point.gap);
+    }
+  }
+}
+
 // One step of sliding, rolling or rocking: gravity, every vertex near the ground held or bounced at once,
 // then motion.
 void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time,
                   const SupportSettings& settings, HeldVertices& held, ContactTally& tally) {
   const Shape& shape = *kind.shape;
-  const Vec3 velocity_at_first = body.velocity;
-  body.velocity += world.gravity * time;
-  std::array<SolverBody, 1> bodies{SolverBody{body.velocity,
-                                              angular_velocity(body.orientation, body.spin, shape), 1.0,
-                                              inverse_inertia_world(body.orientation, shape)}};
-  // Kept from step to step, since to make all of them takes longer than to solve a few.
-  thread_local std::array<SolverContact, 3 * kMaxGroundContacts> contacts;
-  std::array<std::int32_t, 3 * kMaxGroundContacts> vertices;
-  std::array<int, 3 * kMaxGroundContacts> planes;
-  int count = 0;
-  double deepest = 0.0;
-  for (int i = 0; i < int(world.planes.size()) && count + kMaxGroundContacts <= int(contacts.size()); ++i) {
-    const HalfSpace& plane = world.planes[i];
-    const double height = plane.height_of(body.position);
-    const double margin = settings.contact_margin * shape.radius +
-                          (body.velocity.norm() + bodies[0].angular_velocity.norm() * shape.radius) * time;
-    if (height > shape.radius + margin) continue;
-    const HullContacts found =
-        find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint);
-    for (int k = 0; k < found.count; ++k) {
-      if (found.contact[k].gap > margin) continue;
-      SolverContact& c = contacts[count++] = SolverContact{};
-      c.normal = plane.normal;
-      c.arm_first = found.contact[k].arm;
-      c.gap = found.contact[k].gap;
-      c.law = world.law(kind, plane);
-      c.guess = held.find(found.contact[k].vertex);
-      vertices[count - 1] = found.contact[k].vertex;
-      planes[count - 1] = i;
-      deepest = std::min(deepest, c.gap);
-      tally.touched_plane = i;
-    }
-  }
-  if (count > 0) {
+  const Vec3 fallen = world.gravity * time;
+  body.velocity += fallen;
+  OnGround on(body, shape);
+  StepContacts found;
+  find_step_contacts(body, kind, world, on, time, settings.contact_margin * shape.radius, held, found);
+  if (found.count > 0) {
+    tally.touched_plane = found.plane[found.count - 1];
     ContactSolverSettings solver = settings.solver;
     solver.bounce_velocity =
         world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
-    solve_contacts(bodies, std::span(contacts).first(count), time, solver);
-    const bool bounces = std::ranges::any_of(std::span(contacts).first(count), &SolverContact::bounces);
+    const GroundMotion before = on.motion;
+    solve_ground_contacts(on.motion, shape.inverse_inertia_per_mass, found.contacts(), time, solver);
     const Vec3 velocity_before = body.velocity, spin_before = body.spin;
-    body.velocity = bodies[0].velocity;
-    for (int k = 0; k < count; ++k) {
-      const Vec3 impulse = impulse_of(contacts[k]);
-      body.spin += contacts[k].arm_first.cross(impulse);
-      held.impulse[k] = {vertices[k], contacts[k].bounces ? Vec3::Zero() : impulse};
-      if (world.log && contacts[k].impulse[0] > 0.0) {
-        const Vec3 &arm = contacts[k].arm_first,
-                   omega = angular_velocity(body.orientation, spin_before, shape);
-        const double approach = -Vec3(velocity_at_first + omega.cross(arm)).dot(contacts[k].normal);
-        write_touch(body, world, planes[k], arm, approach, contacts[k].impulse[0]);
-      }
+    take_impulses(body, on, found.contacts());
+    for (std::size_t k = 0; k < found.count; ++k) {
+      const GroundContact& c = found.contact[k];
+      held.impulse[k] = {found.vertex[k], c.bounces ? Vec3(Vec3::Zero()) : Vec3(on.rotation * c.impulse())};
+      if (!world.log || c.rows[0].impulse <= 0.0) continue;
+      const Vec3 velocity =
+          before.velocity - on.rotation.transpose() * fallen + before.angular_velocity.cross(c.arm);
+      write_touch(body, world, found.plane[k], on.rotation * c.arm, -velocity.dot(c.normal),
+                  c.rows[0].impulse);
     }
-    if (bounces) clamp_energy(velocity_before, spin_before, body, shape, tally);
-    tally.contacts += count;
+    if (std::ranges::any_of(found.contacts(), &GroundContact::bounces))
+      clamp_energy(velocity_before, spin_before, body, shape, tally);
+    tally.contacts += std::int64_t(found.count);
   }
-  held.count = count;
+  held.count = int(found.count);
   body.position += body.velocity * time;
-  if (deepest < 0.0 && body.eased <= 0.0f)
-    body.position += push_out_overlap(deepest, shape.radius) * world.planes[tally.touched_plane].normal;
+  if (found.deepest < 0.0 && body.eased <= 0.0f)
+    body.position +=
+        push_out_overlap(found.deepest, shape.radius) * world.planes[std::size_t(tally.touched_plane)].normal;
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
 }
 
@@ -233,29 +237,37 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
   ContactTally tally;
   double left = time;
   for (int hit = 0; hit < settings.max_impacts && left > 0.0; ++hit) {
-    StatisticalBody end = body;
-    advance_flight(end, kind, world.gravity, left);
-    const LowestPoint lowest = find_lowest(end, kind, world.planes);
-    if (lowest.plane < 0 || lowest.contact.gap >= 0.0) {
-      body = end;
+    const HullFlight flight(body, kind, world);
+    std::int32_t hint = body.support_hint;
+    Impact end{left, flight.pose_at(left), {}};
+    end.lowest = flight.find_lowest(end.pose, hint);
+    if (end.lowest.plane < 0 || end.lowest.gap >= 0.0) {
+      body.position = end.pose.position;
+      body.velocity = flight.velocity_at(left);
+      body.orientation = end.pose.orientation;
+      body.support_hint = hint;
       return tally;
     }
-    if (touches_already(body, kind, world.planes[lowest.plane], end.support_hint, world.bounce_velocity)) {
-      body.support_hint = end.support_hint;
+    if (touches_already(flight, body, *kind.shape, world.planes[std::size_t(end.lowest.plane)], end.lowest,
+                        world.bounce_velocity)) {
+      body.support_hint = hint;
       break;
     }
-    const Impact impact = find_impact(body, end, lowest, kind, world, left);
-    const HalfSpace& plane = world.planes[impact.lowest.plane];
-    const double approach = velocity_at(impact.body, kind, impact.lowest.contact.arm).dot(plane.normal);
-    if (approach > -world.bounce_velocity) break;  // not a bounce: it stays in contact
-    body = impact.body;
+    const Impact impact = flight.find_impact(end, settings.impact_tolerance * kind.shape->radius, hint);
+    if (impact.lowest.plane < 0) break;
+    const double approach = -flight.gap_motion(impact.pose, impact.lowest, impact.time).velocity;
+    if (approach < world.bounce_velocity) break;  // not a bounce: it stays in contact
+    const Vec3 velocity = flight.velocity_at(impact.time);
+    body.position = impact.pose.position;
+    body.velocity = velocity;
+    body.orientation = impact.pose.orientation;
+    body.support_hint = hint;
     left -= impact.time;
-    respond(body, kind, impact.lowest.contact, plane, world.law(kind, plane), world.gravity_strength(),
-            settings);
-    clamp_energy(impact.body.velocity, impact.body.spin, body, *kind.shape, tally);
+    respond(body, kind, impact.lowest, approach, world, settings, tally);
+    const HalfSpace& plane = world.planes[std::size_t(impact.lowest.plane)];
     if (world.log)
-      write_touch(body, world, impact.lowest.plane, impact.lowest.contact.arm, -approach,
-                  (body.velocity - impact.body.velocity).dot(plane.normal));
+      write_touch(body, world, impact.lowest.plane, body.orientation * impact.lowest.arm, approach,
+                  (body.velocity - velocity).dot(plane.normal));
     tally.touched_plane = impact.lowest.plane;
     ++tally.contacts;
   }

@@ -14,7 +14,8 @@ struct SupportSettings {
   double contact_step = 0.05;     ///< longest contact step over √(R/g)
   double contact_margin = 0.002;  ///< over R: vertices this near the ground can carry
   ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2};
-  double impact_margin = 1e-6;  ///< over R: vertices this near the one that strikes strike with it
+  double impact_tolerance = 1e-4;  ///< over R: how far off the ground an impact may be taken
+  double impact_margin = 1e-6;     ///< over R: vertices this near the one that strikes strike with it
   double impact_lag =
       7e-4;  ///< over √(R/g): so do those that it would take so long to strike. In ODE, the truth, a curved
              ///< surface strikes with all that has sunk in within a step (4e-3): the bunny's first rebound is

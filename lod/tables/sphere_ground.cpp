@@ -34,7 +34,7 @@ struct NearLoop {
     float* gap = step.gap.data();
     const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz);
     [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
-    [[maybe_unused]] const float* hull_reach = kinds.hull_reach.data();
+    [[maybe_unused]] const float* size = kinds.radius.data();
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const float height = float(wide_x * x[i] + wide_y * y[i] + wide_z * z[i] - offset),
@@ -48,7 +48,7 @@ struct NearLoop {
       int otherwise = state;
       if constexpr (Hulls) {
         const int within =
-            -(int(height - hull_reach[kind[i]] + 1.001f * way < 0.002f * radius[i]) & int(state == 0));
+            -(int(height - size[kind[i]] + 1.001f * way < 0.002f * radius[i]) & int(state == 0));
         otherwise = (int(kWithin) & within) | (state & ~within);
       }
       on_ground[i] = std::uint8_t((int(kNear) & near) | (otherwise & ~near));

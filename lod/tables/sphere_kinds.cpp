@@ -20,7 +20,6 @@ void SphereKinds::resize(std::size_t size) {
   for (auto* array : {&radius, &ixx, &iyy, &izz, &ixy, &ixz, &iyz, &jxx, &jyy, &jzz, &jxy, &jxz, &jyz,
                       &softest, &blend_time})
     array->resize(size, 1.0f);
-  hull_reach.resize(size);
   height.resize(size * (kHeightSamples + 1));
   material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size),
       is_slender_.resize(size);
@@ -35,7 +34,6 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   slender_ += is_slender_[k];
   material[k] = kind.material;
   radius[k] = float(shape.radius);
-  hull_reach[k] = shape.sphere_radius ? 0.0f : radius[k];
   ixx[k] = float(inverse(0, 0)), iyy[k] = float(inverse(1, 1)), izz[k] = float(inverse(2, 2));
   ixy[k] = float(inverse(0, 1)), ixz[k] = float(inverse(0, 2)), iyz[k] = float(inverse(1, 2));
   jxx[k] = float(inertia(0, 0)), jyy[k] = float(inertia(1, 1)), jzz[k] = float(inertia(2, 2));

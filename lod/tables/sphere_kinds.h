@@ -12,7 +12,6 @@ inline constexpr int kHeightSamples = 64;  // of the collision height over α, r
 struct SphereKinds {
   std::vector<MaterialId> material;
   std::vector<float> radius;      // m
-  std::vector<float> hull_reach;  // m: the same, but 0 of spheres, which have no hull to stand on
   std::vector<float> ixx, iyy, izz, ixy, ixz, iyz;  // inverse inertia over mass, body axes, 1/m²
   std::vector<float> jxx, jyy, jzz, jxy, jxz, jyz;  // inertia over mass, m²
   std::vector<float> softest;                       // its greatest eigenvalue, 1/m²

@@ -16,7 +16,7 @@ void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
     const bool alone = !step_.touches(std::int64_t(i)) && spheres_.since_crowded[i] >= kLeaning;
     const bool level =
         state == kWithin || (state == kNear && planes_.slope[std::size_t(step_.plane[i])] == 0.0f);
-    if (alone && level && kinds_.hull_reach[spheres_.kind[i]] > 0.0f) {
+    if (alone && level) {
       state = std::uint8_t(GroundState::stands);
     } else {
       spheres_.on_hull[i] = HullStand::none;
@@ -34,6 +34,19 @@ bool TablesLevel::is_over_level_ground(const StatisticalBody& body, const StepWo
   });
 }
 
+// It has come to rest, does not sleep, and its ground is what it was. Where touches are written down, it goes
+// on to touch.
+bool TablesLevel::lies_at_clips_end(std::int64_t place) const {
+  const std::int32_t clip = spheres_.clip[std::size_t(place)];
+  if (clip < 0 || log_ || step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::stands))
+    return false;
+  const PlayingClip& playing = clips_[std::size_t(clip)];
+  const HalfSpace& ground = playing.playback.ground;
+  return playing.state == PlayingClip::over && std::ranges::any_of(ground_.planes(), [&](const HalfSpace& p) {
+           return p.normal == ground.normal && p.offset == ground.offset;
+         });
+}
+
 void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
   const auto i = std::size_t(place);
   spheres_.on_hull[i] = HullStand::none;
@@ -46,7 +59,10 @@ void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
 ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
                                            bool rides, std::vector<PlayingClip>& joined) {
   static const HullMotionSettings settings{
-      .support = {.contact_step = 0.2, .solver = {.sweeps = 4, .tolerance = 1e-2}}};
+      .support = {.contact_step = 0.2,
+                  .solver = {.sweeps = 4, .tolerance = 1e-2},
+                  .impact_tolerance = 2e-4,
+                  .impact_solver = {.sweeps = 6, .tolerance = 1e-2, .frictionless_bound = true}}};
   constexpr double kSunk = 0.01, kLeast = 0.02;  // over R
   const auto i = std::size_t(place);
   const Shape& shape = *kind_of(place).shape;

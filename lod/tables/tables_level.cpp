@@ -552,6 +552,10 @@ void TablesLevel::end_block(std::int64_t begin, std::int64_t end) {
 
 // A body that meets the ground by itself, after the impulses of its contacts with others.
 void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<PlayingClip>& joined) {
+  if (lies_at_clips_end(i)) {
+    step_.on_ground[i] = std::uint8_t(GroundState::moved);
+    return;
+  }
   const float t = constants_.time;
   StatisticalBody body = spheres_.body(i);
   body.velocity = step_.touches(i)

@@ -153,6 +153,7 @@ class TablesLevel {
   void choose_rest_pose(std::int64_t place);
   void end_block(std::int64_t begin, std::int64_t end);
   void choose_hulls(std::int64_t begin, std::int64_t end);
+  bool lies_at_clips_end(std::int64_t place) const;
   void move_alone(std::int64_t place, ContactTally& tally, std::vector<PlayingClip>& joined);
   bool is_over_level_ground(const StatisticalBody& body, const StepWorld& around) const;
   void become_sphere(std::int64_t place, StatisticalBody& body);

@@ -167,7 +167,21 @@ std::vector<Vec3> drop_flat_vertices(const Hull& hull) {
   return kept;
 }
 
+void fill_lanes(Hull& hull) {
+  hull.lanes = {};
+  for (const Vec3& vertex : hull.vertices) {
+    hull.lanes.x.push_back(float(vertex.x()));
+    hull.lanes.y.push_back(float(vertex.y()));
+    hull.lanes.z.push_back(float(vertex.z()));
+  }
+}
+
 }  // namespace
+
+void transform_hull(Hull& hull, const Vec3& origin, double factor) {
+  for (Vec3& vertex : hull.vertices) vertex = factor * (vertex - origin);
+  fill_lanes(hull);
+}
 
 Hull make_hull(std::span<const Vec3> points) {
   if (points.size() < 4)
@@ -181,6 +195,7 @@ Hull make_hull(std::span<const Vec3> points) {
       throw InputError("hull: found points that lie in a plane, expected a solid's corners");
     hull = make_raw_hull(corners);
   }
+  fill_lanes(hull);
   return hull;
 }
 

@@ -12,10 +12,16 @@
 
 namespace lodestone {
 
+/// A hull's vertices in single precision, each coordinate by itself, for loops over all of them.
+struct VertexLanes {
+  std::vector<float> x, y, z;  ///< m
+};
+
 /// A convex polyhedron. `neighbors(i)` are the vertices that share an edge with vertex i, `faces_of(i)` the
 /// faces around it.
 struct Hull {
   std::vector<Vec3> vertices;             ///< m, hull corners only
+  VertexLanes lanes;                      ///< of `vertices`
   std::vector<std::array<int, 3>> faces;  ///< triangulated, counter-clockwise seen from outside
   std::vector<std::int32_t>
       neighbor_start;  ///< size vertices + 1: where each vertex's run of `neighbor` begins
@@ -40,6 +46,9 @@ struct Hull {
 /// The hull of `points`: its corners only, in the order of `points`; what stands out from the rest by less
 /// than 1e-10 × size is no corner. Throws InputError where they lie in a plane or are fewer than four.
 Hull make_hull(std::span<const Vec3> points);
+
+/// Moves the hull's `origin` to zero, then scales it.
+void transform_hull(Hull& hull, const Vec3& origin, double factor);
 
 /// Index of the vertex farthest along `direction` (any length), climbing from `start`. Exact to rounding:
 /// 1e-11 × size at worst, where `direction` is normal to a face with a thousand corners, else 1e-15.

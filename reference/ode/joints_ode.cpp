@@ -57,7 +57,8 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
 ContactJoints::~ContactJoints() { dJointGroupDestroy(group_); }
 
 void ContactJoints::begin(double h, int attempt) {
-  constexpr double kAddedCfm[] = {0.0, 1e-8, 1e-6}, kUnevenness[] = {1e-4, 1e-2, 1e-1};
+  constexpr double kAddedCfm[kMostAttempts] = {0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5},
+                   kUnevenness[kMostAttempts] = {1e-4, 1e-3, 1e-2, 3e-2, 1e-1, 3e-1};
   dVector3 gravity;
   dWorldGetGravity(world_, gravity);
   gravity_ = to_vec3(gravity);

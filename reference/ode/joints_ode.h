@@ -52,8 +52,10 @@ class ContactJoints {
   ContactJoints(const ContactJoints&) = delete;
   ContactJoints& operator=(const ContactJoints&) = delete;
 
+  static constexpr int kMostAttempts = 6;
   /// Forgets the last substep's contacts; the next are for a step of `h` seconds. From one attempt at a step
-  /// to the next (0, 1, …) the contacts are a little softer and their depths a little more uneven.
+  /// to the next (0 … kMostAttempts − 1) the contacts are a little softer and their depths a little more
+  /// uneven.
   void begin(double h, int attempt);
   /// Depths may be negative by what bodies at rest are left to overlap (kRestingDepth).
   void add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points);

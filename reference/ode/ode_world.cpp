@@ -131,6 +131,7 @@ void OdeWorld::exclude_body(dxBody* body) { impl_->held_forces.exclude(body); }
 void OdeWorld::repeat_callers_forces() { impl_->held_forces.give(); }
 
 RigidState OdeWorld::state(OdeBodyId body) const { return state_of(impl_->bodies.find(body).body); }
+const Shape& OdeWorld::shape(OdeBodyId body) const { return *impl_->bodies.find(body).shape; }
 
 void OdeWorld::set_state(OdeBodyId id, const RigidState& state) {
   Body& body = impl_->bodies.find(id);

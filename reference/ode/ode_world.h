@@ -212,6 +212,7 @@ class OdeWorld {
   void repeat_callers_forces();
 
   RigidState state(OdeBodyId body) const;
+  const Shape& shape(OdeBodyId body) const;
   void set_state(OdeBodyId body, const RigidState& state);  ///< leaves sleep as it is
   void add_force(OdeBodyId body, const Vec3& force,
                  const Vec3& torque);  ///< N and N m, over the whole of the next step(); does not wake

@@ -102,9 +102,13 @@ std::array<dReal, 4> sizes_of(dGeomID geom, int geom_class) {
 
 /// Whether the caller made something of it that is no number. Such a geom is left alone.
 bool is_spoilt(dGeomID geom, int geom_class) {
-  if (geom_class == dPlaneClass) return false;
   const auto sum = [](const dReal* v) { return v[0] + v[1] + v[2]; };
-  dReal all = sum(dGeomGetPosition(geom));
+  const std::array<dReal, 4> sizes = sizes_of(geom, geom_class);
+  dReal all = sum(sizes.data()) + sizes[3];
+  if (geom_class == dPlaneClass) return !std::isfinite(all);  // which has no place
+  all += sum(dGeomGetPosition(geom));
+  const dReal* rotation = dGeomGetRotation(geom);
+  for (const int row : {0, 4, 8}) all += sum(rotation + row);
   if (const dBodyID body = dGeomGetBody(geom))
     all += sum(dBodyGetLinearVel(body)) + sum(dBodyGetAngularVel(body));
   return !std::isfinite(all);

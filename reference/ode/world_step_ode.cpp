@@ -99,20 +99,29 @@ void OdeWorld::Impl::end_step() {
 
 // ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in
 // a message and leaving the bodies without their contact forces. Such a substep is taken back and repeated
-// with contacts a little softer and more uneven. Not in a caller's world, whose other bodies cannot be taken
-// back.
+// with contacts a little softer and more uneven, and at last by QuickStep, which has nothing to give up on:
+// bodies once let fall into each other are thrown apart later (a heap of plates: energy × 2). Not in a
+// caller's world, whose other bodies cannot be taken back.
 void OdeWorld::Impl::substep(double h) {
-  constexpr int kAttempts = 3;
   sweep.begin(bodies);
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    held_forces.give();
-    begin_substep(h, attempt);
-    const bool solved = advance(h);
-    if (solved || !own_world || attempt == kAttempts - 1) break;
-    joints.end();
-    take_back_bodies();
-  }
+  bool solved = try_substep(h, 0, false) || !own_world;
+  for (int attempt = 1; !solved && attempt < ContactJoints::kMostAttempts; ++attempt)
+    solved = retry_substep(h, attempt, false);
+  if (!solved) retry_substep(h, 0, true);
   end_substep(h);
+}
+
+/// False where ODE had something to complain of.
+bool OdeWorld::Impl::try_substep(double h, int attempt, bool by_quick_step) {
+  held_forces.give();
+  begin_substep(h, attempt);
+  return advance(h, by_quick_step);
+}
+
+bool OdeWorld::Impl::retry_substep(double h, int attempt, bool by_quick_step) {
+  joints.end();
+  take_back_bodies();
+  return try_substep(h, attempt, by_quick_step);
 }
 
 void OdeWorld::Impl::begin_substep(double h, int attempt) {
@@ -148,7 +157,7 @@ void OdeWorld::Impl::push_bodies() {
 }
 
 /// False where ODE had something to complain of.
-bool OdeWorld::Impl::advance(double h) {
+bool OdeWorld::Impl::advance(double h, bool by_quick_step) {
   const Timing timing(times.response_ms);
   const std::int64_t messages_before = messages_of_this_thread();
   const std::span<const OdeContact> contacts = joints.contacts();
@@ -156,7 +165,7 @@ bool OdeWorld::Impl::advance(double h) {
                         largest_island(contacts) > settings.direct_contacts_max;
   try {
     const RecoverableScope scope;
-    if (settings.quick_step || too_many) {
+    if (settings.quick_step || by_quick_step || too_many) {
       ++counters.quick_steps;
       count_uneven_contacts();
       const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++quick_steps);

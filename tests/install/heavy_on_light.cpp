@@ -81,9 +81,9 @@ Runs run(double ratio, LevelChoice boxes, LevelChoice ball, int substeps) {
   return runs;
 }
 
-// A slab dropped by .3 m onto four columns of two boxes: how much lower than these it stands after five
-// seconds, m.
-double find_sinking(double ratio, LevelChoice slab_level) {
+// A slab dropped by .3 m and `more` onto four columns of two boxes: how much lower than these it stands after
+// five seconds, m.
+double find_sinking(double ratio, LevelChoice slab_level, double more) {
   Manager manager(
       {.signatures = [](const Shape&, const ContactLaw&) { return std::shared_ptr<const Signature>(); }});
   manager.add_plane(Vec3::UnitZ(), 0.0);
@@ -95,7 +95,7 @@ double find_sinking(double ratio, LevelChoice slab_level) {
         {.shape = box, .state = {.position = place}, .mass = kLight, .level = LevelChoice::support});
   }
   const BodyId heavy = manager.add_body({.shape = slab,
-                                         .state = {.position = {0, 0, 2 * kSide + 0.5}},
+                                         .state = {.position = {0, 0, 2 * kSide + 0.5 + more}},
                                          .mass = ratio * kLight,
                                          .level = slab_level});
   for (int step = 0; step < 300; ++step) manager.step(1.0 / 60);
@@ -108,9 +108,11 @@ int main() {
   dInitODE2(0);
   for (const double ratio : {100.0, 1000.0})
     for (const LevelChoice slab : {LevelChoice::full, LevelChoice::support}) {
-      const std::string what = "over a box's side: sinking of a slab " + std::to_string(int(ratio)) +
+      const std::string what = "over a box's side: deepest sinking of a slab " + std::to_string(int(ratio)) +
                                " times a box, " + (slab == LevelChoice::full ? "full" : "support");
-      check::within(find_sinking(ratio, slab) / kSide, -0.05, 0.05, what.c_str());
+      double greatest = 0.0;  // of falls that differ by hardly anything, and end otherwise
+      for (int i = 0; i < 6; ++i) greatest = std::max(greatest, find_sinking(ratio, slab, 1e-5 * i));
+      check::within(greatest / kSide, -0.05, 0.05, what.c_str());
     }
   for (const double ratio : {1.0, 10.0, 100.0, 1e3, 1e4}) {
     const Runs full = run(ratio, LevelChoice::full, LevelChoice::full, 12);

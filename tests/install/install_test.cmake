@@ -12,7 +12,7 @@ endfunction()
 
 # Builds the programs against the package in `prefix`, all of them or those named, and runs them.
 function(run_programs prefix build)
-  run("${CMAKE_COMMAND}" -G Ninja -D CMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_PREFIX_PATH=${prefix}" "-DONLY=${ARGN}" -S "${CONSUMER}" -B "${build}")
+  run("${CMAKE_COMMAND}" -G Ninja -D CMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG" "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_PREFIX_PATH=${prefix}" "-DONLY=${ARGN}" -S "${CONSUMER}" -B "${build}")
   run("${CMAKE_COMMAND}" --build "${build}")
   file(GLOB programs "${build}/programs/*")
   foreach(program ${programs})

@@ -6,7 +6,7 @@
 
 #include "signature/measure/measure.h"
 #include "tests/scenes/scene_fixture.h"
-#include "tools/bench/heap_memory.h"
+#include "tools/memory.h"
 
 namespace lodestone {
 namespace {

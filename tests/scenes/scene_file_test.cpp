@@ -331,9 +331,12 @@ TEST_F(SceneFile, ShapeErrors) {
       {"a: {bx_m: [1, 1, 1]}", "s.yaml:2: shapes.a.bx_m: found an unknown key"},
       {"a: {box_m: [1, 1, 1], material: wod}",
        "s.yaml:2: shapes.a.material: found wod, expected one of default"},
-      {"a: {box_m: [1, 1, 1], mass_kg: 0}", "s.yaml:2: shapes.a.mass_kg: found 0, expected a number above 0"},
-      {"a: {box_m: [1, 1, 1], mass_kg: -1}",
-       "s.yaml:2: shapes.a.mass_kg: found -1, expected a number above 0"},
+      {"a: {box_m: [1, 1, 1], mass_kg: 0}",
+       "s.yaml:2: shapes.a.mass_kg: found 0, expected a number in [1e-06, 100000000]"},
+      {"a: {box_m: [1, 1, 1], mass_kg: 1e-7}",
+       "s.yaml:2: shapes.a.mass_kg: found 1e-7, expected a number in [1e-06, 100000000]"},
+      {"a: {box_m: [1, 1, 1], mass_kg: 1, inertia: [1e-9, 1e-9, 1e-9]}",
+       "s.yaml:2: shapes.a.inertia: found a moment of 1e-09 m² over the mass (inertia of a), expected"},
       {"a: {box_m: [1, 1, 1], inertia: [1, 1, 1]}",
        "s.yaml:2: shapes.a.inertia: found an inertia without a mass, expected mass_kg"},
       {"a: {box_m: [1, 1, 1], mass_kg: 1, inertia: [1, 1, 100]}",
@@ -397,6 +400,9 @@ TEST_F(SceneFile, BodyErrors) {
     const std::string message = error_of(scene_with("", "crate: {box_m: [1, 1, 1]}", c.text));
     EXPECT_TRUE(message.starts_with(c.message)) << message << "\n" << c.message;
   }
+  const std::string crumb = error_of(scene_with("", "crate: {box_m: [1e-4, 1e-4, 1e-4]}"));
+  EXPECT_TRUE(crumb.starts_with("s.yaml:3: bodies[0].shape: found 1e-09 kg (mass), expected 1e-06 …"))
+      << crumb;
 }
 
 TEST_F(SceneFile, TooManyBodiesInAll) {

@@ -35,6 +35,10 @@ TEST_F(Inspect, JsonSaysWhatTheFileIsMadeOf) {
   for (const char* key :
        {"tables", "rest_poses", "held_out_ks", "restitution", "friction", "clips", "shape_hash"})
     EXPECT_TRUE(json.contains(key)) << key;
+  double kept = 0.0;
+  for (const auto& pose : json["rest_poses"]) kept += pose["frequency"].get<double>();
+  EXPECT_NEAR(json["settled_fraction"], kept, 1e-9);
+  EXPECT_GT(kept, 0.8);
 }
 
 TEST_F(Inspect, OnePageShowsEverything) {

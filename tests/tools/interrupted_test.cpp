@@ -19,7 +19,7 @@ using testing::Ended;
 const std::string kBox =
     "sign box:0.2,0.3,0.4 --cell-trials 12 --height-trials 20 --settling-trials 20 --clips 3 --threads 1 ";
 
-class Interrupted : public testing::CliTest {
+class InterruptedProgram : public testing::CliTest {
  protected:
   // Its stdout goes to the file "out", its stderr to "errors".
   pid_t start(const std::string& arguments, const std::string& cache) const {
@@ -64,7 +64,7 @@ class Interrupted : public testing::CliTest {
   }
 };
 
-TEST_F(Interrupted, GoesOnFromWhereItWasToTheSameBytes) {
+TEST_F(InterruptedProgram, GoesOnFromWhereItWasToTheSameBytes) {
   ASSERT_EQ(run(kBox, "straight").exit_code, 0);
   const std::string whole = testing::bytes_of(cached("straight", ".sig"));
   for (const int signal : {SIGKILL, SIGINT, SIGTERM}) {
@@ -88,7 +88,7 @@ TEST_F(Interrupted, GoesOnFromWhereItWasToTheSameBytes) {
   }
 }
 
-TEST_F(Interrupted, AShareGoesOn) {
+TEST_F(InterruptedProgram, AShareGoesOn) {
   const std::string share = kBox + "--shard 1/2 -o ";
   ASSERT_EQ(run(share + name("straight.part"), "straight").exit_code, 0);
   ASSERT_TRUE(interrupt(share + name("part"), "cache", SIGKILL));
@@ -103,7 +103,7 @@ TEST_F(Interrupted, AShareGoesOn) {
   EXPECT_TRUE(testing::bytes_of(at("a.sig")) == testing::bytes_of(at("b.sig")));
 }
 
-TEST_F(Interrupted, ADamagedJournalCostsOnlyItsDamagedEnd) {
+TEST_F(InterruptedProgram, ADamagedJournalCostsOnlyItsDamagedEnd) {
   ASSERT_EQ(run(kBox, "straight").exit_code, 0);
   ASSERT_TRUE(interrupt(kBox, "cache", SIGKILL));
   const auto file = cached("cache", ".measuring");
@@ -116,7 +116,7 @@ TEST_F(Interrupted, ADamagedJournalCostsOnlyItsDamagedEnd) {
   EXPECT_TRUE(testing::bytes_of(cached("cache", ".sig")) == testing::bytes_of(cached("straight", ".sig")));
 }
 
-TEST_F(Interrupted, OfSeveralProcessesOneMeasures) {
+TEST_F(InterruptedProgram, OfSeveralProcessesOneMeasures) {
   std::vector<Ended> ended(3);
   {
     std::vector<std::jthread> threads;
@@ -134,7 +134,7 @@ TEST_F(Interrupted, OfSeveralProcessesOneMeasures) {
   EXPECT_FALSE(cached("cache", ".sig").empty());
 }
 
-TEST_F(Interrupted, ASignatureSaysWhatIsLeft) {
+TEST_F(InterruptedProgram, ASignatureSaysWhatIsLeft) {
   ASSERT_TRUE(interrupt(kBox + "--json", "cache", SIGTERM));
   const auto json = nlohmann::json::parse(testing::bytes_of(at("out")));
   EXPECT_EQ(json["incomplete"], true);
@@ -145,7 +145,7 @@ TEST_F(Interrupted, ASignatureSaysWhatIsLeft) {
 }
 
 // A run that goes on for hours once the report of its steps is begun.
-class InterruptedRun : public Interrupted {
+class InterruptedRun : public InterruptedProgram {
  protected:
   InterruptedRun() {
     std::ofstream(at("s.yaml"))
@@ -199,7 +199,7 @@ TEST_F(InterruptedRun, ASecondSignalEndsAtOnce) {
   EXPECT_EQ(testing::bytes_of(at("out")), "");
 }
 
-TEST_F(Interrupted, AComparisonEnds) {
+TEST_F(InterruptedProgram, AComparisonEnds) {
   const pid_t child = start(
       "compare drop box:0.2,0.3,0.4 --methods statistical --trials 1000000 --threads 1 --cell-trials 2 "
       "--height-trials 20 --settling-trials 7 --clips 3 --json",
@@ -216,7 +216,7 @@ TEST_F(Interrupted, AComparisonEnds) {
 }
 
 // It measures what another process, which is stopped, has begun.
-TEST_F(Interrupted, AWaiterSaysForWhom) {
+TEST_F(InterruptedProgram, AWaiterSaysForWhom) {
   const pid_t child = start(kBox, "cache");
   while (journal_bytes("cache") == 0) {
     ASSERT_NE(::waitpid(child, nullptr, WNOHANG), child) << "it was faster";
@@ -242,7 +242,7 @@ TEST_F(Interrupted, AWaiterSaysForWhom) {
       << said;
 }
 
-TEST_F(Interrupted, ACacheThatCannotBeUsedCostsAWarning) {
+TEST_F(InterruptedProgram, ACacheThatCannotBeUsedCostsAWarning) {
   std::ofstream(at("file")) << "in the way";  // of a folder
   const Ended ended = testing::run_shell(command(kBox + "--json 2>" + name("warning"), "file"));
   ASSERT_EQ(ended.exit_code, 0) << testing::bytes_of(at("warning"));
@@ -255,7 +255,7 @@ TEST_F(Interrupted, ACacheThatCannotBeUsedCostsAWarning) {
 }
 
 // The limit leaves room for a part of the journal, and none for the signature.
-TEST_F(Interrupted, AFullCacheCostsAWarningAndTheJournalGoes) {
+TEST_F(InterruptedProgram, AFullCacheCostsAWarningAndTheJournalGoes) {
   const Ended ended =
       testing::run_shell("trap '' XFSZ; ulimit -f 8; " + command(kBox + "--json 2>" + name("warning")));
   ASSERT_EQ(ended.exit_code, 0) << testing::bytes_of(at("warning"));

@@ -56,10 +56,10 @@ TEST(ReportTable, ReadsWhatTheProgramSaves) {
   DropComparison drops{.shape = "box:1,1,1", .trials = 7};
   drops.truth_substeps = 10;
   drops.floor.value.w_bounces = 0.25;
-  DropRow measured{.method = "statistical", .model = "support", .dt_s = 0.01};
+  DropRow measured{{.method = "statistical", .model = "support", .dt_s = 0.01}};
   measured.score.emplace().interval = {0.25, 0.75};
   measured.ns_per_body_step = 700.0;
-  DropRow left_out{.method = "low", .model = ""};
+  DropRow left_out{{.method = "low", .model = ""}};
   left_out.reason = "has no more than 194 faces";
   drops.rows = {measured, left_out};
   save_scores(drops, file);

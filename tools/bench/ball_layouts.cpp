@@ -8,7 +8,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kRadius = 0.1, kReach = 1.05 * kRadius;  // m, but for mixed sizes
+constexpr double kRadius = 0.1, kBallReach = 1.05 * kRadius;  // m, but for mixed sizes
 
 RandomStream stream(std::uint64_t seed, int ball) { return {seed, std::uint64_t(ball), 0xba115}; }
 
@@ -20,7 +20,7 @@ Balls lattice(int balls, std::uint64_t seed, double spacing, std::array<int, 3> 
     const Vec3 place(i % places[0], i / places[0] % places[1], i / places[0] / places[1]);
     const Vec3 off(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2),
                    places[2] == 1 ? 0.0 : random.uniform(-0.2, 0.2));
-    all.add(spacing * (place + off), kReach);
+    all.add(spacing * (place + off), kBallReach);
   }
   return all;
 }
@@ -46,7 +46,7 @@ Balls sparse(int balls, std::uint64_t seed) {
   for (int i = 0; i < balls; ++i) {
     RandomStream random = stream(seed, i);
     const double x = random.uniform(0.0, side), y = random.uniform(0.0, side);
-    all.add({x, y, random.uniform(0.0, side)}, kReach);
+    all.add({x, y, random.uniform(0.0, side)}, kBallReach);
   }
   return all;
 }

@@ -8,10 +8,10 @@
 #include "reference/error.h"
 #include "reference/ode/space_pairs.h"
 #include "tools/bench/bullet_pairs.h"
-#include "tools/compare/bullet_world.h"
 #include "tools/compare/processor_time.h"
 #include "tools/interrupt.h"
 #include "tools/median.h"
+#include "tools/methods/bullet_world.h"
 
 namespace lodestone {
 namespace {

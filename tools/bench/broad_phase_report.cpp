@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/results.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -9,9 +10,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json or_null(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
 std::string or_blank(const std::optional<double>& value) {
   return value ? fmt::format("{:.0f}", *value) : "-";
 }
@@ -51,8 +49,8 @@ ordered_json json_of(const BroadPhaseRow& row) {
           {"ode_sweep_ns_per_body", or_null(row.ode_sweep_ns)},
           {"bullet_tree_ns_per_body", or_null(row.bullet_tree_ns)},
           {"times_less_than_fastest", or_null(row.times_less)},
-          {"checked_by", row.checked_by.empty() ? ordered_json(nullptr) : ordered_json(row.checked_by)},
-          {"fault", row.fault.empty() ? ordered_json(nullptr) : ordered_json(row.fault)}};
+          {"checked_by", or_null(row.checked_by)},
+          {"fault", or_null(row.fault)}};
 }
 
 ordered_json json_of(std::span<const BroadPhaseRow> rows) {

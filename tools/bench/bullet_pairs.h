@@ -1,6 +1,6 @@
 // The pairs of near balls as Bullet's dynamic bounding-volume tree finds them (btDbvtBroadphase). Where
 // Lodestone is built without Bullet, nothing of this may be called but bullet_available
-// (tools/compare/bullet_world.h).
+// (tools/methods/bullet_world.h).
 #pragma once
 
 #include <cstdint>

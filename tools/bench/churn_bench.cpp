@@ -15,9 +15,9 @@
 namespace lodestone {
 namespace {
 
-constexpr double kFrame = 1.0 / 60, kApart = 2.0;      // s, m
-constexpr int kSettlingMost = 120, kTimedBefore = 30;  // steps
-const Vec3 kSides(0.2, 0.3, 0.24);                     // m, of a crate
+constexpr double kChurnFrame = 1.0 / 60, kChurnApart = 2.0;  // s, m
+constexpr int kChurnSettlingMost = 120, kTimedBefore = 30;   // steps
+const Vec3 kChurnSides(0.2, 0.3, 0.24);                      // m, of a crate
 
 LevelChoice choice_of(Rung rung) {
   return rung == Rung::full      ? LevelChoice::full
@@ -42,14 +42,14 @@ class ChurnedWorld {
         random_(settings.seed, 0, 0) {
     row_.rung = rung, row_.asleep = asleep;
     row_.bodies = rung == Rung::full ? settings.full_bodies : settings.bodies;
-    row_.churned = std::clamp(int(std::lround(settings.per_second * kFrame)), 1, row_.bodies);
+    row_.churned = std::clamp(int(std::lround(settings.per_second * kChurnFrame)), 1, row_.bodies);
     side_ = int(std::ceil(std::sqrt(double(row_.bodies))));
     manager_.add_plane(Vec3::UnitZ(), 0.0);
     for (int place = 0; place < row_.bodies; ++place) bodies_.push_back(add(place));
   }
 
   ChurnRow measure() {
-    row_.first_step_ms = time_ms([this] { manager_.step(kFrame); });
+    row_.first_step_ms = time_ms([this] { manager_.step(kChurnFrame); });
     settle();
     row_.step_ms = median_of(steps(kTimedBefore));
     std::vector<double> removals, additions, whole;
@@ -65,7 +65,7 @@ class ChurnedWorld {
       additions.push_back(1e3 / row_.churned * time_ms([&] {
                             for (const int place : places) bodies_[std::size_t(place)] = add(place);
                           }));
-      whole.push_back(time_ms([this] { manager_.step(kFrame); }));
+      whole.push_back(time_ms([this] { manager_.step(kChurnFrame); }));
       settle();
     }
     row_.removal_us = median_of(removals), row_.addition_us = median_of(additions),
@@ -86,8 +86,8 @@ class ChurnedWorld {
 
   BodyId add(int place) {
     RigidState state;
-    state.position = {kApart * (place % side_), kApart * (place / side_),
-                      row_.asleep ? 0.5 * kSides.z() : 1.0};
+    state.position = {kChurnApart * (place % side_), kChurnApart * (place / side_),
+                      row_.asleep ? 0.5 * kChurnSides.z() : 1.0};
     if (!row_.asleep) state.velocity = {0, 0, 0.3};
     return manager_.add_body({.shape = shape_,
                               .state = state,
@@ -96,8 +96,9 @@ class ChurnedWorld {
   }
 
   void settle() {
-    for (int step = 0; row_.asleep && step < kSettlingMost && manager_.report().asleep < row_.bodies; ++step)
-      manager_.step(kFrame);
+    for (int step = 0; row_.asleep && step < kChurnSettlingMost && manager_.report().asleep < row_.bodies;
+         ++step)
+      manager_.step(kChurnFrame);
   }
 
   // Each once.
@@ -110,7 +111,7 @@ class ChurnedWorld {
 
   std::vector<double> steps(int count) {
     std::vector<double> ms;
-    for (int i = 0; i < count; ++i) ms.push_back(time_ms([this] { manager_.step(kFrame); }));
+    for (int i = 0; i < count; ++i) ms.push_back(time_ms([this] { manager_.step(kChurnFrame); }));
     return ms;
   }
 
@@ -127,7 +128,7 @@ class ChurnedWorld {
 }  // namespace
 
 std::vector<ChurnRow> bench_churn(const ChurnSettings& settings) {
-  const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box(kSides)));
+  const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box(kChurnSides)));
   const auto signature = make_coarse_signature(*shape);
   std::vector<ChurnRow> rows;
   until_interrupted([&] {

@@ -11,24 +11,23 @@
 #include "lod/timing/thread_clock.h"
 #include "reference/random.h"
 #include "scenes/run_measures.h"
-#include "tools/bench/heap_memory.h"
 #include "tools/bench/settled_bench.h"
-#include "tools/hard_cases/resident_memory.h"
 #include "tools/interrupt.h"
 #include "tools/median.h"
+#include "tools/memory.h"
 
 namespace lodestone {
 namespace {
 
-constexpr double kFrame = 1.0 / 60, kGravity = 9.81;  // s, m/s²
-constexpr double kCircle_m = 6.0, kCircle_s = 7.0;    // of the viewpoint: radius, and once round
-const Vec3 kSides(0.2, 0.3, 0.24);                    // m, of a crate
+constexpr double kEnduranceFrame = 1.0 / 60, kGravity = 9.81;  // s, m/s²
+constexpr double kCircle_m = 6.0, kCircle_s = 7.0;             // of the viewpoint: radius, and once round
+const Vec3 kEnduranceSides(0.2, 0.3, 0.24);                    // m, of a crate
 
 class EndlessWorld {
  public:
   explicit EndlessWorld(const EnduranceSettings& settings)
       : settings_(settings),
-        shape_(std::make_shared<const Shape>(make_shape("crate", make_box(kSides)))),
+        shape_(std::make_shared<const Shape>(make_shape("crate", make_box(kEnduranceSides)))),
         manager_(make_manager(settings, make_coarse_signature(*shape_))) {
     manager_.add_plane(Vec3::UnitZ(), 0.0);
     for (int i = 0; i < settings.bodies; ++i)
@@ -80,11 +79,12 @@ class EndlessWorld {
     const double energy_at_start = energy_j();
     double spent_ms = 0;
     for (int step = 0; step < kEnduranceRound && figures_.finite; ++step) {
-      const double angle = 2 * std::numbers::pi * std::fmod(double(figures_.steps) * kFrame / kCircle_s, 1.0);
+      const double angle =
+          2 * std::numbers::pi * std::fmod(double(figures_.steps) * kEnduranceFrame / kCircle_s, 1.0);
       const Vec3 viewpoint = kCircle_m * Vec3(std::cos(angle), std::sin(angle), 0.2);
       manager_.set_viewpoints({&viewpoint, 1});
       const double before_ms = thread_time_ms();
-      const StepReport& report = manager_.step(kFrame);
+      const StepReport& report = manager_.step(kEnduranceFrame);
       spent_ms += thread_time_ms() - before_ms;
       ++figures_.steps;
       figures_.changes += report.promotions + report.demotions;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/compare/drop_method.h"
+#include "tools/methods/method.h"
 
 namespace lodestone {
 

@@ -18,7 +18,7 @@
 namespace lodestone {
 namespace {
 
-constexpr int kSettlingMost = 1'800, kSettlingAwake = 60;  // steps
+constexpr int kHeapSettlingMost = 1'800, kSettlingAwake = 60;  // steps
 
 /// m, of a move in one frame: beyond what gravity can have added, from a velocity at its start that was v0,
 /// or any between v0 and v1.
@@ -70,9 +70,9 @@ class RungsRun {
 
   /// Until all sleep.
   std::vector<RigidState> settle() {
-    for (int step = 0; step < kSettlingMost && (step == 0 || manager_.report().asleep < heap_.bodies);
+    for (int step = 0; step < kHeapSettlingMost && (step == 0 || manager_.report().asleep < heap_.bodies);
          ++step) {
-      show("comes to rest", double(step) / kSettlingMost);
+      show("comes to rest", double(step) / kHeapSettlingMost);
       manager_.step(kCaseStep);
     }
     read(before_);

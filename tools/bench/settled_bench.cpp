@@ -9,19 +9,19 @@
 #include "lod/manager.h"
 #include "reference/random.h"
 #include "signature/measure/measure.h"
-#include "tools/bench/heap_memory.h"
 #include "tools/interrupt.h"
 #include "tools/median.h"
+#include "tools/memory.h"
 
 namespace lodestone {
 namespace {
 
-constexpr double kFrame = 1.0 / 60, kApart = 0.5;  // s, m
-constexpr int kSettlingMost = 600;                 // steps
-constexpr double kHeight = 5.0,
+constexpr double kSleeperFrame = 1.0 / 60, kSleeperApart = 0.5;  // s, m
+constexpr int kSleeperSettlingMost = 600;                        // steps
+constexpr double kSleeperHeight = 5.0,
                  kSearched = 30.0;  // m: of the viewpoint, a little farther than anyone becomes full; about
                                     // where a body falls, in which those woken are looked for
-const Vec3 kSides(0.2, 0.3, 0.24);  // m, of a crate
+const Vec3 kSleeperSides(0.2, 0.3, 0.24);  // m, of a crate
 
 class SettledWorld {
  public:
@@ -42,11 +42,11 @@ class SettledWorld {
     settle();
     row_.settled_us = time_steps([](int) {});
     row_.watched_us = time_steps([this](int step) {
-      if (step == 0) view_from({0, 0, kHeight});
+      if (step == 0) view_from({0, 0, kSleeperHeight});
     });
-    row_.moving_us = time_steps([this](int step) { view_from({0.1 * (step + 1), 0, kHeight}); });
+    row_.moving_us = time_steps([this](int step) { view_from({0.1 * (step + 1), 0, kSleeperHeight}); });
     manager_.set_viewpoints({});
-    manager_.step(kFrame);
+    manager_.step(kSleeperFrame);
     disturb();
     return row_;
   }
@@ -62,7 +62,8 @@ class SettledWorld {
 
   RigidState start(int i) const {
     RigidState state;
-    state.position = {kApart * (i % side_ - side_ / 2), kApart * (i / side_ - side_ / 2), 0.5 * kSides.z()};
+    state.position = {kSleeperApart * (i % side_ - side_ / 2), kSleeperApart * (i / side_ - side_ / 2),
+                      0.5 * kSleeperSides.z()};
     return state;
   }
 
@@ -73,15 +74,15 @@ class SettledWorld {
 
   double step_us() {
     const auto begin = std::chrono::steady_clock::now();
-    manager_.step(kFrame);
+    manager_.step(kSleeperFrame);
     return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
   }
 
   void settle() {
     do {
-      show("settling", double(row_.settling_steps) / kSettlingMost);
-      manager_.step(kFrame);
-    } while (++row_.settling_steps < kSettlingMost && count_awake() > 0);
+      show("settling", double(row_.settling_steps) / kSleeperSettlingMost);
+      manager_.step(kSleeperFrame);
+    } while (++row_.settling_steps < kSleeperSettlingMost && count_awake() > 0);
     row_.awake = count_awake();
     row_.bytes_per_body = (heap_bytes() - heap_before_) / settings_.bodies;
   }
@@ -161,7 +162,7 @@ std::shared_ptr<const Signature> make_coarse_signature(const Shape& shape) {
 }
 
 std::vector<SettledRow> bench_settled(const SettledSettings& settings) {
-  const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box(kSides)));
+  const auto shape = std::make_shared<const Shape>(make_shape("crate", make_box(kSleeperSides)));
   const auto signature = make_coarse_signature(*shape);
   std::vector<SettledRow> rows;
   until_interrupted([&] {

@@ -1,13 +1,18 @@
 #include "tools/bench/table1.h"
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 
+#include "lod/timing/thread_clock.h"
 #include "tools/interrupt.h"
 #include "tools/median.h"
+#include "tools/memory.h"
+#include "tools/methods/method_world.h"
 
 namespace lodestone {
 namespace {
@@ -17,9 +22,83 @@ constexpr int kLatestSteps = 10;  // whose mean predicts those to come
 constexpr double kPartToJudge =
     0.1;  // of the time allowed is spent first: the steps in which all bodies land are the slowest
 
-bool is_mesh(const DropMethod& method) {
+bool is_mesh(const Method& method) {
   const auto* ode = std::get_if<OdeMethod>(&method.way);
   return ode && (ode->geometry == OdeGeometry::trimesh || ode->geometry == OdeGeometry::hull);
+}
+
+// Plain ODE, as the table's baselines are set: QuickStep with 20 iterations, eight contacts a pair, nothing
+// of ours.
+OdeSettings baseline_settings() {
+  return {.quick_step = true,
+          .quick_step_iterations = 20,
+          .bounce_velocity = 0.2,
+          .friction_along_slip = false,
+          .max_contacts_per_pair = 8,
+          .mesh_contacts = MeshContacts::plain,
+          .plane_contacts_from_hull = false};
+}
+
+// The name says which: `full` and full_N are our full level.
+bool is_baseline(const Method& method) {
+  return method.name == "full_plain" || !method.name.starts_with("full");
+}
+
+Method with_settings(Method method, bool sleeping, bool hash_space) {
+  if (auto* ode = std::get_if<OdeMethod>(&method.way)) {
+    if (is_baseline(method)) ode->settings = baseline_settings();
+    ode->settings.hash_space = hash_space;
+    ode->settings.auto_disable = sleeping;
+  } else if (auto* bullet = std::get_if<BulletMethod>(&method.way)) {
+    bullet->settings = {.bounce_velocity = 0.2, .sleeping = sleeping};
+  }
+  return method;
+}
+
+std::vector<RigidState> table1_starts(int bodies, std::uint64_t seed) {
+  std::vector<RigidState> starts;
+  for (int i = 0; i < bodies; ++i) starts.push_back(table1_start(i, bodies, seed));
+  return starts;
+}
+
+/// Of a step, ms: on one thread processor time, which other work on the machine does not lengthen (wall time
+/// where that is less: reading its clock costs some .2 us); on several, wall time. The stages, in wall time,
+/// only where the method tells them apart; they are not all of a step.
+struct StepMs {
+  double step = 0.0;
+  double bytes_moved = 0.0;  ///< where the method counts them
+  std::optional<double> collision = {}, response = {}, rest = {};
+};
+
+StepMs time_step(MethodWorld& world, int threads) {
+  StepMs ms;
+  const double processor_start = thread_time_ms();
+  const auto start = std::chrono::steady_clock::now();
+  world.step(kTable1Step);
+  ms.step = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  if (threads == 1) ms.step = std::min(ms.step, thread_time_ms() - processor_start);
+  if (const OdeWorld* ode = world.ode()) {
+    ms.collision = ode->times().collision_ms;
+    ms.response = ode->times().response_ms;
+  } else if (const Manager* manager = world.manager()) {
+    const StepReport& report = manager->report();
+    ms.collision = report.times.broad_phase_ms + report.times.pairs_ms;
+    ms.response = report.times.flight_ms + report.times.crowd_ms;
+    ms.rest = report.times.rest_ms;
+    ms.bytes_moved = report.bytes_moved;
+  }
+  return ms;
+}
+
+std::uint64_t state_hash_of(const MethodWorld& world) {
+  std::uint64_t hash = 0;
+  for (int i = 0; i < world.bodies(); ++i) {
+    const auto [x, q, v, w] = world.state(i);
+    const std::array<double, 13> numbers{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(),
+                                         v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
+    hash = XXH64(numbers.data(), sizeof numbers, hash);
+  }
+  return hash;
 }
 
 /// Steps made so far, and when they would all be done.
@@ -67,9 +146,9 @@ class Columns {
 class Table1 {
  public:
   explicit Table1(const Table1Settings& settings) : settings_(settings), job_(make_table1_job()) {
-    methods_ = make_drop_methods(settings.methods, job_, settings.measuring, 0, settings.progress);
+    methods_ = make_methods(settings.methods, job_, settings.measuring, 0, settings.progress);
     if (!settings.model.empty())
-      std::erase_if(methods_, [&](const DropMethod& method) {
+      std::erase_if(methods_, [&](const Method& method) {
         return !method.model().empty() && method.model() != settings.model;
       });
   }
@@ -81,7 +160,7 @@ class Table1 {
     for (const int bodies : sizes) {
       const std::size_t first = rows.size();
       until_interrupted([&] {
-        for (const DropMethod& method : methods_) rows.push_back(measure(method, bodies));
+        for (const Method& method : methods_) rows.push_back(measure(method, bodies));
       });
       compare(std::span(rows).subspan(first));
     }
@@ -89,7 +168,7 @@ class Table1 {
   }
 
  private:
-  Table1Row measure(const DropMethod& method, int bodies) {
+  Table1Row measure(const Method& method, int bodies) {
     Table1Row row{.bodies = bodies,
                   .method = method.name,
                   .model = method.model(),
@@ -104,7 +183,7 @@ class Table1 {
   }
 
   // Why not even to try; empty where there is no reason.
-  std::string find_reason(const DropMethod& method, int bodies) const {
+  std::string find_reason(const Method& method, int bodies) const {
     if (!method.left_out.empty()) return method.left_out;
     if (is_mesh(method) && bodies > kMeshBodiesMax)
       return fmt::format("trimeshes: {} bodies at most", kMeshBodiesMax);
@@ -120,18 +199,21 @@ class Table1 {
   }
 
   // Returns the seconds that all steps took; where they would be more than `limit_s`, `row` says so instead.
-  double run(const DropMethod& method, Table1Row& row, double limit_s) const {
-    Table1World world(job_, method,
-                      {.bodies = row.bodies,
+  double run(const Method& method, Table1Row& row, double limit_s) const {
+    const Method set = with_settings(method, settings_.sleeping, row.hash_space);
+    const std::vector<RigidState> starts = table1_starts(row.bodies, settings_.seed);
+    const double heap_before = heap_bytes();
+    MethodWorld world(job_, set,
+                      {.planes = {{Vec3::UnitZ(), 0.0}},
+                       .seed = settings_.seed,
                        .threads = row.threads,
-                       .sleeping = settings_.sleeping,
-                       .hash_space = row.hash_space,
-                       .seed = settings_.seed});
+                       .sleeping = settings_.sleeping},
+                      starts);
     Clock clock;
     Columns columns;
     for (int step = 0; step < kTable1Steps; ++step) {
       show(row, step);
-      const StepMs ms = world.step(kTable1Step);
+      const StepMs ms = time_step(world, row.threads);
       clock.add(ms.step);
       if (step >= kTable1FirstTimed) columns.add(ms);
       if (step == 60) row.awake[0] = world.awake();
@@ -143,15 +225,16 @@ class Table1 {
       }
     }
     row.awake[2] = world.awake();
-    row.state_hash = world.state_hash();
-    row.bytes_per_body = world.bytes_per_body();
-    row.level_bytes_per_body = world.level_bytes_per_body();
+    row.state_hash = state_hash_of(world);
+    row.bytes_per_body = (heap_bytes() - heap_before) / row.bodies;
+    if (const Manager* manager = world.manager())
+      row.level_bytes_per_body = double(manager->statistical_bytes()) / row.bodies;
     columns.give_to(row);
     return clock.spent_s();
   }
 
   // The same again with ODE's other space: the row shows the faster.
-  void try_hash_space(const DropMethod& method, Table1Row& row, double& seconds) const {
+  void try_hash_space(const Method& method, Table1Row& row, double& seconds) const {
     Table1Row other{.bodies = row.bodies,
                     .method = row.method,
                     .model = row.model,
@@ -190,7 +273,7 @@ class Table1 {
   };
   const Table1Settings& settings_;
   DropJob job_;
-  std::vector<DropMethod> methods_;
+  std::vector<Method> methods_;
   std::map<std::string, Last> last_;  // the greatest row measured of each method
 };
 

@@ -9,7 +9,6 @@
 
 #include "tools/bench/bandwidth.h"
 #include "tools/bench/table1_job.h"
-#include "tools/bench/table1_world.h"
 
 namespace lodestone {
 
@@ -17,8 +16,9 @@ struct Table1Settings {
   std::vector<int> bodies = {10, 100, 1'000, 10'000};
   std::vector<std::string> methods = {"full_plain", "full",        "low",           "spheres7",
                                       "sphere",     "bullet_hull", "bullet_sphere", "statistical"};
-  std::string model = {};  ///< of the statistical level: "tables", "tables_on_hull" or "support"; empty: all
-  int threads = 1;         ///< of the statistical level; the others run on one
+  std::string model =
+      {};           ///< of the statistical level: "tables", "tables_published" or "support"; empty: all
+  int threads = 1;  ///< of the statistical level; the others run on one
   bool sleeping = false;
   double row_seconds = 120.0;  ///< rows that would take longer are left out
   SignatureSettings measuring = {};

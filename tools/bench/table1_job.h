@@ -2,7 +2,7 @@
 // across engines.
 #pragma once
 
-#include "tools/compare/drop_method.h"
+#include "tools/methods/method.h"
 
 namespace lodestone {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/csv_file.h"
+#include "tools/results.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -10,42 +10,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json or_null(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-ordered_json or_null(double value) { return value > 0.0 ? ordered_json(value) : ordered_json(nullptr); }
-ordered_json or_null(const std::string& text) {
-  return text.empty() ? ordered_json(nullptr) : ordered_json(text);
-}
-
-ordered_json json_of(const Table1Row& row) {
-  const bool measured = row.step_ms.has_value();
-  const PaperTimes paper = paper_times(row.method, row.bodies);
-  return {
-      {"bodies", row.bodies},
-      {"method", row.method},
-      {"model", or_null(row.model)},
-      {"threads", row.threads},
-      {"step_ms", or_null(row.step_ms)},
-      {"collision_ms", or_null(row.collision_ms)},
-      {"response_ms", or_null(row.response_ms)},
-      {"rest_ms", or_null(row.rest_ms)},
-      {"awake", measured ? ordered_json(row.awake) : ordered_json(nullptr)},
-      {"state_hash", measured ? ordered_json(fmt::format("{:016x}", row.state_hash)) : ordered_json(nullptr)},
-      {"bytes_per_body", measured ? or_null(row.bytes_per_body) : ordered_json(nullptr)},
-      {"level_bytes_per_body", measured ? or_null(row.level_bytes_per_body) : ordered_json(nullptr)},
-      {"bytes_moved_per_body", measured ? or_null(row.bytes_moved_per_body) : ordered_json(nullptr)},
-      {"moved_gb_per_s", or_null(row.moved_gb_per_s)},
-      {"share_of_memory_bandwidth", or_null(row.share_of_memory)},
-      {"share_of_cache_bandwidth", or_null(row.share_of_cache)},
-      {"broad_phase", row.hash_space ? ordered_json("hash") : ordered_json(nullptr)},
-      {"times_less_than_full_plain", or_null(row.times_less_than_full_plain)},
-      {"times_less_than_spheres7", or_null(row.times_less_than_spheres7)},
-      {"times_less_than_sphere", or_null(row.times_less_than_sphere)},
-      {"paper_step_ms", or_null(paper.step_ms)},
-      {"paper_collision_ms", or_null(paper.collision_ms)},
-      {"paper_response_ms", or_null(paper.response_ms)},
-      {"reason", or_null(row.left_out)}};
+ordered_json positive_or_null(double value) {
+  return value > 0.0 ? ordered_json(value) : ordered_json(nullptr);
 }
 
 std::string ms_or_blank(const std::optional<double>& ms) { return ms ? fmt::format("{:.4f}", *ms) : ""; }
@@ -120,14 +86,40 @@ ordered_json json_of(const Bandwidth& bandwidth) {
           {"cache_gb_per_s", bandwidth.cache}};
 }
 
+ordered_json json_of(const Table1Row& row) {
+  const bool measured = row.step_ms.has_value();
+  const PaperTimes paper = paper_times(row.method, row.bodies);
+  return {
+      {"bodies", row.bodies},
+      {"method", row.method},
+      {"model", or_null(row.model)},
+      {"threads", row.threads},
+      {"step_ms", or_null(row.step_ms)},
+      {"collision_ms", or_null(row.collision_ms)},
+      {"response_ms", or_null(row.response_ms)},
+      {"rest_ms", or_null(row.rest_ms)},
+      {"awake", measured ? ordered_json(row.awake) : ordered_json(nullptr)},
+      {"state_hash", measured ? ordered_json(fmt::format("{:016x}", row.state_hash)) : ordered_json(nullptr)},
+      {"bytes_per_body", measured ? positive_or_null(row.bytes_per_body) : ordered_json(nullptr)},
+      {"level_bytes_per_body", measured ? positive_or_null(row.level_bytes_per_body) : ordered_json(nullptr)},
+      {"bytes_moved_per_body", measured ? positive_or_null(row.bytes_moved_per_body) : ordered_json(nullptr)},
+      {"moved_gb_per_s", or_null(row.moved_gb_per_s)},
+      {"share_of_memory_bandwidth", or_null(row.share_of_memory)},
+      {"share_of_cache_bandwidth", or_null(row.share_of_cache)},
+      {"broad_phase", row.hash_space ? ordered_json("hash") : ordered_json(nullptr)},
+      {"times_less_than_full_plain", or_null(row.times_less_than_full_plain)},
+      {"times_less_than_spheres7", or_null(row.times_less_than_spheres7)},
+      {"times_less_than_sphere", or_null(row.times_less_than_sphere)},
+      {"paper_step_ms", positive_or_null(paper.step_ms)},
+      {"paper_collision_ms", positive_or_null(paper.collision_ms)},
+      {"paper_response_ms", positive_or_null(paper.response_ms)},
+      {"reason", or_null(row.left_out)}};
+}
+
 ordered_json json_of(std::span<const Table1Row> rows) {
   ordered_json json = {{"rows", ordered_json::array()}};
   for (const Table1Row& row : rows) json["rows"].push_back(json_of(row));
   return json;
-}
-
-void save_csv(std::span<const Table1Row> rows, const std::filesystem::path& file) {
-  save_csv(json_of(rows)["rows"], json_of(Table1Row{}), file);
 }
 
 }  // namespace lodestone

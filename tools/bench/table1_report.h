@@ -12,13 +12,11 @@ namespace lodestone {
 
 /// Ours beside the paper's; under it, why rows were left out.
 std::string text_of(std::span<const Table1Row> rows);
+nlohmann::ordered_json json_of(const Table1Row& row);
 nlohmann::ordered_json json_of(std::span<const Table1Row> rows);
 
 /// What rows move beside what the machine could.
 std::string roofline_text_of(const Bandwidth& bandwidth, std::span<const Table1Row> rows);
 nlohmann::ordered_json json_of(const Bandwidth& bandwidth);
-
-/// One line a row, with the keys of the JSON. Throws InputError where the file cannot be written.
-void save_csv(std::span<const Table1Row> rows, const std::filesystem::path& file);
 
 }  // namespace lodestone

@@ -14,7 +14,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kNearest = 0.1;  // m from the camera, below which a pixel gets no smaller
+constexpr double kNearestDistance = 0.1;  // m from the camera, below which a pixel gets no smaller
 constexpr double kReach =
     1.2;  // × the radii of two bodies' bounding spheres: within a step they may have met
 
@@ -136,7 +136,7 @@ class TransitionsWatch {
                         step.dt_s * before.angular_velocity, step.dt_s * after.angular_velocity);
     const double pixels_at_1_m = 0.5 * scene_.viewpoints.front().height_px / std::tan(0.5 * kFieldOfView);
     return (moved + shape(body).radius * turned) * pixels_at_1_m /
-           std::max(kNearest, (after.position - eye).norm());
+           std::max(kNearestDistance, (after.position - eye).norm());
   }
 
   bool near(const WatchedStep& step, std::size_t first, std::size_t second) const {

@@ -1,11 +1,22 @@
 #include "tools/compare/comparison_arguments.h"
 
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "tools/compare/method_argument.h"
+#include "tools/methods/method.h"
 #include "tools/step_argument.h"
 
 namespace lodestone {
+namespace {
+
+/// What is wrong with the name of a method; empty where nothing is.
+std::string find_method_fault(const std::string& name) {
+  if (is_method_name(name)) return "";
+  return fmt::format("found '{}', expected some of {}, full_2 to full_64", name,
+                     fmt::join(method_names(), ", "));
+}
+
+}  // namespace
 
 DropComparisonSettings ComparisonArguments::settings() const {
   DropComparisonSettings settings = comparison;
@@ -14,22 +25,36 @@ DropComparisonSettings ComparisonArguments::settings() const {
   return settings;
 }
 
-void add_starts_arguments(CLI::App& command, std::uint64_t& seed, int& threads) {
-  command.add_option("--seed", seed, "of the starts")->capture_default_str();
-  command.add_option("--threads", threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
+void add_methods_argument(Command& command, std::vector<std::string>& methods, const std::string& what) {
+  command
+      .add_option("--methods", methods,
+                  what.empty() ? fmt::format("some of {}; full_N for the full level at N substeps",
+                                             fmt::join(method_names(), ","))
+                               : what)
+      .several()
+      .checked(find_method_fault, "METHODS");
 }
 
-void add_comparison_arguments(CLI::App& command, ComparisonArguments& arguments) {
+void add_steps_argument(Command& command, std::vector<std::string>& steps) {
+  command.add_option("--dt", steps, "steps of the methods, s: 0.01 or 1/60, several with commas")
+      .several()
+      .checked(find_step_fault, "SECONDS");
+}
+
+void add_trials_argument(Command& command, int& trials, const std::string& what) {
+  command.add_option("--trials", trials, what).within(2, 1'000'000);
+}
+
+void add_starts_arguments(Command& command, std::uint64_t& seed, int& threads) {
+  command.add_option("--seed", seed, "of the starts");
+  command.add_option("--threads", threads, "0: all cores").within(0, 4096);
+}
+
+void add_comparison_arguments(Command& command, ComparisonArguments& arguments) {
   DropComparisonSettings& comparison = arguments.comparison;
   add_signature_arguments(command, arguments.signature);
-  command.add_option("--dt", arguments.steps, "steps of the methods, s: 0.01 or 1/60, several with commas")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(find_step_fault, "SECONDS")
-      ->capture_default_str();
-  command.add_option("--trials", comparison.trials, "drops of each")
-      ->check(CLI::Range(2, 1'000'000))
-      ->capture_default_str();
+  add_steps_argument(command, arguments.steps);
+  add_trials_argument(command, comparison.trials, "drops of each");
   add_methods_argument(command, comparison.methods);
   add_starts_arguments(command, comparison.seed, comparison.threads);
 }

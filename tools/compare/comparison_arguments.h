@@ -17,11 +17,20 @@ struct ComparisonArguments {
   DropComparisonSettings settings() const;
 };
 
+/// Adds --methods to `command`: some of those that make_methods knows, others are refused. `methods`
+/// holds the default and outlives the parsing. `what`: in place of a list of them in --help.
+void add_methods_argument(Command& command, std::vector<std::string>& methods, const std::string& what = "");
+
+/// Adds --dt to `command`: texts for steps_of() (tools/step_argument.h).
+void add_steps_argument(Command& command, std::vector<std::string>& steps);
+
+void add_trials_argument(Command& command, int& trials, const std::string& what);
+
 /// Adds --seed and --threads to `command`.
-void add_starts_arguments(CLI::App& command, std::uint64_t& seed, int& threads);
+void add_starts_arguments(Command& command, std::uint64_t& seed, int& threads);
 
 /// Adds --dt, --trials, --methods, --seed, --threads and the options of signatures to `command`, with the
 /// defaults in `arguments`, which outlives the parsing.
-void add_comparison_arguments(CLI::App& command, ComparisonArguments& arguments);
+void add_comparison_arguments(Command& command, ComparisonArguments& arguments);
 
 }  // namespace lodestone

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "reference/output_file.h"
+#include "tools/compare/comparison_report.h"
 #include "tools/compare/drop_row_report.h"
-#include "tools/csv_file.h"
+#include "tools/results.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -27,29 +29,20 @@ void write_drops(OutputFile& out, const std::string& method, const std::string& 
 std::string table_of(const DropComparison& comparison) {
   TextTable table(drop_row_heading());
   table.add_row(cells_of_floor(comparison.floor));
-  std::string left_out;
-  for (const DropRow& row : comparison.rows) {
-    table.add_row(cells_of(row));
-    const std::string line = fmt::format("{} left out: {} {}\n", row.method, comparison.shape, row.reason);
-    if (!row.reason.empty() && left_out.find(line) == std::string::npos)
-      left_out += line;  // once for all steps
-  }
-  return table.text() + left_out;
+  for (const DropRow& row : comparison.rows) table.add_row(cells_of(row));
+  return table.text() + left_out_of(comparison.shape, comparison.rows);
 }
 
-ordered_json score_row_of(const DropComparison& comparison, const std::string& method,
-                          const std::string& model, double dt_s, int substeps,
-                          const std::optional<ScoreWithInterval>& score) {
-  ordered_json row = {{"shape", comparison.shape},
-                      {"trials", comparison.trials},
-                      {"method", method},
-                      {"model", model.empty() ? ordered_json(nullptr) : ordered_json(model)},
-                      {"dt_s", dt_s},
-                      {"substeps", substeps}};
+ordered_json score_row_of(const DropComparison& comparison, const MethodAtStep& method,
+                          const std::optional<ScoreWithInterval>& score, const std::optional<double>& ns) {
+  ordered_json row = {{"shape", comparison.shape}, {"trials", comparison.trials}};
+  row.update(json_of(method));
   row["score"] = score ? ordered_json(score->value.score) : ordered_json(nullptr);
   row["score_from"] = score ? ordered_json(score->interval[0]) : ordered_json(nullptr);
   row["score_to"] = score ? ordered_json(score->interval[1]) : ordered_json(nullptr);
   add_parts(row, score.value_or(ScoreWithInterval{}).value);
+  row["ns_per_body_step"] = ns ? ordered_json(*ns) : ordered_json(nullptr);
+  row["reason"] = or_null(method.reason);
   return row;
 }
 
@@ -78,18 +71,12 @@ ordered_json json_of(const DropComparison& comparison) {
 }
 
 ordered_json score_rows_of(const DropComparison& comparison) {
+  const MethodAtStep floor{
+      .method = "noise_floor", .model = "", .dt_s = kObservationStep / comparison.truth_substeps};
   ordered_json rows = ordered_json::array();
-  const auto add = [&](ordered_json row, const std::optional<double>& ns, const std::string& reason) {
-    row["ns_per_body_step"] = ns ? ordered_json(*ns) : ordered_json(nullptr);
-    row["reason"] = reason.empty() ? ordered_json(nullptr) : ordered_json(reason);
-    rows.push_back(std::move(row));
-  };
-  add(score_row_of(comparison, "noise_floor", "", kObservationStep / comparison.truth_substeps, 1,
-                   comparison.floor),
-      std::nullopt, "");
+  rows.push_back(score_row_of(comparison, floor, comparison.floor, std::nullopt));
   for (const DropRow& row : comparison.rows)
-    add(score_row_of(comparison, row.method, row.model, row.dt_s, row.substeps, row.score),
-        row.ns_per_body_step, row.reason);
+    rows.push_back(score_row_of(comparison, row, row.score, row.ns_per_body_step));
   return rows;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "tools/compare/drop_comparison.h"
@@ -20,7 +20,7 @@ nlohmann::ordered_json json_of(const DropComparison& comparison);
 /// method at each step.
 nlohmann::ordered_json score_rows_of(const DropComparison& comparison);
 
-/// These as a CSV file (tools/csv_file.h). Throws InputError where it cannot be written.
+/// These as a CSV file (tools/results.h). Throws InputError where it cannot be written.
 void save_scores(const DropComparison& comparison, const std::filesystem::path& file);
 
 /// Writes DIR/drops.csv, one line for each drop of each method and of both batches of truth. Throws

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/compare/comparison_report.h"
+#include "tools/results.h"
 
 namespace lodestone {
 namespace {
@@ -11,14 +15,6 @@ using nlohmann::ordered_json;
 
 std::string text_of(std::optional<double> value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
-}
-
-// 1/60 where that is what it is.
-std::string text_of_step(double dt_s) {
-  const double per_second = 1.0 / dt_s;
-  if (std::abs(per_second - std::round(per_second)) < 1e-3 * per_second)
-    return fmt::format("1/{:.0f}", per_second);
-  return fmt::format("{:.4g}", dt_s);
 }
 
 std::vector<std::string> cells_of(const ScoreWithInterval& scored) {
@@ -68,8 +64,7 @@ std::vector<std::string> cells_of_floor(const ScoreWithInterval& floor) {
 }
 
 std::vector<std::string> cells_of(const DropRow& row) {
-  std::vector<std::string> cells = {row.method, row.model, text_of_step(row.dt_s),
-                                    fmt::format("{}", row.substeps)};
+  std::vector<std::string> cells = cells_of(static_cast<const MethodAtStep&>(row));
   if (row.score) {
     const std::vector<std::string> numbers = cells_of(*row.score);
     cells.insert(cells.end(), numbers.begin(), numbers.end());
@@ -90,11 +85,7 @@ void add_parts(ordered_json& json, const DropScore& score) {
 }
 
 ordered_json json_of(const DropRow& row, const ScoreWithInterval& floor) {
-  ordered_json json;
-  json["method"] = row.method;
-  json["model"] = row.model.empty() ? ordered_json(nullptr) : ordered_json(row.model);
-  json["dt_s"] = row.dt_s;
-  json["substeps"] = row.substeps;
+  ordered_json json = json_of(static_cast<const MethodAtStep&>(row));
   json["score"] = row.score ? ordered_json(row.score->value.score) : ordered_json(nullptr);
   json["score_ci"] = row.score ? ordered_json(row.score->interval) : ordered_json(nullptr);
   json["floor"] = floor.value.score;
@@ -103,7 +94,7 @@ ordered_json json_of(const DropRow& row, const ScoreWithInterval& floor) {
   json["ns_per_body_step"] = json_or_null(row.ns_per_body_step);
   json["first_impact"] = row.first_impacts ? json_of(*row.first_impacts) : ordered_json(nullptr);
   json["table_extrapolations"] = row.table_extrapolations();
-  json["reason"] = row.reason.empty() ? ordered_json(nullptr) : ordered_json(row.reason);
+  json["reason"] = or_null(row.reason);
   return json;
 }
 

@@ -1,15 +1,27 @@
 // Comparisons of several drops, one after the other: of many shapes, or of one under many conditions.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "tools/compare/drop_comparison.h"
-#include "tools/compare/drop_conditions.h"
 
 namespace lodestone {
+
+/// A drop under a name.
+struct DropCase {
+  std::string name;
+  DropJob job;
+};
+
+/// "usual", then as `restitution=0.9`: other restitutions (0 … .9), frictions (0 … 1), speeds, slopes (to 40
+/// degrees) and sizes (1 mm … 10 m, lengths × λ and times × √λ).
+std::vector<std::string> condition_names();
+
+/// `usual` itself, then a copy under each of the other conditions; in the order of condition_names().
+std::vector<DropCase> make_condition_cases(const DropJob& usual);
 
 /// The comparison of each case, in order, all with these settings.
 std::vector<DropComparison> compare_series(std::span<const DropCase> cases,

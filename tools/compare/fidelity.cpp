@@ -25,13 +25,13 @@ std::vector<double> values_of(Drops drops, Quantity quantity) {
   return values;
 }
 
-double mean_of(const std::vector<double>& values, const Counts& counts) {
+double weighted_mean_of(const std::vector<double>& values, const Counts& counts) {
   return std::inner_product(values.begin(), values.end(), counts.begin(), 0.0) /
          std::accumulate(counts.begin(), counts.end(), 0.0);
 }
 
 double deviation_of(const std::vector<double>& values, const Counts& counts) {
-  const double mean = mean_of(values, counts);
+  const double mean = weighted_mean_of(values, counts);
   double sum = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) sum += counts[i] * (values[i] - mean) * (values[i] - mean);
   return std::sqrt(sum / std::accumulate(counts.begin(), counts.end(), 0.0));
@@ -47,7 +47,7 @@ class ScalarPart {
   // None where the truth does not vary.
   std::optional<double> distance(const Counts& truth, const Counts& method) const {
     const double deviation = deviation_of(truth_, truth);
-    if (deviation <= 1e-9 * std::abs(mean_of(truth_, truth))) return std::nullopt;
+    if (deviation <= 1e-9 * std::abs(weighted_mean_of(truth_, truth))) return std::nullopt;
     return pair_.wasserstein(truth, method) / deviation;
   }
 
@@ -71,7 +71,7 @@ class EnergyPart {
     double distance = 0.0, energy = 0.0;
     for (int t = 0; t < kKineticEnergySamples; ++t) {
       distance += pairs_[t].wasserstein(truth, method);
-      energy += mean_of(truth_[t], truth);
+      energy += weighted_mean_of(truth_[t], truth);
     }
     if (energy <= 0.0) return std::nullopt;
     return distance / energy;

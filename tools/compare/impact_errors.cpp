@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kNoticed = 0.1;  // of an impulse
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / double(values.size());
-}
-
 double angle_deg_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi;
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "reference/error.h"
-#include "tools/interrupt.h"
 
 namespace lodestone {
 namespace {
@@ -14,11 +13,8 @@ namespace {
 constexpr int kTruthIterations = 40;      // of QuickStep
 constexpr int kTruthDirectContacts = 10;  // contacts of one island above which QuickStep takes over
 
-std::uint64_t seed_of_truth_a(std::uint64_t seed) { return 2 * seed; }
-std::uint64_t seed_of_truth_b(std::uint64_t seed) { return 2 * seed + 1; }
-
 // What hangs together by many contacts is too much for dWorldStep under any method.
-void solve_large_piles_quickly(DropMethod& method) {
+void solve_large_piles_quickly(Method& method) {
   auto* way = std::get_if<OdeMethod>(&method.way);
   if (!way) return;
   const OdeSettings full = ode_settings_of({});
@@ -28,7 +24,7 @@ void solve_large_piles_quickly(DropMethod& method) {
 }
 
 template <typename Value>
-double mean_of(std::span<const PileObservation> piles, Value value) {
+double mean_over(std::span<const PileObservation> piles, Value value) {
   double sum = 0.0;
   for (const PileObservation& pile : piles) sum += value(pile) / double(piles.size());
   return sum;
@@ -47,71 +43,57 @@ std::vector<double> mean_energy_of(std::span<const PileObservation> piles) {
 
 double relative_error(double value, double truth) { return truth != 0.0 ? value / truth - 1.0 : 0.0; }
 
-class Comparison {
+class PileComparing {
  public:
-  Comparison(const DropJob& job, const PileComparisonSettings& settings)
-      : job_(job), settings_(settings), overlap_(*job.shape, make_bin(settings.conditions.side).planes) {
+  PileComparing(const DropJob& job, const PileComparisonSettings& settings)
+      : job_(job), settings_(settings), overlap_(*job.shape, make_bin(settings.conditions.side)) {
     check_that(settings.piles >= 1, "there are piles to compare", fmt::format("piles {}", settings.piles));
     check_pile(*job.shape, settings.conditions);
   }
 
   PileComparison run() {
     // Methods first: an unknown name or an unwritable cache is found before the truth's minutes are spent.
-    auto methods = make_drop_methods(settings_.methods, job_, settings_.measuring, settings_.threads,
-                                     settings_.progress);
+    auto methods =
+        make_methods(settings_.methods, job_, settings_.measuring, settings_.threads, settings_.progress);
     std::ranges::for_each(methods, solve_large_piles_quickly);
     PileComparison result = compare_truth();
-    until_interrupted([&] {
-      for (const DropMethod& method : methods)
-        for (const double dt_s : settings_.dt_s) result.rows.push_back(compare(method, dt_s, result.truth_a));
-      for (std::size_t i = 0; i < result.rows.size(); ++i)  // in a pass of its own, with nothing else running
-        measure_cost(methods[i / settings_.dt_s.size()], result.rows[i]);
-    });
+    result.rows = compare_methods<PileRow>(
+        methods, settings_, [&](const Method& method, PileRow& row) { compare(method, result.truth_a, row); },
+        [&](const Method& method, PileRow& row) {
+          row.ns_per_body_step = measure_ns_per_body_step(
+              job_, method, batch(settings_.seed_of_truth_b(), row.dt_s), row.figures->sleep_time_s);
+        });
     return result;
   }
 
  private:
   PileComparison compare_truth() {
-    const DropMethod truth = make_pile_truth(job_);
+    const Method truth = make_pile_truth(job_);
     PileComparison result{
         .shape = job_.shape->name, .conditions = settings_.conditions, .pile_count = settings_.piles};
     result.truth_substeps = truth.substeps();
     result.truth_iterations = std::get<OdeMethod>(truth.way).settings.quick_step_iterations;
-    result.truth_a = observe(truth, seed_of_truth_a(settings_.seed), 1.0 / 60.0, "truth");
-    result.truth_b = observe(truth, seed_of_truth_b(settings_.seed), 1.0 / 60.0, "truth, second batch");
+    result.truth_a = observe(truth, settings_.seed_of_truth_a(), kObservationStep, "truth");
+    result.truth_b = observe(truth, settings_.seed_of_truth_b(), kObservationStep, "truth, second batch");
     result.truth = compare_with_truth(result.truth_a, result.truth_a, *job_.shape);
     result.floor = compare_with_truth(result.truth_a, result.truth_b, *job_.shape);
     return result;
   }
 
-  PileRow compare(const DropMethod& method, double dt_s, const std::vector<PileObservation>& truth) {
-    PileRow row{.method = method.name,
-                .model = method.model(),
-                .dt_s = dt_s,
-                .substeps = method.substeps(),
-                .reason = method.left_out};
-    if (!row.reason.empty()) return row;
-    const std::string stage = fmt::format("{} {} at {:.4g} s", row.method, row.model, dt_s);
-    row.piles = observe(method, seed_of_truth_b(settings_.seed), dt_s, stage);
+  void compare(const Method& method, const std::vector<PileObservation>& truth, PileRow& row) {
+    const std::string stage = name_of(row);
+    row.piles = observe(method, settings_.seed_of_truth_b(), row.dt_s, stage);
     row.figures = compare_with_truth(truth, row.piles, *job_.shape);
-    report(stage + ", momentum", 0.0);
+    settings_.report(stage + ", momentum", 0.0);
     row.momentum_residual =
-        measure_momentum_residual(job_, method, batch(seed_of_truth_b(settings_.seed), dt_s));
-    return row;
+        measure_momentum_residual(job_, method, batch(settings_.seed_of_truth_b(), row.dt_s));
   }
 
-  void measure_cost(const DropMethod& method, PileRow& row) {
-    if (!row.figures) return;
-    report("timing", 0.0);
-    row.ns_per_body_step = measure_ns_per_body_step(
-        job_, method, batch(seed_of_truth_b(settings_.seed), row.dt_s), row.figures->sleep_time_s);
-  }
-
-  std::vector<PileObservation> observe(const DropMethod& method, std::uint64_t seed, double dt_s,
+  std::vector<PileObservation> observe(const Method& method, std::uint64_t seed, double dt_s,
                                        const std::string& stage) {
-    report(stage, 0.0);
+    settings_.report(stage, 0.0);
     return observe_piles(job_, method, overlap_, batch(seed, dt_s),
-                         [&](double fraction) { report(stage, fraction); });
+                         [&](double fraction) { settings_.report(stage, fraction); });
   }
 
   PileBatch batch(std::uint64_t seed, double dt_s) const {
@@ -122,10 +104,6 @@ class Comparison {
             .threads = settings_.threads};
   }
 
-  void report(const std::string& stage, double fraction) const {
-    if (settings_.progress) settings_.progress(stage, fraction);
-  }
-
   const DropJob& job_;
   const PileComparisonSettings& settings_;
   PileOverlap overlap_;
@@ -133,8 +111,8 @@ class Comparison {
 
 }  // namespace
 
-DropMethod make_pile_truth(const DropJob& job) {
-  DropMethod truth = make_truth(job);
+Method make_pile_truth(const DropJob& job) {
+  Method truth = make_truth(job);
   OdeSettings& settings = std::get<OdeMethod>(truth.way).settings;
   settings.quick_step_iterations = kTruthIterations;
   settings.direct_contacts_max = kTruthDirectContacts;
@@ -154,10 +132,10 @@ PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span
   figures.ke_l1 = sum > 0.0 ? difference / sum : 0.0;
   const auto sleep_time = [](const PileObservation& pile) { return pile.sleep_time_s; };
   const auto height = [](const PileObservation& pile) { return pile.mean_height_m; };
-  figures.sleep_time_s = mean_of(piles, sleep_time);
-  figures.sleep_time_error = relative_error(figures.sleep_time_s, mean_of(truth, sleep_time));
-  figures.mean_height_m = mean_of(piles, height);
-  figures.mean_height_error = relative_error(figures.mean_height_m, mean_of(truth, height));
+  figures.sleep_time_s = mean_over(piles, sleep_time);
+  figures.sleep_time_error = relative_error(figures.sleep_time_s, mean_over(truth, sleep_time));
+  figures.mean_height_m = mean_over(piles, height);
+  figures.mean_height_error = relative_error(figures.mean_height_m, mean_over(truth, height));
   for (const PileObservation& pile : piles) {
     figures.max_penetration_m = std::max(figures.max_penetration_m, pile.max_penetration_m);
     figures.energy_rise = std::max(figures.energy_rise, pile.energy_rise);
@@ -169,7 +147,7 @@ PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span
 }
 
 PileComparison compare_piles(const DropJob& job, const PileComparisonSettings& settings) {
-  return Comparison(job, settings).run();
+  return PileComparing(job, settings).run();
 }
 
 }  // namespace lodestone

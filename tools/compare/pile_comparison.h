@@ -1,6 +1,4 @@
-// Methods against the truth, pile by pile, as drop_comparison.h is for drops: two batches of truth with
-// different starts, A and B; B against A is the noise floor, and a method takes the starts of B and is
-// compared with A.
+// Piles by each method against the truth's (comparison.h).
 //
 // The truth is ODE in steps of .49 ms, as for drops: dWorldStep while few contacts hang together, else
 // QuickStep, since dWorldStep's time grows with the cube of them (30 boxes in a bin: a quarter of an hour).
@@ -12,19 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "tools/compare/comparison.h"
 #include "tools/compare/pile_trials.h"
 
 namespace lodestone {
 
-struct PileComparisonSettings {
+struct PileComparisonSettings : ComparisonSettings {
+  PileComparisonSettings() : ComparisonSettings{.methods = {"full", "full_1", "statistical"}} {}
   PileConditions conditions;
-  int piles = 6;                            ///< of each
-  std::vector<double> dt_s = {1.0 / 60.0};  ///< steps of the methods
-  std::vector<std::string> methods = {"full", "full_1", "statistical"};
-  SignatureSettings measuring = {};  ///< of the signature of `statistical`; its law is the job's
-  std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: all cores
-  Progress progress;
+  int piles = 6;  ///< of each
 };
 
 /// Means over a batch, greatest values where the name says so, beside the truth.
@@ -37,15 +31,10 @@ struct PileFigures {
   int hovering = 0, escaped = 0;  ///< of all piles together
 };
 
-/// One method at one step.
-struct PileRow {
-  std::string method, model;  ///< model "" for ODE
-  double dt_s = 1.0 / 60.0;
-  int substeps = 1;
+struct PileRow : MethodAtStep {
   std::optional<PileFigures> figures = {};  ///< none where left out
   double momentum_residual = 0;
   double ns_per_body_step = 0;
-  std::string reason = {};  ///< why left out
   std::vector<PileObservation> piles = {};
 };
 
@@ -57,11 +46,11 @@ struct PileComparison {
   PileFigures truth = {}, floor = {};  ///< batch A beside itself; B beside A
   double truth_momentum_residual = 0;
   std::vector<PileObservation> truth_a = {}, truth_b = {};
-  std::vector<PileRow> rows = {};  ///< by method, then by step
+  std::vector<PileRow> rows = {};
 };
 
 /// ODE as in this file's head, stepped as for drops.
-DropMethod make_pile_truth(const DropJob& job);
+Method make_pile_truth(const DropJob& job);
 
 /// Neither empty.
 PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span<const PileObservation> piles,

@@ -11,11 +11,11 @@
 namespace lodestone {
 namespace {
 
-constexpr double kHorizon = 8.0;        // s
-constexpr double kRestEnergy = 2e-3;    // J/kg, as in drops
-constexpr double kRestDuration = 0.25;  // s
-constexpr double kHoverDrop = 0.05;     // over the size
-constexpr int kOverlapInterval = 6;     // samples: a look at every pair costs more than a step
+constexpr double kPileHorizon = 8.0;        // s
+constexpr double kPileRestEnergy = 2e-3;    // J/kg, as in drops
+constexpr double kPileRestDuration = 0.25;  // s
+constexpr double kHoverDrop = 0.05;         // over the size
+constexpr int kOverlapInterval = 6;         // samples: a look at every pair costs more than a step
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void PileObserver::observe_energy(double time_s, std::span<const RigidState> sta
   double kinetic = 0.0, potential = 0.0;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const double energy = kinetic_energy_per_mass(shape_, states[i]);
-    if (energy > kRestEnergy * scale_) last_stir_s_[i] = time_s;
+    if (energy > kPileRestEnergy * scale_) last_stir_s_[i] = time_s;
     kinetic += energy / double(states.size());
     potential += gravity_ * states[i].position.z() / double(states.size());
   }
@@ -54,7 +54,7 @@ void PileObserver::observe_overlap(std::span<const RigidState> states) {
   pile_.escaped = std::max(pile_.escaped, overlap_.count_escaped(states));
 }
 
-double PileObserver::horizon_s() const { return kHorizon * std::sqrt(scale_); }
+double PileObserver::horizon_s() const { return kPileHorizon * std::sqrt(scale_); }
 
 PileObservation PileObserver::result() const {
   check_that(samples_ > 0, "a pile was sampled");
@@ -64,7 +64,7 @@ PileObservation PileObserver::result() const {
   for (const RigidState& state : last_) pile.mean_height_m += state.position.z() / bodies;
   std::vector<char> at_rest;
   for (const double stir : last_stir_s_)
-    at_rest.push_back(last_time_s_ - stir >= kRestDuration * std::sqrt(scale_));
+    at_rest.push_back(last_time_s_ - stir >= kPileRestDuration * std::sqrt(scale_));
   pile.hovering = overlap_.count_hovering(last_, at_rest, kHoverDrop * shape_.size);
   return pile;
 }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "reference/output_file.h"
-#include "reference/trial.h"
+#include "tools/compare/comparison_report.h"
+#include "tools/results.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -30,8 +32,7 @@ std::vector<std::string> row_of(std::vector<std::string> head, const PileFigures
 }
 
 std::vector<std::string> row_of(const PileRow& row) {
-  std::vector<std::string> cells = {row.method, row.model, fmt::format("1/{:.0f}", 1.0 / row.dt_s),
-                                    fmt::format("{}", row.substeps)};
+  std::vector<std::string> cells = cells_of(row);
   if (!row.figures) return cells;
   cells = row_of(std::move(cells), *row.figures);
   cells.push_back(fmt::format("{:.1e}", row.momentum_residual));
@@ -44,14 +45,8 @@ std::string table_of(const PileComparison& comparison) {
                    "error %", "overlap %", "hover", "escaped", "energy rise", "momentum", "ns/body-step"});
   table.add_row(row_of({"truth", "", "", ""}, comparison.truth));
   table.add_row(row_of({"noise floor", "", "", ""}, comparison.floor));
-  std::string left_out;
-  for (const PileRow& row : comparison.rows) {
-    table.add_row(row_of(row));
-    const std::string line = fmt::format("{} left out: {} {}\n", row.method, comparison.shape, row.reason);
-    if (!row.reason.empty() && left_out.find(line) == std::string::npos)
-      left_out += line;  // once for all steps
-  }
-  return table.text() + left_out;
+  for (const PileRow& row : comparison.rows) table.add_row(row_of(row));
+  return table.text() + left_out_of(comparison.shape, comparison.rows);
 }
 
 void add_figures(ordered_json& json, const PileFigures& f) {
@@ -75,11 +70,7 @@ void add_nulls(ordered_json& json) {
 }
 
 ordered_json json_of(const PileRow& row, const PileFigures& floor) {
-  ordered_json json;
-  json["method"] = row.method;
-  json["model"] = row.model.empty() ? ordered_json(nullptr) : ordered_json(row.model);
-  json["dt_s"] = row.dt_s;
-  json["substeps"] = row.substeps;
+  ordered_json json = json_of(row);
   if (row.figures) {
     json["ke_l1"] = row.figures->ke_l1;
     add_figures(json, *row.figures);
@@ -89,7 +80,7 @@ ordered_json json_of(const PileRow& row, const PileFigures& floor) {
     add_nulls(json);
   }
   json["floor_ke_l1"] = floor.ke_l1;
-  json["reason"] = row.reason.empty() ? ordered_json(nullptr) : ordered_json(row.reason);
+  json["reason"] = or_null(row.reason);
   return json;
 }
 

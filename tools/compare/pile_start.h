@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lod/ground/ground.h"
 #include "reference/shape.h"
 
 namespace lodestone {
@@ -13,6 +14,9 @@ struct PileConditions {
   int bodies = 100;
   double side = 1.6;  ///< m, of the bin's square floor
 };
+
+/// Its floor at z = 0 and four walls without end, `side` m apart about the origin.
+std::vector<HalfSpace> make_bin(double side);
 
 /// Throws InputError where no body fits between the walls.
 void check_pile(const Shape& shape, const PileConditions& conditions);

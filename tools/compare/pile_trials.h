@@ -8,7 +8,7 @@
 
 #include "tools/compare/pile_observation.h"
 #include "tools/compare/pile_start.h"
-#include "tools/compare/pile_world.h"
+#include "tools/methods/method_world.h"
 
 namespace lodestone {
 
@@ -22,17 +22,17 @@ struct PileBatch {
 };
 
 /// `progress` is called with the fraction done, from one thread at a time.
-std::vector<PileObservation> observe_piles(const DropJob& job, const DropMethod& method,
+std::vector<PileObservation> observe_piles(const DropJob& job, const Method& method,
                                            const PileOverlap& overlap, const PileBatch& batch,
                                            const std::function<void(double)>& progress = {});
 
 /// Processor time of a body's step, ns, of the batch's first pile, on one thread, until `until_s`; asleep
 /// bodies do not count.
-double measure_ns_per_body_step(const DropJob& job, const DropMethod& method, const PileBatch& batch,
+double measure_ns_per_body_step(const DropJob& job, const Method& method, const PileBatch& batch,
                                 double until_s);
 
 /// The batch's bodies fly towards each other without ground and gravity for three seconds: the greatest
 /// change of their momentum, over the sum of all bodies' own at the start.
-double measure_momentum_residual(const DropJob& job, const DropMethod& method, const PileBatch& batch);
+double measure_momentum_residual(const DropJob& job, const Method& method, const PileBatch& batch);
 
 }  // namespace lodestone

@@ -1,21 +1,16 @@
 #include "tools/compare/return_comparison.h"
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "reference/allowed_threads.h"
 #include "reference/error.h"
 #include "signature/measure/certify.h"
 #include "tools/compare/fidelity.h"
-#include "tools/compare/method_bodies.h"
 #include "tools/compare/rest_classes.h"
+#include "tools/compare/trials.h"
 #include "tools/compare/wasserstein.h"
-#include "tools/interrupt.h"
-#include "tools/warning.h"
+#include "tools/median.h"
 
 namespace lodestone {
 namespace {
@@ -28,22 +23,15 @@ struct Visit {
 
 class Returning {
  public:
-  Returning(const DropJob& job, const ReturnSettings& settings) : job_(job), settings_(settings) {
-    SignatureSourceSettings source;
-    source.measuring = settings.measuring, source.threads = settings.threads,
-    source.progress = settings.progress, source.warn = warn;
-    signature_ = find_or_measure_signature(*job.shape, job.law(), source).signature;
-  }
+  Returning(const DropJob& job, const ReturnSettings& settings)
+      : job_(job),
+        settings_(settings),
+        signature_(find_signature(job, settings.measuring, settings.threads, settings.progress)) {}
 
   std::vector<Visit> run(bool leaves, std::uint64_t seed) const {
     std::vector<Visit> visits(std::size_t(settings_.runs));
-    tbb::task_arena arena(allowed_threads(settings_.threads));
-    arena.execute([&] {
-      tbb::parallel_for(0, settings_.runs, [&](int i) {
-        throw_if_interrupted();
-        visits[std::size_t(i)] = observe(leaves, seed, std::uint32_t(i));
-      });
-    });
+    run_trials(settings_.runs, settings_.threads,
+               [&](int i) { visits[std::size_t(i)] = observe(leaves, seed, std::uint32_t(i)); });
     return visits;
   }
 
@@ -59,10 +47,8 @@ class Returning {
     Manager manager(settings);
     manager.materials().replace(0, job_.material);
     manager.add_plane(drop_plane_normal(job_.conditions), 0.0);
-    BodyDefinition definition =
-        statistical_body_of(job_, drop_state(*job_.shape, job_.conditions, seed, trial));
-    definition.level = LevelChoice::automatic;
-    const BodyId body = manager.add_body(definition);
+    const BodyId body = manager.add_body(
+        {.shape = job_.shape, .state = drop_state(*job_.shape, job_.conditions, seed, trial)});
     DropObserver observer(*job_.shape, drop_plane_normal(job_.conditions));
     observer.sample(0.0, manager.state(body));
     Visit visit;
@@ -87,12 +73,6 @@ class Returning {
   const ReturnSettings& settings_;
   std::shared_ptr<const Signature> signature_;
 };
-
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / double(values.size());
-}
 
 double deviation_of(const std::vector<double>& values) {
   const double mean = mean_of(values);

@@ -14,7 +14,7 @@ struct ReturnSettings {
   double leave_s = 0.2;                               ///< when the viewpoint goes
   double away_s = 0.8;                                ///< and how long it stays away
   StatisticalModel away = StatisticalModel::support;  ///< the body's rung meanwhile
-  bool published = true;                              ///< at `tables` the paper's model
+  bool published = false;                             ///< at `tables` the paper's model
   SignatureSettings measuring = {};                   ///< its law is the job's
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores

@@ -7,7 +7,6 @@
 #include "scenes/camera.h"
 #include "tools/compare/drop_report.h"
 #include "tools/demo/demo.h"
-#include "tools/duration_text.h"
 #include "tools/run_report.h"
 #include "tools/text_table.h"
 
@@ -63,7 +62,7 @@ std::string text_of_failed_checks(const RunResult& run) {
   return text;
 }
 
-ordered_json json_or_null(std::optional<double> value) {
+ordered_json finite_or_null(std::optional<double> value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
@@ -71,15 +70,15 @@ double rounded(double value, double per_unit) { return std::round(value * per_un
 
 ordered_json json_of(const DemoRow& row) {
   return {{"level", row.name},
-          {"p50_ms", json_or_null(part_of(row.whole_ms, &TimeSummary::p50))},
-          {"p99_ms", json_or_null(part_of(row.whole_ms, &TimeSummary::p99))},
-          {"p99_processor_ms", json_or_null(part_of(row.processor_ms, &TimeSummary::p99))},
+          {"p50_ms", finite_or_null(part_of(row.whole_ms, &TimeSummary::p50))},
+          {"p99_ms", finite_or_null(part_of(row.whole_ms, &TimeSummary::p99))},
+          {"p99_processor_ms", finite_or_null(part_of(row.processor_ms, &TimeSummary::p99))},
           {"busy_p50_ms", row.busy_ms.p50},
           {"most_full", row.most_full}};
 }
 
 void add_step_rows(ordered_json& rows, const std::string& scene, const RunResult& run, double dt_s) {
-  const ordered_json budget_ms = run.budget ? json_or_null(run.budget->budget_ms) : ordered_json(nullptr);
+  const ordered_json budget_ms = run.budget ? finite_or_null(run.budget->budget_ms) : ordered_json(nullptr);
   for (std::size_t i = 0; i < run.reports.size(); ++i) {
     const StepReport& report = run.reports[i];
     rows.push_back({{"scene", std::filesystem::path(scene).filename().string()},

@@ -8,8 +8,8 @@
 #include "reference/random.h"
 #include "tools/hard_cases/case_parts.h"
 #include "tools/hard_cases/hard_case.h"
-#include "tools/hard_cases/resident_memory.h"
 #include "tools/hard_cases/scene_text.h"
+#include "tools/memory.h"
 #include "tools/step_argument.h"
 
 namespace lodestone {

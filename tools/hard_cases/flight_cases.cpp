@@ -9,7 +9,7 @@
 #include "reference/random.h"
 #include "reference/trial.h"
 #include "signature/measure/contact_time.h"
-#include "tools/compare/drop_world.h"
+#include "tools/compare/drop_trials.h"
 #include "tools/hard_cases/hard_case.h"
 #include "tools/hard_cases/statistical_case_parts.h"
 
@@ -24,7 +24,7 @@ constexpr double kLongestFall = 2.0;  // s
 
 /// How high above the plane the centre of mass is bound for, as soon as an impact was seen: the same whatever
 /// the steps. No such impact: where it fell to.
-double apex_of(DropWorld& world, double dt, int steps_a_sample) {
+double apex_of(MethodWorld& world, double dt, int steps_a_sample) {
   const double sample = dt * steps_a_sample;
   RigidState before = world.state();
   for (double t = 0.0; t < kLongestFall; t += sample) {
@@ -43,14 +43,13 @@ struct Sample {
   int count = 0;
 };
 
-Sample apexes_of(const DropJob& job, const DropMethod& method, std::uint64_t seed, double dt,
-                 int steps_a_sample, int trials) {
+Sample apexes_of(const DropJob& job, const Method& method, std::uint64_t seed, double dt, int steps_a_sample,
+                 int trials) {
   DropWorld world(job, method);
   Sample sample{.count = trials};
   double squares = 0.0;
   for (int trial = 0; trial < trials; ++trial) {
-    world.start(seed, std::uint32_t(trial));
-    const double apex = apex_of(world, dt, steps_a_sample);
+    const double apex = apex_of(world.start(seed, std::uint32_t(trial)), dt, steps_a_sample);
     sample.mean += apex / trials, squares += apex * apex / trials;
   }
   sample.variance = std::max(0.0, squares - sample.mean * sample.mean);
@@ -64,7 +63,7 @@ double difference(const Sample& a, const Sample& b) {
 
 /// ODE in its own small steps, seen as seldom as a method that steps by `dt`.
 Sample truth_of(const DropJob& job, double dt, int trials) {
-  DropMethod truth = make_truth(job);
+  Method truth = make_truth(job);
   const int steps = std::max(1, int(std::lround(dt / kObservationStep * truth.substeps())));
   std::get<OdeMethod>(truth.way).substeps = 1;
   return apexes_of(job, truth, 1, dt / steps, steps, trials);
@@ -79,7 +78,7 @@ std::vector<HardCaseRow> measure_case(const HardCaseSettings& settings) {
     for (const auto& [per_second, dt] : {std::pair{30, 1.0 / 30}, {60, 1.0 / 60}, {1000, 1.0 / 1000}}) {
       const Sample truth = truth_of(job, dt, trials);
       for (const auto& [model, name] : kBothModels) {
-        const DropMethod method{"statistical", StatisticalMethod{model, signature}, ""};
+        const Method method{"statistical", StatisticalMethod{model, signature}, ""};
         rows.push_back({.what = fmt::format("{} x box dropped, e {:g}, dt 1/{} s, {}: mean first rebound off "
                                             "ODE's, over its standard error",
                                             trials, e, per_second, name),

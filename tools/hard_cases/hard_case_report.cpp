@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tools/csv_file.h"
+#include "tools/results.h"
 #include "tools/text_table.h"
 
 namespace lodestone {

@@ -196,7 +196,7 @@ void add_rows(std::vector<HardCaseRow>& rows, const Subject& subject, int method
   const std::vector<double> truth = counts_of(truth_drops, classes);
   const double floor = floor_of(truth, method_drops);
   for (const auto& [model, name] : kBothModels) {
-    const DropMethod method{"statistical", StatisticalMethod{model, signature}, ""};
+    const Method method{"statistical", StatisticalMethod{model, signature}, ""};
     const std::vector<double> found =
         counts_of(observe_drops(job, method, {.trials = method_drops, .seed = 4}), classes);
     int missing = 0;

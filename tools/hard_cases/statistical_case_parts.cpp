@@ -2,7 +2,7 @@
 
 #include "reference/hull/hull_overlap.h"
 #include "signature/signature_source.h"
-#include "tools/warning.h"
+#include "tools/terminal.h"
 
 namespace lodestone {
 

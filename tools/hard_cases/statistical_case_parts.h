@@ -33,7 +33,7 @@ struct StatisticalCase {
   std::uint64_t seed = 1;
   int threads = 1;
   std::shared_ptr<const Signature> signature = {};  ///< of every body; may be null for `support`
-  bool published = true;                            ///< `tables` as the paper has it
+  bool published = false;                           ///< `tables` as the paper has it
 };
 Manager make_case_manager(const StatisticalCase& settings);
 

@@ -8,7 +8,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::string_view kUsualMaterial = "restitution 0.4, friction 0.5";  // of `compare drop`
-constexpr double kFrame = 1.0 / 60.0;                                         // s
+constexpr double kCurveFrame = 1.0 / 60.0;                                    // s
 
 struct ShapeBaseline {
   std::string_view file, name, title;
@@ -22,7 +22,7 @@ constexpr std::array kBaselines = {
 // What a body costs in 1/60 s, whatever the step: methods at different steps compare by it.
 ordered_json ns_per_frame(const ordered_json& row) {
   if (row["ns_per_body_step"].is_null()) return nullptr;
-  return row["ns_per_body_step"].get<double>() * kFrame / row["dt_s"].get<double>();
+  return row["ns_per_body_step"].get<double>() * kCurveFrame / row["dt_s"].get<double>();
 }
 
 ordered_json shape_of(std::string_view name, std::string_view title, std::string_view material,

@@ -5,7 +5,7 @@ const heapRows = reportData.table1.rows;
 const heapBodies = [...new Set(heapRows.map(row => row.bodies))].sort((a, b) => a - b);
 const heapKeys = [...new Map(heapRows.map(row => [methodKey(row), describeMethod(row).priority]))].sort((a, b) => b[1] - a[1]).map(([key]) => key);
 const heapCell = (key, bodies) => heapRows.find(row => methodKey(row) === key && row.bodies === bodies);
-const paperNames = {full_plain: "the paper's meshes", low: "the paper's 194 faces", spheres7: "the paper's 7 spheres", "statistical/tables": "the paper's statistical"};
+const paperNames = {full_plain: "the paper's meshes", low: "the paper's 194 faces", spheres7: "the paper's 7 spheres", "statistical/tables_published": "the paper's statistical"};
 
 function growthConfig() {
   const line = (label, points, line, more) => ({label, data: points, borderColor: line, backgroundColor: line, borderWidth: 1.3, pointRadius: 3, direct: !isNarrow() || more.priority >= kNarrowPriority, showLine: true, ...more});
@@ -14,7 +14,7 @@ function growthConfig() {
     const method = describeMethod(heapRows.find(row => methodKey(row) === key));
     return line(method.name, points(key, "step_ms"), colour(method.colour), {emphasised: method.ours, borderWidth: method.ours ? 3 : 1.3, priority: method.priority, pointRadius: method.ours ? 5 : 3});
   });
-  for (const key of ["full_plain", "statistical/tables"])
+  for (const key of ["full_plain", "statistical/tables_published"])
     datasets.push(line(paperNames[key] + ", 2009", points(key, "paper_step_ms"), colour("paper_line"), {borderDash: [5, 4], priority: 3}));
   const values = datasets.flatMap(dataset => dataset.data.map(point => point.y));
   return {
@@ -35,7 +35,7 @@ function growthConfig() {
 
 function growthFinding() {
   const ours = heapBodies.map(bodies => heapCell("statistical/support", bodies)).filter(row => row && row.step_ms !== null), last = ours[ours.length - 1];
-  const others = last ? ["bullet_hull", "spheres7", "statistical/tables"].map(key => heapCell(key, last.bodies)).filter(row => row && row.step_ms !== null) : [];
+  const others = last ? ["bullet_hull", "spheres7", "statistical/tables_published"].map(key => heapCell(key, last.bodies)).filter(row => row && row.step_ms !== null) : [];
   return "Milliseconds of a step against the number of bodies" + (last ? ": with " + last.bodies.toLocaleString("en-US") + " support takes " + msText(last.step_ms) + others.map(row => ", " + describeMethod(row).name + " " + msText(row.step_ms)).join("") : "") + ".";
 }
 

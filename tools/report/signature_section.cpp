@@ -11,7 +11,7 @@
 #include "signature/measure/response_grid.h"
 #include "tools/report/sections.h"
 #include "tools/report/square_heights.h"
-#include "tools/warning.h"
+#include "tools/terminal.h"
 
 namespace lodestone {
 namespace {

@@ -3,7 +3,10 @@
 #include <ode/ode.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <vector>
 
 #include "lod/manager.h"
 
@@ -81,6 +84,40 @@ TEST_F(OddGeoms, ABodyWithAFlatTrimeshIsNoError) {
   dGeomDestroy(dBodyGetFirstGeom(sheet));
   dBodyDestroy(sheet);
   dGeomTriMeshDataDestroy(data);
+}
+
+// What the caller made of one of his geoms that is no number is left out, until it is one again; the others,
+// and what lies on them, go on as if it were not there.
+TEST_F(OddGeoms, OneThatIsNoNumberIsLeftOutAndOthersNeverNotice) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const dMatrix3 turned = {kNan, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  const std::function<void(dGeomID)> spoils[] = {
+      [](dGeomID geom) { dGeomSetPosition(geom, kNan, 0, 0); },
+      [](dGeomID geom) { dGeomSetPosition(geom, 0, 0, std::numeric_limits<double>::infinity()); },
+      [&](dGeomID geom) { dGeomSetRotation(geom, turned); },
+      [](dGeomID geom) { dGeomDestroy(geom); }};  // how it ought to be
+  dCreatePlane(space_, 0, 0, 1, 0);
+  std::vector<std::vector<RigidState>> ends;
+  for (const auto& spoil : spoils) {
+    const dGeomID beside = dCreateBox(space_, 1, 1, 1);
+    dGeomSetPosition(beside, 5, 0, 0.5);
+    Manager& manager = start();
+    std::vector<BodyId> boxes;
+    for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+      boxes.push_back(add_box({2.0 * double(boxes.size()), 0, 0.6}, level));
+    for (int i = 0; i < 10; ++i) manager.step(kFrame);
+    spoil(beside);
+    for (int i = 0; i < 90; ++i) manager.step(kFrame);
+    std::vector<RigidState>& end = ends.emplace_back();
+    for (const BodyId box : boxes) end.push_back(manager.state(box));
+    manager_.reset();
+    if (&spoil != &spoils[3]) dGeomDestroy(beside);
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(ends[i][k].position, ends[3][k].position) << i << ' ' << k;
+      EXPECT_NEAR(ends[i][k].position.z(), 0.15, 0.02);
+    }
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+#include <vector>
+
 #include "reference/random.h"
 
 namespace lodestone {
@@ -55,6 +59,40 @@ TEST(HullContacts, EdgeGivesTwoAndCornerOne) {
   const Quat on_corner = rotation_from_vector({0.5, 0.4, 0.1});
   const double corner_height = -find_lowest_point(shape, on_corner, Vec3::UnitZ(), 0.0, hint).gap;
   EXPECT_EQ(find_hull_contacts(shape, on_corner, Vec3::UnitZ(), corner_height, 0.001, hint).count, 1);
+}
+
+// A box on one edge that turns down about it: the far edge comes, and is found before it is there.
+TEST(HullContacts, WhatComesWithinTheStepIsFound) {
+  const Shape shape = make_shape("box", make_box({0.2, 0.3, 0.4}));
+  std::int32_t hint = 0;
+  const Quat tilted = rotation_from_vector({0.05, 0.0, 0.0});  // rad, about x: 15 mm under the far edge
+  const double height = -find_lowest_point(shape, tilted, Vec3::UnitZ(), 0.0, hint).gap;
+  EXPECT_EQ(find_hull_contacts(shape, tilted, Vec3::UnitZ(), height, 0.001, hint).count, 2);
+  const Vec3 turn = tilted.conjugate() * Vec3(-0.1, 0.0, 0.0), normal = tilted.conjugate() * Vec3::UnitZ();
+  const GapChange change{.of_arm = normal.cross(turn)};
+  const HullContacts found = find_hull_contacts(shape, tilted, Vec3::UnitZ(), height, 0.001, hint, change);
+  EXPECT_EQ(found.count, 4);
+  for (int i = 0; i < found.count; ++i)  // gaps are those of now
+    EXPECT_NEAR(found.contact[std::size_t(i)].gap, height + found.contact[std::size_t(i)].arm.z(), 1e-12);
+}
+
+// Of very many vertices, too, those are kept that span the widest support.
+TEST(HullContacts, ADiscOfManyVerticesStandsWide) {
+  std::vector<Vec3> rim;
+  for (int i = 0; i < 120; ++i)
+    for (const double z : {-0.1, 0.1})
+      rim.push_back({std::cos(i * std::numbers::pi / 60), std::sin(i * std::numbers::pi / 60), z});
+  Shape disc;
+  disc.hull = make_hull(rim);
+  disc.radius = std::hypot(1.0, 0.1);
+  std::int32_t hint = 0;
+  const HullContacts found = find_hull_contacts(disc, Quat::Identity(), Vec3::UnitZ(), 0.1, 0.001, hint);
+  ASSERT_EQ(found.count, 4);
+  Vec3 sum = Vec3::Zero();
+  for (const HullContact& c : found.contact) sum += c.arm;
+  EXPECT_LT(sum.head<2>().norm(), 0.1);
+  EXPECT_NEAR((found.contact[0].arm - found.contact[1].arm).norm(), 2.0, 0.01);
+  EXPECT_NEAR((found.contact[2].arm - found.contact[3].arm).norm(), 2.0, 0.01);
 }
 
 }  // namespace

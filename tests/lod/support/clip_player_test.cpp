@@ -32,7 +32,7 @@ class ClipPlayer : public ::testing::Test {
                            signature);
     const double radius = kind_.shape->radius;
     kind_.clips = std::make_shared<const ClipIndex>(
-        *signature, kind_.shape->inertia_per_mass / (radius * radius), kGreatestClipDistance);
+        *signature, kind_.shape->inertia_per_mass / (radius * radius));
   }
 
   double radius() const { return kind_.shape->radius; }

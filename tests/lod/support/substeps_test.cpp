@@ -4,7 +4,6 @@
 #include "tests/lod/rungs/rung_fixture.h"
 #include "tools/compare/pile_overlap.h"
 #include "tools/compare/pile_start.h"
-#include "tools/compare/pile_world.h"
 
 namespace lodestone {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 class Bin : public ::testing::Test {
  protected:
   void fill(int bodies) {
-    for (const HalfSpace& plane : make_bin(kSide).planes) ground_.add_plane(plane);
+    for (const HalfSpace& plane : make_bin(kSide)) ground_.add_plane(plane);
     level_.emplace(StatisticalModel::support, StatisticalSettings{}, ground_, materials_);
     for (const RigidState& start : make_pile_start(*shape_, {.bodies = bodies, .side = kSide}, 1))
       level_->add(std::uint32_t(level_->size()), shape_, 1000.0 * shape_->volume, 0, start, false, nullptr);

@@ -38,10 +38,7 @@ RigidState falling(int number) {
 
 class HullStand : public ::testing::Test {
  protected:
-  HullStand() {
-    ground_.add_plane({});
-    settings_.tables.published = false;
-  }
+  HullStand() { ground_.add_plane({}); }
   OneRung make(StatisticalModel model = StatisticalModel::tables) const {
     return {model, settings_, ground_, materials_};
   }
@@ -113,14 +110,13 @@ TEST_F(HullStand, PublishedItIsTheSphereOfTheMeanHeight) {
 }
 
 TEST_F(HullStand, AnyOfThePapersOptionsAsksForThePapersModel) {
-  EXPECT_TRUE(TablesOptions{}.as_published());
-  EXPECT_FALSE(TablesOptions{.published = false}.as_published());
-  for (const TablesOptions& options : {TablesOptions{.interpolate = false, .published = false},
-                                       {.draw_height = true, .published = false},
-                                       {.radius_update_interval = 2, .published = false},
-                                       {.rest_poses = false, .published = false},
-                                       {.nearest_rest_pose = true, .published = false},
-                                       {.paper_pair_rule = true, .published = false},
+  EXPECT_FALSE(TablesOptions{}.as_published());
+  for (const TablesOptions& options : {TablesOptions{.interpolate = false},
+                                       {.draw_height = true},
+                                       {.radius_update_interval = 2},
+                                       {.rest_poses = false},
+                                       {.nearest_rest_pose = true},
+                                       {.paper_pair_rule = true},
                                        {.published = true}})
     EXPECT_TRUE(options.as_published());
 }

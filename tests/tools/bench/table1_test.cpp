@@ -8,6 +8,7 @@
 #include "reference/error.h"
 #include "tests/tools/cli_fixture.h"
 #include "tools/bench/table1_report.h"
+#include "tools/results.h"
 
 namespace lodestone {
 namespace {
@@ -108,7 +109,7 @@ TEST(Table1Report, CsvHasACellForEachKeyOfTheJson) {
                                         .state_hash = 255}};
   const auto file =
       std::filesystem::temp_directory_path() / ("table1-" + std::to_string(::getpid()) + ".csv");
-  save_csv(rows, file);
+  save_csv(json_of(rows)["rows"], json_of(Table1Row{}), file);
   std::istringstream lines(testing::bytes_of(file));
   std::filesystem::remove(file);
   const auto json = json_of(rows);
@@ -118,7 +119,7 @@ TEST(Table1Report, CsvHasACellForEachKeyOfTheJson) {
   EXPECT_EQ(json["rows"][0]["reason"], "too slow");
   EXPECT_EQ(json["rows"][1]["state_hash"], "00000000000000ff");
   EXPECT_EQ(json["rows"][1]["awake"][2], 1);
-  EXPECT_THROW(save_csv(rows, "/dev/null/table.csv"), InputError);
+  EXPECT_THROW(save_csv(json_of(rows)["rows"], json_of(Table1Row{}), "/dev/null/table.csv"), InputError);
 }
 
 }  // namespace

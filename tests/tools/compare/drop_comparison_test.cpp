@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "reference/error.h"
@@ -71,12 +72,12 @@ TEST(DropComparison, WhatCannotBeHadIsLeftOutWithTheReason) {
 }
 
 TEST(DropComparison, UnknownMethodIsBadInput) {
-  EXPECT_THROW(make_drop_methods({"fulll"}, box_job(), {}, 1, {}), InputError);
+  EXPECT_THROW(make_methods({"fulll"}, box_job(), {}, 1, {}), InputError);
 }
 
 TEST(DropReport, JsonHasTheKeysThatScriptsReadAndNullsForWhatIsUndefined) {
   DropComparison comparison{.shape = "box", .trials = 2, .truth_substeps = 34};
-  comparison.rows.push_back({.method = "full", .model = ""});
+  comparison.rows.push_back(DropRow{{.method = "full", .model = ""}});
   comparison.rows[0].score = ScoreWithInterval{};
   comparison.rows[0].ns_per_body_step = 12.0;
   const auto json = json_of(comparison);
@@ -95,7 +96,7 @@ TEST(DropReport, CsvHasALineForEachDrop) {
   DropComparison comparison{.shape = "box", .trials = 2, .truth_substeps = 34};
   comparison.truth_a.resize(2);
   comparison.truth_b.resize(2);
-  comparison.rows.push_back({.method = "full", .model = ""});
+  comparison.rows.push_back(DropRow{{.method = "full", .model = ""}});
   comparison.rows[0].drops.resize(2);
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lodestone_drop_report";
   save_drops(comparison, folder);

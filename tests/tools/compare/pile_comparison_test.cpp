@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "reference/error.h"
 #include "tools/compare/pile_report.h"
@@ -60,7 +61,7 @@ TEST(PileComparison, MethodsStandBesideTheTruthAndTheFloor) {
 // What is under `support` in piles: equal and opposite impulses, without a signature too.
 TEST(PileTrials, SupportKeepsMomentum) {
   const DropJob job = box_job();
-  const DropMethod support{"statistical", StatisticalMethod{StatisticalModel::support, nullptr}};
+  const Method support{"statistical", StatisticalMethod{StatisticalModel::support, nullptr}};
   for (std::uint64_t seed = 1; seed <= 8; ++seed)
     EXPECT_LT(
         measure_momentum_residual(job, support, {.conditions = {.bodies = 27, .side = 1.6}, .seed = seed}),
@@ -80,9 +81,10 @@ TEST(PileComparison, UnknownMethodsAndNarrowBinsAreBadInput) {
 PileComparison two_rows() {
   PileComparison comparison{.shape = "box", .pile_count = 1, .truth_substeps = 34, .truth_iterations = 60};
   comparison.truth_a = comparison.truth_b = {pile({1.0, 0.5}, 1.0, 0.1)};
-  comparison.rows.push_back(
-      {.method = "full", .model = "", .figures = PileFigures{}, .piles = {pile({1.0, 0.5}, 1.0, 0.1)}});
-  comparison.rows.push_back({.method = "low", .model = "", .reason = "has too few faces"});
+  PileRow full{{.method = "full", .model = ""}};
+  full.figures.emplace();
+  full.piles = {pile({1.0, 0.5}, 1.0, 0.1)};
+  comparison.rows = {full, PileRow{{.method = "low", .model = "", .reason = "has too few faces"}}};
   return comparison;
 }
 

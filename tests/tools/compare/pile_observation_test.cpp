@@ -4,7 +4,6 @@
 
 #include "reference/error.h"
 #include "tools/compare/pile_start.h"
-#include "tools/compare/pile_world.h"
 
 namespace lodestone {
 namespace {
@@ -16,7 +15,7 @@ RigidState at(const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
 class Boxes : public ::testing::Test {
  protected:
   Shape shape_ = make_shape("box", make_box({0.2, 0.2, 0.2}));
-  PileOverlap overlap_{shape_, make_bin(2.0).planes};
+  PileOverlap overlap_{shape_, make_bin(2.0)};
 
   PileObservation observe(std::vector<std::vector<RigidState>> samples) {
     PileObserver observer(shape_, overlap_);
@@ -79,7 +78,7 @@ TEST(PileStart, IsWithinTheBinWithoutOverlap) {
   const Shape shape = make_shape("box", make_box({0.2, 0.3, 0.4}));
   const PileConditions conditions{.bodies = 40, .side = 1.6};
   const auto starts = make_pile_start(shape, conditions, 3);
-  const PileOverlap overlap(shape, make_bin(1.6).planes);
+  const PileOverlap overlap(shape, make_bin(1.6));
   ASSERT_EQ(starts.size(), 40U);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     EXPECT_LT(overlap.depth_in_planes(starts[i]), 0.0);

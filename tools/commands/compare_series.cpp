@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/commands.h"
+#include "tools/compare/comparison_arguments.h"
+#include "tools/compare/drop_series.h"
+#include "tools/compare/unseen_shapes.h"
+#include "tools/progress.h"
+#include "tools/results.h"
+#include "tools/shape_arguments.h"
+
+namespace lodestone {
+namespace {
+
+struct SeriesArguments {
+  ComparisonArguments comparison;
+  std::vector<std::string> only;
+  bool costs = false;
+  ResultArguments results;
+};
+
+struct ShapesArguments : SeriesArguments {
+  Material material;
+};
+
+struct ConditionsArguments : SeriesArguments {
+  ShapeArguments shape;
+};
+
+void add_series_arguments(Command& command, SeriesArguments& arguments, std::vector<std::string> names) {
+  arguments.comparison.comparison.methods = {"full_1", "statistical"};
+  add_comparison_arguments(command, arguments.comparison);
+  command.add_option("--only", arguments.only, "some of the rows, with commas")
+      .several()
+      .one_of(std::move(names));
+  command.add_flag("--costs", arguments.costs, "measure what a step costs, too");
+  add_json_argument(command, arguments.results);
+}
+
+bool is_chosen(std::string_view name, const std::vector<std::string>& only) {
+  return only.empty() || std::ranges::count(only, name) > 0;
+}
+
+std::vector<DropComparison> compare(const std::vector<DropCase>& cases, const SeriesArguments& arguments) {
+  DropComparisonSettings settings = arguments.comparison.settings();
+  settings.costs = arguments.costs;
+  return with_progress(settings, [&](const auto& with_line) { return compare_series(cases, with_line); });
+}
+
+void compare_shapes(const ShapesArguments& arguments) {
+  std::vector<DropCase> cases;
+  for (const UnseenShape& shape : unseen_shapes())
+    if (is_chosen(shape.name, arguments.only))
+      cases.push_back(
+          {std::string(shape.name),
+           {.shape = make_unseen_shape(shape.name), .conditions = {}, .material = arguments.material}});
+  const std::vector<DropComparison> series = compare(cases, arguments);
+  print_results(arguments.results, json_of("shape", cases, series, false),
+                text_of("shape", cases, series, false));
+}
+
+DropJob usual_job(const ConditionsArguments& arguments) {
+  return {.shape = make_shape_from_arguments(arguments.shape),
+          .conditions = {},
+          .material = arguments.shape.material};
+}
+
+void compare_conditions(const ConditionsArguments& arguments) {
+  std::vector<DropCase> cases = make_condition_cases(usual_job(arguments));
+  const auto others = cases.begin() + 1;  // the usual ones stay, as what the others are compared with
+  cases.erase(std::remove_if(others, cases.end(),
+                             [&](const DropCase& one) { return !is_chosen(one.name, arguments.only); }),
+              cases.end());
+  const std::vector<DropComparison> series = compare(cases, arguments);
+  print_results(arguments.results, json_of("condition", cases, series, true),
+                text_of("condition", cases, series, true));
+}
+
+std::vector<std::string> shape_names() {
+  std::vector<std::string> names;
+  for (const UnseenShape& shape : unseen_shapes()) names.emplace_back(shape.name);
+  return names;
+}
+
+}  // namespace
+
+void add_compare_shapes_command(Command& compare) {
+  auto [shapes, arguments] =
+      compare.add<ShapesArguments>("shapes", "drops of shapes that nothing was tuned on", compare_shapes);
+  add_series_arguments(shapes, arguments, shape_names());
+  add_material_arguments(shapes, arguments.material);
+}
+
+void add_compare_conditions_command(Command& compare) {
+  auto [conditions, arguments] = compare.add<ConditionsArguments>(
+      "conditions", "drops of a shape with other materials, speeds, slopes and sizes", compare_conditions);
+  arguments.comparison.comparison.trials = 200;
+  add_shape_arguments(conditions, arguments.shape);
+  add_series_arguments(conditions, arguments, condition_names());
+}
+
+}  // namespace lodestone

@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/commands.h"
+#include "tools/pages/page.h"
+#include "tools/results.h"
+#include "tools/view/view_page.h"
+
+namespace lodestone {
+namespace {
+
+struct ViewArguments {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path page = "view.html";
+  bool blind = false;
+  ResultArguments results;
+};
+
+void view(const ViewArguments& arguments) {
+  save_page(arguments.page, make_view_page(arguments.runs, arguments.blind));
+  print_results(arguments.results,
+                {{"page", arguments.page.string()},
+                 {"runs", arguments.runs.size()},
+                 {"bytes", std::filesystem::file_size(arguments.page)}},
+                fmt::format("written      {}, for any browser\n", arguments.page.string()));
+}
+
+}  // namespace
+
+void add_view_command(Command& program) {
+  auto [command, arguments] =
+      program.add<ViewArguments>("view", "a page that plays recorded runs, side by side", view);
+  command
+      .add_option("RUN", arguments.runs, "folders that `lodestone run SCENE --out DIR` wrote: one to three")
+      .required()
+      .words(1, 3);
+  command.add_option("-o", arguments.page, "the page");
+  command.add_flag("--blind", arguments.blind,
+                   "a test: two runs without names, left and right at random; which is which?");
+  add_json_argument(command, arguments.results);
+}
+
+}  // namespace lodestone

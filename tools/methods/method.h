@@ -1,0 +1,80 @@
+// The ways to simulate that `--methods` names, prepared for one shape: what each of them collides with, and
+// how finely it steps.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "lod/full/full_level.h"
+#include "lod/manager.h"
+#include "reference/trial.h"
+#include "signature/signature_source.h"
+#include "tools/methods/bullet_world.h"
+
+namespace lodestone {
+
+/// What falls on what: the same for every method.
+struct DropJob {
+  std::shared_ptr<const Shape> shape;
+  DropConditions conditions;
+  Material material;  ///< of the body and of the plane
+  ContactLaw law() const { return {material.restitution, material.friction}; }
+};
+
+/// ODE, with one or another collision geometry.
+struct OdeMethod {
+  int substeps = 1;  ///< ODE steps in a step
+  OdeSettings settings = {};
+  OdeGeometry geometry = OdeGeometry::trimesh;
+  std::shared_ptr<const Shape> collision_shape = {};  ///< with the mass distribution of the job's shape
+  std::vector<Sphere> spheres = {};                   ///< for OdeGeometry::spheres
+};
+
+/// The statistical level.
+struct StatisticalMethod {
+  StatisticalModel model = StatisticalModel::support;
+  std::shared_ptr<const Signature> signature =
+      {};                  ///< none: as a body is that waits for its first one, at `support`
+  bool published = false;  ///< `tables` as the paper has it
+};
+
+/// Bullet, where Lodestone is built with it.
+struct BulletMethod {
+  BulletGeometry geometry = BulletGeometry::hull;
+  BulletSettings settings = {};
+};
+
+struct Method {
+  std::string name;
+  std::variant<OdeMethod, StatisticalMethod, BulletMethod> way;
+  std::string left_out = {};  ///< why it cannot be had for this shape; empty where it can
+
+  int substeps() const;
+  std::string model() const;  ///< "tables", "tables_published" or "support"; empty for ODE
+};
+
+/// The ground truth: ODE at 34 steps in 1/60 s, just under .5 ms, so that 60 Hz falls on whole steps; for
+/// bodies below .2 m at the more, the smaller they are.
+Method make_truth(const DropJob& job);
+
+/// Whether `make_methods` knows it: one of method_names(), or full_2 to full_64, the full level at
+/// that many substeps.
+bool is_method_name(const std::string& name);
+
+/// The names without a number of substeps. `full` is the full level with its default substeps, `full_1` ODE
+/// itself in one step, `waiting` is `support` while the shape's signature is being measured.
+std::vector<std::string> method_names();
+
+/// The shape's signature, from the cache or measured now as `measuring` says on `threads` threads (0: all
+/// cores).
+std::shared_ptr<const Signature> find_signature(const DropJob& job, const SignatureSettings& measuring,
+                                                int threads, const Progress& progress);
+
+/// The methods of these names; `statistical` gives one for each model, `tables` as published and as it is,
+/// with the signature that `find_signature` finds. Throws InputError for an unknown name.
+std::vector<Method> make_methods(const std::vector<std::string>& names, const DropJob& job,
+                                 const SignatureSettings& measuring, int threads, const Progress& progress);
+
+}  // namespace lodestone
