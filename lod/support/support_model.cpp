@@ -198,7 +198,10 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
   const Vec3 fallen = world.gravity * time;
   body.velocity += fallen;
   OnGround on(body, shape);
-  StepContacts found;
+  // Kept from step to step, since to make all of them takes longer than to solve a few.
+  thread_local StepContacts found;
+  found.count = 0;
+  found.deepest = 0.0;
   find_step_contacts(body, kind, world, on, time, settings.contact_margin * shape.radius, held, found);
   if (found.count > 0) {
     tally.touched_plane = found.plane[found.count - 1];
