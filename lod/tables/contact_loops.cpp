@@ -9,7 +9,7 @@ using namespace lane;
 
 constexpr auto kChunk = std::int64_t(kContactChunk);
 
-template <bool OneKind>
+template <bool OneKind, bool Oriented>
 struct TouchLoop {
   const BallPairs& pairs;
   const Spheres& spheres;
@@ -22,9 +22,14 @@ struct TouchLoop {
     const double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data(), *vx = spheres.vx.data(),
                  *vy = spheres.vy.data(), *vz = spheres.vz.data();
     const float *radius = spheres.radius.data(), *size = kinds.radius.data();
+    [[maybe_unused]] const float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(),
+                                 *qz = spheres.qz.data(), *reach = kinds.pair_reach.data();
     [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
     alignas(64) float bx[kChunk]{}, by[kChunk]{}, bz[kChunk]{}, ux[kChunk]{}, uy[kChunk]{}, uz[kChunk]{},
-        sum[kChunk]{}, limit[kChunk]{};
+        limit[kChunk]{}, first_arm[kChunk]{}, second_arm[kChunk]{};
+    [[maybe_unused]] alignas(64) float first_w[kChunk]{}, first_x[kChunk]{}, first_y[kChunk]{},
+        first_z[kChunk]{}, second_w[kChunk]{}, second_x[kChunk]{}, second_y[kChunk]{}, second_z[kChunk]{};
+    [[maybe_unused]] alignas(64) std::int32_t first_map[kChunk]{}, second_map[kChunk]{};
     alignas(64) float nx[kChunk], ny[kChunk], nz[kChunk], gap[kChunk], closing[kChunk];
     alignas(64) std::int32_t touches[kChunk];
     std::size_t count = out.count;
@@ -34,17 +39,31 @@ struct TouchLoop {
         const std::uint32_t a = pairs.first(chunk + i), b = pairs.second(chunk + i);
         bx[i] = float(x[a] - x[b]), by[i] = float(y[a] - y[b]), bz[i] = float(z[a] - z[b]);
         ux[i] = float(vx[a] - vx[b]), uy[i] = float(vy[a] - vy[b]), uz[i] = float(vz[a] - vz[b]);
-        sum[i] = radius[a] + radius[b];
+        if constexpr (Oriented) {
+          first_w[i] = qw[a], first_x[i] = qx[a], first_y[i] = qy[a], first_z[i] = qz[a];
+          second_w[i] = qw[b], second_x[i] = qx[b], second_y[i] = qy[b], second_z[i] = qz[b];
+          if constexpr (!OneKind)
+            first_map[i] = int(kind[a]) * kHullHeights, second_map[i] = int(kind[b]) * kHullHeights;
+        } else {
+          first_arm[i] = radius[a], second_arm[i] = radius[b];
+        }
         limit[i] = touching * (OneKind ? size[0] : least(size[kind[a]], size[kind[b]]));
       }
 #pragma GCC ivdep
       for (std::int64_t i = 0; i < kChunk; ++i) {
-        const float distance = square_root(bx[i] * bx[i] + by[i] * by[i] + bz[i] * bz[i]),
-                    between = distance - sum[i];
+        const float distance = square_root(bx[i] * bx[i] + by[i] * by[i] + bz[i] * bz[i]);
         const float inverse = 1.0f / most(distance, 1e-12f);
         const bool apart = distance > 1e-12f;
         const F3 normal{choose(apart, bx[i] * inverse, 0.0f), choose(apart, by[i] * inverse, 0.0f),
                         choose(apart, bz[i] * inverse, 1.0f)};
+        if constexpr (Oriented) {
+          const Turn to_first{first_w[i], {-first_x[i], -first_y[i], -first_z[i]}},
+              to_second{second_w[i], {-second_x[i], -second_y[i], -second_z[i]}};
+          first_arm[i] =
+              read_hull_height(reach, OneKind ? 0 : first_map[i], turned(to_first, -1.0f * normal));
+          second_arm[i] = read_hull_height(reach, OneKind ? 0 : second_map[i], turned(to_second, normal));
+        }
+        const float between = distance - first_arm[i] - second_arm[i];
         const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
         nx[i] = normal.x, ny[i] = normal.y, nz[i] = normal.z;
         gap[i] = between, closing[i] = speed;
@@ -61,102 +80,121 @@ struct TouchLoop {
   }
 };
 
+// Gauss and Seidel's method: a contact sees what those before it have given, and is answered by the masses of
+// its two bodies. Neighbours in the run mostly share a body, so sixteen are taken at a time from as many
+// places far apart in it; what two of those still share gets both of their answers.
 template <bool OneKind, bool Last, bool Eased>
 struct SweepContacts {
   SweepSettings settings;
   const Spheres& spheres;
   const SphereKinds& kinds;
   StepConstants c;
-  const ContactArrays& contacts;
-  float* impulse;
+  ContactArrays& contacts;
   SphereStep& step;
 
+  static constexpr std::int64_t kLanes = 16, kFew = 8 * kLanes;
+
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
-    const auto awake =
-        std::uint32_t(spheres.awake);  // the place of one that does not move, for those that sleep
-    const std::uint32_t *first = contacts.first.data(), *second = contacts.second.data();
-    const float *nx = contacts.nx.data(), *ny = contacts.ny.data(), *nz = contacts.nz.data(),
-                *gap = contacts.gap.data(), *closing = contacts.closing.data();
-    const float *restitution = contacts.restitution.data(), *friction = contacts.friction.data();
-    float* gives = impulse;
-    const Row *p = step.p.data(), *u = step.u.data();
-    Row *added = step.a.data(), *turned_by = step.s.data(), *pushed = step.d.data();
+    const std::int64_t stride = end - begin < kFew ? 0 : (end - begin) / kLanes,
+                       beside = begin + stride * kLanes;
+    for (std::int64_t i = begin; i < begin + stride; ++i) answer<kLanes>(i, stride);
+    for (std::int64_t i = beside; i < end; ++i) answer<1>(i, 0);
+  }
+
+ private:
+  /// Those at `at`, `at` + `stride`, …
+  template <std::int64_t Lanes>
+  LODESTONE_INLINE void answer(std::int64_t at, std::int64_t stride) const {
+    const auto awake = std::uint32_t(spheres.awake);  // the row of what does not move: sleepers, ground
     const double* inverse_mass = spheres.inverse_mass.data();
-    const float *size_of = kinds.radius.data(), *radius = spheres.radius.data();
+    const float* size_of = kinds.radius.data();
+    [[maybe_unused]] const float* radius = spheres.radius.data();
     [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
-    const float per_time = 1.0f / c.time, bounce = settings.bounce_velocity, slop = settings.contact.slop,
-                push_out = settings.contact.push_out;
+    [[maybe_unused]] const std::uint8_t* eased = spheres.eased.data();
+    const float per_time = 1.0f / c.time, bounce = settings.bounce_velocity;
+    [[maybe_unused]] const float slop = settings.contact.slop, push_out = settings.contact.push_out;
     [[maybe_unused]] const float parting =
         settings.contact.parting * square_root(most(1.0f, c.gravity)) * c.time;  // m over √m
-    const float only_restitution = float(settings.only_law.restitution),
-                only_friction = float(settings.only_law.friction);
-    alignas(64) Row relative[kChunk]{}, turning[kChunk]{}, given[kChunk], torque[kChunk], out[kChunk];
-    alignas(64) float size[kChunk]{}, farthest[kChunk]{};
-    const std::uint8_t* eased = spheres.eased.data();
-    for (std::int64_t chunk = begin; chunk < end; chunk += kChunk) {
-      const std::int64_t n = std::min(kChunk, end - chunk);
-      for (std::int64_t i = 0; i < n; ++i) {
-        const std::uint32_t a = first[chunk + i], other = second[chunk + i], b = std::min(other, awake);
-        [[maybe_unused]] const std::size_t ka = OneKind ? 0 : kind[a], kb = OneKind ? 0 : kind[other];
-        // Mass splitting (Tonge, Benevolenski and Voroshilov, Mass splitting for jitter-free parallel rigid
-        // body simulation, 2012): all contacts are answered at once, each by 1/n of the mass of a body that
-        // has n (p.w), so that together they do not answer one approach n times. w: n_a/m_a + n_b/m_b.
-        const RowLanes of_a =
-            RowLanes{1.0f, 1.0f, 1.0f, float(inverse_mass[OneKind ? 0 : a])} * lanes_of(p[a]);
-        const RowLanes of_b =
-            RowLanes{-1.0f, -1.0f, -1.0f, float(inverse_mass[OneKind ? 0 : other])} * lanes_of(p[b]);
-        relative[i] = row_of(of_a + of_b);
-        if constexpr (Last)
-          turning[i] = row_of(only_w(of_a) * lanes_of(u[a]) + only_w(of_b) * lanes_of(u[b]));
-        if constexpr (Last && (Eased || !OneKind)) size[i] = least(size_of[ka], size_of[kb]);
-        if constexpr (Last && Eased) farthest[i] = (eased[a] | eased[other]) != 0 ? parting : 1e9f;
+    const Row *p = step.p.data(), *u = step.u.data();
+    Row *added = step.a.data(), *turned_by = step.s.data(), *pushed = step.d.data(),
+        *turning_of = step.u.data();
+    alignas(64) Row relative[Lanes], given[Lanes];
+    alignas(64) float nx[Lanes], ny[Lanes], nz[Lanes], gap[Lanes], nearing[Lanes], gave[Lanes], e[Lanes];
+    alignas(64) [[maybe_unused]] Row turning[Lanes], moved[Lanes], torque[Lanes], out[Lanes];
+    alignas(64) [[maybe_unused]] float friction[Lanes], size[Lanes], farthest[Lanes];
+    const auto index = [&](std::int64_t i) { return std::size_t(at + i * stride); };
+    const auto mass_of = [&](std::uint32_t place) {
+      return place < awake ? float(inverse_mass[OneKind ? 0 : place]) : 0.0f;
+    };
+    for (std::int64_t i = 0; i < Lanes; ++i) {
+      const std::size_t k = index(i);
+      const std::uint32_t a = contacts.first[k], other = contacts.second[k], b = std::min(other, awake);
+      const float wa = mass_of(a), wb = mass_of(b);
+      nx[i] = contacts.nx[k], ny[i] = contacts.ny[k], nz[i] = contacts.nz[k];
+      gap[i] = contacts.gap[k], nearing[i] = contacts.closing[k], gave[i] = contacts.impulse[k];
+      e[i] = OneKind ? float(settings.only_law.restitution) : contacts.restitution[k];
+      relative[i] = row_of(lanes_of(p[a]) + lanes_of(added[a]) - lanes_of(p[b]) - lanes_of(added[b]));
+      relative[i].w = wa + wb;
+      if constexpr (Last) {
+        friction[i] = OneKind ? float(settings.only_law.friction) : contacts.friction[k];
+        turning[i] = row_of(lanes_of(u[a]) + lanes_of(u[b]));
+        turning[i].w = wa * u[a].w + wb * u[b].w;
+        moved[i] = row_of(lanes_of(pushed[a]) - lanes_of(pushed[b]));
+        size[i] = OneKind     ? size_of[0]
+                  : b < awake ? least(size_of[kind[a]], size_of[kind[b]])
+                              : size_of[kind[a]];
+        if constexpr (Eased)
+          farthest[i] = eased[a] != 0 || (other < kGroundPlace && eased[other] != 0)
+                            ? parting * square_root(size[i])
+                            : 1e9f;
       }
+    }
 #pragma GCC ivdep
-      for (std::int64_t i = 0; i < kChunk; ++i) {
-        const std::int64_t at = chunk + i;
-        // By components: GCC keeps these vectors in memory, and then makes no loop of vector instructions.
-        const float x = nx[at], y = ny[at], z = nz[at], vx = relative[i].x, vy = relative[i].y,
-                    vz = relative[i].z;
-        const float speed = vx * x + vy * y + vz * z, split = 1.0f / relative[i].w, apart = gap[at],
-                    nearing = closing[at], before = gives[at];
-        const float e = OneKind ? only_restitution : restitution[at];
-        const float shut = least(0.0f, -apart * per_time), bounced = most(-e * nearing, shut);
-        const float target = choose(nearing < -bounce, bounced, shut);
-        const float after = most(0.0f, before + split * (target - speed)), change = after - before;
-        gives[at] = after;
-        float ix = change * x, iy = change * y, iz = change * z;
-        if constexpr (Last) {
-          // Friction on the slip of the touching points, with the inertia under which it changes most.
-          const float tx = turning[i].x, ty = turning[i].y, tz = turning[i].z;
-          const float slip_x = vx - speed * x - (ty * z - tz * y),
-                      slip_y = vy - speed * y - (tz * x - tx * z),
-                      slip_z = vz - speed * z - (tx * y - ty * x);
-          const float slipping = square_root(slip_x * slip_x + slip_y * slip_y + slip_z * slip_z) + 1e-12f;
-          const float rub =
-              least((OneKind ? only_friction : friction[at]) * after / slipping, 1.0f / turning[i].w);
-          const float fx = -rub * slip_x, fy = -rub * slip_y, fz = -rub * slip_z;
-          ix += fx, iy += fy, iz += fz;
-          torque[i].x = fy * z - fz * y, torque[i].y = fz * x - fx * z, torque[i].z = fx * y - fy * x,
-          torque[i].w = 0.0f;  // over the radius
-          out[i].x = x, out[i].y = y, out[i].z = z;
-          const float overlap = most(0.0f, -apart - slop * (OneKind ? size_of[0] : size[i])) * push_out;
-          out[i].w = (Eased ? least(overlap, farthest[i] * square_root(size[i])) : overlap) * split;
-        }
-        given[i].x = ix, given[i].y = iy, given[i].z = iz, given[i].w = 0.0f;
+    for (std::int64_t i = 0; i < Lanes; ++i) {
+      // By components: GCC keeps vectors in memory, and then makes no loop of vector instructions.
+      const float x = nx[i], y = ny[i], z = nz[i], vx = relative[i].x, vy = relative[i].y, vz = relative[i].z;
+      const float speed = vx * x + vy * y + vz * z, share = 1.0f / relative[i].w, before = gave[i];
+      const float shut = least(0.0f, -gap[i] * per_time), bounced = most(-e[i] * nearing[i], shut);
+      const float target = choose(nearing[i] < -bounce, bounced, shut);
+      const float after = most(0.0f, before + share * (target - speed)), change = after - before;
+      gave[i] = after;
+      float ix = change * x, iy = change * y, iz = change * z;
+      if constexpr (Last) {
+        // Friction on the slip of the touching points, with the inertia under which it changes most.
+        const float tx = turning[i].x, ty = turning[i].y, tz = turning[i].z;
+        const float slip_x = vx - speed * x - (ty * z - tz * y), slip_y = vy - speed * y - (tz * x - tx * z),
+                    slip_z = vz - speed * z - (tx * y - ty * x);
+        const float slipping = square_root(slip_x * slip_x + slip_y * slip_y + slip_z * slip_z) + 1e-12f;
+        const float rub = least(friction[i] * after / slipping, 1.0f / turning[i].w);
+        const float fx = -rub * slip_x, fy = -rub * slip_y, fz = -rub * slip_z;
+        ix += fx, iy += fy, iz += fz;
+        torque[i].x = fy * z - fz * y, torque[i].y = fz * x - fx * z, torque[i].z = fx * y - fy * x,
+        torque[i].w = 0.0f;  // over the arm
+        // Of an overlap, what is left of it by then.
+        const float overlap = -gap[i] - slop * size[i] - (moved[i].x * x + moved[i].y * y + moved[i].z * z);
+        float way = push_out * most(0.0f, overlap);
+        if constexpr (Eased) way = least(way, farthest[i]);
+        out[i].x = x, out[i].y = y, out[i].z = z, out[i].w = way * share;
       }
-      for (std::int64_t i = 0; i < n; ++i) {
-        const std::uint32_t a = first[chunk + i], other = second[chunk + i], b = std::min(other, awake);
-        const auto wa = float(inverse_mass[OneKind ? 0 : a]), wb = float(inverse_mass[OneKind ? 0 : other]);
-        const RowLanes sum = lanes_of(given[i]);
-        add_to(added[a], wa * sum);
-        add_to(added[b], -wb * sum);
-        if constexpr (Last) {
-          const RowLanes turns = lanes_of(torque[i]), pushes = lanes_of(out[i]);
-          add_to(turned_by[a], (radius[a] * wa) * turns);
-          add_to(turned_by[b], (radius[other] * wb) * turns);
-          add_to(pushed[a], (out[i].w * wa) * pushes);
-          add_to(pushed[b], (-out[i].w * wb) * pushes);
-        }
+      given[i].x = ix, given[i].y = iy, given[i].z = iz, given[i].w = 0.0f;
+    }
+    for (std::int64_t i = 0; i < Lanes; ++i) {
+      const std::size_t k = index(i);
+      const std::uint32_t a = contacts.first[k], b = std::min(contacts.second[k], awake);
+      const float wa = mass_of(a), wb = mass_of(b);
+      contacts.impulse[k] = gave[i];
+      const RowLanes impulse = lanes_of(given[i]);
+      add_to(added[a], wa * impulse);
+      add_to(added[b], -wb * impulse);
+      if constexpr (Last) {
+        const RowLanes turns = lanes_of(torque[i]);
+        add_to(turned_by[a], (radius[a] * wa) * turns);
+        add_to(turned_by[b], (b < awake ? radius[b] * wb : 0.0f) * turns);
+        add_to(turning_of[a], ((u[a].w - 1.0f) * wa) * turns);  // the slip that the next contacts see
+        add_to(turning_of[b], ((u[b].w - 1.0f) * wb) * turns);
+        const RowLanes pushes{out[i].x, out[i].y, out[i].z, 0.0f};
+        add_to(pushed[a], (out[i].w * wa) * pushes);
+        add_to(pushed[b], (-out[i].w * wb) * pushes);
       }
     }
   }
@@ -169,10 +207,14 @@ ContactRun find_touching(const BallPairs& pairs, const Spheres& spheres, const S
   const std::size_t begin = (contacts.count + kContactChunk - 1) / kContactChunk * kContactChunk;
   contacts.count = begin;
   contacts.make_room(begin + std::size_t(pairs.size()), constants.one_kind);
+  const auto run = [&]<bool OneKind, bool Oriented>() {
+    run_wide(simd, TouchLoop<OneKind, Oriented>{pairs, spheres, kinds, constants, touching, contacts}, 0,
+             pairs.size());
+  };
   if (constants.one_kind)
-    run_wide(simd, TouchLoop<true>{pairs, spheres, kinds, constants, touching, contacts}, 0, pairs.size());
+    constants.hulls ? run.template operator()<true, true>() : run.template operator()<true, false>();
   else
-    run_wide(simd, TouchLoop<false>{pairs, spheres, kinds, constants, touching, contacts}, 0, pairs.size());
+    constants.hulls ? run.template operator()<false, true>() : run.template operator()<false, false>();
   return {&contacts, begin, contacts.count};
 }
 
@@ -180,17 +222,16 @@ void sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const
                     const StepConstants& constants, Simd simd, const ContactRun& contacts, SphereStep& step) {
   const auto run = [&]<bool OneKind, bool Last, bool Eased>() {
     run_wide(simd,
-             SweepContacts<OneKind, Last, Eased>{settings, spheres, kinds, constants, *contacts.arrays,
-                                                 contacts.arrays->impulse.data(), step},
+             SweepContacts<OneKind, Last, Eased>{settings, spheres, kinds, constants, *contacts.arrays, step},
              std::int64_t(contacts.begin), std::int64_t(contacts.end));
   };
   const auto run_last = [&]<bool OneKind>() {
     settings.eased ? run.template operator()<OneKind, true, true>()
                    : run.template operator()<OneKind, true, false>();
   };
-  if (constants.one_kind && settings.last)
+  if (settings.one_law && settings.last)
     run_last.template operator()<true>();
-  else if (constants.one_kind)
+  else if (settings.one_law)
     run.template operator()<true, false, false>();
   else if (settings.last)
     run_last.template operator()<false>();

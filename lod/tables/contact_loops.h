@@ -16,7 +16,8 @@ ContactRun find_touching(const BallPairs& pairs, const Spheres& spheres, const S
 
 struct SweepSettings {
   const SphereContactSettings& contact;
-  ContactLaw only_law;           // where all bodies are of one kind
+  bool one_law = false;  // of all contacts of the run, and their bodies of one kind
+  ContactLaw only_law;
   float bounce_velocity = 0.0f;  // m/s
   bool last = false;
   bool eased = false;  // some bodies are

@@ -83,10 +83,12 @@ void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, cons
                           const JobRunner& jobs, std::vector<BallPairs>* others) {
   clear();
   if (others && others->size() < std::size_t(grid.parts())) others->resize(std::size_t(grid.parts()));
-  used_parts_ = std::size_t(grid.parts()) + 1;
+  used_parts_ = std::size_t(grid.parts()) + 2;
   if (parts_.size() < used_parts_) parts_.resize(used_parts_);
   for (std::size_t i = 0; i < used_parts_; ++i) {
-    parts_[i].colour = i + 1 < used_parts_ ? grid.colour_of(std::int64_t(i)) : CellGrid::kColours;
+    parts_[i].colour = i < std::size_t(grid.parts()) ? grid.colour_of(std::int64_t(i))
+                       : i + 1 < used_parts_         ? kStillColour
+                                                     : kGroundColour;
     of_colour_[std::size_t(parts_[i].colour)].push_back(std::uint32_t(i));
   }
   jobs(grid.parts(), TaskRef([&](std::int64_t i) {
@@ -111,10 +113,26 @@ void SphereContacts::add(const Spheres& spheres, const SphereKinds& kinds,
   BallPairs& near = empty_pairs();
   for (const auto& [first, second] : pairs) near.add(first, second);
   ContactArrays& arrays = take_arrays();
-  parts_[used_parts_ - 1].run =
-      find_touching(near, spheres, kinds, constants, settings_.touching, simd, arrays);
-  recall(spheres, bounce_velocity, constants, parts_[used_parts_ - 1].run);
+  still_part().run = find_touching(near, spheres, kinds, constants, settings_.touching, simd, arrays);
+  recall(spheres, bounce_velocity, constants, still_part().run);
   put_back(arrays);
+}
+
+void SphereContacts::add_ground(const Spheres& spheres, std::span<const PlaneTouch> touches,
+                                float bounce_velocity, const StepConstants& constants) {
+  ContactArrays& c = take_arrays();
+  const std::size_t begin = c.count;
+  c.make_room(begin + touches.size(), false);
+  for (const PlaneTouch& touch : touches) {
+    const std::size_t at = c.count++;
+    c.first[at] = touch.place, c.second[at] = kGroundPlace | touch.plane;
+    c.nx[at] = touch.normal.x, c.ny[at] = touch.normal.y, c.nz[at] = touch.normal.z;
+    c.gap[at] = touch.gap, c.closing[at] = touch.closing;
+    c.restitution[at] = float(touch.law.restitution), c.friction[at] = float(touch.law.friction);
+  }
+  ground_part().run = {&c, begin, c.count};
+  recall(spheres, bounce_velocity, constants, ground_part().run);
+  put_back(c);
 }
 
 template <class Task>
@@ -146,8 +164,9 @@ float SphereContacts::known_force(const Spheres& spheres, std::uint32_t first, s
                                   std::uint32_t nth) const {
   if (nth < spheres.known_count[first]) {
     const KnownContact& expected = known_[spheres.known_begin[first] + nth];
-    if (expected.owner == spheres.owner[second]) return expected.force;
+    if (expected.owner == owner_of(spheres, second)) return expected.force;
   }
+  if (second >= kGroundPlace) return find_known_apart(spheres.owner[first], second);
   if (const float force = find_known_force(spheres, first, second); force != 0.0f) return force;
   if (const float force = find_known_force(spheres, second, first); force != 0.0f) return force;
   if (known_apart_.empty()) return 0.0f;
@@ -183,7 +202,7 @@ void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, con
   const auto awake = std::uint32_t(spheres.awake);
   step.clear_still(awake);
   run_by_colour(jobs, [&](Part& part) {
-    if (!constants.one_kind) set_laws(part.run, spheres, kinds, materials);
+    if (!constants.one_kind && part.colour != kGroundColour) set_laws(part.run, spheres, kinds, materials);
     const ContactArrays& c = *part.run.arrays;
     for (std::size_t i = part.run.begin; i < part.run.end; ++i) {
       const std::uint32_t a = c.first[i], b = c.second[i];
@@ -198,11 +217,12 @@ void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, con
 void SphereContacts::sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
                            float bounce_velocity, const StepConstants& constants, bool last, bool eased,
                            Simd simd, SphereStep& step, const JobRunner& jobs) {
-  const SweepSettings settings{settings_, materials.law(kinds.material[0], kinds.material[0]),
-                               bounce_velocity, last, eased};
+  const ContactLaw only_law = materials.law(kinds.material[0], kinds.material[0]);
   if (last) make_room_to_remember(spheres);
   run_by_colour(jobs, [&](Part& part) {
-    sweep_contacts(settings, spheres, kinds, constants, simd, part.run, step);
+    const bool one_law = constants.one_kind && part.colour != kGroundColour;
+    sweep_contacts({settings_, one_law, only_law, bounce_velocity, last, eased}, spheres, kinds, constants,
+                   simd, part.run, step);
     if (last && !is_apart(part.colour)) remember(spheres, bounce_velocity, constants, part);
   });
   if (last) remember_apart(spheres, bounce_velocity, constants);
@@ -229,7 +249,7 @@ void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const Ste
     const std::uint32_t a = c.first[i];
     if (a != last) spheres.known_begin[a] = at;
     last = a;
-    known_[at] = {spheres.owner[c.second[i]], c.impulse[i] * per_time};
+    known_[at] = {owner_of(spheres, c.second[i]), c.impulse[i] * per_time};
     const bool kept = is_support(c, i, bounce_velocity) & (spheres.known_count[a] < 255);
     spheres.known_count[a] += kept;
     at += kept;
@@ -246,7 +266,7 @@ void SphereContacts::remember_apart(const Spheres& spheres, float bounce_velocit
     for (std::size_t i = parts_[p].run.begin; i < parts_[p].run.end; ++i)
       if (is_support(c, i, bounce_velocity))
         known_apart_.push_back(
-            {{spheres.owner[c.first[i]], spheres.owner[c.second[i]]}, c.impulse[i] * per_time});
+            {{spheres.owner[c.first[i]], owner_of(spheres, c.second[i])}, c.impulse[i] * per_time});
   }
   std::ranges::sort(known_apart_, {}, &KnownApart::owners);
 }

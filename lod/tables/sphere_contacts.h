@@ -1,8 +1,7 @@
-// Spheres that touch: found, and answered all at once. Each contact looks at the velocities as they were
-// before any of them, with each body's mass split among its contacts (Tonge, Benevolenski and Voroshilov,
-// Mass splitting for jitter-free parallel rigid body simulation, 2012): the order of contacts does not
-// matter, impulses are equal and opposite, and no energy is added. What a contact gave in the last step it
-// gives at once in this one, so that piles stand.
+// Spheres that touch: found, and answered one after the other in an order that does not depend on threads
+// (projected Gauss and Seidel), with impulses that are equal and opposite. What a contact gave in the last
+// step it gives at once in this one, so that piles stand. A body's nearest plane is not here
+// (sphere_ground.h), any other that it touches is.
 #pragma once
 
 #include <array>
@@ -49,9 +48,18 @@ struct ContactRun {
   std::size_t size() const { return end - begin; }
 };
 
+/// Of a body with a plane, which is the second one under kGroundPlace.
+struct PlaneTouch {
+  std::uint32_t place = 0, plane = 0;
+  lane::F3 normal = {};
+  float gap = 0.0f, closing = 0.0f;  // m, m/s
+  ContactLaw law = {};
+};
+inline constexpr std::uint32_t kGroundPlace = 1u << 31;
+
 /// What a contact is.
 struct SphereContact {
-  std::uint32_t first, second;
+  std::uint32_t first, second;  // places; the latter from kGroundPlace on: planes
   float nx, ny, nz, gap, closing;
   float impulse;  // N s
 };
@@ -69,7 +77,8 @@ struct KnownApart {
 };
 
 struct SphereContactSettings {
-  int sweeps = 2;
+  int sweeps = 2,
+      hull_sweeps = 3;     // rounds a step; of the paper's spheres, and of those that know their hulls
   float touching = 0.01f;  // m over R: gaps up to it are contacts
   float slop = 0.002f,
         push_out = 0.5f;  // overlap that stays, over R; part of the rest that is undone in a step
@@ -92,6 +101,10 @@ class SphereContacts {
   void add(const Spheres& spheres, const SphereKinds& kinds,
            std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, float bounce_velocity,
            const StepConstants& constants, Simd simd);
+
+  /// Those with planes. At most once a step, after find().
+  void add_ground(const Spheres& spheres, std::span<const PlaneTouch> touches, float bounce_velocity,
+                  const StepConstants& constants);
 
   /// Counts each body's contacts and gives the impulses known.
   void begin(const Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
@@ -146,17 +159,24 @@ class SphereContacts {
   void remember_apart(const Spheres& spheres, float bounce_velocity, const StepConstants& constants);
   // Its contacts may be of first bodies that another part has contacts of, too.
   static bool is_apart(int colour) { return colour >= CellGrid::kColours - 1; }
+  static constexpr int kStillColour = CellGrid::kColours, kGroundColour = CellGrid::kColours + 1;
+  Part& still_part() { return parts_[used_parts_ - 2]; }
+  Part& ground_part() { return parts_[used_parts_ - 1]; }
+  /// A plane's is its number under kGroundPlace.
+  static std::uint32_t owner_of(const Spheres& spheres, std::uint32_t place) {
+    return place >= kGroundPlace ? place : spheres.owner[place];
+  }
 
   SphereContactSettings settings_;
   std::function<bool(std::uint32_t, std::uint32_t)> pair_filter_;
-  std::vector<Part> parts_;  // the grid's, and one for contacts that were added
+  std::vector<Part> parts_;  // the grid's, one for contacts that were added, and one for those with planes
   // As many arrays as parts were searched at once: room for the contacts of all parts together, not for as
   // many as each of them ever had.
   std::deque<ContactArrays> arrays_;
   std::vector<ContactArrays*> free_arrays_;
   std::mutex free_arrays_access_;
   std::size_t used_parts_ = 0;
-  std::array<std::vector<std::uint32_t>, CellGrid::kColours + 1> of_colour_;
+  std::array<std::vector<std::uint32_t>, kGroundColour + 1> of_colour_;
   std::vector<KnownContact> known_;
   std::vector<KnownApart> known_apart_;  // by owners
 };

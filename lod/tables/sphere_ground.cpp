@@ -21,7 +21,9 @@ struct NearLoop {
   const SphereKinds& kinds;
   F3 n;
   double wide_x, wide_y, wide_z, offset;
+  const float* pressures;  // m/s², of all planes
   std::int32_t number;
+  bool level;  // hulls stand on it
   StepConstants c;
   SphereStep& step;
 
@@ -32,23 +34,36 @@ struct NearLoop {
     std::uint8_t* on_ground = step.on_ground.data();
     std::int32_t* plane = step.plane.data();
     float* gap = step.gap.data();
+    const float pressure = pressures[number], same = 1e-3f * c.gravity;
     const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz);
     [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
-    [[maybe_unused]] const float* size = kinds.radius.data();
+    [[maybe_unused]] const float *size = kinds.radius.data(), *heights = kinds.hull_height.data();
+    [[maybe_unused]] const std::uint8_t* since_crowded = spheres.since_crowded.data();
+    [[maybe_unused]] const float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(),
+                                 *qz = spheres.qz.data();
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
-      const float height = float(wide_x * x[i] + wide_y * y[i] + wide_z * z[i] - offset),
-                  above = height - radius[i];
+      const float height = float(wide_x * x[i] + wide_y * y[i] + wide_z * z[i] - offset);
+      float own = radius[i];
+      if constexpr (Hulls) {  // among others it has its hull's height, as they meet it
+        const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
+        const float of_hull =
+            read_hull_height(heights, int(kind[i]) * kHullHeights, turned(back(q), -1.0f * n));
+        own = choose(int(since_crowded[i]) < kLeaningTicks, of_hull, own);
+      }
+      const float above = height - own;
       const float way = least(0.0f, n.x * float(vx[i]) + n.y * float(vy[i]) + n.z * float(vz[i])) * c.time +
                         0.5f * pull * c.time * c.time;
       const int state = on_ground[i], other = plane[i];
       const float known = gap[i];
       const int near = -int(above + 1.001f * way < 0.002f * radius[i]),
-                nearest = near & -(int(state != int(kNear)) | int(above < known));  // masks
+                carries = -(int(pressure > pressures[other] + same) |
+                            (int(pressure > pressures[other] - same) & int(above < known))),
+                nearest = near & (-int(state != int(kNear)) | carries);  // masks
       int otherwise = state;
       if constexpr (Hulls) {
         const int within =
-            -(int(height - size[kind[i]] + 1.001f * way < 0.002f * radius[i]) & int(state == 0));
+            -(int(height - size[kind[i]] + 1.001f * way < 0.002f * radius[i]) & int(state == 0) & int(level));
         otherwise = (int(kWithin) & within) | (state & ~within);
       }
       on_ground[i] = std::uint8_t((int(kNear) & near) | (otherwise & ~near));
@@ -124,8 +139,8 @@ struct SweepLoop {
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)) & (touching > 0.0f);
       const float speed = start[i].x * nx[p] + start[i].y * ny[p] + start[i].z * nz[p],
                   shut = least(0.0f, -gap[i] * per_time), before = added[i].w;
-      const float raised = most(0.0f, before + (shut - speed) / most(1.0f, touching)),
-                  after = choose(lies, raised, before), change = after - before;
+      const float raised = most(0.0f, before + (shut - speed)), after = choose(lies, raised, before),
+                  change = after - before;
       added[i].x += change * nx[p], added[i].y += change * ny[p], added[i].z += change * nz[p],
           added[i].w = after;
     }
@@ -140,56 +155,41 @@ struct LieLoop {
   StepConstants c;
   SphereStep& step;
 
-  static constexpr std::int64_t kFew = 64;
+  static constexpr std::int64_t kBlock = 64;
 
+  // By blocks, with integers in place of bytes: with those a vector instruction takes more bodies at a time
+  // than there often are.
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
-    const SmallNumbers own{motion, spheres.pose.data(), spheres.kind.data(), step.plane.data(),
-                           step.on_ground.data()};
-    if (end - begin < kFew)
-      lie_few(own, begin, end - begin);
-    else
-      lie(own.from(begin), begin, end - begin);
+    SmallNumbers own;
+    for (std::int64_t at = begin; at < end; at += kBlock) {
+      const std::int64_t count = std::min(kBlock, end - at);
+      for (std::int64_t i = 0; i < count; ++i) {
+        own.motion[i] = motion[at + i], own.pose[i] = spheres.pose[std::size_t(at + i)];
+        own.kind[i] = std::int32_t(spheres.kind[std::size_t(at + i)]);
+        own.plane[i] = step.plane[std::size_t(at + i)],
+        own.on_ground[i] = step.on_ground[std::size_t(at + i)];
+      }
+      lie(own, at, count);
+      for (std::int64_t i = 0; i < count; ++i) motion[at + i] = std::uint8_t(own.motion[i]);
+    }
   }
 
  private:
-  template <class Byte, class Pose, class Kind>
   struct SmallNumbers {
-    Byte* motion;
-    const Pose* pose;
-    const Kind* kind;
-    const std::int32_t* plane;
-    const Byte* on_ground;
-    LODESTONE_INLINE SmallNumbers from(std::int64_t begin) const {
-      return {motion + begin, pose + begin, kind + begin, plane + begin, on_ground + begin};
-    }
+    std::int32_t motion[kBlock], pose[kBlock], kind[kBlock], plane[kBlock], on_ground[kBlock];
   };
 
-  // With integers in place of bytes: with those a vector instruction takes more bodies at a time than there
-  // are.
-  template <class Own>
-  LODESTONE_INLINE void lie_few(const Own& own, std::int64_t begin, std::int64_t count) const {
-    std::int32_t motion[kFew], pose[kFew], kind[kFew], plane[kFew], on_ground[kFew];
-    for (std::int64_t i = 0; i < count; ++i) {
-      motion[i] = own.motion[begin + i], pose[i] = own.pose[begin + i], kind[i] = own.kind[begin + i];
-      plane[i] = own.plane[begin + i], on_ground[i] = own.on_ground[begin + i];
-    }
-    lie(SmallNumbers{motion, pose, kind, plane, on_ground}, begin, count);
-    for (std::int64_t i = 0; i < count; ++i) own.motion[begin + i] = std::uint8_t(motion[i]);
-  }
-
-  template <class Byte, class Pose, class Kind>
-  LODESTONE_INLINE void lie(const SmallNumbers<Byte, Pose, Kind>& numbers, std::int64_t begin,
-                            std::int64_t count) const {
+  LODESTONE_INLINE void lie(SmallNumbers& numbers, std::int64_t begin, std::int64_t count) const {
     const float *qw = spheres.qw.data() + begin, *qx = spheres.qx.data() + begin,
                 *qy = spheres.qy.data() + begin, *qz = spheres.qz.data() + begin,
                 *radius = spheres.radius.data() + begin;
     const double *lx = spheres.lx.data() + begin, *ly = spheres.ly.data() + begin,
                  *lz = spheres.lz.data() + begin;
     float* held = spheres.held.data() + begin;
-    Byte* motion = numbers.motion;
-    const Kind* kind = numbers.kind;
-    const Pose* pose = numbers.pose;
+    const std::int32_t *kind = numbers.kind, *pose = numbers.pose, *plane = numbers.plane,
+                       *on_ground = numbers.on_ground;
+    std::int32_t* motion = numbers.motion;
     const float *size = kinds.radius.data(), *blend_time = kinds.blend_time.data();
     const float *pose_x = kinds.pose_x.data(), *pose_y = kinds.pose_y.data(), *pose_z = kinds.pose_z.data();
     const std::int32_t* first_pose = kinds.first_pose.data();
@@ -203,8 +203,6 @@ struct LieLoop {
     const int kind_count = int(ground.kinds);
     const Row* begun = step.p.data() + begin;
     const float* gap = step.gap.data() + begin;
-    const std::int32_t* plane = numbers.plane;
-    const Byte* on_ground = numbers.on_ground;
     Row *a = step.a.data() + begin, *s = step.s.data() + begin, *d = step.d.data() + begin;
 #pragma GCC ivdep
     for (std::int64_t i = 0; i < count; ++i) {
@@ -262,7 +260,7 @@ struct LieLoop {
       a[i].x = change.x, a[i].y = change.y, a[i].z = change.z, a[i].w = given_speed;
       s[i].x = turn.x, s[i].y = turn.y, s[i].z = turn.z, s[i].w = moving;
       held[i] = choose(lies & others, given_speed, 0.0f);
-      motion[i] = Byte(choose(lies & !rests, int(Motion::dynamic), moves));
+      motion[i] = choose(lies & !rests, int(Motion::dynamic), moves);
       // The ground has the last word: among others no sinking in; alone down onto it, or out of it gradually.
       const float height = above + dot(v, n) * c.time + dot(out, n),
                   alone = choose(above < 0.0f, -kRise * above, -above);
@@ -273,14 +271,13 @@ struct LieLoop {
   }
 };
 
-// Calls that of the four which needs the least looking up.
+// Calls that which needs the least looking up. Each of these costs seconds of compilation: several planes
+// under one kind are rare.
 template <class Run>
 void choose_loop(const StepConstants& constants, const SphereGround& ground, const Run& run) {
   const bool one_plane = ground.nx.size() == 1;
   if (constants.one_kind && one_plane)
     run.template operator()<true, true>();
-  else if (constants.one_kind)
-    run.template operator()<true, false>();
   else if (one_plane)
     run.template operator()<false, true>();
   else
@@ -317,10 +314,12 @@ std::int32_t SphereGround::add(const HalfSpace& plane, const MaterialTable& mate
   return std::int32_t(nx.size()) - 1;
 }
 
-void find_near_ground(const Spheres& spheres, const SphereKinds& kinds, const HalfSpace& plane,
-                      std::int32_t number, const StepConstants& constants, Simd simd, std::int64_t begin,
-                      std::int64_t end, SphereStep& step) {
+void find_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
+                      const HalfSpace& plane, std::int32_t number, const StepConstants& constants, Simd simd,
+                      std::int64_t begin, std::int64_t end, SphereStep& step) {
   const Vec3& n = plane.normal;
+  const bool level =
+      StepWorld{.gravity = {constants.wide_gx, constants.wide_gy, constants.wide_gz}}.is_horizontal(plane);
   const auto run = [&]<bool Hulls>() {
     run_wide(simd,
              NearLoop<Hulls>{spheres,
@@ -330,14 +329,14 @@ void find_near_ground(const Spheres& spheres, const SphereKinds& kinds, const Ha
                              n.y(),
                              n.z(),
                              plane.offset,
+                             ground.pressure.data(),
                              number,
+                             level,
                              constants,
                              step},
              begin, end);
   };
-  const bool level =
-      StepWorld{.gravity = {constants.wide_gx, constants.wide_gy, constants.wide_gz}}.is_horizontal(plane);
-  if (constants.hulls && level)
+  if (constants.hulls)
     run.template operator()<true>();
   else
     run.template operator()<false>();

@@ -18,9 +18,11 @@ void SphereKinds::take(const Kinds& kinds, std::uint32_t kind, double gravity) {
 
 void SphereKinds::resize(std::size_t size) {
   for (auto* array : {&radius, &ixx, &iyy, &izz, &ixy, &ixz, &iyz, &jxx, &jyy, &jzz, &jxy, &jxz, &jyz,
-                      &softest, &blend_time})
+                      &softest, &farthest_reach, &blend_time})
     array->resize(size, 1.0f);
   height.resize(size * (kHeightSamples + 1));
+  pair_reach.resize(size * std::size_t(kHullHeights));
+  hull_height.resize(size * std::size_t(kHullHeights));
   material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size),
       is_slender_.resize(size);
 }
@@ -47,6 +49,11 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   };
   for (int i = 0; i <= kHeightSamples; ++i)
     height[k * std::size_t(kHeightSamples + 1) + std::size_t(i)] = float(height_at(i) * shape.radius);
+  const auto map_of = [&](std::vector<float>& maps) {
+    return std::span(maps).subspan(k * std::size_t(kHullHeights), kHullHeights);
+  };
+  sample_hull_heights(shape, map_of(hull_height), map_of(pair_reach));
+  farthest_reach[k] = std::ranges::max(map_of(pair_reach));
   blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
   set_poses(k, kind);
 }

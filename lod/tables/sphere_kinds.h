@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lod/statistical/kinds.h"
+#include "lod/tables/hull_heights.h"
 
 namespace lodestone {
 
@@ -11,13 +12,15 @@ inline constexpr int kHeightSamples = 64;  // of the collision height over α, r
 
 struct SphereKinds {
   std::vector<MaterialId> material;
-  std::vector<float> radius;      // m
+  std::vector<float> radius;                        // m
   std::vector<float> ixx, iyy, izz, ixy, ixz, iyz;  // inverse inertia over mass, body axes, 1/m²
   std::vector<float> jxx, jyy, jzz, jxy, jxz, jyz;  // inertia over mass, m²
   std::vector<float> softest;                       // its greatest eigenvalue, 1/m²
-  std::vector<float> height;             // kHeightSamples + 1 a kind, m, one more to read beyond the end
-  std::vector<float> blend_time;         // s, of the approach to a rest pose
-  std::vector<std::int32_t> first_pose;  // of the kind's rest poses in the next ones
+  std::vector<float> height;  // kHeightSamples + 1 a kind, m, one more to read beyond the end
+  std::vector<float> hull_height, pair_reach;              // kHullHeights a kind, m
+  std::vector<float> farthest_reach;                       // m, of pair_reach
+  std::vector<float> blend_time;                           // s, of the approach to a rest pose
+  std::vector<std::int32_t> first_pose;                    // of the kind's rest poses in the next ones
   std::vector<float> pose_height, pose_x, pose_y, pose_z;  // m; normal in body axes; at least one pose a kind
 
   /// Whether the midpoint rule would feed energy into its spin.

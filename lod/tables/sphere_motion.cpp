@@ -12,8 +12,9 @@ namespace {
 
 using namespace lane;
 
-constexpr float kCalming = 4.0f;  // 1/s
-constexpr int kLying = 110;       // ms in a row on others: no passing blow in the air
+constexpr float kCalming = 4.0f;                        // 1/s
+constexpr float kStopRate = 30.0f, kStopping = 0.005f;  // 1/s; J/kg over g R
+constexpr int kLying = 110;                             // ms in a row on others: no passing blow in the air
 constexpr float kSettleSpeed =
     0.24f;  // radii in the time of the approach to a rest pose: how fast a radius grows into it
 
@@ -39,7 +40,8 @@ struct StartLoop {
     const std::uint8_t *since_crowded = in.since_crowded.data(), *eased = in.eased.data();
     const auto* on_hull = reinterpret_cast<const std::uint8_t*>(in.on_hull.data());
     const float *size = kinds.radius.data(), *height = kinds.height.data(),
-                *pose_height = kinds.pose_height.data(), *blend = kinds.blend_time.data();
+                *farthest = kinds.farthest_reach.data(), *pose_height = kinds.pose_height.data(),
+                *blend = kinds.blend_time.data();
     const std::int32_t* first_pose = kinds.first_pose.data();
     const Tensors soft = soft_of(kinds);
     float *radius = out.radius.data(), *reach = step.reach.data();
@@ -48,7 +50,8 @@ struct StartLoop {
     std::uint8_t* on_ground = step.on_ground.data();
     std::int32_t* plane = step.plane.data();
     const bool update = c.update_radius;
-    const float fall = 0.5f * c.gravity * c.time * c.time;
+    const float fall = 0.5f * c.gravity * c.time * c.time,
+                hulls = c.hulls ? 1.0f : 0.0f;  // what they reach to others is not the radius
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]);
@@ -72,7 +75,7 @@ struct StartLoop {
       const bool flies = update & sphere & (moves == int(Motion::dynamic)) & (since_crowded[i] > 0);
       const float r = choose(sphere & (moves == int(Motion::settling)), resting, choose(flies, flying, was));
       radius[i] = r;
-      reach[i] = r + 0.01f * size[k] + speed * c.time + fall;
+      reach[i] = r + hulls * (farthest[k] - r) + 0.01f * size[k] + speed * c.time + fall;
       p[i].x = v.x + c.gx * c.time, p[i].y = v.y + c.gy * c.time, p[i].z = v.z + c.gz * c.time, p[i].w = 0.0f;
       u[i].x = r * omega.x, u[i].y = r * omega.y, u[i].z = r * omega.z, u[i].w = 1.0f + r * r * softest[k];
       s[i].x = 0.0f, s[i].y = 0.0f, s[i].z = 0.0f, s[i].w = 0.5f * (dot(v, v) + dot(spun, omega));
@@ -101,7 +104,9 @@ struct EndLoop {
     std::uint8_t *crowded_for = spheres.crowded_for.data(), *since_crowded = spheres.since_crowded.data();
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
     const float* size = kinds.radius.data();
-    const double calm = double(most(0.0f, 1.0f - kCalming * c.time));
+    const double calm = double(most(0.0f, 1.0f - kCalming * c.time)),
+                 stop = double(most(0.0f, 1.0f - kStopRate * c.time));
+    const float least_energy = c.hulls ? kStopping * c.gravity : 0.0f;
     constexpr int kMoved = int(GroundState::moved), kFree = int(GroundState::free),
                   kLies = int(GroundState::lies), kSettles = int(GroundState::settles);
 #pragma GCC ivdep
@@ -119,9 +124,11 @@ struct EndLoop {
       motion[i] = std::uint8_t(
           choose(touches & (moves == int(Motion::settling)) & (state == kFree), int(Motion::dynamic), moves));
       // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for
-      // ever.
+      // ever, and, once it is no faster than what a few rounds of contacts leave undone, itself.
       const bool calms = touches & (crowded > kLying) & (s[i].w < c.resting_energy * c.gravity * size[k]);
+      const bool stops = touches & (crowded > kLying) & (s[i].w < least_energy * size[k]);
       crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
+      const double stopping = select(-std::int64_t(stops), stop, 1.0);
       const double kept = select(-std::int64_t(calms), calm, 1.0);
       const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)),
                    by_z = kept * (spun_z + double(s[i].z));
@@ -139,9 +146,9 @@ struct EndLoop {
       const float against =
           -dot(F3{float(solved_x), float(solved_y), float(solved_z)}, out) / most(dot(out, out), 1e-20f);
       const float undone = choose(calms, least(most(against, 0.0f), 1.0f / c.time), 0.0f);
-      const double to_vx = select(flight, fallen_x, solved_x + double(undone * out.x)),
-                   to_vy = select(flight, fallen_y, solved_y + double(undone * out.y));
-      const double to_vz = select(flight, fallen_z, solved_z + double(undone * out.z));
+      const double to_vx = select(flight, fallen_x, stopping * (solved_x + double(undone * out.x))),
+                   to_vy = select(flight, fallen_y, stopping * (solved_y + double(undone * out.y)));
+      const double to_vz = select(flight, fallen_z, stopping * (solved_z + double(undone * out.z)));
       const double way_x = select(flight, old_x + c.wide_gx * half, solved_x),
                    way_y = select(flight, old_y + c.wide_gy * half, solved_y);
       const double way_z = select(flight, old_z + c.wide_gz * half, solved_z);

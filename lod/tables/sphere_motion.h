@@ -8,6 +8,7 @@
 
 #include "lod/simd/lane_math.h"
 #include "lod/simd/row.h"
+#include "lod/statistical/rest_law.h"
 #include "lod/tables/sphere_kinds.h"
 #include "lod/tables/spheres.h"
 
@@ -18,18 +19,18 @@ namespace lodestone {
 struct SphereStep {
   std::vector<float> reach;  // m
   // The rows, as xyz; w. r: the sphere's radius.
+  std::vector<lane::Row> p;  // m/s, velocity with gravity and the impulses known so far; how many contacts it
+                             // has with other bodies, and with the ground that carries it among them
   std::vector<lane::Row>
-      p;  // m/s, velocity with gravity and the impulses known so far; contacts with other bodies,
-          // and one with the ground that carries it among them: so many ways its mass is split
-  std::vector<lane::Row> u;  // m/s, rω at the start; 1 + r² over the softest inertia over mass: of its
-                             // surface, what an impulse along it changes the velocity by, times the mass
+      u;  // m/s, rω at the start, then with friction's part; 1 + r² over the softest inertia over mass: of
+          // its surface, what an impulse along it changes the velocity by, times the mass
   std::vector<lane::Row>
       a;  // m/s, what the contacts of this step add; what the ground gives it against what presses
   std::vector<lane::Row> s;  // m²/s, what they add to the spin; J/kg, kinetic energy at the start
   std::vector<lane::Row> d;  // m, how far they move it out of overlaps; how far the ground alone does
-  std::vector<float> gap;    // m, to the nearest plane, where near
+  std::vector<float> gap;    // m, to its plane, where near
   std::vector<std::uint8_t> on_ground;  // GroundState
-  std::vector<std::int32_t> plane;      // the nearest
+  std::vector<std::int32_t> plane;      // that carries it most, of those the nearest
   void resize(std::size_t count);
   std::size_t bytes() const;
   /// Rows that serve for nothing until clear_added.
@@ -75,6 +76,9 @@ struct StepConstants {
   bool one_kind = false;
   bool hulls = false;  // bodies that touch no other stand on their hulls, on level ground
 };
+
+/// ms since a body last touched another, up to which it leans on it still.
+inline constexpr int kLeaningTicks = int(1000.0 * RestLaw::kLeaningTime);
 
 /// Angular velocities, radii, reaches, and velocities with gravity.
 void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,

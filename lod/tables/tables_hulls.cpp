@@ -8,12 +8,11 @@ namespace lodestone {
 
 // Those that touched no other for a while stand on their hulls; the others are spheres.
 void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
-  constexpr int kLeaning = int(1000.0 * RestLaw::kLeaningTime);  // ms
   constexpr auto kFree = std::uint8_t(GroundState::free), kNear = std::uint8_t(GroundState::near);
   constexpr auto kWithin = std::uint8_t(GroundState::within);
   for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
     std::uint8_t& state = step_.on_ground[i];
-    const bool alone = !step_.touches(std::int64_t(i)) && spheres_.since_crowded[i] >= kLeaning;
+    const bool alone = !step_.touches(std::int64_t(i)) && spheres_.since_crowded[i] >= kLeaningTicks;
     const bool level =
         state == kWithin || (state == kNear && planes_.slope[std::size_t(step_.plane[i])] == 0.0f);
     if (alone && level) {

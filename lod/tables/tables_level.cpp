@@ -234,7 +234,8 @@ void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, Co
 }
 
 double TablesLevel::count_traffic(bool pair_phase) const {
-  return count_bytes_moved({spheres_, step_, contacts_, pair_phase, has_planes(), settings_.sleeping});
+  return count_bytes_moved(
+      {spheres_, step_, contacts_, pair_phase, has_planes(), settings_.sleeping, sweeps()});
 }
 
 std::size_t TablesLevel::bytes() const {
@@ -243,7 +244,7 @@ std::size_t TablesLevel::bytes() const {
       given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
       given_.bucket_count() * sizeof(void*);
   std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) +
-                      held(tallies_) + held(clips_);
+                      held(tallies_) + held(clips_) + held(plane_touches_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
   return bytes + step_.bytes() + contacts_.bytes();
 }
@@ -305,12 +306,12 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
 void TablesLevel::start_block(std::int64_t begin, std::int64_t end, Simd simd) {
   start_step(spheres_, kinds_, constants_, simd, begin, end, step_, spheres_);
   for (std::size_t p = 0; p < ground_.planes().size(); ++p)
-    find_near_ground(spheres_, kinds_, ground_.planes()[p], std::int32_t(p), constants_, simd, begin, end,
-                     step_);
+    find_near_ground(spheres_, kinds_, planes_, ground_.planes()[p], std::int32_t(p), constants_, simd, begin,
+                     end, step_);
   const auto first = std::ranges::lower_bound(near_faces_, begin, {}, &NearFaces::place);
   for (auto near = first; near != near_faces_.end() && near->place < end; ++near)
     for (std::int32_t face = near->begin; face < near->end; ++face)
-      find_near_ground(spheres_, kinds_, faces_[std::size_t(face)],
+      find_near_ground(spheres_, kinds_, planes_, faces_[std::size_t(face)],
                        std::int32_t(ground_.planes().size()) + face, constants_, Simd::portable, near->place,
                        near->place + 1, step_);
 }
@@ -365,9 +366,59 @@ void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
     find_near_faces(were_awake, spheres_.awake);
     start_block(were_awake, spheres_.awake, simd_);
   }
-  if (still_touches_.empty()) return;
   for (auto& touch : still_touches_) touch.second = spheres_.place_of_slot[touch.second];
-  contacts_.add(spheres_, kinds_, still_touches_, bounce_velocity(), constants_, simd_);
+  if (!still_touches_.empty())
+    contacts_.add(spheres_, kinds_, still_touches_, bounce_velocity(), constants_, simd_);
+  find_further_planes();
+}
+
+// A body meets the plane that carries it as ground; in a corner it touches more, and is held by each.
+void TablesLevel::find_further_planes() {
+  const std::span<const HalfSpace> everywhere = ground_.planes();
+  plane_touches_.clear();
+  if (everywhere.size() + faces_.size() < 2) return;
+  const auto look = [&](std::int64_t i, std::uint32_t number) {
+    if (std::int32_t(number) == step_.plane[std::size_t(i)]) return;
+    const HalfSpace& other = plane(std::int32_t(number));
+    const float gap = float(other.height_of(spheres_.position(i))) - ground_height(i, -other.normal),
+                closing = float(spheres_.velocity(i).dot(other.normal));
+    const BodyKind& kind = kind_of(i);
+    if (gap + closing * constants_.time > contacts_.settings().touching * float(kind.shape->radius)) return;
+    const Vec3& n = other.normal;
+    plane_touches_.push_back({.place = std::uint32_t(i),
+                              .plane = number,
+                              .normal = {float(n.x()), float(n.y()), float(n.z())},
+                              .gap = gap,
+                              .closing = closing,
+                              .law = materials_.law(kind.material, other.material)});
+  };
+  auto near = near_faces_.begin();
+  each_marked(step_.on_ground, std::uint8_t(GroundState::near), 0, spheres_.awake, [&](std::int64_t i) {
+    for (std::uint32_t number = 0; number < everywhere.size(); ++number) look(i, number);
+    while (near != near_faces_.end() && near->place < i) ++near;
+    if (near == near_faces_.end() || near->place != i) return;
+    for (std::int32_t face = near->begin; face < near->end; ++face)
+      look(i, std::uint32_t(everywhere.size()) + std::uint32_t(face));
+  });
+  if (!plane_touches_.empty()) contacts_.add_ground(spheres_, plane_touches_, bounce_velocity(), constants_);
+}
+
+/// m, from the centre of mass: what stands for the body towards the ground, and towards others.
+float TablesLevel::ground_height(std::int64_t place, const Vec3& direction) const {
+  return constants_.hulls ? read_heights(kinds_.hull_height, place, direction)
+                          : spheres_.radius[std::size_t(place)];
+}
+
+float TablesLevel::pair_reach(std::int64_t place, const Vec3& direction) const {
+  return constants_.hulls ? read_heights(kinds_.pair_reach, place, direction)
+                          : spheres_.radius[std::size_t(place)];
+}
+
+float TablesLevel::read_heights(const std::vector<float>& heights, std::int64_t place,
+                                const Vec3& direction) const {
+  const Vec3 own = spheres_.orientation(place).conjugate() * direction;
+  return read_hull_height(heights.data(), int(spheres_.kind[std::size_t(place)]) * kHullHeights,
+                          {float(own.x()), float(own.y()), float(own.z())});
 }
 
 // Of awake bodies with sleepers; those that are hit hard enough wake.
@@ -378,7 +429,9 @@ void TablesLevel::find_still_contacts() {
     const Vec3 position = spheres_.position(i);
     still().find_near(position, double(step_.reach[i]), [&](std::uint32_t other) {
       const std::int64_t at = spheres_.place_of_slot[other];
-      const double limit = double(step_.reach[i]) + 1.01 * double(spheres_.radius[at]);
+      const double limit =
+          double(step_.reach[i]) +
+          1.01 * double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[at]] : spheres_.radius[at]);
       if ((spheres_.position(at) - position).squaredNorm() < limit * limit)
         still_touches_.emplace_back(std::uint32_t(i), other);
     });
@@ -393,7 +446,7 @@ void TablesLevel::find_still_contacts() {
     const std::int64_t at = spheres_.place_of_slot[slot];
     if (at < spheres_.awake) continue;
     const Vec3 between = spheres_.position(place) - spheres_.position(at);
-    const double gap = between.norm() - double(spheres_.radius[place]) - double(spheres_.radius[at]);
+    const double gap = between.norm() - double(pair_reach(place, -between)) - double(pair_reach(at, between));
     const Vec3 velocity = spheres_.velocity(place);
     const double closing = velocity.dot(between.normalized());
     const bool touches = gap + closing * double(constants_.time) <=
@@ -409,11 +462,10 @@ void TablesLevel::respond(ContactTally& tally) {
   if (crowd) contacts_.begin(spheres_, kinds_, materials_, constants_, step_, jobs_);
   sort_ground();
   if (!crowd) return;
-  const int sweeps = contacts_.settings().sweeps;
-  for (int sweep = 1; sweep <= sweeps; ++sweep) {
-    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps, eased_ > 0,
-                    simd_, step_, jobs_);
-    if (sweep < sweeps)
+  for (int sweep = 1; sweep <= sweeps(); ++sweep) {
+    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps(),
+                    eased_ > 0, simd_, step_, jobs_);
+    if (sweep < sweeps())
       each_block([&](std::int64_t begin, std::int64_t end) {
         if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
         take_impulses(simd_, begin, end, step_);
@@ -426,9 +478,20 @@ void TablesLevel::write_contacts() {
   contacts_.each([&](const SphereContact& c) {
     if (c.impulse <= 0.0f) return;
     const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
+    if (c.second >= kGroundPlace) {
+      const HalfSpace& under = plane(std::int32_t(c.second - kGroundPlace));
+      return log_->add(
+          {.first = spheres_.owner[c.first],
+           .ground = under.id,
+           .ground_material = under.material,
+           .point = spheres_.position(c.first) - double(ground_height(c.first, -normal)) * normal,
+           .normal = normal,
+           .impulse = double(c.impulse),
+           .approach = std::max(0.0, -double(c.closing))});
+    }
     log_->add({.first = spheres_.owner[c.first],
                .second = spheres_.owner[c.second],
-               .point = spheres_.position(c.first) - double(spheres_.radius[c.first]) * normal,
+               .point = spheres_.position(c.first) - double(pair_reach(c.first, -normal)) * normal,
                .normal = normal,
                .impulse = double(c.impulse),
                .approach = std::max(0.0, -double(c.closing))});
@@ -573,6 +636,8 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Pl
     tally += move_over_ground(i, body, around, rides, joined);
   } else {
     become_sphere(i, body);
+    if (step_.touches(i) || spheres_.since_crowded[i] < kLeaningTicks)
+      body.sphere_radius = ground_height(i, -plane(step_.plane[i]).normal);
     tally += step_tables_body(body, resting, kind_of(i), around, constants_.wide_time, tables_);
   }
   if (rides) {

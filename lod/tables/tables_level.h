@@ -1,7 +1,8 @@
-// Bodies of `tables`: every one a sphere, in dense arrays. A step: 1 start (radii, reaches), 2 near pairs
-// (cells), 3 contacts of spheres and who wakes, 4 the response of all these at once, 5 those near bodies of
-// other rungs are moved among them (rungs/near_bodies.h), 6 the ground: impacts at their exact time answered
-// from the tables, and motion, 7 rest.
+// Bodies of `tables`, in dense arrays: towards each other spheres whose radius is what their hulls reach
+// along the line of centres (as published: the same all around). A step: 1 start (radii, reaches), 2 near
+// pairs (cells), 3 contacts of spheres and who wakes, 4 the response of all these at once, 5 those near
+// bodies of other rungs are moved among them (rungs/near_bodies.h), 6 the ground: impacts at their exact time
+// answered from the tables, and motion, 7 rest.
 #pragma once
 
 #include <optional>
@@ -147,6 +148,13 @@ class TablesLevel {
   void find_near_faces(std::int64_t begin, std::int64_t end);
   void update_radii_one_by_one();
   void find_still_contacts();
+  void find_further_planes();
+  int sweeps() const {
+    return constants_.hulls ? contacts_.settings().hull_sweeps : contacts_.settings().sweeps;
+  }
+  float ground_height(std::int64_t place, const Vec3& direction) const;
+  float pair_reach(std::int64_t place, const Vec3& direction) const;
+  float read_heights(const std::vector<float>& heights, std::int64_t place, const Vec3& direction) const;
   void respond_as_paper(ContactTally& tally);
   void start_block(std::int64_t begin, std::int64_t end, Simd simd);
   void sort_ground();
@@ -202,7 +210,8 @@ class TablesLevel {
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
-      still_touches_;  // place awake, slot asleep; then both places
+      still_touches_;                      // place awake, slot asleep; then both places
+  std::vector<PlaneTouch> plane_touches_;  // of this step
   std::vector<ContactTally> tallies_;
 };
 

@@ -7,7 +7,6 @@ void TablesLevel::rest() {
   ++steps_;
   ease();
   if (!settings_.sleeping) return;
-  constexpr int kLeaning = int(1000.0 * RestLaw::kLeaningTime);  // ms
   const double gravity = settings_.gravity.norm();
   for (std::int64_t i = spheres_.awake - 1; i >= 0;
        --i) {  // from the end: the last one takes the place of one that falls asleep
@@ -17,7 +16,7 @@ void TablesLevel::rest() {
       continue;
     }
     const double radius = kind_of(i).shape->radius;
-    const bool among_others = spheres_.since_crowded[i] < kLeaning;
+    const bool among_others = spheres_.since_crowded[i] < kLeaningTicks;
     const StatisticalBody body = spheres_.body(i);
     // Nor while it is still being taken out of an overlap; one that is pressed in again as far as it is taken
     // out stays where it is.

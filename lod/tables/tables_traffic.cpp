@@ -46,12 +46,12 @@ double of_sort_ground(const TablesTraffic& t) {
 // A round of contacts, and then of the ground's.
 double of_sweep(const TablesTraffic& t) {
   const SphereStep& s = t.step;
-  const double contacts = row(t.spheres.kind, s.p, s.u) + 2.0 * row(s.a, s.s);
+  const double contacts = row(t.spheres.kind, s.p) + 2.0 * row(s.a);
   return contacts + 2.0 * row(s.p, s.a) + (t.ground ? row(s.gap, s.plane, s.on_ground) : 0.0);
 }
 
 double of_last_sweep(const TablesTraffic& t) {
-  return row(t.spheres.kind, t.spheres.radius, t.step.p, t.step.u) + 2.0 * row(t.step.a, t.step.s, t.step.d);
+  return row(t.spheres.kind, t.spheres.radius, t.step.p) + 2.0 * row(t.step.u, t.step.a, t.step.s, t.step.d);
 }
 
 double of_remember(const TablesTraffic& t) {
@@ -83,11 +83,10 @@ double count_bytes_moved(const TablesTraffic& t) {
   if (t.rest) of_body += of_rest(t);
   double of_contacts = 0.0;
   if (t.contacts.count() > 0) {
-    const int sweeps = t.contacts.settings().sweeps;
-    of_body += of_begin(t) + (sweeps - 1) * of_sweep(t) + of_last_sweep(t) + of_remember(t);
+    of_body += of_begin(t) + (t.sweeps - 1) * of_sweep(t) + of_last_sweep(t) + of_remember(t);
     // Found, begun and swept; known contacts are read, and written anew.
     of_contacts = double(t.contacts.count()) *
-                  ((2.0 + sweeps) * double(t.contacts.bytes_each()) + 2.0 * sizeof(KnownContact));
+                  ((2.0 + t.sweeps) * double(t.contacts.bytes_each()) + 2.0 * sizeof(KnownContact));
   }
   return of_body * double(t.spheres.awake) + of_contacts;
 }

@@ -15,6 +15,7 @@ struct TablesTraffic {
   const SphereStep& step;
   const SphereContacts& contacts;
   bool pair_phase = false, ground = false, rest = false;
+  int sweeps = 0;  // of the contacts
 };
 
 /// Each loop over all bodies, or all contacts, reads and writes each of its arrays once; loops that follow

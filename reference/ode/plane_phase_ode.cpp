@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <mutex>
 
 namespace lodestone::ode {
 namespace {
@@ -110,6 +111,7 @@ void PlanePhase::find_sphere_points(const Body& body, const Plane& plane,
 void PlanePhase::find_mesh_points(const Body& body, const Plane& plane,
                                   std::vector<ContactPoint>& points) const {
   std::vector<dContactGeom> found(settings_.max_contacts_per_pair);
+  const std::scoped_lock lock(trimesh_mutex());
   for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) {
     const int count = dCollide(geom, plane.geom, int(found.size()), found.data(), sizeof(dContactGeom));
     for (const dContactGeom& contact : std::span(found).first(count))

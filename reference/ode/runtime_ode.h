@@ -21,7 +21,8 @@ void prepare();
 std::int64_t messages_of_this_thread();
 
 /// Debian's ODE keeps one process-wide cache for its trimesh colliders (ODE_EXT_mt_collisions is off): hold
-/// this around every dCollide that involves a trimesh, except with a plane.
+/// this around every dCollide that involves a trimesh, with a plane too, whose collider notes there which
+/// vertices it has used.
 std::mutex& trimesh_mutex();
 
 /// Thrown out of ODE by one of its own assertions or errors, while a RecoverableScope of the thread lasts.

@@ -325,8 +325,7 @@ TEST_F(Meeting, LeaningOnOthersIsCountedInSeconds) {
     for (const double dt : {kFrame, kFrame / 4}) {
       StatisticalLevel level(settings_, floor_, materials_);
       RigidState lying, beside;
-      lying.position = {0, 0, 0.2},
-      beside.position = {model == kTables ? 0.4 : 0.2, 0, 0.2};  // spheres are as high as the box, .2 m
+      lying.position = {0, 0, 0.2}, beside.position = {0.2, 0, 0.2};
       const auto arrive = [&](const RigidState& state) {
         return level.add(model, std::uint32_t(level.size()), box(), kMass, 0, state, false, box_signature(),
                          true);
