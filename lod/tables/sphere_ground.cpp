@@ -144,8 +144,8 @@ struct LieLoop {
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
-    const SmallNumbers own{motion, spheres.pose.data(), spheres.kind.data(), step.plane.data(),
-                           step.on_ground.data()};
+    const SmallNumbers<std::uint8_t, std::int16_t, std::uint32_t> own{
+        motion, spheres.pose.data(), spheres.kind.data(), step.plane.data(), step.on_ground.data()};
     if (end - begin < kFew)
       lie_few(own, begin, end - begin);
     else
@@ -174,7 +174,8 @@ struct LieLoop {
       motion[i] = own.motion[begin + i], pose[i] = own.pose[begin + i], kind[i] = own.kind[begin + i];
       plane[i] = own.plane[begin + i], on_ground[i] = own.on_ground[begin + i];
     }
-    lie(SmallNumbers{motion, pose, kind, plane, on_ground}, begin, count);
+    lie(SmallNumbers<std::int32_t, std::int32_t, std::int32_t>{motion, pose, kind, plane, on_ground}, begin,
+        count);
     for (std::int64_t i = 0; i < count; ++i) own.motion[begin + i] = std::uint8_t(motion[i]);
   }
 
