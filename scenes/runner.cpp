@@ -204,7 +204,8 @@ class Run {
     if (report.asleep < result_.bodies) last_awake_s_ = (step + 1) * dt_s_;
     if (settings_.watch) before_ = sample_;
     observe();
-    if (settings_.watch) settings_.watch({manager_, bodies_, before_, sample_, step * dt_s_, dt_s_});
+    if (settings_.watch)
+      settings_.watch({manager_, bodies_, before_, sample_, step * dt_s_, dt_s_, processor_ms});
     look(step);
     record(step + 1);
     write([&] {

@@ -30,6 +30,7 @@ struct WatchedStep {
   std::span<const BodyId> bodies;   ///< in the scene's order, as the samples
   const RunSample &before, &after;  ///< the step
   double start_s = 0, dt_s = 0;
+  double processor_ms = 0;  ///< of the calling thread, in the step
 };
 
 struct RunSettings {

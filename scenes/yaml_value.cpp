@@ -53,23 +53,27 @@ class TreeBuilder : public YAML::EventHandler {
   void OnDocumentEnd() override {}
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    add({.line = line_of(mark)}, mark, anchor);
+    add({.line = line_of(mark), .entries = {}}, mark, anchor);
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& text) override {
     refuse_tag(mark, tag);
-    add({.kind = YamlValue::Kind::scalar, .line = line_of(mark), .quoted = tag == "!", .text = text}, mark,
-        anchor);
+    add({.kind = YamlValue::Kind::scalar,
+         .line = line_of(mark),
+         .quoted = tag == "!",
+         .text = text,
+         .entries = {}},
+        mark, anchor);
   }
 
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
-    open({.kind = YamlValue::Kind::sequence, .line = line_of(mark)}, mark, tag, anchor);
+    open({.kind = YamlValue::Kind::sequence, .line = line_of(mark), .entries = {}}, mark, tag, anchor);
   }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
-    open({.kind = YamlValue::Kind::map, .line = line_of(mark)}, mark, tag, anchor);
+    open({.kind = YamlValue::Kind::map, .line = line_of(mark), .entries = {}}, mark, tag, anchor);
   }
   void OnSequenceEnd() override { close(); }
   void OnMapEnd() override { close(); }

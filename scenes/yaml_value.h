@@ -9,16 +9,16 @@
 
 namespace lodestone {
 
-struct YamlEntry;
+struct YamlEntry;  // incomplete here: an initializer = {} of a vector of them would not do for clang
 
 struct YamlValue {
   enum class Kind { null, scalar, sequence, map };
   Kind kind = Kind::null;
-  int line = 1;                         ///< counted from 1
-  bool quoted = false;                  ///< "1" is text, 1 is a number
-  std::string text = {};                ///< of a scalar
-  std::vector<YamlValue> items = {};    ///< of a sequence
-  std::vector<YamlEntry> entries = {};  ///< of a map, in the file's order, no key twice
+  int line = 1;                       ///< counted from 1
+  bool quoted = false;                ///< "1" is text, 1 is a number
+  std::string text = {};              ///< of a scalar
+  std::vector<YamlValue> items = {};  ///< of a sequence
+  std::vector<YamlEntry> entries;     ///< of a map, in the file's order, no key twice
 };
 
 struct YamlEntry {

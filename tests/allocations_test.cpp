@@ -8,6 +8,8 @@
 #include <memory>
 #include <new>
 
+#include "reference/sanitizers.h"
+
 namespace {
 
 std::atomic<std::int64_t> calls = 0, held = 0;
@@ -21,7 +23,7 @@ std::atomic<std::int64_t> calls = 0, held = 0;
 
 }  // namespace
 
-#if !defined(__SANITIZE_ADDRESS__)
+#if !LODESTONE_ADDRESS_SANITIZER && !LODESTONE_THREAD_SANITIZER
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // where one is inlined and the other is not
 void* operator new(std::size_t size) { return counted(std::malloc(size ? size : 1)); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
@@ -44,7 +46,7 @@ std::int64_t bytes_held() { return held; }
 
 namespace {
 
-#if !defined(__SANITIZE_ADDRESS__)
+#if !LODESTONE_ADDRESS_SANITIZER && !LODESTONE_THREAD_SANITIZER
 TEST(Allocations, AreCountedAndWeighed) {
   struct alignas(64) Wide {
     char bytes[640];

@@ -120,6 +120,7 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   if (change.is_none() && is_lowest_alone(shape.hull, lowest, normal_in_body, height, margin)) return result;
   Below below;
   find_below(shape.hull, normal_in_body, height, margin, change, below);
+  if (below.count == 0) return result;  // as it is in single precision
   const auto keep = [&](std::int32_t vertex) {
     const Vec3 arm = orientation * shape.hull.vertices[std::size_t(vertex)];
     result.contact[std::size_t(result.count++)] = {arm, height + arm.dot(normal), vertex};

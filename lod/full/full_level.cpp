@@ -186,25 +186,43 @@ void FullLevel::step(double dt, Counters& counters) {
 }
 
 int FullLevel::substeps_of(double dt) const {
-  const bool thin_among_others = std::ranges::any_of(members_, [&](const Member& member) {
-    const Shape& shape = world_->shape(member.id);
-    return shape.inner_radius < kThin * shape.radius && !world_->asleep(member.id) &&
-           is_near_another(member.id, dt);
-  });
-  return thin_among_others ? std::max(settings_.substeps, kThinSubsteps) : settings_.substeps;
+  return may_thin_meet(dt) ? std::max(settings_.substeps, kThinSubsteps) : settings_.substeps;
 }
 
-/// Whether it may meet another within `dt` seconds.
-bool FullLevel::is_near_another(OdeBodyId body, double dt) const {
-  const RigidState own = world_->state(body);
-  const double radius = world_->shape(body).radius, fall = 0.5 * settings_.gravity.norm() * dt * dt;
-  return std::ranges::any_of(members_, [&](const Member& other) {
-    if (other.id == body) return false;
-    const RigidState state = world_->state(other.id);
-    const double reach =
-        radius + world_->shape(other.id).radius + fall + (own.velocity - state.velocity).norm() * dt;
-    return (own.position - state.position).squaredNorm() < reach * reach;
-  });
+/// Whether a thin body that is awake may meet another within `dt` seconds. By a sweep along the axis on which
+/// the bodies lie furthest apart.
+bool FullLevel::may_thin_meet(double dt) const {
+  const auto is_thin_awake = [this](OdeBodyId body) {
+    const Shape& shape = world_->shape(body);
+    return shape.inner_radius < kThin * shape.radius && !world_->asleep(body);
+  };
+  if (std::ranges::none_of(members_, is_thin_awake, &Member::id)) return false;
+  struct Way {
+    Vec3 position, velocity;
+    double radius, reach;  // m; reach: in dt, from the position
+    bool thin_awake;
+  };
+  std::vector<Way> ways;
+  Eigen::AlignedBox3d all;
+  const double fall = 0.5 * settings_.gravity.norm() * dt * dt;
+  for (const Member& member : members_) {
+    const RigidState state = world_->state(member.id);
+    const double radius = world_->shape(member.id).radius;
+    ways.push_back({state.position, state.velocity, radius, radius + 0.5 * fall + state.velocity.norm() * dt,
+                    is_thin_awake(member.id)});
+    all.extend(state.position);
+  }
+  Eigen::Index axis = 0;
+  all.sizes().maxCoeff(&axis);
+  const auto low = [axis](const Way& way) { return way.position[axis] - way.reach; };
+  std::ranges::sort(ways, {}, low);
+  for (auto a = ways.begin(); a != ways.end(); ++a)
+    for (auto b = a + 1; b != ways.end() && low(*b) < a->position[axis] + a->reach; ++b) {
+      const double reach = a->radius + b->radius + fall + (a->velocity - b->velocity).norm() * dt;
+      if ((a->thin_awake || b->thin_awake) && (a->position - b->position).squaredNorm() < reach * reach)
+        return true;
+    }
+  return false;
 }
 
 void FullLevel::begin_callers_step(double dt) { world_->begin_callers_step(dt); }

@@ -104,7 +104,7 @@ class FullLevel {
   void make_world();
   /// As many as were set, or more while thin bodies are awake among others.
   int substeps_of(double dt) const;
-  bool is_near_another(OdeBodyId body, double dt) const;
+  bool may_thin_meet(double dt) const;
   void add_new_counts(Counters& counters);
 
   FullSettings settings_;

@@ -11,8 +11,11 @@ namespace {
 constexpr double kThinnest = 1e-3;         // of a body's radius: the ball inside counts as so large at least
 constexpr std::size_t kMembersSeen = 256;  // of the full level, the last
 constexpr std::int64_t kStepsBetween = 8;  // steps after which one more comes
+// Volume of the bodies whose centres are in a room over the room's: where newcomers are beyond the first,
+// which touching cubes stay below however they lie in the rooms, they come in up to the second.
+constexpr double kCrowded = 8.0, kFilled = 1.0;
 
-// A cell of a grid, whose width (m) is the power of two at or below the radius of the ball inside the body.
+// A cell of a grid, whose width (m) is a power of two.
 struct Place {
   std::array<std::int64_t, 3> cell{};
   int size = 0;
@@ -29,13 +32,54 @@ struct HashOfPlace {
 };
 
 // Positions are within 1e8 m: no cell is beyond an integer unless a body is smaller than a picometre.
-Place place_of(const Vec3& position, const Shape& shape) {
-  const int size = std::max(-30, std::ilogb(std::max(shape.inner_radius, kThinnest * shape.radius)));
+Place cell_at(const Vec3& position, int size) {
   Place place{.size = size};
   for (int axis = 0; axis < 3; ++axis)
     place.cell[std::size_t(axis)] = std::int64_t(std::floor(std::ldexp(position[axis], -size)));
   return place;
 }
+
+// The power of two at or below the radius of the ball inside the body.
+Place place_of(const Vec3& position, const Shape& shape) {
+  return cell_at(position, std::max(-30, std::ilogb(std::max(shape.inner_radius, kThinnest * shape.radius))));
+}
+
+// A cell at least as wide as the body's radius, at most twice as wide.
+Place room_of(const Vec3& position, const Shape& shape) {
+  return cell_at(position, std::max(-30, std::ilogb(shape.radius) + 1));
+}
+
+double volume_of(const Place& room) { return std::ldexp(1.0, 3 * room.size); }  // m³
+
+// Where more newcomers are than may take part at once.
+struct Crowd {
+  Vec3 middle;         // m, of the first of them:
+  const Shape* shape;  // whoever takes part within its radius is in their way
+  int there;
+};
+
+// The crowds by the rooms that they reach into: 27 at most.
+class CrowdGrid {
+ public:
+  void add(Crowd& crowd) {
+    const Place low = room_of(crowd.middle.array() - crowd.shape->radius, *crowd.shape),
+                high = room_of(crowd.middle.array() + crowd.shape->radius, *crowd.shape);
+    Place at = low;
+    for (at.cell[0] = low.cell[0]; at.cell[0] <= high.cell[0]; ++at.cell[0])
+      for (at.cell[1] = low.cell[1]; at.cell[1] <= high.cell[1]; ++at.cell[1])
+        for (at.cell[2] = low.cell[2]; at.cell[2] <= high.cell[2]; ++at.cell[2])
+          crowds_[at].push_back(&crowd);
+  }
+  void count(const Vec3& position, const Place& room) {
+    const auto crowds = crowds_.find(room);
+    if (crowds == crowds_.end()) return;
+    for (Crowd* crowd : crowds->second)
+      crowd->there += (crowd->middle - position).norm() < crowd->shape->radius;
+  }
+
+ private:
+  std::unordered_map<Place, std::vector<Crowd*>, HashOfPlace> crowds_;
+};
 
 bool meets_its_kind(const BodyProperties& properties) {
   return !properties.kinematic &&
@@ -48,46 +92,65 @@ std::vector<std::uint32_t> find_held_back(const Levels& levels) {
   const BodyTable& bodies = levels.bodies;
   const auto& newcomers = bodies.newcomers();
   if (newcomers.size() <= kBodiesOfAPlace) return {};
-  const auto place_of_body = [&](std::uint32_t body) {
-    return place_of(levels.state(body).position, *bodies.shape(body));
-  };
   const auto counts = [&](std::uint32_t body) {
     return bodies.alive(body) && meets_its_kind(bodies.properties(body));
   };
-  std::unordered_map<Place, int, HashOfPlace>
-      taken;  // how many are there; of places where more than may be want to
-  for (std::size_t i = 0; i < newcomers.size(); ++i)
-    if (bodies.waits_at(i) && counts(newcomers[i].index)) ++taken[place_of_body(newcomers[i].index)];
-  std::erase_if(taken, [](const auto& place) { return place.second <= kBodiesOfAPlace; });
-  if (taken.empty()) return {};
-  const int more = levels.now % kStepsBetween == 0;
-  for (auto& place : taken) place.second = -more;
+  const auto each_newcomer = [&](const auto& visit) {
+    for (std::size_t i = 0; i < newcomers.size(); ++i)
+      if (const std::uint32_t body = newcomers[i].index; bodies.waits_at(i) && counts(body))
+        visit(body, levels.state(body).position, *bodies.shape(body));
+  };
+  std::unordered_map<Place, Crowd, HashOfPlace> crowds;
+  std::unordered_map<Place, double, HashOfPlace> rooms;  // m³ of bodies
+  each_newcomer([&](std::uint32_t, const Vec3& position, const Shape& shape) {
+    rooms[room_of(position, shape)] += shape.volume;
+    ++crowds.try_emplace(place_of(position, shape), Crowd{position, &shape, 0}).first->second.there;
+  });
+  std::erase_if(crowds, [](const auto& crowd) { return crowd.second.there <= kBodiesOfAPlace; });
+  std::erase_if(rooms, [](const auto& room) { return room.second <= kCrowded * volume_of(room.first); });
+  if (crowds.empty() && rooms.empty()) return {};
+  CrowdGrid grid;
+  for (auto& [place, crowd] : crowds) crowd.there = 0, grid.add(crowd);
+  for (auto& [room, volume] : rooms) volume = 0.0;
   for (std::uint32_t body = 0; body < bodies.indices(); ++body) {
     if (!counts(body) || bodies.level(body).newcomer) continue;
-    if (const auto place = taken.find(place_of_body(body)); place != taken.end())
-      place->second = std::min(place->second + 1, kBodiesOfAPlace - more);
+    const Vec3 position = levels.state(body).position;
+    const Place its = room_of(position, *bodies.shape(body));
+    grid.count(position, its);
+    if (const auto room = rooms.find(its); room != rooms.end()) room->second += bodies.shape(body)->volume;
   }
+  const bool more = levels.now % kStepsBetween == 0;
+  for (auto& [place, crowd] : crowds) crowd.there = std::min(crowd.there, kBodiesOfAPlace) - more;
+  for (auto& [room, volume] : rooms)
+    volume = std::min(volume, kFilled * (more ? std::nextafter(volume_of(room), 0.0) : volume_of(room)));
   std::vector<std::uint32_t> held;
-  for (std::size_t i = 0; i < newcomers.size(); ++i) {
-    if (!bodies.waits_at(i) || !counts(newcomers[i].index)) continue;
-    const auto place = taken.find(place_of_body(newcomers[i].index));
-    if (place != taken.end() && ++place->second > kBodiesOfAPlace) held.push_back(newcomers[i].index);
-  }
+  each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
+    const auto crowd = crowds.find(place_of(position, shape));
+    const auto room = rooms.find(room_of(position, shape));
+    const bool waits = (crowd != crowds.end() && crowd->second.there >= kBodiesOfAPlace) ||
+                       (room != rooms.end() && room->second >= kFilled * volume_of(room->first));
+    if (waits) return held.push_back(body);
+    if (crowd != crowds.end()) ++crowd->second.there;
+    if (room != rooms.end()) room->second += shape.volume;
+  });
   std::ranges::sort(held);
   return held;
 }
 
 bool is_full_place(const Levels& levels, const Vec3& position, const Shape& shape) {
   const auto& members = levels.full.members();
-  const Place place = place_of(position, shape);
+  const Place place = place_of(position, shape), room = room_of(position, shape);
   int there = 0;
-  for (std::size_t i = members.size();
-       i > members.size() - std::min(members.size(), kMembersSeen) && there < kBodiesOfAPlace; --i) {
+  double volume = shape.volume;
+  for (std::size_t i = members.size(); i > members.size() - std::min(members.size(), kMembersSeen); --i) {
     const std::uint32_t other = members[i - 1].owner;
     const Vec3 at = levels.state(other).position;
-    there += at.allFinite() && place_of(at, *levels.bodies.shape(other)) == place;
+    if (!at.allFinite()) continue;
+    const Shape& its = *levels.bodies.shape(other);
+    there += place_of(at, its) == place;
+    if (room_of(at, its) == room) volume += its.volume;
   }
-  return there >= kBodiesOfAPlace;
+  return there >= kBodiesOfAPlace || (volume > kCrowded * volume_of(room) && volume > shape.volume);
 }
 
 }  // namespace lodestone

@@ -11,12 +11,15 @@
 namespace lodestone {
 
 /// So many of one size at a time, nearer to each other than the radius of the ball inside them
-/// (Shape::inner_radius): stacks, of thin plates too, are none.
+/// (Shape::inner_radius): stacks, of thin plates too, are none. Nor do they come in but as many as fit by
+/// volume where they were given eight times as densely.
 inline constexpr int kBodiesOfAPlace = 4;
 
-/// The newcomers that wait, ascending. Whatever stays there (asleep, or let through by a filter), one more
-/// comes every eighth step. Those that meet none of their own kind never wait. Costs a look at every body in
-/// a step in which more than kBodiesOfAPlace newcomers are at one place, else one at the newcomers.
+/// The newcomers that wait, ascending: until less than kBodiesOfAPlace take part within a radius of them, and
+/// where they were given too densely until there is room for them in theirs. Whatever stays there (asleep, or
+/// let through by a filter), one more comes every eighth step. Those that meet none of their own kind never
+/// wait. Costs a look at every body in a step in which there are too many at a place or in a room, else one
+/// at the newcomers.
 std::vector<std::uint32_t> find_held_back(const Levels& levels);
 
 /// Whether a full body of `shape` at `position` (m) would be one too many, by the members that came last.

@@ -11,16 +11,13 @@
 #include <vector>
 
 #include "reference/allowed_threads.h"
+#include "reference/sanitizers.h"
 
 namespace lodestone {
 namespace {
 
-#ifdef __SANITIZE_THREAD__
-constexpr bool kOwnThreads =
-    true;  // oneTBB's library is not instrumented: the sanitizer does not see who waits for whom in it
-#else
-constexpr bool kOwnThreads = false;
-#endif
+// oneTBB's library is not instrumented: the sanitizer does not see who waits for whom in it.
+constexpr bool kOwnThreads = LODESTONE_THREAD_SANITIZER;
 
 /// Threads of its own for each call.
 JobRunner make_thread_runner(int threads) {

@@ -17,14 +17,7 @@
 #include <new>
 
 #include "reference/error.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define LODESTONE_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define LODESTONE_SANITIZED 1
-#endif
-#endif
+#include "reference/sanitizers.h"
 
 namespace lodestone {
 namespace {
@@ -77,11 +70,9 @@ void limit_this_process(const ChildLimits& limits, std::uintmax_t address_space_
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM, SIGALRM, SIGXCPU, SIGSEGV, SIGABRT, SIGBUS, SIGFPE})
     std::signal(signal, SIG_DFL);
-#ifndef LODESTONE_SANITIZED
-  if (address_space_before > 0) set_limit(RLIMIT_AS, address_space_before + limits.memory_bytes);
-#else
-  (void)address_space_before;
-#endif
+  // Sanitizers map terabytes for themselves.
+  if (address_space_before > 0 && !LODESTONE_ADDRESS_SANITIZER && !LODESTONE_THREAD_SANITIZER)
+    set_limit(RLIMIT_AS, address_space_before + limits.memory_bytes);
   set_limit(RLIMIT_CPU, limits.processor_s, 1);  // then SIGXCPU, a second later SIGKILL
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, 0);

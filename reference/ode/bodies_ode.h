@@ -30,9 +30,10 @@ struct Body {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   RigidState last_good;
   BodyProperties properties;
-  double to_sleep_s = 0.0;  ///< how much longer it has to be still to fall asleep
-  bool was_enabled = true;  ///< after the last substep
-  bool damped = false;      ///< ODE was told of its damping
+  double to_sleep_s = 0.0;   ///< how much longer it has to be still to fall asleep
+  bool was_enabled = true;   ///< after the last substep
+  bool fell_asleep = false;  ///< in this substep
+  bool damped = false;       ///< ODE was told of its damping
   OdeGeometry geometry = OdeGeometry::trimesh;
   std::uint64_t birth =
       0;  ///< bodies of this world made before it: ODE goes through them from the last to the first

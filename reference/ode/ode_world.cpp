@@ -110,7 +110,7 @@ void OdeWorld::begin_callers_step(double dt) {
   impl_->callers_step_s = dt;
   impl_->begin_step(dt);
   impl_->sweep.begin(impl_->bodies);
-  impl_->begin_substep(dt, 0);
+  impl_->begin_substep(dt);
 }
 
 void OdeWorld::end_callers_step() {

@@ -17,17 +17,19 @@ void put_to_rest(dBodyID body) {
 }  // namespace
 
 void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
-  if (!on_) return;
-  find_carried(carried);
+  if (on_) find_carried(carried);
   for (Body& body : bodies.slots()) {
+    body.fell_asleep = false;
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
     // Woken from outside, and not by ODE's own step with those that it hangs together with.
     if (!body.was_enabled) body.to_sleep_s = law_.time;
     body.was_enabled = true;
-    if (dBodyGetNumJoints(body.body) == 0 || !body.properties.allow_sleep || body.properties.kinematic)
+    if (!on_ || dBodyGetNumJoints(body.body) == 0 || !body.properties.allow_sleep ||
+        body.properties.kinematic)
       continue;
     body.to_sleep_s = is_still(body) ? body.to_sleep_s - h : law_.time;
-    if (body.to_sleep_s <= 0.0) put_to_rest(body.body);
+    body.fell_asleep = body.to_sleep_s <= 0.0;
+    if (body.fell_asleep) put_to_rest(body.body);
   }
 }
 

@@ -28,9 +28,10 @@ struct OdeWorld::Impl {
   void end_step();
 
   // A substep: contacts, ODE's own step (or the caller's), and putting right what came of it.
-  bool try_substep(double h, int attempt, bool by_quick_step);
+  bool try_substep(double h);
   bool retry_substep(double h, int attempt, bool by_quick_step);
-  void begin_substep(double h, int attempt);
+  void begin_substep(double h);
+  void find_contacts(double h, int attempt);
   bool advance(double h, bool by_quick_step);
   [[noreturn]] void fail(const std::string& message);
   void end_substep(double h);

@@ -104,7 +104,7 @@ void OdeWorld::Impl::end_step() {
 // caller's world, whose other bodies cannot be taken back.
 void OdeWorld::Impl::substep(double h) {
   sweep.begin(bodies);
-  bool solved = try_substep(h, 0, false) || !own_world;
+  bool solved = try_substep(h) || !own_world;
   for (int attempt = 1; !solved && attempt < ContactJoints::kMostAttempts; ++attempt)
     solved = retry_substep(h, attempt, false);
   if (!solved) retry_substep(h, 0, true);
@@ -112,26 +112,32 @@ void OdeWorld::Impl::substep(double h) {
 }
 
 /// False where ODE had something to complain of.
-bool OdeWorld::Impl::try_substep(double h, int attempt, bool by_quick_step) {
+bool OdeWorld::Impl::try_substep(double h) {
   held_forces.give();
-  begin_substep(h, attempt);
-  return advance(h, by_quick_step);
+  begin_substep(h);
+  return advance(h, false);
 }
 
 bool OdeWorld::Impl::retry_substep(double h, int attempt, bool by_quick_step) {
   joints.end();
   take_back_bodies();
-  return try_substep(h, attempt, by_quick_step);
+  held_forces.give();
+  find_contacts(h, attempt);
+  return advance(h, by_quick_step);
 }
 
-void OdeWorld::Impl::begin_substep(double h, int attempt) {
+void OdeWorld::Impl::begin_substep(double h) {
+  find_contacts(h, 0);
+  sleep.run(bodies, joints.carried(), h);
+}
+
+void OdeWorld::Impl::find_contacts(double h, int attempt) {
   push_bodies();
   joints.begin(h, attempt);
   {
     const Timing timing(times.collision_ms);
     collision.collide(bodies, joints, h);
   }
-  sleep.run(bodies, joints.carried(), h);
 }
 
 void OdeWorld::Impl::end_substep(double h) {
@@ -142,9 +148,17 @@ void OdeWorld::Impl::end_substep(double h) {
   counters.passes_prevented += sweep.stop_passing(bodies, collision.broad_phase(), joints.contacts());
 }
 
+// Who slept, or fell asleep in this substep, sleeps on: the sleep law has been asked already.
 void OdeWorld::Impl::take_back_bodies() {
-  for (const Body& body : bodies.slots())
-    if (body.body) ode::set_state(body.body, body.last_good);
+  for (const Body& body : bodies.slots()) {
+    if (!body.body || !dBodyIsEnabled(body.body)) continue;
+    RigidState before = body.last_good;
+    if (!body.was_enabled || body.fell_asleep) {
+      before.velocity = before.angular_velocity = Vec3::Zero();
+      dBodyDisable(body.body);
+    }
+    ode::set_state(body.body, before);
+  }
 }
 
 void OdeWorld::Impl::push_bodies() {

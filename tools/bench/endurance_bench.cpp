@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "lod/timing/thread_clock.h"
 #include "reference/random.h"
 #include "scenes/run_measures.h"
+#include "scenes/runner.h"
 #include "tools/bench/settled_bench.h"
 #include "tools/interrupt.h"
 #include "tools/median.h"
@@ -22,31 +24,68 @@ namespace {
 constexpr double kEnduranceFrame = 1.0 / 60, kGravity = 9.81;  // s, m/s²
 constexpr double kCircle_m = 6.0, kCircle_s = 7.0;             // of the viewpoint: radius, and once round
 const Vec3 kEnduranceSides(0.2, 0.3, 0.24);                    // m, of a crate
+constexpr double kSceneCircle_m = 10.0, kSceneHeight_m = 2.0;  // of a scene's viewpoint
+
+/// What is read at the end of each round.
+class Rounds {
+ public:
+  explicit Rounds(std::int64_t steps) {  // before memory is looked at
+    for (auto* each : {&step_us_, &heap_, &resident_}) each->reserve(std::size_t(steps / kEnduranceRound));
+  }
+
+  void add(double step_us) {
+    step_us_.push_back(step_us);
+    heap_.push_back(heap_bytes()), resident_.push_back(resident_bytes());
+  }
+
+  /// `grown`: part of the rounds after which no memory is to grow.
+  void sum_up(double grown, EnduranceFigures& figures) const {
+    if (step_us_.size() < 2) return;
+    const auto rounds = double(step_us_.size());
+    const auto tenth = std::max<std::ptrdiff_t>(1, std::ptrdiff_t(rounds / 10)),
+               first = std::max<std::ptrdiff_t>(1, std::ptrdiff_t(rounds * grown));
+    const auto growth = [&](const std::vector<double>& bytes) {
+      return *std::ranges::max_element(bytes.begin() + first, bytes.end()) - bytes[std::size_t(first - 1)];
+    };
+    figures.heap_growth_bytes = growth(heap_);
+    figures.resident_growth_bytes = growth(resident_);
+    const auto second = step_us_.begin() + tenth;
+    figures.first_step_us =
+        median_of(std::vector<double>(second, second + std::min(tenth, step_us_.end() - second)));
+    figures.last_step_us = median_of(std::vector<double>(step_us_.end() - tenth, step_us_.end()));
+  }
+
+ private:
+  std::vector<double> step_us_, heap_, resident_;
+};
+
+void show_progress(const EnduranceSettings& settings, std::int64_t steps) {
+  if (settings.progress)
+    settings.progress(fmt::format("step {} of {}", steps, settings.steps),
+                      double(steps) / double(settings.steps));
+}
 
 class EndlessWorld {
  public:
   explicit EndlessWorld(const EnduranceSettings& settings)
       : settings_(settings),
         shape_(std::make_shared<const Shape>(make_shape("crate", make_box(kEnduranceSides)))),
-        manager_(make_manager(settings, make_coarse_signature(*shape_))) {
+        manager_(make_manager(settings, make_coarse_signature(*shape_))),
+        rounds_(settings.steps) {
     manager_.add_plane(Vec3::UnitZ(), 0.0);
     for (int i = 0; i < settings.bodies; ++i)
       bodies_.push_back(manager_.add_body({.shape = shape_, .state = start(0, i)}));
-    const std::size_t rounds = std::size_t(settings.steps / kEnduranceRound);
-    step_us_.reserve(rounds), heap_.reserve(rounds), resident_.reserve(rounds);  // before memory is looked at
   }
 
   EnduranceFigures measure() {
     until_interrupted([this] {
       for (std::int64_t round = 0; (round + 1) * kEnduranceRound <= settings_.steps && figures_.finite;
            ++round) {
-        if (settings_.progress)
-          settings_.progress(fmt::format("step {} of {}", figures_.steps, settings_.steps),
-                             double(figures_.steps) / double(settings_.steps));
+        show_progress(settings_, figures_.steps);
         run_round(round);
       }
     });
-    sum_up();
+    rounds_.sum_up(0.1, figures_);
     return figures_;
   }
 
@@ -91,8 +130,7 @@ class EndlessWorld {
       figures_.states_recovered = report.counters.states_recovered;
       figures_.energy_over_start = std::max(figures_.energy_over_start, energy_j() / energy_at_start);
     }
-    step_us_.push_back(1e3 * spent_ms / kEnduranceRound);
-    heap_.push_back(heap_bytes()), resident_.push_back(resident_bytes());
+    rounds_.add(1e3 * spent_ms / kEnduranceRound);
   }
 
   double energy_j() {
@@ -106,27 +144,53 @@ class EndlessWorld {
     return sum;
   }
 
-  void sum_up() {
-    if (step_us_.size() < 2) return;
-    const std::ptrdiff_t tenth = std::max<std::ptrdiff_t>(1, std::ptrdiff_t(step_us_.size() / 10));
-    const auto growth = [&](const std::vector<double>& bytes) {
-      return *std::ranges::max_element(bytes.begin() + tenth, bytes.end()) - bytes[std::size_t(tenth - 1)];
-    };
-    figures_.heap_growth_bytes = growth(heap_);
-    figures_.resident_growth_bytes = growth(resident_);
-    const auto second = step_us_.begin() + tenth;
-    figures_.first_step_us =
-        median_of(std::vector<double>(second, second + std::min(tenth, step_us_.end() - second)));
-    figures_.last_step_us = median_of(std::vector<double>(step_us_.end() - tenth, step_us_.end()));
-  }
-
   const EnduranceSettings& settings_;
   std::shared_ptr<const Shape> shape_;
   Manager manager_;
   std::vector<BodyId> bodies_;
-  std::vector<double> step_us_, heap_, resident_;  // of each round
+  Rounds rounds_;
   EnduranceFigures figures_;
 };
+
+// Round where the scene's first viewpoint looks, as a path of its own for all the steps.
+SceneViewpoint circling_viewpoint(const Scene& scene, std::int64_t steps) {
+  constexpr int kCorners = 24;
+  SceneViewpoint viewpoint;
+  if (!scene.viewpoints.empty()) viewpoint.look_at_m = scene.viewpoints.front().look_at_m;
+  for (std::int64_t corner = 0; corner <= kCorners * (steps / kEnduranceCircle + 1); ++corner) {
+    const double angle = 2 * std::numbers::pi * double(corner % kCorners) / kCorners;
+    viewpoint.path.push_back({double(corner) * kEnduranceCircle * scene.step.dt_s / kCorners,
+                              viewpoint.look_at_m + Vec3(kSceneCircle_m * std::cos(angle),
+                                                         kSceneCircle_m * std::sin(angle), kSceneHeight_m)});
+  }
+  return viewpoint;
+}
+
+EnduranceFigures endure_scene(const EnduranceSettings& settings) {
+  const int steps = int(std::min<std::int64_t>(settings.steps, std::numeric_limits<int>::max()));
+  Scene scene = *settings.scene;
+  scene.viewpoints = {circling_viewpoint(scene, steps)};
+  Rounds rounds(steps);
+  EnduranceFigures figures;
+  double spent_ms = 0, energy_at_start = 0;
+  const auto watch = [&](const WatchedStep& step) {
+    if (figures.steps == 0) energy_at_start = step.before.energy_j;
+    const StepReport& report = step.manager.report();
+    ++figures.steps;
+    figures.changes += report.promotions + report.demotions;
+    figures.states_recovered = report.counters.states_recovered;
+    figures.energy_over_start = std::max(figures.energy_over_start, step.after.energy_j / energy_at_start);
+    figures.finite = step.after.finite;
+    spent_ms += step.processor_ms;
+    if (figures.steps % kEnduranceRound != 0) return;
+    rounds.add(1e3 * spent_ms / kEnduranceRound);
+    spent_ms = 0;
+    show_progress(settings, figures.steps);
+  };
+  until_interrupted([&] { run_scene(scene, {.steps = steps, .threads = settings.threads, .watch = watch}); });
+  rounds.sum_up(1.0 / 3.0, figures);
+  return figures;
+}
 
 }  // namespace
 
@@ -138,7 +202,7 @@ bool endures(const EnduranceFigures& figures) {
 }
 
 EnduranceFigures bench_endurance(const EnduranceSettings& settings) {
-  return EndlessWorld(settings).measure();
+  return settings.scene ? endure_scene(settings) : EndlessWorld(settings).measure();
 }
 
 }  // namespace lodestone

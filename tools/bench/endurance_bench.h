@@ -3,14 +3,17 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "scenes/scene.h"
 #include "signature/signature_source.h"
 
 namespace lodestone {
 
 struct EnduranceSettings {
-  std::int64_t steps = 1'000'000;  ///< of 1/60 s, at least 2 · kEnduranceRound
-  int bodies = 12;
+  std::int64_t steps = 1'000'000;   ///< of 1/60 s, at least 2 · kEnduranceRound
+  std::optional<Scene> scene = {};  ///< else crates
+  int bodies = 12;                  ///< crates
   int threads = 1;
   std::uint64_t seed = 1;
   Progress progress = {};
@@ -19,8 +22,13 @@ struct EnduranceSettings {
 /// Steps after which all bodies are put back in the air, each turned and moving in another way.
 inline constexpr int kEnduranceRound = 600;
 
+/// Steps of a scene after which its viewpoint has gone round once.
+inline constexpr int kEnduranceCircle = 1200;
+
 /// Crates fall on a plane while a viewpoint circles them once in 7 s, so that they go up and down the rungs.
-/// Memory is read at the end of each round; the first tenth of the rounds is for arrays to grow in.
+/// Memory is read at the end of each round; the first tenth of the rounds (of a scene, whose runner has
+/// tallies to fill, the first third) is for arrays to grow in. A scene goes on from round to round as it is,
+/// a viewpoint circling where its first one looks, and its energy is over that at its start.
 struct EnduranceFigures {
   std::int64_t steps = 0;
   std::int64_t changes = 0;  ///< of rung

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenes/scene_file.h"
 #include "tools/bench/endurance_bench.h"
 #include "tools/commands.h"
 #include "tools/progress.h"
@@ -15,6 +16,7 @@ using nlohmann::ordered_json;
 
 struct BenchEnduranceArguments {
   EnduranceSettings bench;
+  std::string scene;
   ResultArguments results;
 };
 
@@ -48,6 +50,7 @@ std::string text_of(const EnduranceFigures& f) {
 }
 
 ExitCode run_endurance(BenchEnduranceArguments arguments) {
+  if (!arguments.scene.empty()) arguments.bench.scene = load_scene(arguments.scene);
   const EnduranceFigures figures = with_progress(arguments.bench, bench_endurance);
   print_results(arguments.results, json_of(figures), text_of(figures));
   return endures(figures) ? ExitCode::done : ExitCode::check_failed;
@@ -61,9 +64,10 @@ void add_bench_endurance_command(Command& bench) {
   EnduranceSettings& settings = arguments.bench;
   command.add_option("--steps", settings.steps, "of 1/60 s")
       .within(std::int64_t(2 * kEnduranceRound), std::int64_t(10'000'000'000));
+  command.add_option("--scene", arguments.scene, "a YAML file, instead of crates: a viewpoint circles it");
   command.add_option("--bodies", settings.bodies, "crates").within(1, 1000);
   command.add_option("--threads", settings.threads, "of the statistical level").within(1, 4096);
-  command.add_option("--seed", settings.seed, "of the starts");
+  command.add_option("--seed", settings.seed, "of the crates' starts");
   add_json_argument(command, arguments.results);
   command.add_footer("Exit code 1 where a figure is beyond its bound.");
 }

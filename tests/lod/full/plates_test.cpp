@@ -68,5 +68,23 @@ TEST(Plates, TurnedAgainstEachOtherTheyComeToRest) {
   EXPECT_EQ(stack.asleep, 20);
 }
 
+// A substep that is done again leaves those alone that slept: their last state before has a speed.
+TEST(Plates, SleepersElsewhereKeepStill) {
+  Manager manager = on_floor();
+  const BodyId ball = add(manager, std::make_shared<const Shape>(make_sphere_shape(0.15)),
+                          at({5, 0, 0.15}, {1e-3, 0, 0}), LevelChoice::full);
+  for (int i = 0; i < 600 && !manager.asleep(ball); ++i) manager.step(kFrame);
+  ASSERT_TRUE(manager.asleep(ball));
+  const RigidState asleep = manager.state(ball);
+  for (int i = 0; i < 20; ++i)
+    add(manager, box_shape({0.3, 0.3, kThickness}),
+        at({0, 0, 0.5 * kThickness + 0.001 + i * (kThickness + 0.001)}), LevelChoice::full);
+  for (int i = 0; i < 60; ++i) {
+    manager.step(kFrame);
+    ASSERT_EQ(manager.state(ball).velocity, asleep.velocity) << i;
+    ASSERT_EQ(manager.state(ball).position, asleep.position) << i;
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -50,6 +50,38 @@ TEST(CrowdedPlaces, FewTakePartAtATimeAndAllInTheEnd) {
   }
 }
 
+// Whoever was let in is pushed aside by less than its size a step: nobody comes before there is room.
+TEST(CrowdedPlaces, ThereIsRoomForThoseThatAreLetIn) {
+  Manager manager = on_floor();
+  const std::vector<BodyId> bodies = add_at_one_place(manager, 600, LevelChoice::support);
+  const Vec3 place(0.1, 0.1, 1.0);
+  for (int i = 0; i < 60; ++i) {
+    manager.step(kFrame);
+    int near = 0;
+    for (const BodyId body : bodies)
+      near += manager.explain(body).placed &&
+              (manager.state(body).position - place).norm() < manager.shape(body).radius;
+    ASSERT_LE(near, 2 * kBodiesOfAPlace + i / 8) << i;
+  }
+}
+
+// 72 times as many as fit into a cubic metre, no two of them at one place.
+TEST(CrowdedPlaces, NoMoreThanFitTakePartWhereManyAreGivenDensely) {
+  Manager manager = on_floor();
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 3000; ++i)
+    bodies.push_back(add(manager, box_shape({0.2, 0.3, 0.4}),
+                         testing::at({i % 15 / 15.0, i / 15 % 14 / 14.0, 1.0 + i / 210 / 15.0}),
+                         LevelChoice::support));
+  manager.step(kFrame);
+  const int at_first = placed(manager, bodies);
+  EXPECT_LT(at_first, 200);
+  EXPECT_GT(at_first, 20);
+  for (int i = 0; i < 8; ++i) manager.step(kFrame);
+  EXPECT_GT(placed(manager, bodies), at_first);
+  EXPECT_LT(placed(manager, bodies), 400);
+}
+
 // That meet none of their kind, that are apart, if only by the thickness of a plate, and that come one after
 // the other.
 TEST(CrowdedPlaces, OthersDoNotWait) {

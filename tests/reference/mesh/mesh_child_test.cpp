@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "reference/error.h"
+#include "reference/sanitizers.h"
 
 namespace lodestone {
 namespace {
@@ -63,7 +64,7 @@ TEST(MeshChild, WorksNoLongerThanItMay) {
             "thing: found over 1 s of waiting for its reader, expected a mesh that can be read");
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !LODESTONE_ADDRESS_SANITIZER && !LODESTONE_THREAD_SANITIZER
 TEST(MeshChild, TakesNoMoreMemoryThanItMay) {
   const auto read = [] {
     Mesh mesh;

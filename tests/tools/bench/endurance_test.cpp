@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "scenes/scene_file.h"
 #include "tools/bench/endurance_bench.h"
 
 namespace lodestone {
@@ -12,6 +13,16 @@ TEST(Endurance, ASmallWorldKeepsItsMemoryAndItsEnergy) {
   EXPECT_GT(figures.changes, 100);  // up and down the rungs
   EXPECT_EQ(figures.states_recovered, 0);
   EXPECT_LE(figures.heap_growth_bytes, kEnduranceMemory);
+  EXPECT_LE(figures.energy_over_start, kEnduranceEnergy);
+  EXPECT_GT(figures.last_step_us, 0.0);
+}
+
+TEST(Endurance, ASceneIsCircled) {
+  const EnduranceFigures figures = bench_endurance(
+      {.steps = 3 * kEnduranceRound,
+       .scene = load_scene(std::filesystem::path(LODESTONE_SOURCE_DIR) / "scenes/drop.yaml")});
+  EXPECT_EQ(figures.steps, 3 * kEnduranceRound);
+  EXPECT_TRUE(figures.finite);
   EXPECT_LE(figures.energy_over_start, kEnduranceEnergy);
   EXPECT_GT(figures.last_step_us, 0.0);
 }
