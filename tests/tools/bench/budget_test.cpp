@@ -57,7 +57,7 @@ TEST(BudgetBench, WorkRepeatsOnAnyNumberOfThreads) {
 
 // Far more of them than of bodies drawn by lot, though some wait for room to be full in.
 TEST(BudgetBench, ItIsTheNearestThatAreFull) {
-  const auto rows = bench_budget({.bodies = 150, .budgets_ms = {}, .work = 1'500.0, .steps = 200});
+  const auto rows = bench_budget({.bodies = 150, .budgets_ms = {}, .work = 3'000.0, .steps = 200});
   EXPECT_GT(rows[0].most[kFull], 0);
   EXPECT_GT(rows[0].nearest_settled, 5.0 * rows[0].figures.mean_bodies[kFull] / 150);
   EXPECT_LE(rows[0].nearest_settled, 1.0);
