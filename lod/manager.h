@@ -2,11 +2,16 @@
 // (sphere), moved between them by a policy. One step: 1 choose rungs, 2 transfer, 3 statistical rungs and
 // their contacts with full bodies, 4 full level, with the impulses of those contacts, 5 report.
 //
-// SI units, world frame right-handed, quaternions w, x, y, z. Whatever is passed here at run time and cannot
-// be used (a stale id, a number that is not finite or out of the range given, a material that the table does
-// not have) throws InputError (reference/error.h) before anything has changed; nothing aborts for it. A
-// manager is used by one thread at a time; between two steps any number of threads may call its const
-// functions.
+// SI units unless a name ends in another (`_ms`, `_px`), world frame right-handed, quaternions w, x, y, z.
+//
+// - Errors. Whatever is passed here at run time and cannot be used (a stale id, a number that is not finite or
+//   out of the range given, a material that the table does not have) throws InputError (reference/error.h)
+//   before anything has changed; nothing aborts for it. After a SimulationError, where one of ODE's own
+//   assertions fails in a step, the manager can be read and destroyed, and steps no more.
+// - Ids. A removed body's id, group's or ground's is stale for good, though its index comes back: valid() is
+//   false of it, every other call throws.
+// - Threads. A manager is used by one thread at a time; between two steps any number of threads may call its
+//   const functions.
 #pragma once
 
 #include <cstddef>
