@@ -197,6 +197,12 @@ std::string read_text(const fs::path& file, const YamlLimits& limits) {
   return text;
 }
 
+// A message would end at the first zero byte that yaml-cpp quotes.
+std::string without_zeros(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\0', at)) != text.npos;) text.replace(at, 1, "\\x00");
+  return text;
+}
+
 }  // namespace
 
 YamlValue make_yaml(const std::string& text, const std::string& name, const YamlLimits& limits) {
@@ -207,8 +213,8 @@ YamlValue make_yaml(const std::string& text, const std::string& name, const Yaml
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& e) {
-    throw InputError(
-        fmt::format("{}:{}: syntax: found an error ({}), expected YAML", name, line_of(e.mark), e.msg));
+    throw InputError(fmt::format("{}:{}: syntax: found an error ({}), expected YAML", name, line_of(e.mark),
+                                 without_zeros(e.msg)));
   }
   if (!builder.complete())
     throw InputError(fmt::format("{}:1: document: found an empty file, expected a scene", name));

@@ -34,6 +34,12 @@ TEST(YamlValue, ExpandsAliases) {
   EXPECT_EQ(value.entries[1].value.items.size(), 2u);
 }
 
+TEST(YamlValue, AZeroByteEndsNoMessage) {
+  using namespace std::string_literals;
+  EXPECT_EQ(error_of("a: \"\\\0\"\n"s),
+            "s.yaml:1: syntax: found an error (unknown escape character: \\x00), expected YAML");
+}
+
 TEST(YamlValue, RefusesWhatYamlCppLetsPass) {
   EXPECT_EQ(error_of("a: 1\nb: 2\na: 3\n"),
             "s.yaml:3: a: found the key a second time, expected it once (first in line 1)");
