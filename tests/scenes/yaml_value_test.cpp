@@ -34,10 +34,12 @@ TEST(YamlValue, ExpandsAliases) {
   EXPECT_EQ(value.entries[1].value.items.size(), 2u);
 }
 
-TEST(YamlValue, AZeroByteEndsNoMessage) {
+// A message that quotes one would end there.
+TEST(YamlValue, RefusesZeroBytes) {
   using namespace std::string_literals;
-  EXPECT_EQ(error_of("a: \"\\\0\"\n"s),
-            "s.yaml:1: syntax: found an error (unknown escape character: \\x00), expected YAML");
+  EXPECT_EQ(error_of("a: 1\nb: x\0y\n"s), "s.yaml:2: text: found a zero byte, expected UTF-8 without any");
+  EXPECT_EQ(error_of("a: 1\nb: \"\\0\"\n"), "s.yaml:2: text: found a zero byte, expected none");
+  EXPECT_EQ(error_of("\"\\0\": 1\n"), "s.yaml:1: text: found a zero byte, expected none");
 }
 
 TEST(YamlValue, RefusesWhatYamlCppLetsPass) {
