@@ -59,6 +59,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& text) override {
     refuse_tag(mark, tag);
+    if (text.find('\0') != text.npos) fail(mark, "text", "a zero byte", "none");
     add({.kind = YamlValue::Kind::scalar,
          .line = line_of(mark),
          .quoted = tag == "!",
@@ -197,9 +198,18 @@ std::string read_text(const fs::path& file, const YamlLimits& limits) {
   return text;
 }
 
+// A message that quotes one would end there; and no YAML in UTF-8 has one.
+void refuse_zero_bytes(const std::string& text, const std::string& name) {
+  const auto zero = std::ranges::find(text, '\0');
+  if (zero == text.end()) return;
+  throw InputError(fmt::format("{}:{}: text: found a zero byte, expected UTF-8 without any", name,
+                               1 + std::count(text.begin(), zero, '\n')));
+}
+
 }  // namespace
 
 YamlValue make_yaml(const std::string& text, const std::string& name, const YamlLimits& limits) {
+  refuse_zero_bytes(text, name);
   TreeBuilder builder(name, limits);
   std::istringstream in(text);
   try {

@@ -34,6 +34,14 @@ TEST(YamlValue, ExpandsAliases) {
   EXPECT_EQ(value.entries[1].value.items.size(), 2u);
 }
 
+// A message that quotes one would end there.
+TEST(YamlValue, RefusesZeroBytes) {
+  using namespace std::string_literals;
+  EXPECT_EQ(error_of("a: 1\nb: x\0y\n"s), "s.yaml:2: text: found a zero byte, expected UTF-8 without any");
+  EXPECT_EQ(error_of("a: 1\nb: \"\\0\"\n"), "s.yaml:2: text: found a zero byte, expected none");
+  EXPECT_EQ(error_of("\"\\0\": 1\n"), "s.yaml:1: text: found a zero byte, expected none");
+}
+
 TEST(YamlValue, RefusesWhatYamlCppLetsPass) {
   EXPECT_EQ(error_of("a: 1\nb: 2\na: 3\n"),
             "s.yaml:3: a: found the key a second time, expected it once (first in line 1)");

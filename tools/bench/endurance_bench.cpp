@@ -187,7 +187,9 @@ EnduranceFigures endure_scene(const EnduranceSettings& settings) {
     spent_ms = 0;
     show_progress(settings, figures.steps);
   };
-  until_interrupted([&] { run_scene(scene, {.steps = steps, .threads = settings.threads, .watch = watch}); });
+  until_interrupted([&] {
+    run_scene(scene, {.steps = steps, .threads = settings.threads, .watch = watch, .stop = is_interrupted});
+  });
   rounds.sum_up(1.0 / 3.0, figures);
   return figures;
 }
