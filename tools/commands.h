@@ -24,6 +24,7 @@ void add_compare_conditions_command(Command& compare);
 void add_bench_hard_cases_command(Command& bench);
 void add_bench_full_level_command(Command& bench);
 void add_bench_table1_command(Command& bench);
+void add_bench_drops_command(Command& bench);
 void add_bench_broad_phase_command(Command& bench);
 void add_bench_settled_command(Command& bench);
 void add_bench_budget_command(Command& bench);

@@ -94,9 +94,9 @@ void add_compare_commands(Command& program) {
 void add_bench_commands(Command& program) {
   Command bench = program.add_group("bench", "what the engine withstands, and what it costs");
   for (const auto add : {add_bench_hard_cases_command, add_bench_full_level_command, add_bench_table1_command,
-                         add_bench_broad_phase_command, add_bench_settled_command, add_bench_budget_command,
-                         add_bench_rungs_command, add_bench_transitions_command, add_bench_attached_command,
-                         add_bench_churn_command, add_bench_endurance_command})
+                         add_bench_drops_command, add_bench_broad_phase_command, add_bench_settled_command,
+                         add_bench_budget_command, add_bench_rungs_command, add_bench_transitions_command,
+                         add_bench_attached_command, add_bench_churn_command, add_bench_endurance_command})
     add(bench);
 }
 

@@ -48,11 +48,10 @@ Method with_settings(Method method, bool sleeping, bool hash_space) {
   if (auto* ode = std::get_if<OdeMethod>(&method.way)) {
     if (is_baseline(method)) ode->settings = baseline_settings();
     ode->settings.hash_space = hash_space;
-    ode->settings.auto_disable = sleeping;
   } else if (auto* bullet = std::get_if<BulletMethod>(&method.way)) {
-    bullet->settings = {.bounce_velocity = 0.2, .sleeping = sleeping};
+    bullet->settings = {.bounce_velocity = 0.2};
   }
-  return method;
+  return with_sleep(std::move(method), sleeping);
 }
 
 std::vector<RigidState> table1_starts(int bodies, std::uint64_t seed) {
@@ -147,10 +146,7 @@ class Table1 {
  public:
   explicit Table1(const Table1Settings& settings) : settings_(settings), job_(make_table1_job()) {
     methods_ = make_methods(settings.methods, job_, settings.measuring, 0, settings.progress);
-    if (!settings.model.empty())
-      std::erase_if(methods_, [&](const Method& method) {
-        return !method.model().empty() && method.model() != settings.model;
-      });
+    keep_model(methods_, settings.model);
   }
 
   std::vector<Table1Row> rows() {

@@ -46,8 +46,7 @@ void add_bench_table1_command(Command& bench) {
   command.add_option("--bodies", table.bodies, "several with commas").several().within(1, 2'000'000);
   add_methods_argument(command, table.methods,
                        "of compare drop; the statistical level with all of its models");
-  command.add_option("--model", table.model, "of the statistical level: this one only")
-      .one_of({"tables", "tables_published", "support"});
+  add_model_argument(command, table.model);
   command.add_option("--threads", table.threads, "of the statistical level").within(1, 4096);
   command.add_flag("--sleep", table.sleeping, "bodies at rest may sleep, by every method");
   command.add_option("--row-seconds", table.row_seconds, "leave out rows that would take longer, s")

@@ -45,6 +45,11 @@ void add_trials_argument(Command& command, int& trials, const std::string& what)
   command.add_option("--trials", trials, what).within(2, 1'000'000);
 }
 
+void add_model_argument(Command& command, std::string& model) {
+  command.add_option("--model", model, "of the statistical level: this one only")
+      .one_of({"tables", "tables_published", "support"});
+}
+
 void add_starts_arguments(Command& command, std::uint64_t& seed, int& threads) {
   command.add_option("--seed", seed, "of the starts");
   command.add_option("--threads", threads, "0: all cores").within(0, 4096);

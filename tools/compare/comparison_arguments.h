@@ -21,6 +21,9 @@ struct ComparisonArguments {
 /// holds the default and outlives the parsing. `what`: in place of a list of them in --help.
 void add_methods_argument(Command& command, std::vector<std::string>& methods, const std::string& what = "");
 
+/// Adds --model to `command`: that of the statistical level's models whose rows are asked for; empty: all.
+void add_model_argument(Command& command, std::string& model);
+
 /// Adds --dt to `command`: texts for steps_of() (tools/step_argument.h).
 void add_steps_argument(Command& command, std::vector<std::string>& steps);
 

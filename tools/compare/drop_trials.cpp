@@ -94,7 +94,8 @@ MethodWorld& DropWorld::start(std::uint64_t seed, std::uint32_t trial) {
   return world_;
 }
 
-MethodWorld make_many_drops(const DropJob& job, const Method& method, std::uint64_t seed, int bodies) {
+MethodWorld make_many_drops(const DropJob& job, const Method& method, std::uint64_t seed, int bodies,
+                            int threads) {
   const Vec3 across = Vec3::UnitY(), along = across.cross(drop_plane_normal(job.conditions));
   const int side = int(std::ceil(std::sqrt(double(bodies))));
   std::vector<RigidState> starts;
@@ -105,6 +106,7 @@ MethodWorld make_many_drops(const DropJob& job, const Method& method, std::uint6
   }
   WorldSettings settings = over_the_plane(job);
   settings.seed = seed;
+  settings.threads = threads;
   return {job, method, settings, starts};
 }
 

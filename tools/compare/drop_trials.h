@@ -25,8 +25,9 @@ class DropWorld {
   MethodWorld world_;
 };
 
-/// Drops 0 … bodies − 1 in one world, too far apart to meet.
-MethodWorld make_many_drops(const DropJob& job, const Method& method, std::uint64_t seed, int bodies);
+/// Drops 0 … bodies − 1 in one world, too far apart to meet; `threads`: of the statistical level.
+MethodWorld make_many_drops(const DropJob& job, const Method& method, std::uint64_t seed, int bodies,
+                            int threads = 1);
 
 /// Which drops, and how they are stepped.
 struct DropBatch {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <vector>
 
 #include "reference/error.h"
@@ -53,12 +54,30 @@ struct Geometry {
   std::unique_ptr<btConvexShape> collision;
 };
 
+// Of `points` those farthest in so many directions, evenly spread along a spiral over the sphere by the
+// golden angle; all of them where there are no more than that.
+std::vector<Vec3> find_outermost(const std::vector<Vec3>& points, int directions) {
+  if (int(points.size()) <= directions) return points;
+  constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.2360679774997896);
+  std::set<std::size_t> chosen;
+  for (int i = 0; i < directions; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / directions, across = std::sqrt(1.0 - z * z);
+    const Vec3 direction(across * std::cos(kGoldenAngle * i), across * std::sin(kGoldenAngle * i), z);
+    const auto reach = [&](const Vec3& point) { return point.dot(direction); };
+    chosen.insert(std::size_t(std::ranges::max_element(points, {}, reach) - points.begin()));
+  }
+  std::vector<Vec3> outermost;
+  for (const std::size_t index : chosen) outermost.push_back(points[index]);
+  return outermost;
+}
+
 std::unique_ptr<btConvexShape> make_collision(const Shape& shape, BulletGeometry geometry, const Quat& axes) {
   if (geometry == BulletGeometry::sphere || shape.sphere_radius)
     return std::make_unique<btSphereShape>(
         btScalar(std::cbrt(shape.volume * 3.0 / (4.0 * std::numbers::pi))));
   auto hull = std::make_unique<btConvexHullShape>();
-  for (const Vec3& vertex : shape.hull.vertices)
+  for (const Vec3& vertex :
+       geometry == BulletGeometry::hull40 ? find_outermost(shape.hull.vertices, 40) : shape.hull.vertices)
     hull->addPoint(to_bullet(Vec3(axes.conjugate() * vertex)), false);
   hull->recalcLocalAabb();
   hull->setMargin(btScalar(kMargin * shape.size));

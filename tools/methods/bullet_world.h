@@ -11,9 +11,10 @@ namespace lodestone {
 
 bool bullet_available();
 
-/// `hull`: every corner of the shape's convex hull. `sphere`: of the shape's volume, with its mass
+/// `hull`: every corner of the shape's convex hull. `hull40`: at most forty of them, those farthest in forty
+/// directions, as games give hulls to an engine. `sphere`: of the shape's volume. All with its mass
 /// distribution.
-enum class BulletGeometry { hull, sphere };
+enum class BulletGeometry { hull, hull40, sphere };
 
 struct BulletSettings {
   Vec3 gravity{0, 0, -9.81};      ///< m/s²

@@ -61,7 +61,7 @@ struct NamedMaker {
   Maker make;
 };
 
-constexpr std::array<NamedMaker, 10> kEngineMethods = {{
+constexpr std::array<NamedMaker, 11> kEngineMethods = {{
     {"full_plain",
      [](const DropJob& job) { return make_ode("full_plain", job, {.settings = plain_settings()}); }},
     {"full", [](const DropJob& job) { return make_full("full", job, ManagerSettings{}.full_substeps); }},
@@ -79,6 +79,7 @@ constexpr std::array<NamedMaker, 10> kEngineMethods = {{
        return make_ode("hull", job, {.settings = plain_settings(), .geometry = OdeGeometry::hull});
      }},
     {"bullet_hull", [](const DropJob&) { return make_bullet("bullet_hull", BulletGeometry::hull); }},
+    {"bullet_hull40", [](const DropJob&) { return make_bullet("bullet_hull40", BulletGeometry::hull40); }},
     {"bullet_sphere", [](const DropJob&) { return make_bullet("bullet_sphere", BulletGeometry::sphere); }},
     {"waiting",
      [](const DropJob&) {
@@ -128,6 +129,19 @@ std::string Method::model() const {
   if (!statistical) return "";
   if (statistical->model == StatisticalModel::support) return "support";
   return statistical->published ? "tables_published" : "tables";
+}
+
+void keep_model(std::vector<Method>& methods, const std::string& model) {
+  if (!model.empty())
+    std::erase_if(methods, [&](const Method& method) {
+      return !method.model().empty() && method.model() != model;
+    });
+}
+
+Method with_sleep(Method method, bool sleeping) {
+  if (auto* ode = std::get_if<OdeMethod>(&method.way)) ode->settings.auto_disable = sleeping;
+  if (auto* bullet = std::get_if<BulletMethod>(&method.way)) bullet->settings.sleeping = sleeping;
+  return method;
 }
 
 // Small bodies move as fast in their own time, which is the shorter by √λ.

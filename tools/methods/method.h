@@ -55,6 +55,13 @@ struct Method {
   std::string model() const;  ///< "tables", "tables_published" or "support"; empty for ODE
 };
 
+/// Leaves out those of the statistical level's models that are not `model`; none where that is empty.
+void keep_model(std::vector<Method>& methods, const std::string& model);
+
+/// The method with its bodies allowed to fall asleep, or not; the statistical level's is a setting of its
+/// world.
+Method with_sleep(Method method, bool sleeping);
+
 /// The ground truth: ODE at 34 steps in 1/60 s, just under .5 ms, so that 60 Hz falls on whole steps; for
 /// bodies below .2 m at the more, the smaller they are.
 Method make_truth(const DropJob& job);
