@@ -26,6 +26,8 @@ using MaterialId = int;  ///< index into a MaterialTable; 0 is the default mater
 class MaterialTable {
  public:
   MaterialTable() { add(Material{}); }
+  /// The default material, which does this with itself.
+  explicit MaterialTable(const ContactLaw& law) : MaterialTable() { set_law(0, 0, law); }
   MaterialId add(const Material& material);
   void replace(MaterialId id, const Material& material);
   void set_law(MaterialId a, MaterialId b, const ContactLaw& law);

@@ -204,7 +204,7 @@ std::string measuring_versions() {
 
 SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw& law,
                                            const SignatureSourceSettings& settings) {
-  MaterialTable().set_law(0, 0, law);  // throws where it is out of range, before anything is written
+  MaterialTable{law};  // throws where it is out of range, before anything is written
   SignatureSettings measuring = settings.measuring;
   measuring.law = law;
   if (settings.use_cache)
@@ -214,7 +214,7 @@ SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw&
 
 MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Share& share,
                              const SignatureSourceSettings& settings) {
-  MaterialTable().set_law(0, 0, law);
+  MaterialTable{law};
   SignatureSettings measuring = settings.measuring;
   measuring.law = law;
   MeasurementPart part{.identity = identity_of(shape, measuring, share), .measurement = {}};

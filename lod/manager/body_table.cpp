@@ -9,12 +9,12 @@
 namespace lodestone {
 namespace {
 
-constexpr std::size_t kKept =
+constexpr std::size_t kRoomKept =
     64;  // elements that a list keeps room for once it is cleared: a whole scene is added only once
 
 template <class List>
 void clear(List& list) {
-  if (list.size() > kKept) list = List();
+  if (list.size() > kRoomKept) list = List();
   list.clear();
 }
 
@@ -99,7 +99,7 @@ void BodyTable::forget_newcomers() {
 // Its place stays, as that of one that was placed since, until there are more such places than others.
 void BodyTable::remove_newcomer(std::uint32_t index) {
   records_[index].newcomer = -1;
-  if (++newcomers_gone_ < kKept || 2 * newcomers_gone_ < newcomers_.size()) return;
+  if (++newcomers_gone_ < kRoomKept || 2 * newcomers_gone_ < newcomers_.size()) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < newcomers_.size(); ++i) {
     if (!waits_at(i)) continue;

@@ -12,7 +12,6 @@
 namespace lodestone {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
 
 // Of the room above what the lowest rungs cost, the part that full bodies leave to a ring of `support` around

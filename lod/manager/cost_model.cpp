@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lod/manager/share_of_full.h"
+
 namespace lodestone {
 namespace {
 
@@ -27,10 +29,6 @@ constexpr double kSpikeWork = 50e3;
 // One that is alone is charged a part of what it would cost in a crowd: a flock of them lands within a few
 // steps.
 constexpr double kChargeOfCrowd = 0.15;
-
-// And a sleeper half of it, with what it costs just after it woke: where all wake at once, the step takes
-// twice the budget at most.
-constexpr double kChargeOfSleepers = 0.5;
 
 // Weight of the newest step in a factor, and what of an error counts at most, as a part of what was expected,
 // in a first bad step and in the next ones: one spike does not make a price.

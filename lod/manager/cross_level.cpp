@@ -26,7 +26,7 @@ double friction_between(const Levels& levels, const Neighborhood& neighborhood, 
 
 // ODE's contacts of the last substep, and those of the last steps whose pair it did not find again.
 void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Seen>& seen) {
-  constexpr int kKept = 3;  // steps
+  constexpr int kStepsSeen = 3;
   const auto pair_of = [](const Neighborhood::Seen& s) {
     return std::pair(s.contact.first.value, s.contact.second.value);
   };
@@ -35,7 +35,7 @@ void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Se
   std::ranges::stable_sort(now, {}, pair_of);
   const std::size_t fresh = now.size();
   for (Neighborhood::Seen& old : seen) {
-    if (++old.age > kKept || std::ranges::binary_search(now.begin(), now.begin() + std::ptrdiff_t(fresh),
+    if (++old.age > kStepsSeen || std::ranges::binary_search(now.begin(), now.begin() + std::ptrdiff_t(fresh),
                                                         pair_of(old), {}, pair_of))
       continue;
     old.contact.depth = 0.0;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kPiece = 2.0;  // m: of a ray, for which solids are looked up at a time
 constexpr double kMostPieces = 256.0;
-constexpr double kFarthest = 1e6;  // m: beyond, rays meet no piece of the ground but planes
+constexpr double kFarthestPiece = 1e6;  // m: beyond, rays meet no piece of the ground but planes
 
 SurfaceHit in_world(const PosedSurface& surface, SurfaceHit hit) {
   hit.point = surface.position + surface.orientation * hit.point;
@@ -119,7 +119,7 @@ std::vector<PlacedSolid> QueryGround::find_near(const Vec3& center, double reach
 // Piece by piece of a ray that is not too long.
 std::vector<PlacedSolid> QueryGround::find_along(const Sweep& sweep, std::vector<const GroundPart*>& probed) {
   std::vector<PlacedSolid> all;
-  const double length = std::min(sweep.length, kFarthest), piece = std::max(kPiece, length / kMostPieces);
+  const double length = std::min(sweep.length, kFarthestPiece), piece = std::max(kPiece, length / kMostPieces);
   for (double at = 0.0; at <= length; at += piece) {
     const double half = 0.5 * std::min(piece, length - at);
     for (const PlacedSolid& solid :
@@ -154,7 +154,7 @@ void QueryGround::meet(const Sweep& sweep, const Found& found) {
       found({side_of(solid.part->id, solid.part->material), hit->point, hit->normal, hit->distance});
   for (const GroundPart* part : probed) {
     const std::lock_guard lock(access_);
-    const auto hit = part->shape.probe(sweep.from, sweep.direction, std::min(sweep.length, kFarthest));
+    const auto hit = part->shape.probe(sweep.from, sweep.direction, std::min(sweep.length, kFarthestPiece));
     if (!hit) continue;
     if (sweep.radius > 0.0)
       meet_plane({hit->normal, hit->normal.dot(hit->point), part->material, part->id});

@@ -6,7 +6,6 @@
 namespace lodestone {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a body's remoteness is measured by: (distance − offset) / scale.
 struct Yardstick {

@@ -11,6 +11,8 @@
 
 namespace lodestone {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// A policy of distances or of sizes, in its measure.
 struct Limits {
   Limits(const DistancePolicy& policy)
@@ -21,7 +23,7 @@ struct Limits {
         support_within(1.0 / policy.support_above_px) {}
   Measure measure = Measure::distance;
   double full_within, support_within;
-  bool three_rungs() const { return support_within < std::numeric_limits<double>::infinity(); }
+  bool three_rungs() const { return support_within < kInfinity; }
 };
 /// None for a budget.
 std::optional<Limits> limits_of(const PolicySettings& settings);

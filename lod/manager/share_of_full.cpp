@@ -6,9 +6,6 @@
 namespace lodestone {
 namespace {
 
-// What a pair of sleepers is charged of what it costs awake.
-constexpr double kChargeOfSleepers = 0.5;
-
 FullPairs::Body body_of(const LevelCandidate& c) {
   return {c.position, c.radius, c.mesh, c.asleep, c.motion};
 }

@@ -23,6 +23,10 @@ inline bool nearer(const Ranked& a, const Ranked& b) {
 }
 inline bool farther(const Ranked& a, const Ranked& b) { return nearer(b, a); }
 
+/// What a sleeper, or a pair of sleepers, is charged of what it costs just after it woke: where all wake at
+/// once, the step takes twice the budget at most.
+inline constexpr double kChargeOfSleepers = 0.5;
+
 /// So many are passed over whose pairs do not fit, and no more: beyond them bodies are too far from the
 /// nearest to be worth a look.
 inline constexpr std::size_t kPassedOver = 20;

@@ -21,12 +21,6 @@ OdeSettings trial_settings(double bounce_velocity) {
   return settings;
 }
 
-std::unique_ptr<MaterialTable> materials_with(const ContactLaw& law) {
-  auto materials = std::make_unique<MaterialTable>();
-  materials->set_law(0, 0, law);
-  return materials;
-}
-
 // e1 = z, e2 = x, e3 = y: V⁻ falls towards +x.
 RigidState start_of(const CollisionConfiguration& c, const Quat& orientation, double radius) {
   const Vec3 along(std::sin(c.theta), 0.0, -std::cos(c.theta)), across = Vec3::UnitY();
@@ -43,7 +37,7 @@ CollisionTrial::CollisionTrial(std::shared_ptr<const Shape> shape, const Contact
     : shape_(std::move(shape)),
       law_(law),
       end_(end),
-      materials_(materials_with(law)),
+      materials_(std::make_unique<MaterialTable>(law)),
       contact_time_(*shape_),
       world_(trial_settings(bounce_velocity), *materials_) {
   world_.add_plane(Vec3::UnitZ(), 0.0, 0);

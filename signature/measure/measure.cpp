@@ -177,7 +177,7 @@ class Measuring {
 
 Measurement measure_units(const Shape& shape, const SignatureSettings& settings, const Share& share,
                           const MeasureOptions& options) {
-  MaterialTable().set_law(0, 0, settings.law);  // which throws where it is out of range
+  MaterialTable{settings.law};  // which throws where it is out of range
   tbb::task_arena arena(allowed_threads(options.threads));
   Measurement measurement;
   arena.execute([&] { measurement = Measuring(shape, settings, share, options).measure(); });

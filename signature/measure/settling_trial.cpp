@@ -30,12 +30,6 @@ RigidState settling_start(const Shape& shape, std::uint64_t seed, std::uint32_t 
   return state;
 }
 
-std::unique_ptr<MaterialTable> materials_with(const ContactLaw& law) {
-  auto materials = std::make_unique<MaterialTable>();
-  materials->set_law(0, 0, law);
-  return materials;
-}
-
 /// Of the kinetic energy (J/kg), what sliding and steady spin about the vertical do not hold: the least that
 /// a body with its horizontal velocity and its spin L_z about the vertical can have is v_xy²/2 + L_z²/(2
 /// I_zz), from ½ ω·Iω at its least for a given (Iω)_z.
@@ -69,7 +63,7 @@ double gap_over_ground(const Shape& shape, const RigidState& s) {
 SettlingTrial::SettlingTrial(std::shared_ptr<const Shape> shape, const ContactLaw& law)
     : shape_(std::move(shape)),
       friction_(law.friction),
-      materials_(materials_with(law)),
+      materials_(std::make_unique<MaterialTable>(law)),
       world_(OdeSettings{}, *materials_) {
   if (!shape_->sphere_radius) faces_.emplace(shape_->hull);
   world_.add_plane(Vec3::UnitZ(), 0.0, 0);

@@ -1,4 +1,4 @@
-# A unit of a unity build is of one folder, ten files at most: a new file changes no other folder's units.
+# A unit of a unity build is of one folder, forty files at most: a new file changes no other folder's units.
 function(lodestone_group_units target)
   if(NOT CMAKE_UNITY_BUILD)
     return()
@@ -14,7 +14,7 @@ function(lodestone_group_units target)
     string(MAKE_C_IDENTIFIER "${folder}" folder)
     list(APPEND in_${folder} ${source})
     list(LENGTH in_${folder} count)
-    math(EXPR unit "(${count} - 1) / 10")
+    math(EXPR unit "(${count} - 1) / 40")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${unit})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
