@@ -14,16 +14,17 @@ namespace lodestone {
 
 class ContactMemory {
  public:
-  /// Sets `guess` of the points of a pair to what they had: point by point, or where their number changed, in
-  /// equal parts. `keys` holds one key per manifold, equal ones in a row; `step` is the length of this step,
-  /// s.
-  void recall(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
+  /// Sets `guess` of the points of a pair to what it had, each force going to the point that is nearest to
+  /// where it was, as seen from the first body: points of a face come in any order. Says of its manifolds that
+  /// they are known. `keys` holds one key per manifold, equal
+  /// ones in a row; `step` is the length of this step, s.
+  void recall(std::span<const ContactKey> keys, std::span<CrowdManifold> manifolds,
               std::span<CrowdPoint> points, double step);
   /// Forgets what was before.
   void remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
                 std::span<const CrowdPoint> points, double step);
 
-  void archive(StateArchive& a) { a(place_, runs_, forces_); }
+  void archive(StateArchive& a) { a(place_, runs_, loads_); }
 
  private:
   struct Run {
@@ -31,7 +32,10 @@ class ContactMemory {
   };
   PairMemory place_;  // in runs_
   std::vector<Run> runs_;
-  std::vector<Vec3> forces_;  // N, on the first body
+  struct Load {
+    Vec3 force, arm;  // N, on the first body; m, from its centre of mass
+  };
+  std::vector<Load> loads_;
 };
 
 }  // namespace lodestone

@@ -231,6 +231,7 @@ void Crowd::solve(const ContactScene& scene, double time) {
       scene.world.gravity_strength() * time;  // what gravity adds in a step is no impact
   settings.fall = scene.world.gravity * time;
   memory_.recall(keys_, manifolds_, points_, time);
+  borne_weights_.guess(solver_bodies_, manifolds_, points_, settings.fall, time);
   const std::size_t known = scene.world.log ? note_approaches(scene, time) : 0;
   solver_.solve(solver_bodies_, manifolds_, points_, time, settings, jobs_);
   memory_.remember(keys_, manifolds_, points_, time);

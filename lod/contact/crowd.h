@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "lod/contact/borne_weights.h"
 #include "lod/contact/contact_memory.h"
 #include "lod/contact/contact_scene.h"
 #include "lod/contact/crowd_solver.h"
@@ -86,6 +87,7 @@ class Crowd {
   std::vector<int> partners_;  // manifolds of each solver body
   CrowdSolver solver_;
   ContactMemory memory_;
+  BorneWeights borne_weights_;
 };
 
 }  // namespace lodestone

@@ -19,6 +19,7 @@ struct CrowdManifold {
   Vec3 normal = Vec3::UnitZ();          ///< points into `first`
   ContactLaw law;
   std::uint32_t begin = 0, count = 0;  ///< its points
+  bool known = false;                  ///< from the last step, which gives the guesses of its points
 };
 
 struct CrowdPoint {

@@ -1,5 +1,5 @@
-# A unit of a unity build is of one folder, forty files at most: a new file changes no other folder's units.
-function(lodestone_group_units target)
+# A unit of a unity build is of one folder, `most` files of it: a new file changes no other folder's units.
+function(lodestone_group_units target most)
   if(NOT CMAKE_UNITY_BUILD)
     return()
   endif()
@@ -14,7 +14,7 @@ function(lodestone_group_units target)
     string(MAKE_C_IDENTIFIER "${folder}" folder)
     list(APPEND in_${folder} ${source})
     list(LENGTH in_${folder} count)
-    math(EXPR unit "(${count} - 1) / 40")
+    math(EXPR unit "(${count} - 1) / ${most}")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${unit})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)

@@ -1,4 +1,4 @@
-// S10, S14, S16: many statistical bodies, in a heap, in other orders, in the air.
+// S10, S14, S16, S17: many statistical bodies, in a heap, in other orders, in the air, in towers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -358,6 +358,48 @@ std::vector<HardCaseRow> measure_case(const HardCaseSettings& settings) {
 
 }  // namespace frozen_in_air
 
+// S17: towers of cubes that are built, not poured: each exactly on the one below. A solver that begins
+// without knowing what they bear crushes the lower ones before it has found out.
+namespace built_towers {
+
+constexpr double kSide = 0.2, kSeconds = 10.0;
+constexpr int kFullSubsteps = 8;  // at the default of four ODE's tower of twenty falls
+
+// Farthest that one of them is from where it was put, m, after ten seconds.
+double greatest_move(LevelChoice level, int cubes) {
+  ManagerSettings settings;
+  settings.full_substeps = kFullSubsteps;
+  settings.signatures = [](const Shape&, const ContactLaw&) { return std::shared_ptr<const Signature>(); };
+  Manager manager(settings);
+  manager.add_plane(Vec3::UnitZ(), 0.0);
+  const auto cube = share(make_shape("cube", make_box(Vec3::Constant(kSide))));
+  const auto start_of = [](int i) { return Vec3(0.0, 0.0, kSide * (0.5 + i)); };
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < cubes; ++i)
+    bodies.push_back(manager.add_body({.shape = cube, .state = {.position = start_of(i)}, .level = level}));
+  for (int step = 0; step < int(kSeconds / kCaseStep); ++step) manager.step(kCaseStep);
+  double farthest = 0.0;
+  for (int i = 0; i < cubes; ++i)
+    farthest = worse(farthest, (manager.state(bodies[std::size_t(i)]).position - start_of(i)).norm());
+  return farthest;
+}
+
+std::vector<HardCaseRow> measure_case(const HardCaseSettings& settings) {
+  std::vector<HardCaseRow> rows;
+  for (const auto& [level, name] :
+       {std::pair{LevelChoice::support, "support"}, {LevelChoice::full, "full, 8 substeps"}})
+    for (const int cubes : {10, 20, 50})
+      if (!settings.quick || cubes == 20 || level == LevelChoice::support)
+        rows.push_back({.what = fmt::format(
+                            "tower of {} cubes of .2 m built exactly, {}, 10 s: greatest move", cubes, name),
+                        .value = 1e3 * greatest_move(level, cubes),
+                        .bound = 50.0,
+                        .unit = "mm"});
+  return rows;
+}
+
+}  // namespace built_towers
+
 }  // namespace
 
 std::span<const HardCase> crowd_cases() {
@@ -365,6 +407,7 @@ std::span<const HardCase> crowd_cases() {
       HardCase{"S10", great_pile::measure_case},
       HardCase{"S14", orders::measure_case},
       HardCase{"S16", frozen_in_air::measure_case},
+      HardCase{"S17", built_towers::measure_case},
   };
   return kCases;
 }

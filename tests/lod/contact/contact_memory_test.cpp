@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace lodestone {
@@ -12,11 +13,18 @@ struct Touching {
   std::vector<ContactKey> keys;
   std::vector<CrowdManifold> manifolds;
   std::vector<CrowdPoint> points;
+  std::size_t first_of(ContactKey key) const {
+    return manifolds[std::size_t(std::ranges::find(keys, key) - keys.begin())].begin;
+  }
   void add(ContactKey key, const std::vector<Vec3>& impulses) {
     keys.push_back(key);
     CrowdManifold& manifold = manifolds.emplace_back();
     manifold.begin = std::uint32_t(points.size()), manifold.count = std::uint32_t(impulses.size());
-    for (const Vec3& impulse : impulses) points.emplace_back().impulse = impulse;
+    for (const Vec3& impulse : impulses) {
+      CrowdPoint& point = points.emplace_back();
+      point.arm_first = Vec3(double(points.size() - first_of(key)), 0.0, -1.0);  // 1, 2, … m along x
+      point.impulse = impulse;
+    }
   }
 };
 
@@ -54,13 +62,36 @@ TEST(ContactMemory, RecallsAPairWhereverItIsInTheList) {
   EXPECT_EQ(now.points[2].guess, Vec3(0, 5, 0));
 }
 
-TEST(ContactMemory, SharesTheForceInEqualPartsWhereThePointsAreOthers) {
+TEST(ContactMemory, GivesEachForceToThePointNearestToWhereItWas) {
+  Touching before;
+  before.add(ground_key(3, 0), {{0, 0, 1}, {0, 0, 2}, {0, 0, 4}});  // at 1, 2 and 3 m along x
+  ContactMemory memory = memory_of(before, 0.01);
+  Touching now;
+  now.add(ground_key(3, 0), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+  std::swap(now.points[0].arm_first, now.points[2].arm_first);  // found in another order
+  for (CrowdPoint& point : now.points) point.arm_first.x() += 0.1;
+  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  EXPECT_EQ(now.points[0].guess, Vec3(0, 0, 4));
+  EXPECT_EQ(now.points[1].guess, Vec3(0, 0, 2));
+  EXPECT_EQ(now.points[2].guess, Vec3(0, 0, 1));
+}
+
+TEST(ContactMemory, KeepsTheWholeForceWhereThePointsAreFewer) {
   ContactMemory memory = memory_of(touching(), 0.01);
   Touching now;
   now.add(contact_key(1, 2), {Vec3::Zero(), Vec3::Zero()});
   memory.recall(now.keys, now.manifolds, now.points, 0.01);
-  for (const CrowdPoint& point : now.points)
-    EXPECT_LT((point.guess - Vec3(0.5, 0, 3)).norm(), 1e-12);  // of (1, 0, 6)
+  EXPECT_LT((now.points[0].guess + now.points[1].guess - Vec3(1, 0, 6)).norm(), 1e-12);
+}
+
+TEST(ContactMemory, SaysWhichManifoldsItKnows) {
+  ContactMemory memory = memory_of(touching(), 0.01);
+  Touching now;
+  now.add(contact_key(8, 9), {Vec3::Zero()});
+  now.add(contact_key(2, 3), {Vec3::Zero()});
+  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  EXPECT_FALSE(now.manifolds[0].known);
+  EXPECT_TRUE(now.manifolds[1].known);
 }
 
 TEST(ContactMemory, LeavesWhatIsNewAsItIs) {
