@@ -16,10 +16,10 @@ struct TimeSummary {
 /// Percentiles are interpolated between the nearest ranks; all 0 for no sample.
 TimeSummary summarize(std::span<const double> sample_ms);
 
-/// A sample of any length in at most 1.1 MB. Up to kExactTimes its summary is that of summarize(); beyond,
+/// A sample of any length in at most 150 kB. Up to kExactTimes its summary is that of summarize(); beyond,
 /// percentiles are read off a histogram whose cells are 1/128 of an octave wide, so that they are right to .3
 /// %, and mean and maximum stay exact.
-inline constexpr std::size_t kExactTimes = 1 << 16;
+inline constexpr std::size_t kExactTimes = 1 << 13;
 class TimeTally {
  public:
   void add(double ms);

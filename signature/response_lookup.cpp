@@ -90,6 +90,8 @@ Approach weighted(const std::vector<Approach>& values, const CellBlend& blend) {
 float bouncing_part(const Approach& approach, double least) {
   if (least <= 0.0 || approach.mean - 4.0f * approach.deviation > least) return 1.0f;
   if (approach.deviation <= 0.0f || approach.mean <= 0.0f) return approach.mean > least ? 1.0f : 0.0f;
+  constexpr double kNone = 40.0;  // deviations beyond which no double holds what is left
+  if (least > approach.mean + kNone * approach.deviation) return 0.0f;
   const double z = (least - approach.mean) / approach.deviation;
   const double above = 0.5 * std::erfc(z / std::numbers::sqrt2),
                density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);

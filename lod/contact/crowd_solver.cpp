@@ -21,6 +21,8 @@ constexpr double kUneven =
     20.0;  // a body that weighs as many times another makes all that hangs together with them uneven
 constexpr double kMostUnevenSweeps =
     80.0;  // times as many as elsewhere; for a ratio r about √(r / 2) times, as such an iteration asks for
+constexpr std::size_t kCheap = 16'000;  // points relaxed in a solution: few points are solved to the end, an
+                                        // impact on a light body too, where nothing is known of the impulses
 constexpr double kUnevenTolerance = 1e-4;  // of what gravity adds to a velocity in the step
 
 LODESTONE_INLINE D4 inverse_mass_along(const D4& inverse_mass, const Tensor4& inverse_inertia, const V4& arm,
@@ -410,7 +412,11 @@ Change CrowdSolver::Work::sweep(Round round, Which which, const JobRunner& jobs,
 // nonlinear conjugate gradient method for interactive contact force problems, 2010). They end with the
 // velocities that are left to be mended: of a great weight's impulses a small part is much for a light body.
 void CrowdSolver::Work::sweep_uneven(const ContactSolverSettings& settings, const JobRunner& jobs) {
-  const int sweeps = int(settings.sweeps * std::min(kMostUnevenSweeps, 1.0 + std::sqrt(most_uneven / 2)));
+  std::size_t count = 0;  // of points, four lanes wide
+  each_uneven_point([&](const Batch&, const PointLanes&, const UnevenLanes&, std::uint32_t) { ++count; });
+  const int sweeps =
+      std::max(int(settings.sweeps * std::min(kMostUnevenSweeps, 1.0 + std::sqrt(most_uneven / 2))),
+               int(kCheap / std::max<std::size_t>(count, 1)));
   const double enough = kUnevenTolerance * settings.fall.norm();
   double last = 0.0;
   for (int i = 0; i < sweeps; ++i) {

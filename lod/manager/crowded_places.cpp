@@ -12,8 +12,10 @@ constexpr double kThinnest = 1e-3;         // of a body's radius: the ball insid
 constexpr std::size_t kMembersSeen = 256;  // of the full level, the last
 constexpr std::int64_t kStepsBetween = 8;  // steps after which one more comes
 // Volume of the bodies whose centres are in a room over the room's: where newcomers are beyond the first,
-// which touching cubes stay below however they lie in the rooms, they come in up to the second.
-constexpr double kCrowded = 8.0, kFilled = 1.0;
+// which touching cubes stay below however they lie in the rooms, or beyond the second with those that are
+// there, and overlap for certain (the balls inside two of them are nearer than kOverlapping times touching),
+// they come in up to the third.
+constexpr double kCrowded = 8.0, kDense = 2.0, kFilled = 1.0, kOverlapping = 0.9;
 
 // A cell of a grid, whose width (m) is a power of two.
 struct Place {
@@ -58,6 +60,38 @@ struct Crowd {
   int there;
 };
 
+using Crowds = std::unordered_map<Place, Crowd, HashOfPlace>;
+
+struct Room {
+  double waiting = 0.0, there = 0.0;  // m³ of bodies
+  bool overlap = false;               // of those that wait
+  bool may_be_crowded(const Place& place) const {
+    return waiting > (overlap ? kFilled : kCrowded) * volume_of(place);
+  }
+  bool is_crowded(const Place& place) const {
+    return waiting > kCrowded * volume_of(place) || waiting + there > kDense * volume_of(place);
+  }
+};
+
+// For certain.
+bool overlap(const Vec3& first, const Shape& its, const Vec3& second, const Shape& other) {
+  return (first - second).norm() < kOverlapping * (its.inner_radius + other.inner_radius);
+}
+
+// Looks two places far, at the first newcomer in each.
+bool overlaps_another(const Crowds& crowds, const Vec3& position, const Shape& shape) {
+  const Place its = place_of(position, shape);
+  Place at = its;
+  for (at.cell[0] = its.cell[0] - 2; at.cell[0] <= its.cell[0] + 2; ++at.cell[0])
+    for (at.cell[1] = its.cell[1] - 2; at.cell[1] <= its.cell[1] + 2; ++at.cell[1])
+      for (at.cell[2] = its.cell[2] - 2; at.cell[2] <= its.cell[2] + 2; ++at.cell[2]) {
+        const auto other = crowds.find(at);
+        if (other == crowds.end() || (at == its && other->second.there == 1)) continue;
+        if (overlap(position, shape, other->second.middle, *other->second.shape)) return true;
+      }
+  return false;
+}
+
 // The crowds by the rooms that they reach into: 27 at most.
 class CrowdGrid {
  public:
@@ -86,6 +120,19 @@ bool meets_its_kind(const BodyProperties& properties) {
          may_meet(properties.category, properties.collide, properties.category, properties.collide);
 }
 
+// Whether a full body, of the last, waits there: then there are those that overlap.
+bool waits_in(const BodyTable& bodies, const Place& room) {
+  const auto& newcomers = bodies.newcomers();
+  const std::size_t count = newcomers.size();
+  for (std::size_t i = count; i > count - std::min(count, kMembersSeen); --i) {
+    const std::uint32_t other = newcomers[i - 1].index;
+    if (bodies.waits_at(i - 1) && bodies.level(other).choice == LevelChoice::full &&
+        room_of(newcomers[i - 1].state.position, *bodies.shape(other)) == room)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> find_held_back(const Levels& levels) {
@@ -100,38 +147,45 @@ std::vector<std::uint32_t> find_held_back(const Levels& levels) {
       if (const std::uint32_t body = newcomers[i].index; bodies.waits_at(i) && counts(body))
         visit(body, levels.state(body).position, *bodies.shape(body));
   };
-  std::unordered_map<Place, Crowd, HashOfPlace> crowds;
-  std::unordered_map<Place, double, HashOfPlace> rooms;  // m³ of bodies
+  Crowds crowds;
+  std::unordered_map<Place, Room, HashOfPlace> rooms;
   each_newcomer([&](std::uint32_t, const Vec3& position, const Shape& shape) {
-    rooms[room_of(position, shape)] += shape.volume;
+    rooms[room_of(position, shape)].waiting += shape.volume;
     ++crowds.try_emplace(place_of(position, shape), Crowd{position, &shape, 0}).first->second.there;
   });
+  each_newcomer([&](std::uint32_t, const Vec3& position, const Shape& shape) {
+    const Place its = room_of(position, shape);
+    if (Room& room = rooms.at(its); !room.overlap && room.waiting > kFilled * volume_of(its))
+      room.overlap = overlaps_another(crowds, position, shape);
+  });
   std::erase_if(crowds, [](const auto& crowd) { return crowd.second.there <= kBodiesOfAPlace; });
-  std::erase_if(rooms, [](const auto& room) { return room.second <= kCrowded * volume_of(room.first); });
+  std::erase_if(rooms, [](const auto& room) { return !room.second.may_be_crowded(room.first); });
   if (crowds.empty() && rooms.empty()) return {};
   CrowdGrid grid;
   for (auto& [place, crowd] : crowds) crowd.there = 0, grid.add(crowd);
-  for (auto& [room, volume] : rooms) volume = 0.0;
   for (std::uint32_t body = 0; body < bodies.indices(); ++body) {
     if (!counts(body) || bodies.level(body).newcomer) continue;
     const Vec3 position = levels.state(body).position;
     const Place its = room_of(position, *bodies.shape(body));
     grid.count(position, its);
-    if (const auto room = rooms.find(its); room != rooms.end()) room->second += bodies.shape(body)->volume;
+    if (const auto room = rooms.find(its); room != rooms.end())
+      room->second.there += bodies.shape(body)->volume;
   }
+  std::erase_if(rooms, [](const auto& room) { return !room.second.is_crowded(room.first); });
   const bool more = levels.now % kStepsBetween == 0;
   for (auto& [place, crowd] : crowds) crowd.there = std::min(crowd.there, kBodiesOfAPlace) - more;
-  for (auto& [room, volume] : rooms)
-    volume = std::min(volume, kFilled * (more ? std::nextafter(volume_of(room), 0.0) : volume_of(room)));
+  for (auto& [place, room] : rooms)
+    room.there =
+        std::min(room.there, kFilled * (more ? std::nextafter(volume_of(place), 0.0) : volume_of(place)));
   std::vector<std::uint32_t> held;
   each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
     const auto crowd = crowds.find(place_of(position, shape));
     const auto room = rooms.find(room_of(position, shape));
     const bool waits = (crowd != crowds.end() && crowd->second.there >= kBodiesOfAPlace) ||
-                       (room != rooms.end() && room->second >= kFilled * volume_of(room->first));
+                       (room != rooms.end() && room->second.there >= kFilled * volume_of(room->first));
     if (waits) return held.push_back(body);
     if (crowd != crowds.end()) ++crowd->second.there;
-    if (room != rooms.end()) room->second += shape.volume;
+    if (room != rooms.end()) room->second.there += shape.volume;
   });
   std::ranges::sort(held);
   return held;
@@ -142,15 +196,18 @@ bool is_full_place(const Levels& levels, const Vec3& position, const Shape& shap
   const Place place = place_of(position, shape), room = room_of(position, shape);
   int there = 0;
   double volume = shape.volume;
+  bool overlaps = waits_in(levels.bodies, room);
   for (std::size_t i = members.size(); i > members.size() - std::min(members.size(), kMembersSeen); --i) {
     const std::uint32_t other = members[i - 1].owner;
     const Vec3 at = levels.state(other).position;
     if (!at.allFinite()) continue;
     const Shape& its = *levels.bodies.shape(other);
     there += place_of(at, its) == place;
+    overlaps = overlaps || overlap(position, shape, at, its);
     if (room_of(at, its) == room) volume += its.volume;
   }
-  return there >= kBodiesOfAPlace || (volume > kCrowded * volume_of(room) && volume > shape.volume);
+  return there >= kBodiesOfAPlace ||
+         (volume > (overlaps ? kFilled : kCrowded) * volume_of(room) && volume > shape.volume);
 }
 
 }  // namespace lodestone

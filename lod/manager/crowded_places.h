@@ -12,7 +12,7 @@ namespace lodestone {
 
 /// So many of one size at a time, nearer to each other than the radius of the ball inside them
 /// (Shape::inner_radius): stacks, of thin plates too, are none. Nor do they come in but as many as fit by
-/// volume where they were given eight times as densely.
+/// volume where they were given eight times as densely, or twice with such as overlap for certain.
 inline constexpr int kBodiesOfAPlace = 4;
 
 /// The newcomers that wait, ascending: until less than kBodiesOfAPlace take part within a radius of them, and

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <vector>
+
+#include "tests/allocations.h"
 
 namespace lodestone {
 namespace {
@@ -49,6 +53,18 @@ TEST(TimeTally, BeyondThatItIsRightToThreeInAThousand) {
   EXPECT_EQ(tallied.max, exact.max);
   for (const double odd : {0.0, -1.0, 1e300}) tally.add(odd);
   EXPECT_EQ(tally.summary().max, 1e300);
+}
+
+TEST(TimeTally, HoldsNoMoreHoweverManyThereAre) {
+  const std::int64_t before = bytes_held();
+  TimeTally tally;
+  std::int64_t most = 0;
+  for (std::size_t i = 0; i < 40 * kExactTimes; ++i) {
+    tally.add(double(i % 100));
+    most = std::max(most, bytes_held() - before);
+  }
+  EXPECT_GE(tally.summary().max, 99.0);
+  EXPECT_LE(most, 150'000);
 }
 
 }  // namespace

@@ -38,14 +38,12 @@ class Rounds {
     heap_.push_back(heap_bytes()), resident_.push_back(resident_bytes());
   }
 
-  /// `grown`: part of the rounds after which no memory is to grow.
-  void sum_up(double grown, EnduranceFigures& figures) const {
+  void sum_up(EnduranceFigures& figures) const {
     if (step_us_.size() < 2) return;
     const auto rounds = double(step_us_.size());
-    const auto tenth = std::max<std::ptrdiff_t>(1, std::ptrdiff_t(rounds / 10)),
-               first = std::max<std::ptrdiff_t>(1, std::ptrdiff_t(rounds * grown));
+    const auto tenth = std::max<std::ptrdiff_t>(1, std::ptrdiff_t(rounds / 10));
     const auto growth = [&](const std::vector<double>& bytes) {
-      return *std::ranges::max_element(bytes.begin() + first, bytes.end()) - bytes[std::size_t(first - 1)];
+      return *std::ranges::max_element(bytes.begin() + tenth, bytes.end()) - bytes[std::size_t(tenth - 1)];
     };
     figures.heap_growth_bytes = growth(heap_);
     figures.resident_growth_bytes = growth(resident_);
@@ -85,7 +83,7 @@ class EndlessWorld {
         run_round(round);
       }
     });
-    rounds_.sum_up(0.1, figures_);
+    rounds_.sum_up(figures_);
     return figures_;
   }
 
@@ -190,7 +188,7 @@ EnduranceFigures endure_scene(const EnduranceSettings& settings) {
   until_interrupted([&] {
     run_scene(scene, {.steps = steps, .threads = settings.threads, .watch = watch, .stop = is_interrupted});
   });
-  rounds.sum_up(1.0 / 3.0, figures);
+  rounds.sum_up(figures);
   return figures;
 }
 

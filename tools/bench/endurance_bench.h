@@ -26,9 +26,9 @@ inline constexpr int kEnduranceRound = 600;
 inline constexpr int kEnduranceCircle = 1200;
 
 /// Crates fall on a plane while a viewpoint circles them once in 7 s, so that they go up and down the rungs.
-/// Memory is read at the end of each round; the first tenth of the rounds (of a scene, whose runner has
-/// tallies to fill, the first third) is for arrays to grow in. A scene goes on from round to round as it is,
-/// a viewpoint circling where its first one looks, and its energy is over that at its start.
+/// Memory is read at the end of each round; the first tenth of the rounds is for arrays to grow in. A scene
+/// goes on from round to round as it is, a viewpoint circling where its first one looks, and its energy is
+/// over that at its start.
 struct EnduranceFigures {
   std::int64_t steps = 0;
   std::int64_t changes = 0;  ///< of rung

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
@@ -80,6 +82,36 @@ TEST(CrowdedPlaces, NoMoreThanFitTakePartWhereManyAreGivenDensely) {
   for (int i = 0; i < 8; ++i) manager.step(kFrame);
   EXPECT_GT(placed(manager, bodies), at_first);
   EXPECT_LT(placed(manager, bodies), 400);
+}
+
+// Five times as many as fit; each wave of them is a system for ODE whose time grows faster than it does.
+TEST(CrowdedPlaces, FullOnesOverlappingInARoomComeAsTheyFit) {
+  Manager manager = on_floor();
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 200; ++i)
+    bodies.push_back(add(manager, box_shape({0.2, 0.3, 0.4}),
+                         testing::at({i % 7 / 7.0, i / 7 % 7 / 7.0, 1.0 + i / 49 / 7.0}), LevelChoice::full));
+  EXPECT_GT(placed(manager, bodies), 20);
+  int most = placed(manager, bodies), before = most;
+  EXPECT_LT(most, 60);
+  for (int i = 0; i < 60; ++i) {
+    manager.step(kFrame);
+    const int now = placed(manager, bodies);
+    most = std::max(most, now - before), before = now;
+  }
+  EXPECT_LT(most, 60);
+  EXPECT_EQ(before, 200);
+}
+
+// Cubes that touch, eight with their centres in a room: none waits.
+TEST(CrowdedPlaces, FullOnesThatTouchAreThereAtOnce) {
+  Manager manager = on_floor();
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 64; ++i)
+    bodies.push_back(add(manager, box_shape({0.25, 0.25, 0.25}),
+                         testing::at({0.25 * (i % 4), 0.25 * (i / 4 % 4), 0.5 + 0.25 * (i / 16)}),
+                         LevelChoice::full));
+  EXPECT_EQ(placed(manager, bodies), 64);
 }
 
 // That meet none of their kind, that are apart, if only by the thickness of a plate, and that come one after

@@ -44,6 +44,13 @@ TEST(HeavyOnLight, TenTonsOnAHundredKilogramsAreCarried) {
   EXPECT_LT(farthest_from_full(bodies), 0.01);
 }
 
+// The impact comes out of nothing: no impulses of the last step to begin with.
+TEST(HeavyOnLight, TenTonsLetFallOntoAHundredKilogramsStayAboveThem) {
+  const auto light = box_shape({0.464, 0.464, 0.464}), heavy = box_shape({2.154, 2.154, 2.154});
+  const Weighed bodies[] = {{light, 100, {0.02, 0.01, 0.232}}, {heavy, 1e4, {0, 0, 0.464 + 1.077 + 0.5}}};
+  EXPECT_LT(farthest_from_full(bodies), 0.01);
+}
+
 // Falls that differ by hardly anything end millimetres apart, a column now and then centimetres aside; none
 // is pressed into the ground or squeezed out.
 TEST(HeavyOnLight, ASlabOfAHundredTonsOnColumnsOfTenKilograms) {
