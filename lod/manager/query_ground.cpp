@@ -119,7 +119,8 @@ std::vector<PlacedSolid> QueryGround::find_near(const Vec3& center, double reach
 // Piece by piece of a ray that is not too long.
 std::vector<PlacedSolid> QueryGround::find_along(const Sweep& sweep, std::vector<const GroundPart*>& probed) {
   std::vector<PlacedSolid> all;
-  const double length = std::min(sweep.length, kFarthestPiece), piece = std::max(kPiece, length / kMostPieces);
+  const double length = std::min(sweep.length, kFarthestPiece),
+               piece = std::max(kPiece, length / kMostPieces);
   for (double at = 0.0; at <= length; at += piece) {
     const double half = 0.5 * std::min(piece, length - at);
     for (const PlacedSolid& solid :

@@ -17,6 +17,7 @@ void StepChanges::begin() {
 void StepChanges::add(std::uint32_t body) {
   if (slept_.size() <= body) slept_.resize(std::size_t(body) + 1, 0);
   slept_[body] = 0;
+  lies_at_.resize(slept_.size(), Vec3::Zero());
 }
 
 void StepChanges::take_part() {
@@ -28,7 +29,12 @@ void StepChanges::take_part() {
 }
 
 void StepChanges::finish() {
-  for (const FullLevel::Member& member : levels_.full.members()) noted_.push_back(member.owner);
+  for (const FullLevel::Member& member : levels_.full.members()) {
+    noted_.push_back(member.owner);
+    const Vec3 at = levels_.state(member.owner).position;
+    if (at != lies_at_[member.owner]) settled_.push_back(member.owner);
+    lies_at_[member.owner] = at;
+  }
   noted_.insert(noted_.end(), settled_.begin(), settled_.end());
   std::ranges::sort(noted_);
   noted_.erase(std::unique(noted_.begin(), noted_.end()), noted_.end());

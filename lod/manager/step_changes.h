@@ -27,7 +27,7 @@ class StepChanges {
 
   /// Forgets the last step where it reads.
   void archive(StateArchive& a) {
-    a(slept_, noted_);
+    a(slept_, noted_, lies_at_);
     if (a.reading()) begin();
   }
 
@@ -43,7 +43,9 @@ class StepChanges {
   void find_moved() const;
 
   Levels& levels_;
-  std::vector<char> slept_;             // at the end of the last step, by index
+  std::vector<char> slept_;    // at the end of the last step, by index
+  std::vector<Vec3> lies_at_;  // m, by index: where full ones were; ODE may wake one within the step, and lay
+                               // it to sleep again
   std::vector<std::uint32_t> noted_;    // who may have woken or fallen asleep since
   std::vector<std::uint32_t> settled_;  // who fell asleep in some part of the step
   std::vector<BodyId> fell_asleep_, woke_;

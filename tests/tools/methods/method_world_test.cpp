@@ -20,7 +20,8 @@ RigidState above_the_plane(double height_m) {
 
 // One of each engine, none of which needs a signature.
 std::vector<Method> methods_of_every_engine(const DropJob& job) {
-  std::vector<Method> methods = make_methods({"full_1", "waiting", "bullet_hull", "bullet_hull40"}, job, {}, 1, {});
+  std::vector<Method> methods =
+      make_methods({"full_1", "waiting", "bullet_hull", "bullet_hull40"}, job, {}, 1, {});
   std::erase_if(methods, [](const Method& method) { return !method.left_out.empty(); });
   return methods;
 }
