@@ -22,9 +22,11 @@ RigidState settling_start(const Shape& shape, std::uint64_t seed, std::uint32_t 
   const double radius = shape.radius, speed = std::sqrt(kSettlingGravity * radius);
   RigidState state;
   state.orientation = random.orientation();
-  state.velocity =
-      speed * Vec3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 0.0));
-  state.angular_velocity = 1.5 * speed / radius * random.uniform() * random.direction();
+  // One by one: a compiler is free to draw the arguments of a call in any order.
+  const double z = random.uniform(-1.0, 0.0), y = random.uniform(-1.0, 1.0), x = random.uniform(-1.0, 1.0);
+  state.velocity = speed * Vec3(x, y, z);
+  const Vec3 axis = random.direction();
+  state.angular_velocity = 1.5 * speed / radius * random.uniform() * axis;
   state.position.z() = 0.0;
   state.position.z() = radius * random.uniform(0.1, 3.0) - gap_over_ground(shape, state);
   return state;

@@ -106,8 +106,10 @@ class EndlessWorld {
     state.position = {0.6 * (body % side - 0.5 * side), 0.6 * (body / side - 0.5 * side),
                       random.uniform(0.5, 1.5)};
     state.orientation = random.orientation();
-    state.velocity = random.uniform(0.0, 1.0) * random.direction();
-    state.angular_velocity = random.uniform(0.0, 10.0) * random.direction();
+    const Vec3 way = random.direction();  // apart: the order of two draws in one expression is the compiler's
+    state.velocity = random.uniform(0.0, 1.0) * way;
+    const Vec3 axis = random.direction();
+    state.angular_velocity = random.uniform(0.0, 10.0) * axis;
     return state;
   }
 
