@@ -84,11 +84,10 @@ void add_signature_arguments(Command& command, SignatureArguments& arguments) {
   command.add_option("--clips", settings.clips, "settling clips to keep").within(0, 100'000).in_group(group);
 }
 
-Option add_share_argument(Command& command, std::optional<Share>& share) {
+Option add_share_argument(Command& command, std::optional<Share>& share, const std::string& what) {
   return command
       .add_text(
-          "--shard", [&share](const std::string& text) { share = share_from_text(text); },
-          "measure one share of the trials, the I-th of N; -o names its part (see merge)")
+          "--shard", [&share](const std::string& text) { share = share_from_text(text); }, what)
       .checked(find_share_fault)
       .typed("I/N");
 }

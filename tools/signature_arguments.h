@@ -21,8 +21,8 @@ struct SignatureArguments {
 /// --settling-trials and --clips to `command`. `arguments` outlives the parsing.
 void add_signature_arguments(Command& command, SignatureArguments& arguments);
 
-/// Adds --shard I/N, I from 1 to N, to `command`: which share of a measurement. `share` outlives the parsing
-/// and stays empty where it is not given.
-Option add_share_argument(Command& command, std::optional<Share>& share);
+/// Adds --shard I/N, I from 1 to N, to `command`: which share of a measurement, or of a series of
+/// comparisons, as `what` says. `share` outlives the parsing and stays empty where it is not given.
+Option add_share_argument(Command& command, std::optional<Share>& share, const std::string& what);
 
 }  // namespace lodestone

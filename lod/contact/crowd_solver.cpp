@@ -21,8 +21,10 @@ constexpr double kUneven =
     20.0;  // a body that weighs as many times another makes all that hangs together with them uneven
 constexpr double kMostUnevenSweeps =
     80.0;  // times as many as elsewhere; for a ratio r about √(r / 2) times, as such an iteration asks for
-constexpr std::size_t kCheap = 16'000;  // points relaxed in a solution: few points are solved to the end, an
-                                        // impact on a light body too, where nothing is known of the impulses
+// Points, four lanes wide, of one body on another: an impact on a light one, of whose impulses nothing is
+// known, is solved to the end, in which so many points are relaxed. Larger ones are no better for it: slabs
+// of a thousand times a column's mass then crush it more often.
+constexpr std::size_t kFewPoints = 12, kRelaxations = 16'000;
 constexpr double kUnevenTolerance = 1e-4;  // of what gravity adds to a velocity in the step
 
 LODESTONE_INLINE D4 inverse_mass_along(const D4& inverse_mass, const Tensor4& inverse_inertia, const V4& arm,
@@ -416,7 +418,7 @@ void CrowdSolver::Work::sweep_uneven(const ContactSolverSettings& settings, cons
   each_uneven_point([&](const Batch&, const PointLanes&, const UnevenLanes&, std::uint32_t) { ++count; });
   const int sweeps =
       std::max(int(settings.sweeps * std::min(kMostUnevenSweeps, 1.0 + std::sqrt(most_uneven / 2))),
-               int(kCheap / std::max<std::size_t>(count, 1)));
+               count <= kFewPoints ? int(kRelaxations / std::max<std::size_t>(count, 1)) : 0);
   const double enough = kUnevenTolerance * settings.fall.norm();
   double last = 0.0;
   for (int i = 0; i < sweeps; ++i) {

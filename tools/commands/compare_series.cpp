@@ -7,6 +7,7 @@
 #include "tools/commands.h"
 #include "tools/compare/comparison_arguments.h"
 #include "tools/compare/drop_series.h"
+#include "tools/compare/series_parts.h"
 #include "tools/compare/unseen_shapes.h"
 #include "tools/progress.h"
 #include "tools/results.h"
@@ -18,6 +19,7 @@ namespace {
 struct SeriesArguments {
   ComparisonArguments comparison;
   std::vector<std::string> only;
+  std::optional<Share> share;
   bool costs = false;
   ResultArguments results;
 };
@@ -30,14 +32,22 @@ struct ConditionsArguments : SeriesArguments {
   ShapeArguments shape;
 };
 
+using MaterialsArguments = ConditionsArguments;
+
+void add_common_arguments(Command& command, SeriesArguments& arguments) {
+  add_share_argument(command, arguments.share,
+                     "compare one share of the rows, the I-th of N; --json prints its part (see merge)");
+  command.add_flag("--costs", arguments.costs, "measure what a step costs, too");
+  add_json_argument(command, arguments.results);
+}
+
 void add_series_arguments(Command& command, SeriesArguments& arguments, std::vector<std::string> names) {
   arguments.comparison.comparison.methods = {"full_1", "statistical"};
   add_comparison_arguments(command, arguments.comparison);
   command.add_option("--only", arguments.only, "some of the rows, with commas")
       .several()
       .one_of(std::move(names));
-  command.add_flag("--costs", arguments.costs, "measure what a step costs, too");
-  add_json_argument(command, arguments.results);
+  add_common_arguments(command, arguments);
 }
 
 bool is_chosen(std::string_view name, const std::vector<std::string>& only) {
@@ -50,15 +60,22 @@ std::vector<DropComparison> compare(const std::vector<DropCase>& cases, const Se
   return with_progress(settings, [&](const auto& with_line) { return compare_series(cases, with_line); });
 }
 
+nlohmann::ordered_json with_share(nlohmann::ordered_json json, const std::optional<Share>& share) {
+  if (share) json["shard"] = fmt::format("{}/{}", share->index + 1, share->count);
+  return json;
+}
+
 void compare_shapes(const ShapesArguments& arguments) {
   std::vector<DropCase> cases;
   for (const UnseenShape& shape : unseen_shapes())
     if (is_chosen(shape.name, arguments.only))
       cases.push_back(
           {std::string(shape.name),
-           {.shape = make_unseen_shape(shape.name), .conditions = {}, .material = arguments.material}});
+           {.shape = make_unseen_shape(shape.name), .conditions = {}, .material = arguments.material},
+           int(cases.size())});
+  keep_share(cases, arguments.share.value_or(Share{}), false);
   const std::vector<DropComparison> series = compare(cases, arguments);
-  print_results(arguments.results, json_of("shape", cases, series, false),
+  print_results(arguments.results, with_share(json_of("shape", cases, series, false), arguments.share),
                 text_of("shape", cases, series, false));
 }
 
@@ -74,9 +91,18 @@ void compare_conditions(const ConditionsArguments& arguments) {
   cases.erase(std::remove_if(others, cases.end(),
                              [&](const DropCase& one) { return !is_chosen(one.name, arguments.only); }),
               cases.end());
+  keep_share(cases, arguments.share.value_or(Share{}), true);
   const std::vector<DropComparison> series = compare(cases, arguments);
-  print_results(arguments.results, json_of("condition", cases, series, true),
+  print_results(arguments.results, with_share(json_of("condition", cases, series, true), arguments.share),
                 text_of("condition", cases, series, true));
+}
+
+void compare_materials(const MaterialsArguments& arguments) {
+  std::vector<DropCase> cases = make_material_cases(usual_job(arguments));
+  keep_share(cases, arguments.share.value_or(Share{}), false);
+  const std::vector<DropComparison> series = compare(cases, arguments);
+  const auto json = with_share(json_of("materials", cases, series, false), arguments.share);
+  print_results(arguments.results, json, material_tables_of(json));
 }
 
 std::vector<std::string> shape_names() {
@@ -92,6 +118,17 @@ void add_compare_shapes_command(Command& compare) {
       compare.add<ShapesArguments>("shapes", "drops of shapes that nothing was tuned on", compare_shapes);
   add_series_arguments(shapes, arguments, shape_names());
   add_material_arguments(shapes, arguments.material);
+}
+
+void add_compare_materials_command(Command& compare) {
+  auto [materials, arguments] = compare.add<MaterialsArguments>(
+      "materials", "drops of a shape with every pair of six restitutions and five frictions",
+      compare_materials);
+  arguments.comparison.comparison.trials = 200;
+  arguments.comparison.comparison.methods = {"statistical"};
+  add_shape_arguments(materials, arguments.shape);
+  add_comparison_arguments(materials, arguments.comparison);
+  add_common_arguments(materials, arguments);
 }
 
 void add_compare_conditions_command(Command& compare) {

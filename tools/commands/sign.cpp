@@ -204,7 +204,10 @@ void add_sign_command(Command& program) {
   add_shape_arguments(command, arguments.shape);
   add_signature_arguments(command, arguments.signature);
   Option out = command.add_option("-o", arguments.out, "write it to this file, too");
-  Option shard = add_share_argument(command, arguments.share).needs(out);
+  Option shard =
+      add_share_argument(command, arguments.share,
+                         "measure one share of the trials, the I-th of N; -o names its part (see merge)")
+          .needs(out);
   Option from = command
                     .add_option("--from-trials", arguments.from_trials,
                                 "make its tables of the measured collisions and rests in this CSV file")

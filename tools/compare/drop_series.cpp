@@ -55,10 +55,28 @@ std::vector<std::string> condition_names() {
 std::vector<DropCase> make_condition_cases(const DropJob& usual) {
   std::vector<DropCase> cases;
   for (const Condition& condition : make_conditions()) {
-    cases.push_back({condition.name, usual});
+    cases.push_back({condition.name, usual, int(cases.size())});
     condition.set(cases.back().job);
   }
   return cases;
+}
+
+std::vector<DropCase> make_material_cases(const DropJob& usual) {
+  std::vector<DropCase> cases;
+  for (const double restitution : {0.0, 0.2, 0.4, 0.6, 0.8, 0.9})
+    for (const double friction : {0.0, 0.2, 0.5, 0.8, 1.0}) {
+      DropCase& one = cases.emplace_back(
+          DropCase{fmt::format("restitution={:g} friction={:g}", restitution, friction), usual});
+      one.job.material.restitution = restitution;
+      one.job.material.friction = friction;
+      one.index = int(cases.size()) - 1;
+    }
+  return cases;
+}
+
+void keep_share(std::vector<DropCase>& cases, const Share& share, bool keep_first) {
+  std::erase_if(
+      cases, [&](const DropCase& one) { return !share.holds(one.index) && !(keep_first && one.index == 0); });
 }
 
 std::vector<DropComparison> compare_series(std::span<const DropCase> cases,
@@ -109,6 +127,7 @@ ordered_json json_of(const std::string& key, std::span<const DropCase> cases,
     for (std::size_t k = 0; k < series[i].rows.size(); ++k) {
       ordered_json row;
       row[key] = cases[i].name;
+      row["case"] = cases[i].index;
       row.update(json_of(series[i].rows[k], series[i].floor));
       const auto over = over_first ? score_over(series[i].rows[k], series[0].rows[k]) : std::nullopt;
       if (over_first) row["score_over_first"] = over ? ordered_json(*over) : ordered_json(nullptr);

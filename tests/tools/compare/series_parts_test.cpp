@@ -1,0 +1,102 @@
+#include "tools/compare/series_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "reference/error.h"
+#include "tools/compare/drop_series.h"
+
+namespace lodestone {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json row(int number, const char* materials, double score) {
+  return {{"materials", materials}, {"case", number},   {"method", "statistical"},
+          {"model", "support"},     {"dt_s", 1.0 / 60}, {"score", score},
+          {"floor", 0.05}};
+}
+
+ordered_json part(const char* shard, std::vector<ordered_json> rows) {
+  return {{"trials", 12}, {"rows", std::move(rows)}, {"shard", shard}};
+}
+
+std::vector<ordered_json> two_parts() {
+  return {part("2/2", {row(1, "restitution=0 friction=0.5", 0.2)}),
+          part("1/2", {row(0, "restitution=0 friction=0", 0.1), row(2, "restitution=0.9 friction=0", 0.3)})};
+}
+
+std::string message_of(const std::vector<ordered_json>& parts) {
+  try {
+    merge_series(parts);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SeriesParts, AreJoinedInTheOrderOfTheirCases) {
+  const ordered_json merged = merge_series(two_parts());
+  ASSERT_EQ(merged["rows"].size(), 3U);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(merged["rows"][std::size_t(i)]["case"], i);
+  EXPECT_EQ(merged["trials"], 12);
+  EXPECT_FALSE(merged.contains("shard"));
+}
+
+TEST(SeriesParts, ACaseThatEachPartHasIsThereOnce) {
+  std::vector<ordered_json> parts = two_parts();
+  parts[0]["rows"].insert(parts[0]["rows"].begin(), row(0, "restitution=0 friction=0", 0.1));
+  EXPECT_EQ(merge_series(parts)["rows"].size(), 3U);
+}
+
+TEST(SeriesParts, WhatDoesNotFitIsRefusedAndNamed) {
+  std::vector<ordered_json> parts = two_parts();
+  parts.pop_back();
+  EXPECT_NE(message_of(parts).find("found no part 1/2"), std::string::npos);
+  parts = two_parts();
+  parts[1] = parts[0];
+  EXPECT_NE(message_of(parts).find("2/2 twice"), std::string::npos);
+  parts = two_parts();
+  parts[1]["trials"] = 13;
+  EXPECT_NE(message_of(parts).find("13"), std::string::npos);
+  parts = two_parts();
+  parts[1]["shard"] = "1/3";
+  EXPECT_NE(message_of(parts).find("1/3"), std::string::npos);
+  parts = two_parts();
+  parts[0]["incomplete"] = true;
+  EXPECT_NE(message_of(parts).find("incomplete"), std::string::npos);
+  EXPECT_NE(message_of({ordered_json::object()}), "");
+  EXPECT_NE(message_of({}), "");
+}
+
+TEST(SeriesParts, MaterialsMakeATableOfAMethod) {
+  const std::string text = material_tables_of(merge_series(two_parts()));
+  EXPECT_NE(text.find("statistical support"), std::string::npos);
+  EXPECT_NE(text.find("friction 0.5"), std::string::npos);
+  EXPECT_NE(text.find("0.300 (0.050)"), std::string::npos);
+}
+
+TEST(MaterialCases, AreEveryPairOnceAndSharedOut) {
+  const DropJob usual = {.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))),
+                         .conditions = {},
+                         .material = {}};
+  const std::vector<DropCase> all = make_material_cases(usual);
+  EXPECT_EQ(all.size(), 30U);
+  std::size_t shared = 0;
+  for (int i = 0; i < 4; ++i) {
+    std::vector<DropCase> some = all;
+    keep_share(some, {i, 4}, false);
+    for (const DropCase& one : some) EXPECT_EQ(one.index % 4, i);
+    shared += some.size();
+  }
+  EXPECT_EQ(shared, all.size());
+  std::vector<DropCase> with_first = all;
+  keep_share(with_first, {1, 4}, true);
+  EXPECT_EQ(with_first[0].index, 0);
+  EXPECT_EQ(with_first[1].index, 1);
+}
+
+}  // namespace
+}  // namespace lodestone
