@@ -33,14 +33,8 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdMani
     for (std::size_t i = alike.first; i < alike.second; ++i) manifolds[i].known = true;
     const Run& run = runs_[std::size_t(place)];
     const auto now = points.subspan(begin, end - begin);
-    const auto before = std::span(loads_).subspan(run.begin, run.count);
-    if (before.size() == now.size()) {
-      for (const Load& load : before) find_nearest(now, load.arm).guess += step * load.force;
-      return;
-    }
-    Vec3 sum = Vec3::Zero();
-    for (const Load& load : before) sum += load.force;
-    for (CrowdPoint& point : now) point.guess = step / double(now.size()) * sum;
+    for (const Load& load : std::span(loads_).subspan(run.begin, run.count))
+      find_nearest(now, load.arm).guess += step * load.force;
   });
 }
 

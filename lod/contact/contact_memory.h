@@ -15,9 +15,9 @@ namespace lodestone {
 class ContactMemory {
  public:
   /// Sets `guess` of the points of a pair to what it had, each force going to the point that is nearest to
-  /// where it was, as seen from the first body, since points of a face come in any order; where their number
-  /// changed, in equal parts. Says of its manifolds that they are known. `keys` holds one key per manifold,
-  /// equal ones in a row; `step` is the length of this step, s.
+  /// where it was, as seen from the first body: points of a face come in any order. Says of its manifolds
+  /// that they are known. `keys` holds one key per manifold, equal ones in a row; `step` is the length of
+  /// this step, s.
   void recall(std::span<const ContactKey> keys, std::span<CrowdManifold> manifolds,
               std::span<CrowdPoint> points, double step);
   /// Forgets what was before.
