@@ -36,6 +36,8 @@ void StepChanges::finish() {
     lies_at_[member.owner] = at;
   }
   noted_.insert(noted_.end(), settled_.begin(), settled_.end());
+  // One that left the full level asleep may have been woken on its new rung.
+  for (const RungChange& change : levels_.rung_changes) noted_.push_back(change.body.index);
   std::ranges::sort(noted_);
   noted_.erase(std::unique(noted_.begin(), noted_.end()), noted_.end());
   std::ranges::sort(settled_);
