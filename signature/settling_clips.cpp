@@ -43,6 +43,37 @@ SettlingKey key_of(const ClipState& s, const Mat3& inertia_per_mass) {
           float(0.5 * (s.velocity.squaredNorm() + w.dot(inertia_per_mass * w)) + s.position.z())};
 }
 
+std::array<float, 9> coordinates_of(const SettlingKey& key) {
+  const Eigen::Vector3f &n = key.normal, &v = key.velocity, &w = key.angular_velocity;
+  return {n.x(), n.y(), n.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
+}
+
+/// Of entries side by side: each one's squared distance from a key, as find_nearest measures it; huge where
+/// there is too much energy.
+struct DistanceLoop {
+  std::array<const float*, 9> at;  // coordinates
+  const float* energy;
+  std::array<float, 9> key;
+  float greatest_energy;
+
+  void operator()(std::size_t count, float* distance) const {
+    const float *nx = at[0], *ny = at[1], *nz = at[2], *vx = at[3], *vy = at[4], *vz = at[5], *wx = at[6],
+                *wy = at[7], *wz = at[8], *e = energy;
+    const auto [knx, kny, knz, kvx, kvy, kvz, kwx, kwy, kwz] = key;
+    const float most = greatest_energy;
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < count; ++i) {
+      const float ax = nx[i] - knx, ay = ny[i] - kny, az = nz[i] - knz;
+      const float bx = vx[i] - kvx, by = vy[i] - kvy, bz = vz[i] - kvz;
+      const float cx = wx[i] - kwx, cy = wy[i] - kwy, cz = wz[i] - kwz;
+      const float from_normal = ax * ax + ay * ay + az * az, from_velocity = bx * bx + by * by + bz * bz,
+                  from_turning = cx * cx + cy * cy + cz * cz;
+      const float excess = e[i] > most ? 1e30f : 0.0f;
+      distance[i] = 4.0f * from_normal + from_velocity + from_turning + excess;
+    }
+  }
+};
+
 }  // namespace
 
 ClipFrame encode_frame(const ClipState& state, float extent) {
@@ -84,7 +115,8 @@ std::size_t ClipIndex::cell_of(const std::array<int, 3>& place) {
 ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass) {
   if (signature.clip_entries.empty()) return;
   struct Placed {
-    Keyed keyed;
+    SettlingKey key;
+    ClipEntry entry;
     std::size_t cell;
   };
   std::vector<Placed> placed;
@@ -93,28 +125,33 @@ ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass) {
     const SettlingKey key =
         key_of(find_clip_state(signature, signature.clips[entry.clip], entry.frame), inertia_per_mass);
     const Eigen::Vector3f& n = key.normal;
-    placed.push_back({{key, entry}, cell_of({cell_along(n.x()), cell_along(n.y()), cell_along(n.z())})});
+    placed.push_back({key, entry, cell_of({cell_along(n.x()), cell_along(n.y()), cell_along(n.z())})});
   }
-  std::ranges::stable_sort(placed, {}, [](const Placed& p) { return std::pair(p.cell, p.keyed.key.energy); });
+  std::ranges::stable_sort(placed, {}, [](const Placed& p) { return std::pair(p.cell, p.key.energy); });
   start_.assign(kSide * kSide * kSide + 1, 0);
   entries_.reserve(placed.size());
   for (const Placed& p : placed) {
-    entries_.push_back(p.keyed);
+    entries_.push_back(p.entry);
+    energy_.push_back(p.key.energy);
+    for (std::size_t i = 0; i < kCoordinates; ++i) coordinates_[i].push_back(coordinates_of(p.key)[i]);
     ++start_[p.cell + 1];
   }
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
 }
 
-void ClipIndex::search(std::size_t cell, const SettlingKey& key, float greatest_energy,
+// Of entries [begin, end), several at a time.
+void ClipIndex::search(std::size_t begin, std::size_t end, const SettlingKey& key, float greatest_energy,
                        Nearest& nearest) const {
-  for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
-    const SettlingKey& other = entries_[i].key;
-    if (other.energy > greatest_energy) return;
-    const float from_normal = 4.0f * (other.normal - key.normal).squaredNorm();
-    if (from_normal >= nearest.distance) continue;
-    const float distance = from_normal + (other.velocity - key.velocity).squaredNorm() +
-                           (other.angular_velocity - key.angular_velocity).squaredNorm();
-    if (distance < nearest.distance) nearest = {distance, &entries_[i]};
+  constexpr std::size_t kBlock = 64;
+  std::array<float, kBlock> distance;
+  DistanceLoop loop{{}, nullptr, coordinates_of(key), greatest_energy};
+  for (std::size_t from = begin; from < end; from += kBlock) {
+    const std::size_t count = std::min(kBlock, end - from);
+    for (std::size_t i = 0; i < kCoordinates; ++i) loop.at[i] = coordinates_[i].data() + from;
+    loop.energy = energy_.data() + from;
+    loop(count, distance.data());
+    for (std::size_t i = 0; i < count; ++i)
+      if (distance[i] < nearest.distance) nearest = {distance[i], std::int64_t(from + i)};
   }
 }
 
@@ -132,11 +169,10 @@ std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float e
     for (int y = first[1]; y <= last[1]; ++y) {
       const std::size_t begin = cell_of({x, y, first[2]}), end = cell_of({x, y, last[2]}) + 1;
       if (start_[begin] == start_[end]) continue;  // most lie off the sphere
-      for (std::size_t cell = begin; cell < end; ++cell)
-        search(cell, key, key.energy + energy_slack, nearest);
+      search(start_[begin], start_[end], key, key.energy + energy_slack, nearest);
     }
-  if (!nearest.entry) return {};
-  return nearest.entry->entry;
+  if (nearest.entry < 0) return {};
+  return entries_[std::size_t(nearest.entry)];
 }
 
 }  // namespace lodestone

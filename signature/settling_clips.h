@@ -50,20 +50,21 @@ class ClipIndex {
   bool empty() const { return entries_.empty(); }
 
  private:
-  struct Keyed {
-    SettlingKey key;
-    ClipEntry entry;
-  };
   struct Nearest {
     float distance;
-    const Keyed* entry = nullptr;
+    std::int64_t entry = -1;
   };
   static constexpr int kSide = 24;  // cells along an edge of the cube that holds the sphere of normals
   static int cell_along(float coordinate);
   static std::size_t cell_of(const std::array<int, 3>& place);
-  void search(std::size_t cell, const SettlingKey& key, float greatest_energy, Nearest& nearest) const;
+  void search(std::size_t begin, std::size_t end, const SettlingKey& key, float greatest_energy,
+              Nearest& nearest) const;
   std::vector<std::uint32_t> start_;  // of each cell's run of `entries_`
-  std::vector<Keyed> entries_;        // by cell, in a cell of least energy first
+  std::vector<ClipEntry> entries_;    // by cell, in a cell of least energy first
+  // Of each entry's key: normal, velocity and angular velocity, energy.
+  static constexpr std::size_t kCoordinates = 9;
+  std::array<std::vector<float>, kCoordinates> coordinates_;
+  std::vector<float> energy_;
 };
 
 }  // namespace lodestone

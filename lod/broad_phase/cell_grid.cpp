@@ -10,13 +10,15 @@ namespace {
 
 constexpr int kBaseLevel = 16;  // of 32, each with an edge four times that of the one below
 constexpr double kLevelFactor = 4.0;
-constexpr double kFitting = 0.995;      // of all balls are at the base level or below
-constexpr double kColumnMost = 4.0;     // balls in a column of cells, up to which a layer is thin
-constexpr double kCellsMost = 2.0;      // for each ball
+constexpr double kFitting = 0.995;   // of all balls are at the base level or below
+constexpr double kColumnMost = 4.0;  // balls in a column of cells, up to which a layer is thin
+constexpr double kSliceMost = 12.0;  // balls in a slice across the longest axis, up to which slices are cells
+constexpr double kCellsMost = 2.0;   // for each ball
 constexpr std::int32_t kWrapLeast = 4;  // cells: with fewer, a cell would be its neighbour's neighbour
 constexpr double kStrayFactor =
     16.0;  // an axis is so many times as long as all but a few balls need: those have strayed
 constexpr double kRounding = 4e-7;     // of a position kept as a float, over how far from the origin
+constexpr double kFinest = 2e-3;       // of a reach: a rounding that finds hardly a ball too many
 constexpr std::size_t kSample = 1000;  // balls that tell where most are
 constexpr std::int64_t kOneCell = 24;  // balls: so few are tested each with each
 constexpr std::int64_t kPartBalls = 1024;
@@ -185,6 +187,15 @@ void CellGrid::lay_out(const BallBounds& bounds, int level) {
   grid.axis = {by_length[1], by_length[0], by_length[2]};
   std::array<double, 3> along{cells[grid.axis[0]], cells[grid.axis[1]], cells[grid.axis[2]]};
   if (count / (along[0] * along[2]) <= kColumnMost) along[1] = 1.0;
+  const double slices = std::min(along[2], limit);
+  const int axis = grid.axis[2];
+  const double extent = high[axis] - low[axis];
+  if (along[2] > 1.0 && count <= kSliceMost * slices && kRounding * extent <= kFinest * grid.most_reach) {
+    // Few side by side: cells that nobody is in would cost more than the balls.
+    grid.edge = std::max(grid.edge, (1.0 + 1e-9) * extent / slices);
+    grid.inverse = 1.0 / grid.edge;
+    along = {1.0, 1.0, slices};
+  }
   if (level < 0) along.fill(1.0);
   while (along[0] * along[1] * along[2] > limit) {
     const int longest = int(std::ranges::max_element(along) - along.begin());

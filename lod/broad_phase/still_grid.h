@@ -79,7 +79,9 @@ class StillGrid {
   static int level_of(double radius) { return std::ilogb(2.0 * radius) + 1; }
   static double edge_of(int level) { return std::ldexp(1.0, level); }
   static std::int32_t along(double at) {
-    return std::int32_t(std::floor(std::fmin(std::fmax(at, -2e9), 2e9)));
+    const double within = at > -2e9 ? std::min(at, 2e9) : -2e9;  // NaN, too
+    const auto truncated = std::int32_t(within);
+    return truncated - std::int32_t(double(truncated) > within);
   }
   static Key key_of(const Vec3& position, int level);
   static std::size_t hash_of(const Key& key);

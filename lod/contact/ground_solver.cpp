@@ -33,9 +33,11 @@ void prepare(const GroundMotion& motion, const Mat3& inverse_inertia, GroundCont
     row.effective_mass = 1.0 / (1.0 + row.lever.dot(row.turning));
     row.impulse = 0.0;
   }
-  const double approach = velocity.dot(c.normal), closing = std::min(0.0, -c.gap / step);
+  const double approach = velocity.dot(c.normal), closing = std::min(0.0, -c.gap / step),
+               fall = std::min(0.0, settings.fall.dot(c.normal));
   c.bounces = approach < -settings.bounce_velocity && c.gap + approach * step < 0.0;
-  c.target = c.bounces ? std::max(-c.law.restitution * approach, closing) : closing;
+  c.target =
+      c.bounces ? std::max(bounce_in_fall(c.law.restitution, c.gap, approach, fall, step), closing) : closing;
 }
 
 double friction_bound(const GroundContact& c) {

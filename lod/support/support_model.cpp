@@ -86,6 +86,35 @@ void clamp_energy(const Vec3& velocity_before, const Vec3& spin_before, Statisti
   ++tally.energy_clamps;
 }
 
+// What moves a body up slows it down, if by no more than half of its kinetic energy: what is next to balanced
+// on an edge falls over nevertheless. One that parts from what it overlapped when it came is moved by no
+// motion of its own.
+class EnergyBound {
+ public:
+  EnergyBound(StatisticalBody& body, const Shape& shape, const Vec3& gravity, bool bounded)
+      : body_(body), shape_(shape), gravity_(gravity), bounded_(bounded && body.eased <= 0.0f) {
+    if (bounded_) kinetic_ = kinetic_energy(body, shape), position_ = body.position;
+  }
+  /// Takes from the motion by what kinetic and potential energy exceed what they were.
+  void keep() {
+    if (!bounded_) return;
+    const double kinetic = kinetic_energy(body_, shape_),
+                 gain = kinetic - kinetic_ - gravity_.dot(body_.position - position_);
+    if (!(gain > 0.0 && kinetic > 0.0)) return;
+    const double share = std::sqrt(1.0 - std::min(0.5, gain / kinetic));
+    body_.velocity *= share;
+    body_.spin *= share;
+  }
+
+ private:
+  StatisticalBody& body_;
+  const Shape& shape_;
+  const Vec3& gravity_;
+  bool bounded_;
+  double kinetic_ = 0.0;  // J/kg, before
+  Vec3 position_;         // m, before
+};
+
 // One vertex strikes, all in body axes: respond_contact's impulse, less of it where that would add energy. Of
 // the share s the energy is that of a parabola, s J·u + s² J·K J / 2.
 void respond_alone(StatisticalBody& body, const Shape& shape, const LowestPoint& lowest,
@@ -190,11 +219,42 @@ void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepW
   }
 }
 
+// With what the contacts gave, `on` being the motion then: the vertex that has sunk in deepest by the step's
+// end, if it is none of those found. A round surface rolls onto it: held as they are, it raises the body by
+// its motion, where a lift out of the ground would add energy. False: there is none.
+bool add_sinking(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                 const OnGround& on, double time, StepContacts& found) {
+  const Shape& shape = *kind.shape;
+  if (shape.sphere_radius || found.count == StepContacts::kCapacity) return false;
+  const int plane_index = found.plane[found.count - 1];
+  const HalfSpace& plane = world.planes[std::size_t(plane_index)];
+  const Vec3 position = body.position + on.rotation * on.motion.velocity * time;
+  const Quat orientation =
+      rotation_from_vector(on.rotation * on.motion.angular_velocity * time) * body.orientation;
+  std::int32_t vertex = body.support_hint;
+  const HullContact lowest =
+      find_lowest_point(shape, orientation, plane.normal, plane.height_of(position), vertex);
+  const auto known = std::span(found.vertex).first(found.count);
+  if (lowest.gap > -kTouching * shape.radius || std::ranges::find(known, lowest.vertex) != known.end())
+    return false;
+  for (GroundContact& c : found.contacts()) c.guess = c.impulse();
+  const Vec3 normal = on.rotation.transpose() * plane.normal,
+             &arm = shape.hull.vertices[std::size_t(lowest.vertex)];
+  found.contact[found.count] = {.normal = normal,
+                                .arm = arm,
+                                .gap = plane.height_of(body.position) + arm.dot(normal),
+                                .law = world.law(kind, plane)};
+  found.vertex[found.count] = lowest.vertex;
+  found.plane[found.count++] = plane_index;
+  return true;
+}
+
 // One step of sliding, rolling or rocking: gravity, every vertex near the ground held or bounced at once,
 // then motion.
 void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time,
                   const SupportSettings& settings, HeldVertices& held, ContactTally& tally) {
   const Shape& shape = *kind.shape;
+  EnergyBound energy(body, shape, world.gravity, settings.energy_bounded);
   const Vec3 fallen = world.gravity * time;
   body.velocity += fallen;
   OnGround on(body, shape);
@@ -208,8 +268,13 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
     ContactSolverSettings solver = settings.solver;
     solver.bounce_velocity =
         world.bounce_velocity + world.gravity_strength() * time;  // what gravity adds in a step is no impact
+    if (settings.timed_bounces) solver.fall = on.rotation.transpose() * fallen;
     const GroundMotion before = on.motion;
     solve_ground_contacts(on.motion, shape.inverse_inertia_per_mass, found.contacts(), time, solver);
+    if (add_sinking(body, kind, world, on, time, found)) {
+      on.motion = before;
+      solve_ground_contacts(on.motion, shape.inverse_inertia_per_mass, found.contacts(), time, solver);
+    }
     const Vec3 velocity_before = body.velocity, spin_before = body.spin;
     take_impulses(body, on, found.contacts());
     for (std::size_t k = 0; k < found.count; ++k) {
@@ -227,10 +292,20 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
   }
   held.count = int(found.count);
   body.position += body.velocity * time;
+  energy.keep();
   if (found.deepest < 0.0 && body.eased <= 0.0f)
     body.position +=
         push_out_overlap(found.deepest, shape.radius) * world.planes[std::size_t(tally.touched_plane)].normal;
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
+}
+
+// The ground has the last word.
+void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, const HalfSpace& plane,
+              double time, const SupportSettings& settings) {
+  const Shape& shape = *kind.shape;
+  EnergyBound energy(body, shape, world.gravity, settings.energy_bounded);
+  lift_out(body, shape, plane, lift_of(body, shape, world.gravity_strength(), time));
+  energy.keep();
 }
 
 }  // namespace
@@ -281,8 +356,7 @@ ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, cons
     HeldVertices held;
     for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, held, tally);
     if (tally.touched_plane >= 0)
-      lift_out(body, *kind.shape, world.planes[tally.touched_plane],
-               lift_of(body, *kind.shape, world.gravity_strength(), left));
+      lift_off(body, kind, world, world.planes[tally.touched_plane], left, settings);
   }
   return tally;
 }

@@ -14,6 +14,10 @@ struct SupportSettings {
   double contact_step = 0.05;     ///< longest contact step over √(R/g)
   double contact_margin = 0.002;  ///< over R: vertices this near the ground can carry
   ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2};
+  bool timed_bounces =
+      true;  ///< what strikes within a contact step leaves as fast as it would at its own time
+  bool energy_bounded = true;  ///< no contact step, and no lift out of the ground, adds energy: without, a
+                               ///< body of many vertices that rocks is kept rocking by those that sink in
   double impact_tolerance = 1e-4;  ///< over R: how far off the ground an impact may be taken
   double impact_margin = 1e-6;     ///< over R: vertices this near the one that strikes strike with it
   double impact_lag =
