@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "lod/statistical/statistical_body.h"
 
@@ -80,15 +81,16 @@ inline constexpr double kNoTurn = 1e-4;
 /// with the middle moment and those of the other two axes (Touma and Wisdom, Lie–Poisson integrators for
 /// rigid body dynamics in the solar system, 1994). Each part is solved exactly, so the whole is exact where
 /// two moments are equal, however slender the body, of second order else; a fast turn takes several rounds.
-/// The angular momentum is kept to rounding, and so is the energy, by a turn at the end (turn_to_energy).
-inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const BodyKind& kind,
-                                double time) {
+/// The angular momentum is kept to rounding, and so is the energy, by a turn at the end (turn_to_energy):
+/// twice it is `twice_energy` (J/kg), where given, else what it has.
+inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const BodyKind& kind, double time,
+                                std::optional<double> twice_energy = {}) {
   const Vec3& inverse = kind.inverse_moments;
   const Quat of_ball = rotation_from_vector(spin * (inverse[1] * time));
   if (kind.isotropic) return of_ball * orientation;
   Quat axes = kind.along_principal_axes ? orientation : Quat(orientation * kind.principal_axes);
   Vec3 own = axes.conjugate() * spin;
-  const double twice_energy = own.dot(inverse.cwiseProduct(own));
+  const double asked = twice_energy.value_or(own.dot(inverse.cwiseProduct(own)));
   const double widest = std::max(inverse[1] - inverse[0], inverse[2] - inverse[1]) * time,
                angle_squared = own.squaredNorm() * widest * widest;
   int rounds = 1;
@@ -100,8 +102,8 @@ inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const
     turn_about_own<2>((inverse[2] - inverse[1]) * own[2] * part, axes, own);
     turn_about_own<0>((inverse[0] - inverse[1]) * own[0] * (0.5 * part), axes, own);
   }
-  if (angle_squared > kNoTurn * kNoTurn) {
-    const Vec3 half = turn_to_energy(own, inverse, twice_energy);
+  if (twice_energy || angle_squared > kNoTurn * kNoTurn) {
+    const Vec3 half = turn_to_energy(own, inverse, asked);
     const Quat back(1.0, -half.x(), -half.y(), -half.z());
     const double square = half.squaredNorm();
     axes = axes * back;

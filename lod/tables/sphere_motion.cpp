@@ -96,7 +96,8 @@ struct EndLoop {
     double *x = spheres.x.data(), *y = spheres.y.data(), *z = spheres.z.data();
     double *vx = spheres.vx.data(), *vy = spheres.vy.data(), *vz = spheres.vz.data(), *lx = spheres.lx.data(),
            *ly = spheres.ly.data(), *lz = spheres.lz.data();
-    float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data();
+    float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data(),
+          *twice_energy = spheres.twice_energy.data();
     const std::uint32_t* kind = spheres.kind.data();
     const Tensors soft = soft_of(kinds);
     const Row *p = step.p.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
@@ -166,7 +167,9 @@ struct EndLoop {
           new_v{float(new_vx), float(new_vy), float(new_vz)},
           new_spin{float(new_lx), float(new_ly), float(new_lz)};
       const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
-      const Turn to = turned_freely(soft, k, q, spin, c.time);
+      float energy = choose(flies, twice_energy[i], 0.0f);
+      const Turn to = turned_freely(soft, k, q, spin, c.time, energy);
+      twice_energy[i] = energy;
       // Renormalised without a root: a Newton step.
       const float scale = 1.5f - 0.5f * (to.w * to.w + dot(to.v, to.v));
       const F3 new_q = choose(here, scale * to.v, q.v);

@@ -139,6 +139,7 @@ void TablesLevel::set_state(int slot, const RigidState& state) {
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
   spheres_.put(place, body);
+  spheres_.twice_energy[place] = float(body.spin.dot(state.angular_velocity));
   given_[std::uint32_t(slot)] = state;
 }
 
@@ -609,8 +610,9 @@ void TablesLevel::end_block(std::int64_t begin, std::int64_t end) {
   }
   end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
   for (const auto& [i, orientation] : before)
-    spheres_.set_orientation(
-        i, advance_orientation(orientation, spheres_.spin(i), kind_of(i), constants_.wide_time).normalized());
+    spheres_.set_orientation(i, advance_orientation(orientation, spheres_.spin(i), kind_of(i),
+                                                    constants_.wide_time, spheres_.twice_energy[i])
+                                    .normalized());
 }
 
 // A body that meets the ground by itself, after the impulses of its contacts with others.

@@ -62,7 +62,7 @@ double of_finish(const TablesTraffic& t) {
   const Spheres& b = t.spheres;
   const SphereStep& s = t.step;
   const double moved = 2.0 * row(b.x, b.y, b.z, b.vx, b.vy, b.vz, b.lx, b.ly, b.lz, b.qw, b.qx, b.qy, b.qz,
-                                 b.motion, b.since_crowded, b.crowded_for);
+                                 b.twice_energy, b.motion, b.since_crowded, b.crowded_for);
   const double rows = row(b.kind, s.p, s.a, s.s, s.d) + 2.0 * row(s.on_ground);
   return moved + rows + (t.ground ? row(b.pose, b.radius, b.held, s.gap, s.plane, s.a, s.s, s.d) : 0.0);
 }

@@ -18,9 +18,9 @@ Balls lattice(int balls, std::uint64_t seed, double spacing, std::array<int, 3> 
   for (int i = 0; i < balls; ++i) {
     RandomStream random = stream(seed, i);
     const Vec3 place(i % places[0], i / places[0] % places[1], i / places[0] / places[1]);
-    const Vec3 off(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2),
-                   places[2] == 1 ? 0.0 : random.uniform(-0.2, 0.2));
-    all.add(spacing * (place + off), kBallReach);
+    const double z = places[2] == 1 ? 0.0 : random.uniform(-0.2, 0.2), y = random.uniform(-0.2, 0.2),
+                 x = random.uniform(-0.2, 0.2);
+    all.add(spacing * (place + Vec3(x, y, z)), kBallReach);
   }
   return all;
 }

@@ -76,7 +76,10 @@ double measure_true_depth(const Pair& pair) {
 
 std::shared_ptr<const Shape> make_random_hull(RandomStream& random) {
   std::vector<Vec3> points(8 + int(random.uniform() * 8));
-  for (Vec3& point : points) point = random.uniform(0.35, 0.5) * random.direction();
+  for (Vec3& point : points) {
+    const Vec3 direction = random.direction();
+    point = random.uniform(0.35, 0.5) * direction;
+  }
   const Hull hull = make_hull(points);
   return std::make_shared<const Shape>(make_shape("random hull", Mesh{hull.vertices, hull.faces}));
 }
@@ -249,8 +252,8 @@ Figures drop_bunny_on_bunny(std::uint32_t trial) {
   const double mass = kDensity * bunny->volume;
   std::vector<OdeBodyId> bodies;
   for (int i = 0; i < 2; ++i) {
-    const Vec3 position(0.02 * random.uniform() * i, 0.02 * random.uniform() * i,
-                        bunny->radius * (1.1 + 2.1 * i));
+    const double y = 0.02 * random.uniform() * i, x = 0.02 * random.uniform() * i;
+    const Vec3 position(x, y, bunny->radius * (1.1 + 2.1 * i));
     bodies.push_back(world.add_body({.shape = bunny,
                                      .mass = mass,
                                      .state = {.position = position, .orientation = random.orientation()}}));

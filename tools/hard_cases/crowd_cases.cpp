@@ -275,10 +275,12 @@ constexpr double kStill = 0.05;  // m/s
 RigidState start_of(std::uint32_t seed, int i) {
   RandomStream random(118 + seed, std::uint64_t(i), 0);
   const Vec3 place = 0.36 * (Vec3(i % 7, i / 7 % 7, i / 49) - Vec3(3, 3, 3));
+  const Quat orientation = random.orientation();
+  const Vec3 axis = random.direction();
   return {.position = place,
-          .orientation = random.orientation(),
+          .orientation = orientation,
           .velocity = kThrow * Vec3::UnitZ() - kInward * place,
-          .angular_velocity = random.uniform(0.0, 5.0) * random.direction()};
+          .angular_velocity = random.uniform(0.0, 5.0) * axis};
 }
 
 /// Of a run without ground: frames of bodies in which one is pushed while it stands still, among all.

@@ -103,8 +103,8 @@ Manager make_sleeping_pile(LevelChoice level) {
   const auto box = box_of({0.2, 0.3, 0.2});
   for (int i = 0; i < kBodies; ++i) {
     RandomStream random(16, i, 0);
-    const Vec3 place(0.3 * (i % 2) + random.uniform(-0.05, 0.05),
-                     0.35 * (i / 2 % 2) + random.uniform(-0.05, 0.05), 0.15 + 0.25 * (i / 4));
+    const double y = random.uniform(-0.05, 0.05), x = random.uniform(-0.05, 0.05);
+    const Vec3 place(0.3 * (i % 2) + x, 0.35 * (i / 2 % 2) + y, 0.15 + 0.25 * (i / 4));
     manager.add_body({.shape = box, .state = {.position = place}, .level = level});
   }
   for (int i = 0; i * kStep < kMostSeconds && manager.report().asleep < kBodies; ++i) manager.step(kStep);
@@ -183,8 +183,8 @@ PileRun run_pile(LevelChoice level, double dt, double seconds) {
   for (int i = 0; i < 27; ++i) {
     RandomStream random(17, i, 0);
     const double shift = i / 9 % 2 == 0 ? 0.0 : 0.19;
-    const Vec3 place(0.38 * (i % 3) + shift + random.uniform(-0.01, 0.01),
-                     0.38 * (i / 3 % 3) + shift + random.uniform(-0.01, 0.01), kTop - 0.4 * (2 - i / 9));
+    const double y = random.uniform(-0.01, 0.01), x = random.uniform(-0.01, 0.01);
+    const Vec3 place(0.38 * (i % 3) + shift + x, 0.38 * (i / 3 % 3) + shift + y, kTop - 0.4 * (2 - i / 9));
     bodies.push_back(manager.add_body(
         {.shape = box, .state = {.position = place, .orientation = random.orientation()}, .level = level}));
   }

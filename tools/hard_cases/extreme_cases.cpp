@@ -93,8 +93,9 @@ bool tunnels(const std::shared_ptr<const Shape>& shape, Wall wall, std::uint32_t
   if (wall == Wall::body) wall_body = world.add_body({.shape = box_of(kWallSides), .mass = 1000.0});
 
   RandomStream random(13, trial, 0);
-  const Vec3 aim(0.0, random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-  const Vec3 direction = Vec3(1.0, random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7)).normalized();
+  const double aim_z = random.uniform(-1.0, 1.0), aim_y = random.uniform(-1.0, 1.0);
+  const double z = random.uniform(-0.7, 0.7), y = random.uniform(-0.7, 0.7);
+  const Vec3 aim(0.0, aim_y, aim_z), direction = Vec3(1.0, y, z).normalized();
   const RigidState start{.position = aim - random.uniform(2.0, 10.0) * direction,
                          .orientation = random.orientation(),
                          .velocity = kSpeed * direction,
@@ -117,9 +118,8 @@ bool miss_each_other(std::uint32_t trial, std::int64_t& prevented) {
   OdeWorld world({.gravity = Vec3::Zero()}, materials);
   const auto ball = ball_of(kRadius);
   RandomStream random(14, trial, 0);
-  const Vec3 offset =
-                 random.uniform(0.0, 0.8) * kRadius * Vec3::UnitX().cross(random.direction()).normalized(),
-             velocity = kSpeed * Vec3::UnitX();
+  const Vec3 aside = Vec3::UnitX().cross(random.direction()).normalized(),
+             offset = random.uniform(0.0, 0.8) * kRadius * aside, velocity = kSpeed * Vec3::UnitX();
   const double distance = random.uniform(1.0, 5.0);
   const OdeBodyId left = world.add_body(
       {.shape = ball, .state = {.position = -distance * Vec3::UnitX() + offset, .velocity = velocity}});
@@ -180,8 +180,8 @@ std::vector<Vec3> stack_at(const Vec3& origin) {
   for (int i = 0; i < kCubes; ++i) {
     RandomStream random(14, i, 0);
     const Quat turned(Eigen::AngleAxisd(random.uniform(-0.3, 0.3), Vec3::UnitZ()));
-    const Vec3 place(random.uniform(-0.03, 0.03) * kSide, random.uniform(-0.03, 0.03) * kSide,
-                     kSide * (0.5 + i + 1e-3 * (i + 1)));
+    const double y = random.uniform(-0.03, 0.03) * kSide, x = random.uniform(-0.03, 0.03) * kSide;
+    const Vec3 place(x, y, kSide * (0.5 + i + 1e-3 * (i + 1)));
     bodies.push_back(world.add_body(
         {.shape = cube, .mass = kMass, .state = {.position = origin + place, .orientation = turned}}));
   }

@@ -108,7 +108,8 @@ bool passes_plane(const Subject& subject, std::uint32_t trial) {
   RandomStream random(110, trial, 0);
   Manager manager =
       make_case_manager({.model = subject.model, .seed = trial + 1, .signature = subject.signature});
-  const Vec3 direction = Vec3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), -1.0).normalized();
+  const double y = random.uniform(-1.0, 1.0), x = random.uniform(-1.0, 1.0);
+  const Vec3 direction = Vec3(x, y, -1.0).normalized();
   const BodyId body = add_case_body(manager, subject.shape,
                                     {.position = {0, 0, random.uniform(1.0, 20.0)},
                                      .orientation = random.orientation(),
@@ -132,8 +133,8 @@ bool pass_each_other(const Subject& subject, std::uint32_t trial) {
                                        .seed = trial + 1,
                                        .signature = subject.signature});
   const Vec3 velocity = kSpeed * Vec3::UnitX();
-  const Vec3 offset = random.uniform(0.0, 0.8) * subject.shape->inner_radius *
-                      Vec3::UnitX().cross(random.direction()).normalized();
+  const Vec3 aside = Vec3::UnitX().cross(random.direction()).normalized();
+  const Vec3 offset = random.uniform(0.0, 0.8) * subject.shape->inner_radius * aside;
   const double distance = random.uniform(1.0, 5.0);
   const BodyId left = add_case_body(manager, subject.shape,
                                     {.position = -distance * Vec3::UnitX() + offset,

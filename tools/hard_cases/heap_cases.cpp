@@ -144,8 +144,8 @@ RigidState start_of(const Pile& pile, int body) {
   const double cell = 2.1 * pile.shape->radius;
   RigidState state;
   state.position = Vec3(body % side, body / side % side, body / (side * side)) * cell;
-  state.position +=
-      Vec3(0.05 * cell * random.uniform(), 0.05 * cell * random.uniform(), 1.5 * pile.shape->radius);
+  const double y = 0.05 * cell * random.uniform(), x = 0.05 * cell * random.uniform();
+  state.position += Vec3(x, y, 1.5 * pile.shape->radius);
   state.orientation = random.orientation();
   return state;
 }

@@ -186,9 +186,11 @@ struct HitWorld {
     body.owner = hit;
     body.orientation = random.orientation();
     body.position.z() = resting_height(*kind_.shape, body.orientation);
-    body.velocity = random.uniform(0.0, 10.0) * random.direction();
+    const Vec3 direction = random.direction();
+    body.velocity = random.uniform(0.0, 10.0) * direction;
     body.velocity.z() = -std::abs(body.velocity.z());
-    body.spin = spin_of(body.orientation, random.uniform(0.0, 60.0) * random.direction(), *kind_.shape);
+    const Vec3 axis = random.direction();
+    body.spin = spin_of(body.orientation, random.uniform(0.0, 60.0) * axis, *kind_.shape);
     return body;
   }
 

@@ -86,8 +86,8 @@ struct BallCube {
     const auto ball = std::make_shared<const Shape>(make_sphere_shape(kRadius));
     for (int i = 0; i < kSide * kSide * kSide; ++i) {
       RandomStream random(42, i, 0);
-      const Vec3 cell(i / (kSide * kSide), i / kSide % kSide, i % kSide),
-          jitter(random.uniform(), random.uniform(), random.uniform());
+      const double z = random.uniform(), y = random.uniform(), x = random.uniform();
+      const Vec3 cell(i / (kSide * kSide), i / kSide % kSide, i % kSide), jitter(x, y, z);
       const Vec3 position = kGap * cell + kJitter * jitter + height * Vec3::UnitZ();
       balls.push_back(world->add_body({.shape = ball, .mass = kMass, .state = {.position = position}}));
     }

@@ -46,6 +46,7 @@ class OneRung {
   double sphere_radius(int slot) const { return level_.sphere_radius(at(slot)); }
   bool asleep(int slot) const { return level_.asleep(at(slot)); }
   void wake(int slot) { level_.wake(at(slot)); }
+  void set_state(int slot, const RigidState& state) { level_.set_state(at(slot), state); }
 
  private:
   StatisticalPlace at(int slot) const { return {model_, slot}; }
