@@ -218,9 +218,11 @@ class Manager {
   Level level(BodyId body) const;
   Rung rung(BodyId body) const;  ///< `support` for a body that waits for its first step
   bool asleep(BodyId body) const;
-  double collision_radius(
-      BodyId body) const;          ///< m, of the sphere by which it collides at `tables`; 0 on other rungs
-  Why explain(BodyId body) const;  ///< the rule that decided the level, and the figures behind it
+  /// m, of the sphere that stands for a body at `tables`; 0 on other rungs. As published, it is what all
+  /// others meet; else what slopes and walls meet of a body that touches no other: level ground and bodies
+  /// meet heights of its hull.
+  double collision_radius(BodyId body) const;
+  Why explain(BodyId body) const;       ///< the rule that decided the level, and the figures behind it
   std::string why(BodyId body) const;   ///< the same in a sentence
   dxBody* ode_body(BodyId body) const;  ///< dBodyID while full, else null
   Vec3 gravity() const;                 ///< m/s², as of the last step

@@ -1,10 +1,11 @@
 // Drops onto a plane: where they start, and the run to rest under ODE. Declared in trial.h.
+#include "reference/drop_trial.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "reference/random.h"
-#include "reference/trial.h"
 
 namespace lodestone {
 namespace {

@@ -201,6 +201,7 @@ Quat YamlCursor::rotation() const {
 
 bool YamlCursor::truth() const {
   static const std::array<std::string, 2> kTruths{"false", "true"};
+  if (value_->quoted) fail(found(), "false or true");  // a text, as the schema has it
   return choice(kTruths) == 1;
 }
 

@@ -11,8 +11,8 @@
 #include "reference/error.h"
 #include "signature/file_bytes.h"
 #include "signature/measure/measure.h"
+#include "signature/measure/measurement_journal.h"
 #include "signature/measure/measurement_part.h"
-#include "signature/measure/measuring_journal.h"
 #include "signature/measure/settling_trial.h"
 #include "signature/settings_archive.h"
 #include "signature/signature_file.h"
@@ -42,7 +42,7 @@ std::filesystem::path default_cache_folder() {
 }
 
 MeasurementIdentity identity_of(const Shape& shape, const SignatureSettings& settings, const Share& share) {
-  MeasurementIdentity identity{measuring_versions(),
+  MeasurementIdentity identity{measurement_versions(),
                                settings,
                                share,
                                shape,
@@ -55,7 +55,7 @@ MeasurementIdentity identity_of(const Shape& shape, const SignatureSettings& set
 // Names the content: shape, law, settings and versions.
 std::string content_key(const Shape& shape, const SignatureSettings& settings) {
   ByteWriter content;
-  content(shape.content_hash, settings, measuring_versions());
+  content(shape.content_hash, settings, measurement_versions());
   if (settings.law.friction < kSlipperyFriction)
     content(std::uint32_t(1));  // measured otherwise since they came to rest by sliding steadily
   const XXH128_hash_t hash = XXH3_128bits(content.bytes.data(), content.bytes.size());
@@ -105,13 +105,13 @@ std::string text_of_holder(const std::filesystem::path& file) {
 
 // Null once `done` says that another process has made it, or measuring is stopped.
 template <class Done>
-std::unique_ptr<MeasuringJournal> wait_for_journal(const std::filesystem::path& file,
-                                                   const MeasurementIdentity& identity,
-                                                   const SignatureSourceSettings& settings, Done done) {
+std::unique_ptr<MeasurementJournal> wait_for_journal(const std::filesystem::path& file,
+                                                     const MeasurementIdentity& identity,
+                                                     const SignatureSourceSettings& settings, Done done) {
   const Stopwatch watch;
   bool is_said = false;
   while (!settings.stop.stop_requested() && !done()) {
-    if (auto journal = MeasuringJournal::try_open(file, identity)) return journal;
+    if (auto journal = MeasurementJournal::try_open(file, identity)) return journal;
     if (settings.progress) settings.progress(text_of_holder(file) + " measures it", 0.0);
     if (!is_said && watch.seconds() > kWaitSaid) {
       warn(settings, fmt::format("the signature of {} is being measured by {}, which is waited for",
@@ -123,13 +123,13 @@ std::unique_ptr<MeasuringJournal> wait_for_journal(const std::filesystem::path& 
   return nullptr;
 }
 
-MeasureOptions options_of(const SignatureSourceSettings& settings, MeasuringJournal* journal) {
+MeasureOptions options_of(const SignatureSourceSettings& settings, MeasurementJournal* journal) {
   return {
       .threads = settings.threads, .progress = settings.progress, .stop = settings.stop, .journal = journal};
 }
 
 // The time and the signature; its journal, which may have taken the room, goes before a second attempt.
-bool try_to_keep(const Signature& signature, const std::filesystem::path& file, MeasuringJournal& journal,
+bool try_to_keep(const Signature& signature, const std::filesystem::path& file, MeasurementJournal& journal,
                  const SignatureSourceSettings& settings) {
   for (const bool is_second : {false, true}) {
     try {
@@ -160,7 +160,7 @@ SourcedSignature find_or_measure_in(const std::filesystem::path& file, const Sha
                                     const SignatureSourceSettings& settings) {
   SourcedSignature sourced{.signature = find_cached(file, shape), .file = file};
   const MeasurementIdentity identity = identity_of(shape, measuring, {});
-  std::unique_ptr<MeasuringJournal> journal;
+  std::unique_ptr<MeasurementJournal> journal;
   try {
     if (!sourced.signature)
       journal = wait_for_journal(beside(file, ".measuring"), identity, settings,
@@ -197,7 +197,7 @@ std::filesystem::path rung_errors_file(const Shape& shape, const ContactLaw& law
   return beside(cache_file(shape, measuring, settings), ".errors");
 }
 
-std::string measuring_versions() {
+std::string measurement_versions() {
   return fmt::format("format {} measuring {} ode {}", kSignatureFormatVersion, kMeasuringVersion,
                      LODESTONE_ODE_VERSION);
 }
@@ -218,7 +218,7 @@ MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Sh
   SignatureSettings measuring = settings.measuring;
   measuring.law = law;
   MeasurementPart part{.identity = identity_of(shape, measuring, share), .measurement = {}};
-  std::unique_ptr<MeasuringJournal> journal;
+  std::unique_ptr<MeasurementJournal> journal;
   if (settings.use_cache) {
     const std::string ending = fmt::format(".{}-of-{}.measuring", share.index + 1, share.count);
     try {

@@ -61,6 +61,6 @@ std::filesystem::path rung_errors_file(const Shape& shape, const ContactLaw& law
                                        const SignatureSourceSettings& settings = {});
 
 /// The versions of the format, of the measuring code and of ODE, on all of which a signature depends.
-std::string measuring_versions();
+std::string measurement_versions();
 
 }  // namespace lodestone

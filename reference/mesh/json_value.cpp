@@ -108,26 +108,47 @@ class JsonParser {
     return list;
   }
 
+  /// From the backslash to the escape's last letter.
+  void pass_escape() {
+    constexpr std::string_view kHexadecimal = "0123456789abcdefABCDEF";
+    if (++at_ >= text_.size()) return;
+    if (std::string_view("\"\\/bfnrtu").find(text_[at_]) == std::string_view::npos) fail("an escape");
+    if (text_[at_] != 'u') return;
+    for (int digit = 0; digit < 4; ++digit)
+      if (++at_ < text_.size() && kHexadecimal.find(text_[at_]) == std::string_view::npos)
+        fail("four hexadecimal digits");
+  }
+
   /// After the opening quote, up to the closing one.
   std::string_view parse_text() {
     const std::size_t first = at_;
     for (; at_ < text_.size() && text_[at_] != '"'; ++at_) {
       if (std::uint8_t(text_[at_]) < 0x20) fail("no control character in a text");
-      if (text_[at_] == '\\' && ++at_ >= text_.size()) break;
+      if (text_[at_] == '\\') pass_escape();
+      if (at_ >= text_.size()) break;
     }
     if (at_ >= text_.size()) fail("'\"'");
     return text_.substr(first, at_++ - first);
   }
 
+  /// Passes digits; fails where there is none.
+  void take_digits() {
+    if (at_ >= text_.size() || !is_digit(text_[at_])) fail("a digit");
+    while (at_ < text_.size() && is_digit(text_[at_])) ++at_;
+  }
+
   double parse_number() {
-    std::size_t end = at_;
-    while (end < text_.size() &&
-           (is_digit(text_[end]) || std::string_view("+-.eE").find(text_[end]) != std::string_view::npos))
-      ++end;
+    const std::size_t first = at_;
+    if (!take('-') && (at_ >= text_.size() || !is_digit(text_[at_]))) fail("a value");
+    if (!take('0')) take_digits();  // no zeros in front
+    if (take('.')) take_digits();
+    if (take('e') || take('E')) {
+      if (!take('+')) take('-');
+      take_digits();
+    }
     double number = 0.0;
-    const auto [stop, error] = std::from_chars(text_.data() + at_, text_.data() + end, number);
-    if (error != std::errc() || stop != text_.data() + end || !std::isfinite(number)) fail("a value");
-    at_ = end;
+    const auto [stop, error] = std::from_chars(text_.data() + first, text_.data() + at_, number);
+    if (error != std::errc() || !std::isfinite(number)) fail("a number of double precision");
     return number;
   }
 

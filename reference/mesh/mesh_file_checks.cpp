@@ -22,14 +22,14 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxHeaderLines = 1000;  // of a PLY file
 
-[[noreturn]] void fail(const std::string& found, const std::string& expected) {
+[[noreturn]] void refuse(const std::string& found, const std::string& expected) {
   throw InputError(fmt::format("found {}, expected {}", found, expected));
 }
 
-std::string read_bytes(const fs::path& file) {
+std::string read_whole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) fail("a file that cannot be read", "its bytes");
+  if (!stream) refuse("a file that cannot be read", "its bytes");
   return bytes;
 }
 
@@ -72,7 +72,7 @@ constexpr PlyType kPlyTypes[] = {
 
 const PlyType& ply_type(std::string_view name) {
   const auto* type = std::ranges::find(kPlyTypes, name, &PlyType::name);
-  if (type == std::end(kPlyTypes)) fail(fmt::format("a property of type \"{}\"", name), "a type of PLY");
+  if (type == std::end(kPlyTypes)) refuse(fmt::format("a property of type \"{}\"", name), "a type of PLY");
   return *type;
 }
 
@@ -102,7 +102,7 @@ PlyFormat ply_format(std::string_view name) {
   if (name == "ascii") return PlyFormat::ascii;
   if (name == "binary_little_endian") return PlyFormat::little_endian;
   if (name == "binary_big_endian") return PlyFormat::big_endian;
-  fail(fmt::format("format \"{}\"", name), "ascii, binary_little_endian or binary_big_endian");
+  refuse(fmt::format("format \"{}\"", name), "ascii, binary_little_endian or binary_big_endian");
 }
 
 PlyProperty ply_property(std::string_view words) {
@@ -110,12 +110,12 @@ PlyProperty ply_property(std::string_view words) {
   std::string_view type = take_word(words);
   if (type == "list") {
     property.count = &ply_type(take_word(words));
-    if (!property.count->is_integer) fail("a list that is counted in fractions", "integers");
+    if (!property.count->is_integer) refuse("a list that is counted in fractions", "integers");
     type = take_word(words);
   }
   property.value = &ply_type(type);
   if (take_word(words).empty() || !take_word(words).empty())
-    fail("a property without a name of one word", "it");
+    refuse("a property without a name of one word", "it");
   return property;
 }
 
@@ -145,14 +145,14 @@ PlyHeader take_ply_header(std::string_view& bytes) {
       const std::optional<std::uint32_t> count = count_in(take_word(words));
       if (count) promised += *count;
       if (!count || promised > all || !take_word(words).empty())
-        fail(fmt::format("\"{}\" in a file of {} bytes", *line, all), "a count of elements that fits");
+        refuse(fmt::format("\"{}\" in a file of {} bytes", *line, all), "a count of elements that fits");
       header.elements.push_back({name, *count});
     } else {
-      fail(fmt::format("\"{}\" in a header", line->substr(0, 80)),
-           "format, comment, element, property or end_header");
+      refuse(fmt::format("\"{}\" in a header", line->substr(0, 80)),
+             "format, comment, element, property or end_header");
     }
   }
-  fail("a header without end_header", "a PLY header");
+  refuse("a header without end_header", "a PLY header");
 }
 
 /// Each element has a line of its own, and each list as many numbers as it says.
@@ -160,18 +160,20 @@ void check_ply_lines(const PlyElement& element, std::string_view& text) {
   for (std::uint32_t i = 0; i < element.count; ++i) {
     std::optional<std::string_view> line = take_line(text);
     if (!line && !text.empty()) line = std::exchange(text, {});  // the last one need not end
-    if (!line) fail(fmt::format("{} of {} lines of {}", i, element.count, element.name), "all of them");
+    if (!line) refuse(fmt::format("{} of {} lines of {}", i, element.count, element.name), "all of them");
     for (const PlyProperty& property : element.properties) {
       const std::string_view word = take_word(*line);
       const std::optional<std::uint32_t> count = property.count ? count_in(word) : 0;
       // Two bytes a number, at least.
       if (word.empty() || !count || *count > line->size() / 2)
-        fail(fmt::format("a {} of \"{}\" with {} bytes after it in {} {}", property.count ? "list" : "number",
-                         word.substr(0, 40), line->size(), element.name, i),
-             "as many numbers as it says");
+        refuse(
+            fmt::format("a {} of \"{}\" with {} bytes after it in {} {}", property.count ? "list" : "number",
+                        word.substr(0, 40), line->size(), element.name, i),
+            "as many numbers as it says");
       for (std::uint32_t k = 0; k < *count; ++k)
         if (take_word(*line).empty())
-          fail(fmt::format("{} of {} numbers of a list in {} {}", k, *count, element.name, i), "all of them");
+          refuse(fmt::format("{} of {} numbers of a list in {} {}", k, *count, element.name, i),
+                 "all of them");
     }
   }
 }
@@ -186,8 +188,8 @@ std::uint64_t count_at(std::string_view bytes, const PlyType& type, PlyFormat fo
 void check_ply_bytes(const PlyElement& element, PlyFormat format, std::string_view& bytes) {
   const auto pass = [&](std::uint64_t needed, std::uint32_t i) {
     if (needed > bytes.size())
-      fail(fmt::format("{} bytes for {} {}, where {} are left", needed, element.name, i, bytes.size()),
-           "a file that has them");
+      refuse(fmt::format("{} bytes for {} {}, where {} are left", needed, element.name, i, bytes.size()),
+             "a file that has them");
     bytes.remove_prefix(needed);
   };
   if (!element.has_list()) {
@@ -227,14 +229,14 @@ void check_stl(const fs::path& file) {
   const bool fits = bytes >= kHeader && (bytes - kHeader) / kTriangle >= triangles;
   std::string_view text(head, std::min<std::uintmax_t>(bytes, kHeader));
   if (!fits && take_word(text) != "solid" && std::string_view(head, 5) != "solid")
-    fail(fmt::format("{} triangles in {} bytes", triangles, bytes), "50 bytes for each after the first 84");
+    refuse(fmt::format("{} triangles in {} bytes", triangles, bytes), "50 bytes for each after the first 84");
 }
 
 }  // namespace
 
 void require_safe_for_assimp(const fs::path& file, const std::string& extension) {
   try {
-    if (extension == "ply") check_ply(read_bytes(file));
+    if (extension == "ply") check_ply(read_whole(file));
     if (extension == "stl") check_stl(file);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/drop_trial.h"
 #include "reference/free_rotation.h"
-#include "reference/trial.h"
 #include "signature/measure/choose_clips.h"
 #include "signature/measure/settling_trial.h"
 #include "signature/settling_clips.h"

@@ -5,7 +5,7 @@
 #include "signature/measure/certify.h"
 #include "signature/measure/make_clips.h"
 #include "signature/measure/measure.h"
-#include "signature/measure/measuring_shape.h"
+#include "signature/measure/measurement_shape.h"
 #include "signature/measure/response_grid.h"
 #include "signature/measure/rest_poses.h"
 
@@ -69,13 +69,13 @@ std::uint64_t count_trials(const TableUnits& units) {
 }  // namespace
 
 Signature make_signature(const Shape& shape, const SignatureSettings& settings, const Measurement& m) {
-  const auto measured = make_measuring_shape(shape);
+  const auto measured = make_measurement_shape(shape);
   Signature signature;
   signature.shape_hash = measured->content_hash;
   signature.shape_name = shape.name;
   signature.mesh_vertices = std::uint32_t(shape.mesh.vertices.size()),
   signature.mesh_faces = std::uint32_t(shape.mesh.faces.size());
-  signature.versions = measuring_versions();
+  signature.versions = measurement_versions();
   signature.settings = settings;
   for (const HeightUnit& unit : m.heights) {
     signature.collision_heights.mean.push_back(unit.mean);

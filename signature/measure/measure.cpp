@@ -15,8 +15,8 @@
 #include "signature/measure/cell_trials.h"
 #include "signature/measure/choose_clips.h"
 #include "signature/measure/contact_time.h"
-#include "signature/measure/measuring_journal.h"
-#include "signature/measure/measuring_shape.h"
+#include "signature/measure/measurement_journal.h"
+#include "signature/measure/measurement_shape.h"
 #include "signature/measure/response_grid.h"
 
 namespace lodestone {
@@ -47,7 +47,7 @@ class Measuring {
  public:
   Measuring(const Shape& shape, const SignatureSettings& settings, const Share& share,
             const MeasureOptions& options)
-      : shape_(make_measuring_shape(shape)), settings_(settings), share_(share), options_(options) {}
+      : shape_(make_measurement_shape(shape)), settings_(settings), share_(share), options_(options) {}
 
   Measurement measure() const {
     Measurement m = make_empty_measurement(settings_, share_);

@@ -15,13 +15,13 @@ namespace lodestone {
 Signature measure_signature(const Shape& shape, const SignatureSettings& settings, int threads = 0,
                             const Progress& progress = {});
 
-class MeasuringJournal;
+class MeasurementJournal;
 
 struct MeasureOptions {
   int threads = 0;  ///< 0: all cores
   Progress progress = {};
-  std::stop_token stop = {};            ///< once stopped, the units that are left stay empty
-  MeasuringJournal* journal = nullptr;  ///< units in it are taken from there; those measured are noted
+  std::stop_token stop = {};              ///< once stopped, the units that are left stay empty
+  MeasurementJournal* journal = nullptr;  ///< units in it are taken from there; those measured are noted
 };
 
 /// The trials of `share`, raw.

@@ -135,8 +135,9 @@ Signature merge_parts(std::span<const std::filesystem::path> files) {
   std::vector<MeasurementPart> parts;
   for (const auto& file : files) parts.push_back(load_part(file));
   const MeasurementIdentity& identity = parts.front().identity;
-  if (identity.versions != measuring_versions())
-    fail(files.front().string(), "made by " + identity.versions, measuring_versions() + ": measure it again");
+  if (identity.versions != measurement_versions())
+    fail(files.front().string(), "made by " + identity.versions,
+         measurement_versions() + ": measure it again");
   for (std::size_t i = 1; i < parts.size(); ++i)
     check_belongs(parts[i], files[i].string(), parts.front(), files.front().string());
   check_all_there(parts, files);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/drop_trial.h"
 #include "reference/free_rotation.h"
 #include "reference/random.h"
-#include "reference/trial.h"
 #include "signature/measure/rest_poses.h"
 
 namespace lodestone {

@@ -11,7 +11,7 @@
 #include "reference/random.h"
 #include "signature/measure/cell_trials.h"
 #include "signature/measure/collision_vectors.h"
-#include "signature/measure/measuring_shape.h"
+#include "signature/measure/measurement_shape.h"
 #include "signature/measure/response_grid.h"
 #include "signature/measure/rest_poses.h"
 
@@ -91,7 +91,7 @@ template <class Grid>
 void append_table(const Shape& shape, const SignatureSettings& settings, const Grid& grid,
                   std::span<const CellUnit> units, bool bounces, double speed_factor,
                   std::vector<MeasuredCollision>& into) {
-  const auto measured = make_measuring_shape(shape);
+  const auto measured = make_measurement_shape(shape);
   const CellSampling sampling = make_cell_sampling(settings);
   const ContactLaw law = {bounces ? settings.law.restitution : 0.0, settings.law.friction};
   const double bounce_velocity = settings.paper_grid ? OdeSettings{}.bounce_velocity : kAlwaysBounces;
@@ -124,7 +124,7 @@ Signature make_signature_from_trials(const Shape& shape, const SignatureSettings
   tables.replace_cells(m, counted);
   Signature signature = make_signature(shape, settings, m);
   counted.rests = std::int64_t(trials.rest_normals.size());
-  if (counted.rests > 0) set_rest_poses(trials.rest_normals, *make_measuring_shape(shape), signature);
+  if (counted.rests > 0) set_rest_poses(trials.rest_normals, *make_measurement_shape(shape), signature);
   if (coverage) *coverage = counted;
   return signature;
 }

@@ -1,5 +1,5 @@
 // Units of a measurement as records of bytes: the content of a part (measurement_part.h) and of a journal
-// (measuring_journal.h).
+// (measurement_journal.h).
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace lodestone {
 
 /// What units belong to: parts of one measurement differ in `share.index` alone.
 struct MeasurementIdentity {
-  std::string versions;  ///< measuring_versions()
+  std::string versions;  ///< measurement_versions()
   SignatureSettings settings;
   Share share;
   Shape shape;  ///< what make_signature looks at; without its mesh

@@ -1,3 +1,5 @@
+#include "reference/drop_trial.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <vector>
 
 #include "reference/random.h"
-#include "reference/trial.h"
 #include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {

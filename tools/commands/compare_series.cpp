@@ -60,9 +60,32 @@ std::vector<DropComparison> compare(const std::vector<DropCase>& cases, const Se
   return with_progress(settings, [&](const auto& with_line) { return compare_series(cases, with_line); });
 }
 
-nlohmann::ordered_json with_share(nlohmann::ordered_json json, const std::optional<Share>& share) {
-  if (share) json["shard"] = fmt::format("{}/{}", share->index + 1, share->count);
+// A part says what series it is of, though it may have no row of it: merge takes parts of one alone. `of`:
+// what all rows share.
+nlohmann::ordered_json with_share(nlohmann::ordered_json json, const SeriesArguments& arguments,
+                                  const nlohmann::ordered_json& of) {
+  if (!arguments.share) return json;
+  const DropComparisonSettings settings = arguments.comparison.settings();
+  nlohmann::ordered_json& series = json["series"] = of;
+  series["methods"] = settings.methods;
+  series["dt_s"] = settings.dt_s;
+  series["seed"] = settings.seed;
+  series["only"] = arguments.only;
+  json["trials"] = settings.trials;
+  json["shard"] = fmt::format("{}/{}", arguments.share->index + 1, arguments.share->count);
   return json;
+}
+
+nlohmann::ordered_json json_of(const Material& material) {
+  return {
+      {"restitution", material.restitution}, {"friction", material.friction}, {"density", material.density}};
+}
+
+nlohmann::ordered_json json_of(const char* kind, const DropJob& job) {
+  return {{"of", kind},
+          {"shape", job.shape->name},
+          {"mesh_hash", fmt::format("{:016x}", hash_of(job.shape->mesh))},
+          {"material", json_of(job.material)}};
 }
 
 void compare_shapes(const ShapesArguments& arguments) {
@@ -75,7 +98,9 @@ void compare_shapes(const ShapesArguments& arguments) {
            int(cases.size())});
   keep_share(cases, arguments.share.value_or(Share{}), false);
   const std::vector<DropComparison> series = compare(cases, arguments);
-  print_results(arguments.results, with_share(json_of("shape", cases, series, false), arguments.share),
+  print_results(arguments.results,
+                with_share(json_of("shape", cases, series, false), arguments,
+                           {{"of", "shapes"}, {"material", json_of(arguments.material)}}),
                 text_of("shape", cases, series, false));
 }
 
@@ -86,22 +111,27 @@ DropJob usual_job(const ConditionsArguments& arguments) {
 }
 
 void compare_conditions(const ConditionsArguments& arguments) {
-  std::vector<DropCase> cases = make_condition_cases(usual_job(arguments));
+  const DropJob usual = usual_job(arguments);
+  std::vector<DropCase> cases = make_condition_cases(usual);
   const auto others = cases.begin() + 1;  // the usual ones stay, as what the others are compared with
   cases.erase(std::remove_if(others, cases.end(),
                              [&](const DropCase& one) { return !is_chosen(one.name, arguments.only); }),
               cases.end());
   keep_share(cases, arguments.share.value_or(Share{}), true);
   const std::vector<DropComparison> series = compare(cases, arguments);
-  print_results(arguments.results, with_share(json_of("condition", cases, series, true), arguments.share),
-                text_of("condition", cases, series, true));
+  print_results(
+      arguments.results,
+      with_share(json_of("condition", cases, series, true), arguments, json_of("conditions", usual)),
+      text_of("condition", cases, series, true));
 }
 
 void compare_materials(const MaterialsArguments& arguments) {
-  std::vector<DropCase> cases = make_material_cases(usual_job(arguments));
+  const DropJob usual = usual_job(arguments);
+  std::vector<DropCase> cases = make_material_cases(usual);
   keep_share(cases, arguments.share.value_or(Share{}), false);
   const std::vector<DropComparison> series = compare(cases, arguments);
-  const auto json = with_share(json_of("materials", cases, series, false), arguments.share);
+  const auto json =
+      with_share(json_of("materials", cases, series, false), arguments, json_of("materials", usual));
   print_results(arguments.results, json, material_tables_of(json));
 }
 

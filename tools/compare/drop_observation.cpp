@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/drop_trial.h"
 #include "reference/error.h"
-#include "reference/trial.h"
 
 namespace lodestone {
 namespace {

@@ -128,6 +128,8 @@ ordered_json json_of(const std::string& key, std::span<const DropCase> cases,
       ordered_json row;
       row[key] = cases[i].name;
       row["case"] = cases[i].index;
+      row["restitution"] = cases[i].job.material.restitution;
+      row["friction"] = cases[i].job.material.friction;
       row.update(json_of(series[i].rows[k], series[i].floor));
       const auto over = over_first ? score_over(series[i].rows[k], series[0].rows[k]) : std::nullopt;
       if (over_first) row["score_over_first"] = over ? ordered_json(*over) : ordered_json(nullptr);

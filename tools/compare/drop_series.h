@@ -42,7 +42,7 @@ std::string text_of(const std::string& what, std::span<const DropCase> cases,
                     std::span<const DropComparison> series, bool over_first);
 
 /// {"trials", "rows"}: rows as those of a single comparison, each with its case's name under `key`, its index
-/// as "case" and, where `over_first`, "score_over_first".
+/// as "case", "restitution", "friction" and, where `over_first`, "score_over_first".
 nlohmann::ordered_json json_of(const std::string& key, std::span<const DropCase> cases,
                                std::span<const DropComparison> series, bool over_first);
 

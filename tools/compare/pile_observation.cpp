@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "reference/drop_trial.h"
 #include "reference/error.h"
-#include "reference/trial.h"
 #include "tools/compare/drop_observation.h"
 
 namespace lodestone {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "reference/argument_error.h"
+#include "reference/drop_trial.h"
 #include "reference/random.h"
-#include "reference/trial.h"
 
 namespace lodestone {
 namespace {

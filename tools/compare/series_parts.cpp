@@ -23,7 +23,7 @@ std::pair<int, int> share_of(const ordered_json& part) {
     const auto text = part["shard"].get<std::string>();
     if (std::sscanf(text.c_str(), "%d/%d", &index, &count) != 2) index = count = 0;
   }
-  if (index < 1 || index > count || !part.contains("rows"))
+  if (index < 1 || index > count || !part.contains("rows") || !part["rows"].is_array())
     throw InputError(
         "found a file that is no part of a comparison, "
         "expected what `compare … --shard I/N --json` prints");
@@ -31,6 +31,12 @@ std::pair<int, int> share_of(const ordered_json& part) {
     throw InputError(
         fmt::format("found part {}/{} incomplete, expected one that ran to its end", index, count));
   return {index, count};
+}
+
+int case_of(const ordered_json& row) {
+  if (!row.is_object() || !row.contains("case") || !row["case"].is_number_integer())
+    throw InputError(fmt::format("found the row {}, expected one with the number of its case", row.dump()));
+  return row["case"].get<int>();
 }
 
 // What all parts of a series have alike.
@@ -64,7 +70,7 @@ ordered_json merge_series(std::span<const ordered_json> parts) {
   std::map<int, std::vector<ordered_json>> rows;  // by case; the first case may be in every part
   for (const ordered_json& part : parts) {
     std::map<int, std::vector<ordered_json>> own;
-    for (const ordered_json& row : part["rows"]) own[row.at("case").get<int>()].push_back(row);
+    for (const ordered_json& row : part["rows"]) own[case_of(row)].push_back(row);
     rows.merge(own);
   }
   ordered_json merged = identity_of(parts.front());
@@ -80,10 +86,7 @@ std::string material_tables_of(const ordered_json& series) {
   std::vector<std::string> methods;                             // as they come
   std::set<double> restitutions, frictions;
   for (const ordered_json& row : series["rows"]) {
-    double restitution = 0.0, friction = 0.0;
-    if (std::sscanf(row["materials"].get<std::string>().c_str(), "restitution=%lf friction=%lf", &restitution,
-                    &friction) != 2)
-      continue;
+    const double restitution = row["restitution"].get<double>(), friction = row["friction"].get<double>();
     restitutions.insert(restitution), frictions.insert(friction);
     const std::string name = row["method"].get<std::string>() +
                              (row["model"].is_null() ? "" : " " + row["model"].get<std::string>()) +

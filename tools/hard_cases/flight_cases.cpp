@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "reference/drop_trial.h"
 #include "reference/random.h"
-#include "reference/trial.h"
 #include "signature/measure/contact_time.h"
 #include "tools/compare/drop_trials.h"
 #include "tools/hard_cases/hard_case.h"

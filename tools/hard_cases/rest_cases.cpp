@@ -5,8 +5,8 @@
 #include <array>
 #include <numbers>
 
+#include "reference/drop_trial.h"
 #include "reference/random.h"
-#include "reference/trial.h"
 #include "tools/compare/drop_trials.h"
 #include "tools/compare/rest_classes.h"
 #include "tools/hard_cases/hard_case.h"

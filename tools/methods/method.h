@@ -9,7 +9,7 @@
 
 #include "lod/full/full_level.h"
 #include "lod/manager.h"
-#include "reference/trial.h"
+#include "reference/drop_trial.h"
 #include "signature/signature_source.h"
 #include "tools/methods/bullet_world.h"
 

@@ -7,7 +7,7 @@
 #include "scenes/shape_source.h"
 #include "signature/measure/cell_trials.h"
 #include "signature/measure/certify.h"
-#include "signature/measure/measuring_shape.h"
+#include "signature/measure/measurement_shape.h"
 #include "signature/measure/response_grid.h"
 #include "tools/report/sections.h"
 #include "tools/report/square_heights.h"
@@ -69,7 +69,7 @@ ordered_json histogram_of(const std::vector<double>& values, double low, double 
 ordered_json responses_json(const Shape& shape, const Signature& signature) {
   const std::uint64_t seed =
       signature.settings.seed + 1;  // the certificate's own held-out trials are of the seed itself
-  CollisionTrial trial(make_measuring_shape(shape), signature.settings.law, signature.settings.trial_end,
+  CollisionTrial trial(make_measurement_shape(shape), signature.settings.law, signature.settings.trial_end,
                        kAlwaysBounces);
   std::vector<HeldOutUnit> units;
   for (int i = 0; i < kConditions; ++i)

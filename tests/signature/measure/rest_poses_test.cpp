@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "signature/measure/measuring_shape.h"
+#include "signature/measure/measurement_shape.h"
 #include "signature/measure/settling_trial.h"
 
 namespace lodestone {
@@ -10,7 +10,7 @@ namespace {
 
 std::vector<SettlingRecord> settle(const Shape& shape, std::uint32_t count, bool whole = false,
                                    double friction = 0.5) {
-  SettlingTrial trial(make_measuring_shape(shape), {0.4, friction});
+  SettlingTrial trial(make_measurement_shape(shape), {0.4, friction});
   std::vector<SettlingRecord> records;
   for (std::uint32_t i = 0; i < count; ++i) records.push_back(trial.run(9, i, whole));
   return records;
@@ -20,7 +20,7 @@ TEST(RestPoses, CubeRestsEvenlyOnItsSixFaces) {
   constexpr int kTrials = 1200;
   const Shape cube = make_shape("cube", make_box({0.3, 0.3, 0.3}));
   const std::vector<RestPose> poses =
-      find_rest_poses(settle(cube, kTrials), *make_measuring_shape(cube), 0.004);
+      find_rest_poses(settle(cube, kTrials), *make_measurement_shape(cube), 0.004);
   ASSERT_EQ(poses.size(), 6u);
   double chi_squared = 0.0;
   for (const RestPose& pose : poses) {
@@ -35,7 +35,7 @@ TEST(RestPoses, CubeRestsEvenlyOnItsSixFaces) {
 
 TEST(RestPoses, LongBoxRarelyStandsOnItsEnd) {
   const Shape box = make_shape("long", make_box({0.1, 0.1, 0.4}));
-  const std::vector<RestPose> poses = find_rest_poses(settle(box, 1000), *make_measuring_shape(box), 0.0);
+  const std::vector<RestPose> poses = find_rest_poses(settle(box, 1000), *make_measurement_shape(box), 0.0);
   double on_end = 0.0, on_side = 0.0;
   for (const RestPose& pose : poses) (std::abs(pose.normal.z()) > 0.9 ? on_end : on_side) += pose.frequency;
   EXPECT_LT(on_end, 0.01);

@@ -1,15 +1,12 @@
 #include <gtest/gtest.h>
 
+#include "tests/tools/methods/box_job.h"
 #include "tools/bench/drops_bench.h"
 
 namespace lodestone {
 namespace {
 
-DropJob box_job() {
-  return {.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))),
-          .conditions = {},
-          .material = {}};
-}
+using testing::box_job;
 
 TEST(DropsBench, CountsWholeStepsOfBodiesThatAreAwake) {
   const std::vector<DropsRow> rows = bench_drops(box_job(), {.bodies = 9, .methods = {"waiting", "full_1"}});

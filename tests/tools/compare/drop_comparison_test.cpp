@@ -8,16 +8,13 @@
 #include <string>
 
 #include "reference/error.h"
+#include "tests/tools/methods/box_job.h"
 #include "tools/compare/drop_report.h"
 
 namespace lodestone {
 namespace {
 
-DropJob box_job() {
-  DropJob job;
-  job.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
-  return job;
-}
+using testing::box_job;
 
 DropComparisonSettings few_drops(std::vector<std::string> methods, double dt_s) {
   DropComparisonSettings settings;

@@ -5,14 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "tests/tools/methods/box_job.h"
+
 namespace lodestone {
 namespace {
 
-DropJob box_job() {
-  return {.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))),
-          .conditions = {},
-          .material = {}};
-}
+using testing::box_job;
 
 DropComparisonSettings few_drops() {
   DropComparisonSettings settings;

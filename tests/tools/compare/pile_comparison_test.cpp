@@ -7,16 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "reference/error.h"
+#include "tests/tools/methods/box_job.h"
 #include "tools/compare/pile_report.h"
 
 namespace lodestone {
 namespace {
 
-DropJob box_job() {
-  DropJob job;
-  job.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
-  return job;
-}
+using testing::box_job;
 
 PileObservation pile(std::vector<double> kinetic_energy, double sleep_time_s, double height_m) {
   PileObservation observed;

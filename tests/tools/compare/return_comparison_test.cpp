@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli_fixture.h"
+#include "tests/tools/methods/box_job.h"
 
 namespace lodestone {
 namespace {
@@ -16,9 +17,7 @@ const ReturnMeasure& measure_of(const ReturnComparison& comparison, const std::s
 class ReturnComparisonTest : public testing::CliTest {};
 
 TEST_F(ReturnComparisonTest, ABodyThatIsAwayAtTablesIsToldFromOneAtSupport) {
-  const DropJob job{.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))),
-                    .conditions = {},
-                    .material = {}};
+  const DropJob job = testing::box_job();
   ReturnSettings settings;
   settings.runs = 60;
   const ReturnComparison support = compare_return(job, settings);

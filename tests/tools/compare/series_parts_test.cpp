@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/error.h"
+#include "tests/tools/methods/box_job.h"
 #include "tools/compare/drop_series.h"
 
 namespace lodestone {
@@ -13,19 +14,21 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json row(int number, const char* materials, double score) {
-  return {{"materials", materials}, {"case", number},   {"method", "statistical"},
-          {"model", "support"},     {"dt_s", 1.0 / 60}, {"score", score},
-          {"floor", 0.05}};
+ordered_json row(int number, double restitution, double friction, double score) {
+  return {{"materials", "by name"}, {"case", number},          {"restitution", restitution},
+          {"friction", friction},   {"method", "statistical"}, {"model", "support"},
+          {"dt_s", 1.0 / 60},       {"score", score},          {"floor", 0.05}};
 }
 
 ordered_json part(const char* shard, std::vector<ordered_json> rows) {
-  return {{"trials", 12}, {"rows", std::move(rows)}, {"shard", shard}};
+  return {{"trials", 12},
+          {"rows", std::move(rows)},
+          {"series", {{"of", "materials"}, {"seed", 1}}},
+          {"shard", shard}};
 }
 
 std::vector<ordered_json> two_parts() {
-  return {part("2/2", {row(1, "restitution=0 friction=0.5", 0.2)}),
-          part("1/2", {row(0, "restitution=0 friction=0", 0.1), row(2, "restitution=0.9 friction=0", 0.3)})};
+  return {part("2/2", {row(1, 0.0, 0.5, 0.2)}), part("1/2", {row(0, 0.0, 0.0, 0.1), row(2, 0.9, 0.0, 0.3)})};
 }
 
 std::string message_of(const std::vector<ordered_json>& parts) {
@@ -47,7 +50,7 @@ TEST(SeriesParts, AreJoinedInTheOrderOfTheirCases) {
 
 TEST(SeriesParts, ACaseThatEachPartHasIsThereOnce) {
   std::vector<ordered_json> parts = two_parts();
-  parts[0]["rows"].insert(parts[0]["rows"].begin(), row(0, "restitution=0 friction=0", 0.1));
+  parts[0]["rows"].insert(parts[0]["rows"].begin(), row(0, 0.0, 0.0, 0.1));
   EXPECT_EQ(merge_series(parts)["rows"].size(), 3U);
 }
 
@@ -67,8 +70,34 @@ TEST(SeriesParts, WhatDoesNotFitIsRefusedAndNamed) {
   parts = two_parts();
   parts[0]["incomplete"] = true;
   EXPECT_NE(message_of(parts).find("incomplete"), std::string::npos);
+  parts = two_parts();
+  parts[1]["series"]["seed"] = 2;
+  EXPECT_NE(message_of(parts).find("\"seed\":2"), std::string::npos);
+  parts = two_parts();
+  parts[0]["rows"] = ordered_json::array();  // a share may be of no case
+  parts[0]["series"]["of"] = "shapes";
+  EXPECT_NE(message_of(parts).find("shapes"), std::string::npos);
   EXPECT_NE(message_of({ordered_json::object()}), "");
   EXPECT_NE(message_of({}), "");
+}
+
+TEST(SeriesParts, RowsWithoutTheNumberOfTheirCaseAreRefused) {
+  for (const ordered_json& bad :
+       {ordered_json(7), ordered_json("row"), ordered_json::array(), ordered_json::object(),
+        ordered_json{{"case", "1"}}, ordered_json{{"case", 0.5}}}) {
+    std::vector<ordered_json> parts = two_parts();
+    parts[1]["rows"].push_back(bad);
+    EXPECT_NE(message_of(parts).find(bad.dump()), std::string::npos) << bad;
+  }
+  std::vector<ordered_json> parts = two_parts();
+  parts[0]["rows"] = "none";
+  EXPECT_NE(message_of(parts).find("no part of a comparison"), std::string::npos);
+}
+
+TEST(SeriesParts, AShareWithoutACaseIsAPart) {
+  std::vector<ordered_json> parts = two_parts();
+  parts[0]["rows"] = ordered_json::array();
+  EXPECT_EQ(merge_series(parts)["rows"].size(), 2U);
 }
 
 TEST(SeriesParts, MaterialsMakeATableOfAMethod) {
@@ -79,10 +108,7 @@ TEST(SeriesParts, MaterialsMakeATableOfAMethod) {
 }
 
 TEST(MaterialCases, AreEveryPairOnceAndSharedOut) {
-  const DropJob usual = {.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))),
-                         .conditions = {},
-                         .material = {}};
-  const std::vector<DropCase> all = make_material_cases(usual);
+  const std::vector<DropCase> all = make_material_cases(testing::box_job());
   EXPECT_EQ(all.size(), 30U);
   std::size_t shared = 0;
   for (int i = 0; i < 4; ++i) {

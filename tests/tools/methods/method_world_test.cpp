@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <array>
 
+#include "tests/tools/methods/box_job.h"
+
 namespace lodestone {
 namespace {
 
-DropJob box_job() {
-  return {.shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))),
-          .conditions = {},
-          .material = {}};
-}
+using testing::box_job;
 
 RigidState above_the_plane(double height_m) {
   return {.position = Vec3(0.0, 0.0, height_m), .orientation = Quat(1.0, 0.2, 0.3, 0.1).normalized()};

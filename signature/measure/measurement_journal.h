@@ -25,16 +25,16 @@ struct JournalHolder {
 /// Of the journal `file`, which another process holds; none where it has not said so (yet).
 std::optional<JournalHolder> find_holder(const std::filesystem::path& file);
 
-class MeasuringJournal {
+class MeasurementJournal {
  public:
   /// Opens `file`, or makes it, for this process alone; null while another one holds it. Units that belong to
   /// `identity` are kept, a record cut short is dropped, a journal of anything else is begun anew. Throws
   /// InputError where the file cannot be written.
-  static std::unique_ptr<MeasuringJournal> try_open(const std::filesystem::path& file,
-                                                    const MeasurementIdentity& identity);
-  ~MeasuringJournal();
-  MeasuringJournal(const MeasuringJournal&) = delete;
-  MeasuringJournal& operator=(const MeasuringJournal&) = delete;
+  static std::unique_ptr<MeasurementJournal> try_open(const std::filesystem::path& file,
+                                                      const MeasurementIdentity& identity);
+  ~MeasurementJournal();
+  MeasurementJournal(const MeasurementJournal&) = delete;
+  MeasurementJournal& operator=(const MeasurementJournal&) = delete;
 
   /// Sets `into` to the unit, if it is here. From any thread.
   template <class Unit>
@@ -55,7 +55,7 @@ class MeasuringJournal {
   void remove();           ///< of no more use: what was to be made is there
 
  private:
-  MeasuringJournal(std::filesystem::path file, int descriptor, const SignatureSettings& settings)
+  MeasurementJournal(std::filesystem::path file, int descriptor, const SignatureSettings& settings)
       : file_(std::move(file)), descriptor_(descriptor), settings_(settings) {}
   void read(const MeasurementIdentity& identity);
   bool append(UnitKind kind, std::int64_t unit, std::span<const std::byte> bytes);

@@ -1,4 +1,4 @@
-#include "signature/measure/measuring_journal.h"
+#include "signature/measure/measurement_journal.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -87,8 +87,8 @@ std::optional<JournalHolder> find_holder(const std::filesystem::path& file) {
   return holder;
 }
 
-std::unique_ptr<MeasuringJournal> MeasuringJournal::try_open(const std::filesystem::path& file,
-                                                             const MeasurementIdentity& identity) {
+std::unique_ptr<MeasurementJournal> MeasurementJournal::try_open(const std::filesystem::path& file,
+                                                                 const MeasurementIdentity& identity) {
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
   for (;;) {
@@ -97,7 +97,7 @@ std::unique_ptr<MeasuringJournal> MeasuringJournal::try_open(const std::filesyst
       throw InputError(
           fmt::format("{}: found a place that cannot be written ({}), expected a writable folder",
                       file.string(), std::strerror(errno)));
-    std::unique_ptr<MeasuringJournal> journal(new MeasuringJournal(file, descriptor, identity.settings));
+    std::unique_ptr<MeasurementJournal> journal(new MeasurementJournal(file, descriptor, identity.settings));
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       if (errno == EWOULDBLOCK) return nullptr;
       throw InputError(
@@ -111,9 +111,9 @@ std::unique_ptr<MeasuringJournal> MeasuringJournal::try_open(const std::filesyst
   }
 }
 
-MeasuringJournal::~MeasuringJournal() { ::close(descriptor_); }  // and with it the lock
+MeasurementJournal::~MeasurementJournal() { ::close(descriptor_); }  // and with it the lock
 
-void MeasuringJournal::read(const MeasurementIdentity& identity) {
+void MeasurementJournal::read(const MeasurementIdentity& identity) {
   opened_ = now();
   content_ = read_all(descriptor_);
   const std::vector<std::byte> head = encode_head(identity);
@@ -130,15 +130,15 @@ void MeasuringJournal::read(const MeasurementIdentity& identity) {
   writable_ = ::ftruncate(descriptor_, off_t(sound)) == 0 && (sound > 0 || write_all(descriptor_, head));
 }
 
-bool MeasuringJournal::append(UnitKind kind, std::int64_t unit, std::span<const std::byte> bytes) {
+bool MeasurementJournal::append(UnitKind kind, std::int64_t unit, std::span<const std::byte> bytes) {
   const std::vector<std::byte> record = encode_record({kind, unit, seconds(), bytes});
   const std::lock_guard lock(mutex_);
   return writable_ = writable_ && write_all(descriptor_, record);
 }
 
-double MeasuringJournal::seconds() const { return seconds_before_ + now() - opened_; }
+double MeasurementJournal::seconds() const { return seconds_before_ + now() - opened_; }
 
-std::uint64_t MeasuringJournal::trials_found(const SignatureSettings& settings) const {
+std::uint64_t MeasurementJournal::trials_found(const SignatureSettings& settings) const {
   std::uint64_t trials = 0;
   Measurement any;
   visit_units(any, [&](UnitKind kind, auto& units) {
@@ -149,7 +149,7 @@ std::uint64_t MeasuringJournal::trials_found(const SignatureSettings& settings) 
   return trials;
 }
 
-void MeasuringJournal::remove() {
+void MeasurementJournal::remove() {
   std::error_code error;
   std::filesystem::remove(holder_file(file_), error);
   std::filesystem::remove(file_, error);

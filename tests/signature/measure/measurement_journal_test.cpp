@@ -1,4 +1,4 @@
-#include "signature/measure/measuring_journal.h"
+#include "signature/measure/measurement_journal.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -28,8 +28,8 @@ class Journal : public ::testing::Test {
     identity.shape.mesh = {};
     return identity;
   }
-  std::unique_ptr<MeasuringJournal> open(std::uint64_t seed = 1) const {
-    return MeasuringJournal::try_open(file(), identity(seed));
+  std::unique_ptr<MeasurementJournal> open(std::uint64_t seed = 1) const {
+    return MeasurementJournal::try_open(file(), identity(seed));
   }
   fs::path file() const { return folder_ / "deeper" / "box.journal"; }
   void note_heights(int count) const {
@@ -37,7 +37,7 @@ class Journal : public ::testing::Test {
     for (int i = 0; i < count; ++i) journal->note(UnitKind::height, i, HeightUnit{float(i), 0.5f});
   }
   // How many of the first ten are there.
-  static int count_heights(MeasuringJournal& journal) {
+  static int count_heights(MeasurementJournal& journal) {
     int count = 0;
     for (int i = 0; i < 10; ++i) {
       HeightUnit unit;
@@ -128,7 +128,7 @@ TEST_F(Journal, IsGoneOnceRemoved) {
 }
 
 TEST_F(Journal, APlaceThatCannotBeWrittenIsAnInputError) {
-  EXPECT_THROW(MeasuringJournal::try_open("/proc/nowhere/box.journal", identity()), InputError);
+  EXPECT_THROW(MeasurementJournal::try_open("/proc/nowhere/box.journal", identity()), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,192 @@
+#include "lod/rungs/near_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "lod/rungs/substep_plan.h"
+#include "reference/random.h"
+#include "tests/lod/contact/crowd_scene.h"
+
+namespace lodestone {
+namespace {
+
+using testing::at;
+using testing::box_shape;
+
+constexpr double kPairStep = 1.0 / 60;
+
+// Whichever comes first.
+ContactKey pair_key(Participant a, Participant b) {
+  return contact_key(std::uint32_t(std::min(a.index(), b.index())),
+                     std::uint32_t(std::max(a.index(), b.index())));
+}
+
+struct PairScene : testing::CrowdScene {
+  PairScene() { near.begin(0); }
+
+  std::vector<std::int32_t> everybody() const {
+    std::vector<std::int32_t> all;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (bodies[i].motion != Motion::asleep) all.push_back(std::int32_t(i));
+    return all;
+  }
+  void find(NearPairs& pairs, std::span<const NearPair> of) {
+    const std::vector<std::int32_t> awake = everybody();
+    near.begin(bodies.size());
+    for (const std::int32_t i : awake) near.mark(Participant::statistical(std::size_t(i)));
+    pairs.take(scene(), of);
+    pairs.find_turning(scene(), awake);
+    pairs.find_contacts(scene(), kPairStep, awake, near);
+  }
+  double true_gap(const FoundPair& pair) {
+    const auto contact =
+        find_hull_contact(scene().pair_body(pair.first), scene().pair_body(pair.second), 10.0);
+    return contact ? contact->gap : 1e9;
+  }
+  void move() {
+    for (StatisticalBody& body : bodies) {
+      const Shape& shape = *kinds[body.kind].shape;
+      body.position += kPairStep * body.velocity;
+      body.orientation = advance_orientation(body.orientation, body.spin, shape, kPairStep).normalized();
+    }
+  }
+  NearMarks near;
+};
+
+// What is remembered of a gap is never more than is there, and who meets within the step has a contact: as
+// bodies fly about among each other for a second.
+TEST(NearPairs, AGapKeptIsNeverTooWideAndNoMeetingIsMissed) {
+  PairScene scene;
+  RandomStream random(31, 0, 0);
+  const auto crate = box_shape({0.2, 0.3, 0.4});
+  std::vector<NearPair> all;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Vec3 place = random.uniform(0.6, 1.2) * random.direction();  // and through the middle
+    scene.add(crate, 1.0, at(place, -1.5 * place, 3.0 * random.direction(), random.orientation()));
+    for (std::size_t k = 0; k < i; ++k)
+      all.emplace_back(Participant::statistical(i), Participant::statistical(k));
+  }
+  NearPairs pairs(make_job_runner(1));
+  int met = 0, kept = 0;
+  std::set<ContactKey> apart, answered;  // in the step before: by a gap; that had a contact
+  for (int step = 0; step < 60; ++step) {
+    scene.find(pairs, all);
+    ASSERT_EQ(pairs.size(), all.size());
+    std::set<ContactKey> now_apart;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const FoundPair& pair = pairs[i];
+      const double gap = scene.true_gap(pair);
+      EXPECT_LE(pairs.gap_left(scene.scene(), pair), std::max(0.0, gap) + 1e-6);
+      kept += pairs.gap_left(scene.scene(), pair) > 0.05;
+      const ContactKey key = pair_key(pair.first, pair.second);
+      if (gap > 0.0) now_apart.insert(key);
+      if (gap > -1e-4 || !apart.contains(key)) continue;
+      ++met;
+      EXPECT_TRUE(answered.contains(key)) << "overlap of " << -gap;
+    }
+    apart = now_apart;
+    answered.clear();
+    for (const CrowdContact& contact : pairs.contacts())
+      answered.insert(pair_key(contact.first, contact.second));
+    scene.move();
+  }
+  EXPECT_GT(met, 5);
+  EXPECT_GT(kept, 200);
+}
+
+// Whichever is named first, and whatever came before: by place.
+TEST(NearPairs, AContactDoesNotHangOnTheOrderOfItsBodies) {
+  for (const bool turned_round : {false, true}) {
+    PairScene scene;
+    const auto cube = box_shape({0.2, 0.2, 0.2});
+    const Participant a = scene.add(cube, 1.0, at({0.1, 0, 0})),
+                      b = scene.add(cube, 1.0, at({-0.1, 0.05, 0}));
+    NearPairs pairs(make_job_runner(1));
+    const NearPair one = turned_round ? NearPair(a, b) : NearPair(b, a);
+    scene.find(pairs, {&one, 1});
+    ASSERT_EQ(pairs.contacts().size(), 1U);
+    EXPECT_EQ(pairs.contacts()[0].first, b);  // the smaller x
+    EXPECT_LT((pairs.contacts()[0].contact.normal - Vec3(-1, 0, 0)).norm(), 1e-6);
+  }
+}
+
+TEST(NearPairs, OfSleepersAndOfFullBodiesAmongThemselvesThereAreNone) {
+  PairScene scene;
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  const Participant a = scene.add(cube, 1.0, at({0, 0, 0})), b = scene.add(cube, 1.0, at({0.2, 0, 0})),
+                    f = scene.add_full(cube, 1.0, at({0, 0.2, 0})),
+                    g = scene.add_full(cube, 1.0, at({0.2, 0.2, 0}));
+  scene.bodies[0].motion = scene.bodies[1].motion = Motion::asleep;
+  NearPairs pairs(make_job_runner(1));
+  const NearPair asleep[] = {{a, b}}, full[] = {{f, g}}, mixed[] = {{a, f}};
+  scene.find(pairs, asleep);
+  EXPECT_TRUE(pairs.contacts().empty());
+  scene.find(pairs, full);
+  EXPECT_TRUE(pairs.contacts().empty());
+  scene.find(pairs, mixed);  // a sleeper and a full body that is awake
+  EXPECT_EQ(pairs.contacts().size(), 1U);
+  EXPECT_TRUE(scene.bodies[0].crowded);
+}
+
+TEST(NearPairs, ASnapshotGoesOnAlike) {
+  PairScene scene;
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  const Participant a = scene.add(cube, 1.0, at({0, 0, 0}, {0.1, 0, 0})),
+                    b = scene.add(cube, 1.0, at({0.3, 0, 0}));
+  const NearPair one[] = {{a, b}};
+  NearPairs pairs(make_job_runner(1)), copy(make_job_runner(1));
+  scene.find(pairs, one);
+  StateArchive writer;
+  pairs.archive(writer);
+  StateArchive reader(writer.bytes(), {});
+  copy.archive(reader);
+  EXPECT_TRUE(reader.at_end());
+  ASSERT_EQ(copy.size(), 1U);
+  EXPECT_EQ(copy[0].key, pairs[0].key);
+  EXPECT_EQ(copy[0].gap, pairs[0].gap);
+  EXPECT_TRUE(copy[0].when.has_value());
+}
+
+// The approach: what two that close in at 2 m/s, one of which turns, may come nearer by, and the fall.
+TEST(NearPairs, ApproachIsOfCentresRimsAndTheFall) {
+  PairScene scene;
+  scene.world.gravity = {0, 0, -testing::kGravity};
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  const Participant a = scene.add(cube, 1.0, at({0, 0, 0}, {1, 0, 0}, {0, 0, 5})),
+                    b = scene.add(cube, 1.0, at({3, 0, 0}, {-1, 0, 0}));
+  NearPairs pairs(make_job_runner(1));
+  const NearPair one[] = {{a, b}};
+  scene.find(pairs, one);
+  const double expected = (2.0 + 5.0 * cube->radius) * 0.1 + 0.5 * testing::kGravity * 0.01;
+  EXPECT_NEAR(pairs.find_approach(scene.scene(), pairs[0], 0.1), expected, 1e-12);
+  EXPECT_NEAR(pairs.gap_left(scene.scene(), pairs[0]), 2.8 - 0.01 * cube->radius, 1e-3);
+}
+
+// Three substeps where two touch slowly, more the faster they close in, a dozen at most; none where nobody is
+// near.
+TEST(SubstepPlan, IsByHowFarTheyCloseInOverTheirSize) {
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  const auto substeps = [&](double speed, double gap) {
+    PairScene scene;
+    const Participant a = scene.add(cube, 1.0, at({0, 0, 0}, {speed, 0, 0})),
+                      b = scene.add(cube, 1.0, at({0.2 + gap, 0, 0}));
+    NearPairs pairs(make_job_runner(1));
+    const NearPair one[] = {{a, b}};
+    scene.find(pairs, one);
+    NearMarks near;
+    near.begin(2);
+    SubstepPlan plan;
+    const int count = plan.make(scene.scene(), pairs, {}, kPairStep, near);
+    EXPECT_EQ(near[0], count > 0);
+    EXPECT_EQ(near[1], count > 0);
+    return count;
+  };
+  EXPECT_EQ(substeps(0.1, 0.001), 3);
+  EXPECT_EQ(substeps(4.0, 0.001), int(std::ceil(4.0 / 60 / (0.07 * cube->radius))));
+  EXPECT_EQ(substeps(40.0, 0.001), 12);
+  EXPECT_EQ(substeps(1.0, 0.5), 0);
+}
+
+}  // namespace
+}  // namespace lodestone
