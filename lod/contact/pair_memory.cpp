@@ -6,7 +6,20 @@
 namespace lodestone {
 
 void PairMemory::clear() {
+  clear_marks(keys_.size());
   keys_.clear();
+  made_ = false;
+}
+
+// Room for about so many keys.
+void PairMemory::clear_marks(std::size_t keys) {
+  constexpr std::size_t kBitsOfKey = 32;
+  marks_.assign(std::bit_ceil(std::max(kLeastMarks, keys * kBitsOfKey / 64)), 0);
+}
+
+void PairMemory::mark_anew() {
+  clear_marks(keys_.size());
+  for (const ContactKey key : keys_) mark(key);
   made_ = false;
 }
 
@@ -15,6 +28,7 @@ std::int32_t PairMemory::find(ContactKey key, std::size_t expected) {
   const std::size_t end = std::min(keys_.size(), expected + kAfter);
   for (std::size_t i = expected > kBefore ? expected - kBefore : 0; i < end; ++i)
     if (keys_[i] == key) return std::int32_t(i);
+  if (const auto [one, other] = marks_of(key); !is_marked(one) || !is_marked(other)) return -1;
   if (!made_) make_table();
   return table_[entry_of(key)];
 }

@@ -23,18 +23,40 @@ class PairMemory {
   void clear();
   void archive(StateArchive& a) {
     a(keys_);
-    made_ = made_ && !a.reading();
+    if (a.reading()) mark_anew();
   }
-  void add(ContactKey key) { keys_.push_back(key); }
+  void add(ContactKey key) {
+    keys_.push_back(key);
+    mark(key);
+  }
   /// The place at which `key` was added, the first one; −1: never. Quick where that is about `expected`:
   /// lists mostly keep their order from step to step.
   std::int32_t find(ContactKey key, std::size_t expected);
 
  private:
+  static constexpr std::size_t kLeastMarks = 16;  // words
+  // Two bits of `marks_`.
+  struct Marks {
+    std::size_t one, other;
+  };
+  Marks marks_of(ContactKey key) const {
+    const std::uint64_t hash = key * 0x9e3779b97f4a7c15u, bits = 64 * marks_.size();
+    return {std::size_t(hash >> 20 & (bits - 1)), std::size_t(hash >> 40 & (bits - 1))};
+  }
+  bool is_marked(std::size_t bit) const { return (marks_[bit / 64] >> bit % 64 & 1) != 0; }
+  void mark(ContactKey key) {
+    for (const auto [one, other] = marks_of(key); const std::size_t bit : {one, other})
+      marks_[bit / 64] |= std::uint64_t(1) << bit % 64;
+  }
+  void clear_marks(std::size_t keys);
+  void mark_anew();
   std::size_t entry_of(ContactKey key) const;
   void make_table();
 
   std::vector<ContactKey> keys_;
+  // Whose bits are not set is not among the keys: most that are new show so, without a table (Bloom,
+  // Space/time trade-offs in hash coding with allowable errors, 1970). A power of two of words.
+  std::vector<std::uint64_t> marks_ = std::vector<std::uint64_t>(kLeastMarks, 0);
   // Places by their keys' hashes, −1: none; a power of two of them, made when first needed.
   std::vector<std::int32_t> table_;
   bool made_ = false;

@@ -49,6 +49,10 @@ void add_compare_pile_command(Command& compare) {
   pile.add_option("--seeds", comparison.piles, "piles of each method").within(1, 10'000);
   add_steps_argument(pile, arguments.steps);
   add_methods_argument(pile, comparison.methods);
+  pile.add_option("--check-truth", comparison.check_truth,
+                  "the truth itself done finer, as rows beside the methods")
+      .several()
+      .one_of(finer_truth_names());
   add_starts_arguments(pile, comparison.seed, comparison.threads);
   pile.add_option("--out", arguments.out, "folder for piles.csv, one line a pile, and pile_energy.csv");
   add_json_argument(pile, arguments.results);

@@ -1,10 +1,14 @@
 #include "tools/compare/pile_comparison.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
+#include "reference/argument_error.h"
 #include "reference/error.h"
 
 namespace lodestone {
@@ -12,6 +16,17 @@ namespace {
 
 constexpr int kTruthIterations = 40;      // of QuickStep
 constexpr int kTruthDirectContacts = 10;  // contacts of one island above which QuickStep takes over
+
+struct FinerTruth {
+  std::string_view name;
+  void (*refine)(OdeMethod&);
+};
+constexpr std::array<FinerTruth, 3> kFinerTruths = {{
+    {"half_step", [](OdeMethod& truth) { truth.substeps *= 2; }},
+    {"iterations", [](OdeMethod& truth) { truth.settings.quick_step_iterations *= 4; }},
+    {"direct",
+     [](OdeMethod& truth) { truth.settings.direct_contacts_max = OdeSettings{}.direct_contacts_max; }},
+}};
 
 // What hangs together by many contacts is too much for dWorldStep under any method.
 void solve_large_piles_quickly(Method& method) {
@@ -56,17 +71,32 @@ class PileComparing {
     auto methods =
         make_methods(settings_.methods, job_, settings_.measuring, settings_.threads, settings_.progress);
     std::ranges::for_each(methods, solve_large_piles_quickly);
+    std::vector<Method> finer;
+    for (const std::string& name : settings_.check_truth) finer.push_back(make_finer_truth(job_, name));
     PileComparison result = compare_truth();
     result.rows = compare_methods<PileRow>(
+        finer, as_the_truth_steps(),
+        [&](const Method& method, PileRow& row) { compare(method, result.truth_a, row); },
+        [](const Method&, PileRow&) {});
+    const std::vector<PileRow> rows = compare_methods<PileRow>(
         methods, settings_, [&](const Method& method, PileRow& row) { compare(method, result.truth_a, row); },
         [&](const Method& method, PileRow& row) {
           row.ns_per_body_step = measure_ns_per_body_step(
               job_, method, batch(settings_.seed_of_truth_b(), row.dt_s), row.figures->sleep_time_s);
         });
+    result.rows.insert(result.rows.end(), rows.begin(), rows.end());
     return result;
   }
 
  private:
+  // Its substeps are those of a step between two observations, and its cost is no method's.
+  ComparisonSettings as_the_truth_steps() const {
+    ComparisonSettings settings = settings_;
+    settings.dt_s = {kObservationStep};
+    settings.costs = false;
+    return settings;
+  }
+
   PileComparison compare_truth() {
     const Method truth = make_pile_truth(job_);
     PileComparison result{
@@ -116,6 +146,23 @@ Method make_pile_truth(const DropJob& job) {
   OdeSettings& settings = std::get<OdeMethod>(truth.way).settings;
   settings.quick_step_iterations = kTruthIterations;
   settings.direct_contacts_max = kTruthDirectContacts;
+  return truth;
+}
+
+std::vector<std::string> finer_truth_names() {
+  std::vector<std::string> names;
+  for (const FinerTruth& finer : kFinerTruths) names.emplace_back(finer.name);
+  return names;
+}
+
+Method make_finer_truth(const DropJob& job, const std::string& name) {
+  const auto finer = std::ranges::find(kFinerTruths, name, &FinerTruth::name);
+  if (finer == kFinerTruths.end())
+    throw ArgumentError(fmt::format("--check-truth: found '{}', expected some of {}", name,
+                                    fmt::join(finer_truth_names(), ", ")));
+  Method truth = make_pile_truth(job);
+  finer->refine(std::get<OdeMethod>(truth.way));
+  truth.name = "truth_" + name;
   return truth;
 }
 

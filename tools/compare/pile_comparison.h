@@ -3,7 +3,8 @@
 // The truth is ODE in steps of .49 ms, as for drops: dWorldStep while few contacts hang together, else
 // QuickStep, since dWorldStep's time grows with the cube of them (30 boxes in a bin: a quarter of an hour).
 // QuickStep's friction follows the pressure of the moment, dWorldStep's that of a frictionless impact: so
-// single bodies are answered as drops are, heaps as nearly as ODE can.
+// single bodies are answered as drops are, heaps as nearly as ODE can. How near that is, `check_truth` shows:
+// the truth itself done finer, as rows beside the methods.
 #pragma once
 
 #include <optional>
@@ -18,7 +19,8 @@ namespace lodestone {
 struct PileComparisonSettings : ComparisonSettings {
   PileComparisonSettings() : ComparisonSettings{.methods = {"full", "full_1", "statistical"}} {}
   PileConditions conditions;
-  int piles = 6;  ///< of each
+  int piles = 6;                              ///< of each
+  std::vector<std::string> check_truth = {};  ///< some of finer_truth_names()
 };
 
 /// Means over a batch, greatest values where the name says so, beside the truth.
@@ -34,7 +36,7 @@ struct PileFigures {
 struct PileRow : MethodAtStep {
   std::optional<PileFigures> figures = {};  ///< none where left out
   double momentum_residual = 0;
-  double ns_per_body_step = 0;
+  std::optional<double> ns_per_body_step = {};  ///< none where not measured
   std::vector<PileObservation> piles = {};
 };
 
@@ -51,6 +53,12 @@ struct PileComparison {
 
 /// ODE as in this file's head, stepped as for drops.
 Method make_pile_truth(const DropJob& job);
+
+/// half_step: in twice as many steps; iterations: QuickStep with four times as many; direct: dWorldStep
+/// however many contacts hang together, which is for few bodies.
+std::vector<std::string> finer_truth_names();
+/// That truth, named truth_NAME. Throws InputError for another name.
+Method make_finer_truth(const DropJob& job, const std::string& name);
 
 /// Neither empty.
 PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span<const PileObservation> piles,

@@ -36,7 +36,7 @@ std::vector<std::string> row_of(const PileRow& row) {
   if (!row.figures) return cells;
   cells = row_of(std::move(cells), *row.figures);
   cells.push_back(fmt::format("{:.1e}", row.momentum_residual));
-  cells.push_back(fmt::format("{:.0f}", row.ns_per_body_step));
+  if (row.ns_per_body_step) cells.push_back(fmt::format("{:.0f}", *row.ns_per_body_step));
   return cells;
 }
 
@@ -75,7 +75,7 @@ ordered_json json_of(const PileRow& row, const PileFigures& floor) {
     json["ke_l1"] = row.figures->ke_l1;
     add_figures(json, *row.figures);
     json["momentum_residual"] = row.momentum_residual;
-    json["ns_per_body_step"] = row.ns_per_body_step;
+    json["ns_per_body_step"] = row.ns_per_body_step ? ordered_json(*row.ns_per_body_step) : ordered_json();
   } else {
     add_nulls(json);
   }

@@ -43,6 +43,31 @@ TEST(PairMemory, FindsWhereEachWasAdded) {
   }
 }
 
+// Many more keys than the lists before had: the marks that show most strangers are too few then, and only
+// slower.
+TEST(PairMemory, GrowingListsHideNoKey) {
+  PairMemory memory;
+  for (const std::uint32_t count : {3U, 3'000U, 10U, 40'000U}) {
+    memory.clear();
+    for (std::uint32_t i = 0; i < count; ++i) memory.add(contact_key(i, 7 * i + 1));
+    for (std::uint32_t i = 0; i < count; ++i)
+      ASSERT_EQ(memory.find(contact_key(i, 7 * i + 1), count - i), std::int32_t(i)) << count;
+    for (std::uint32_t i = 0; i < count; ++i) ASSERT_EQ(memory.find(contact_key(i, 7 * i + 2), i), -1);
+  }
+}
+
+TEST(PairMemory, WhatIsReadBackFindsAsWhatWasWritten) {
+  PairMemory written, read;
+  for (std::uint32_t i = 0; i < 100; ++i) written.add(contact_key(i * i, i));
+  StateArchive out;
+  out(written);
+  read.add(contact_key(5, 5));
+  StateArchive in(out.bytes(), {});
+  in(read);
+  for (std::uint32_t i = 0; i < 100; ++i) EXPECT_EQ(read.find(contact_key(i * i, i), 0), std::int32_t(i));
+  EXPECT_EQ(read.find(contact_key(5, 5), 0), -1);
+}
+
 TEST(PairMemory, AKeyNearTheExpectedPlaceIsTakenThere) {
   PairMemory memory;
   for (std::uint32_t i = 0; i < 20; ++i) memory.add(contact_key(i, i + 1));

@@ -50,9 +50,37 @@ TEST(PileComparison, MethodsStandBesideTheTruthAndTheFloor) {
   EXPECT_NEAR(full.mean_height_m, comparison.truth.mean_height_m, 0.15);
   EXPECT_EQ(full.hovering + full.escaped, 0);
   EXPECT_LT(comparison.rows[0].momentum_residual, 1e-9);
-  EXPECT_GT(comparison.rows[0].ns_per_body_step, 0.0);
+  EXPECT_GT(comparison.rows[0].ns_per_body_step.value(), 0.0);
   EXPECT_FALSE(comparison.rows[1].figures.has_value());
   EXPECT_NE(comparison.rows[1].reason.find("194"), std::string::npos);
+}
+
+// Two boxes in half the steps: a row beside the methods, as far from the truth as its second batch is.
+TEST(PileComparison, TheTruthIsCheckedAgainstAFinerOne) {
+  PileComparisonSettings settings;
+  settings.conditions = {.bodies = 2, .side = 0.8};
+  settings.piles = 1;
+  settings.methods = {};
+  settings.check_truth = {"half_step"};
+  const PileComparison comparison = compare_piles(box_job(), settings);
+  ASSERT_EQ(comparison.rows.size(), 1U);
+  const PileRow& row = comparison.rows[0];
+  EXPECT_EQ(row.method, "truth_half_step");
+  EXPECT_EQ(row.substeps, 2 * comparison.truth_substeps);
+  EXPECT_EQ(row.dt_s, kObservationStep);
+  EXPECT_NEAR(row.figures.value().sleep_time_s, comparison.floor.sleep_time_s, 0.5);
+  EXPECT_FALSE(row.ns_per_body_step.has_value());
+  EXPECT_THROW(make_finer_truth(box_job(), "finest"), InputError);
+}
+
+TEST(FinerTruth, ChangesWhatItsNameSays) {
+  const auto settings_of = [](const Method& method) { return std::get<OdeMethod>(method.way).settings; };
+  const OdeSettings truth = settings_of(make_pile_truth(box_job()));
+  EXPECT_EQ(make_finer_truth(box_job(), "half_step").substeps(), 2 * make_pile_truth(box_job()).substeps());
+  EXPECT_EQ(settings_of(make_finer_truth(box_job(), "iterations")).quick_step_iterations,
+            4 * truth.quick_step_iterations);
+  EXPECT_LT(truth.direct_contacts_max, 100);
+  EXPECT_GT(settings_of(make_finer_truth(box_job(), "direct")).direct_contacts_max, 1'000'000);
 }
 
 // What is under `support` in piles: equal and opposite impulses, without a signature too.
