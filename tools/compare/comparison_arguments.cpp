@@ -61,6 +61,12 @@ void add_comparison_arguments(Command& command, ComparisonArguments& arguments) 
   add_steps_argument(command, arguments.steps);
   add_trials_argument(command, comparison.trials, "drops of each");
   add_methods_argument(command, comparison.methods);
+  command
+      .add_option(
+          "--truth-push", comparison.truth_push_m_per_s,
+          "how fast the truth pushes overlap apart, m/s, at most; without, as ODE does, so that nothing "
+          "bounces by less than a part of its speed, up to .2")
+      .within(0.0, 1e9);
   add_starts_arguments(command, comparison.seed, comparison.threads);
 }
 

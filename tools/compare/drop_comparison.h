@@ -16,7 +16,8 @@ namespace lodestone {
 struct DropComparisonSettings : ComparisonSettings {
   DropComparisonSettings()
       : ComparisonSettings{.methods = {"full", "full_1", "hull", "spheres7", "sphere", "statistical"}} {}
-  int trials = 300;  ///< ≥ 2
+  int trials = 300;                               ///< ≥ 2
+  std::optional<double> truth_push_m_per_s = {};  ///< see make_truth; none: ODE's own law
 };
 
 struct DropRow : MethodAtStep {
@@ -34,6 +35,7 @@ struct DropComparison {
   int trials = 0;
   ScoreWithInterval floor = {};
   int truth_substeps = 0;  ///< in 1/60 s
+  std::optional<double> truth_push_m_per_s = {};
   std::vector<DropObservation> truth_a = {}, truth_b = {};
   std::vector<DropRow> rows = {};
 };

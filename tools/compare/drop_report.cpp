@@ -50,10 +50,13 @@ ordered_json score_row_of(const DropComparison& comparison, const MethodAtStep& 
 
 std::string text_of(const DropJob& job, const DropComparison& comparison) {
   return fmt::format(
-             "{}: {} drops, restitution {}, friction {}, slope {:.4g} deg; truth: ODE at {:.3g} ms\n\n",
+             "{}: {} drops, restitution {}, friction {}, slope {:.4g} deg; truth: ODE at {:.3g} ms{}\n\n",
              comparison.shape, comparison.trials, job.material.restitution, job.material.friction,
              job.conditions.slope * 180.0 / std::numbers::pi,
-             1e3 * kObservationStep / comparison.truth_substeps) +
+             1e3 * kObservationStep / comparison.truth_substeps,
+             comparison.truth_push_m_per_s
+                 ? fmt::format(", overlap pushed apart at {:.4g} m/s at most", *comparison.truth_push_m_per_s)
+                 : "") +
          table_of(comparison) + '\n' + drop_row_footer();
 }
 
@@ -62,6 +65,8 @@ ordered_json json_of(const DropComparison& comparison) {
   json["shape"] = comparison.shape;
   json["trials"] = comparison.trials;
   json["truth"] = {{"step_s", kObservationStep / comparison.truth_substeps}};
+  json["truth"]["push_m_per_s"] = comparison.truth_push_m_per_s ? ordered_json(*comparison.truth_push_m_per_s)
+                                                                : ordered_json();  // ODE's own law
   json["truth"]["floor"] = comparison.floor.value.score;
   json["truth"]["floor_ci"] = comparison.floor.interval;
   add_parts(json["truth"], comparison.floor.value);

@@ -133,9 +133,8 @@ std::string Method::model() const {
 
 void keep_model(std::vector<Method>& methods, const std::string& model) {
   if (!model.empty())
-    std::erase_if(methods, [&](const Method& method) {
-      return !method.model().empty() && method.model() != model;
-    });
+    std::erase_if(methods,
+                  [&](const Method& method) { return !method.model().empty() && method.model() != model; });
 }
 
 Method with_sleep(Method method, bool sleeping) {
@@ -145,9 +144,11 @@ Method with_sleep(Method method, bool sleeping) {
 }
 
 // Small bodies move as fast in their own time, which is the shorter by √λ.
-Method make_truth(const DropJob& job) {
+Method make_truth(const DropJob& job, double push_m_per_s) {
   const double scale = std::min(1.0, drop_scale(*job.shape));
-  return make_ode("truth", job, {.substeps = int(std::lround(kTruthSubsteps / std::sqrt(scale)))});
+  return make_ode("truth", job,
+                  {.substeps = int(std::lround(kTruthSubsteps / std::sqrt(scale))),
+                   .settings = {.max_correcting_velocity = push_m_per_s}});
 }
 
 bool is_method_name(const std::string& name) {

@@ -111,5 +111,28 @@ TEST(DropReport, AFolderThatCannotBeIsBadInput) {
   EXPECT_THROW(save_drops(DropComparison{}, "/dev/null/folder"), InputError);
 }
 
+// ODE's error reduction throws back what strikes without restitution, in steps of any length: a truth that
+// pushes overlap apart slowly has no such bounce, and `support` is nearer to it.
+TEST(DropComparison, WithoutRestitutionTheTruthBouncesByItsErrorReduction) {
+  DropJob job = box_job();
+  job.material.restitution = 0.0;
+  DropComparisonSettings settings;
+  settings.trials = 20;
+  settings.methods = {"waiting"};
+  settings.costs = false;
+  const auto first_rebound = [](const DropComparison& comparison) {
+    double sum = 0.0;
+    for (const DropObservation& drop : comparison.truth_a) sum += drop.first_rebound_m / 20.0;
+    return sum;
+  };
+  const DropComparison by_its_law = compare_drops(job, settings);
+  settings.truth_push_m_per_s = 0.05;
+  const DropComparison slowly = compare_drops(job, settings);
+  EXPECT_GT(first_rebound(by_its_law), 3.0 * first_rebound(slowly));
+  EXPECT_LT(slowly.rows[0].score->value.score, by_its_law.rows[0].score->value.score);
+  EXPECT_EQ(json_of(slowly)["truth"]["push_m_per_s"], 0.05);
+  EXPECT_TRUE(json_of(by_its_law)["truth"]["push_m_per_s"].is_null());
+}
+
 }  // namespace
 }  // namespace lodestone
