@@ -1,10 +1,8 @@
-#include "scenes/ground_section.h"
-
+// The `ground:` of a scene.
 #include <algorithm>
 #include <iterator>
 
-#include "scenes/material_section.h"
-#include "scenes/shape_section.h"
+#include "scenes/scene_sections.h"
 #include "scenes/terrain.h"
 
 namespace lodestone {
