@@ -66,4 +66,18 @@ inline Quat rotation_from_vector(const Vec3& v) {
   return Quat(std::cos(half), 0.5 * sinc * v.x(), 0.5 * sinc * v.y(), 0.5 * sinc * v.z());
 }
 
+/// The least rotation that takes the direction of `from` to that of `to`, of any lengths; of opposite ones
+/// about some axis across. Here and below, behind the header: Eigen's decompositions cost a file that uses
+/// them seconds of compiling.
+Quat rotation_between(const Vec3& from, const Vec3& to);
+
+/// Of a symmetric tensor: its moments, ascending, and as columns the axes that they are about, right-handed.
+struct PrincipalAxes {
+  Vec3 moments;
+  Mat3 axes;
+};
+PrincipalAxes find_principal_axes(const Mat3& tensor);
+/// Ascending.
+Vec3 find_principal_moments(const Mat3& tensor);
+
 }  // namespace lodestone

@@ -1,5 +1,4 @@
-#include "scenes/body_section.h"
-
+// The `bodies:` of a scene, scatters expanded.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +6,8 @@
 #include <limits>
 
 #include "scenes/ground_heights.h"
-#include "scenes/material_section.h"
 #include "scenes/scatter.h"
+#include "scenes/scene_sections.h"
 
 namespace lodestone {
 namespace {

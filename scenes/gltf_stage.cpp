@@ -127,7 +127,7 @@ void GltfStage::add_ground(const SceneGround& ground, double extent_m) {
   if (const auto* plane = std::get_if<GroundPlane>(&ground)) {
     mesh = square(extent_m);
     node.translation = gltf_vector(plane->offset_m * plane->normal);
-    node.rotation = gltf_rotation(Quat::FromTwoVectors(Vec3::UnitZ(), plane->normal));
+    node.rotation = gltf_rotation(rotation_between(Vec3::UnitZ(), plane->normal));
   } else if (const auto* box = std::get_if<GroundBox>(&ground)) {
     mesh = make_box(box->sides_m);
     node.translation = gltf_vector(box->position_m);

@@ -117,7 +117,7 @@ std::optional<RigidState> GroundHeights::lay(const Shape& shape, const Quat& ori
       return std::nullopt;
   }
   RigidState state{.position = center};
-  state.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), normal) *
+  state.orientation = rotation_between(Vec3::UnitZ(), normal) *
                       Quat(Eigen::AngleAxisd(turn_rad, Vec3::UnitZ())) * orientation;
   state.position.z() = -std::numeric_limits<double>::infinity();
   for (const Vec3& vertex : shape.hull.vertices) {

@@ -1,10 +1,8 @@
-#include "scenes/ground_section.h"
-
+// The `ground:` of a scene.
 #include <algorithm>
 #include <iterator>
 
-#include "scenes/material_section.h"
-#include "scenes/shape_section.h"
+#include "scenes/scene_sections.h"
 #include "scenes/terrain.h"
 
 namespace lodestone {
@@ -15,11 +13,11 @@ GroundMesh load_ground_mesh(const YamlCursor& place, const ShapeOptions& search)
   const YamlCursor key = place.at("mesh");
   const std::string name = key.text();
   const auto size = place.find("size_m"), position = place.find("position_m");
-  const std::optional<double> size_m = size ? std::optional(size->number(kLength)) : std::nullopt;
+  const double size_m = size ? size->number(kLength) : 0.0;
   const Vec3 position_m = position ? position->vector() : Vec3::Zero();
   try {
     GroundMesh ground{.mesh = load_mesh(find_mesh_file(name, search), {.untrusted = search.untrusted})};
-    if (size_m) ground.mesh = scale_to_size(std::move(ground.mesh), *size_m);
+    if (size) ground.mesh = scale_to_size(std::move(ground.mesh), size_m);
     for (Vec3& vertex : ground.mesh.vertices) vertex += position_m;
     return ground;
   } catch (const InputError& error) {

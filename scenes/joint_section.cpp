@@ -1,8 +1,9 @@
-#include "scenes/joint_section.h"
-
+// The `joints:` of a scene.
 #include <fmt/format.h>
 
 #include <map>
+
+#include "scenes/scene_sections.h"
 
 namespace lodestone {
 namespace {

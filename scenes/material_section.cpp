@@ -1,6 +1,7 @@
-#include "scenes/material_section.h"
-
+// The `materials:` and `contacts:` of a scene.
 #include <fmt/format.h>
+
+#include "scenes/scene_sections.h"
 
 namespace lodestone {
 namespace {

@@ -1,10 +1,9 @@
-#include "scenes/ragdoll_section.h"
-
+// The `ragdolls:` of a scene: figures of six boxes on joints.
 #include <fmt/format.h>
 
 #include <array>
 
-#include "scenes/material_section.h"
+#include "scenes/scene_sections.h"
 #include "scenes/shape_source.h"
 
 namespace lodestone {

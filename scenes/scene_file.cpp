@@ -6,12 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "scenes/body_section.h"
-#include "scenes/ground_section.h"
-#include "scenes/joint_section.h"
-#include "scenes/material_section.h"
-#include "scenes/ragdoll_section.h"
-#include "scenes/shape_section.h"
+#include "scenes/scene_sections.h"
 #include "scenes/yaml_cursor.h"
 
 namespace lodestone {

@@ -1,11 +1,10 @@
-#include "scenes/shape_section.h"
-
+// The `shapes:` of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "reference/error.h"
-#include "scenes/material_section.h"
+#include "scenes/scene_sections.h"
 
 namespace lodestone {
 

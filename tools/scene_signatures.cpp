@@ -17,18 +17,6 @@ namespace {
 using SignatureKey = std::tuple<std::uint64_t, double, double>;  // shape, restitution, friction
 using Memory = std::map<SignatureKey, std::shared_ptr<const Signature>>;
 
-std::shared_ptr<const Signature> find_or_measure(const Shape& shape, const ContactLaw& law,
-                                                 ProgressLine& line, bool use_cache) {
-  SignatureSourceSettings source;
-  source.use_cache = use_cache;
-  source.warn = warn;
-  source.progress = [&](const std::string& stage, double fraction) {
-    line.show(fmt::format("signature of {}: {}", shape.name, stage), fraction);
-    throw_if_interrupted();
-  };
-  return find_or_measure_signature(shape, law, source).signature;
-}
-
 bool stays_full(const BodyDefinition& body, const RunSettings& settings) {
   const LevelChoice level = settings.level == LevelChoice::automatic ? body.level : settings.level;
   return level == LevelChoice::full;
@@ -46,8 +34,15 @@ MaterialId ground_material(const Scene& scene) {
 SignatureFunction make_signature_function(ProgressLine& line, bool use_cache) {
   return [&line, use_cache, memory = std::make_shared<Memory>()](const Shape& shape, const ContactLaw& law) {
     auto& known = (*memory)[{shape.content_hash, law.restitution, law.friction}];
-    if (!known) known = find_or_measure(shape, law, line, use_cache);
-    return known;
+    if (known) return known;
+    SignatureSourceSettings source;
+    source.use_cache = use_cache;
+    source.warn = warn;
+    source.progress = [&](const std::string& stage, double fraction) {
+      line.show(fmt::format("signature of {}: {}", shape.name, stage), fraction);
+      throw_if_interrupted();
+    };
+    return known = find_or_measure_signature(shape, law, source).signature;
   };
 }
 

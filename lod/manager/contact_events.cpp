@@ -46,6 +46,27 @@ ContactEvents::Key ContactEvents::key_of(const ContactRecord& record) {
           number_of_callers_.try_emplace(callers, std::uint32_t(number_of_callers_.size())).first->second};
 }
 
+void ContactEvents::take_full_touches() {
+  if (!wanted() || !levels_.full.world()) return;
+  const FullLevel& full = levels_.full;
+  for (const OdeTouch& touch : full.world()->touches()) {
+    const std::int32_t first = full.index_of(touch.first),
+                       second = touch.second ? full.index_of(touch.second) : -1;
+    const bool gone = first < 0 || (touch.second && second < 0);
+    if (gone) continue;
+    const auto owner = [&](std::int32_t member) { return full.members()[std::size_t(member)].owner; };
+    log_.add({.first = owner(first),
+              .second = second >= 0 ? owner(second) : ContactRecord::kGround,
+              .ground = full.ground_of(touch.ground),
+              .ground_material = touch.second_material,
+              .callers_geom = touch.callers_geom,
+              .point = touch.point,
+              .normal = touch.normal,
+              .impulse = touch.impulse,
+              .approach = touch.approach});
+  }
+}
+
 ContactSide ContactEvents::body_side(std::uint32_t body) const {
   return {.kind = ContactSide::Kind::body,
           .body = levels_.bodies.id(body),

@@ -29,6 +29,9 @@ class ContactEvents {
 
   /// A step begins.
   void begin() { events_.clear(); }
+  /// Writes down, where anybody wants to know, what full bodies touched among themselves, of the ground and
+  /// of the caller's in the full level's last step, in which touches were recorded.
+  void take_full_touches();
   /// After a step of `dt` seconds, in which these woke.
   void finish(double dt, std::span<const BodyId> woke);
   std::span<const ContactEvent> events() const { return events_; }

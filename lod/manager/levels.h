@@ -5,7 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "lod/callers/callers_space.h"
+#include "lod/callers/callers_bodies.h"
+#include "lod/callers/callers_ground.h"
 #include "lod/full/full_level.h"
 #include "lod/manager/body_table.h"
 #include "lod/manager/eased_bodies.h"
@@ -20,13 +21,13 @@ struct Levels {
       : full(full_level, materials),
         statistical_settings(statistical_level),
         signatures(std::move(store)),
-        callers(ground) {}
+        callers{CallersGround(ground)} {}
   Levels(dxWorld* world, dxSpace* space, const StatisticalSettings& statistical_level,
          const FullSettings& full_level, SignatureStore store)
       : full(world, space, full_level, materials),
         statistical_settings(statistical_level),
         signatures(std::move(store)),
-        callers(ground) {}
+        callers{CallersGround(ground)} {}
   Levels(const Levels&) = delete;  // the levels point at materials and ground
   Levels& operator=(const Levels&) = delete;
 
@@ -38,7 +39,11 @@ struct Levels {
   StatisticalSettings statistical_settings;
   SignatureStore signatures;
   EasedBodies eased;  ///< at the full level
-  CallersSpace callers;
+  /// What the statistical rungs meet of a caller's own space.
+  struct Callers {
+    CallersGround ground;
+    CallersBodies bodies = {};
+  } callers;
   std::int64_t now = 0;                  ///< steps so far
   std::vector<RungChange> rung_changes;  ///< of this step
   std::vector<std::uint32_t> woken;      ///< by wake(), until somebody takes note

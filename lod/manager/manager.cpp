@@ -110,7 +110,7 @@ const StepReport& Manager::step(double dt) {
   if (const int parts = int(std::ceil(dt / kLongestPart)); parts > 1)
     impl.step_divided(dt, parts);
   else
-    impl.step(dt);
+    impl.step_part(dt);
   return impl.finish_lists(dt);
 }
 
@@ -125,7 +125,10 @@ void Manager::before_world_step(double dt) {
   const StageZones zones(impl.profile, impl.report.times);
   impl.follow_gravity();
   impl.begin_lists();
-  impl.guarded([&] { impl.begin_stages(dt); });
+  {
+    const Impl::Undo undo(impl);
+    impl.begin_stages(dt);
+  }
   impl.levels.eased.hold_back(impl.levels, dt);
   impl.levels.full.begin_callers_step(dt);
   impl.waits_for_world_step = true;
@@ -175,7 +178,7 @@ void Manager::Impl::step_divided(double dt, int parts) {
   for (int i = 0; i < parts; ++i) {
     if (i > 0) levels.bodies.hold(forces);
     if (i > 0 && callers_world) levels.full.world()->repeat_callers_forces();
-    step(dt / parts);
+    step_part(dt / parts);
     sum.times += report.times;
     sum.promotions += report.promotions, sum.demotions += report.demotions;
     sum.bytes_moved += report.bytes_moved, sum.contacts += report.contacts;
@@ -188,8 +191,21 @@ void Manager::Impl::step_divided(double dt, int parts) {
   ++report.counters.divided_steps;
 }
 
-void Manager::Impl::step(double dt) {
-  guarded([&] { do_stages(dt); });
+Manager::Impl::Undo::~Undo() {
+  if (std::uncaught_exceptions() == exceptions_) return;
+  impl_.report = before_;
+  impl_.levels.now = before_.step;
+  BodyTable& bodies = impl_.levels.bodies;
+  for (std::uint32_t body = 0; body < bodies.indices();
+       ++body)  // in the step to come they are looked at anew
+    bodies.level(body).looked_at = std::min(bodies.level(body).looked_at, before_.step);
+}
+
+void Manager::Impl::step_part(double dt) {
+  const Undo undo(*this);
+  begin_stages(dt);
+  step_levels.step_full(dt, report);
+  end_stages();
   changes.take_part();
 }
 
@@ -208,12 +224,6 @@ void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
   for (std::size_t i = 0; i < newcomers.size(); ++i)
     if (levels.bodies.waits_at(i) && !std::ranges::binary_search(to_full, newcomers[i].index))
       find_signature(levels, newcomers[i].index, newcomers[i].rung);
-}
-
-void Manager::Impl::do_stages(double dt) {
-  begin_stages(dt);
-  step_levels.step_full(dt, report);
-  end_stages();
 }
 
 void Manager::Impl::begin_stages(double dt) {
@@ -251,7 +261,7 @@ void Manager::Impl::end_stages() {
   auto& [dt, laps, measured] = *underway;
   measured.rungs_ms[std::size_t(Rung::full)] = laps.lap_ms();
   report.times.total_ms += report.times.full_ms;
-  if (events.wanted()) write_full_touches(levels, *events.log());
+  events.take_full_touches();
   // 5 report
   report_bodies(levels, report);
   report.predicted_error_pixels = choose.predicted_error();

@@ -93,6 +93,13 @@ void Manager::set_log(LogFunction log) {
 
 void Manager::set_profile(ProfileHooks hooks) { impl_->profile = std::move(hooks); }
 
+void Manager::set_events(const EventSettings& settings) { impl_->events.set(checked(settings)); }
+void Manager::set_events(BodyId body, bool events) {
+  impl_->events.ask(impl_->index_of(body), events);
+  impl_->recorder.note(Call::set_body_events, body, events);
+}
+std::span<const ContactEvent> Manager::contact_events() const { return impl_->events.events(); }
+
 void Manager::draw(const DebugDrawer& drawer, const DrawSettings& settings) const {
   const Levels& levels = impl_->levels;
   for (const std::uint32_t body : levels.bodies.in_order_of_creation())

@@ -1,7 +1,7 @@
 // What stands behind a Manager: the bodies and the stages of a step, in their order.
 #pragma once
 
-#include <algorithm>
+#include <exception>
 
 #include "lod/manager.h"
 #include "lod/manager/audit.h"
@@ -9,7 +9,6 @@
 #include "lod/manager/choose.h"
 #include "lod/manager/contact_events.h"
 #include "lod/manager/cost_model.h"
-#include "lod/manager/full_contacts.h"
 #include "lod/manager/levels.h"
 #include "lod/manager/move_bodies.h"
 #include "lod/manager/query_scene.h"
@@ -62,23 +61,20 @@ struct Manager::Impl {
   void follow_gravity();
   void step_divided(double dt, int parts);
   /// Stages 1 to 5, for at most .1 s.
-  void step(double dt);
-  /// Where `stages` throw, nothing has moved, and the report is that of the step before.
-  template <class Stages>
-  void guarded(const Stages& stages) {
-    const StepReport before = report;
-    try {
-      stages();
-    } catch (...) {
-      report = before;
-      levels.now = report.step;
-      for (std::uint32_t body = 0; body < levels.bodies.indices();
-           ++body)  // in the step to come they are looked at anew
-        levels.bodies.level(body).looked_at = std::min(levels.bodies.level(body).looked_at, report.step);
-      throw;
-    }
-  }
-  void do_stages(double dt);
+  void step_part(double dt);
+  /// Where stages throw while it lasts, nothing has moved, and the report is that of the step before.
+  class Undo {
+   public:
+    explicit Undo(Impl& impl) : impl_(impl), before_(impl.report) {}
+    ~Undo();
+    Undo(const Undo&) = delete;
+    Undo& operator=(const Undo&) = delete;
+
+   private:
+    Impl& impl_;
+    const StepReport before_;
+    const int exceptions_ = std::uncaught_exceptions();
+  };
   void begin_stages(double dt);
   void end_stages();
   void begin_lists();

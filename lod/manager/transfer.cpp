@@ -71,31 +71,6 @@ bool overlaps_planes(std::span<const HalfSpace> planes, const Shape& shape, cons
   });
 }
 
-template <class Visit>
-void each_piece(const Shape& shape, const RigidState& state, const Visit& visit) {
-  if (shape.pieces.empty()) return visit(shape, state);
-  for (const Shape& piece : shape.pieces) {
-    RigidState at = state;
-    at.position += state.orientation * piece.center_of_mass_in_mesh;
-    visit(piece, at);
-  }
-}
-
-// m: of the hulls or, where these overlap by more than is allowed, of the convex pieces of those that have
-// some, so that one L may hook into another.
-double measure_overlap(const Shape& first, const RigidState& at_first, const Shape& second,
-                       const RigidState& at_second, double allowed) {
-  const double of_hulls = measure_hull_overlap(first, at_first, second, at_second);
-  if (of_hulls <= allowed || (first.pieces.empty() && second.pieces.empty())) return of_hulls;
-  double deepest = 0.0;
-  each_piece(first, at_first, [&](const Shape& a, const RigidState& at_a) {
-    each_piece(second, at_second, [&](const Shape& b, const RigidState& at_b) {
-      deepest = std::max(deepest, measure_hull_overlap(a, at_a, b, at_b));
-    });
-  });
-  return deepest;
-}
-
 // Whether it leans on others there, or may do so, and hardly moves.
 bool lies_among_others(const Levels& levels, std::uint32_t body, const RigidState& state) {
   const Activity does = levels.statistical->activity(levels.bodies[body].statistical);
@@ -122,7 +97,7 @@ bool overlaps_ground(const Levels& levels, const Shape& shape, const RigidState&
            RigidState at;
            at.position = solid.position;
            at.orientation = solid.orientation;
-           return measure_overlap(shape, state, *solid.solid->shape, at, allowed) > allowed;
+           return measure_pair_overlap(shape, state, *solid.solid->shape, at, allowed) > allowed;
          });
 }
 
@@ -179,7 +154,7 @@ bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uin
                  allowed = kOverlapAllowed * std::min(shape.radius, other_shape.radius);
     return other != body && std::ranges::find(but, other) == but.end() &&
            (there.position - state.position).squaredNorm() <= reach * reach &&
-           measure_overlap(shape, state, other_shape, there, allowed) > allowed;
+           measure_pair_overlap(shape, state, other_shape, there, allowed) > allowed;
   };
   std::vector<std::uint32_t> near;
   levels.find_near(body, 1.0, Level::full, near, false);
@@ -191,7 +166,7 @@ bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uin
   levels.callers.bodies.each_near(
       state.position, shape.radius, [&](const Shape& other, const RigidState& there) {
         const double allowed = kOverlapAllowed * std::min(shape.radius, other.radius);
-        meets_callers |= measure_overlap(shape, state, other, there, allowed) > allowed;
+        meets_callers |= measure_pair_overlap(shape, state, other, there, allowed) > allowed;
       });
   if (meets_callers) return true;
   const auto& newcomers = levels.bodies.newcomers();

@@ -1,6 +1,5 @@
 #include "lod/statistical/statistical_body.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -19,12 +18,10 @@ bool is_round(const Shape& shape, const Signature* signature) {
 BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature,
                         MaterialId material) {
   BodyKind kind;
-  const Eigen::SelfAdjointEigenSolver<Mat3> principal(shape->inverse_inertia_per_mass);
-  Mat3 axes = principal.eigenvectors();
-  if (axes.determinant() < 0.0) axes.col(0) = -axes.col(0);
-  kind.principal_axes = Quat(axes).normalized();
+  const PrincipalAxes principal = find_principal_axes(shape->inverse_inertia_per_mass);
+  kind.principal_axes = Quat(principal.axes).normalized();
   kind.along_principal_axes = std::abs(kind.principal_axes.w()) > 1.0 - 1e-15;
-  kind.inverse_moments = principal.eigenvalues();
+  kind.inverse_moments = principal.moments;
   kind.isotropic = kind.inverse_moments[2] - kind.inverse_moments[0] < 1e-9 * kind.inverse_moments[2];
   kind.round = is_round(*shape, signature.get());
   kind.shape = std::move(shape);

@@ -1,6 +1,5 @@
 #include "lod/tables/sphere_kinds.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -40,8 +39,7 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   ixy[k] = float(inverse(0, 1)), ixz[k] = float(inverse(0, 2)), iyz[k] = float(inverse(1, 2));
   jxx[k] = float(inertia(0, 0)), jyy[k] = float(inertia(1, 1)), jzz[k] = float(inertia(2, 2));
   jxy[k] = float(inertia(0, 1)), jxz[k] = float(inertia(0, 2)), jyz[k] = float(inertia(1, 2));
-  softest[k] =
-      float(Eigen::SelfAdjointEigenSolver<Mat3>(inverse, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
+  softest[k] = float(find_principal_moments(inverse).maxCoeff());
   const auto height_at = [&](int sample) {
     if (!kind.signature || kind.signature->collision_heights.mean.empty()) return 1.0;
     const double alpha = std::numbers::pi / 2 * std::min(sample, kHeightSamples - 1) / (kHeightSamples - 1);

@@ -18,17 +18,20 @@ namespace lodestone {
 /// that sleep.
 struct SphereStep {
   std::vector<float> reach;  // m
-  // The rows, as xyz; w. r: the sphere's radius.
-  std::vector<lane::Row> p;  // m/s, velocity with gravity and the impulses known so far; how many contacts it
-                             // has with other bodies, and with the ground that carries it among them
-  std::vector<lane::Row>
-      u;  // m/s, rω at the start, then with friction's part; 1 + r² over the softest inertia over mass: of
-          // its surface, what an impulse along it changes the velocity by, times the mass
-  std::vector<lane::Row>
-      a;  // m/s, what the contacts of this step add; what the ground gives it against what presses
-  std::vector<lane::Row> s;  // m²/s, what they add to the spin; J/kg, kinetic energy at the start
-  std::vector<lane::Row> d;  // m, how far they move it out of overlaps; how far the ground alone does
-  std::vector<float> gap;    // m, to its plane, where near
+  // The rows: a vector in xyz, a number in w. r is the sphere's radius, ω its angular velocity.
+  // p  xyz  m/s   velocity, with the step's gravity and the impulses known so far
+  //    w          how many contacts it has with other bodies, and with the ground that carries it among them
+  // u  xyz  m/s   rω at the start, then with what friction changed of it
+  //    w          1 + r² over the softest inertia over mass: what an impulse along its surface changes the
+  //               velocity there by, times the mass
+  // a  xyz  m/s   what the contacts of this step add to p
+  //    w    m/s   what the ground gives it against what presses
+  // s  xyz  m²/s  what the contacts add to the spin (angular momentum over mass)
+  //    w    J/kg  kinetic energy at the start
+  // d  xyz  m     how far contacts move it out of overlaps
+  //    w    m     how far the ground alone does
+  std::vector<lane::Row> p, u, a, s, d;
+  std::vector<float> gap;               // m, to its plane, where near
   std::vector<std::uint8_t> on_ground;  // GroundState
   std::vector<std::int32_t> plane;      // that carries it most, of those the nearest
   void resize(std::size_t count);

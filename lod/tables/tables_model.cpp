@@ -109,8 +109,8 @@ int find_pose_on_slope(const Quat& orientation, const BodyKind& kind, const Half
 
 // The rotation, as a vector in world axes, that takes the body into rest pose `pose` on `plane`.
 Vec3 rotation_to_rest(const StatisticalBody& body, const BodyKind& kind, int pose, const HalfSpace& plane) {
-  const Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(
-      body.orientation * kind.signature->rest_poses[pose].normal, plane.normal));
+  const Eigen::AngleAxisd turn(
+      rotation_between(body.orientation * kind.signature->rest_poses[pose].normal, plane.normal));
   return turn.angle() * turn.axis();
 }
 
@@ -251,7 +251,7 @@ bool holds_pose(const Quat& orientation, const BodyKind& kind, int pose, const H
              up = orientation.conjugate() * plane.normal;
   const Vec3 down =
       orientation.conjugate() * pressing_direction(plane, world.gravity, world.law(kind, plane).friction);
-  return kind.faces->holds(lying, Eigen::Quaterniond::FromTwoVectors(up, lying) * down);
+  return kind.faces->holds(lying, rotation_between(up, lying) * down);
 }
 
 RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane,

@@ -124,6 +124,16 @@ std::optional<HullOverlap> find_sphere_overlap(double radii, const Vec3& between
   return HullOverlap{radii - distance, distance > 0.0 ? Vec3(between / distance) : Vec3::UnitZ()};
 }
 
+template <class Visit>
+void each_piece(const Shape& shape, const RigidState& state, const Visit& visit) {
+  if (shape.pieces.empty()) return visit(shape, state);
+  for (const Shape& piece : shape.pieces) {
+    RigidState at = state;
+    at.position += state.orientation * piece.center_of_mass_in_mesh;
+    visit(piece, at);
+  }
+}
+
 }  // namespace
 
 std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidState& first_state,
@@ -158,6 +168,19 @@ double measure_hull_overlap(const Shape& first, const RigidState& first_state, c
                             const RigidState& second_state) {
   const auto overlap = find_hull_overlap(first, first_state, second, second_state);
   return overlap ? overlap->depth : 0.0;
+}
+
+double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
+                            const RigidState& second_state, double allowed) {
+  const double of_hulls = measure_hull_overlap(first, first_state, second, second_state);
+  if (of_hulls <= allowed || (first.pieces.empty() && second.pieces.empty())) return of_hulls;
+  double deepest = 0.0;
+  each_piece(first, first_state, [&](const Shape& a, const RigidState& at_a) {
+    each_piece(second, second_state, [&](const Shape& b, const RigidState& at_b) {
+      deepest = std::max(deepest, measure_hull_overlap(a, at_a, b, at_b));
+    });
+  });
+  return deepest;
 }
 
 double measure_plane_overlap(const Shape& shape, const RigidState& state, const Vec3& normal, double offset) {

@@ -27,6 +27,11 @@ std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidStat
 double measure_hull_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
                             const RigidState& second_state);
 
+/// The same, m, or where the hulls overlap by more than `allowed` and a shape has convex pieces
+/// (Shape::pieces), of those: one L may hook into another.
+double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
+                            const RigidState& second_state, double allowed = 0.0);
+
 /// How deep the lowest point of a shape lies in the half-space normal·x ≤ offset (m); negative where it is
 /// above.
 double measure_plane_overlap(const Shape& shape, const RigidState& state, const Vec3& normal, double offset);

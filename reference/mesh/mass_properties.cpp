@@ -1,7 +1,5 @@
 #include "reference/mesh/mass_properties.h"
 
-#include <Eigen/Eigenvalues>
-
 namespace lodestone {
 
 MassProperties measure_mass_properties(const Mesh& mesh) {
@@ -34,7 +32,7 @@ bool is_possible_inertia(const Mat3& inertia_per_mass) {
   const double scale = inertia_per_mass.cwiseAbs().maxCoeff();
   if ((inertia_per_mass - inertia_per_mass.transpose()).cwiseAbs().maxCoeff() > kTolerance * scale)
     return false;
-  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(inertia_per_mass).eigenvalues();  // ascending
+  const Vec3 moments = find_principal_axes(inertia_per_mass).moments;
   return moments[0] > 0.0 && moments[0] + moments[1] >= moments[2] * (1.0 - kTolerance);
 }
 

@@ -1,6 +1,5 @@
 #include "signature/measure/settling_trial.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -48,8 +47,7 @@ double unsteady_energy(const Shape& shape, const RigidState& s) {
 /// no orientation does that spin take less than L_z²/(2 I_max).
 double liftable_energy(const Shape& shape, const RigidState& s) {
   const double spin = spin_of(s.orientation, s.angular_velocity, shape).z();
-  const double greatest =
-      Eigen::SelfAdjointEigenSolver<Mat3>(shape.inertia_per_mass, Eigen::EigenvaluesOnly).eigenvalues().z();
+  const double greatest = find_principal_moments(shape.inertia_per_mass).z();
   return std::max(
       0.0, kinetic_energy(shape, s) - 0.5 * (s.velocity.head<2>().squaredNorm() + spin * spin / greatest));
 }

@@ -77,7 +77,7 @@ void set_rest_poses(std::span<const Vec3> normals, const Shape& shape, Signature
   std::vector<SettlingRecord> records;
   for (const Vec3& normal : normals) {
     RigidState state;
-    state.orientation = Quat(Eigen::Quaterniond::FromTwoVectors(normal, Vec3::UnitZ()));
+    state.orientation = rotation_between(normal, Vec3::UnitZ());
     records.push_back(
         {.rests = true, .normal = normal, .height = -gap_over_ground(shape, state), .states = {}});
   }

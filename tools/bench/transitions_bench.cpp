@@ -8,7 +8,6 @@
 #include "scenes/ground_heights.h"
 #include "scenes/run_measures.h"
 #include "tools/bench/rungs_bench.h"
-#include "tools/compare/pile_overlap.h"
 #include "tools/median.h"
 
 namespace lodestone {

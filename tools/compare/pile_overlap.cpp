@@ -2,35 +2,7 @@
 
 #include <algorithm>
 
-#include "reference/hull/hull_overlap.h"
-
 namespace lodestone {
-namespace {
-
-template <class Visit>
-void each_piece(const Shape& shape, const RigidState& state, const Visit& visit) {
-  if (shape.pieces.empty()) return visit(shape, state);
-  for (const Shape& piece : shape.pieces) {
-    RigidState at = state;
-    at.position += state.orientation * piece.center_of_mass_in_mesh;
-    visit(piece, at);
-  }
-}
-
-}  // namespace
-
-double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
-                            const RigidState& second_state) {
-  const double of_hulls = measure_hull_overlap(first, first_state, second, second_state);
-  if (of_hulls == 0.0 || (first.pieces.empty() && second.pieces.empty())) return of_hulls;
-  double depth = 0.0;
-  each_piece(first, first_state, [&](const Shape& a, const RigidState& at_a) {
-    each_piece(second, second_state, [&](const Shape& b, const RigidState& at_b) {
-      depth = std::max(depth, measure_hull_overlap(a, at_a, b, at_b));
-    });
-  });
-  return depth;
-}
 
 PileOverlap::PileOverlap(const Shape& shape, std::vector<HalfSpace> planes)
     : shape_(shape), planes_(std::move(planes)) {

@@ -7,15 +7,11 @@
 #include <vector>
 
 #include "lod/ground/ground.h"
+#include "reference/hull/hull_overlap.h"
 #include "reference/shape.h"
 #include "tools/compare/depth_grid.h"
 
 namespace lodestone {
-
-/// m, of two bodies' hulls, or of their convex pieces where a concave one has some (Shape::pieces); 0 where
-/// they are apart.
-double measure_pair_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
-                            const RigidState& second_state);
 
 class PileOverlap {
  public:

@@ -21,7 +21,4 @@ void save_csv(std::span<const HardCaseResult> results, const std::filesystem::pa
 /// check_failed where a figure fails that ODE is not to blame for.
 ExitCode exit_code_of(std::span<const HardCaseResult> results);
 
-/// `lodestone bench hard_cases`.
-void add_bench_hard_cases_command(CLI::App& bench, ExitCode& exit_code);
-
 }  // namespace lodestone

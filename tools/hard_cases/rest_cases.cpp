@@ -243,7 +243,7 @@ RigidState start_of(const Shape& shape, std::uint32_t trial) {
   RandomStream random(114, trial, 0);
   RigidState state;
   state.orientation = Quat(Eigen::AngleAxisd(random.uniform(0.0, 2.0 * std::numbers::pi), Vec3::UnitZ())) *
-                      Quat::FromTwoVectors(kDown[trial % 3], Vec3::UnitZ());
+                      rotation_between(kDown[trial % 3], Vec3::UnitZ());
   state.position.z() = resting_height(shape, state.orientation) + random.uniform(0.3, 0.8);
   return state;
 }

@@ -1,7 +1,6 @@
 // F5, F6, F11, F12, F18: one body or two against what mechanics predicts.
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,8 +30,7 @@ double speed_after(double friction, double azimuth_deg) {
   const Vec3 normal = turn * Vec3::UnitZ();
   world.add_plane(normal, 0.0, 0);
   // The box's own sides stay along x and y as far as the slope lets them.
-  const RigidState start{.position = 0.1 * normal,
-                         .orientation = Quat::FromTwoVectors(Vec3::UnitZ(), normal)};
+  const RigidState start{.position = 0.1 * normal, .orientation = rotation_between(Vec3::UnitZ(), normal)};
   const OdeBodyId box = world.add_body({.shape = box_of({0.4, 0.4, 0.2}), .state = start});
   for (int i = 0; i < int(std::lround(kSeconds / kStep)); ++i) world.step(kStep);
   return world.state(box).velocity.norm();
@@ -160,7 +158,7 @@ namespace slender_bodies {
 constexpr double kSeconds = 10.0, kDropHeight = 0.5;
 
 double largest_inertia_ratio(const Shape& shape) {
-  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(shape.inertia_per_mass).eigenvalues();
+  const Vec3 moments = find_principal_moments(shape.inertia_per_mass);
   return moments.maxCoeff() / moments.minCoeff();
 }
 

@@ -12,8 +12,6 @@
 #ifdef LODESTONE_BULLET
 #include <btBulletDynamicsCommon.h>
 
-#include <Eigen/Eigenvalues>
-
 namespace lodestone {
 namespace {
 
@@ -41,10 +39,8 @@ struct Principal {
 };
 
 Principal principal_of(const Shape& shape) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(shape.inertia_per_mass);
-  Mat3 axes = solver.eigenvectors();
-  if (axes.determinant() < 0.0) axes.col(0) = -axes.col(0);
-  return {Quat(axes), solver.eigenvalues()};
+  const PrincipalAxes found = find_principal_axes(shape.inertia_per_mass);
+  return {Quat(found.axes), found.moments};
 }
 
 /// Of one shape, shared by its bodies.

@@ -1,0 +1,448 @@
+// Of TablesLevel: its step but for rest, in loops over blocks of the dense arrays.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "lod/contact/hull_contacts.h"
+#include "lod/statistical/flight.h"
+#include "lod/tables/tables_level.h"
+
+namespace lodestone {
+namespace {
+
+constexpr std::int64_t kBlock = 1024;  // bodies of a job
+constexpr int kOrderInterval = 16;     // steps between looks at how far bodies have moved from their places
+
+// Calls visit(i) for the elements of [begin, end) that hold `mark`: mostly few or none.
+template <class Visit>
+void each_marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark, std::int64_t begin,
+                 std::int64_t end, const Visit& visit) {
+  const std::uint8_t *at = marks.data() + begin, *last = marks.data() + end;
+  while (at < last && (at = static_cast<const std::uint8_t*>(std::memchr(at, mark, std::size_t(last - at)))))
+    visit(at++ - marks.data());
+}
+
+}  // namespace
+
+template <class Task>
+void TablesLevel::each_block(const Task& task) const {
+  const std::int64_t count = spheres_.awake;
+  if (count == 0) return;
+  jobs_((count + kBlock - 1) / kBlock,
+        TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+}
+
+void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally) {
+  forget_all_given();
+  fell_asleep_.clear();
+  apply_pushes(dt, tally);
+  start(dt, order);
+}
+
+void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
+  for (const Push& push : pushes_) {
+    const std::int64_t place = spheres_.place_of_slot[std::size_t(push.slot)];
+    StatisticalBody body = spheres_.body(place);
+    const double impulse = dt * spheres_.inverse_mass[std::size_t(place)];
+    body.velocity += impulse * push.force;
+    body.spin += impulse * push.torque;
+    spheres_.put(place, body);
+    if (!is_within_limit(body.velocity) || !is_within_limit(body.spin)) recover(place, tally);
+  }
+  pushes_.clear();
+}
+
+void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
+  // Bodies near each other should lie near each other in memory, too.
+  if (steps_ % kOrderInterval == 0 && searched_ == spheres_.awake &&
+      searched_ == std::int64_t(order.size()) && !std::ranges::is_sorted(order)) {
+    step_.resize(std::size_t(spheres_.awake));
+    spheres_.reorder_awake(order, step_.s.data());  // the rows of the last step serve no more
+  }
+  searched_ = spheres_.awake;
+  const auto ticks = [](double time) { return std::int64_t(1000.0 * time); };
+  const int step_ticks = int(std::min<std::int64_t>(255, ticks(elapsed_ + dt) - ticks(elapsed_)));
+  elapsed_ += dt;
+  const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height &&
+                            settings_.tables.radius_update_interval <= 1;
+  const Vec3& g = settings_.gravity;
+  constants_ = {.time = float(dt),
+                .gx = float(g.x()),
+                .gy = float(g.y()),
+                .gz = float(g.z()),
+                .wide_time = dt,
+                .wide_gx = g.x(),
+                .wide_gy = g.y(),
+                .wide_gz = g.z(),
+                .gravity = float(g.norm()),
+                .resting_energy = float(tables_.resting_energy),
+                .update_radius = plain_radius,
+                .ticks = step_ticks,
+                .one_kind = all_kinds_.size() == 1 && one_mass_,
+                .hulls = !settings_.tables.as_published()};
+  step_.resize(std::size_t(spheres_.awake));
+  if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0)
+    update_radii_one_by_one();
+  planes_.clear(kinds_.size());
+  for (const HalfSpace& plane : ground_.planes()) planes_.add(plane, materials_, kinds_, settings_.gravity);
+  faces_.clear();
+  near_faces_.clear();
+  cornered_.clear();
+  carried_.clear();
+  find_near_faces(0, spheres_.awake);
+  each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
+}
+
+void TablesLevel::start_block(std::int64_t begin, std::int64_t end, Simd simd) {
+  start_step(spheres_, kinds_, constants_, simd, begin, end, step_, spheres_);
+  for (std::size_t p = 0; p < ground_.planes().size(); ++p)
+    find_near_ground(spheres_, kinds_, planes_, ground_.planes()[p], std::int32_t(p), constants_, simd, begin,
+                     end, step_);
+  const auto first = std::ranges::lower_bound(near_faces_, begin, {}, &NearFaces::place);
+  for (auto near = first; near != near_faces_.end() && near->place < end; ++near)
+    for (std::int32_t face = near->begin; face < near->end; ++face)
+      find_near_ground(spheres_, kinds_, planes_, faces_[std::size_t(face)],
+                       std::int32_t(ground_.planes().size()) + face, constants_, Simd::portable, near->place,
+                       near->place + 1, step_);
+}
+
+// Of the spheres at places [begin, end): what they are near of the ground's parts, as planes.
+void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
+  if (!ground_.has_parts()) return;
+  const double time = constants_.wide_time, fall = 0.5 * settings_.gravity.norm() * time * time;
+  thread_local std::vector<GroundNear> near;
+  for (std::int64_t i = begin; i < end; ++i) {
+    const double size = double(kinds_.radius[spheres_.kind[i]]),
+                 way = spheres_.velocity(i).norm() * time + fall;
+    const Vec3 center = spheres_.position(i);
+    near.clear();
+    find_ground_near(ground_, center, 1.01 * size + way, 0.0, near);
+    if (near.empty()) continue;
+    const auto first = std::int32_t(faces_.size());
+    for (const GroundNear& n : near) {
+      faces_.push_back(n.plane(center));
+      planes_.add(faces_.back(), materials_, kinds_, settings_.gravity);
+    }
+    near_faces_.push_back({i, first, std::int32_t(faces_.size())});
+    const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
+      return n.part->moves() && n.height < double(spheres_.radius[i]) + 0.01 * size + way;
+    });
+    if (mover != near.end())
+      carried_.push_back({i, mover->part->velocity_at(center), mover->part->pose.angular_velocity});
+    if (is_held_several_ways(near, ground_.planes(), center, double(spheres_.radius[i]) + 0.01 * size + way))
+      cornered_.push_back(spheres_.slot[i]);
+  }
+}
+
+std::span<const HalfSpace> TablesLevel::faces_of(std::int64_t place) const {
+  const auto near = std::ranges::lower_bound(near_faces_, place, {}, &NearFaces::place);
+  if (near == near_faces_.end() || near->place != place) return {};
+  return std::span(faces_).subspan(std::size_t(near->begin), std::size_t(near->end - near->begin));
+}
+
+void TablesLevel::update_radii_one_by_one() {
+  for (std::int64_t i = 0; i < spheres_.awake; ++i)
+    if (spheres_.motion[i] == Motion::dynamic && spheres_.since_crowded[i] > 0)
+      spheres_.radius[i] =
+          float(find_sphere_radius(spheres_.body(i), kind_of(i), settings_.tables, settings_.seed));
+}
+
+void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
+  const std::int64_t were_awake = spheres_.awake;
+  contacts_.find(spheres_, kinds_, cells, bounce_velocity(), constants_, simd_, jobs_, others);
+  find_still_contacts();
+  if (spheres_.awake > were_awake) {  // those that were woken start their step now
+    step_.resize(std::size_t(spheres_.awake));
+    find_near_faces(were_awake, spheres_.awake);
+    start_block(were_awake, spheres_.awake, simd_);
+  }
+  for (auto& touch : still_touches_) touch.second = spheres_.place_of_slot[touch.second];
+  if (!still_touches_.empty())
+    contacts_.add(spheres_, kinds_, still_touches_, bounce_velocity(), constants_, simd_);
+  find_further_planes();
+}
+
+// A body meets the plane that carries it as ground; in a corner it touches more, and is held by each.
+void TablesLevel::find_further_planes() {
+  const std::span<const HalfSpace> everywhere = ground_.planes();
+  plane_touches_.clear();
+  if (everywhere.size() + faces_.size() < 2) return;
+  const auto look = [&](std::int64_t i, std::uint32_t number) {
+    if (std::int32_t(number) == step_.plane[std::size_t(i)]) return;
+    const HalfSpace& other = plane(std::int32_t(number));
+    const float gap = float(other.height_of(spheres_.position(i))) - ground_height(i, -other.normal),
+                closing = float(spheres_.velocity(i).dot(other.normal));
+    const BodyKind& kind = kind_of(i);
+    if (gap + closing * constants_.time > contacts_.settings().touching * float(kind.shape->radius)) return;
+    const Vec3& n = other.normal;
+    plane_touches_.push_back({.place = std::uint32_t(i),
+                              .plane = number,
+                              .normal = {float(n.x()), float(n.y()), float(n.z())},
+                              .gap = gap,
+                              .closing = closing,
+                              .law = materials_.law(kind.material, other.material)});
+  };
+  auto near = near_faces_.begin();
+  each_marked(step_.on_ground, std::uint8_t(GroundState::near), 0, spheres_.awake, [&](std::int64_t i) {
+    for (std::uint32_t number = 0; number < everywhere.size(); ++number) look(i, number);
+    while (near != near_faces_.end() && near->place < i) ++near;
+    if (near == near_faces_.end() || near->place != i) return;
+    for (std::int32_t face = near->begin; face < near->end; ++face)
+      look(i, std::uint32_t(everywhere.size()) + std::uint32_t(face));
+  });
+  if (!plane_touches_.empty()) contacts_.add_ground(spheres_, plane_touches_, bounce_velocity(), constants_);
+}
+
+/// m, from the centre of mass: what stands for the body towards the ground, and towards others.
+float TablesLevel::ground_height(std::int64_t place, const Vec3& direction) const {
+  return constants_.hulls ? read_heights(kinds_.hull_height, place, direction)
+                          : spheres_.radius[std::size_t(place)];
+}
+
+float TablesLevel::pair_reach(std::int64_t place, const Vec3& direction) const {
+  return constants_.hulls ? read_heights(kinds_.pair_reach, place, direction)
+                          : spheres_.radius[std::size_t(place)];
+}
+
+float TablesLevel::read_heights(const std::vector<float>& heights, std::int64_t place,
+                                const Vec3& direction) const {
+  const Vec3 own = spheres_.orientation(place).conjugate() * direction;
+  return read_hull_height(heights.data(), int(spheres_.kind[std::size_t(place)]) * kHullHeights,
+                          {float(own.x()), float(own.y()), float(own.z())});
+}
+
+// Of awake bodies with sleepers; those that are hit hard enough wake.
+void TablesLevel::find_still_contacts() {
+  still_touches_.clear();
+  if (still().empty()) return;
+  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
+    const Vec3 position = spheres_.position(i);
+    still().find_near(position, double(step_.reach[i]), [&](std::uint32_t other) {
+      const std::int64_t at = spheres_.place_of_slot[other];
+      const double limit =
+          double(step_.reach[i]) +
+          1.01 * double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[at]] : spheres_.radius[at]);
+      if ((spheres_.position(at) - position).squaredNorm() < limit * limit)
+        still_touches_.emplace_back(std::uint32_t(i), other);
+    });
+  }
+  if (settings_.pair_filter)
+    std::erase_if(still_touches_, [&](const auto& touch) {
+      return !settings_.pair_filter(spheres_.owner[touch.first],
+                                    spheres_.owner[spheres_.place_of_slot[touch.second]]);
+    });
+  std::ranges::sort(still_touches_);
+  for (const auto& [place, slot] : still_touches_) {
+    const std::int64_t at = spheres_.place_of_slot[slot];
+    if (at < spheres_.awake) continue;
+    const Vec3 between = spheres_.position(place) - spheres_.position(at);
+    const double gap = between.norm() - double(pair_reach(place, -between)) - double(pair_reach(at, between));
+    const Vec3 velocity = spheres_.velocity(place);
+    const double closing = velocity.dot(between.normalized());
+    const bool touches = gap + closing * double(constants_.time) <=
+                         0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
+    if (touches && velocity.norm() > rest_law_.wake_speed(kind_of(at).shape->radius)) wake(int(slot));
+  }
+}
+
+void TablesLevel::respond(ContactTally& tally) {
+  tally.contacts += contacts_.count();
+  if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
+  const bool crowd = contacts_.count() > 0;
+  if (crowd) contacts_.begin(spheres_, kinds_, materials_, constants_, step_, jobs_);
+  sort_ground();
+  if (!crowd) return;
+  for (int sweep = 1; sweep <= sweeps(); ++sweep) {
+    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps(),
+                    eased_ > 0, simd_, step_, jobs_);
+    if (sweep < sweeps())
+      each_block([&](std::int64_t begin, std::int64_t end) {
+        if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
+        take_impulses(simd_, begin, end, step_);
+      });
+  }
+  if (log_) write_contacts();
+}
+
+void TablesLevel::write_contacts() {
+  contacts_.each([&](const SphereContact& c) {
+    if (c.impulse <= 0.0f) return;
+    const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
+    if (c.second >= kGroundPlace) {
+      const HalfSpace& under = plane(std::int32_t(c.second - kGroundPlace));
+      return log_->add(
+          {.first = spheres_.owner[c.first],
+           .ground = under.id,
+           .ground_material = under.material,
+           .point = spheres_.position(c.first) - double(ground_height(c.first, -normal)) * normal,
+           .normal = normal,
+           .impulse = double(c.impulse),
+           .approach = std::max(0.0, -double(c.closing))});
+    }
+    log_->add({.first = spheres_.owner[c.first],
+               .second = spheres_.owner[c.second],
+               .point = spheres_.position(c.first) - double(pair_reach(c.first, -normal)) * normal,
+               .normal = normal,
+               .impulse = double(c.impulse),
+               .approach = std::max(0.0, -double(c.closing))});
+  });
+}
+
+// Of those that lie on it; impacts are written where they are answered.
+void TablesLevel::write_ground() {
+  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
+    const std::uint8_t state = step_.on_ground[std::size_t(i)];
+    if (state != std::uint8_t(GroundState::lies) && state != std::uint8_t(GroundState::settles)) continue;
+    const HalfSpace& under = plane(step_.plane[std::size_t(i)]);
+    const double pressing =
+        std::max(0.0, -settings_.gravity.dot(under.normal)) * constants_.wide_time;  // m/s
+    log_->add({.first = spheres_.owner[std::size_t(i)],
+               .ground = under.id,
+               .ground_material = under.material,
+               .point = spheres_.position(i) - double(spheres_.radius[std::size_t(i)]) * under.normal,
+               .normal = under.normal,
+               .impulse = std::max(pressing, double(spheres_.held[std::size_t(i)])) /
+                          spheres_.inverse_mass[std::size_t(i)]});
+  }
+}
+
+// The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves
+// as if alone.
+void TablesLevel::respond_as_paper(ContactTally& tally) {
+  const auto take = [&](std::int64_t place, const StatisticalBody& body) {
+    spheres_.put(place, body);
+    start_block(place, place + 1, Simd::portable);
+  };
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second >= std::uint32_t(spheres_.awake)) return;
+    StatisticalBody first = spheres_.body(c.first), second = spheres_.body(c.second);
+    const BodyKind &first_kind = kind_of(c.first), &second_kind = kind_of(c.second);
+    respond_pair_as_paper(first, first_kind, second, second_kind,
+                          Vec3(double(c.nx), double(c.ny), double(c.nz)), world(),
+                          materials_.law(first_kind.material, second_kind.material), settings_.tables, tally);
+    take(c.first, first);
+    take(c.second, second);
+  });
+  contacts_.clear();
+}
+
+void TablesLevel::sort_ground() {
+  end_clips_of_touched();
+  each_block([&](std::int64_t begin, std::int64_t end) {
+    if (constants_.hulls) choose_hulls(begin, end);
+    if (!has_planes()) return clear_added(begin, end, step_);
+    sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
+    each_marked(step_.on_ground, std::uint8_t(GroundState::settles), begin, end,
+                [&](std::int64_t i) { choose_rest_pose(i); });
+    for (auto carried = std::ranges::lower_bound(carried_, begin, {}, &Carried::place);
+         carried != carried_.end() && carried->place < end; ++carried)
+      if (step_.on_ground[std::size_t(carried->place)] != std::uint8_t(GroundState::stands))
+        step_.on_ground[std::size_t(carried->place)] =
+            std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
+  });
+}
+
+// The rest pose that needs the smallest rotation (3.4), unless it has one that holds it.
+void TablesLevel::choose_rest_pose(std::int64_t i) {
+  const Quat orientation = spheres_.orientation(i);
+  const BodyKind& kind = kind_of(i);
+  const HalfSpace& under = plane(step_.plane[i]);
+  if (spheres_.motion[i] == Motion::settling &&
+      holds_pose(orientation, kind, spheres_.pose[i], under, world()))
+    return;
+  const RestingRecord resting = find_resting(orientation, kind, under, world(), settings_.tables);
+  spheres_.motion[i] = resting.pose < 0 ? Motion::dynamic : Motion::settling;
+  if (resting.pose >= 0) spheres_.pose[i] = std::int16_t(resting.pose);
+}
+
+// Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts,
+// motion.
+void TablesLevel::finish(ContactTally& tally) {
+  const bool ground = has_planes();
+  tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
+  joined_.resize(std::max(joined_.size(), tallies_.size()));
+  each_block([&](std::int64_t begin, std::int64_t end) {
+    ContactTally& own = tallies_[std::size_t(begin / kBlock)];
+    std::vector<PlayingClip>& joined = joined_[std::size_t(begin / kBlock)];
+    if (ground) {
+      sweep_ground(planes_, constants_, simd_, begin, end, step_);
+      lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
+      each_marked(step_.on_ground, std::uint8_t(GroundState::near), begin, end,
+                  [&](std::int64_t i) { move_alone(i, own, joined); });
+      if (constants_.hulls)
+        each_marked(step_.on_ground, std::uint8_t(GroundState::stands), begin, end,
+                    [&](std::int64_t i) { move_alone(i, own, joined); });
+    }
+    end_block(begin, end);
+    each_marked(step_.on_ground, std::uint8_t(GroundState::unsound), begin, end,
+                [&](std::int64_t i) { recover(i, own); });
+  });
+  for (const ContactTally& t : tallies_) tally += t;
+  update_clips();
+  if (log_ && ground) write_ground();
+}
+
+// The orientations of slender bodies, and of those that turn far in a step, follow by splitting, one by one.
+void TablesLevel::end_block(std::int64_t begin, std::int64_t end) {
+  constexpr float kFar = 0.7f;  // rad: so far the loop's rule keeps the energy
+  thread_local std::vector<std::pair<std::int64_t, Quat>> before;
+  before.clear();
+  const bool slender = kinds_.any_slender();
+  const float rate = kFar / constants_.time;  // rad/s
+  for (std::int64_t i = begin; i < end; ++i) {
+    const lane::Row& turning = step_.u[std::size_t(i)];  // m/s, at the radius
+    const float most = rate * spheres_.radius[std::size_t(i)];
+    const bool far = turning.x * turning.x + turning.y * turning.y + turning.z * turning.z > most * most;
+    if ((far || (slender && SphereKinds::is_slender(kind_of(i)))) &&
+        step_.on_ground[std::size_t(i)] != std::uint8_t(GroundState::moved))
+      before.emplace_back(i, spheres_.orientation(i));
+  }
+  end_step(spheres_, kinds_, constants_, simd_, begin, end, step_);
+  for (const auto& [i, orientation] : before)
+    spheres_.set_orientation(i, advance_orientation(orientation, spheres_.spin(i), kind_of(i),
+                                                    constants_.wide_time, spheres_.twice_energy[i])
+                                    .normalized());
+}
+
+// A body that meets the ground by itself, after the impulses of its contacts with others.
+void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<PlayingClip>& joined) {
+  if (lies_at_clips_end(i)) {
+    step_.on_ground[i] = std::uint8_t(GroundState::moved);
+    return;
+  }
+  const float t = constants_.time;
+  StatisticalBody body = spheres_.body(i);
+  body.velocity = step_.touches(i)
+                      ? step_.velocity(i, {constants_.gx * t, constants_.gy * t, constants_.gz * t, 0.0f})
+                      : spheres_.velocity(i);
+  body.spin += step_.added_spin(i);
+  body.position += step_.push_out(i);
+  RestingRecord resting{spheres_.pose[i]};
+  StepWorld around = world();
+  around.planes = join_planes(ground_.planes(), faces_of(i));
+  const auto carried = std::ranges::lower_bound(carried_, i, {}, &Carried::place);
+  const bool rides = carried != carried_.end() && carried->place == i;
+  if (rides) body.velocity -= carried->velocity;
+  if (step_.on_ground[i] == std::uint8_t(GroundState::stands) && is_over_level_ground(body, around)) {
+    tally += move_over_ground(i, body, around, rides, joined);
+  } else {
+    become_sphere(i, body);
+    if (step_.touches(i) || spheres_.since_crowded[i] < kLeaningTicks)
+      body.sphere_radius = ground_height(i, -plane(step_.plane[i]).normal);
+    tally += step_tables_body(body, resting, kind_of(i), around, constants_.wide_time, tables_);
+  }
+  if (rides) {
+    body.velocity += carried->velocity;
+    body.position += carried->velocity * constants_.wide_time;
+    body.orientation =
+        (rotation_from_vector(carried->angular_velocity * constants_.wide_time) * body.orientation)
+            .normalized();
+  }
+  spheres_.pose[i] = std::int16_t(resting.pose);
+  spheres_.put(i, body);
+  spheres_.held[i] = 0.0f;
+  step_.on_ground[i] = std::uint8_t(GroundState::moved);
+}
+
+}  // namespace lodestone
