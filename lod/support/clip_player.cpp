@@ -66,7 +66,7 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
   const ClipState pose = find_clip_state(*kind.signature, kind.signature->clips[p.clip], p.frame);
   // The yaw frame: of all turns about the ground's normal the one that brings the clip's pose nearest to the
   // body's. What it leaves between them is a tilt, residual_rotation.
-  const Quat upright = Quat::FromTwoVectors(Vec3::UnitZ(), ground.normal);
+  const Quat upright = rotation_between(Vec3::UnitZ(), ground.normal);
   p.yaw = twist_about(body.orientation * (upright * pose.orientation).conjugate(), ground.normal) * upright;
   const Vec3 above_origin = p.yaw * (pose.position * radius);
   p.origin = body.position - above_origin;
