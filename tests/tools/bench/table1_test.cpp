@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "reference/error.h"
+#include "tests/temporary_folder.h"
 #include "tests/tools/cli_fixture.h"
 #include "tools/bench/table1_report.h"
 #include "tools/results.h"
@@ -107,11 +108,10 @@ TEST(Table1Report, CsvHasACellForEachKeyOfTheJson) {
                                         .step_ms = 0.5,
                                         .awake = {3, 2, 1},
                                         .state_hash = 255}};
-  const auto file =
-      std::filesystem::temp_directory_path() / ("table1-" + std::to_string(::getpid()) + ".csv");
+  const testing::TemporaryFolder folder;
+  const auto file = folder.at("table1.csv");
   save_csv(json_of(rows)["rows"], json_of(Table1Row{}), file);
   std::istringstream lines(testing::bytes_of(file));
-  std::filesystem::remove(file);
   const auto json = json_of(rows);
   for (std::string line; std::getline(lines, line);)
     EXPECT_EQ(std::size_t(std::ranges::count(line, ',')) + 1, json["rows"][0].size()) << line;
