@@ -9,10 +9,10 @@
 namespace lodestone {
 namespace {
 
-struct Balls {
+struct BoundedBalls {
   std::vector<double> x, y, z;
   std::vector<float> reach;
-  explicit Balls(int count) {
+  explicit BoundedBalls(int count) {
     RandomStream random(15, std::uint64_t(count), 0);
     for (int i = 0; i < count; ++i) {
       for (auto* axis : {&x, &y, &z}) axis->push_back(random.uniform(-100, 100));
@@ -41,7 +41,7 @@ constexpr std::pair<int, int> kRanges[] = {{0, 0},  {0, 1},  {3, 3},   {0, 15},
                                            {0, 16}, {5, 38}, {0, 100}, {84, 100}};
 
 TEST(BallBounds, AreThoseOfALookAtEachBall) {
-  const Balls balls(100);
+  const BoundedBalls balls(100);
   for (const Simd simd : widths())
     for (const auto& [begin, end] : kRanges) {
       BallBounds expected;
@@ -61,7 +61,7 @@ TEST(BallBounds, AreThoseOfALookAtEachBall) {
 
 // Joined they are those of all, wherever they were parted.
 TEST(BallBounds, PartsAddUp) {
-  const Balls balls(100);
+  const BoundedBalls balls(100);
   const BallBounds all = find_ball_bounds(balls.span(), Simd::portable, 0, 100);
   for (const int cut : {0, 1, 16, 50, 99, 100}) {
     BallBounds sum = find_ball_bounds(balls.span(), Simd::portable, cut, 100);
@@ -72,7 +72,7 @@ TEST(BallBounds, PartsAddUp) {
 
 // Of those of some reaches alone; who they are is marked, and nobody else is touched.
 TEST(BallBounds, OfAReachAreMarked) {
-  const Balls balls(100);
+  const BoundedBalls balls(100);
   for (const Simd simd : widths())
     for (const auto& [begin, end] : kRanges) {
       std::vector<std::uint8_t> marks(100, 77);
@@ -90,7 +90,7 @@ TEST(BallBounds, OfAReachAreMarked) {
 }
 
 TEST(BallBounds, BothEndsOfAReachCount) {
-  Balls balls(20);
+  BoundedBalls balls(20);
   std::fill(balls.reach.begin(), balls.reach.end(), 2.0f);
   std::vector<std::uint8_t> marks(20);
   EXPECT_EQ(find_bounds_within(balls.span(), 2.0f, 2.0f, 1, marks.data(), find_simd(), 0, 20).count, 20);

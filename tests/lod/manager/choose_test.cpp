@@ -24,7 +24,7 @@ Manager grid_in_space(const PolicySettings& policy, int side, std::vector<BodyId
   Manager manager(settings);
   const auto box = box_shape({0.2, 0.2, 0.2});
   for (int x = 0; x < side; ++x)
-    for (int y = 0; y < side; ++y) bodies.push_back(add(manager, box, at({1.0 * x, 1.0 * y, 0})));
+    for (int y = 0; y < side; ++y) bodies.push_back(add(manager, box, testing::at({1.0 * x, 1.0 * y, 0})));
   return manager;
 }
 
@@ -190,9 +190,9 @@ TEST(Choose, LooksAheadToAHit) {
     settings.gravity = Vec3::Zero();
     Manager manager(settings);
     const auto box = box_shape({0.3, 0.3, 0.3});
-    add(manager, box, at({0, 0, 0}));
-    const BodyId shot = add(manager, box, at({-8, 0, 0}, {10, 0, 0})),
-                 miss = add(manager, box, at({-8, 3, 0}, {10, 0, 0}));
+    add(manager, box, testing::at({0, 0, 0}));
+    const BodyId shot = add(manager, box, testing::at({-8, 0, 0}, {10, 0, 0})),
+                 miss = add(manager, box, testing::at({-8, 3, 0}, {10, 0, 0}));
     view_from(manager, {0, 0, 1});
     double full_at = 1e9;
     for (int i = 0; i < 60 && full_at == 1e9; ++i) {

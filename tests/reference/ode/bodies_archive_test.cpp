@@ -71,6 +71,34 @@ TEST(BodiesArchive, AReaderGoesOnAsTheWriter) {
     }
 }
 
+// Another world's ids are the same though its bodies are of other shapes, masses or materials: they are made
+// anew, not kept.
+TEST(BodiesArchive, BodiesOfTheSameIdsThatAreOthersAreNotKept) {
+  for (int differs = 0; differs < 4; ++differs) {
+    ArchivedScene writer, reader;
+    for (ArchivedScene* scene : {&writer, &reader}) {
+      const bool other = scene == &reader;
+      scene->materials.add({.restitution = 0.9, .friction = 0.0});
+      OdeBodyDefinition definition{
+          .shape = ArchivedScene::box, .mass = 2.0, .state = at({0, 0, 0.6}, {1, 0, 0})};
+      if (other && differs == 0) definition.shape = ArchivedScene::ball;
+      if (other && differs == 1) definition.mass = 9.0;
+      if (other && differs == 2) definition.material = 1;
+      if (other && differs == 3) definition.geometry = OdeGeometry::sphere;
+      scene->bodies.push_back(scene->world.add_body(definition));
+      scene->bodies.push_back(
+          scene->world.add_body({.shape = ArchivedScene::box, .mass = 1.0, .state = at({0, 0, 0.2})}));
+    }
+    ASSERT_EQ(writer.bodies[0], reader.bodies[0]);
+    StateArchive out;
+    writer.world.archive(out);
+    StateArchive in(out.bytes(), out.shapes());
+    reader.world.archive(in);
+    writer.run(60), reader.run(60);
+    expect_same(writer, reader);
+  }
+}
+
 TEST(BodiesArchive, WritingChangesNothing) {
   ArchivedScene one, other;
   one.fill(), other.fill();
