@@ -71,7 +71,7 @@ TEST(Table1, RowsThatWouldTakeTooLongAreLeftOut) {
 // Not in bytes, nor a thousand times too much: no bound of speed, which is the machine's.
 TEST(Bandwidth, OfACacheIsInGigabytesASecond) {
   const double found = measure_bandwidth(1 << 18, 1);
-  EXPECT_GT(found, 0.1);
+  EXPECT_GT(found, 1.0);  // a level 2 cache has ten times as much
   EXPECT_LT(found, 1e4);
   EXPECT_GT(level3_bytes(), level2_bytes());
 }
