@@ -88,7 +88,8 @@ TEST_F(TrialsFile, WhatIsWrongIsSaidWithLineAndColumn) {
 
 TEST_F(TrialsFile, AnotherHeadingIsRefused) {
   const std::string message = testing::message_of([&] { load("a,b,c\n1,2,3\n"); });
-  EXPECT_NE(message.find("t.csv:1: found 'a,b,c', expected the heading 'kind,"), std::string::npos) << message;
+  EXPECT_NE(message.find("t.csv:1: found 'a,b,c', expected the heading 'kind,"), std::string::npos)
+      << message;
 }
 
 }  // namespace

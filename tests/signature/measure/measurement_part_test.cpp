@@ -103,7 +103,8 @@ TEST_F(Parts, DamageAtAnyByteIsRefused) {
 }
 
 TEST_F(Parts, EachIsToBeThereOnce) {
-  EXPECT_EQ(fault({files_[0], files_[2]}), "merge: found no part 2/3 among 2 files, expected all of 1/3 to 3/3");
+  EXPECT_EQ(fault({files_[0], files_[2]}),
+            "merge: found no part 2/3 among 2 files, expected all of 1/3 to 3/3");
   EXPECT_EQ(fault({files_[0], files_[1], files_[2], files_[1]}),
             files_[1].string() + ": found part 2 of 3 again, expected each part once (" + files_[1].string() +
                 " is it, too)");
