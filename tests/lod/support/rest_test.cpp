@@ -25,6 +25,18 @@ TEST(SupportRest, ALoneBodyThatLiesSleepsAfterFiveTimesTheThreshold) {
   }
 }
 
+// Woken it takes its time again, though it never moved.
+TEST(SupportRest, WokenItTakesItsTimeAgain) {
+  Manager manager = on_floor();
+  const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}), testing::at({0, 0, 0.1}));
+  time_to_rest(manager, body);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(manager.asleep(body));
+    manager.wake(body);
+    EXPECT_NEAR(time_to_rest(manager, body), 0.5, 2.5 * kFrame);
+  }
+}
+
 TEST(SupportRest, ScalesWithTheRootOfItsSize) {
   double drop[2];
   for (const int large : {0, 1}) {

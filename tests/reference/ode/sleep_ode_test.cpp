@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <ode/ode.h>
 
 #include "reference/ode/ode_world.h"
 #include "tests/reference/ode/ode_fixture.h"
@@ -73,6 +74,18 @@ TEST(OdeSleep, LawMayChangeOnTheWay) {
   bed.world.set_asleep(box, true);
   bed.world.set_asleep(box, false);  // its time begins anew
   EXPECT_LT(bed.time_to_sleep(box), 0.3);
+}
+
+// Whoever wakes it, through ODE itself too: its time begins anew.
+TEST(OdeSleep, WokenItTakesItsTimeAgain) {
+  Bed bed({.time = 0.5});
+  const OdeBodyId box = bed.world.add_body({.shape = box_shape({0.2, 0.2, 0.2}), .state = at({0, 0, 0.1})});
+  bed.time_to_sleep(box);
+  ASSERT_TRUE(bed.world.asleep(box));
+  dBodyEnable(bed.world.ode_body(box));
+  EXPECT_NEAR(bed.time_to_sleep(box), 0.5, 0.05);
+  bed.world.set_asleep(box, false);
+  EXPECT_NEAR(bed.time_to_sleep(box), 0.5, 0.05);
 }
 
 // At rest it is at rest: no speed is left that a wake would bring back.
