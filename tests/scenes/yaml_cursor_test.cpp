@@ -46,7 +46,8 @@ TEST(YamlCursor, WholeNumbersAreWhole) {
   EXPECT_EQ(yaml.root().at("c").integer(-1, 7), -1);
   for (const auto& [key, low, high] :
        {std::tuple{"a", 0, 6}, {"b", 0, 9}, {"c", 0, 9}, {"e", 0, 9}, {"f", 0, 9}})
-    EXPECT_NE(yaml.fault([&](YamlCursor c) { c.at(key).integer(low, high); }), testing::kNothingThrown)
+    EXPECT_NE(yaml.fault([key = key, low = low, high = high](YamlCursor c) { c.at(key).integer(low, high); }),
+              testing::kNothingThrown)
         << key;
 }
 

@@ -67,7 +67,7 @@ TEST(Choose, ImportanceScalesTheDistance) {
 TEST(Choose, SignificanceIsCutToItsRangeAndScalesAlike) {
   for (const auto& [value, expected] : {std::pair(0.5, 0.5), {7.0, 1.0}, {1.0, 1.0}}) {
     PolicySettings policy = at_once(DistancePolicy{4.0});
-    policy.significance = [value](BodyId) { return value; };
+    policy.significance = [value = value](BodyId) { return value; };
     std::vector<BodyId> bodies;
     Manager manager = grid_in_space(policy, 7, bodies);
     view_from(manager, {0, 0, 0});

@@ -46,7 +46,9 @@ TEST(MakeSignature, ClipsLieOneAfterTheOther) {
 
 // Decoded, a clip is the record that it was made of, to 16 bits: moved to begin at the origin, over R.
 TEST(MakeSignature, FramesAreTheStatesOfARecord) {
-  const auto& [shape, records, signature] = recorded();
+  const std::shared_ptr<const Shape>& shape = recorded().shape;
+  const std::vector<SettlingRecord>& records = recorded().records;
+  const Signature& signature = recorded().signature;
   for (const SettlingClip& clip : signature.clips) {
     const auto record = std::ranges::find_if(records, [&](const SettlingRecord& r) {
       if (r.states.size() != clip.frames) return false;
@@ -69,7 +71,8 @@ TEST(MakeSignature, FramesAreTheStatesOfARecord) {
 
 // Where a body may join a clip it touches the ground and has little energy.
 TEST(MakeSignature, EntriesAreSlowContacts) {
-  const auto& [shape, records, signature] = recorded();
+  const std::shared_ptr<const Shape>& shape = recorded().shape;
+  const Signature& signature = recorded().signature;
   ASSERT_FALSE(signature.clip_entries.empty());
   for (std::size_t i = 0; i < signature.clip_entries.size(); ++i) {
     const ClipEntry entry = signature.clip_entries[i];
@@ -101,7 +104,9 @@ TEST(MakeSignature, NoClipsWhereNoneAreAskedFor) {
 
 // Of the trials that came to rest each is in one pose, at the height that the hull has there.
 TEST(MakeSignature, RestPosesAreThoseOfTheTrials) {
-  const auto& [shape, records, signature] = recorded();
+  const std::shared_ptr<const Shape>& shape = recorded().shape;
+  const std::vector<SettlingRecord>& records = recorded().records;
+  const Signature& signature = recorded().signature;
   double sum = 0.0;
   for (const RestPose& pose : signature.rest_poses) {
     sum += pose.frequency;
