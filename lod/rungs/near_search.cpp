@@ -211,6 +211,7 @@ void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<cons
       add_pair(ball_pairs_.first(i), ball_pairs_.second(i), tables);
   }
   find_still_pairs(support, neighbors, &tables);
+  find_woken_pairs(tables);
   filter_pairs([&](Participant p) {
     if (p.is_full()) return neighbors[p.index()].owner;
     return p.index() < own_bodies_ ? support.body(int(p.index())).owner
@@ -252,12 +253,29 @@ void NearSearch::find_still_pairs(const SupportLevel& support, std::span<const F
   }
 }
 
+// Of hulls with spheres that other spheres have just woken: these are in no cell of this step, and sleep no
+// more.
+void NearSearch::find_woken_pairs(const TablesLevel& tables) {
+  const Spheres& s = tables.spheres();
+  still_near_.clear();
+  for (std::size_t i = spheres_; i < std::size_t(s.awake); ++i) still_near_.push_back(s.slot[i]);
+  std::ranges::sort(still_near_);
+  for (const std::int32_t slot : still_near_)
+    for (std::size_t ball = spheres_; ball < x_.size(); ++ball) {
+      const double limit = double(reach_[ball]) + kBall * tables.radius(slot);
+      if ((tables.position(slot) - Vec3(x_[ball], y_[ball], z_[ball])).squaredNorm() >= limit * limit)
+        continue;
+      const Participant hull = participant(std::uint32_t(ball), tables);
+      pairs_.emplace_back(guest(slot), hull);
+    }
+}
+
 void NearSearch::find_still_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables) {
   const StillGrid& still = sleepers_.of(StatisticalModel::support);
   if (still.empty()) return;
   const std::span<const StatisticalBody> bodies = support.bodies();
   const Spheres& s = tables.spheres();
-  for (std::size_t i = 0; i < spheres_; ++i) {
+  for (std::size_t i = 0; i < std::size_t(s.awake); ++i) {  // with those that others have just woken
     const Vec3 center = s.position(std::int64_t(i));
     const double own_reach =
         double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));

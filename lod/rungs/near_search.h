@@ -84,6 +84,7 @@ class NearSearch {
   void forget_guests();
   void find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors,
                         const TablesLevel* tables);
+  void find_woken_pairs(const TablesLevel& tables);
   void find_still_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables);
 
   Vec3 gravity_;

@@ -72,8 +72,19 @@ void set_motion(Body& body, const Motion& motion) {
   motion.awake ? dBodyEnable(body.body) : dBodyDisable(body.body);
 }
 
+// In another world, or another future of this one, the same id may be that of quite another body.
+bool is_made_alike(const Making& a, const Making& b) {
+  const auto same_sphere = [](const Sphere& one, const Sphere& other) {
+    return one.center == other.center && one.radius == other.radius;
+  };
+  return a.shape->content_hash == b.shape->content_hash && a.shape->radius == b.shape->radius &&
+         a.mass == b.mass && a.material == b.material && a.geometry == b.geometry &&
+         std::ranges::equal(a.spheres, b.spheres, same_sphere);
+}
+
 bool is_same(const Body& body, const Slot& slot) {
-  return bool(body.body) == slot.taken && (!slot.taken || (body.id == slot.id && body.birth == slot.birth));
+  return bool(body.body) == slot.taken && (!slot.taken || (body.id == slot.id && body.birth == slot.birth &&
+                                                           is_made_alike(making_of(body), slot.making)));
 }
 
 }  // namespace

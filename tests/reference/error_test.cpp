@@ -2,17 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/message_of.h"
+
 namespace lodestone {
 namespace {
 
 TEST(Errors, AMessageSaysWhereWhatWasFoundAndWhatIsExpected) {
-  try {
-    throw_input_error("scene.yaml:3: mass", "-1 kg", "more than 0");
-  } catch (const InputError& fault) {
-    EXPECT_STREQ(fault.what(), "scene.yaml:3: mass: found -1 kg, expected more than 0");
-    return;
-  }
-  FAIL();
+  EXPECT_EQ(testing::message_of([] { throw_input_error("scene.yaml:3: mass", "-1 kg", "more than 0"); }),
+            "scene.yaml:3: mass: found -1 kg, expected more than 0");
 }
 
 struct Bug {

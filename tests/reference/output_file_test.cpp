@@ -7,10 +7,9 @@
 
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
-#include "reference/error.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -19,21 +18,8 @@ namespace fs = std::filesystem;
 
 class OutputFileTest : public ::testing::Test {
  protected:
-  OutputFileTest() { fs::create_directories(folder_); }
-  ~OutputFileTest() override { fs::remove_all(folder_); }
-  static std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  static std::string error_of(const auto& act) {
-    try {
-      act();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-  const fs::path folder_ = fs::temp_directory_path() / ("lodestone-output-" + std::to_string(::getpid()));
+  const testing::TemporaryFolder own_;
+  const fs::path& folder_ = own_.path();
 };
 
 TEST_F(OutputFileTest, WritesWhatItIsGiven) {
@@ -44,23 +30,24 @@ TEST_F(OutputFileTest, WritesWhatItIsGiven) {
   out.write(large);
   out.write("two\n");
   out.close();
-  EXPECT_EQ(text_of(file), "one\n" + large + "two\n");
+  EXPECT_EQ(testing::bytes_of(file), "one\n" + large + "two\n");
   OutputFile(file).close();
-  EXPECT_EQ(text_of(file), "");
+  EXPECT_EQ(testing::bytes_of(file), "");
 }
 
 TEST_F(OutputFileTest, AFullDeviceIsAnErrorOfTheFlush) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   OutputFile out("/dev/full", "room");
   out.write("a line\n");
-  EXPECT_EQ(error_of([&] { out.close(); }), "/dev/full: found no space left on device, expected room");
+  EXPECT_EQ(testing::message_of([&] { out.close(); }),
+            "/dev/full: found no space left on device, expected room");
   OutputFile again("/dev/full", "room");
-  EXPECT_EQ(error_of([&] { again.write(std::string(1 << 20, 'x')); }),
+  EXPECT_EQ(testing::message_of([&] { again.write(std::string(1 << 20, 'x')); }),
             "/dev/full: found no space left on device, expected room");
 }
 
 TEST_F(OutputFileTest, AFolderIsNoFile) {
-  EXPECT_EQ(error_of([&] { OutputFile out(folder_, "a table"); }),
+  EXPECT_EQ(testing::message_of([&] { OutputFile out(folder_, "a table"); }),
             folder_.string() + ": found is a directory, expected a table");
   EXPECT_EQ(find_reading_fault(folder_), "is a directory");
   EXPECT_EQ(find_reading_fault(folder_ / "none"), "no such file or directory");
@@ -76,7 +63,7 @@ TEST_F(OutputFileTest, WhatIsWholeIsKept) {
     const rlimit limit{1000, RLIM_INFINITY};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     OutputFile out(file);
-    const std::string message = error_of([&] {
+    const std::string message = testing::message_of([&] {
       for (int i = 0; i < 5; ++i) out.write(line);
       out.flush();
       for (int i = 0; i < 10'000; ++i) out.write(line);
@@ -88,7 +75,7 @@ TEST_F(OutputFileTest, WhatIsWholeIsKept) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   std::string lines;
   for (int i = 0; i < 31; ++i) lines += line;  // 992 bytes
-  EXPECT_EQ(text_of(file), lines);
+  EXPECT_EQ(testing::bytes_of(file), lines);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "reference/error.h"
+#include "tests/message_of.h"
 
 namespace lodestone {
 namespace {
@@ -15,15 +16,6 @@ Mesh open_box() {
   Mesh mesh = make_box({1, 1, 1});
   mesh.faces.pop_back();
   return mesh;
-}
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Shape, OfABox) {
@@ -97,7 +89,7 @@ TEST(ContentHash, DiffersForOtherShapesAndOtherMass) {
 
 TEST(Shape, OfAnOpenMeshNeedsItsMassGiven) {
   const Mat3 inertia = Mat3::Identity() / 6.0;
-  const std::string message = message_of([] { make_shape("shell", open_box()); });
+  const std::string message = testing::message_of([] { make_shape("shell", open_box()); });
   EXPECT_NE(message.find("shell: found 3 open edges"), std::string::npos) << message;
   EXPECT_THROW(make_shape("shell", open_box(), {.center_of_mass_m = Vec3::Zero()}), InputError);
   EXPECT_THROW(make_shape("shell", open_box(), {.inertia_per_mass_m2 = inertia}), InputError);
@@ -119,7 +111,7 @@ TEST(Shape, WithAnImpossibleMassIsRefused) {
   EXPECT_THROW(make_shape("box", box, {.inertia_per_mass_m2 = Mat3::Constant(std::nan(""))}), InputError);
   EXPECT_THROW(make_shape("box", box, {.center_of_mass_m = Vec3(0, 0, 0.6)}), InputError);
   EXPECT_THROW(make_shape("box", box, {.center_of_mass_m = Vec3(0, 0, std::nan(""))}), InputError);
-  const std::string message = message_of(
+  const std::string message = testing::message_of(
       [&] { make_shape("odd", box, {.inertia_per_mass_m2 = Mat3(Vec3(1, 1, 100).asDiagonal())}); });
   EXPECT_EQ(message.rfind("odd: inertia: found", 0), 0u) << message;
 }

@@ -26,12 +26,7 @@ class SavedPlayback : public SceneFixture {
   RunResult run() { return run_scene(load(kFalling), {.out = folder() / "out"}); }
   std::filesystem::path file() const { return folder() / "out/run.play"; }
   std::string error_of_loading() const {
-    try {
-      load_playback(file());
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return testing::message_of([&] { load_playback(file()); });
   }
 };
 

@@ -1,12 +1,12 @@
 #include "scenes/step_csv.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <vector>
+
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -23,8 +23,8 @@ std::vector<std::string> split(const std::string& text, char at) {
 }
 
 TEST(StepCsv, HasARowAStepUnderTheNamesOfItsColumns) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("steps_" + std::to_string(::getpid()) + ".csv");
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.at("steps.csv");
   StepReport report;
   report.step = 7, report.full = 3, report.statistical = 5, report.support = 4, report.tables = 1;
   report.asleep = 2, report.promotions = 6, report.demotions = 8, report.contacts = 9;
@@ -35,10 +35,7 @@ TEST(StepCsv, HasARowAStepUnderTheNamesOfItsColumns) {
     csv.add({}, 1e6, 0.0, 0.0);
     csv.close();
   }
-  std::ifstream in(file);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  std::filesystem::remove(file);
-  const std::vector<std::string> lines = split(text, '\n');
+  const std::vector<std::string> lines = split(testing::bytes_of(file), '\n');
   ASSERT_EQ(lines.size(), 4U);  // the last is empty
   const std::vector<std::string> names = split(lines[0], ','), cells = split(lines[1], ',');
   ASSERT_EQ(names.size(), cells.size());

@@ -6,17 +6,13 @@
 #include <fstream>
 
 #include "reference/error.h"
+#include "tests/message_of.h"
 
 namespace lodestone {
 namespace {
 
 std::string error_of(const std::string& text, const YamlLimits& limits = {}) {
-  try {
-    make_yaml(text, "s.yaml", limits);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return testing::message_of([&] { make_yaml(text, "s.yaml", limits); });
 }
 
 TEST(YamlValue, KeepsLinesAndOrder) {

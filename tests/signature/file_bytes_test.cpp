@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "reference/error.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -15,8 +17,6 @@ namespace fs = std::filesystem;
 
 class FileBytes : public ::testing::Test {
  protected:
-  FileBytes() { fs::create_directories(folder); }
-  ~FileBytes() override { fs::remove_all(folder); }
   static std::vector<std::byte> some(std::size_t count, int first = 1) {
     std::vector<std::byte> bytes(count);
     for (std::size_t i = 0; i < count; ++i) bytes[i] = std::byte(first + int(i * i));
@@ -25,17 +25,9 @@ class FileBytes : public ::testing::Test {
   std::size_t files() const {
     return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
-  fs::path folder = fs::temp_directory_path() / ("lodestone_bytes_" + std::to_string(::getpid()));
+  const testing::TemporaryFolder own;
+  const fs::path& folder = own.path();
 };
-
-std::string message_of(const auto& call) {
-  try {
-    call();
-  } catch (const InputError& fault) {
-    return fault.what();
-  }
-  return "";
-}
 
 TEST_F(FileBytes, WhatIsWrittenIsReadAndMapped) {
   for (const std::size_t count : {0, 1, 4096, 100'001}) {
@@ -75,17 +67,17 @@ TEST_F(FileBytes, WritersAtOnceDoNotMix) {
 }
 
 TEST_F(FileBytes, WhatIsMissingOrNoFileIsNamed) {
-  const std::string missing = message_of([&] { read_file(folder / "none", "a signature"); });
+  const std::string missing = testing::message_of([&] { read_file(folder / "none", "a signature"); });
   EXPECT_NE(missing.find("none: found no such file, expected a signature"), std::string::npos) << missing;
-  EXPECT_EQ(message_of([&] { MappedFile(folder / "none", "a signature"); }), missing);
-  EXPECT_FALSE(message_of([&] { read_file(folder, "a signature"); }).empty());
-  EXPECT_FALSE(message_of([&] { read_file(folder / "none" / "deeper", "a signature"); }).empty());
+  EXPECT_EQ(testing::message_of([&] { MappedFile(folder / "none", "a signature"); }), missing);
+  EXPECT_NE(testing::message_of([&] { read_file(folder, "a signature"); }), testing::kNothingThrown);
+  EXPECT_THROW(read_file(folder / "none" / "deeper", "a signature"), InputError);
 }
 
 TEST_F(FileBytes, AFailedWriteLeavesTheOldFileAndNoOther) {
   const fs::path place = folder / "place";
   fs::create_directories(place / "inside");  // a folder that is not empty: nothing can take its name
-  const std::string message = message_of([&] { write_atomically(some(10), place); });
+  const std::string message = testing::message_of([&] { write_atomically(some(10), place); });
   EXPECT_TRUE(message.starts_with(place.string() + ": ")) << message;
   EXPECT_TRUE(fs::is_directory(place / "inside"));
   EXPECT_EQ(files(), 1U);

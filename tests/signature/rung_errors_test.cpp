@@ -1,27 +1,22 @@
 #include "signature/rung_errors.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
+
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
 
 class RungErrorsFile : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path file() const { return folder_ / "shape.sig.errors"; }
-  std::string bytes() const {
-    std::ifstream stream(file(), std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
+  std::filesystem::path file() const { return folder_.at("shape.sig.errors"); }
+  std::string bytes() const { return testing::bytes_of(file()); }
   void write(const std::string& content) const { std::ofstream(file(), std::ios::binary) << content; }
 
  private:
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("lodestone-errors-" + std::to_string(::getpid()));
+  const testing::TemporaryFolder folder_;
 };
 
 TEST_F(RungErrorsFile, ComesBackAsItWas) {

@@ -13,6 +13,7 @@
 #include "reference/shape.h"
 #include "signature/measure/measure.h"
 #include "signature/signature_view.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -79,8 +80,8 @@ TEST(SignatureFile, LoadsFromMemoryThatIsNotAligned) {
 }
 
 TEST(SignatureFile, LoadsFromAFile) {
-  const auto file =
-      std::filesystem::temp_directory_path() / ("lodestone-file-" + std::to_string(::getpid()) + ".sig");
+  const testing::TemporaryFolder folder;
+  const auto file = folder.at("box.sig");
   save_signature(box_signature(), file);
   EXPECT_TRUE(encode_signature(load_signature(file)) == encode_signature(box_signature()));
   EXPECT_EQ(std::filesystem::file_size(file), encode_signature(box_signature()).size());
@@ -88,7 +89,7 @@ TEST(SignatureFile, LoadsFromAFile) {
   EXPECT_THROW(load_signature(file), InputError);
   std::filesystem::remove(file);
   EXPECT_THROW(load_signature(file), InputError);
-  EXPECT_THROW(load_signature(std::filesystem::temp_directory_path()), InputError);
+  EXPECT_THROW(load_signature(folder.path()), InputError);
 }
 
 TEST(SignatureFile, SectionsBeginAtMultiplesOf64) {

@@ -55,9 +55,8 @@ window.addEventListener("load", () => setTimeout(async () => {
 /// pixels: "1280,900".
 inline std::string run_in_browser(const std::string& page, const std::string& test_script,
                                   const std::string& window_size = "1280,900") {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("lodestone-browser-" + std::to_string(::getpid()));
-  fs::create_directories(folder);
+  const TemporaryFolder own;
+  const std::filesystem::path& folder = own.path();
   std::string tested = page;
   const auto head = tested.find("<head>");
   tested.insert(head == std::string::npos ? 0 : head + 6, kBeforePage);
@@ -77,7 +76,6 @@ inline std::string run_in_browser(const std::string& page, const std::string& te
           ? "NO RESULT, exit code " + std::to_string(ended.exit_code) + "\n" + bytes_of(folder / "stderr") +
                 ended.out.substr(0, 2000)
           : ended.out.substr(first + begin_mark.size(), last - first - begin_mark.size());
-  fs::remove_all(folder);
   return said;
 }
 

@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
+
+#include "tests/temporary_folder.h"
 
 namespace lodestone::testing {
 
@@ -37,18 +36,10 @@ inline Ended run_shell(const std::string& command) {
   return ended;
 }
 
-inline std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// A folder that is removed at the end, with a cache of its own in it.
 class CliTest : public ::testing::Test {
  protected:
-  CliTest() { std::filesystem::create_directories(folder_); }
-  ~CliTest() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path at(const std::string& name) const { return folder_ / name; }
+  std::filesystem::path at(const std::string& name) const { return folder_.at(name); }
   /// The command as the shell takes it, its cache in folder `cache`.
   std::string command(const std::string& arguments, const std::string& cache = "cache") const {
     return "XDG_CACHE_HOME=" + quoted(at(cache).string()) + " exec " + quoted(LODESTONE_CLI) + ' ' +
@@ -61,9 +52,7 @@ class CliTest : public ::testing::Test {
   std::string name(const std::string& file) const { return quoted(at(file).string()); }
 
  private:
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                  ("lodestone-test-" + std::to_string(::getpid()) +
-                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TemporaryFolder folder_;
 };
 
 }  // namespace lodestone::testing

@@ -9,6 +9,8 @@
 #include <sstream>
 
 #include "reference/error.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 #include "tests/tools/browser.h"
 #include "tools/compare/drop_report.h"
 #include "tools/hard_cases/hard_case_report.h"
@@ -47,8 +49,8 @@ TEST(ReportTable, ReadsWhatTheProgramSaves) {
                 .side = BoundSide::at_least,
                 .odes_own = ""},
                {.what = "ODE's", .value = 3.0, .bound = 2.0, .odes_own = "why, and how"}}};
-  const auto file =
-      std::filesystem::temp_directory_path() / ("report-" + std::to_string(::getpid()) + ".csv");
+  const testing::TemporaryFolder folder;
+  const auto file = folder.at("report.csv");
   save_csv(std::span(&result, 1), file);
   const ReportTable table = parse_report_table("cases", testing::bytes_of(file));
   EXPECT_EQ(table.rows, json_of(std::span(&result, 1))["cases"]);
@@ -64,7 +66,6 @@ TEST(ReportTable, ReadsWhatTheProgramSaves) {
   drops.rows = {measured, left_out};
   save_scores(drops, file);
   const ReportTable scores = parse_report_table("scores", testing::bytes_of(file));
-  std::filesystem::remove(file);
   ASSERT_EQ(scores.rows.size(), 3u);
   EXPECT_EQ(scores.rows, score_rows_of(drops));
   EXPECT_EQ(scores.rows[0]["method"], "noise_floor");
@@ -75,12 +76,8 @@ TEST(ReportTable, ReadsWhatTheProgramSaves) {
 }
 
 TEST(ReportTable, ALineOfOtherLengthIsNamed) {
-  try {
-    parse_report_table("t.csv", "# commit: 1\na,b\n1,2\n3\n");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "t.csv: line 4: found 1 cells, expected 2");
-  }
+  EXPECT_EQ(testing::message_of([] { parse_report_table("t.csv", "# commit: 1\na,b\n1,2\n3\n"); }),
+            "t.csv: line 4: found 1 cells, expected 2");
 }
 
 // The standard deviation of a height is at most that without spin, .0622.

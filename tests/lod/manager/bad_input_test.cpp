@@ -7,6 +7,7 @@
 
 #include "reference/error.h"
 #include "tests/lod/manager/manager_fixture.h"
+#include "tests/message_of.h"
 
 namespace lodestone {
 namespace {
@@ -15,15 +16,6 @@ using namespace testing;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
                  kInfinity = std::numeric_limits<double>::infinity();
-
-std::string message_of(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 // Bodies on both levels, in flight.
 struct Scene {

@@ -15,7 +15,7 @@ inline std::shared_ptr<const Signature> no_signature(const Shape&, const Contact
 inline std::shared_ptr<const Signature> coarse_signature(const Shape& shape, const ContactLaw&) {
   SignatureSettings coarse;
   coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8,
-  coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10;
+  coarse.height_trials = 100, coarse.settling_trials = 20, coarse.clips = 10, coarse.held_out_conditions = 4;
   return std::make_shared<const Signature>(measure_signature(shape, coarse, 1));
 }
 

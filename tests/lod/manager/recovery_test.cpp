@@ -6,6 +6,7 @@
 
 #include "reference/simulation_error.h"
 #include "tests/lod/manager/manager_fixture.h"
+#include "tests/message_of.h"
 
 namespace lodestone {
 namespace {
@@ -95,12 +96,7 @@ TEST(Recovery, AssertionInsideOdeIsAnErrorThatNamesTheBody) {
   dMass light;
   dMassSetBoxTotal(&light, 1e-30, 0.2, 0.3, 0.4);
   dBodySetMass(manager.ode_body(bodies[2]), &light);
-  std::string message;
-  try {
-    run(manager, 5.0);
-  } catch (const SimulationError& error) {
-    message = error.what();
-  }
+  const std::string message = message_of<SimulationError>([&] { run(manager, 5.0); });
   EXPECT_NE(message.find("ODE gave up"), std::string::npos) << message;
   EXPECT_NE(message.find("body 2"), std::string::npos) << message;
   EXPECT_THROW(manager.step(kFrame), SimulationError);

@@ -10,6 +10,7 @@
 
 #include "reference/error.h"
 #include "tests/lod/manager/manager_fixture.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone::testing {
 namespace {
@@ -153,21 +154,18 @@ TEST(SignatureTiming, ASignatureThatCannotBeHadIsSaidByTheStep) {
 // The default source, which measures: the manager goes away in the middle of it, soon, and without a
 // signature in the cache.
 TEST(SignatureTiming, AManagerDoesNotWaitForWhatItMeasures) {
-  const auto cache =
-      std::filesystem::temp_directory_path() / ("lodestone-timing-" + std::to_string(::getpid()));
+  const TemporaryFolder cache;
   const char* before = std::getenv("XDG_CACHE_HOME");
   const std::string kept = before ? before : "";
-  std::filesystem::create_directories(cache);
-  ::setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+  ::setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
   {
     Manager manager = on_floor({});
     const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 1}));
     manager.step(kFrame);
     EXPECT_EQ(manager.rung(body), Rung::support);
   }
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(cache))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(cache.path()))
     EXPECT_NE(entry.path().extension(), ".sig");
-  std::filesystem::remove_all(cache);
   if (before)
     ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
   else

@@ -8,6 +8,8 @@
 
 #include "reference/error.h"
 #include "reference/shape.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -16,9 +18,6 @@ namespace fs = std::filesystem;
 
 class BadMeshFile : public ::testing::Test {
  protected:
-  BadMeshFile() { fs::create_directories(folder_); }
-  ~BadMeshFile() override { fs::remove_all(folder_); }
-
   /// As a user's file: written, then loaded and made a shape of.
   Shape make(const std::string& bytes, const MassOverride& mass = {}, const std::string& name = "thing.obj") {
     const fs::path file = write(name, bytes);
@@ -28,23 +27,15 @@ class BadMeshFile : public ::testing::Test {
   /// What the error says after the file's name, which must be at its head.
   std::string error_of(const std::string& bytes, const MassOverride& mass = {},
                        const std::string& name = "thing.obj") {
-    try {
-      make(bytes, mass, name);
-    } catch (const InputError& error) {
-      const std::string message = error.what(), head = (folder_ / name).string() + ": found ";
-      EXPECT_EQ(message.substr(0, head.size()), head);
-      return message.substr(head.size());
-    }
-    return "no error";
+    return testing::after_head(testing::message_of([&] { make(bytes, mass, name); }),
+                               folder_.at(name).string() + ": found ");
   }
 
   fs::path write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return folder_ / name;
+    return folder_.write(name, bytes);
   }
 
-  const fs::path folder_ =
-      fs::path(::testing::TempDir()) / ("lodestone_bad_mesh_" + std::to_string(getpid()));
+  const testing::TemporaryFolder folder_;
   MeshReport report_;
 };
 

@@ -8,6 +8,8 @@
 
 #include "reference/error.h"
 #include "reference/mesh/mass_properties.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -54,25 +56,15 @@ std::string as_glb(std::string text, const std::string& binary) {
 
 class GltfMesh : public ::testing::Test {
  protected:
-  GltfMesh() { fs::create_directories(folder_); }
-  ~GltfMesh() override { fs::remove_all(folder_); }
-
   Mesh load(const std::string& bytes, const std::string& name = "box.glb") const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return load_mesh(folder_ / name);
+    return load_mesh(folder_.write(name, bytes));
   }
 
   /// What the error says after the file's name.
   std::string error_of(const std::string& bytes, const std::string& name = "box.glb") const {
-    try {
-      load(bytes, name);
-    } catch (const InputError& error) {
-      const std::string message = error.what(), head = (folder_ / name).string() + ": found ";
-      EXPECT_EQ(message.substr(0, head.size()), head);
-      EXPECT_NE(message.find(", expected "), std::string::npos) << message;
-      return message.substr(std::min(head.size(), message.size()));
-    }
-    return "no error";
+    const std::string message = testing::message_of([&] { load(bytes, name); });
+    EXPECT_NE(message.find(", expected "), std::string::npos) << message;
+    return testing::after_head(message, folder_.at(name).string() + ": found ");
   }
 
   /// Of the box with `value` at `place`.
@@ -86,14 +78,14 @@ class GltfMesh : public ::testing::Test {
     return measure_mass_properties(repair_mesh(load(as_glb(gltf.dump(), bytes)), "box")).volume;
   }
 
-  const fs::path folder_ = fs::path(::testing::TempDir()) / ("lodestone_gltf_" + std::to_string(getpid()));
+  const testing::TemporaryFolder folder_;
 };
 
 TEST_F(GltfMesh, InItsBinaryFormIsRead) {
   EXPECT_NEAR(volume_of(box_json()), 6.0, 1e-6);
   json whole = box_json();
   whole["buffers"][0]["uri"] = "its%20buffer.bin";
-  std::ofstream(folder_ / "its buffer.bin", std::ios::binary) << box_bytes();
+  std::ofstream(folder_.path() / "its buffer.bin", std::ios::binary) << box_bytes();
   EXPECT_EQ(load(whole.dump(), "box.gltf").faces.size(), 12u);
 }
 

@@ -12,18 +12,15 @@
 
 #include "reference/error.h"
 #include "reference/sanitizers.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
 
 std::string error_of(const std::function<Mesh()>& read, const ChildLimits& limits = {},
                      int max_faces = 1000) {
-  try {
-    read_mesh_in_child("thing", read, max_faces, limits);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return testing::message_of([&] { read_mesh_in_child("thing", read, max_faces, limits); });
 }
 
 TEST(MeshChild, SendsTheMesh) {
@@ -87,13 +84,12 @@ TEST(MeshChild, IsNotTrusted) {
 }
 
 TEST(MeshChild, ReadsFilesOfStrangers) {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / ("lodestone_child_" + std::to_string(getpid()) + ".obj");
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.at("child.obj");
   std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_EQ(load_mesh(file, {.untrusted = true}).faces.size(), 1u);
   std::ofstream(file) << "v 0 0 0\nf 1 2 3\n";
   EXPECT_THROW(load_mesh(file, {.untrusted = true}), InputError);
-  std::filesystem::remove(file);
 }
 
 }  // namespace

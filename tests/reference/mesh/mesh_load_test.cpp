@@ -10,6 +10,8 @@
 #include "reference/mesh/mass_properties.h"
 #include "reference/mesh/mesh.h"
 #include "reference/random.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -21,35 +23,26 @@ using nlohmann::json;
 class MeshFile : public ::testing::Test {
  protected:
   MeshFile() {
-    fs::create_directories(folder_);
     ::testing::internal::CaptureStdout();
     ::testing::internal::CaptureStderr();
   }
   ~MeshFile() override {
     EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
     EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-    fs::remove_all(folder_);
   }
 
   fs::path write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return folder_ / name;
+    return folder_.write(name, bytes);
   }
 
   /// What the error says, without the file's name, which must be at its head.
   static std::string error_of(const fs::path& file, const MeshLoadSettings& settings = {}) {
-    try {
-      load_mesh(file, settings);
-    } catch (const InputError& error) {
-      const std::string message = error.what(), head = file.string() + ": found ";
-      EXPECT_EQ(message.substr(0, head.size()), head);
-      EXPECT_NE(message.find(", expected "), std::string::npos) << message;
-      return message.substr(head.size());
-    }
-    return "no error";
+    const std::string message = testing::message_of([&] { load_mesh(file, settings); });
+    EXPECT_NE(message.find(", expected "), std::string::npos) << message;
+    return testing::after_head(message, file.string() + ": found ");
   }
 
-  const fs::path folder_ = fs::path(::testing::TempDir()) / ("lodestone_mesh_" + std::to_string(getpid()));
+  const testing::TemporaryFolder folder_;
 };
 
 void expect_unit_box(const Mesh& loaded, double volume = 1.0) {
@@ -144,11 +137,11 @@ TEST_F(MeshFile, WithSeveralPlacedMeshesIsJoined) {
 }
 
 TEST_F(MeshFile, ThatIsMissingOrNoFileIsRefused) {
-  EXPECT_EQ(error_of(folder_ / "none.obj").substr(0, 12), "no such file");
-  fs::create_directory(folder_ / "folder.obj");
-  EXPECT_EQ(error_of(folder_ / "folder.obj").substr(0, 11), "a directory");
-  ASSERT_EQ(mkfifo((folder_ / "pipe.obj").c_str(), 0600), 0);
-  EXPECT_EQ(error_of(folder_ / "pipe.obj").substr(0, 15), "no regular file");
+  EXPECT_EQ(error_of(folder_.path() / "none.obj").substr(0, 12), "no such file");
+  fs::create_directory(folder_.path() / "folder.obj");
+  EXPECT_EQ(error_of(folder_.path() / "folder.obj").substr(0, 11), "a directory");
+  ASSERT_EQ(mkfifo((folder_.path() / "pipe.obj").c_str(), 0600), 0);
+  EXPECT_EQ(error_of(folder_.path() / "pipe.obj").substr(0, 15), "no regular file");
   EXPECT_EQ(error_of(write("empty.obj", "")).substr(0, 13), "an empty file");
   EXPECT_NE(error_of("").find("no such file"), std::string::npos);
 }
@@ -268,7 +261,7 @@ TEST_F(MeshFile, WhoseTrianglesAreNotThereIsRefused) {
 
 TEST_F(MeshFile, OpensOnlyItsOwnFolder) {
   const Mesh box = make_box({1, 1, 1});
-  fs::create_directory(folder_ / "inner");
+  fs::create_directory(folder_.path() / "inner");
   write("outside.bin", buffer_of(box));
   EXPECT_NE(error_of(write("inner/box.gltf", as_gltf(box, "../outside.bin").dump())), "no error");
   EXPECT_NE(error_of(write("box.gltf", as_gltf(box, "/dev/zero").dump())), "no error");

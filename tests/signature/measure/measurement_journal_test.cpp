@@ -9,6 +9,7 @@
 #include <string>
 
 #include "reference/error.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -17,9 +18,6 @@ namespace fs = std::filesystem;
 
 class Journal : public ::testing::Test {
  protected:
-  Journal() { fs::remove_all(folder_); }
-  ~Journal() override { fs::remove_all(folder_); }
-
   static MeasurementIdentity identity(std::uint64_t seed = 1) {
     MeasurementIdentity identity;
     identity.versions = "test";
@@ -50,9 +48,8 @@ class Journal : public ::testing::Test {
   }
 
  private:
-  fs::path folder_ =
-      fs::path(::testing::TempDir()) / ("journal-" + std::to_string(::getpid()) +
-                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const testing::TemporaryFolder own_;
+  const fs::path& folder_ = own_.path();
 };
 
 TEST_F(Journal, KeepsUnitsForTheNextSession) {

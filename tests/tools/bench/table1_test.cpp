@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "reference/error.h"
+#include "tests/temporary_folder.h"
 #include "tests/tools/cli_fixture.h"
 #include "tools/bench/table1_report.h"
 #include "tools/results.h"
@@ -70,7 +71,7 @@ TEST(Table1, RowsThatWouldTakeTooLongAreLeftOut) {
 // Not in bytes, nor a thousand times too much: no bound of speed, which is the machine's.
 TEST(Bandwidth, OfACacheIsInGigabytesASecond) {
   const double found = measure_bandwidth(1 << 18, 1);
-  EXPECT_GT(found, 0.1);
+  EXPECT_GT(found, 1.0);  // a level 2 cache has ten times as much
   EXPECT_LT(found, 1e4);
   EXPECT_GT(level3_bytes(), level2_bytes());
 }
@@ -107,11 +108,10 @@ TEST(Table1Report, CsvHasACellForEachKeyOfTheJson) {
                                         .step_ms = 0.5,
                                         .awake = {3, 2, 1},
                                         .state_hash = 255}};
-  const auto file =
-      std::filesystem::temp_directory_path() / ("table1-" + std::to_string(::getpid()) + ".csv");
+  const testing::TemporaryFolder folder;
+  const auto file = folder.at("table1.csv");
   save_csv(json_of(rows)["rows"], json_of(Table1Row{}), file);
   std::istringstream lines(testing::bytes_of(file));
-  std::filesystem::remove(file);
   const auto json = json_of(rows);
   for (std::string line; std::getline(lines, line);)
     EXPECT_EQ(std::size_t(std::ranges::count(line, ',')) + 1, json["rows"][0].size()) << line;

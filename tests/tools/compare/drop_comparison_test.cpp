@@ -8,6 +8,7 @@
 #include <string>
 
 #include "reference/error.h"
+#include "tests/temporary_folder.h"
 #include "tests/tools/methods/box_job.h"
 #include "tools/compare/drop_report.h"
 
@@ -95,7 +96,8 @@ TEST(DropReport, CsvHasALineForEachDrop) {
   comparison.truth_b.resize(2);
   comparison.rows.push_back(DropRow{{.method = "full", .model = ""}});
   comparison.rows[0].drops.resize(2);
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lodestone_drop_report";
+  const testing::TemporaryFolder own;
+  const std::filesystem::path& folder = own.path();
   save_drops(comparison, folder);
   std::ifstream in(folder / "drops.csv");
   int lines = 0;
@@ -104,7 +106,6 @@ TEST(DropReport, CsvHasALineForEachDrop) {
     ++lines;
   }
   EXPECT_EQ(lines, 7);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(DropReport, AFolderThatCannotBeIsBadInput) {

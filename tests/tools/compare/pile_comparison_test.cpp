@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reference/error.h"
+#include "tests/temporary_folder.h"
 #include "tests/tools/methods/box_job.h"
 #include "tools/compare/pile_report.h"
 
@@ -127,7 +128,8 @@ TEST(PileReport, JsonHasTheKeysThatScriptsReadAndNullsForWhatIsLeftOut) {
 }
 
 TEST(PileReport, CsvHasALineForEachPileAndForEachSample) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lodestone_pile_report";
+  const testing::TemporaryFolder own;
+  const std::filesystem::path& folder = own.path();
   save_piles(two_rows(), folder);
   const auto lines = [&](const char* name) {
     std::ifstream in(folder / name);
@@ -137,7 +139,6 @@ TEST(PileReport, CsvHasALineForEachPileAndForEachSample) {
   };
   EXPECT_EQ(lines("piles.csv"), 1 + 3);
   EXPECT_EQ(lines("pile_energy.csv"), 1 + 3 * 2);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/error.h"
+#include "tests/message_of.h"
 #include "tests/tools/methods/box_job.h"
 #include "tools/compare/drop_series.h"
 
@@ -31,13 +32,8 @@ std::vector<ordered_json> two_parts() {
   return {part("2/2", {row(1, 0.0, 0.5, 0.2)}), part("1/2", {row(0, 0.0, 0.0, 0.1), row(2, 0.9, 0.0, 0.3)})};
 }
 
-std::string message_of(const std::vector<ordered_json>& parts) {
-  try {
-    merge_series(parts);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+std::string fault_of(const std::vector<ordered_json>& parts) {
+  return testing::message_of([&] { merge_series(parts); });
 }
 
 TEST(SeriesParts, AreJoinedInTheOrderOfTheirCases) {
@@ -57,28 +53,28 @@ TEST(SeriesParts, ACaseThatEachPartHasIsThereOnce) {
 TEST(SeriesParts, WhatDoesNotFitIsRefusedAndNamed) {
   std::vector<ordered_json> parts = two_parts();
   parts.pop_back();
-  EXPECT_NE(message_of(parts).find("found no part 1/2"), std::string::npos);
+  EXPECT_NE(fault_of(parts).find("found no part 1/2"), std::string::npos);
   parts = two_parts();
   parts[1] = parts[0];
-  EXPECT_NE(message_of(parts).find("2/2 twice"), std::string::npos);
+  EXPECT_NE(fault_of(parts).find("2/2 twice"), std::string::npos);
   parts = two_parts();
   parts[1]["trials"] = 13;
-  EXPECT_NE(message_of(parts).find("13"), std::string::npos);
+  EXPECT_NE(fault_of(parts).find("13"), std::string::npos);
   parts = two_parts();
   parts[1]["shard"] = "1/3";
-  EXPECT_NE(message_of(parts).find("1/3"), std::string::npos);
+  EXPECT_NE(fault_of(parts).find("1/3"), std::string::npos);
   parts = two_parts();
   parts[0]["incomplete"] = true;
-  EXPECT_NE(message_of(parts).find("incomplete"), std::string::npos);
+  EXPECT_NE(fault_of(parts).find("incomplete"), std::string::npos);
   parts = two_parts();
   parts[1]["series"]["seed"] = 2;
-  EXPECT_NE(message_of(parts).find("\"seed\":2"), std::string::npos);
+  EXPECT_NE(fault_of(parts).find("\"seed\":2"), std::string::npos);
   parts = two_parts();
   parts[0]["rows"] = ordered_json::array();  // a share may be of no case
   parts[0]["series"]["of"] = "shapes";
-  EXPECT_NE(message_of(parts).find("shapes"), std::string::npos);
-  EXPECT_NE(message_of({ordered_json::object()}), "");
-  EXPECT_NE(message_of({}), "");
+  EXPECT_NE(fault_of(parts).find("shapes"), std::string::npos);
+  EXPECT_NE(fault_of({ordered_json::object()}), "");
+  EXPECT_NE(fault_of({}), "");
 }
 
 TEST(SeriesParts, RowsWithoutTheNumberOfTheirCaseAreRefused) {
@@ -87,11 +83,11 @@ TEST(SeriesParts, RowsWithoutTheNumberOfTheirCaseAreRefused) {
         ordered_json{{"case", "1"}}, ordered_json{{"case", 0.5}}}) {
     std::vector<ordered_json> parts = two_parts();
     parts[1]["rows"].push_back(bad);
-    EXPECT_NE(message_of(parts).find(bad.dump()), std::string::npos) << bad;
+    EXPECT_NE(fault_of(parts).find(bad.dump()), std::string::npos) << bad;
   }
   std::vector<ordered_json> parts = two_parts();
   parts[0]["rows"] = "none";
-  EXPECT_NE(message_of(parts).find("no part of a comparison"), std::string::npos);
+  EXPECT_NE(fault_of(parts).find("no part of a comparison"), std::string::npos);
 }
 
 TEST(SeriesParts, AShareWithoutACaseIsAPart) {

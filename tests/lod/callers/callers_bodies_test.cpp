@@ -1,0 +1,159 @@
+#include "lod/callers/callers_bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/lod/callers/callers_scene.h"
+
+namespace lodestone {
+namespace {
+
+class BodiesOfCaller : public ::testing::Test {
+ protected:
+  void follow() {
+    scene_.mirror->refresh();
+    callers_.follow(*scene_.mirror);
+  }
+  std::vector<FullNeighbor> gather() {
+    std::vector<FullNeighbor> neighbors;
+    contacts_.clear();
+    callers_.gather(ground_, {0, 0, -9.81}, neighbors, contacts_);
+    return neighbors;
+  }
+  /// Of all neighbours that of this body.
+  FullNeighbor& of(std::vector<FullNeighbor>& neighbors, dBodyID body) const {
+    return *std::ranges::find_if(neighbors,
+                                 [&](const FullNeighbor& n) { return callers_.body_of(n.owner) == body; });
+  }
+  static Vec3 velocity(dBodyID body) {
+    const dReal* v = dBodyGetLinearVel(body);
+    return {v[0], v[1], v[2]};
+  }
+  testing::CallersScene scene_;
+  Ground ground_;
+  CallersBodies callers_;
+  std::vector<FullContact> contacts_;
+};
+
+TEST_F(BodiesOfCaller, AreNeighboursAsTheyAreNow) {
+  const dBodyID a = scene_.body(2.0, {1, 2, 3}), b = scene_.body(5.0, {4, 0, 1});
+  dBodySetLinearVel(a, 1, 0, 0), dBodyAddForce(a, 0, 7, 0), dBodyDisable(b);
+  follow();
+  EXPECT_EQ(callers_.size(), 2U);
+  std::vector<FullNeighbor> n = gather();
+  ASSERT_EQ(n.size(), 2U);
+  const FullNeighbor& first = of(n, a);
+  EXPECT_EQ(first.mass, 2.0);
+  EXPECT_EQ(first.state.position, Vec3(1, 2, 3));
+  EXPECT_EQ(first.state.velocity, Vec3(1, 0, 0));
+  EXPECT_EQ(first.force, Vec3(0, 7, 0));
+  EXPECT_FALSE(first.asleep);
+  EXPECT_TRUE(of(n, b).asleep);
+  EXPECT_NEAR(first.shape->radius, 0.2 * std::sqrt(3.0), 1e-9);
+  EXPECT_EQ(callers_.body_of(3), nullptr);
+  dBodySetGravityMode(a, 0);
+  n = gather();
+  EXPECT_LT((of(n, a).force - Vec3(0, 7, 2 * 9.81)).norm(), 1e-12);  // as if held up
+}
+
+// Impulses come back at once, pushes as a force over the step; a sleeper that was not woken is left alone.
+TEST_F(BodiesOfCaller, WhatTheyAreGivenArrives) {
+  const dBodyID a = scene_.body(2.0, {0, 0, 0}), b = scene_.body(2.0, {4, 0, 0}),
+                c = scene_.body(2.0, {8, 0, 0});
+  dBodySetLinearVel(a, 0, 1, 0), dBodyDisable(b), dBodyDisable(c);
+  follow();
+  std::vector<FullNeighbor> n = gather();
+  of(n, a).hit = {{6, 0, 0}, {0, 0, 0.1}};
+  of(n, a).push = {{0, 0, 3}, {0, 0, 0}};
+  of(n, b).asleep = false;  // a hit woke it
+  of(n, b).hit = {{0, 0, 4}, Vec3::Zero()};
+  of(n, c).hit = {{9, 9, 9}, Vec3::Zero()};
+  callers_.hand_over(n, 0.5);
+  EXPECT_LT((velocity(a) - Vec3(3, 1, 0)).norm(), 1e-12);
+  const double inertia = 2.0 * 0.4 * 0.4 / 6.0;
+  EXPECT_NEAR(dBodyGetAngularVel(a)[2], 0.1 / inertia, 1e-9);
+  EXPECT_NEAR(dBodyGetForce(a)[2], 6.0, 1e-12);
+  EXPECT_TRUE(dBodyIsEnabled(b));
+  EXPECT_LT((velocity(b) - Vec3(0, 0, 2)).norm(), 1e-12);
+  EXPECT_FALSE(dBodyIsEnabled(c));
+  EXPECT_EQ(velocity(c), Vec3(Vec3::Zero()));
+}
+
+TEST_F(BodiesOfCaller, WhatHoldsThemUpIsAmongTheContacts) {
+  ground_.add_plane({});
+  const dBodyID stands = scene_.body(2.0, {0, 0, 0.2});
+  scene_.body(2.0, {5, 0, 3});
+  follow();
+  const std::vector<FullNeighbor> n = gather();
+  EXPECT_EQ(contacts_.size(), 4U);  // the corners of the one that stands there
+  for (const FullContact& contact : contacts_) {
+    EXPECT_EQ(callers_.body_of(n[std::size_t(contact.first)].owner), stands);
+    EXPECT_EQ(contact.second, -1);
+    EXPECT_EQ(contact.normal, Vec3(0, 0, 1));
+    EXPECT_NEAR(contact.point.z(), 0.0, 1e-9);
+    EXPECT_NEAR(contact.gap, 0.0, 1e-9);
+  }
+}
+
+// As they come and go: those that are there, each with an owner of its own for as long as it is.
+TEST_F(BodiesOfCaller, ComeAndGo) {
+  std::vector<dBodyID> there = {scene_.body(1, {0, 0, 0}), scene_.body(2, {2, 0, 0}),
+                                scene_.body(3, {4, 0, 0})};
+  follow();
+  std::vector<FullNeighbor> before = gather();
+  std::vector<std::uint32_t> owners;
+  for (const dBodyID body : there) owners.push_back(of(before, body).owner);
+  const dBodyID late = scene_.body(4, {6, 0, 0});
+  dGeomDestroy(dBodyGetFirstGeom(there[1]));
+  dBodyDestroy(there[1]);
+  follow();
+  std::vector<FullNeighbor> after = gather();
+  ASSERT_EQ(after.size(), 3U);
+  EXPECT_EQ(of(after, there[0]).owner, owners[0]);
+  EXPECT_EQ(of(after, there[2]).owner, owners[2]);
+  EXPECT_EQ(of(after, late).mass, 4.0);
+  EXPECT_EQ(std::ranges::count(owners, of(after, late).owner), 0);
+  EXPECT_EQ(callers_.body_of(owners[1]), nullptr);
+}
+
+// A body of several geoms is all of them, about its own centre of mass; one that changes its size is another
+// shape.
+TEST_F(BodiesOfCaller, AShapeIsThatOfAllItsGeoms) {
+  const dBodyID body = scene_.body(1, {0, 0, 0});
+  const dGeomID arm = scene_.box({0.2, 0.2, 0.2}, {0, 0, 0});
+  dGeomSetBody(arm, body);
+  dGeomSetOffsetPosition(arm, 0.9, 0, 0);
+  follow();
+  EXPECT_NEAR(gather()[0].shape->radius, Vec3(1.0, 0.1, 0.1).norm(), 1e-6);
+  dGeomBoxSetLengths(arm, 0.4, 0.2, 0.2);
+  follow();
+  EXPECT_NEAR(gather()[0].shape->radius, Vec3(1.1, 0.1, 0.1).norm(), 1e-6);
+  EXPECT_EQ(callers_.find_parts(*scene_.mirror).size(), 2U);
+}
+
+TEST_F(BodiesOfCaller, NearAreThoseWhoseBallsMeet) {
+  scene_.body(1, {0, 0, 0}), scene_.body(1, {3, 0, 0});
+  follow();
+  for (const auto& [radius, expected] : {std::pair(0.5, 0), {0.66, 1}, {3.66, 2}}) {
+    int met = 0;
+    callers_.each_near({-1, 0, 0}, radius, [&](const Shape&, const RigidState&) { ++met; });
+    EXPECT_EQ(met, expected) << radius;
+  }
+}
+
+// Parts are found where they are now, though he moved or destroyed them since the last look.
+TEST_F(BodiesOfCaller, PartsAreWhereTheyAreNow) {
+  const dBodyID a = scene_.body(1, {0, 0, 0}), b = scene_.body(1, {3, 0, 0});
+  follow();
+  dBodySetPosition(a, 7, 7, 7);
+  dGeomDestroy(dBodyGetFirstGeom(b));
+  const std::vector<CallersPart> parts = callers_.find_parts(*scene_.mirror);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].body, a);
+  EXPECT_EQ(parts[0].position, Vec3(7, 7, 7));
+  dBodyDestroy(b);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,143 @@
+// What is said of a body's rung, and of wrong groups, viewpoints and policies.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "reference/random.h"
+#include "tests/lod/manager/manager_fixture.h"
+#include "tests/message_of.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+Manager still_world(const PolicySettings& policy) {
+  ManagerSettings settings = unmeasured(policy);
+  settings.gravity = Vec3::Zero();
+  return Manager(settings);
+}
+
+TEST(Explain, BeforeItsFirstStepNothingIsSaidYet) {
+  Manager manager = still_world({});
+  const BodyId body = manager.add_body({.shape = sphere_shape(0.5)});
+  EXPECT_FALSE(manager.explain(body).placed);
+  EXPECT_EQ(manager.why(body), "at no level yet: the next step chooses one");
+  manager.step(kFrame);
+  EXPECT_TRUE(manager.explain(body).placed);
+  EXPECT_EQ(manager.why(body), "support: far from every viewpoint");
+}
+
+// The size in the picture, by hand: diameter over distance, in pixels of the field of view.
+TEST(Explain, PixelsAreThoseOfThePicture) {
+  RandomStream random(4, 0, 0);
+  for (int i = 0; i < 40; ++i) {
+    Manager manager = still_world({});
+    const double radius = random.uniform(0.1, 1.0), fov = random.uniform(0.3, 2.0),
+                 height = random.uniform(200, 2000);
+    const Vec3 place = random.uniform(3, 40) * random.direction();
+    const BodyId body = manager.add_body({.shape = sphere_shape(radius), .state = testing::at(place)});
+    manager.set_viewpoints(
+        {Viewpoint{.position = {0, 0, 0}, .direction = place, .vertical_fov_rad = fov, .height_px = height}});
+    manager.step(kFrame);
+    const Why why = manager.explain(body);
+    EXPECT_NEAR(why.pixels, 2 * radius / place.norm() * height / (2 * std::tan(fov / 2)), 1e-6 * why.pixels);
+    EXPECT_NEAR(why.distance_m, place.norm() - radius, 1e-9);
+    EXPECT_TRUE(why.in_view);
+    manager.set_viewpoints({Viewpoint{.position = {0, 0, 0}, .direction = -place}});
+    manager.step(kFrame);
+    EXPECT_FALSE(manager.explain(body).in_view);
+  }
+}
+
+TEST(Explain, TheDwellThatIsLeftCountsDown) {
+  PolicySettings policy;
+  policy.policy = DistancePolicy{3.0}, policy.min_dwell_frames = 10;
+  Manager manager = still_world(policy);
+  const BodyId body = manager.add_body({.shape = sphere_shape(0.5)});
+  view_from(manager, {50, 0, 0});
+  for (int i = 0; i < 20; ++i) manager.step(kFrame);
+  EXPECT_EQ(manager.explain(body).dwell_left_frames, 0);
+  view_from(manager, {1, 0, 0});
+  manager.step(kFrame);
+  ASSERT_EQ(manager.rung(body), Rung::full);
+  view_from(manager, {50, 0, 0});
+  int left = manager.explain(body).dwell_left_frames;
+  EXPECT_GE(left, 9);
+  for (; manager.rung(body) == Rung::full && left > -5; --left) {
+    EXPECT_LE(manager.explain(body).dwell_left_frames, std::max(0, left));
+    manager.step(kFrame);
+  }
+  EXPECT_NE(manager.rung(body), Rung::full);
+  EXPECT_NEAR(left, 0, 1);
+}
+
+// A body costs more on a higher rung, and nothing that could be told of while it sleeps.
+TEST(Explain, CostsRiseWithTheRung) {
+  Manager manager = still_world({});
+  const auto box = box_shape({0.3, 0.3, 0.3});
+  const BodyId support = add(manager, box, testing::at({0, 0, 0}, {1, 0, 0})),
+               full = add(manager, box, testing::at({9, 0, 0}, {1, 0, 0}), LevelChoice::full);
+  manager.step(kFrame);
+  EXPECT_GT(manager.explain(full).cost_work, manager.explain(support).cost_work);
+  EXPECT_GT(manager.explain(support).cost_work, 0.0);
+  const double awake = manager.explain(support).cost_work;
+  manager.sleep(support);
+  EXPECT_LT(manager.explain(support).cost_work, awake);
+  EXPECT_EQ(manager.explain(support).predicted_error, 0.0);
+  EXPECT_GT(manager.explain(full).predicted_error, 0.0);
+}
+
+TEST(RuleTexts, EachIsItsOwn) {
+  std::set<std::string_view> texts;
+  for (int rule = 0; rule <= int(Rule::joined); ++rule) {
+    EXPECT_FALSE(text_of(Rule(rule)).empty()) << rule;
+    EXPECT_TRUE(texts.insert(text_of(Rule(rule))).second) << text_of(Rule(rule));
+  }
+  EXPECT_EQ(text_of(Why{.rung = Rung::full, .rule = Rule::near, .placed = true}), "full: near a viewpoint");
+}
+
+TEST(ManagerGroups, WrongOnesAreRefusedByWords) {
+  Manager manager = still_world({});
+  const auto box = box_shape({0.3, 0.3, 0.3});
+  const std::vector<BodyId> bodies = {add(manager, box, testing::at({0, 0, 0})),
+                                      add(manager, box, testing::at({2, 0, 0}))};
+  const std::vector<BodyId> twice = {bodies[0], bodies[0]};
+  const std::string words = "a group: expected at least one body, none twice and none in another group";
+  EXPECT_EQ(message_of([&] { manager.make_group({}); }), words);
+  EXPECT_EQ(message_of([&] { manager.make_group(twice); }), words);
+  GroupJoints half;
+  half.before_demotion = [](GroupId) {};
+  EXPECT_EQ(message_of([&] { manager.make_group(bodies, half); }),
+            "a group's joints: expected both functions or none");
+  const GroupId group = manager.make_group(bodies);
+  EXPECT_EQ(manager.explain(bodies[0]).group, group);
+  EXPECT_EQ(message_of([&] { manager.make_group(bodies); }), words);
+  manager.dissolve_group(group);
+  EXPECT_FALSE(manager.explain(bodies[0]).group);
+  EXPECT_EQ(message_of([&] { manager.dissolve_group(group); }),
+            "a group's id: expected one that make_group returned and that was not dissolved");
+  EXPECT_NO_THROW(manager.make_group(bodies));
+}
+
+TEST(ManagerViewpoints, OneThatIsWrongChangesNone) {
+  Manager manager = still_world({});
+  const BodyId body = manager.add_body({.shape = sphere_shape(0.5), .state = testing::at({3, 0, 0})});
+  view_from(manager, {0, 0, 0});
+  manager.step(kFrame);
+  const Vec3 bad[] = {{1, 0, 0}, {NAN, 0, 0}};
+  EXPECT_THROW(manager.set_viewpoints(bad), InputError);
+  EXPECT_THROW(manager.set_viewpoints({Viewpoint{.up = {0, 0, 0}}}), InputError);
+  manager.step(kFrame);
+  EXPECT_NEAR(manager.explain(body).distance_m, 2.5, 1e-9);
+  PolicySettings policy;
+  policy.hysteresis = NAN;
+  EXPECT_THROW(manager.set_policy(policy), InputError);
+  policy.hysteresis = 0.1, policy.policy = DistancePolicy{1.0};
+  manager.set_policy(policy);
+  for (int i = 0; i < 40; ++i) manager.step(kFrame);
+  EXPECT_EQ(manager.rung(body), Rung::support);
+}
+
+}  // namespace
+}  // namespace lodestone

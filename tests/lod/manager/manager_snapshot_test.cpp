@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include "reference/random.h"
+#include "tests/lod/manager/manager_fixture.h"
+#include "tests/message_of.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+using Bytes = std::vector<std::byte>;
+
+struct SavedWorld {
+  explicit SavedWorld(ManagerSettings settings = unmeasured({.policy = DistancePolicy{2.0}}))
+      : manager(on_floor(settings)) {}
+  void fill(std::uint32_t seed = 1) {
+    RandomStream random(91, seed, 0);
+    for (int i = 0; i < 14; ++i) {
+      BodyDefinition definition{
+          .shape = i % 3 ? box : ball,
+          .state = testing::at({0.3 * (i % 4), 0.3 * (i / 4), 0.3 + 0.1 * i}, random.direction(),
+                               random.direction(), random.orientation())};
+      if (i % 5 == 0) definition.level = LevelChoice::full;
+      if (i % 7 == 3) definition.properties.linear_damping = 0.3;
+      bodies.push_back(manager.add_body(definition));
+    }
+    view_from(manager, {0, 0, 1});
+  }
+  void step(int steps) {
+    for (int i = 0; i < steps; ++i) manager.step(kFrame);
+  }
+  static inline const auto box = box_shape({0.2, 0.25, 0.3}), ball = sphere_shape(0.12);
+  Manager manager;
+  std::vector<BodyId> bodies;
+};
+
+const std::vector<std::shared_ptr<const Shape>> kShapes = {SavedWorld::box, SavedWorld::ball};
+
+// Taken at any time, read by a manager that is new, has other bodies, or goes back in time.
+TEST(ManagerSnapshot, WhoeverReadsItGoesOnToTheBit) {
+  for (const int taken_after : {0, 1, 30, 200}) {
+    SavedWorld writer;
+    writer.fill();
+    writer.step(taken_after);
+    const Bytes snapshot = writer.manager.snapshot();
+    writer.step(60);
+    SavedWorld empty, other;
+    other.fill(2);
+    other.step(17);
+    for (SavedWorld* reader : {&empty, &other, &writer}) {
+      const std::uint64_t expected = [&] {
+        SavedWorld again;
+        again.fill();
+        again.step(taken_after + 60);
+        return again.manager.state_hash();
+      }();
+      reader->manager.restore(snapshot, kShapes);
+      reader->step(60);
+      EXPECT_EQ(reader->manager.state_hash(), expected) << taken_after
+                                                        << (reader == &empty   ? " empty"
+                                                            : reader == &other ? " other"
+                                                                               : " the writer");
+    }
+  }
+}
+
+TEST(ManagerSnapshot, ThreadsOfTheReaderDoNotMatter) {
+  SavedWorld writer;
+  writer.fill();
+  writer.step(20);
+  ManagerSettings threaded = unmeasured({.policy = DistancePolicy{2.0}});
+  threaded.threads = 3;
+  SavedWorld reader(threaded);
+  reader.manager.restore(writer.manager.snapshot(), kShapes);
+  writer.step(40), reader.step(40);
+  EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash());
+}
+
+// Ids are the snapshot's: those given since are good no more, those removed since are again.
+TEST(ManagerSnapshot, IdsAreThoseOfTheSnapshot) {
+  SavedWorld world;
+  world.fill();
+  world.step(5);
+  const Bytes snapshot = world.manager.snapshot();
+  world.manager.remove_body(world.bodies[4]);
+  const BodyId late = world.manager.add_body({.shape = SavedWorld::box, .state = testing::at({9, 9, 9})});
+  world.step(3);
+  world.manager.restore(snapshot);
+  EXPECT_TRUE(world.manager.valid(world.bodies[4]));
+  EXPECT_FALSE(world.manager.valid(late));
+  EXPECT_EQ(world.manager.bodies(), 14);
+}
+
+// What cannot be read is refused, and nothing has changed.
+TEST(ManagerSnapshot, DamageAndOtherSettingsAreRefusedAndChangeNothing) {
+  SavedWorld writer, reader;
+  writer.fill(), reader.fill(2);
+  writer.step(10), reader.step(10);
+  const Bytes sound = writer.manager.snapshot();
+  const std::uint64_t before = reader.manager.state_hash();
+  const auto refused = [&](const Bytes& bytes) {
+    const bool thrown = message_of([&] { reader.manager.restore(bytes, kShapes); }) != kNothingThrown;
+    EXPECT_EQ(reader.manager.state_hash(), before);
+    return thrown;
+  };
+  for (std::size_t length = 0; length < sound.size(); length += 1 + sound.size() / 50)
+    EXPECT_TRUE(refused({sound.begin(), sound.begin() + std::ptrdiff_t(length)})) << length;
+  for (std::size_t at = 0; at < sound.size(); at += 1 + sound.size() / 50) {
+    Bytes damaged = sound;
+    damaged[at] ^= std::byte(0x40);
+    EXPECT_TRUE(refused(damaged)) << at;
+  }
+  Bytes longer = sound;
+  longer.push_back(std::byte(0));
+  EXPECT_TRUE(refused(longer));
+  SavedWorld without;
+  EXPECT_NE(message_of([&] { without.manager.restore(sound); }), kNothingThrown);  // its shapes are unknown
+  EXPECT_EQ(without.manager.bodies(), 0);
+}
+
+TEST(ManagerSnapshot, OfAnotherSceneIsRefused) {
+  SavedWorld writer;
+  writer.fill();
+  const Bytes snapshot = writer.manager.snapshot();
+  const auto fault = [&](ManagerSettings settings, const auto& change) {
+    Manager other = on_floor(settings);
+    change(other);
+    return message_of([&] { other.restore(snapshot, kShapes); });
+  };
+  const ManagerSettings plain = unmeasured({.policy = DistancePolicy{2.0}});
+  EXPECT_EQ(fault(plain, [](Manager&) {}), kNothingThrown);
+  ManagerSettings seeded = plain;
+  seeded.seed = 99;
+  EXPECT_NE(fault(seeded, [](Manager&) {}), kNothingThrown);
+  EXPECT_NE(fault(plain, [](Manager& m) { m.add_plane(Vec3::UnitX(), -5); }), kNothingThrown);
+  EXPECT_NE(fault(plain, [](Manager& m) { m.materials().add({.friction = 0.1}); }), kNothingThrown);
+}
+
+// Forces that wait for a step, bodies that wait for their first, and sleepers are part of it.
+TEST(ManagerSnapshot, WhatWaitsIsPartOfIt) {
+  SavedWorld world;
+  world.fill();
+  world.step(5);
+  world.manager.add_force(world.bodies[1], {50, 0, 100});
+  world.manager.sleep(world.bodies[2]);
+  world.manager.add_body({.shape = SavedWorld::ball, .state = testing::at({5, 5, 1}, {0, 0, 3})});
+  const Bytes snapshot = world.manager.snapshot();
+  world.step(20);
+  const std::uint64_t expected = world.manager.state_hash();
+  SavedWorld reader;
+  reader.manager.restore(snapshot, kShapes);
+  reader.step(20);
+  EXPECT_EQ(reader.manager.state_hash(), expected);
+}
+
+}  // namespace
+}  // namespace lodestone

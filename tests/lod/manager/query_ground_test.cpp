@@ -1,0 +1,157 @@
+#include "lod/manager/query_ground.h"
+
+#include <gtest/gtest.h>
+
+#include "reference/random.h"
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+PosedSurface ball_at(const Vec3& place, double radius) { return {nullptr, radius, place, Quat::Identity()}; }
+
+TEST(PosedSurface, ABallIsMetWhereItsSurfaceIs) {
+  const PosedSurface ball = ball_at({3, 0, 0}, 1.0);
+  const auto hit = meet(ball, {{0, 0, 0}, {1, 0, 0}, 10.0});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->distance, 2.0, 1e-12);
+  EXPECT_LT((hit->point - Vec3(2, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((hit->normal - Vec3(-1, 0, 0)).norm(), 1e-12);
+  EXPECT_FALSE(meet(ball, {{0, 0, 0}, {1, 0, 0}, 1.9}));
+  EXPECT_FALSE(meet(ball, {{0, 0, 0}, {-1, 0, 0}, 10.0}));
+  EXPECT_FALSE(meet(ball, {{3, 0.5, 0}, {1, 0, 0}, 10.0}));  // begun inside
+  const auto swept = meet(ball, {{0, 0, 0}, {1, 0, 0}, 10.0, 0.5});
+  EXPECT_NEAR(swept->distance, 1.5, 1e-12);
+  EXPECT_EQ(meet(ball, {{3, 0.5, 0}, {1, 0, 0}, 10.0, 0.5})->distance, 0.0);
+}
+
+// A mesh, turned and moved with the ray, is met at the same distance.
+TEST(PosedSurface, GoesAlongWithTheWorld) {
+  const TriangleTree tree(make_l(0.5, 0.4, 0.15, 0.2));
+  RandomStream random(81, 0, 0);
+  int met = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Quat turn = random.orientation();
+    const Vec3 away = random.uniform(0, 5) * random.direction();
+    const Vec3 from = 1.0 * random.direction(), along = (0.2 * random.direction() - from).normalized();
+    const double radius = i % 2 ? 0.0 : 0.1;
+    const auto here = meet({&tree, 0, Vec3::Zero(), Quat::Identity()}, {from, along, 3.0, radius}),
+               there = meet({&tree, 0, away, turn}, {away + turn * from, turn * along, 3.0, radius});
+    ASSERT_EQ(here.has_value(), there.has_value());
+    if (!here) continue;
+    ++met;
+    EXPECT_NEAR(here->distance, there->distance, 1e-9);
+    EXPECT_LT((away + turn * here->point - there->point).norm(), 1e-9);
+    EXPECT_LT((turn * here->normal - there->normal).norm(), 1e-6);
+  }
+  EXPECT_GT(met, 80);
+}
+
+TEST(ShapeTrees, OneForEachShape) {
+  ShapeTrees trees;
+  const auto box = box_shape({1, 1, 1}), other = box_shape({1, 1, 1});
+  const TriangleTree& tree = trees.of(box);
+  EXPECT_EQ(&trees.of(box), &tree);
+  EXPECT_NE(&trees.of(other), &tree);
+  EXPECT_TRUE(tree.contains({0.4, 0.4, 0.4}));
+}
+
+class QueryGrounds : public ::testing::Test {
+ protected:
+  Manager manager_{unmeasured()};
+};
+
+TEST_F(QueryGrounds, PlanesAreMetFromOutsideAtTheirHeight) {
+  RandomStream random(82, 0, 0);
+  for (int i = 0; i < 40; ++i) {
+    Manager manager(unmeasured());
+    const Vec3 normal = random.direction();
+    const double offset = random.uniform(-2, 2);
+    const GroundId plane = manager.add_plane(normal, offset);
+    const Vec3 from = random.uniform(0, 5) * random.direction(), along = random.direction();
+    const double height = normal.dot(from) - offset, sinks = -normal.dot(along);
+    const auto hit = manager.cast_ray({from, along});
+    const bool expected = height > 0.0 && sinks > 0.0;
+    ASSERT_EQ(hit.has_value(), expected);
+    if (!hit) continue;
+    EXPECT_EQ(hit->who.kind, ContactSide::Kind::ground);
+    EXPECT_EQ(hit->who.ground, plane);
+    EXPECT_NEAR(hit->distance, height / sinks, 1e-9 * height / sinks);
+    EXPECT_LT((hit->normal - normal).norm(), 1e-12);
+    const double radius = 0.5 * height;
+    const auto swept = manager.sweep_sphere({{from, along}, radius});
+    ASSERT_TRUE(swept);
+    EXPECT_NEAR(swept->distance, (height - radius) / sinks, 1e-9 * height / sinks);
+    EXPECT_NEAR(normal.dot(swept->point) - offset, 0.0, 1e-9 * (1 + swept->distance));
+  }
+}
+
+// Static boxes against slabs by hand.
+TEST_F(QueryGrounds, BoxesAreMetByTheirSlabs) {
+  RandomStream random(83, 0, 0);
+  struct Placed {
+    Vec3 half, place;
+    Quat turn;
+    GroundId id;
+  };
+  std::vector<Placed> boxes;
+  for (int i = 0; i < 25; ++i) {
+    Placed box{Vec3(random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(0.1, 1)),
+               random.uniform(0, 8) * random.direction(),
+               random.orientation(),
+               {}};
+    box.id = manager_.add_static_box(2.0 * box.half, box.place, box.turn, 0);
+    boxes.push_back(box);
+  }
+  int met = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 from = 10.0 * random.direction(), along = (4.0 * random.direction() - from).normalized();
+    double nearest = 1e300;
+    GroundId who;
+    for (const Placed& box : boxes) {
+      const Vec3 p = box.turn.conjugate() * (from - box.place), d = box.turn.conjugate() * along;
+      double enter = -1e300, leave = 1e300;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double a = (-box.half[axis] - p[axis]) / d[axis], b = (box.half[axis] - p[axis]) / d[axis];
+        enter = std::max(enter, std::min(a, b)), leave = std::min(leave, std::max(a, b));
+      }
+      if (enter < leave && enter >= 0.0 && enter < nearest) nearest = enter, who = box.id;
+    }
+    const auto hit = manager_.cast_ray({from, along});
+    ASSERT_EQ(hit.has_value(), nearest < 1e300);
+    if (!hit) continue;
+    ++met;
+    EXPECT_NEAR(hit->distance, nearest, 1e-8);
+    EXPECT_EQ(hit->who.ground, who);
+  }
+  EXPECT_GT(met, 60);
+}
+
+TEST_F(QueryGrounds, WhatWasMovedIsMetWhereItIsAndWhatWasRemovedNoMore) {
+  const GroundId box = manager_.add_static_box({1, 1, 1}, {0, 0, 0}, Quat::Identity());
+  const Ray down{{0, 0, 5}, {0, 0, -1}};
+  EXPECT_NEAR(manager_.cast_ray(down)->distance, 4.5, 1e-9);
+  manager_.move_ground(box, at({0, 0, 1}));
+  EXPECT_NEAR(manager_.cast_ray(down)->distance, 3.5, 1e-9);
+  manager_.move_ground(box, at({3, 0, 1}));
+  EXPECT_FALSE(manager_.cast_ray(down));
+  manager_.move_ground(box, at({0, 0, 1}));
+  manager_.remove_ground(box);
+  EXPECT_FALSE(manager_.cast_ray(down));
+}
+
+// Very far, and at a place where nothing is: no ray runs for ever.
+TEST_F(QueryGrounds, EndlessRaysEnd) {
+  manager_.add_static_box({1, 1, 1}, {0, 0, 0}, Quat::Identity());
+  manager_.add_plane(Vec3::UnitZ(), -10.0);
+  EXPECT_FALSE(manager_.cast_ray({{5, 0, 0}, {1, 0, 0}}));
+  EXPECT_FALSE(manager_.cast_ray({{5, 0, 0}, {0, 0, 1}}));
+  const auto low = manager_.cast_ray({{5, 0, 0}, Vec3(1, 0, -1e-6)});
+  ASSERT_TRUE(low);
+  EXPECT_NEAR(low->distance, 1e7, 1e7 * 1e-5);
+}
+
+}  // namespace
+}  // namespace lodestone

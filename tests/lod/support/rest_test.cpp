@@ -1,0 +1,131 @@
+// How a body of `support` comes to rest by itself, and what keeps it from it.
+#include <gtest/gtest.h>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+/// s until it sleeps; `most` where it does not.
+double time_to_rest(Manager& manager, BodyId body, double most = 4.0) {
+  double t = 0.0;
+  for (; t < most && !manager.asleep(body); t += kFrame) manager.step(kFrame);
+  return t;
+}
+
+TEST(SupportRest, ALoneBodyThatLiesSleepsAfterFiveTimesTheThreshold) {
+  for (const double time : {0.05, 0.2}) {
+    ManagerSettings settings = unmeasured();
+    settings.sleep.time = time;
+    Manager manager = on_floor(settings);
+    const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}), testing::at({0, 0, 0.1}));
+    EXPECT_NEAR(time_to_rest(manager, body), 5.0 * time, 2.5 * kFrame) << time;
+  }
+}
+
+// Woken it takes its time again, though it never moved.
+TEST(SupportRest, WokenItTakesItsTimeAgain) {
+  Manager manager = on_floor();
+  const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}), testing::at({0, 0, 0.1}));
+  time_to_rest(manager, body);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(manager.asleep(body));
+    manager.wake(body);
+    EXPECT_NEAR(time_to_rest(manager, body), 0.5, 2.5 * kFrame);
+  }
+}
+
+TEST(SupportRest, ScalesWithTheRootOfItsSize) {
+  double drop[2];
+  for (const int large : {0, 1}) {
+    const double side = large ? 0.8 : 0.2;
+    Manager manager = on_floor();
+    const BodyId body =
+        add(manager, box_shape({side, side, side}),
+            testing::at({0, 0, 2 * side}, {0, 0, 0}, {1.0 / std::sqrt(side), 0.5 / std::sqrt(side), 0}));
+    drop[large] = time_to_rest(manager, body, 10.0);
+  }
+  EXPECT_GT(drop[1], 1.2 * drop[0]);
+  EXPECT_LT(drop[1], 4.0 * drop[0]);
+}
+
+TEST(SupportRest, WhoMayNotSleepDoesNot) {
+  Manager manager = on_floor();
+  const BodyId body = manager.add_body({.shape = box_shape({0.2, 0.2, 0.2}),
+                                        .state = testing::at({0, 0, 0.1}),
+                                        .properties = {.allow_sleep = false}});
+  EXPECT_GE(time_to_rest(manager, body, 2.0), 2.0);
+  EXPECT_NEAR(manager.state(body).position.z(), 0.1, 1e-3);
+}
+
+// In free fall at the top of its way it is as slow as one that rests, and falls on.
+TEST(SupportRest, NothingRestsInTheAir) {
+  Manager manager = on_floor();
+  const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}), testing::at({0, 0, 5}, {0, 0, 3}));
+  for (int i = 0; i < 60; ++i) {
+    manager.step(kFrame);
+    EXPECT_FALSE(manager.asleep(body));
+  }
+}
+
+// Without gravity, at rest, it sleeps where it is only if something holds it: alone in space it drifts on.
+TEST(SupportRest, ADriftingBodyDriftsOn) {
+  ManagerSettings settings = unmeasured();
+  settings.gravity = Vec3::Zero();
+  Manager manager(settings);
+  const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}), testing::at({0, 0, 0}, {0.01, 0, 0}));
+  run(manager, 3.0);
+  EXPECT_NEAR(manager.state(body).position.x(), 0.03, 1e-6);
+}
+
+TEST(SupportRest, AKinematicBodyRestsOnceItHasNoVelocity) {
+  Manager manager = on_floor();
+  BodyProperties driven;
+  driven.kinematic = true;
+  const BodyId body = manager.add_body({.shape = box_shape({0.2, 0.2, 0.2}),
+                                        .state = testing::at({0, 0, 3}, {0.5, 0, 0}),
+                                        .properties = driven});
+  run(manager, 1.0);
+  EXPECT_FALSE(manager.asleep(body));
+  EXPECT_NEAR(manager.state(body).position.x(), 0.5, 1e-9);
+  EXPECT_NEAR(manager.state(body).position.z(), 3.0, 1e-12);
+  RigidState stopped = manager.state(body);
+  stopped.velocity.setZero();
+  manager.set_state(body, stopped);
+  EXPECT_LT(time_to_rest(manager, body), 0.1);
+  EXPECT_NEAR(manager.state(body).position.z(), 3.0, 1e-12);
+}
+
+// Turning is cut at the greatest speed, whatever it was given.
+TEST(SupportRest, TheGreatestTurningSpeedIsKept) {
+  ManagerSettings settings = unmeasured();
+  settings.gravity = Vec3::Zero();
+  Manager manager(settings);
+  BodyProperties slow;
+  slow.max_angular_speed = 2.0;
+  const BodyId body = manager.add_body({.shape = sphere_shape(0.2),
+                                        .state = testing::at({0, 0, 0}, {1, 0, 0}, {0, 30, 40}),
+                                        .properties = slow});
+  manager.step(kFrame);
+  EXPECT_NEAR(manager.state(body).angular_velocity.norm(), 2.0, 1e-9);
+  EXPECT_NEAR(manager.state(body).angular_velocity.z() / manager.state(body).angular_velocity.y(), 4.0 / 3,
+              1e-9);
+  EXPECT_EQ(manager.state(body).velocity, Vec3(1, 0, 0));
+}
+
+// Balanced on an edge it may stand for a while; it does not fall asleep there.
+TEST(SupportRest, OnAnEdgeNobodySleeps) {
+  Manager manager = on_floor();
+  const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}),
+                          testing::at({0, 0, 0.1 * std::sqrt(2.0)}, {0, 0, 0}, {0, 0, 0},
+                                      Quat(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitX()))));
+  while (manager.report().step < 600 && !manager.asleep(body)) manager.step(kFrame);
+  if (manager.asleep(body)) {
+    EXPECT_NEAR(manager.state(body).position.z(), 0.1, 2e-3);  // it fell onto a face first
+  }
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,82 @@
+#include "reference/ode/body_joints.h"
+
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include <algorithm>
+
+#include "reference/ode/ode_world.h"
+#include "tests/reference/ode/ode_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using testing::at;
+
+class BodyJoints : public ::testing::Test {
+ protected:
+  OdeBodyId add(const Vec3& place) {
+    return world_.add_body({.shape = testing::box_shape({0.2, 0.2, 0.2}), .state = at(place)});
+  }
+  dxBody* body(OdeBodyId id) const { return world_.ode_body(id); }
+  MaterialTable materials_;
+  OdeWorld world_{{}, materials_};
+};
+
+TEST_F(BodyJoints, AreToldFromBothEnds) {
+  const OdeBodyId a = add({0, 0, 1}), b = add({0.3, 0, 1}), c = add({0.6, 0, 1});
+  EXPECT_FALSE(has_joints(body(a)));
+  join_bodies(body(a), body(b), JointKind::ball, {0.15, 0, 1});
+  join_bodies(body(b), body(c), JointKind::hinge, {0.45, 0, 1}, Vec3::UnitY());
+  EXPECT_EQ(joined_bodies(body(a)), std::vector{body(b)});
+  EXPECT_EQ(joined_bodies(body(c)), std::vector{body(b)});
+  std::vector<dxBody*> of_b = joined_bodies(body(b)), expected{body(a), body(c)};
+  std::ranges::sort(of_b), std::ranges::sort(expected);
+  EXPECT_EQ(of_b, expected);
+  for (const OdeBodyId id : {a, b, c}) EXPECT_TRUE(has_joints(body(id)));
+}
+
+TEST_F(BodyJoints, ToTheWorldIsNull) {
+  const OdeBodyId a = add({0, 0, 1});
+  join_bodies(body(a), nullptr, JointKind::ball, {0, 0, 1.1});
+  EXPECT_EQ(joined_bodies(body(a)), std::vector<dxBody*>{nullptr});
+  EXPECT_TRUE(has_joints(body(a)));
+}
+
+TEST_F(BodyJoints, ContactsAreNone) {
+  const OdeBodyId a = add({0, 0, 1}), b = add({0.3, 0, 1});
+  dContact contact{};
+  contact.surface.mu = 1.0;
+  contact.geom.normal[2] = 1.0;
+  const dJointID joint = dJointCreateContact(dBodyGetWorld(body(a)), nullptr, &contact);
+  dJointAttach(joint, body(a), body(b));
+  EXPECT_EQ(dBodyGetNumJoints(body(a)), 1);
+  EXPECT_TRUE(joined_bodies(body(a)).empty());
+  EXPECT_FALSE(has_joints(body(b)));
+  dJointDestroy(joint);
+}
+
+// A pendulum swings about its anchor at a constant distance; a hinge lets it turn about one axis alone.
+TEST_F(BodyJoints, APendulumKeepsItsLength) {
+  const Vec3 anchor(0, 0, 2);
+  for (const JointKind kind : {JointKind::ball, JointKind::hinge}) {
+    const OdeBodyId a = add({0.4, kind == JointKind::ball ? 0.0 : 5.0, 1.7});
+    const Vec3 there = anchor + Vec3(0, kind == JointKind::ball ? 0.0 : 5.0, 0);
+    join_bodies(body(a), nullptr, kind, there, Vec3::UnitY());
+    double lowest = 2.0;
+    for (int step = 0; step < 240; ++step) {
+      world_.step(1.0 / 480);
+      const RigidState state = world_.state(a);
+      EXPECT_NEAR((state.position - there).norm(), 0.5, 1e-3);
+      if (kind == JointKind::hinge) {
+        EXPECT_NEAR(state.angular_velocity.x(), 0.0, 1e-6);
+        EXPECT_NEAR(state.angular_velocity.z(), 0.0, 1e-6);
+      }
+      lowest = std::min(lowest, state.position.z());
+    }
+    EXPECT_LT(lowest, 1.52);  // it came by below the anchor
+  }
+}
+
+}  // namespace
+}  // namespace lodestone

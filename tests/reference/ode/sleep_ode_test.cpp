@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include "reference/ode/ode_world.h"
+#include "tests/reference/ode/ode_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+struct Bed {
+  explicit Bed(const SleepLaw& law, bool on = true) : world({.auto_disable = on, .sleep = law}, materials) {
+    world.add_plane(Vec3::UnitZ(), 0.0, 0);
+  }
+  double time_to_sleep(OdeBodyId body, double most = 4.0) {
+    double t = 0.0;
+    for (; t < most && !world.asleep(body); t += 1.0 / 60) world.step(1.0 / 60, 4);
+    return t;
+  }
+  MaterialTable materials = material(0.0, 0.5);
+  OdeWorld world;
+};
+
+// A box that lies sleeps after the law's time, however long that is.
+TEST(OdeSleep, ComesAfterTheLawsTime) {
+  for (const double time : {0.1, 0.5, 1.5}) {
+    Bed bed({.time = time});
+    const OdeBodyId box = bed.world.add_body({.shape = box_shape({0.2, 0.2, 0.2}), .state = at({0, 0, 0.1})});
+    EXPECT_NEAR(bed.time_to_sleep(box), time, 0.1) << time;
+  }
+}
+
+TEST(OdeSleep, IsAQuestionOfSpeed) {
+  for (const double speed : {0.02, 0.2}) {
+    // It glides on at .1 m/s, without friction.
+    const MaterialTable materials = material(0.0, 0.0);
+    OdeWorld world({.auto_disable = true, .sleep = {.speed = speed, .turning_speed = speed}}, materials);
+    world.add_plane(Vec3::UnitZ(), 0.0, 0);
+    const OdeBodyId box =
+        world.add_body({.shape = box_shape({0.2, 0.2, 0.2}), .state = at({0, 0, 0.1}, {0.1, 0, 0})});
+    for (int i = 0; i < 90; ++i) world.step(1.0 / 60, 4);
+    EXPECT_EQ(world.asleep(box), speed > 0.1) << speed;
+  }
+}
+
+// In the air, at the top of its flight, nobody sleeps: nothing holds it.
+TEST(OdeSleep, NobodySleepsThatNothingHolds) {
+  Bed bed({.speed = 100.0, .turning_speed = 100.0, .time = 0.05});
+  const OdeBodyId body = bed.world.add_body({.shape = box_shape({0.2, 0.2, 0.2}), .state = at({0, 0, 20})});
+  for (int i = 0; i < 60; ++i) {
+    bed.world.step(1.0 / 60);
+    EXPECT_FALSE(bed.world.asleep(body));
+  }
+}
+
+TEST(OdeSleep, MayBeForbiddenOrOff) {
+  Bed off({}, false), on({});
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  const OdeBodyId never = off.world.add_body({.shape = box, .state = at({0, 0, 0.1})}),
+                  restless = on.world.add_body(
+                      {.shape = box, .state = at({0, 0, 0.1}), .properties = {.allow_sleep = false}}),
+                  other = on.world.add_body({.shape = box, .state = at({2, 0, 0.1})});
+  EXPECT_GE(off.time_to_sleep(never, 2.0), 2.0);
+  EXPECT_LT(on.time_to_sleep(other, 2.0), 1.0);
+  EXPECT_FALSE(on.world.asleep(restless));
+}
+
+TEST(OdeSleep, LawMayChangeOnTheWay) {
+  Bed bed({.time = 100.0});
+  const OdeBodyId box = bed.world.add_body({.shape = box_shape({0.2, 0.2, 0.2}), .state = at({0, 0, 0.1})});
+  EXPECT_GE(bed.time_to_sleep(box, 1.0), 1.0);
+  bed.world.set_sleep_law({.time = 0.1});
+  bed.world.set_asleep(box, true);
+  bed.world.set_asleep(box, false);  // its time begins anew
+  EXPECT_LT(bed.time_to_sleep(box), 0.3);
+}
+
+// Whoever wakes it, through ODE itself too: its time begins anew.
+TEST(OdeSleep, WokenItTakesItsTimeAgain) {
+  Bed bed({.time = 0.5});
+  const OdeBodyId box = bed.world.add_body({.shape = box_shape({0.2, 0.2, 0.2}), .state = at({0, 0, 0.1})});
+  bed.time_to_sleep(box);
+  ASSERT_TRUE(bed.world.asleep(box));
+  dBodyEnable(bed.world.ode_body(box));
+  EXPECT_NEAR(bed.time_to_sleep(box), 0.5, 0.05);
+  bed.world.set_asleep(box, false);
+  EXPECT_NEAR(bed.time_to_sleep(box), 0.5, 0.05);
+}
+
+// At rest it is at rest: no speed is left that a wake would bring back.
+TEST(OdeSleep, PutsAnEndToAllMotion) {
+  Bed bed({.speed = 0.5, .turning_speed = 0.5, .time = 0.05});
+  const OdeBodyId box =
+      bed.world.add_body({.shape = box_shape({0.2, 0.2, 0.2}), .state = at({0, 0, 0.1}, {0.3, 0, 0})});
+  bed.time_to_sleep(box);
+  ASSERT_TRUE(bed.world.asleep(box));
+  EXPECT_EQ(bed.world.state(box).velocity, Vec3(Vec3::Zero()));
+  EXPECT_EQ(bed.world.state(box).angular_velocity, Vec3(Vec3::Zero()));
+}
+
+}  // namespace
+}  // namespace lodestone
