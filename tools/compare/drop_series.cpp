@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "reference/mass_bounds.h"
 #include "tools/compare/drop_row_report.h"
 #include "tools/interrupt.h"
 #include "tools/text_table.h"
@@ -40,6 +41,7 @@ std::vector<Condition> make_conditions() {
       [](DropJob& job, double degrees) { job.conditions.slope = degrees * std::numbers::pi / 180.0; });
   add("size_m", {0.001, 0.01, 0.1, 1.0, 10.0}, [](DropJob& job, double size) {
     job.shape = std::make_shared<const Shape>(scale_shape(*job.shape, size / job.shape->size));
+    job.material.density = std::max(job.material.density, kLeastMass / job.shape->volume * (1.0 + 1e-9));
   });
   return list;
 }

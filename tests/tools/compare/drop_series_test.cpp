@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "reference/mass_bounds.h"
 #include "tests/tools/methods/box_job.h"
 
 namespace lodestone {
@@ -44,6 +45,12 @@ TEST(DropConditions, ASizeIsThatOfTheLongestSide) {
     if (one.name == "size_m=0.001") {
       EXPECT_NEAR(one.job.shape->size, 0.001, 1e-15);
     }
+}
+
+// A box of a millimetre of the usual density weighs less than any rung takes.
+TEST(DropConditions, TheSmallestBodiesAreAsDenseAsABodyMustBe) {
+  for (const DropCase& one : make_condition_cases(box_job()))
+    EXPECT_GE(one.job.material.density * one.job.shape->volume, kLeastMass) << one.name;
 }
 
 TEST(DropSeries, RowsBearTheNamesOfTheirCases) {
