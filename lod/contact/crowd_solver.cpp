@@ -231,6 +231,8 @@ void CrowdSolver::Work::make_batches(std::span<const SolverBody> bodies,
   }
 }
 
+// What PrepareLoop needs of a point lies meanwhile where its own results will: the guess in `tangent`, the
+// gap in `target`, and a 1 in the first `effective_mass` of each lane that has one.
 void CrowdSolver::Work::fill(Batch& batch, std::span<const SolverBody> bodies,
                              std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> contacts) {
   const auto ground = std::int32_t(bodies.size());

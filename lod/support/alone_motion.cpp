@@ -21,7 +21,7 @@ void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> face
   static const HullMotionSettings settings;
   const HullMotion moved = move_on_hull(body, clips_[std::size_t(slot)], kind, step_world, settings_.gravity,
                                         time, moves_by_itself(own), settings);
-  tally = moved.tally;
+  tally += moved.tally;
   if (moved.plays_clip) {
     if (moved.clip_over && settings_.sleeping) put_to_sleep(body);
     return;
