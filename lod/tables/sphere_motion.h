@@ -83,6 +83,11 @@ struct StepConstants {
 /// ms since a body last touched another, up to which it leans on it still.
 inline constexpr int kLeaningTicks = int(1000.0 * RestLaw::kLeaningTime);
 
+/// Of each kind, over mass, body axes, 1/m².
+inline lane::Tensors inverse_inertias_of(const SphereKinds& k) {
+  return {k.ixx.data(), k.iyy.data(), k.izz.data(), k.ixy.data(), k.ixz.data(), k.iyz.data()};
+}
+
 /// Angular velocities, radii, reaches, and velocities with gravity.
 void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
                 std::int64_t begin, std::int64_t end, SphereStep& step, Spheres& out);
