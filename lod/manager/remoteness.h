@@ -19,11 +19,14 @@ struct Limits {
       : full_within(policy.full_within), support_within(policy.support_within) {}  // NOLINT: the same thing
   Limits(const ProjectedSizePolicy& policy)                                        // NOLINT
       : measure(Measure::size),
-        full_within(1.0 / policy.full_above_px),
-        support_within(1.0 / policy.support_above_px) {}
+        full_within(within(policy.full_above_px)),
+        support_within(within(policy.support_above_px)) {}
   Measure measure = Measure::distance;
   double full_within, support_within;
   bool three_rungs() const { return support_within < kInfinity; }
+
+ private:
+  static double within(double above_px) { return above_px > 0.0 ? 1.0 / above_px : kInfinity; }
 };
 /// None for a budget.
 std::optional<Limits> limits_of(const PolicySettings& settings);
