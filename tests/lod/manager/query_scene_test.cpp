@@ -79,7 +79,7 @@ class QueryBodies : public ::testing::Test {
 TEST_F(QueryBodies, RaysMeetTheNearestAndAllOfThem) {
   RandomStream random(72, 0, 0);
   int met = 0, through = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 400; ++i) {
     const Ray ray = draw_ray(random);
     std::vector<std::pair<double, BodyId>> expected;
     for (const BodyId body : bodies_)
