@@ -10,7 +10,8 @@ namespace {
 // Of a pair's reach, the part of the way from the support height, at which two hulls are surely apart, to
 // where the line of centres leaves the hull, at which two faces meet; and the power of the part of its hull
 // that a concave shape fills. Both so that piles of boxes, L-shapes and bunnies are as high as ODE's.
-constexpr double kInward = 0.35, kHollow = 1.0 / 6.0;
+constexpr double kInward = 0.35, kHollow = 1.0 / 3.0;
+constexpr double kRolling = 0.2;  // that piles come to rest when ODE's do
 
 Vec3 direction_at(int column, int row) {
   const double x = 2.0 * column / kHullHeightSide - 1.0, y = 2.0 * row / kHullHeightSide - 1.0,
@@ -38,6 +39,21 @@ double volume_of(const Hull& hull) {
 }
 
 }  // namespace
+
+double find_rolling_lever(const Shape& shape) {
+  if (shape.sphere_radius) return 0.0;
+  double sum = 0.0, solid_angles = 0.0;
+  int vertex = 0;
+  for (int row = 0; row <= kHullHeightSide; ++row)
+    for (int column = 0; column <= kHullHeightSide; ++column) {
+      const Vec3 direction = direction_at(column, row);
+      vertex = find_support(shape.hull, direction, vertex);
+      const double solid_angle = std::pow(direction.lpNorm<1>(), 3.0);  // of the map's equal squares
+      sum += solid_angle * direction.cross(shape.hull.vertices[std::size_t(vertex)]).norm();
+      solid_angles += solid_angle;
+    }
+  return kRolling * sum / solid_angles;
+}
 
 void sample_hull_heights(const Shape& shape, std::span<float> heights, std::span<float> reaches) {
   if (shape.sphere_radius) {

@@ -17,6 +17,11 @@ inline constexpr int kHullHeights = (kHullHeightSide + 1) * (kHullHeightSide + 1
 /// others' centres away, along the line of centres.
 void sample_hull_heights(const Shape& shape, std::span<float> heights, std::span<float> reaches);
 
+/// m, of the rolling resistance of hulls among others: a sphere rolls on where a hull lies on a face or falls
+/// from edge to edge, and each of these holds it by its weight times what its lowest point lies beside the
+/// centre of mass. Part of the mean of that over all directions; 0 of a ball.
+double find_rolling_lever(const Shape& shape);
+
 /// m, along `direction` (body axes, of any length but 0), linear between four samples of the map that begins
 /// at `heights[first]`.
 LODESTONE_INLINE float read_hull_height(const float* heights, int first, lane::F3 direction) {

@@ -177,13 +177,15 @@ float SphereContacts::known_force(const Spheres& spheres, std::uint32_t first, s
 void SphereContacts::recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants,
                             const ContactRun& run) const {
   ContactArrays& c = *run.arrays;
+  const bool none = known_.empty() && known_apart_.empty();
   std::uint32_t last = ~0u, nth = 0;
   for (std::size_t i = run.begin; i < run.end; ++i) {
     nth = c.first[i] == last ? nth + 1 : 0;
     last = c.first[i];
     const bool impact = c.closing[i] < -bounce_velocity;  // is no support
-    c.impulse[i] =
-        impact || known_.empty() ? 0.0f : known_force(spheres, c.first[i], c.second[i], nth) * constants.time;
+    c.impulse[i] = impact || none ? 0.0f
+                                  : constants.remembered * constants.time *
+                                        known_force(spheres, c.first[i], c.second[i], nth);
   }
 }
 

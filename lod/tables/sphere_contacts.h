@@ -78,8 +78,11 @@ struct KnownApart {
 
 struct SphereContactSettings {
   int sweeps = 2,
-      hull_sweeps = 3;     // rounds a step; of the paper's spheres, and of those that know their hulls
-  float touching = 0.01f;  // m over R: gaps up to it are contacts
+      hull_sweeps = 5;  // rounds a step; of the paper's spheres, and of those that know their hulls
+  float remembered = 1.0f,
+        hull_remembered = 0.93f;  // the part of the last step's impulses that contacts begin with: of a body
+                                  // that is wedged in, what presses from all sides would else add up for ever
+  float touching = 0.01f;         // m over R: gaps up to it are contacts
   float slop = 0.002f,
         push_out = 0.5f;  // overlap that stays, over R; part of the rest that is undone in a step
   float parting = 0.1f;  // over √(g R): no faster than so where one of them is eased (parting.h), as spheres

@@ -102,7 +102,7 @@ struct SortLoop {
       const F3 n{nx[p], ny[p], nz[p]}, v{float(vx[i]), float(vy[i]), float(vz[i])};
       const float touching = start[i].w, moving = s[i].x + s[i].y + s[i].z + s[i].w,
                   threshold = c.resting_energy * c.gravity * size[k];
-      const float kept = held[i], weight = pressure[p] * c.time;
+      const float kept = c.remembered * held[i], weight = pressure[p] * c.time;
       // Masks: 0 or −1.
       const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce),
                 others = -int(touching > 0.0f), level = -int(slope[p] == 0.0f);
@@ -118,6 +118,8 @@ struct SortLoop {
   }
 };
 
+// The paper's spheres are answered as they were before the round; those that know their hulls as its contacts
+// left them, so that what is pressed against the ground has no velocity into it in the end.
 template <bool OnePlane>
 struct SweepLoop {
   const SphereGround& ground;
@@ -131,14 +133,16 @@ struct SweepLoop {
     const std::int32_t* plane = step.plane.data();
     const std::uint8_t* on_ground = step.on_ground.data();
     Row* added = step.a.data();
-    const float per_time = 1.0f / c.time;
+    const float per_time = 1.0f / c.time, seen = c.hulls ? 1.0f : 0.0f;
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int p = OnePlane ? 0 : int(plane[i]), state = on_ground[i];
       const float touching = start[i].w;
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)) & (touching > 0.0f);
-      const float speed = start[i].x * nx[p] + start[i].y * ny[p] + start[i].z * nz[p],
-                  shut = least(0.0f, -gap[i] * per_time), before = added[i].w;
+      const F3 v{start[i].x + seen * added[i].x, start[i].y + seen * added[i].y,
+                 start[i].z + seen * added[i].z};
+      const float speed = v.x * nx[p] + v.y * ny[p] + v.z * nz[p], shut = least(0.0f, -gap[i] * per_time),
+                  before = added[i].w;
       const float raised = most(0.0f, before + (shut - speed)), after = choose(lies, raised, before),
                   change = after - before;
       added[i].x += change * nx[p], added[i].y += change * ny[p], added[i].z += change * nz[p],

@@ -17,7 +17,7 @@ void SphereKinds::take(const Kinds& kinds, std::uint32_t kind, double gravity) {
 
 void SphereKinds::resize(std::size_t size) {
   for (auto* array : {&radius, &ixx, &iyy, &izz, &ixy, &ixz, &iyz, &jxx, &jyy, &jzz, &jxy, &jxz, &jyz,
-                      &softest, &farthest_reach, &blend_time})
+                      &softest, &farthest_reach, &rolling_lever, &blend_time})
     array->resize(size, 1.0f);
   height.resize(size * (kHeightSamples + 1));
   pair_reach.resize(size * std::size_t(kHullHeights));
@@ -52,6 +52,7 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   };
   sample_hull_heights(shape, map_of(hull_height), map_of(pair_reach));
   farthest_reach[k] = std::ranges::max(map_of(pair_reach));
+  rolling_lever[k] = float(find_rolling_lever(shape));
   blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
   set_poses(k, kind);
 }

@@ -19,6 +19,7 @@ struct SphereKinds {
   std::vector<float> height;  // kHeightSamples + 1 a kind, m, one more to read beyond the end
   std::vector<float> hull_height, pair_reach;              // kHullHeights a kind, m
   std::vector<float> farthest_reach;                       // m, of pair_reach
+  std::vector<float> rolling_lever;                        // m, of rolling resistance
   std::vector<float> blend_time;                           // s, of the approach to a rest pose
   std::vector<std::int32_t> first_pose;                    // of the kind's rest poses in the next ones
   std::vector<float> pose_height, pose_x, pose_y, pose_z;  // m; normal in body axes; at least one pose a kind

@@ -35,8 +35,9 @@ struct EndLoop {
     std::uint8_t* on_ground = step.on_ground.data();
     std::uint8_t *crowded_for = spheres.crowded_for.data(), *since_crowded = spheres.since_crowded.data();
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
-    const float* size = kinds.radius.data();
-    const double calm = double(most(0.0f, 1.0f - kCalming * c.time)),
+    const float *size = kinds.radius.data(), *lever = kinds.rolling_lever.data();
+    const float rolling = c.hulls ? c.gravity * c.time : 0.0f;  // m/s over the lever
+    const double calm = c.hulls ? 1.0 : double(most(0.0f, 1.0f - kCalming * c.time)),
                  stop = double(most(0.0f, 1.0f - kStopRate * c.time));
     const float least_energy = c.hulls ? kStopping * c.gravity : 0.0f;
     constexpr int kMoved = int(GroundState::moved), kFree = int(GroundState::free),
@@ -55,13 +56,17 @@ struct EndLoop {
       // Among others and off the ground it settles no more.
       motion[i] = std::uint8_t(
           choose(touches & (moves == int(Motion::settling)) & (state == kFree), int(Motion::dynamic), moves));
-      // On others a near-still body just stops (3.4): so do its turns, which spheres would go on with for
-      // ever, and, once it is no faster than what a few rounds of contacts leave undone, itself.
+      // On others a near-still body just stops (3.4): so do the turns of the paper's spheres, which would go
+      // on for ever, and what knows its hull once it is no faster than what a few rounds of contacts leave
+      // undone. A hull there resists rolling by its weight, however fast it turns.
       const bool calms = touches & (crowded > kLying) & (s[i].w < c.resting_energy * c.gravity * size[k]);
       const bool stops = touches & (crowded > kLying) & (s[i].w < least_energy * size[k]);
       crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
       const double stopping = select(-std::int64_t(stops), stop, 1.0);
-      const double kept = select(-std::int64_t(calms), calm, 1.0);
+      const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};
+      const float turning = most(length(turned_to), 1e-20f),
+                  braked = most(0.0f, 1.0f - choose(touches, rolling * lever[k], 0.0f) / turning);
+      const double kept = double(braked) * select(-std::int64_t(calms), calm, 1.0);
       const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)),
                    by_z = kept * (spun_z + double(s[i].z));
       // In flight a body follows its parabola; else the velocity that its contacts left it.

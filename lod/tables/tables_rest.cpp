@@ -2,6 +2,11 @@
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
+namespace {
+
+constexpr float kPartingTime = 0.05f;  // of the time
+
+}  // namespace
 
 void TablesLevel::rest() {
   ++steps_;
@@ -18,13 +23,13 @@ void TablesLevel::rest() {
     const double radius = kind_of(i).shape->radius;
     const bool among_others = spheres_.since_crowded[i] < kLeaningTicks;
     const StatisticalBody body = spheres_.body(i);
-    // Nor while it is still being taken out of an overlap; one that is pressed in again as far as it is taken
-    // out stays where it is.
-    const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
     const bool still =
-        kinetic_energy(body, *kind_of(i).shape) < rest_law_.still_energy(among_others, radius, gravity) &&
-        (!step_.touches(i) || out < rest_law_.sleep_speed(radius));
-    spheres_.quiet[i] = still ? spheres_.quiet[i] + constants_.time : 0.0f;
+        kinetic_energy(body, *kind_of(i).shape) < rest_law_.still_energy(among_others, radius, gravity);
+    // While it is still being taken out of an overlap its time hardly counts; one that is pressed in again as
+    // far as it is taken out stays where it is. In a wedge it may go to and fro for ever.
+    const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
+    const bool parts = step_.touches(i) && out >= rest_law_.sleep_speed(radius);
+    spheres_.quiet[i] = still ? spheres_.quiet[i] + (parts ? kPartingTime : 1.0f) * constants_.time : 0.0f;
     if (spheres_.quiet[i] < rest_law_.still_time(among_others) || (!among_others && !stands(i))) continue;
     fell_asleep_.push_back(spheres_.owner[std::size_t(i)]);
     lay_still(i);

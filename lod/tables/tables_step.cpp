@@ -77,6 +77,8 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
                 .wide_gz = g.z(),
                 .gravity = float(g.norm()),
                 .resting_energy = float(tables_.resting_energy),
+                .remembered = settings_.tables.as_published() ? contacts_.settings().remembered
+                                                              : contacts_.settings().hull_remembered,
                 .update_radius = plain_radius,
                 .ticks = step_ticks,
                 .one_kind = all_kinds_.size() == 1 && one_mass_,
@@ -254,9 +256,10 @@ void TablesLevel::respond(ContactTally& tally) {
   sort_ground();
   if (!crowd) return;
   for (int sweep = 1; sweep <= sweeps(); ++sweep) {
-    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, sweep == sweeps(),
-                    eased_ > 0, simd_, step_, jobs_);
-    if (sweep < sweeps())
+    const bool last = sweep == sweeps();
+    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, last, eased_ > 0, simd_,
+                    step_, jobs_);
+    if (!last)
       each_block([&](std::int64_t begin, std::int64_t end) {
         if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
         take_impulses(simd_, begin, end, step_);

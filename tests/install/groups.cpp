@@ -194,7 +194,9 @@ void jointed_groups_sleep_and_wake_as_one() {
   }
   check::that(all_up && chain.on == 1,
               "a hit on one brings all back, at once, and the caller has joined them again");
-  check::within(widest, 0.0, 0.01, "m, widest gap of a joint through sleep, hit and after");
+  // Its second blow comes at 1.9 m/s on a link that is awake: in the step until ODE's joints answer that goes
+  // on at half of it, 16 mm.
+  check::within(widest, 0.0, 0.016, "m, widest gap of a joint through sleep, hit and after");
   check::within(gap_before, 0.0, 0.005, "m, gap while it slept");
 
   // The camera comes back to a sleeping chain: to the bit where it was.

@@ -57,17 +57,43 @@ TEST(HullHeights, WhatKeepsOthersAwayLiesBetweenSurfaceAndSupport) {
   }
 }
 
-// An L fills .52 of its hull or so: it lets others nearer by the sixth root of that.
+// An L fills .52 of its hull or so: it lets others nearer by the cube root of that.
 TEST(HullHeights, ConcaveShapesLetOthersNearer) {
   const Shape l = make_shape("l", make_l(0.3, 0.2, 0.08, 0.1));
   const Maps maps(l);
   double six_volumes = 0.0;
   for (std::size_t face = 0; face < l.hull.faces.size(); ++face)
     six_volumes += l.hull.face_normal(int(face)).dot(l.hull.vertices[std::size_t(l.hull.faces[face][0])]);
-  const double solid = std::pow(6.0 * l.volume / six_volumes, 1.0 / 6.0);
+  const double solid = std::pow(6.0 * l.volume / six_volumes, 1.0 / 3.0);
   ASSERT_LT(solid, 0.95);
   EXPECT_NEAR(Maps::read(maps.heights, Vec3::UnitZ()), 0.05, 1e-3);
   EXPECT_NEAR(Maps::read(maps.reaches, Vec3::UnitZ()), solid * 0.05, 2e-3);
+}
+
+// A fifth of how far from the line through the centre of mass the lowest corner lies, on average: of a box
+// that corner is where the direction's signs point.
+TEST(RollingLever, IsAFifthOfTheLowestCornersMeanOffset) {
+  for (const Vec3& sides : {Vec3(0.2, 0.2, 0.2), Vec3(0.2, 0.3, 0.4), Vec3(0.1, 0.1, 1.0)}) {
+    RandomStream random(4, 0, 0);
+    constexpr int kDirections = 100'000;
+    double sum = 0.0;
+    for (int i = 0; i < kDirections; ++i) {
+      const Vec3 n = random.direction(), corner = 0.5 * sides.cwiseProduct(n.cwiseSign());
+      sum += (corner - corner.dot(n) * n).norm() / kDirections;
+    }
+    const double lever = find_rolling_lever(*testing::box_shape(sides));
+    EXPECT_NEAR(lever, 0.2 * sum, 0.03 * lever);
+  }
+}
+
+TEST(RollingLever, ABallHasNone) { EXPECT_EQ(find_rolling_lever(make_sphere_shape(0.3)), 0.0); }
+
+// Of 320 faces less than of six, over R.
+TEST(RollingLever, IsLessTheRounderAShapeIs) {
+  const Shape cube = *testing::box_shape({0.2, 0.2, 0.2});
+  const Shape round = make_shape("round", make_sphere(0.1, 2));
+  EXPECT_LT(find_rolling_lever(round) / round.radius, 0.3 * find_rolling_lever(cube) / cube.radius);
+  EXPECT_GT(find_rolling_lever(round), 0.0);
 }
 
 }  // namespace

@@ -190,6 +190,33 @@ TEST(SphereContacts, WhatWasRememberedIsGivenAtOnce) {
   EXPECT_TRUE(scene.step.touches(0) && scene.step.touches(1));
 }
 
+TEST(SphereContacts, OrAsMuchOfItAsTheStepSays) {
+  Balls scene(0.5, 0.0);
+  scene.ball(at({-kRadius, 0, 0}, {0.02, 0, 0}));
+  scene.ball(at({kRadius, 0, 0}, {-0.02, 0, 0}));
+  scene.find(), scene.answer();
+  scene.constants.remembered = 0.75f;
+  scene.find();
+  EXPECT_NEAR(known_impulse(scene), 0.75 * 0.02, 1e-7);
+}
+
+// In a heap in which a single one is awake there are no other contacts.
+TEST(SphereContacts, WhatSleepersBoreIsRememberedToo) {
+  Balls scene(0.5, 0.0);
+  scene.ball(at({-kRadius, 0, 0}, {0.02, 0, 0}));
+  scene.ball(at({kRadius, 0, 0}));
+  scene.spheres.put_to_sleep(1);
+  scene.step.resize(1);
+  const std::pair<std::uint32_t, std::uint32_t> touches[] = {{0, 1}};
+  const auto find = [&] {
+    scene.find();
+    scene.contacts.add(scene.spheres, scene.dense, touches, kBounceVelocity, scene.constants, Simd::portable);
+  };
+  find(), scene.answer();
+  find();
+  EXPECT_NEAR(known_impulse(scene), 0.02, 1e-7);
+}
+
 TEST(SphereContacts, AFilterLetsPairsThrough) {
   Balls scene;
   scene.ball(at({-kRadius, 0, 0}, {1, 0, 0}));

@@ -188,6 +188,23 @@ TEST(SphereGround, ARoundEndsTheApproachAndNeverPulls) {
   }
 }
 
+// What contacts push into the ground in a round stops there in the same one, of spheres that know their
+// hulls; the paper's are answered by what they were before.
+TEST(SphereGround, TheLastRoundLeavesNothingThatMovesIntoTheGround) {
+  for (const bool hulls : {true, false}) {
+    OnPlane scene(at({0, 0, 0}));
+    scene.constants.hulls = hulls;
+    scene.start();
+    scene.step.on_ground[0] = std::uint8_t(GroundState::lies);
+    scene.step.plane[0] = 0, scene.step.gap[0] = 0.0f;
+    scene.step.p[0] = {1.0f, 0.0f, -0.25f, 1.0f};
+    scene.step.a[0] = {0.0f, 0.0f, -0.5f, 0.0f};  // from a contact
+    sweep_ground(scene.ground, scene.constants, Simd::portable, 0, 1, scene.step);
+    EXPECT_NEAR(scene.velocity().z(), hulls ? 0.0 : -0.5, 1e-6);
+    EXPECT_NEAR(scene.step.a[0].w, hulls ? 0.75 : 0.25, 1e-6);
+  }
+}
+
 // Alone it goes down onto the plane at once, and out of it by a quarter of the way.
 TEST(SphereGround, GapsCloseAndOverlapsOpenGradually) {
   for (const auto& [gap, raise] : {std::pair{2e-4, -2e-4}, {-0.02, 0.005}}) {

@@ -109,6 +109,31 @@ TEST(SphereMotion, ATouchedBodyGoesWithWhatItsContactsGave) {
   EXPECT_EQ(scene.spheres.crowded_for[0], 0);
 }
 
+// A hull among others turns on its edges: its weight takes g t times the lever off its spin in each step,
+// along the spin, until there is none.
+TEST(SphereMotion, AHullAmongOthersResistsRolling) {
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  const double loss = find_rolling_lever(*box) * kGravity / 60.0;
+  for (const bool hulls : {true, false})
+    for (const bool touches : {true, false}) {
+      SphereScene scene;
+      scene.constants.hulls = hulls;
+      scene.add(box, 1.0, at({0, 0, 9}, {0, 0, 0}, {3, 0, 4}));
+      const Vec3 before = scene.spheres.spin(0);
+      const auto step = [&] {
+        scene.start();
+        scene.step.p[0].w = touches ? 1.0f : 0.0f;
+        scene.end();
+      };
+      step();
+      const double expected = hulls && touches ? 1.0 - loss / before.norm() : 1.0;
+      EXPECT_LT((scene.spheres.spin(0) - expected * before).norm(), 1e-6 * before.norm());
+      if (!hulls || !touches) continue;
+      for (int i = 0; i < int(before.norm() / loss); ++i) step();
+      EXPECT_EQ(scene.spheres.spin(0), Vec3(Vec3::Zero()));
+    }
+}
+
 TEST(SphereMotion, BodiesAlreadyMovedAreLeftAlone) {
   SphereScene scene;
   scene.add(box_shape({0.2, 0.3, 0.4}), 1.0, at({1, 2, 3}, {4, 5, 6}, {7, 8, 9}));
