@@ -23,7 +23,8 @@ struct TouchLoop {
                  *vy = spheres.vy.data(), *vz = spheres.vz.data();
     const float *radius = spheres.radius.data(), *size = kinds.radius.data();
     [[maybe_unused]] const float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(),
-                                 *qz = spheres.qz.data(), *reach = kinds.pair_reach.data();
+                                 *qz = spheres.qz.data(), *height = kinds.pair_height.data();
+    [[maybe_unused]] const Row* face = kinds.pair_face.data();
     [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
     alignas(64) float bx[kChunk]{}, by[kChunk]{}, bz[kChunk]{}, ux[kChunk]{}, uy[kChunk]{}, uz[kChunk]{},
         limit[kChunk]{}, first_arm[kChunk]{}, second_arm[kChunk]{};
@@ -54,16 +55,16 @@ struct TouchLoop {
         const float distance = square_root(bx[i] * bx[i] + by[i] * by[i] + bz[i] * bz[i]);
         const float inverse = 1.0f / most(distance, 1e-12f);
         const bool apart = distance > 1e-12f;
-        const F3 normal{choose(apart, bx[i] * inverse, 0.0f), choose(apart, by[i] * inverse, 0.0f),
-                        choose(apart, bz[i] * inverse, 1.0f)};
+        F3 normal{choose(apart, bx[i] * inverse, 0.0f), choose(apart, by[i] * inverse, 0.0f),
+                  choose(apart, bz[i] * inverse, 1.0f)};
+        float between = distance - first_arm[i] - second_arm[i];
         if constexpr (Oriented) {
-          const Turn to_first{first_w[i], {-first_x[i], -first_y[i], -first_z[i]}},
-              to_second{second_w[i], {-second_x[i], -second_y[i], -second_z[i]}};
-          first_arm[i] =
-              read_hull_height(reach, OneKind ? 0 : first_map[i], turned(to_first, -1.0f * normal));
-          second_arm[i] = read_hull_height(reach, OneKind ? 0 : second_map[i], turned(to_second, normal));
+          const HullSeparation found = separate_hulls(
+              height, face, {OneKind ? 0 : first_map[i], {first_w[i], {first_x[i], first_y[i], first_z[i]}}},
+              {OneKind ? 0 : second_map[i], {second_w[i], {second_x[i], second_y[i], second_z[i]}}}, normal,
+              distance);
+          normal = found.normal, between = found.gap;
         }
-        const float between = distance - first_arm[i] - second_arm[i];
         const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
         nx[i] = normal.x, ny[i] = normal.y, nz[i] = normal.z;
         gap[i] = between, closing[i] = speed;

@@ -7,10 +7,9 @@
 namespace lodestone {
 namespace {
 
-// Of a pair's reach, the part of the way from the support height, at which two hulls are surely apart, to
-// where the line of centres leaves the hull, at which two faces meet; and the power of the part of its hull
-// that a concave shape fills. Both so that piles of boxes, L-shapes and bunnies are as high as ODE's.
-constexpr double kInward = 0.35, kHollow = 1.0 / 3.0;
+// Of the part of its hull that a concave shape fills, the power by which others meet it as smaller: so that
+// piles of L-shapes and bunnies are as high as ODE's.
+constexpr double kHollow = 1.0 / 3.0;
 constexpr double kRolling = 0.2;  // that piles come to rest when ODE's do
 
 Vec3 direction_at(int column, int row) {
@@ -20,15 +19,17 @@ Vec3 direction_at(int column, int row) {
   return Vec3(std::copysign(1.0 - std::abs(y), x), std::copysign(1.0 - std::abs(x), y), z).normalized();
 }
 
-// m, to where a ray from the centre of mass leaves the hull.
-double find_way_out(const Hull& hull, const Vec3& direction) {
-  double way = std::numeric_limits<double>::infinity();
+// The plane, normal and distance, of the face through which a ray from the centre of mass leaves it.
+lane::Row find_way_out(const Hull& hull, const Vec3& direction) {
+  double way = std::numeric_limits<double>::infinity(), distance = 0.0;
+  Vec3 out = direction;
   for (std::size_t face = 0; face < hull.faces.size(); ++face) {
-    const Vec3 normal = hull.face_normal(int(face));
-    const double along = normal.dot(direction);
-    if (along > 0.0) way = std::min(way, normal.dot(hull.vertices[std::size_t(hull.faces[face][0])]) / along);
+    const Vec3 normal = hull.face_normal(int(face)).normalized();
+    const double along = normal.dot(direction),
+                 offset = normal.dot(hull.vertices[std::size_t(hull.faces[face][0])]);
+    if (along > 0.0 && offset / along < way) way = offset / along, distance = offset, out = normal;
   }
-  return way;
+  return {float(out.x()), float(out.y()), float(out.z()), float(distance)};
 }
 
 double volume_of(const Hull& hull) {
@@ -55,24 +56,26 @@ double find_rolling_lever(const Shape& shape) {
   return kRolling * sum / solid_angles;
 }
 
-void sample_hull_heights(const Shape& shape, std::span<float> heights, std::span<float> reaches) {
-  if (shape.sphere_radius) {
-    std::ranges::fill(heights, float(*shape.sphere_radius));
-    std::ranges::fill(reaches, float(*shape.sphere_radius));
-    return;
-  }
-  const Hull& hull = shape.hull;
-  const double solid = std::pow(std::min(1.0, shape.volume / volume_of(hull)), kHollow);
+void sample_hull(const Shape& shape, const HullMaps& maps) {
+  const double solid =
+      shape.sphere_radius ? 1.0 : std::pow(std::min(1.0, shape.volume / volume_of(shape.hull)), kHollow);
   int vertex = 0;  // each climb begins where the last one ended
   std::size_t at = 0;
   for (int row = 0; row <= kHullHeightSide; ++row)
     for (int column = 0; column <= kHullHeightSide; ++column, ++at) {
       const Vec3 direction = direction_at(column, row);
-      vertex = find_support(hull, direction, vertex);
-      const double height = hull.vertices[std::size_t(vertex)].dot(direction);
-      heights[at] = float(height);
-      const double way_out = std::min(height, find_way_out(hull, direction));
-      reaches[at] = float(solid * (height + kInward * (way_out - height)));
+      lane::Row& face = maps.pair_face[at];
+      if (shape.sphere_radius) {
+        maps.height[at] = float(*shape.sphere_radius);
+        face = {float(direction.x()), float(direction.y()), float(direction.z()),
+                float(*shape.sphere_radius)};
+      } else {
+        vertex = find_support(shape.hull, direction, vertex);
+        maps.height[at] = float(shape.hull.vertices[std::size_t(vertex)].dot(direction));
+        face = find_way_out(shape.hull, direction);
+        face.w = float(solid * double(face.w));
+      }
+      maps.pair_height[at] = float(solid * double(maps.height[at]));
     }
 }
 

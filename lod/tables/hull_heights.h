@@ -6,6 +6,7 @@
 #include <span>
 
 #include "lod/simd/lane_math.h"
+#include "lod/simd/row.h"
 #include "reference/shape.h"
 
 namespace lodestone {
@@ -13,19 +14,30 @@ namespace lodestone {
 inline constexpr int kHullHeightSide = 24;  // cells along an edge of the map: 5° apart on average
 inline constexpr int kHullHeights = (kHullHeightSide + 1) * (kHullHeightSide + 1);
 
-/// Of kHullHeights directions, m: how far the hull reaches, as the ground meets it, and how far it keeps
-/// others' centres away, along the line of centres.
-void sample_hull_heights(const Shape& shape, std::span<float> heights, std::span<float> reaches);
+/// Of kHullHeights directions, body axes. What others meet is smaller, by the same factor all over, where the
+/// mesh does not fill its hull.
+struct HullMaps {
+  std::span<float> height;         ///< m: how far the hull reaches, as the ground meets it
+  std::span<float> pair_height;    ///< m, as others meet it
+  std::span<lane::Row> pair_face;  ///< the face through which the direction leaves it: its normal, and in w
+                                   ///< its distance, m
+};
+void sample_hull(const Shape& shape, const HullMaps& maps);
 
 /// m, of the rolling resistance of hulls among others: a sphere rolls on where a hull lies on a face or falls
 /// from edge to edge, and each of these holds it by its weight times what its lowest point lies beside the
 /// centre of mass. Part of the mean of that over all directions; 0 of a ball.
 double find_rolling_lever(const Shape& shape);
 
-/// m, along `direction` (body axes, of any length but 0), linear between four samples of the map that begins
-/// at `heights[first]`.
-LODESTONE_INLINE float read_hull_height(const float* heights, int first, lane::F3 direction) {
-  using namespace lane;
+namespace lane {
+
+/// Where a direction (of any length but 0) lies in a map: the first of four samples about it, how far it is
+/// from that towards the next ones, and the nearest of them.
+struct MapPlace {
+  int first, nearest;
+  float s, t;
+};
+LODESTONE_INLINE MapPlace place_in_map(F3 direction) {
   const float whole = absolute(direction.x) + absolute(direction.y) + absolute(direction.z),
               scale = 1.0f / most(whole, 1e-30f);
   const float x = direction.x * scale, y = direction.y * scale;
@@ -37,10 +49,56 @@ LODESTONE_INLINE float read_hull_height(const float* heights, int first, lane::F
   const float u = (choose(below, over_x, x) + 1.0f) * kHalf, v = (choose(below, over_y, y) + 1.0f) * kHalf;
   const int column = int(least(u, kLast)), row = int(least(v, kLast));
   const float s = u - float(column), t = v - float(row);
-  const int at = first + row * (kHullHeightSide + 1) + column, next = at + kHullHeightSide + 1;
-  const float low = heights[at] + s * (heights[at + 1] - heights[at]),
-              high = heights[next] + s * (heights[next + 1] - heights[next]);
-  return low + t * (high - low);
+  const int first = row * (kHullHeightSide + 1) + column;
+  return {first, first + int(s + 0.5f) + (kHullHeightSide + 1) * int(t + 0.5f), s, t};
+}
+
+/// Linear between the four samples of the map that begins at `heights[map]`.
+LODESTONE_INLINE float read_map(const float* heights, int map, const MapPlace& place) {
+  const int at = map + place.first, next = at + kHullHeightSide + 1;
+  const float low = heights[at] + place.s * (heights[at + 1] - heights[at]),
+              high = heights[next] + place.s * (heights[next + 1] - heights[next]);
+  return low + place.t * (high - low);
+}
+
+/// Where the maps of its kind begin, and how it is turned.
+struct MappedHull {
+  int map;
+  Turn turn;
+};
+struct HullSeparation {
+  F3 normal;  ///< from the second to the first
+  float gap;  ///< m, negative: overlap
+};
+/// Of two hulls whose centres of mass are `distance` apart along `line`, from the second to the first: the
+/// best of three separating axes, the line itself and the normals of the faces through which it leaves the
+/// two, so that what lies on a face is held by that face. No more than the hulls' distance.
+LODESTONE_INLINE HullSeparation separate_hulls(const float* heights, const Row* faces,
+                                               const MappedHull& first, const MappedHull& second, F3 line,
+                                               float distance) {
+  const MapPlace from_first = place_in_map(turned(back(first.turn), -1.0f * line)),
+                 from_second = place_in_map(turned(back(second.turn), line));
+  const int out_first = first.map + from_first.nearest, out_second = second.map + from_second.nearest;
+  const F3 of_first =
+               -1.0f * turned(first.turn, {faces[out_first].x, faces[out_first].y, faces[out_first].z}),
+           of_second = turned(second.turn, {faces[out_second].x, faces[out_second].y, faces[out_second].z});
+  const float by_line = distance - read_map(heights, first.map, from_first) -
+                        read_map(heights, second.map, from_second),
+              by_first = distance * dot(of_first, line) - faces[out_first].w -
+                         read_map(heights, second.map, place_in_map(turned(back(second.turn), of_first))),
+              by_second =
+                  distance * dot(of_second, line) - faces[out_second].w -
+                  read_map(heights, first.map, place_in_map(turned(back(first.turn), -1.0f * of_second)));
+  const float by_face = most(by_first, by_second);
+  return {choose(by_line > by_face, line, choose(by_first > by_second, of_first, of_second)),
+          most(by_line, by_face)};
+}
+
+}  // namespace lane
+
+/// m, along `direction` (body axes, of any length but 0), of the map that begins at `heights[first]`.
+LODESTONE_INLINE float read_hull_height(const float* heights, int first, lane::F3 direction) {
+  return lane::read_map(heights, first, lane::place_in_map(direction));
 }
 
 }  // namespace lodestone

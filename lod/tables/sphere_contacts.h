@@ -78,9 +78,9 @@ struct KnownApart {
 
 struct SphereContactSettings {
   int sweeps = 2,
-      hull_sweeps = 5;  // rounds a step; of the paper's spheres, and of those that know their hulls
+      hull_sweeps = 6;  // rounds a step; of the paper's spheres, and of those that know their hulls
   float remembered = 1.0f,
-        hull_remembered = 0.93f;  // the part of the last step's impulses that contacts begin with: of a body
+        hull_remembered = 0.97f;  // the part of the last step's impulses that contacts begin with: of a body
                                   // that is wedged in, what presses from all sides would else add up for ever
   float touching = 0.01f;         // m over R: gaps up to it are contacts
   float slop = 0.002f,

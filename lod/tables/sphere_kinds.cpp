@@ -20,7 +20,8 @@ void SphereKinds::resize(std::size_t size) {
                       &softest, &farthest_reach, &rolling_lever, &blend_time})
     array->resize(size, 1.0f);
   height.resize(size * (kHeightSamples + 1));
-  pair_reach.resize(size * std::size_t(kHullHeights));
+  pair_height.resize(size * std::size_t(kHullHeights));
+  pair_face.resize(size * std::size_t(kHullHeights));
   hull_height.resize(size * std::size_t(kHullHeights));
   material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size),
       is_slender_.resize(size);
@@ -47,11 +48,11 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   };
   for (int i = 0; i <= kHeightSamples; ++i)
     height[k * std::size_t(kHeightSamples + 1) + std::size_t(i)] = float(height_at(i) * shape.radius);
-  const auto map_of = [&](std::vector<float>& maps) {
+  const auto map_of = [&](auto& maps) {
     return std::span(maps).subspan(k * std::size_t(kHullHeights), kHullHeights);
   };
-  sample_hull_heights(shape, map_of(hull_height), map_of(pair_reach));
-  farthest_reach[k] = std::ranges::max(map_of(pair_reach));
+  sample_hull(shape, {map_of(hull_height), map_of(pair_height), map_of(pair_face)});
+  farthest_reach[k] = std::ranges::max(map_of(pair_height));
   rolling_lever[k] = float(find_rolling_lever(shape));
   blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
   set_poses(k, kind);

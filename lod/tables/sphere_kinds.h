@@ -17,8 +17,9 @@ struct SphereKinds {
   std::vector<float> jxx, jyy, jzz, jxy, jxz, jyz;  // inertia over mass, m²
   std::vector<float> softest;                       // its greatest eigenvalue, 1/m²
   std::vector<float> height;  // kHeightSamples + 1 a kind, m, one more to read beyond the end
-  std::vector<float> hull_height, pair_reach;              // kHullHeights a kind, m
-  std::vector<float> farthest_reach;                       // m, of pair_reach
+  std::vector<float> hull_height, pair_height;             // kHullHeights a kind, m: HullMaps
+  std::vector<lane::Row> pair_face;                        // as many
+  std::vector<float> farthest_reach;                       // m, of pair_height
   std::vector<float> rolling_lever;                        // m, of rolling resistance
   std::vector<float> blend_time;                           // s, of the approach to a rest pose
   std::vector<std::int32_t> first_pose;                    // of the kind's rest poses in the next ones

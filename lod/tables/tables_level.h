@@ -153,8 +153,9 @@ class TablesLevel {
     return constants_.hulls ? contacts_.settings().hull_sweeps : contacts_.settings().sweeps;
   }
   float ground_height(std::int64_t place, const Vec3& direction) const;
-  float pair_reach(std::int64_t place, const Vec3& direction) const;
+  float pair_height(std::int64_t place, const Vec3& direction) const;
   float read_heights(const std::vector<float>& heights, std::int64_t place, const Vec3& direction) const;
+  std::pair<Vec3, double> separate(std::int64_t first, std::int64_t second) const;
   void respond_as_paper(ContactTally& tally);
   void start_block(std::int64_t begin, std::int64_t end, Simd simd);
   void sort_ground();

@@ -202,8 +202,8 @@ float TablesLevel::ground_height(std::int64_t place, const Vec3& direction) cons
                           : spheres_.radius[std::size_t(place)];
 }
 
-float TablesLevel::pair_reach(std::int64_t place, const Vec3& direction) const {
-  return constants_.hulls ? read_heights(kinds_.pair_reach, place, direction)
+float TablesLevel::pair_height(std::int64_t place, const Vec3& direction) const {
+  return constants_.hulls ? read_heights(kinds_.pair_height, place, direction)
                           : spheres_.radius[std::size_t(place)];
 }
 
@@ -212,6 +212,25 @@ float TablesLevel::read_heights(const std::vector<float>& heights, std::int64_t 
   const Vec3 own = spheres_.orientation(place).conjugate() * direction;
   return read_hull_height(heights.data(), int(spheres_.kind[std::size_t(place)]) * kHullHeights,
                           {float(own.x()), float(own.y()), float(own.z())});
+}
+
+/// The way from the second to the first along which they are apart the most, and how far, m.
+std::pair<Vec3, double> TablesLevel::separate(std::int64_t first, std::int64_t second) const {
+  const Vec3 between = spheres_.position(first) - spheres_.position(second);
+  const double distance = between.norm();
+  const Vec3 along = distance > 1e-12 ? Vec3(between / distance) : Vec3(Vec3::UnitZ());
+  if (!constants_.hulls)
+    return {along, distance - double(spheres_.radius[std::size_t(first)]) -
+                       double(spheres_.radius[std::size_t(second)])};
+  const auto placed = [&](std::int64_t place) {
+    const std::size_t i = std::size_t(place);
+    return lane::MappedHull{int(spheres_.kind[i]) * kHullHeights,
+                            {spheres_.qw[i], {spheres_.qx[i], spheres_.qy[i], spheres_.qz[i]}}};
+  };
+  const lane::HullSeparation found =
+      lane::separate_hulls(kinds_.pair_height.data(), kinds_.pair_face.data(), placed(first), placed(second),
+                           {float(along.x()), float(along.y()), float(along.z())}, float(distance));
+  return {Vec3(double(found.normal.x), double(found.normal.y), double(found.normal.z)), double(found.gap)};
 }
 
 // Of awake bodies with sleepers; those that are hit hard enough wake.
@@ -238,11 +257,9 @@ void TablesLevel::find_still_contacts() {
   for (const auto& [place, slot] : still_touches_) {
     const std::int64_t at = spheres_.place_of_slot[slot];
     if (at < spheres_.awake) continue;
-    const Vec3 between = spheres_.position(place) - spheres_.position(at);
-    const double gap = between.norm() - double(pair_reach(place, -between)) - double(pair_reach(at, between));
+    const auto [normal, gap] = separate(place, at);
     const Vec3 velocity = spheres_.velocity(place);
-    const double closing = velocity.dot(between.normalized());
-    const bool touches = gap + closing * double(constants_.time) <=
+    const bool touches = gap + velocity.dot(normal) * constants_.wide_time <=
                          0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
     if (touches && velocity.norm() > rest_law_.wake_speed(kind_of(at).shape->radius)) wake(int(slot));
   }
@@ -285,7 +302,7 @@ void TablesLevel::write_contacts() {
     }
     log_->add({.first = spheres_.owner[c.first],
                .second = spheres_.owner[c.second],
-               .point = spheres_.position(c.first) - double(pair_reach(c.first, -normal)) * normal,
+               .point = spheres_.position(c.first) - double(pair_height(c.first, -normal)) * normal,
                .normal = normal,
                .impulse = double(c.impulse),
                .approach = std::max(0.0, -double(c.closing))});
@@ -431,8 +448,11 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Pl
     tally += move_over_ground(i, body, around, rides, joined);
   } else {
     become_sphere(i, body);
-    if (step_.touches(i) || spheres_.since_crowded[i] < kLeaningTicks)
-      body.sphere_radius = ground_height(i, -plane(step_.plane[i]).normal);
+    if (constants_.hulls && (step_.touches(i) || spheres_.since_crowded[i] < kLeaningTicks)) {
+      // As high as its hull is over that plane; the others that it meets are among its contacts.
+      around.planes = {&plane(step_.plane[i]), 1};
+      body.sphere_radius = ground_height(i, -around.planes[0].normal);
+    }
     tally += step_tables_body(body, resting, kind_of(i), around, constants_.wide_time, tables_);
   }
   if (rides) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lod/contact/hull_gap.h"
 #include "reference/random.h"
 #include "tests/reference/ode/ode_fixture.h"
 
@@ -9,12 +10,13 @@ namespace lodestone {
 namespace {
 
 struct Maps {
-  explicit Maps(const Shape& shape) { sample_hull_heights(shape, heights, reaches); }
+  explicit Maps(const Shape& shape) { sample_hull(shape, {heights, pair_heights, faces}); }
   static double read(const std::vector<float>& map, const Vec3& direction) {
     return double(
         read_hull_height(map.data(), 0, {float(direction.x()), float(direction.y()), float(direction.z())}));
   }
-  std::vector<float> heights = std::vector<float>(kHullHeights), reaches = heights;
+  std::vector<float> heights = std::vector<float>(kHullHeights), pair_heights = heights;
+  std::vector<lane::Row> faces = std::vector<lane::Row>(kHullHeights);
 };
 
 TEST(HullHeights, OfABallAreItsRadius) {
@@ -22,7 +24,7 @@ TEST(HullHeights, OfABallAreItsRadius) {
   RandomStream random(1, 0, 0);
   for (int i = 0; i < 100; ++i) {
     EXPECT_FLOAT_EQ(float(Maps::read(maps.heights, random.direction())), 0.3f);
-    EXPECT_FLOAT_EQ(float(Maps::read(maps.reaches, random.direction())), 0.3f);
+    EXPECT_FLOAT_EQ(float(Maps::read(maps.pair_heights, random.direction())), 0.3f);
   }
 }
 
@@ -33,7 +35,7 @@ TEST(HullHeights, OfABoxAreItsSupportFunction) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0}) {
       EXPECT_NEAR(Maps::read(maps.heights, sign * Vec3::Unit(axis)), 0.5 * sides[axis], 2e-3) << axis;
-      EXPECT_NEAR(Maps::read(maps.reaches, sign * Vec3::Unit(axis)), 0.5 * sides[axis], 2e-3) << axis;
+      EXPECT_NEAR(Maps::read(maps.pair_heights, sign * Vec3::Unit(axis)), 0.5 * sides[axis], 2e-3) << axis;
     }
   RandomStream random(2, 0, 0);
   double worst = 0.0;
@@ -45,16 +47,67 @@ TEST(HullHeights, OfABoxAreItsSupportFunction) {
   EXPECT_LT(worst, 0.012);  // 4 % of the greatest
 }
 
-// .35 of the way from the support height to where the line leaves the hull: of a cube's corner both are √3/2.
-TEST(HullHeights, WhatKeepsOthersAwayLiesBetweenSurfaceAndSupport) {
+// A cube's face through which a direction leaves it is that of its largest component.
+TEST(HullHeights, TheFaceIsWhereTheDirectionLeavesTheHull) {
   const Maps cube(*testing::box_shape({1, 1, 1}));
-  EXPECT_NEAR(Maps::read(cube.reaches, Vec3(1, 1, 1)), std::sqrt(0.75), 0.02);
   RandomStream random(3, 0, 0);
   for (int i = 0; i < 500; ++i) {
     const Vec3 n = random.direction();
-    const double support = 0.5 * n.lpNorm<1>(), surface = 0.5 / n.lpNorm<Eigen::Infinity>();
-    EXPECT_NEAR(Maps::read(cube.reaches, n), support + 0.35 * (surface - support), 0.03);
+    int axis = 0;
+    const double largest = n.cwiseAbs().maxCoeff(&axis);
+    if (largest - (n - n[axis] * Vec3::Unit(axis)).cwiseAbs().maxCoeff() < 0.2) continue;  // near an edge
+    const lane::F3 direction{float(n.x()), float(n.y()), float(n.z())};
+    const lane::Row& face = cube.faces[std::size_t(lane::place_in_map(direction).nearest)];
+    const Vec3 normal(double(face.x), double(face.y), double(face.z));
+    EXPECT_LT((normal - std::copysign(1.0, n[axis]) * Vec3::Unit(axis)).norm(), 1e-6);
+    EXPECT_FLOAT_EQ(face.w, 0.5f);
   }
+}
+
+lane::HullSeparation separate(const Maps& maps, const RigidState& first, const RigidState& second) {
+  const auto placed = [](const RigidState& s) {
+    const Quat& q = s.orientation;
+    return lane::MappedHull{0, {float(q.w()), {float(q.x()), float(q.y()), float(q.z())}}};
+  };
+  const Vec3 between = first.position - second.position, line = between.normalized();
+  return lane::separate_hulls(maps.pair_heights.data(), maps.faces.data(), placed(first), placed(second),
+                              {float(line.x()), float(line.y()), float(line.z())}, float(between.norm()));
+}
+
+// Boxes that lie on each other somewhat askew are held by the face, however far aside the upper one is.
+TEST(HullSeparation, WhatLiesOnAFaceIsHeldByIt) {
+  const Maps maps(*testing::box_shape({0.2, 0.3, 0.4}));
+  for (const double aside : {0.0, 0.03, 0.08}) {
+    RigidState above, below;
+    above.position = {aside, 0.5 * aside, 0.41};
+    above.orientation = rotation_from_vector(Vec3(0, 0, 0.7));
+    const lane::HullSeparation found = separate(maps, above, below);
+    EXPECT_NEAR(found.gap, 0.01, 1e-3) << aside;
+    EXPECT_NEAR(found.normal.z, 1.0, 1e-3);
+  }
+}
+
+// No more than the distance of the hulls, within what the map's 5 degrees make of it, and mostly near it.
+TEST(HullSeparation, IsNoMoreThanTheHullsDistance) {
+  const auto box = testing::box_shape({0.2, 0.3, 0.4});
+  const Maps maps(*box);
+  double off = 0.0;
+  constexpr int kPairs = 2'000;
+  for (int i = 0; i < kPairs; ++i) {
+    RandomStream random(5, std::uint64_t(i), 0);
+    RigidState first, second;
+    first.orientation = random.orientation(), second.orientation = random.orientation();
+    first.position = random.uniform(0.3, 0.6) * random.direction();
+    const double distance =
+        find_hull_gap({*box, first.position, first.orientation}, {*box, second.position, second.orientation},
+                      {.normal = Vec3::Zero()}, 1e300, true)
+            .gap;
+    const double found = double(separate(maps, first, second).gap);
+    EXPECT_LT(found, distance + 0.03 * box->size);
+    off += (distance - found) / kPairs;
+  }
+  EXPECT_LT(off, 0.05 * box->size);
+  std::printf("off %g\n", off / box->size);
 }
 
 // An L fills .52 of its hull or so: it lets others nearer by the cube root of that.
@@ -67,7 +120,7 @@ TEST(HullHeights, ConcaveShapesLetOthersNearer) {
   const double solid = std::pow(6.0 * l.volume / six_volumes, 1.0 / 3.0);
   ASSERT_LT(solid, 0.95);
   EXPECT_NEAR(Maps::read(maps.heights, Vec3::UnitZ()), 0.05, 1e-3);
-  EXPECT_NEAR(Maps::read(maps.reaches, Vec3::UnitZ()), solid * 0.05, 2e-3);
+  EXPECT_NEAR(Maps::read(maps.pair_heights, Vec3::UnitZ()), solid * 0.05, 2e-3);
 }
 
 // A fifth of how far from the line through the centre of mass the lowest corner lies, on average: of a box

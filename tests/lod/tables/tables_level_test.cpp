@@ -98,6 +98,9 @@ TEST_F(SphereLevel, AWarmStepAllocatesNothing) {
     testing::OneRung level = make();
     add_heap(level, 12, 4);
     run(level, 400);
+    // A heap that is kept awake falls into itself, to ever more contacts: with fewer bodies it has fewer.
+    for (int i = 0; i < 60; ++i) level.remove(level.size() - 1);
+    run(level, 1);
     const std::int64_t before = allocations();
     run(level, 50);
     EXPECT_EQ(allocations() - before, 0);
@@ -201,7 +204,7 @@ TEST_F(SphereLevel, ABinComesToRestInItsTime) {
 }
 
 // Bodies of different sizes lie in different grids: what their contacts gave is remembered, too: the great
-// one sinks in by .51 R of a small one, else by .61.
+// one sinks in by .012 R of a small one, else by .022.
 TEST_F(SphereLevel, AGreatBodyRestsOnSmallOnes) {
   settings_.sleeping = false;
   testing::OneRung level = make();
@@ -220,12 +223,11 @@ TEST_F(SphereLevel, AGreatBodyRestsOnSmallOnes) {
     run(level, 1);
     if (step < 100) continue;
     for (int a = 0; a < slot; ++a)
-      worst = std::max(worst, level.sphere_radius(a) + level.sphere_radius(slot) -
-                                  (level.position(a) - level.position(slot)).norm());
+      worst = std::max(worst, measure_hull_overlap(*box(), level.state(a), *great, level.state(slot)));
   }
-  std::printf("deepest %.3f R\n", worst / box()->radius);
+  std::printf("deepest %.4f R\n", worst / box()->radius);
   EXPECT_GT(worst, 0.0);
-  EXPECT_LT(worst, 0.56 * box()->radius);
+  EXPECT_LT(worst, 0.017 * box()->radius);
 }
 
 // About its long axis a needle turns hundreds of times as easily as across it: a rule that is only of second
