@@ -8,6 +8,7 @@ namespace {
 using namespace lane;
 
 constexpr auto kChunk = std::int64_t(kContactChunk);
+constexpr std::int64_t kLanes = 16;
 
 template <bool OneKind, bool Oriented>
 struct TouchLoop {
@@ -33,6 +34,16 @@ struct TouchLoop {
     [[maybe_unused]] alignas(64) std::int32_t first_map[kChunk]{}, second_map[kChunk]{};
     alignas(64) float nx[kChunk], ny[kChunk], nz[kChunk], gap[kChunk], closing[kChunk];
     alignas(64) std::int32_t touches[kChunk];
+    [[maybe_unused]] alignas(64) float apart_by[kChunk], face_x[kChunk], face_y[kChunk], face_z[kChunk],
+        face_gap[kChunk], face_closing[kChunk];
+    [[maybe_unused]] alignas(64) std::int32_t face_touches[kChunk];
+    [[maybe_unused]] const auto first_hull = [&](std::int64_t i) {
+      return MappedHull{OneKind ? 0 : first_map[i], {first_w[i], {first_x[i], first_y[i], first_z[i]}}};
+    };
+    [[maybe_unused]] const auto second_hull = [&](std::int64_t i) {
+      return MappedHull{OneKind ? 0 : second_map[i], {second_w[i], {second_x[i], second_y[i], second_z[i]}}};
+    };
+    [[maybe_unused]] alignas(64) std::int32_t first_face[kChunk], second_face[kChunk], kept[kChunk]{};
     std::size_t count = out.count;
     for (std::int64_t chunk = begin; chunk < end; chunk += kChunk) {
       const std::int64_t n = std::min(kChunk, end - chunk);
@@ -55,22 +66,46 @@ struct TouchLoop {
         const float distance = square_root(bx[i] * bx[i] + by[i] * by[i] + bz[i] * bz[i]);
         const float inverse = 1.0f / most(distance, 1e-12f);
         const bool apart = distance > 1e-12f;
-        F3 normal{choose(apart, bx[i] * inverse, 0.0f), choose(apart, by[i] * inverse, 0.0f),
-                  choose(apart, bz[i] * inverse, 1.0f)};
+        const F3 normal{choose(apart, bx[i] * inverse, 0.0f), choose(apart, by[i] * inverse, 0.0f),
+                        choose(apart, bz[i] * inverse, 1.0f)};
         float between = distance - first_arm[i] - second_arm[i];
         if constexpr (Oriented) {
-          const HullSeparation found = separate_hulls(
-              height, face, {OneKind ? 0 : first_map[i], {first_w[i], {first_x[i], first_y[i], first_z[i]}}},
-              {OneKind ? 0 : second_map[i], {second_w[i], {second_x[i], second_y[i], second_z[i]}}}, normal,
-              distance);
-          normal = found.normal, between = found.gap;
+          const LineSeparation found =
+              separate_along_line(height, first_hull(i), second_hull(i), normal, distance);
+          between = found.gap, apart_by[i] = distance;
+          first_face[i] = found.first, second_face[i] = found.second;
         }
         const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
         nx[i] = normal.x, ny[i] = normal.y, nz[i] = normal.z;
         gap[i] = between, closing[i] = speed;
         touches[i] = choose(between + speed * c.time > limit[i], 0, 1);
       }
-      for (std::int64_t i = 0; i < n; ++i) {  // without a branch
+      // What the line does not keep apart until the end of the step, a face may.
+      if constexpr (Oriented) {
+        std::int64_t left = 0;
+        for (std::int64_t i = 0; i < n; ++i) kept[left] = std::int32_t(i), left += touches[i];
+        const std::int64_t whole = (left + kLanes - 1) / kLanes * kLanes;
+#pragma GCC ivdep
+        for (std::int64_t k = 0; k < whole; ++k) {
+          const std::int32_t i = kept[k];
+          const HullSeparation found =
+              separate_hulls(height, face, first_hull(i), second_hull(i), {nx[i], ny[i], nz[i]}, apart_by[i],
+                             {gap[i], first_face[i], second_face[i]});
+          const F3 normal = found.normal;
+          const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
+          face_x[k] = normal.x, face_y[k] = normal.y, face_z[k] = normal.z, face_gap[k] = found.gap,
+          face_closing[k] = speed;
+          face_touches[k] = choose(found.gap + speed * c.time > limit[i], 0, 1);
+        }
+        for (std::int64_t k = 0; k < left; ++k) {  // without a branch
+          out.first[count] = pairs.first(chunk + kept[k]), out.second[count] = pairs.second(chunk + kept[k]);
+          out.nx[count] = face_x[k], out.ny[count] = face_y[k], out.nz[count] = face_z[k];
+          out.gap[count] = face_gap[k], out.closing[count] = face_closing[k];
+          count += std::size_t(face_touches[k]);
+        }
+        continue;
+      }
+      for (std::int64_t i = 0; i < n; ++i) {
         out.first[count] = pairs.first(chunk + i), out.second[count] = pairs.second(chunk + i);
         out.nx[count] = nx[i], out.ny[count] = ny[i], out.nz[count] = nz[i];
         out.gap[count] = gap[i], out.closing[count] = closing[i];
@@ -93,7 +128,7 @@ struct SweepContacts {
   ContactArrays& contacts;
   SphereStep& step;
 
-  static constexpr std::int64_t kLanes = 16, kFew = 8 * kLanes;
+  static constexpr std::int64_t kFew = 8 * kLanes;
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     const std::int64_t stride = end - begin < kFew ? 0 : (end - begin) / kLanes,

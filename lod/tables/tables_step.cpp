@@ -227,9 +227,12 @@ std::pair<Vec3, double> TablesLevel::separate(std::int64_t first, std::int64_t s
     return lane::MappedHull{int(spheres_.kind[i]) * kHullHeights,
                             {spheres_.qw[i], {spheres_.qx[i], spheres_.qy[i], spheres_.qz[i]}}};
   };
+  const float* heights = kinds_.pair_height.data();
+  const lane::MappedHull one = placed(first), other = placed(second);
+  const lane::F3 line{float(along.x()), float(along.y()), float(along.z())};
   const lane::HullSeparation found =
-      lane::separate_hulls(kinds_.pair_height.data(), kinds_.pair_face.data(), placed(first), placed(second),
-                           {float(along.x()), float(along.y()), float(along.z())}, float(distance));
+      lane::separate_hulls(heights, kinds_.pair_face.data(), one, other, line, float(distance),
+                           lane::separate_along_line(heights, one, other, line, float(distance)));
   return {Vec3(double(found.normal.x), double(found.normal.y), double(found.normal.z)), double(found.gap)};
 }
 

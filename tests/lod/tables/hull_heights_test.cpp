@@ -69,9 +69,13 @@ lane::HullSeparation separate(const Maps& maps, const RigidState& first, const R
     const Quat& q = s.orientation;
     return lane::MappedHull{0, {float(q.w()), {float(q.x()), float(q.y()), float(q.z())}}};
   };
-  const Vec3 between = first.position - second.position, line = between.normalized();
-  return lane::separate_hulls(maps.pair_heights.data(), maps.faces.data(), placed(first), placed(second),
-                              {float(line.x()), float(line.y()), float(line.z())}, float(between.norm()));
+  const Vec3 between = first.position - second.position, unit = between.normalized();
+  const lane::F3 line{float(unit.x()), float(unit.y()), float(unit.z())};
+  const float* heights = maps.pair_heights.data();
+  const float distance = float(between.norm());
+  return lane::separate_hulls(
+      heights, maps.faces.data(), placed(first), placed(second), line, distance,
+      lane::separate_along_line(heights, placed(first), placed(second), line, distance));
 }
 
 // Boxes that lie on each other somewhat askew are held by the face, however far aside the upper one is.
