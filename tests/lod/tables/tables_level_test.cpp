@@ -203,6 +203,23 @@ TEST_F(SphereLevel, ABinComesToRestInItsTime) {
   EXPECT_GT(asleep, 290);
 }
 
+// Along the line of centres alone they fall over. They sag, by 0, 2 and 6 %.
+TEST_F(SphereLevel, TowersStand) {
+  const auto cube = std::make_shared<const Shape>(make_shape("cube", make_box({0.2, 0.2, 0.2})));
+  for (const int cubes : {3, 5, 10}) {
+    testing::OneRung level = make();
+    for (int i = 0; i < cubes; ++i) {
+      RigidState s;
+      s.position = {0.0, 0.0, 0.1 + 0.2 * i};
+      level.add(std::uint32_t(i), cube, 8.0, 0, s, false, box_signature());
+    }
+    run(level, 600);
+    const double top = 0.1 + 0.2 * (cubes - 1);
+    EXPECT_NEAR(level.position(cubes - 1).z(), top, 0.08 * top) << cubes;
+    EXPECT_EQ(level.asleep_count(), cubes);
+  }
+}
+
 // Bodies of different sizes lie in different grids: what their contacts gave is remembered, too: the great
 // one sinks in by .012 R of a small one, else by .022.
 TEST_F(SphereLevel, AGreatBodyRestsOnSmallOnes) {
