@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "lod/contact/hull_gap.h"
 #include "reference/random.h"
 #include "tests/reference/ode/ode_fixture.h"
@@ -112,6 +114,18 @@ TEST(HullSeparation, IsNoMoreThanTheHullsDistance) {
   }
   EXPECT_LT(off, 0.05 * box->size);
   std::printf("off %g\n", off / box->size);
+}
+
+TEST(HullHeights, WhatIsNoNumberIsReadWithinTheMap) {
+  const float none = std::numeric_limits<float>::quiet_NaN(), far = std::numeric_limits<float>::infinity();
+  for (const lane::F3& direction : {lane::F3{none, none, none}, lane::F3{0, none, 1}, lane::F3{far, 0, 0},
+                                    lane::F3{0, 0, 0}, lane::F3{0, 0, -1}, lane::F3{-1, -1, 0}}) {
+    const lane::MapPlace place = lane::place_in_map(direction);
+    for (const int at : {place.first, place.first + kHullHeightSide + 2, place.nearest}) {
+      EXPECT_GE(at, 0);
+      EXPECT_LT(at, kHullHeights);
+    }
+  }
 }
 
 // An L fills .52 of its hull or so: it lets others nearer by the cube root of that.
