@@ -49,9 +49,9 @@ LODESTONE_INLINE MapPlace place_in_map(F3 direction) {
   const float u = (choose(below, over_x, x) + 1.0f) * kHalf, v = (choose(below, over_y, y) + 1.0f) * kHalf;
   const int column = int(least(u, kLast)), row = int(least(v, kLast));
   const float s = u - float(column), t = v - float(row);
-  const auto nearer = [](float part) { return int(least(part + 0.5f, 1.5f)); };  // 1 where it is no number
   const int first = row * (kHullHeightSide + 1) + column;
-  return {first, first + nearer(s) + (kHullHeightSide + 1) * nearer(t), s, t};
+  const int next_column = choose(s < 0.5f, 0, 1), next_row = choose(t < 0.5f, 0, kHullHeightSide + 1);
+  return {first, first + next_column + next_row, s, t};
 }
 
 /// Linear between the four samples of the map that begins at `heights[map]`.
