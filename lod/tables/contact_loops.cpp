@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lod/tables/hull_separation.h"
+
 namespace lodestone {
 namespace {
 

@@ -1,8 +1,8 @@
-// Bodies of `tables`, in dense arrays: towards each other spheres whose radius is what their hulls reach
-// along the line of centres (as published: the same all around). A step: 1 start (radii, reaches), 2 near
-// pairs (cells), 3 contacts of spheres and who wakes, 4 the response of all these at once, 5 those near
-// bodies of other rungs are moved among them (rungs/near_bodies.h), 6 the ground: impacts at their exact time
-// answered from the tables, and motion, 7 rest.
+// Bodies of `tables`, in dense arrays: towards each other hulls that meet in one point, along the best of
+// three separating axes (as published: spheres). A step: 1 start (radii, reaches), 2 near pairs (cells), 3
+// their contacts and who wakes, 4 the response of all these, one after the other, 5 those near bodies of
+// other rungs are moved among them (rungs/near_bodies.h), 6 the ground: impacts at their exact time answered
+// from the tables, and motion, 7 rest.
 #pragma once
 
 #include <optional>

@@ -6,6 +6,7 @@
 
 #include "lod/contact/hull_contacts.h"
 #include "lod/statistical/flight.h"
+#include "lod/tables/hull_separation.h"
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {

@@ -190,6 +190,8 @@ PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span
     figures.escaped += pile.escaped;
   }
   figures.penetration_over_size = figures.max_penetration_m / shape.size;
+  figures.median_penetration_over_size =
+      mean_over(piles, [](const PileObservation& pile) { return pile.median_penetration_m; }) / shape.size;
   return figures;
 }
 

@@ -14,10 +14,11 @@ struct PileObservation {
   std::vector<double> kinetic_energy;  ///< per mass, J/kg, mean of the bodies, at each sample
   double sleep_time_s =
       0;  ///< mean over the bodies of the last time that the kinetic energy per mass is above 2e-3 J/kg
-  double mean_height_m = 0;      ///< of the centres of mass, at the end
-  double max_penetration_m = 0;  ///< greatest of any pair and any body in a plane
-  double energy_rise = 0;        ///< greatest rise of kinetic and potential energy (over the floor) above an
-                                 ///< earlier sample, over that at the start
+  double mean_height_m = 0;         ///< of the centres of mass, at the end
+  double max_penetration_m = 0;     ///< greatest of any pair and any body in a plane
+  double median_penetration_m = 0;  ///< of the pairs that overlap at the end
+  double energy_rise = 0;  ///< greatest rise of kinetic and potential energy (over the floor) above an
+                           ///< earlier sample, over that at the start
   int hovering = 0;  ///< bodies at rest at the end that touch nothing though moved down by 5 % of the size
   int escaped =
       0;  ///< bodies whose centre was out of the bin in any of the samples of overlaps, at most at once

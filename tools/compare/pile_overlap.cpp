@@ -41,6 +41,17 @@ double PileOverlap::deepest(std::span<const RigidState> states) const {
   return depth;
 }
 
+double PileOverlap::median_depth(std::span<const RigidState> states) const {
+  std::vector<double> depths;
+  for (std::size_t i = 0; i < states.size(); ++i)
+    for (std::size_t k = i + 1; k < states.size(); ++k)
+      if (const double depth = depth_of_pair(states[i], states[k]); depth > 0.0) depths.push_back(depth);
+  if (depths.empty()) return 0.0;
+  const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  return *middle;
+}
+
 int PileOverlap::count_hovering(std::span<const RigidState> states, std::span<const char> at_rest,
                                 double drop) const {
   int hovering = 0;

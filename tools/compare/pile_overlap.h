@@ -25,6 +25,8 @@ class PileOverlap {
 
   /// Of any pair, or of any body in a plane, m; 0 where nothing overlaps.
   double deepest(std::span<const RigidState> states) const;
+  /// Of those pairs that overlap, m; 0 where none does.
+  double median_depth(std::span<const RigidState> states) const;
   /// Bodies that would touch nothing though moved down by `drop` (m).
   int count_hovering(std::span<const RigidState> states, std::span<const char> at_rest, double drop) const;
   /// Bodies whose centre is behind a plane.

@@ -18,10 +18,15 @@ using nlohmann::ordered_json;
 std::string percent(double fraction) { return fmt::format("{:+.1f}", 100.0 * fraction); }
 
 std::vector<std::string> cells_of(const PileFigures& f) {
-  return {fmt::format("{:.3f}", f.ke_l1),      fmt::format("{:.2f}", f.sleep_time_s),
-          percent(f.sleep_time_error),         fmt::format("{:.3f}", f.mean_height_m),
-          percent(f.mean_height_error),        fmt::format("{:.1f}", 100.0 * f.penetration_over_size),
-          fmt::format("{}", f.hovering),       fmt::format("{}", f.escaped),
+  return {fmt::format("{:.3f}", f.ke_l1),
+          fmt::format("{:.2f}", f.sleep_time_s),
+          percent(f.sleep_time_error),
+          fmt::format("{:.3f}", f.mean_height_m),
+          percent(f.mean_height_error),
+          fmt::format("{:.1f}", 100.0 * f.penetration_over_size),
+          fmt::format("{:.1f}", 100.0 * f.median_penetration_over_size),
+          fmt::format("{}", f.hovering),
+          fmt::format("{}", f.escaped),
           fmt::format("{:.1e}", f.energy_rise)};
 }
 
@@ -42,7 +47,8 @@ std::vector<std::string> row_of(const PileRow& row) {
 
 std::string table_of(const PileComparison& comparison) {
   TextTable table({"method", "model", "step s", "substeps", "KE-L1", "sleep s", "error %", "height m",
-                   "error %", "overlap %", "hover", "escaped", "energy rise", "momentum", "ns/body-step"});
+                   "error %", "overlap %", "median %", "hover", "escaped", "energy rise", "momentum",
+                   "ns/body-step"});
   table.add_row(row_of({"truth", "", "", ""}, comparison.truth));
   table.add_row(row_of({"noise floor", "", "", ""}, comparison.floor));
   for (const PileRow& row : comparison.rows) table.add_row(row_of(row));
@@ -56,6 +62,7 @@ void add_figures(ordered_json& json, const PileFigures& f) {
   json["mean_height_error"] = f.mean_height_error;
   json["max_penetration_m"] = f.max_penetration_m;
   json["penetration_over_size"] = f.penetration_over_size;
+  json["median_penetration_over_size"] = f.median_penetration_over_size;
   json["energy_rise"] = f.energy_rise;
   json["hovering"] = f.hovering;
   json["escaped"] = f.escaped;
@@ -86,9 +93,9 @@ ordered_json json_of(const PileRow& row, const PileFigures& floor) {
 
 void write_piles(OutputFile& out, const std::string& head, const std::vector<PileObservation>& piles) {
   for (std::size_t i = 0; i < piles.size(); ++i)
-    out.write(fmt::format("{},{},{},{},{},{},{},{}\n", head, i, piles[i].sleep_time_s, piles[i].mean_height_m,
-                          piles[i].max_penetration_m, piles[i].energy_rise, piles[i].hovering,
-                          piles[i].escaped));
+    out.write(fmt::format("{},{},{},{},{},{},{},{},{}\n", head, i, piles[i].sleep_time_s,
+                          piles[i].mean_height_m, piles[i].max_penetration_m, piles[i].energy_rise,
+                          piles[i].hovering, piles[i].escaped, piles[i].median_penetration_m));
 }
 
 void write_energy(OutputFile& out, const std::string& head, const std::vector<PileObservation>& piles,
@@ -131,7 +138,8 @@ std::string text_of(const DropJob& job, const PileComparison& comparison) {
          "\nKE-L1: sum over time of |mean kinetic energy - truth's| over the sum of the truth's; the noise "
          "floor is truth against truth with other starts\n"
          "sleep: mean of the bodies' last time above 2 mJ/kg; height: mean of the centres at the end; "
-         "overlap: greatest, over the size; hover: at rest on nothing\n"
+         "overlap: greatest, over the size; median: of the pairs that overlap at the end; hover: at rest on "
+         "nothing\n"
          "energy rise: greatest above an earlier sample, over that at the start; momentum: greatest change "
          "without ground and gravity, over the bodies' own\n";
 }
@@ -155,7 +163,8 @@ ordered_json json_of(const PileComparison& comparison) {
 void save_piles(const PileComparison& comparison, const std::filesystem::path& folder) {
   save(folder / "piles.csv", [&](OutputFile& out) {
     out.write(
-        "method,model,dt_s,pile,sleep_time_s,mean_height_m,max_penetration_m,energy_rise,hovering,escaped\n");
+        "method,model,dt_s,pile,sleep_time_s,mean_height_m,max_penetration_m,energy_rise,hovering,escaped,"
+        "median_penetration_m\n");
     each_batch(comparison,
                [&](const std::string& head, const auto& piles, double) { write_piles(out, head, piles); });
   });

@@ -25,6 +25,16 @@ struct Balls : SphereScene {
     contacts.find(spheres, dense, grid, kBounceVelocity, constants, simd, jobs, nullptr);
     clear_added(0, spheres.awake, step);
   }
+  /// The second of two balls asleep: their touch is found alone.
+  void put_second_to_sleep() {
+    spheres.put_to_sleep(1);
+    step.resize(1);
+  }
+  void find_touch_of_sleeper() {
+    find();
+    const std::pair<std::uint32_t, std::uint32_t> touches[] = {{0, 1}};
+    contacts.add(spheres, dense, touches, kBounceVelocity, constants, Simd::portable);
+  }
   void answer(int rounds = 2, Simd simd = Simd::portable, bool eased = false) {
     contacts.begin(spheres, dense, materials, constants, step, jobs);
     for (int round = 1; round <= rounds; ++round) {
@@ -133,12 +143,10 @@ TEST(SphereContacts, ASleeperIsAWall) {
   Balls scene(0.5, 0.5);
   scene.ball(at({-kRadius, 0, 0}, {2, 0, 0}));
   scene.ball(at({kRadius, 0, 0}));
-  scene.spheres.put_to_sleep(1);
-  scene.step.resize(1);
+  scene.put_second_to_sleep();
   scene.find();
   EXPECT_EQ(scene.contacts.count(), 0);
-  const std::pair<std::uint32_t, std::uint32_t> touches[] = {{0, 1}};
-  scene.contacts.add(scene.spheres, scene.dense, touches, kBounceVelocity, scene.constants, Simd::portable);
+  scene.find_touch_of_sleeper();
   ASSERT_EQ(scene.contacts.count(), 1);
   scene.answer();
   EXPECT_NEAR(scene.step.velocity(0).x(), -1.0, 1e-6);
@@ -205,15 +213,9 @@ TEST(SphereContacts, WhatSleepersBoreIsRememberedToo) {
   Balls scene(0.5, 0.0);
   scene.ball(at({-kRadius, 0, 0}, {0.02, 0, 0}));
   scene.ball(at({kRadius, 0, 0}));
-  scene.spheres.put_to_sleep(1);
-  scene.step.resize(1);
-  const std::pair<std::uint32_t, std::uint32_t> touches[] = {{0, 1}};
-  const auto find = [&] {
-    scene.find();
-    scene.contacts.add(scene.spheres, scene.dense, touches, kBounceVelocity, scene.constants, Simd::portable);
-  };
-  find(), scene.answer();
-  find();
+  scene.put_second_to_sleep();
+  scene.find_touch_of_sleeper(), scene.answer();
+  scene.find_touch_of_sleeper();
   EXPECT_NEAR(known_impulse(scene), 0.02, 1e-7);
 }
 

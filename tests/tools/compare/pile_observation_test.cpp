@@ -32,6 +32,22 @@ TEST_F(Boxes, DepthIsThatOfPairsAndOfPlanes) {
   EXPECT_NEAR(observe({{at({0, 0, 0.08}), at({0.19, 0, 0.1})}}).max_penetration_m, 0.02, 1e-9);
 }
 
+// Of three pairs that overlap, by 1, 2 and 5 cm; apart from a fourth. What lay deeper before does not count.
+TEST_F(Boxes, TheMedianIsOfThePairsThatOverlapAtTheEnd) {
+  const auto beside = [](double y, double depth) {
+    return std::pair{at({0, y, 0.1}), at({0.2 - depth, y, 0.1})};
+  };
+  std::vector<RigidState> states;
+  for (const auto& [y, depth] : {std::pair{-0.6, 0.01}, {-0.3, 0.05}, {0.0, 0.02}, {0.3, -0.01}}) {
+    const auto [one, other] = beside(y, depth);
+    states.push_back(one), states.push_back(other);
+  }
+  std::vector<RigidState> deeper = states;
+  deeper[5].position.x() = 0.1;
+  EXPECT_NEAR(observe({deeper, states}).median_penetration_m, 0.02, 1e-9);
+  EXPECT_EQ(observe({{at({0, 0, 0.1}), at({0.5, 0, 0.1})}}).median_penetration_m, 0.0);
+}
+
 TEST_F(Boxes, WhatRestsOnNothingHovers) {
   const std::vector<RigidState> states = {at({0, 0, 0.1}), at({0, 0, 0.301}), at({0.5, 0, 0.15})};
   EXPECT_EQ(observe(std::vector(31, states)).hovering, 1);

@@ -1,0 +1,65 @@
+#include "lod/tables/hull_separation.h"
+
+#include <gtest/gtest.h>
+
+#include "lod/contact/hull_gap.h"
+#include "reference/random.h"
+#include "tests/lod/tables/hull_maps.h"
+#include "tests/reference/ode/ode_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using testing::Maps;
+
+lane::HullSeparation separate(const Maps& maps, const RigidState& first, const RigidState& second) {
+  const auto placed = [](const RigidState& s) {
+    const Quat& q = s.orientation;
+    return lane::MappedHull{0, {float(q.w()), {float(q.x()), float(q.y()), float(q.z())}}};
+  };
+  const Vec3 between = first.position - second.position, unit = between.normalized();
+  const lane::F3 line{float(unit.x()), float(unit.y()), float(unit.z())};
+  const float* heights = maps.pair_heights.data();
+  const float distance = float(between.norm());
+  return lane::separate_hulls(
+      heights, maps.faces.data(), placed(first), placed(second), line, distance,
+      lane::separate_along_line(heights, placed(first), placed(second), line, distance));
+}
+
+// Boxes that lie on each other somewhat askew are held by the face, however far aside the upper one is.
+TEST(HullSeparation, WhatLiesOnAFaceIsHeldByIt) {
+  const Maps maps(*testing::box_shape({0.2, 0.3, 0.4}));
+  for (const double aside : {0.0, 0.03, 0.08}) {
+    RigidState above, below;
+    above.position = {aside, 0.5 * aside, 0.41};
+    above.orientation = rotation_from_vector(Vec3(0, 0, 0.7));
+    const lane::HullSeparation found = separate(maps, above, below);
+    EXPECT_NEAR(found.gap, 0.01, 1e-3) << aside;
+    EXPECT_NEAR(found.normal.z, 1.0, 1e-3);
+  }
+}
+
+// No more than the distance of the hulls, within what the map's 5 degrees make of it, and mostly near it.
+TEST(HullSeparation, IsNoMoreThanTheHullsDistance) {
+  const auto box = testing::box_shape({0.2, 0.3, 0.4});
+  const Maps maps(*box);
+  double off = 0.0;
+  constexpr int kPairs = 2'000;
+  for (int i = 0; i < kPairs; ++i) {
+    RandomStream random(5, std::uint64_t(i), 0);
+    RigidState first, second;
+    first.orientation = random.orientation(), second.orientation = random.orientation();
+    first.position = random.uniform(0.3, 0.6) * random.direction();
+    const double distance =
+        find_hull_gap({*box, first.position, first.orientation}, {*box, second.position, second.orientation},
+                      {.normal = Vec3::Zero()}, 1e300, true)
+            .gap;
+    const double found = double(separate(maps, first, second).gap);
+    EXPECT_LT(found, distance + 0.03 * box->size);
+    off += (distance - found) / kPairs;
+  }
+  EXPECT_LT(off, 0.05 * box->size);
+}
+
+}  // namespace
+}  // namespace lodestone
