@@ -6,13 +6,12 @@
 namespace lodestone {
 namespace {
 
-// Calls `visit(key, run, begin, end)` for each run of manifolds with equal keys, with its points.
+// Calls `visit(key, begin, end)` for each run of equal keys.
 template <class Visit>
-void each_run(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds, Visit visit) {
+void each_run(std::span<const ContactKey> keys, Visit visit) {
   for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
     while (end < keys.size() && keys[end] == keys[begin]) ++end;
-    visit(keys[begin], std::pair(begin, end), manifolds[begin].begin,
-          manifolds[end - 1].begin + manifolds[end - 1].count);
+    visit(keys[begin], begin, end);
   }
 }
 
@@ -24,17 +23,26 @@ CrowdPoint& find_nearest(std::span<CrowdPoint> points, const Vec3& arm) {
 }  // namespace
 
 void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdManifold> manifolds,
-                           std::span<CrowdPoint> points, double step) {
+                           std::span<CrowdPoint> points, double step, const JobRunner& jobs) {
+  recalled_.clear();
   std::size_t expected = 0;
-  each_run(keys, manifolds, [&](ContactKey key, auto alike, std::uint32_t begin, std::uint32_t end) {
+  each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
     const std::int32_t place = place_.find(key, expected);
     if (place < 0) return;
     expected = std::size_t(place) + 1;
-    for (std::size_t i = alike.first; i < alike.second; ++i) manifolds[i].known = true;
-    const Run& run = runs_[std::size_t(place)];
-    const auto now = points.subspan(begin, end - begin);
-    for (const Load& load : std::span(loads_).subspan(run.begin, run.count))
-      find_nearest(now, load.arm).guess += step * load.force;
+    recalled_.push_back({std::uint32_t(first), std::uint32_t(end), place});
+  });
+  constexpr std::int64_t kGrain = 256;
+  run_in_pieces(jobs, std::int64_t(recalled_.size()), kGrain, [&](std::int64_t from, std::int64_t to) {
+    for (const Recalled& pair : std::span(recalled_).subspan(std::size_t(from), std::size_t(to - from))) {
+      for (std::uint32_t i = pair.first; i < pair.end; ++i) manifolds[i].known = true;
+      const Run& run = runs_[std::size_t(pair.place)];
+      const std::uint32_t begin = manifolds[pair.first].begin,
+                          end = manifolds[pair.end - 1].begin + manifolds[pair.end - 1].count;
+      const auto now = points.subspan(begin, end - begin);
+      for (const Load& load : std::span(loads_).subspan(run.begin, run.count))
+        find_nearest(now, load.arm).guess += step * load.force;
+    }
   });
 }
 
@@ -44,9 +52,10 @@ void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const C
   loads_.clear();
   place_.clear();
   for (const CrowdPoint& point : points) loads_.push_back({point.impulse / step, point.arm_first});
-  each_run(keys, manifolds, [&](ContactKey key, auto, std::uint32_t begin, std::uint32_t end) {
+  each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
     place_.add(key);
-    runs_.push_back({begin, end - begin});
+    const std::uint32_t begin = manifolds[first].begin;
+    runs_.push_back({begin, manifolds[end - 1].begin + manifolds[end - 1].count - begin});
   });
 }
 

@@ -8,6 +8,7 @@
 
 #include "lod/contact/crowd_solver.h"
 #include "lod/contact/pair_memory.h"
+#include "lod/jobs.h"
 #include "reference/state_archive.h"
 
 namespace lodestone {
@@ -19,7 +20,7 @@ class ContactMemory {
   /// that they are known. `keys` holds one key per manifold, equal ones in a row; `step` is the length of
   /// this step, s.
   void recall(std::span<const ContactKey> keys, std::span<CrowdManifold> manifolds,
-              std::span<CrowdPoint> points, double step);
+              std::span<CrowdPoint> points, double step, const JobRunner& jobs);
   /// Forgets what was before.
   void remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
                 std::span<const CrowdPoint> points, double step);
@@ -36,6 +37,13 @@ class ContactMemory {
     Vec3 force, arm;  // N, on the first body; m, from its centre of mass
   };
   std::vector<Load> loads_;
+
+  /// Manifolds of a pair that was there before.
+  struct Recalled {
+    std::uint32_t first, end;  // manifolds
+    std::int32_t place;        // in runs_
+  };
+  std::vector<Recalled> recalled_;
 };
 
 }  // namespace lodestone

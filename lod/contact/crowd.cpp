@@ -56,14 +56,31 @@ bool is_eased(const ContactScene& scene, Participant p) {
 
 }  // namespace
 
-int Crowd::solver_index(const ContactScene& scene, Participant p, double time) {
+int Crowd::solver_index(Participant p) {
   std::int32_t& index = p.is_statistical() ? index_of_body_[p.index()] : index_of_neighbor_[p.index()];
   if (index >= 0) return index;
-  index = std::int32_t(solver_bodies_.size());
+  index = std::int32_t(participants_.size());
   participants_.push_back(p);
-  solver_bodies_.push_back(solver_body_of(scene, p, time));
-  angular_before_.push_back(solver_bodies_.back().angular_velocity);
   return index;
+}
+
+// Those of the participants from `from` on.
+void Crowd::take_bodies(const ContactScene& scene, std::size_t from, double time) {
+  solver_bodies_.resize(participants_.size());
+  angular_before_.resize(participants_.size());
+  run_in_pieces(jobs_, std::int64_t(participants_.size() - from), kBlock,
+                [&](std::int64_t begin, std::int64_t end) {
+                  for (std::size_t i = from + std::size_t(begin); i < from + std::size_t(end); ++i) {
+                    if (participants_[i].is_ground()) continue;
+                    solver_bodies_[i] = solver_body_of(scene, participants_[i], time);
+                    angular_before_[i] = solver_bodies_[i].angular_velocity;
+                  }
+                });
+  for (const auto& [part, index] : moving_parts_) {
+    SolverBody& body = solver_bodies_[std::size_t(index)] = {};
+    body.velocity = part->pose.velocity;
+    body.angular_velocity = part->pose.angular_velocity;
+  }
 }
 
 // Ground that moves carries what touches it: a body that nothing stops. −1: it stands still.
@@ -72,13 +89,9 @@ std::int32_t Crowd::solver_index(const GroundPart& part) {
   const auto known =
       std::ranges::find(moving_parts_, &part, &std::pair<const GroundPart*, std::int32_t>::first);
   if (known != moving_parts_.end()) return known->second;
-  const auto index = std::int32_t(solver_bodies_.size());
+  const auto index = std::int32_t(participants_.size());
   moving_parts_.emplace_back(&part, index);
   participants_.push_back(Participant::ground());
-  SolverBody& body = solver_bodies_.emplace_back();
-  body.velocity = part.pose.velocity;
-  body.angular_velocity = part.pose.angular_velocity;
-  angular_before_.push_back(body.angular_velocity);
   return index;
 }
 
@@ -98,21 +111,39 @@ void Crowd::add_point(const Vec3& arm_first, const Vec3& arm_second, double gap)
   ++manifolds_.back().count;
 }
 
-void Crowd::add_pair_contact(const ContactScene& scene, const CrowdContact& pair, double time) {
-  const std::int32_t first = solver_index(scene, pair.first, time),
-                     second = solver_index(scene, pair.second, time);
-  add_manifold(contact_key(scene.owner(pair.first), scene.owner(pair.second)), first, second,
-               pair.contact.normal, scene.law(pair.first, pair.second));
-  const Manifold& manifold = pair.contact.manifold;
-  const Vec3 &at_first = scene.position(pair.first), &at_second = scene.position(pair.second);
-  for (int i = 0; i < manifold.count; ++i)
-    add_point(manifold.points[i].point - at_first, manifold.points[i].point - at_second,
-              manifold.points[i].gap);
+// The first manifolds of all.
+void Crowd::add_pair_contacts(const ContactScene& scene, std::span<const CrowdContact> contacts) {
+  keys_.resize(contacts.size());
+  manifolds_.resize(contacts.size());
+  grounds_.assign(contacts.size(), {});
+  std::uint32_t points = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    manifolds_[i].first = solver_index(contacts[i].first),
+    manifolds_[i].second = solver_index(contacts[i].second);
+    manifolds_[i].begin = points;
+    points += std::uint32_t(contacts[i].contact.manifold.count);
+  }
+  points_.resize(points);
+  run_in_pieces(jobs_, std::int64_t(contacts.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+      const auto& [first, second, contact] = contacts[i];
+      CrowdManifold& m = manifolds_[i];
+      keys_[i] = contact_key(scene.owner(first), scene.owner(second));
+      m.normal = contact.normal, m.law = scene.law(first, second), m.known = false;
+      m.count = std::uint32_t(contact.manifold.count);
+      for (std::uint32_t k = 0; k < m.count; ++k) {
+        const auto& [point, gap] = contact.manifold.points[k];
+        points_[m.begin + k] = {.arm_first = point - scene.position(first),
+                                .arm_second = point - scene.position(second),
+                                .gap = gap};
+      }
+    }
+  });
 }
 
-void Crowd::add_solid_contact(const ContactScene& scene, const SolidContact& on_solid, double time) {
+void Crowd::add_solid_contact(const ContactScene& scene, const SolidContact& on_solid) {
   const Participant p = Participant::statistical(std::size_t(on_solid.slot));
-  const std::int32_t index = solver_index(scene, p, time), ground = solver_index(*on_solid.part);
+  const std::int32_t index = solver_index(p), ground = solver_index(*on_solid.part);
   add_manifold(ground_key(scene.owner(p), kFirstSolid + on_solid.number), index, ground,
                on_solid.contact.normal, scene.world.materials->law(scene.material(p), on_solid.material));
   grounds_.back() = {on_solid.part->id, on_solid.material};
@@ -122,33 +153,74 @@ void Crowd::add_solid_contact(const ContactScene& scene, const SolidContact& on_
               manifold.points[i].point - on_solid.part->pose.position, manifold.points[i].gap);
 }
 
-// `number`: of the plane, for what is remembered of its contacts.
-void Crowd::add_ground_contacts(const ContactScene& scene, int index, const HalfSpace& plane,
-                                std::size_t number, double time) {
-  StatisticalBody& body = scene.body(participants_[std::size_t(index)]);
+void Crowd::add_meeting(const ContactScene& scene, std::int32_t index, const HalfSpace& plane,
+                        std::size_t number, double time) {
+  const StatisticalBody& body = scene.body(participants_[std::size_t(index)]);
+  const SolverBody& solver = solver_bodies_[std::size_t(index)];
   const BodyKind& kind = scene.kind_of(body);
-  const bool hull = !body.is_sphere();
-  const double reach = hull ? kind.shape->radius : double(body.sphere_radius);
-  const double spin_speed = hull ? solver_bodies_[index].angular_velocity.norm() * reach : 0.0;
+  const double reach = body.is_sphere() ? double(body.sphere_radius) : kind.shape->radius;
+  const double spin_speed = body.is_sphere() ? 0.0 : solver.angular_velocity.norm() * reach;
   const double height = plane.height_of(body.position);
-  const double falling = std::max(0.0, -solver_bodies_[index].velocity.dot(plane.normal));
+  const double falling = std::max(0.0, -solver.velocity.dot(plane.normal));
   const double margin = settings_.contact_margin * kind.shape->radius + (falling + 0.5 * spin_speed) * time;
-  if (height > reach + margin) return;
-  HullContacts found;
-  if (hull) {
-    found =
-        find_hull_contacts(*kind.shape, body.orientation, plane.normal, height, margin, body.support_hint);
-  } else {
-    found.contact[0] = {-reach * plane.normal, height - reach};
-    found.count = 1;
+  if (height <= reach + margin) meetings_.push_back({index, &plane, number, height, margin, {}});
+}
+
+// Of those that move and that the ground does not let through.
+void Crowd::find_meetings(const ContactScene& scene, const CrowdTouch& touch) {
+  meetings_.clear();
+  first_meeting_.assign(1, 0);
+  const auto& planes = scene.world.planes;
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    const Participant p = participants_[i];
+    if (p.is_statistical() && !scene.asleep(p) && !scene.properties(p).kinematic &&
+        meets_ground(scene.properties(p))) {
+      for (std::size_t number = 0; number < planes.size(); ++number)
+        add_meeting(scene, std::int32_t(i), planes[number], number, touch.time);
+      std::size_t number = kFirstFace;
+      for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index())))
+        add_meeting(scene, std::int32_t(i), face, number++, touch.time);
+    }
+    first_meeting_.push_back(std::uint32_t(meetings_.size()));
   }
-  const auto reaches = [&](const HullContact& contact) { return contact.gap <= margin; };
-  const auto contacts = std::span(found.contact).first(std::size_t(found.count));
-  if (std::ranges::none_of(contacts, reaches)) return;
-  add_manifold(ground_key(body.owner, number), index, -1, plane.normal, scene.world.law(kind, plane));
-  grounds_.back() = {plane.id, plane.material};
-  for (const HullContact& contact : contacts)
-    if (reaches(contact)) add_point(contact.arm, Vec3::Zero(), contact.gap);
+}
+
+void Crowd::find_ground_contacts(const ContactScene& scene) {
+  run_in_pieces(jobs_, std::int64_t(first_meeting_.size()) - 1, kBlock,
+                [&](std::int64_t begin, std::int64_t end) {
+                  for (std::uint32_t i = first_meeting_[std::size_t(begin)];
+                       i < first_meeting_[std::size_t(end)]; ++i) {
+                    Meeting& meeting = meetings_[i];
+                    StatisticalBody& body = scene.body(participants_[std::size_t(meeting.index)]);
+                    const Vec3& normal = meeting.plane->normal;
+                    if (body.is_sphere()) {
+                      const double radius = body.sphere_radius;
+                      meeting.found.contact[0] = {-radius * normal, meeting.height - radius};
+                      meeting.found.count = 1;
+                    } else {
+                      meeting.found = find_hull_contacts(*scene.kind_of(body).shape, body.orientation, normal,
+                                                         meeting.height, meeting.margin, body.support_hint);
+                    }
+                  }
+                });
+}
+
+void Crowd::add_ground_contacts(const ContactScene& scene, std::int32_t index) {
+  if (std::size_t(index) + 1 >= first_meeting_.size()) return;  // a full body that came after
+  const StatisticalBody& body = scene.body(participants_[std::size_t(index)]);
+  for (std::uint32_t i = first_meeting_[std::size_t(index)]; i < first_meeting_[std::size_t(index) + 1];
+       ++i) {
+    const Meeting& meeting = meetings_[i];
+    const auto reaches = [&](const HullContact& contact) { return contact.gap <= meeting.margin; };
+    const auto contacts = std::span(meeting.found.contact).first(std::size_t(meeting.found.count));
+    if (std::ranges::none_of(contacts, reaches)) continue;
+    const HalfSpace& plane = *meeting.plane;
+    add_manifold(ground_key(body.owner, meeting.number), index, -1, plane.normal,
+                 scene.world.law(scene.kind_of(body), plane));
+    grounds_.back() = {plane.id, plane.material};
+    for (const HullContact& contact : contacts)
+      if (reaches(contact)) add_point(contact.arm, Vec3::Zero(), contact.gap);
+  }
 }
 
 // A counting sort of the contacts by neighbour; a contact of two is in both runs.
@@ -175,9 +247,7 @@ void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdT
     const FullContact& contact = touch.full_contacts[full_order_[i]];
     const bool is_first = contact.first == self;
     const std::int32_t other = is_first ? contact.second : contact.first,
-                       second = other < 0
-                                    ? -1
-                                    : solver_index(scene, Participant::full(std::size_t(other)), touch.time);
+                       second = other < 0 ? -1 : solver_index(Participant::full(std::size_t(other)));
     const bool added_by_the_other = other >= 0 && second < index && !scene.neighbors[other].asleep;
     if (added_by_the_other) continue;
     add_manifold(
@@ -193,35 +263,27 @@ void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdT
 // Pair contacts, then what is under every moving participant.
 void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   participants_.clear();
-  solver_bodies_.clear();
-  angular_before_.clear();
-  manifolds_.clear();
-  keys_.clear();
-  grounds_.clear();
-  points_.clear();
   moving_parts_.clear();
   make_room(scene.bodies.size());
   index_of_neighbor_.assign(scene.neighbors.size(), -1);
 
-  for (const CrowdContact& pair : touch.contacts) add_pair_contact(scene, pair, touch.time);
+  add_pair_contacts(scene, touch.contacts);
   pair_manifolds_ = manifolds_.size();
-  for (const SolidContact& on_solid : touch.solid_contacts) add_solid_contact(scene, on_solid, touch.time);
+  for (const SolidContact& on_solid : touch.solid_contacts) add_solid_contact(scene, on_solid);
+  take_bodies(scene, 0, touch.time);
+  find_meetings(scene, touch);
+  find_ground_contacts(scene);
   sort_full_contacts(touch.full_contacts, scene.neighbors.size());
-  const auto& planes = scene.world.planes;
+  const std::size_t taken = participants_.size();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     const Participant p = participants_[i];
     if (p.is_ground() || scene.asleep(p) || scene.properties(p).kinematic) continue;
-    if (p.is_full()) {
+    if (p.is_full())
       add_full_contacts(scene, int(i), touch);
-      continue;
-    }
-    if (!meets_ground(scene.properties(p))) continue;
-    for (std::size_t number = 0; number < planes.size(); ++number)
-      add_ground_contacts(scene, int(i), planes[number], number, touch.time);
-    std::size_t number = kFirstFace;
-    for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index())))
-      add_ground_contacts(scene, int(i), face, number++, touch.time);
+    else
+      add_ground_contacts(scene, std::int32_t(i));
   }
+  take_bodies(scene, taken, touch.time);
 }
 
 void Crowd::solve(const ContactScene& scene, double time) {
@@ -230,7 +292,7 @@ void Crowd::solve(const ContactScene& scene, double time) {
       scene.world.bounce_velocity +
       scene.world.gravity_strength() * time;  // what gravity adds in a step is no impact
   settings.fall = scene.world.gravity * time;
-  memory_.recall(keys_, manifolds_, points_, time);
+  memory_.recall(keys_, manifolds_, points_, time, jobs_);
   borne_weights_.guess(solver_bodies_, manifolds_, points_, settings.fall, time);
   const std::size_t known = scene.world.log ? note_approaches(scene, time) : 0;
   solver_.solve(solver_bodies_, manifolds_, points_, time, settings, jobs_);
@@ -289,30 +351,28 @@ void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
 
 // Full neighbours only get their velocities.
 void Crowd::move(const ContactScene& scene, double time) {
-  for (std::size_t i = 0; i < participants_.size(); ++i) {
+  const auto move_one = [&](std::size_t i) {
     const Participant p = participants_[i];
     const SolverBody& solved = solver_bodies_[i];
-    if (p.is_ground()) continue;
+    if (p.is_ground()) return;
     if (p.is_full()) {
       RigidState& state = scene.neighbor(p).state;
       state.velocity = solved.velocity;
       state.angular_velocity = solved.angular_velocity;
-      continue;
+      return;
     }
     index_of_body_[p.index()] = -1;
     StatisticalBody& body = scene.body(p);
-    if (body.motion == Motion::asleep) continue;
+    if (body.motion == Motion::asleep) return;
     const BodyKind& kind = scene.kind_of(body);
-    if (scene.properties(p).kinematic) {
-      advance_kinematic(body, kind, time);
-      continue;
-    }
+    if (scene.properties(p).kinematic) return advance_kinematic(body, kind, time);
     body.velocity = solved.velocity;
     body.spin += spin_of(body.orientation, solved.angular_velocity - angular_before_[i], *kind.shape);
     body.position += body.velocity * time;
     body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
     ++body.events;
-  }
+  };
+  each_participant(move_one);
 }
 
 void Crowd::give_to_full(const ContactScene& scene) const {
@@ -388,12 +448,13 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
     else
       lift_out(body, shape, plane, lift_of(body, shape, scene.world.gravity_strength(), touch.time));
   };
-  for (const Participant p : participants_) {
-    if (!p.is_statistical() || scene.asleep(p)) continue;
-    if (const BodyProperties& own = scene.properties(p); own.kinematic || !meets_ground(own)) continue;
+  each_participant([&](std::size_t i) {
+    const Participant p = participants_[i];
+    if (!p.is_statistical() || scene.asleep(p)) return;
+    if (const BodyProperties& own = scene.properties(p); own.kinematic || !meets_ground(own)) return;
     for (const HalfSpace& plane : scene.world.planes) lift(p, plane);
     for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index()))) lift(p, face);
-  }
+  });
 }
 
 ContactTally Crowd::step(const ContactScene& scene, const CrowdTouch& touch) {

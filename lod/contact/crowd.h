@@ -50,21 +50,43 @@ class Crowd {
   void make_room(std::size_t bodies) { index_of_body_.resize(std::max(index_of_body_.size(), bodies), -1); }
 
  private:
+  static constexpr std::int64_t kBlock = 128;  // bodies or contacts of a job
+
+  /// A statistical body so near to a plane of the ground that it may touch it.
+  struct Meeting {
+    std::int32_t index;  // among the participants
+    const HalfSpace* plane;
+    std::size_t number;     // of the plane, for what is remembered of its contacts
+    double height, margin;  // m
+    HullContacts found;
+  };
+
   void gather(const ContactScene& scene, const CrowdTouch& touch);
-  int solver_index(const ContactScene& scene, Participant participant, double time);
+  int solver_index(Participant participant);
   std::int32_t solver_index(const GroundPart& part);
   void add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal,
                     const ContactLaw& law);
   void add_point(const Vec3& arm_first, const Vec3& arm_second, double gap);
-  void add_pair_contact(const ContactScene& scene, const CrowdContact& pair, double time);
-  void add_solid_contact(const ContactScene& scene, const SolidContact& on_solid, double time);
-  void add_ground_contacts(const ContactScene& scene, int index, const HalfSpace& plane, std::size_t number,
-                           double time);
+  void add_pair_contacts(const ContactScene& scene, std::span<const CrowdContact> contacts);
+  void add_solid_contact(const ContactScene& scene, const SolidContact& on_solid);
+  void take_bodies(const ContactScene& scene, std::size_t from, double time);
+  void find_meetings(const ContactScene& scene, const CrowdTouch& touch);
+  void add_meeting(const ContactScene& scene, std::int32_t index, const HalfSpace& plane, std::size_t number,
+                   double time);
+  void find_ground_contacts(const ContactScene& scene);
+  void add_ground_contacts(const ContactScene& scene, std::int32_t index);
   void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
   void add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch);
   void solve(const ContactScene& scene, double time);
   std::size_t note_approaches(const ContactScene& scene, double time) const;
   void note_impulses(ContactLog& log, std::size_t known) const;
+  template <class Visit>
+  void each_participant(const Visit& visit) const {
+    run_in_pieces(jobs_, std::int64_t(participants_.size()), kBlock,
+                  [&](std::int64_t begin, std::int64_t end) {
+                    for (std::int64_t i = begin; i < end; ++i) visit(std::size_t(i));
+                  });
+  }
   void move(const ContactScene& scene, double time);
   void give_to_full(const ContactScene& scene) const;
   void move_apart(const ContactScene& scene, double time);
@@ -84,7 +106,9 @@ class Crowd {
   std::vector<ContactKey> keys_;                          // of each manifold
   std::vector<std::pair<GroundId, MaterialId>> grounds_;  // that it is with, for the log
   std::vector<CrowdPoint> points_;
-  std::vector<int> partners_;  // manifolds of each solver body
+  std::vector<Meeting> meetings_;             // those of a body in a row
+  std::vector<std::uint32_t> first_meeting_;  // of each participant that there was when they were found
+  std::vector<int> partners_;                 // manifolds of each solver body
   CrowdSolver solver_;
   ContactMemory memory_;
   BorneWeights borne_weights_;

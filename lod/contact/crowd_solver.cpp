@@ -127,10 +127,11 @@ struct CrowdSolver::Work : CrowdArrays {
   std::vector<std::array<D4, 3>> guesses;
 
   void colour(std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds);
-  void make_batches(std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds,
-                    std::span<const CrowdPoint> contacts);
+  void make_batches(std::span<const CrowdManifold> manifolds);
   void fill(Batch& batch, std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds,
             std::span<const CrowdPoint> contacts);
+  void hand_out(const Batch& batch, std::span<const CrowdManifold> manifolds,
+                std::span<CrowdPoint> contacts) const;
   std::int32_t island_of(std::int32_t body);
   void find_uneven(std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds);
   enum class Which { all, uneven };
@@ -200,9 +201,8 @@ void CrowdSolver::Work::colour(std::span<const SolverBody> bodies, std::span<con
   }
 }
 
-void CrowdSolver::Work::make_batches(std::span<const SolverBody> bodies,
-                                     std::span<const CrowdManifold> manifolds,
-                                     std::span<const CrowdPoint> contacts) {
+// Which manifolds each holds, and where its points will be.
+void CrowdSolver::Work::make_batches(std::span<const CrowdManifold> manifolds) {
   const auto group_of = [&](std::size_t i) {
     return (2 * std::size_t(colour_of[i]) + (uneven.empty() ? 0 : uneven[i])) * kMostPoints +
            std::min(manifolds[i].count, kMostPoints) - 1;
@@ -214,9 +214,8 @@ void CrowdSolver::Work::make_batches(std::span<const SolverBody> bodies,
   for (std::size_t i = 0; i < manifolds.size(); ++i) order[first_of[group_of(i)]++] = std::uint32_t(i);
 
   batches.clear();
-  points.clear();
   first_batch.assign(1, 0);
-  std::uint32_t at = 0;
+  std::uint32_t at = 0, begin = 0;
   for (int part = 0; part < 2 * kColours; ++part) {
     const std::uint32_t end = first_of[std::size_t(part + 1) * kMostPoints - 1];
     const std::uint32_t width = part / 2 == kColours - 1 ? 1 : kLanes;
@@ -224,11 +223,16 @@ void CrowdSolver::Work::make_batches(std::span<const SolverBody> bodies,
       Batch& batch = batches.emplace_back();
       batch.lanes = std::int32_t(std::min(width, end - at));
       batch.bounded = part % 2 == 1;
-      for (int lane = 0; lane < batch.lanes; ++lane) batch.manifold[lane] = order[at + std::uint32_t(lane)];
-      fill(batch, bodies, manifolds, contacts);
+      batch.begin = begin;
+      for (int lane = 0; lane < batch.lanes; ++lane) {
+        batch.manifold[lane] = order[at + std::uint32_t(lane)];
+        batch.count = std::max(batch.count, std::int32_t(manifolds[batch.manifold[lane]].count));
+      }
+      begin += std::uint32_t(batch.count);
     }
     first_batch.push_back(std::uint32_t(batches.size()));
   }
+  points.resize(begin);
 }
 
 // What PrepareLoop needs of a point lies meanwhile where its own results will: the guess in `tangent`, the
@@ -236,11 +240,8 @@ void CrowdSolver::Work::make_batches(std::span<const SolverBody> bodies,
 void CrowdSolver::Work::fill(Batch& batch, std::span<const SolverBody> bodies,
                              std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> contacts) {
   const auto ground = std::int32_t(bodies.size());
-  batch.begin = std::uint32_t(points.size());
   for (int lane = 0; lane < kLanes; ++lane) batch.first[lane] = batch.second[lane] = ground;
-  for (int lane = 0; lane < batch.lanes; ++lane)
-    batch.count = std::max(batch.count, std::int32_t(manifolds[batch.manifold[lane]].count));
-  points.resize(points.size() + std::size_t(batch.count));
+  std::fill_n(points.begin() + batch.begin, batch.count, PointLanes{});
   for (int lane = 0; lane < batch.lanes; ++lane) {
     const CrowdManifold& m = manifolds[batch.manifold[lane]];
     const SolverBody& first = bodies[std::size_t(m.first)];
@@ -262,6 +263,19 @@ void CrowdSolver::Work::fill(Batch& batch, std::span<const SolverBody> bodies,
       set_lane(to.tangent, lane, point.guess);  // until prepared
       to.target[lane] = point.gap;
       to.effective_mass[0][lane] = 1.0;  // in use
+    }
+  }
+}
+
+void CrowdSolver::Work::hand_out(const Batch& batch, std::span<const CrowdManifold> manifolds,
+                                 std::span<CrowdPoint> contacts) const {
+  for (int lane = 0; lane < batch.lanes; ++lane) {
+    const CrowdManifold& m = manifolds[batch.manifold[lane]];
+    for (std::uint32_t k = 0; k < m.count; ++k) {
+      const PointLanes& p = points[batch.begin + k];
+      const Vec3 along = lane_of(p.tangent, lane);
+      contacts[m.begin + k].impulse = p.impulse[0][lane] * m.normal + p.impulse[1][lane] * along +
+                                      p.impulse[2][lane] * m.normal.cross(along);
     }
   }
 }
@@ -492,8 +506,11 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
   work.motions.back() = {};
   work.colour(bodies, manifolds);
   work.find_uneven(bodies, manifolds);
-  work.make_batches(bodies, manifolds, points);
-  run_in_pieces(jobs, std::int64_t(work.batches.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  work.make_batches(manifolds);
+  const auto batches = std::int64_t(work.batches.size());
+  run_in_pieces(jobs, batches, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i)
+      work.fill(work.batches[std::size_t(i)], bodies, manifolds, points);
     run_wide(work.simd, PrepareLoop{work, manifolds, points, step, settings}, begin, end);
   });
   using Which = Work::Which;
@@ -511,16 +528,9 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
     bodies[i].angular_velocity = {work.motions[i].angular[0], work.motions[i].angular[1],
                                   work.motions[i].angular[2]};
   }
-  for (const Batch& batch : work.batches)
-    for (int lane = 0; lane < batch.lanes; ++lane) {
-      const CrowdManifold& m = manifolds[batch.manifold[lane]];
-      for (std::uint32_t k = 0; k < m.count; ++k) {
-        const PointLanes& p = work.points[batch.begin + k];
-        const Vec3 along = lane_of(p.tangent, lane);
-        points[m.begin + k].impulse = p.impulse[0][lane] * m.normal + p.impulse[1][lane] * along +
-                                      p.impulse[2][lane] * m.normal.cross(along);
-      }
-    }
+  run_in_pieces(jobs, batches, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) work.hand_out(work.batches[std::size_t(i)], manifolds, points);
+  });
 }
 
 }  // namespace lodestone

@@ -104,20 +104,22 @@ void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs)
 }
 
 // Loops over pairs that lie far from each other in memory wait for them: where too many do, all are moved to
-// where the order of the step has them, in place.
+// where the order of the step has them, in place, along the cycles of that permutation.
 void NearPairs::put_in_order() {
   std::size_t leaps = 0;
   for (std::size_t i = 0; i < found_.size(); ++i) leaps += found_[i] != (i == 0 ? 0 : found_[i - 1] + 1);
   if (leaps < found_.size() / 4 + 16) return;
   const std::size_t count = found_.size();
   found_.insert(found_.end(), spare_.begin(), spare_.end());
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t from = found_[i];
-    while (from < i) from = found_[from];  // it has been moved there since
-    if (from != i) std::swap(all_[i], all_[from]);
+  for (std::uint32_t i = 0; i < found_.size(); ++i) {
+    if (found_[i] == i) continue;
+    FoundPair first = std::move(all_[i]);
+    std::uint32_t at = i;
+    for (std::uint32_t from; (from = std::exchange(found_[at], at)) != i; at = from)
+      all_[at] = std::move(all_[from]);
+    all_[at] = std::move(first);
   }
-  for (std::size_t i = 0; i < count; ++i) found_[i] = std::uint32_t(i);
-  for (std::size_t i = 0; i < spare_.size(); ++i) spare_[i] = std::uint32_t(count + i);
+  spare_.assign(found_.begin() + std::ptrdiff_t(count), found_.end());
   found_.resize(count);
 }
 
@@ -183,26 +185,26 @@ void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<
     if (moved_on(pair.first) || moved_on(pair.second)) return false;
     return !(scene.asleep(pair.first) && scene.asleep(pair.second));
   };
-  constexpr std::int64_t kGrain = 64;
   const auto count = std::int64_t(found_.size());
-  run_in_pieces(jobs_, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i)
-      if (FoundPair& pair = all_[found_[std::size_t(i)]]; looked_at(pair)) find_contact(scene, time, pair);
+  first_contact_.resize(found_.size() + 1);
+  run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+      FoundPair& pair = all_[found_[i]];
+      const bool looks = looked_at(pair);
+      if (looks) find_contact(scene, time, pair);
+      first_contact_[i + 1] = looks ? std::uint32_t(pair.contacts.size()) : 0;
+    }
   });
-  first_contact_.assign(1, 0);
-  for (const std::uint32_t place : found_) {
-    const FoundPair& pair = all_[place];
-    first_contact_.push_back(first_contact_.back() + (pair.contacts.empty() || !looked_at(pair)
-                                                          ? 0
-                                                          : std::uint32_t(pair.contacts.size())));
-  }
+  first_contact_[0] = 0;
+  for (std::size_t i = 0; i < found_.size(); ++i) first_contact_[i + 1] += first_contact_[i];
   contacts_.resize(first_contact_.back());
   may_close_.resize(first_contact_.back());
-  run_in_pieces(jobs_, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      const FoundPair& pair = (*this)[std::size_t(i)];
-      for (std::uint32_t at = first_contact_[std::size_t(i)]; at < first_contact_[std::size_t(i) + 1]; ++at) {
-        const HeldContact& held = pair.contacts[at - first_contact_[std::size_t(i)]];
+  run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+      if (first_contact_[i] == first_contact_[i + 1]) continue;
+      const FoundPair& pair = (*this)[i];
+      for (std::uint32_t at = first_contact_[i]; at < first_contact_[i + 1]; ++at) {
+        const HeldContact& held = pair.contacts[at - first_contact_[i]];
         contacts_[at] = {pair.first, pair.second,
                          follow(held, scene.pair_body(pair.first), scene.pair_body(pair.second))};
         may_close_[at] = closes(scene, pair, contacts_[at].contact, time);
@@ -222,13 +224,15 @@ void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<
 
 void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int32_t> awake) {
   make_room(scene.bodies.size());
-  for (const std::int32_t slot : awake) {
-    const StatisticalBody& body = scene.bodies[std::size_t(slot)];
-    const Shape& shape = *scene.kind_of(body).shape;
-    const Vec3 omega = body.motion == Motion::asleep ? Vec3(Vec3::Zero())
-                                                     : angular_velocity(body.orientation, body.spin, shape);
-    turning_[std::size_t(slot)] = {omega, omega.norm() * shape.radius};
-  }
+  run_in_pieces(jobs_, std::int64_t(awake.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (const std::int32_t slot : awake.subspan(std::size_t(begin), std::size_t(end - begin))) {
+      const StatisticalBody& body = scene.bodies[std::size_t(slot)];
+      const Shape& shape = *scene.kind_of(body).shape;
+      const Vec3 omega = body.motion == Motion::asleep ? Vec3(Vec3::Zero())
+                                                       : angular_velocity(body.orientation, body.spin, shape);
+      turning_[std::size_t(slot)] = {omega, omega.norm() * shape.radius};
+    }
+  });
 }
 
 double NearPairs::find_approach(const ContactScene& scene, const FoundPair& pair, double time) const {

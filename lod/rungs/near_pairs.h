@@ -70,6 +70,8 @@ class NearPairs {
   Vec3 point_velocity(const ContactScene& scene, Participant p, const Vec3& point) const;
 
  private:
+  static constexpr std::int64_t kBlock = 64;  // pairs or bodies of a job
+
   /// How fast a body turns.
   struct Turning {
     Vec3 angular_velocity = Vec3::Zero();  // rad/s, world

@@ -47,7 +47,8 @@ TEST(ContactMemory, RecallsTheForcesPointByPoint) {
   const Touching before = touching();
   ContactMemory memory = memory_of(before, 0.02);
   Touching now = touching();
-  memory.recall(now.keys, now.manifolds, now.points, 0.01);  // half as long: half the impulses
+  memory.recall(now.keys, now.manifolds, now.points, 0.01,
+                make_job_runner(1));  // half as long: half the impulses
   for (std::size_t i = 0; i < now.points.size(); ++i)
     EXPECT_EQ(now.points[i].guess, 0.5 * before.points[i].impulse) << i;
 }
@@ -57,7 +58,7 @@ TEST(ContactMemory, RecallsAPairWhereverItIsInTheList) {
   Touching now;
   now.add(ground_key(3, 0), {Vec3::Zero(), Vec3::Zero()});
   now.add(contact_key(2, 3), {Vec3::Zero()});
-  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  memory.recall(now.keys, now.manifolds, now.points, 0.01, make_job_runner(1));
   EXPECT_EQ(now.points[1].guess, Vec3(0, 0, 9));
   EXPECT_EQ(now.points[2].guess, Vec3(0, 5, 0));
 }
@@ -70,7 +71,7 @@ TEST(ContactMemory, GivesEachForceToThePointNearestToWhereItWas) {
   now.add(ground_key(3, 0), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
   std::swap(now.points[0].arm_first, now.points[2].arm_first);  // found in another order
   for (CrowdPoint& point : now.points) point.arm_first.x() += 0.1;
-  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  memory.recall(now.keys, now.manifolds, now.points, 0.01, make_job_runner(1));
   EXPECT_EQ(now.points[0].guess, Vec3(0, 0, 4));
   EXPECT_EQ(now.points[1].guess, Vec3(0, 0, 2));
   EXPECT_EQ(now.points[2].guess, Vec3(0, 0, 1));
@@ -80,7 +81,7 @@ TEST(ContactMemory, KeepsTheWholeForceWhereThePointsAreFewer) {
   ContactMemory memory = memory_of(touching(), 0.01);
   Touching now;
   now.add(contact_key(1, 2), {Vec3::Zero(), Vec3::Zero()});
-  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  memory.recall(now.keys, now.manifolds, now.points, 0.01, make_job_runner(1));
   EXPECT_LT((now.points[0].guess + now.points[1].guess - Vec3(1, 0, 6)).norm(), 1e-12);
 }
 
@@ -89,7 +90,7 @@ TEST(ContactMemory, SaysWhichManifoldsItKnows) {
   Touching now;
   now.add(contact_key(8, 9), {Vec3::Zero()});
   now.add(contact_key(2, 3), {Vec3::Zero()});
-  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  memory.recall(now.keys, now.manifolds, now.points, 0.01, make_job_runner(1));
   EXPECT_FALSE(now.manifolds[0].known);
   EXPECT_TRUE(now.manifolds[1].known);
 }
@@ -99,7 +100,7 @@ TEST(ContactMemory, LeavesWhatIsNewAsItIs) {
   Touching now;
   now.add(contact_key(2, 1), {Vec3::Zero()});  // another pair: the impulse's sign is that of the first
   now.points[0].guess = Vec3(4, 4, 4);
-  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  memory.recall(now.keys, now.manifolds, now.points, 0.01, make_job_runner(1));
   EXPECT_EQ(now.points[0].guess, Vec3(4, 4, 4));
 }
 
@@ -109,7 +110,7 @@ TEST(ContactMemory, ForgetsWhatWasBeforeTheLastStep) {
   other.add(contact_key(8, 9), {{0, 0, 1}});
   memory.remember(other.keys, other.manifolds, other.points, 0.01);
   Touching now = touching();
-  memory.recall(now.keys, now.manifolds, now.points, 0.01);
+  memory.recall(now.keys, now.manifolds, now.points, 0.01, make_job_runner(1));
   for (const CrowdPoint& point : now.points) EXPECT_EQ(point.guess, Vec3::Zero());
 }
 
