@@ -64,7 +64,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
       search.find_again(dt, support, full_);
       pairs_.take(scene, search.pairs());
     }
-    if (i > 0) pairs_.find_turning(scene, support.awake_with_guests());
+    if (i > 0) pairs_.find_turning(scene, near_.marked());
     pairs_.find_contacts(scene, time, support.awake_with_guests(), near_);  // who is crowded is decided anew
     wake_touched(scene, support);
     if (substeps > 1) find_ground_solids(scene, support, i * time, time, true);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lod/contact/participant.h"
@@ -23,6 +24,7 @@ class NearMarks {
     marked_.push_back(std::int32_t(p.index()));
   }
   bool operator[](std::size_t index) const { return marks_[index] != 0; }
+  std::span<const std::int32_t> marked() const { return marked_; }  ///< indices, in no order
 
  private:
   std::vector<char> marks_;

@@ -222,10 +222,10 @@ void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<
   contacts_.resize(kept);
 }
 
-void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int32_t> awake) {
+void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int32_t> bodies) {
   make_room(scene.bodies.size());
-  run_in_pieces(jobs_, std::int64_t(awake.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (const std::int32_t slot : awake.subspan(std::size_t(begin), std::size_t(end - begin))) {
+  run_in_pieces(jobs_, std::int64_t(bodies.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (const std::int32_t slot : bodies.subspan(std::size_t(begin), std::size_t(end - begin))) {
       const StatisticalBody& body = scene.bodies[std::size_t(slot)];
       const Shape& shape = *scene.kind_of(body).shape;
       const Vec3 omega = body.motion == Motion::asleep ? Vec3(Vec3::Zero())

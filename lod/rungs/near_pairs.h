@@ -53,7 +53,7 @@ class NearPairs {
   const FoundPair& operator[](std::size_t i) const { return all_[found_[i]]; }
 
   /// Of each body given, by index, before its contacts are looked for.
-  void find_turning(const ContactScene& scene, std::span<const std::int32_t> awake);
+  void find_turning(const ContactScene& scene, std::span<const std::int32_t> bodies);
   /// Of one that was just woken.
   void clear_turning(Participant p) { turning_[p.index()] = {}; }
   /// Contacts that may close within `time` seconds: of pairs whose bodies are near others (`near`) or asleep.
