@@ -47,9 +47,6 @@ Participant deciding(Participant one, Participant other) {
   return one.index() > other.index() ? one : other;
 }
 
-// Numbers of what bodies touch besides planes, for what is remembered of contacts.
-constexpr std::size_t kFirstSolid = 1 << 16, kFirstFace = 1u << 31;
-
 bool is_eased(const ContactScene& scene, Participant p) {
   return p.is_statistical() && scene.body(p).eased > 0.0f;
 }
@@ -153,64 +150,9 @@ void Crowd::add_solid_contact(const ContactScene& scene, const SolidContact& on_
               manifold.points[i].point - on_solid.part->pose.position, manifold.points[i].gap);
 }
 
-void Crowd::add_meeting(const ContactScene& scene, std::int32_t index, const HalfSpace& plane,
-                        std::size_t number, double time) {
-  const StatisticalBody& body = scene.body(participants_[std::size_t(index)]);
-  const SolverBody& solver = solver_bodies_[std::size_t(index)];
-  const BodyKind& kind = scene.kind_of(body);
-  const double reach = body.is_sphere() ? double(body.sphere_radius) : kind.shape->radius;
-  const double spin_speed = body.is_sphere() ? 0.0 : solver.angular_velocity.norm() * reach;
-  const double height = plane.height_of(body.position);
-  const double falling = std::max(0.0, -solver.velocity.dot(plane.normal));
-  const double margin = settings_.contact_margin * kind.shape->radius + (falling + 0.5 * spin_speed) * time;
-  if (height <= reach + margin) meetings_.push_back({index, &plane, number, height, margin, {}});
-}
-
-// Of those that move and that the ground does not let through.
-void Crowd::find_meetings(const ContactScene& scene, const CrowdTouch& touch) {
-  meetings_.clear();
-  first_meeting_.assign(1, 0);
-  const auto& planes = scene.world.planes;
-  for (std::size_t i = 0; i < participants_.size(); ++i) {
-    const Participant p = participants_[i];
-    if (p.is_statistical() && !scene.asleep(p) && !scene.properties(p).kinematic &&
-        meets_ground(scene.properties(p))) {
-      for (std::size_t number = 0; number < planes.size(); ++number)
-        add_meeting(scene, std::int32_t(i), planes[number], number, touch.time);
-      std::size_t number = kFirstFace;
-      for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index())))
-        add_meeting(scene, std::int32_t(i), face, number++, touch.time);
-    }
-    first_meeting_.push_back(std::uint32_t(meetings_.size()));
-  }
-}
-
-void Crowd::find_ground_contacts(const ContactScene& scene) {
-  run_in_pieces(jobs_, std::int64_t(first_meeting_.size()) - 1, kBlock,
-                [&](std::int64_t begin, std::int64_t end) {
-                  for (std::uint32_t i = first_meeting_[std::size_t(begin)];
-                       i < first_meeting_[std::size_t(end)]; ++i) {
-                    Meeting& meeting = meetings_[i];
-                    StatisticalBody& body = scene.body(participants_[std::size_t(meeting.index)]);
-                    const Vec3& normal = meeting.plane->normal;
-                    if (body.is_sphere()) {
-                      const double radius = body.sphere_radius;
-                      meeting.found.contact[0] = {-radius * normal, meeting.height - radius};
-                      meeting.found.count = 1;
-                    } else {
-                      meeting.found = find_hull_contacts(*scene.kind_of(body).shape, body.orientation, normal,
-                                                         meeting.height, meeting.margin, body.support_hint);
-                    }
-                  }
-                });
-}
-
 void Crowd::add_ground_contacts(const ContactScene& scene, std::int32_t index) {
-  if (std::size_t(index) + 1 >= first_meeting_.size()) return;  // a full body that came after
-  const StatisticalBody& body = scene.body(participants_[std::size_t(index)]);
-  for (std::uint32_t i = first_meeting_[std::size_t(index)]; i < first_meeting_[std::size_t(index) + 1];
-       ++i) {
-    const Meeting& meeting = meetings_[i];
+  for (const GroundMeeting& meeting : meetings_.of(std::size_t(index))) {
+    const StatisticalBody& body = scene.body(participants_[std::size_t(index)]);
     const auto reaches = [&](const HullContact& contact) { return contact.gap <= meeting.margin; };
     const auto contacts = std::span(meeting.found.contact).first(std::size_t(meeting.found.count));
     if (std::ranges::none_of(contacts, reaches)) continue;
@@ -271,8 +213,8 @@ void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   pair_manifolds_ = manifolds_.size();
   for (const SolidContact& on_solid : touch.solid_contacts) add_solid_contact(scene, on_solid);
   take_bodies(scene, 0, touch.time);
-  find_meetings(scene, touch);
-  find_ground_contacts(scene);
+  meetings_.find(scene, participants_, solver_bodies_, touch.faces, touch.time, settings_.contact_margin,
+                 jobs_);
   sort_full_contacts(touch.full_contacts, scene.neighbors.size());
   const std::size_t taken = participants_.size();
   for (std::size_t i = 0; i < participants_.size(); ++i) {

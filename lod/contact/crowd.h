@@ -10,6 +10,7 @@
 #include "lod/contact/contact_memory.h"
 #include "lod/contact/contact_scene.h"
 #include "lod/contact/crowd_solver.h"
+#include "lod/contact/ground_meetings.h"
 #include "lod/contact/solid_contacts.h"
 #include "lod/jobs.h"
 #include "reference/state_archive.h"
@@ -52,15 +53,6 @@ class Crowd {
  private:
   static constexpr std::int64_t kBlock = 128;  // bodies or contacts of a job
 
-  /// A statistical body so near to a plane of the ground that it may touch it.
-  struct Meeting {
-    std::int32_t index;  // among the participants
-    const HalfSpace* plane;
-    std::size_t number;     // of the plane, for what is remembered of its contacts
-    double height, margin;  // m
-    HullContacts found;
-  };
-
   void gather(const ContactScene& scene, const CrowdTouch& touch);
   int solver_index(Participant participant);
   std::int32_t solver_index(const GroundPart& part);
@@ -70,10 +62,6 @@ class Crowd {
   void add_pair_contacts(const ContactScene& scene, std::span<const CrowdContact> contacts);
   void add_solid_contact(const ContactScene& scene, const SolidContact& on_solid);
   void take_bodies(const ContactScene& scene, std::size_t from, double time);
-  void find_meetings(const ContactScene& scene, const CrowdTouch& touch);
-  void add_meeting(const ContactScene& scene, std::int32_t index, const HalfSpace& plane, std::size_t number,
-                   double time);
-  void find_ground_contacts(const ContactScene& scene);
   void add_ground_contacts(const ContactScene& scene, std::int32_t index);
   void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
   void add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch);
@@ -106,9 +94,8 @@ class Crowd {
   std::vector<ContactKey> keys_;                          // of each manifold
   std::vector<std::pair<GroundId, MaterialId>> grounds_;  // that it is with, for the log
   std::vector<CrowdPoint> points_;
-  std::vector<Meeting> meetings_;             // those of a body in a row
-  std::vector<std::uint32_t> first_meeting_;  // of each participant that there was when they were found
-  std::vector<int> partners_;                 // manifolds of each solver body
+  GroundMeetings meetings_;
+  std::vector<int> partners_;  // manifolds of each solver body
   CrowdSolver solver_;
   ContactMemory memory_;
   BorneWeights borne_weights_;

@@ -9,7 +9,7 @@
 namespace lodestone {
 namespace {
 
-struct Crowd {
+struct SolverCrowd {
   std::vector<SolverBody> bodies;
   std::vector<CrowdManifold> manifolds;
   std::vector<CrowdPoint> points;
@@ -36,12 +36,12 @@ struct Crowd {
 };
 
 // Bodies thrown at each other at random, some fixed and some on the ground.
-Crowd make_crowd(int bodies, int manifolds, bool ground) {
+SolverCrowd make_crowd(int bodies, int manifolds, bool ground) {
   RandomStream random(5, 1, 0);
   const auto vector = [&](double size) {
     return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
   };
-  Crowd crowd;
+  SolverCrowd crowd;
   for (int i = 0; i < bodies; ++i) {
     SolverBody body;
     body.velocity = vector(2.0);
@@ -68,12 +68,12 @@ Crowd make_crowd(int bodies, int manifolds, bool ground) {
 
 constexpr double kStep = 1.0 / 180.0;
 
-void solve(Crowd& crowd, Simd simd, int threads, const ContactSolverSettings& settings) {
+void solve(SolverCrowd& crowd, Simd simd, int threads, const ContactSolverSettings& settings) {
   CrowdSolver(simd).solve(crowd.bodies, crowd.manifolds, crowd.points, kStep, settings,
                           make_job_runner(threads));
 }
 
-bool same(const Crowd& a, const Crowd& b) {
+bool same(const SolverCrowd& a, const SolverCrowd& b) {
   for (std::size_t i = 0; i < a.bodies.size(); ++i)
     if (a.bodies[i].velocity != b.bodies[i].velocity ||
         a.bodies[i].angular_velocity != b.bodies[i].angular_velocity)
@@ -86,14 +86,14 @@ bool same(const Crowd& a, const Crowd& b) {
 
 TEST(CrowdSolver, HasOneResultForEveryInstructionSetAndNumberOfThreads) {
   const ContactSolverSettings settings{.sweeps = 10, .tolerance = 1e-3, .fall = {0, 0, -9.81 * kStep}};
-  Crowd portable = make_crowd(4'000, 9'000, true);
-  const Crowd start = portable;
+  SolverCrowd portable = make_crowd(4'000, 9'000, true);
+  const SolverCrowd start = portable;
   solve(portable, Simd::portable, 1, settings);
   EXPECT_FALSE(same(portable, start));
   for (const Simd simd : {Simd::portable, Simd::avx2, Simd::avx512}) {
     if (simd > find_simd()) continue;
     for (const int threads : {1, 2, 3}) {
-      Crowd crowd = make_crowd(4'000, 9'000, true);
+      SolverCrowd crowd = make_crowd(4'000, 9'000, true);
       solve(crowd, simd, threads, settings);
       EXPECT_TRUE(same(crowd, portable)) << int(simd) << ' ' << threads;
     }
@@ -101,7 +101,7 @@ TEST(CrowdSolver, HasOneResultForEveryInstructionSetAndNumberOfThreads) {
 }
 
 // The same contacts for the plain solver.
-std::vector<SolverContact> plain_contacts(const Crowd& crowd) {
+std::vector<SolverContact> plain_contacts(const SolverCrowd& crowd) {
   std::vector<SolverContact> contacts;
   for (const CrowdManifold& m : crowd.manifolds)
     for (const CrowdPoint& point : std::span(crowd.points).subspan(m.begin, m.count)) {
@@ -116,7 +116,7 @@ std::vector<SolverContact> plain_contacts(const Crowd& crowd) {
 // A chain has one answer, whatever the order: bodies in a row, the first on the ground.
 TEST(CrowdSolver, FindsWhatThePlainSolverFinds) {
   RandomStream random(5, 2, 0);
-  Crowd crowd = make_crowd(12, 0, false);
+  SolverCrowd crowd = make_crowd(12, 0, false);
   for (int i = 0; i < 12; ++i) crowd.add_manifold(i, i - 1, random.orientation() * Vec3::UnitZ(), 1, random);
   for (CrowdManifold& m : crowd.manifolds) m.law.friction = 0.0;
   std::vector<SolverContact> contacts = plain_contacts(crowd);
@@ -131,7 +131,7 @@ TEST(CrowdSolver, FindsWhatThePlainSolverFinds) {
 }
 
 TEST(CrowdSolver, KeepsMomentumAndBoundsFriction) {
-  Crowd crowd = make_crowd(60, 150, false);
+  SolverCrowd crowd = make_crowd(60, 150, false);
   const auto momentum = [&] {
     Vec3 sum = Vec3::Zero();
     for (const SolverBody& body : crowd.bodies) sum += body.velocity / body.inverse_mass;
@@ -155,7 +155,7 @@ TEST(CrowdSolver, KeepsMomentumAndBoundsFriction) {
 // More contacts of one body than there are colours.
 TEST(CrowdSolver, HoldsUpABodyOnAHundredContacts) {
   RandomStream random(5, 3, 0);
-  Crowd crowd = make_crowd(1, 0, false);
+  SolverCrowd crowd = make_crowd(1, 0, false);
   crowd.bodies[0].velocity = {0, 0, -1};
   crowd.bodies[0].angular_velocity.setZero();
   for (int i = 0; i < 100; ++i) crowd.add_manifold(0, -1, Vec3::UnitZ(), 1, random);
@@ -168,7 +168,7 @@ TEST(CrowdSolver, HoldsUpABodyOnAHundredContacts) {
 // On the ground, with nothing known from a step before.
 TEST(CrowdSolver, CarriesAWeightThroughALightBody) {
   for (const double ratio : {100.0, 1e3, 1e4}) {
-    Crowd crowd;
+    SolverCrowd crowd;
     for (const double mass : {1.0, ratio}) {
       SolverBody body;
       body.inverse_mass = 1.0 / mass;
@@ -190,8 +190,8 @@ TEST(CrowdSolver, CarriesAWeightThroughALightBody) {
 
 // What does not hang together with a weight is solved as without it.
 TEST(CrowdSolver, AWeightChangesNothingElsewhere) {
-  Crowd plain = make_crowd(40, 90, true);
-  Crowd beside = plain;
+  SolverCrowd plain = make_crowd(40, 90, true);
+  SolverCrowd beside = plain;
   SolverBody light, heavy;
   light.inverse_mass = 1.0, heavy.inverse_mass = 1e-3;
   light.inverse_inertia = heavy.inverse_inertia = Mat3::Identity();
