@@ -122,7 +122,7 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
   // hull of any sphere stands out of it.
   double standing_out = 0.0;
   for (std::size_t i = 0; i < spheres_; ++i)
-    standing_out = std::max(standing_out, kBall * tables.radius(s.slot[i]) - tables.reach_at_rest(i));
+    standing_out = std::max(standing_out, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
   const auto copy = [&](auto& to, const auto& from) {
     to.assign(from.begin(), from.begin() + std::ptrdiff_t(spheres_));
   };
@@ -131,7 +131,7 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
   drawn_reach_ = reach_;
   for (std::size_t i = spheres_; i < reach_.size(); ++i) drawn_reach_[i] += float(standing_out);
   for (std::size_t i = 0; i < spheres_; ++i)
-    reach_[i] += float(std::max(0.0, kBall * tables.radius(s.slot[i]) - tables.reach_at_rest(i)));
+    reach_[i] += float(std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i])));
   cells_of_spheres(x_, y_, z_, drawn_reach_, {});
   note_order(spheres_);
 }
@@ -278,7 +278,7 @@ void NearSearch::find_still_hulls_near_spheres(const SupportLevel& support, cons
   for (std::size_t i = 0; i < std::size_t(s.awake); ++i) {  // with those that others have just woken
     const Vec3 center = s.position(std::int64_t(i));
     const double own_reach =
-        double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - tables.reach_at_rest(i));
+        double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
     still_near_.clear();
     still.find_near(center, own_reach, [&](std::uint32_t slot) {
       const double limit = own_reach + kBall * support.kind_of(bodies[slot]).shape->radius;

@@ -75,11 +75,7 @@ class TablesLevel {
   void begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally);
   const Spheres& spheres() const { return spheres_; }
   std::span<const float> reach() const { return step_.reach; }  ///< m, of those awake
-  /// m: of its own size in reach(): its sphere or, where it knows its hull, as far as that stands out.
-  double reach_at_rest(std::size_t place) const {
-    return double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[place]] : spheres_.radius[place]);
-  }
-  CellGrid::Lent free_rows() { return step_.free_rows(); }  ///< to search in, until respond()
+  CellGrid::Lent free_rows() { return step_.free_rows(); }      ///< to search in, until respond()
   /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given.
   void find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
   void forget_contacts() { contacts_.clear(); }  ///< in their place, where there are none

@@ -129,7 +129,10 @@ void expect_all_found(Crowd3& crowd) {
       }
       // Beyond what both travel, what gravity adds and a part of their sizes they are not near.
       const double speeds = one.state.velocity.norm() + other.state.velocity.norm();
-      if (gap > 0.05 * (one.radius + other.radius) + speeds * kSearchStep + 0.01) {
+      const auto excess = [](const Crowd3::Place& p) {
+        return (p.rung == Rung::tables ? 0.5 : 0.05) * p.radius;
+      };
+      if (gap > excess(one) + excess(other) + speeds * kSearchStep + 0.01) {
         EXPECT_FALSE(found) << a << ' ' << b << " apart by " << gap;
       }
     }
