@@ -58,7 +58,7 @@ void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
 ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
                                            bool rides, std::vector<PlayingClip>& joined) {
   static const HullMotionSettings settings{
-      .support = {.contact_step = 0.2,
+      .support = {.contact_step = 0.1,
                   .solver = {.sweeps = 4, .tolerance = 1e-2},
                   .timed_bounces = false,   // as the bounds of heaps were measured
                   .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
