@@ -12,6 +12,10 @@ using namespace lane;
 constexpr auto kChunk = std::int64_t(kContactChunk);
 constexpr std::int64_t kLanes = 16;
 
+// m/s along the normal, into the first body: how fast two may close in once a third stops one of them, as
+// those of a column that lands do. `speed` is that of the first against the second, `own` its own.
+LODESTONE_INLINE float if_one_stops(float speed, float own) { return least(speed, least(own, speed - own)); }
+
 template <bool OneKind, bool Oriented>
 struct TouchLoop {
   const BallPairs& pairs;
@@ -34,6 +38,7 @@ struct TouchLoop {
     [[maybe_unused]] alignas(64) float first_w[kChunk]{}, first_x[kChunk]{}, first_y[kChunk]{},
         first_z[kChunk]{}, second_w[kChunk]{}, second_x[kChunk]{}, second_y[kChunk]{}, second_z[kChunk]{};
     [[maybe_unused]] alignas(64) std::int32_t first_map[kChunk]{}, second_map[kChunk]{};
+    [[maybe_unused]] alignas(64) float wx[kChunk]{}, wy[kChunk]{}, wz[kChunk]{};  // m/s, of the first
     alignas(64) float nx[kChunk], ny[kChunk], nz[kChunk], gap[kChunk], closing[kChunk];
     alignas(64) std::int32_t touches[kChunk];
     [[maybe_unused]] alignas(64) float apart_by[kChunk], face_x[kChunk], face_y[kChunk], face_z[kChunk],
@@ -55,6 +60,7 @@ struct TouchLoop {
         ux[i] = float(vx[a] - vx[b]), uy[i] = float(vy[a] - vy[b]), uz[i] = float(vz[a] - vz[b]);
         if constexpr (Oriented) {
           first_w[i] = qw[a], first_x[i] = qx[a], first_y[i] = qy[a], first_z[i] = qz[a];
+          wx[i] = float(vx[a]), wy[i] = float(vy[a]), wz[i] = float(vz[a]);
           second_w[i] = qw[b], second_x[i] = qx[b], second_y[i] = qy[b], second_z[i] = qz[b];
           if constexpr (!OneKind)
             first_map[i] = int(kind[a]) * kHullHeights, second_map[i] = int(kind[b]) * kHullHeights;
@@ -80,7 +86,10 @@ struct TouchLoop {
         const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
         nx[i] = normal.x, ny[i] = normal.y, nz[i] = normal.z;
         gap[i] = between, closing[i] = speed;
-        touches[i] = choose(between + speed * c.time > limit[i], 0, 1);
+        float may_close = speed;
+        if constexpr (Oriented)
+          may_close = if_one_stops(speed, wx[i] * normal.x + wy[i] * normal.y + wz[i] * normal.z);
+        touches[i] = choose(between + may_close * c.time > limit[i], 0, 1);
       }
       // What the line does not keep apart until the end of the step, a face may.
       if constexpr (Oriented) {
@@ -97,7 +106,8 @@ struct TouchLoop {
           const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
           face_x[k] = normal.x, face_y[k] = normal.y, face_z[k] = normal.z, face_gap[k] = found.gap,
           face_closing[k] = speed;
-          face_touches[k] = choose(found.gap + speed * c.time > limit[i], 0, 1);
+          const float may_close = if_one_stops(speed, wx[i] * normal.x + wy[i] * normal.y + wz[i] * normal.z);
+          face_touches[k] = choose(found.gap + may_close * c.time > limit[i], 0, 1);
         }
         for (std::int64_t k = 0; k < left; ++k) {  // without a branch
           out.first[count] = pairs.first(chunk + kept[k]), out.second[count] = pairs.second(chunk + kept[k]);
