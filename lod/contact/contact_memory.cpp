@@ -24,10 +24,11 @@ CrowdPoint& find_nearest(std::span<CrowdPoint> points, const Vec3& arm) {
 
 void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdManifold> manifolds,
                            std::span<CrowdPoint> points, double step, const JobRunner& jobs) {
+  Loads& before = begun_ ? last_substep_ : last_step_;
   recalled_.clear();
   std::size_t expected = 0;
   each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
-    const std::int32_t place = place_.find(key, expected);
+    const std::int32_t place = before.place.find(key, expected);
     if (place < 0) return;
     expected = std::size_t(place) + 1;
     recalled_.push_back({std::uint32_t(first), std::uint32_t(end), place});
@@ -36,11 +37,11 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdMani
   run_in_pieces(jobs, std::int64_t(recalled_.size()), kGrain, [&](std::int64_t from, std::int64_t to) {
     for (const Recalled& pair : std::span(recalled_).subspan(std::size_t(from), std::size_t(to - from))) {
       for (std::uint32_t i = pair.first; i < pair.end; ++i) manifolds[i].known = true;
-      const Run& run = runs_[std::size_t(pair.place)];
+      const Run& run = before.runs[std::size_t(pair.place)];
       const std::uint32_t begin = manifolds[pair.first].begin,
                           end = manifolds[pair.end - 1].begin + manifolds[pair.end - 1].count;
       const auto now = points.subspan(begin, end - begin);
-      for (const Load& load : std::span(loads_).subspan(run.begin, run.count))
+      for (const Load& load : std::span(before.loads).subspan(run.begin, run.count))
         find_nearest(now, load.arm).guess += step * load.force;
     }
   });
@@ -48,15 +49,28 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdMani
 
 void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
                              std::span<const CrowdPoint> points, double step) {
-  runs_.clear();
-  loads_.clear();
-  place_.clear();
-  for (const CrowdPoint& point : points) loads_.push_back({point.impulse / step, point.arm_first});
+  begun_ = true;
+  last_substep_.clear();
+  for (const CrowdPoint& point : points)
+    last_substep_.loads.push_back({point.impulse / step, point.arm_first});
   each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
-    place_.add(key);
+    last_substep_.place.add(key);
     const std::uint32_t begin = manifolds[first].begin;
-    runs_.push_back({begin, manifolds[end - 1].begin + manifolds[end - 1].count - begin});
+    last_substep_.runs.push_back({begin, manifolds[end - 1].begin + manifolds[end - 1].count - begin});
   });
+}
+
+void ContactMemory::end_islands() {
+  if (!begun_) return;
+  if (this_step_.runs.empty()) return std::swap(this_step_, last_substep_);
+  const auto from = std::uint32_t(this_step_.loads.size());
+  this_step_.place.add(last_substep_.place);
+  for (const Run& run : last_substep_.runs) this_step_.runs.push_back({from + run.begin, run.count});
+  this_step_.loads.insert(this_step_.loads.end(), last_substep_.loads.begin(), last_substep_.loads.end());
+}
+
+void ContactMemory::end_step() {
+  if (!this_step_.runs.empty()) std::swap(last_step_, this_step_);
 }
 
 }  // namespace lodestone

@@ -47,6 +47,12 @@ class Crowd {
   /// its time. Bodies asleep hold still; full neighbours receive impulses, the velocities that these give
   /// them, and shifts, but do not move on.
   ContactTally step(const ContactScene& scene, const CrowdTouch& touch);
+  /// Of a step in which sets of islands take their substeps one after the other, each between begin_islands()
+  /// and end_islands(): the impulses of its first substep begin with those of the last step.
+  void begin_step() { memory_.begin_step(); }
+  void begin_islands() { memory_.begin_islands(); }
+  void end_islands() { memory_.end_islands(); }
+  void end_step() { memory_.end_step(); }
   void archive(StateArchive& a) { a(memory_); }
   void make_room(std::size_t bodies) { index_of_body_.resize(std::max(index_of_body_.size(), bodies), -1); }
 

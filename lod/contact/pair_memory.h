@@ -29,6 +29,9 @@ class PairMemory {
     keys_.push_back(key);
     mark(key);
   }
+  void add(const PairMemory& others) {
+    for (const ContactKey key : others.keys_) add(key);
+  }
   /// The place at which `key` was added, the first one; −1: never. Quick where that is about `expected`:
   /// lists mostly keep their order from step to step.
   std::int32_t find(ContactKey key, std::size_t expected);

@@ -1,24 +1,11 @@
 #include "lod/rungs/near_bodies.h"
 
 #include <algorithm>
-#include <chrono>
+
+#include "lod/timing/stage_timer.h"
 
 namespace lodestone {
 namespace {
-
-/// Wall time between laps, for the step report.
-class Laps {
- public:
-  double lap_ms() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
-    start_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Where a full neighbour is after a substep that it began with velocity `before`: what took part in the crowd
 // has its velocity from there, gravity included.
@@ -40,48 +27,38 @@ bool meets_solids(const BodyProperties& own) { return !own.kinematic && meets_gr
 void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests, NearSearch& search,
                       std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts,
                       StageTimes& times, ContactTally& tally) {
-  Laps watch;
   full_.assign(neighbors.begin(), neighbors.end());
-  step_s_ = dt;
   const StepWorld step_world = world();
-  const ContactScene scene{support.bodies(), full_, kinds_, step_world};
-  near_.begin(scene.bodies.size());
-  pairs_.take(scene, search.pairs());
-  times.broad_phase_ms += watch.lap_ms();
-
-  for (const std::int32_t index : support.awake_with_guests())
-    scene.bodies[std::size_t(index)].crowded = false;
-  find_ground_solids(scene, support, 0.0, dt, false);
-  if (pairs_.size() > 0) pairs_.find_turning(scene, support.awake_with_guests());
-  const int substeps = plan_.make(scene, pairs_, solid_contacts_, dt, near_);
-  move_those(support, guests, dt, tally,
-             [&](std::int32_t index) { return !near_[std::size_t(index)] && !support.is_guest(index); });
-  times.flight_ms += watch.lap_ms();
-
-  for (int i = 0; i < substeps; ++i) {
-    const double time = dt / substeps;
-    if (support.take_woken()) {  // it may touch other sleepers
-      search.find_again(dt, support, full_);
-      pairs_.take(scene, search.pairs());
-    }
-    if (i > 0) pairs_.find_turning(scene, near_.marked());
-    pairs_.find_contacts(scene, time, support.awake_with_guests(), near_);  // who is crowded is decided anew
-    wake_touched(scene, support);
-    if (substeps > 1) find_ground_solids(scene, support, i * time, time, true);
-    for (const SolidContact& contact : solid_contacts_)
-      scene.bodies[std::size_t(contact.slot)].crowded = true;
-    times.pairs_ms += watch.lap_ms();
-
-    move_those(support, guests, time, tally, [&](std::int32_t index) {
-      return near_[std::size_t(index)] && !scene.bodies[std::size_t(index)].crowded;
-    });
-    times.flight_ms += watch.lap_ms();
-
-    full_before_.assign(full_.begin(), full_.end());
-    move_crowded(scene, support, guests, full_contacts, time, tally);
-    move_on(time, i);
-    times.crowd_ms += watch.lap_ms();
+  const Step step{
+      .dt = dt,
+      .scene = {support.bodies(), full_, kinds_, step_world},
+      .support = support,
+      .guests = guests,
+      .search = search,
+      .full_contacts = full_contacts,
+      .times = times,
+      .tally = tally,
+  };
+  near_.begin(step.scene.bodies.size());
+  {
+    const StageTimer timer(times.broad_phase_ms);
+    pairs_.forget_contacts();
+    pairs_.take(step.scene, search.pairs());
   }
+  {
+    const StageTimer timer(times.flight_ms);
+    const std::span<const std::int32_t> awake = support.awake_with_guests();
+    for (const std::int32_t index : awake) step.scene.bodies[std::size_t(index)].crowded = false;
+    find_ground_solids(step, awake, 0.0, dt);
+    if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
+    plan_.make(step.scene, pairs_, solid_contacts_, dt, near_);
+    choose_movers(support, 0);
+    std::erase_if(movers_, [&](std::int32_t index) { return support.is_guest(index); });
+    move_alone(step, dt);
+  }
+  crowd_.begin_step();
+  for (const Pace pace : plan_.paces()) move_islands(step, pace);
+  crowd_.end_step();
   for (std::size_t i = 0; i < neighbors.size(); ++i) {
     neighbors[i].asleep = full_[i].asleep;
     neighbors[i].hit = full_[i].hit;
@@ -90,43 +67,91 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
   }
 }
 
-// Parts of the ground: what nears one is solved with all that it touches.
-void NearBodies::find_ground_solids(const ContactScene& scene, const SupportLevel& support, double after,
-                                    double time, bool of_near_only) {
+// All islands of one pace, from the step's beginning to its end.
+void NearBodies::move_islands(const Step& step, Pace pace) {
+  choose_movers(step.support, pace);
+  pairs_.choose(near_, pace);
+  if (pace == 1)  // found for the whole step already
+    std::erase_if(solid_contacts_, [&](const SolidContact& contact) {
+      return near_.pace(Participant::statistical(std::size_t(contact.slot))) != pace;
+    });
+  const bool with_full = near_.full_pace() == pace;
+  const double time = step.dt / pace;
+  crowd_.begin_islands();
+  for (int i = 0; i < pace; ++i) {
+    {
+      const StageTimer timer(step.times.pairs_ms);
+      find_touching(step, pace, i);
+    }
+    {
+      const StageTimer timer(step.times.flight_ms);
+      move_alone(step, time);
+    }
+    const StageTimer timer(step.times.crowd_ms);
+    if (with_full) full_before_.assign(full_.begin(), full_.end());
+    move_crowded(step, time);
+    if (with_full) move_full_on(time, i);
+  }
+  step.support.take_woken();  // what the last substep woke is found in the next step
+  crowd_.end_islands();
+  pairs_.keep_contacts();
+}
+
+// Who is crowded is decided anew.
+void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
+  const double time = step.dt / pace;
+  if (step.support.take_woken()) {  // it may touch other sleepers
+    step.search.find_again(step.dt, step.support, full_);
+    pairs_.take(step.scene, step.search.pairs());
+    pairs_.choose(near_, pace);
+  }
+  if (substep > 0) pairs_.find_turning(step.scene, movers_);
+  pairs_.find_contacts(step.scene, time, movers_, near_, pace);
+  wake_touched(step, pace);
+  if (pace > 1) find_ground_solids(step, movers_, substep * time, time);
+  for (const SolidContact& contact : solid_contacts_)
+    step.scene.bodies[std::size_t(contact.slot)].crowded = true;
+}
+
+void NearBodies::choose_movers(const SupportLevel& support, Pace pace) {
+  movers_.clear();
+  for (const std::int32_t index : support.awake_with_guests())
+    if (near_.pace(Participant::statistical(std::size_t(index))) == pace) movers_.push_back(index);
+}
+
+// Parts of the ground that the bodies near: what nears one is solved with all that it touches.
+void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after,
+                                    double time) {
   solid_contacts_.clear();
   faces_.faces.clear();
   if (!ground_.has_parts()) return faces_.run.clear();
-  faces_.run.resize(scene.bodies.size());  // of those awake; nobody asks about others
-  for (const std::int32_t index : support.awake_with_guests()) {
+  const ContactScene& scene = step.scene;
+  faces_.run.resize(scene.bodies.size());  // nobody asks about others
+  for (const std::int32_t index : bodies) {
     StatisticalBody& body = scene.bodies[std::size_t(index)];
     const std::size_t before = solid_contacts_.size(), faces = faces_.faces.size();
     if (meets_solids(scene.world.properties_of(body.owner))) {
-      if (support.is_guest(index))
-        find_sphere_contacts(body, scene.kind_of(body), index, ground_, after, time, solid_contacts_,
-                             faces_.faces);
-      else if (!of_near_only || near_[std::size_t(index)])
-        find_solid_contacts(body, scene.kind_of(body), index, ground_, after, time, solid_contacts_,
-                            faces_.faces);
+      const auto find = step.support.is_guest(index) ? find_sphere_contacts : find_solid_contacts;
+      find(body, scene.kind_of(body), index, ground_, after, time, solid_contacts_, faces_.faces);
     }
     faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
     if (solid_contacts_.size() > before) body.crowded = true;
   }
 }
 
-template <class Select>
-void NearBodies::move_those(SupportLevel& support, std::span<Guest> guests, double time, ContactTally& tally,
-                            const Select& select) {
-  const std::span<const std::int32_t> awake = support.awake_with_guests();
-  const auto count = std::int64_t(awake.size());
+// The movers that touch nobody.
+void NearBodies::move_alone(const Step& step, double time) {
+  const auto count = std::int64_t(movers_.size());
   tallies_.assign(std::size_t(count), {});
   run_in_pieces(jobs_, count, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
-      const std::int32_t index = awake[std::size_t(i)];
-      if (support.bodies()[std::size_t(index)].motion != Motion::asleep && select(index))
-        move_alone(support, guests, index, time, tallies_[std::size_t(i)]);
+      const std::int32_t index = movers_[std::size_t(i)];
+      const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+      if (body.motion != Motion::asleep && !body.crowded)
+        move_alone(step.support, step.guests, index, time, tallies_[std::size_t(i)]);
     }
   });
-  for (const ContactTally& own : tallies_) tally += own;
+  for (const ContactTally& own : tallies_) step.tally += own;
 }
 
 void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
@@ -140,7 +165,9 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
                            around, time, tables_);
 }
 
-void NearBodies::wake_touched(const ContactScene& scene, SupportLevel& support) {
+void NearBodies::wake_touched(const Step& step, Pace pace) {
+  const ContactScene& scene = step.scene;
+  bool any = false;
   for (const CrowdContact& c : pairs_.contacts())
     for (const auto& [sleeper, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
       const bool carried =
@@ -152,33 +179,36 @@ void NearBodies::wake_touched(const ContactScene& scene, SupportLevel& support) 
       if (sleeper.is_full()) {
         scene.neighbor(sleeper).asleep = false;
       } else {
-        support.wake(int(sleeper.index()));
+        step.support.wake(int(sleeper.index()));
         pairs_.clear_turning(sleeper);
+        any = true;
       }
     }
+  if (any) choose_movers(step.support, pace);
 }
 
-void NearBodies::move_crowded(const ContactScene& scene, SupportLevel& support, std::span<Guest> guests,
-                              std::span<const FullContact> full_contacts, double time, ContactTally& tally) {
+void NearBodies::move_crowded(const Step& step, double time) {
+  const ContactScene& scene = step.scene;
+  SupportLevel& support = step.support;
   if (pairs_.contacts().empty() && solid_contacts_.empty()) return;
-  for (const std::int32_t index : support.awake_with_guests()) {
+  for (const std::int32_t index : movers_) {
     StatisticalBody& body = scene.bodies[std::size_t(index)];
     if (!body.crowded) continue;
     if (body.motion == Motion::settling) body.motion = Motion::dynamic;
-    if (support.is_guest(index)) guests[std::size_t(index - support.size())].touched = true;
+    if (support.is_guest(index)) step.guests[std::size_t(index - support.size())].touched = true;
   }
   StepWorld crowd_world = world();
   // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
-  if (!full_.empty()) crowd_world.bounce_velocity += settings_.gravity.norm() * (step_s_ - time);
-  tally += crowd_.step({scene.bodies, scene.neighbors, kinds_, crowd_world},
-                       {pairs_.contacts(), solid_contacts_, full_contacts, faces_, time});
-  for (const std::int32_t index : support.awake_with_guests())
+  if (!full_.empty()) crowd_world.bounce_velocity += settings_.gravity.norm() * (step.dt - time);
+  step.tally += crowd_.step({scene.bodies, scene.neighbors, kinds_, crowd_world},
+                            {pairs_.contacts(), solid_contacts_, step.full_contacts, faces_, time});
+  for (const std::int32_t index : movers_)
     if (const StatisticalBody& body = scene.bodies[std::size_t(index)];
         body.crowded && body.motion != Motion::asleep && !support.is_guest(index))
-      support.update_quiet(index, faces_.of(index), time, tally);
+      support.update_quiet(index, faces_.of(index), time, step.tally);
 }
 
-void NearBodies::move_on(double time, int substep) {
+void NearBodies::move_full_on(double time, int substep) {
   for (std::size_t k = 0; k < full_.size(); ++k) {
     advance(full_[k], world().properties_of(full_[k].owner), full_before_[k].state.velocity,
             settings_.gravity, time);

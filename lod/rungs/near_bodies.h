@@ -48,24 +48,34 @@ class NearBodies {
   void set_log(ContactLog* log) { log_ = log; }  ///< null: none
   /// In place of a step, where nothing moves that could be near another.
   void forget_pairs() { pairs_.clear(); }
-  /// Between bodies, found in the last substep.
-  std::span<const CrowdContact> contacts() const { return pairs_.contacts(); }
+  /// Between bodies, found in the last substep of each island.
+  std::span<const CrowdContact> contacts() const { return pairs_.all_contacts(); }
 
  private:
   StepWorld world() const {
     return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, settings_.properties, log_};
   }
-  void find_ground_solids(const ContactScene& scene, const SupportLevel& support, double after, double time,
-                          bool of_near_only);
-  template <class Select>
-  void move_those(SupportLevel& support, std::span<Guest> guests, double time, ContactTally& tally,
-                  const Select& select);
+  /// What the stages of a step work on.
+  struct Step {
+    double dt;  // s
+    ContactScene scene;
+    SupportLevel& support;
+    std::span<Guest> guests;
+    NearSearch& search;
+    std::span<const FullContact> full_contacts;
+    StageTimes& times;
+    ContactTally& tally;
+  };
+  void move_islands(const Step& step, Pace pace);
+  void find_touching(const Step& step, Pace pace, int substep);
+  void choose_movers(const SupportLevel& support, Pace pace);
+  void find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after, double time);
+  void move_alone(const Step& step, double time);
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                   ContactTally& tally) const;
-  void wake_touched(const ContactScene& scene, SupportLevel& support);
-  void move_crowded(const ContactScene& scene, SupportLevel& support, std::span<Guest> guests,
-                    std::span<const FullContact> full_contacts, double time, ContactTally& tally);
-  void move_on(double time, int substep);
+  void wake_touched(const Step& step, Pace pace);
+  void move_crowded(const Step& step, double time);
+  void move_full_on(double time, int substep);
 
   StatisticalSettings settings_;
   const Ground& ground_;
@@ -74,13 +84,13 @@ class NearBodies {
   JobRunner jobs_;
   TablesSettings tables_;
   ContactLog* log_ = nullptr;
-  double step_s_ = 0.0;  // s, of the whole step
 
   NearPairs pairs_;
   NearMarks near_;
   SubstepPlan plan_;
   Crowd crowd_;
   RestLaw rest_law_;
+  std::vector<std::int32_t> movers_;              // indices: who is awake and moves at the pace in hand
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
   std::vector<SolidContact> solid_contacts_;
   FacesBelow faces_;

@@ -1,4 +1,5 @@
-// Which bodies may touch another in this step: marks by index that cost nothing for those that sleep.
+// Which bodies may touch another in this step, and at which pace each of them moves: marks by index that cost
+// nothing for those that sleep.
 #pragma once
 
 #include <algorithm>
@@ -10,24 +11,40 @@
 
 namespace lodestone {
 
+/// In how many substeps of a step a body moves, with all that it may touch; 0: it may touch none.
+using Pace = std::uint8_t;
+
 class NearMarks {
  public:
+  static constexpr Pace kUnplanned = 255;
+
   void begin(std::size_t bodies) {
-    for (const std::int32_t index : marked_) marks_[std::size_t(index)] = 0;
+    for (const std::int32_t index : marked_) paces_[std::size_t(index)] = 0;
     marked_.clear();
+    full_pace_ = 0;
     make_room(bodies);
   }
-  void make_room(std::size_t bodies) { marks_.resize(std::max(marks_.size(), bodies), 0); }
+  void make_room(std::size_t bodies) { paces_.resize(std::max(paces_.size(), bodies), 0); }
+  /// Its pace is planned later, if it has none.
   void mark(Participant p) {
-    if (!p.is_statistical() || marks_[p.index()]) return;
-    marks_[p.index()] = 1;
-    marked_.push_back(std::int32_t(p.index()));
+    if (p.is_statistical() && paces_[p.index()] == 0) set_pace(p, kUnplanned);
   }
-  bool operator[](std::size_t index) const { return marks_[index] != 0; }
+  bool operator[](std::size_t index) const { return paces_[index] != 0; }
   std::span<const std::int32_t> marked() const { return marked_; }  ///< indices, in no order
 
+  /// Of a statistical body.
+  void set_pace(Participant p, Pace pace) {
+    if (paces_[p.index()] == 0) marked_.push_back(std::int32_t(p.index()));
+    paces_[p.index()] = pace;
+  }
+  /// Of all full bodies.
+  void set_full_pace(Pace pace) { full_pace_ = pace; }
+  Pace full_pace() const { return full_pace_; }
+  Pace pace(Participant p) const { return p.is_full() ? full_pace_ : paces_[p.index()]; }
+
  private:
-  std::vector<char> marks_;
+  std::vector<Pace> paces_;
+  Pace full_pace_ = 0;
   std::vector<std::int32_t> marked_;
 };
 

@@ -49,7 +49,7 @@ std::uint32_t NearPairs::take_place() {
 void NearPairs::clear() {
   spare_.insert(spare_.end(), found_.begin(), found_.end());
   found_.clear();
-  contacts_.clear();
+  forget_contacts();
 }
 
 // In the order of the step, whatever their places.
@@ -67,6 +67,7 @@ void NearPairs::archive(StateArchive& a) {
     for (const std::uint32_t place : found_) a(all_[place]);
   }
   a(contacts_);
+  if (a.reading()) keep_contacts();
 }
 
 void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs) {
@@ -173,53 +174,62 @@ bool NearPairs::closes(const ContactScene& scene, const FoundPair& pair, const P
                              });
 }
 
-void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> awake,
-                              NearMarks& near) {
-  for (const std::int32_t slot : awake) scene.bodies[std::size_t(slot)].crowded = false;
-  const auto moved_on = [&](Participant p) {
-    return p.is_statistical() && !near[p.index()] && !scene.asleep(p);
+void NearPairs::choose(const NearMarks& near, Pace pace) {
+  chosen_.clear();
+  for (const std::uint32_t place : found_)
+    if (near.pace(all_[place].first) == pace || near.pace(all_[place].second) == pace)
+      chosen_.push_back(place);
+}
+
+void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> movers,
+                              NearMarks& near, Pace pace) {
+  for (const std::int32_t slot : movers) scene.bodies[std::size_t(slot)].crowded = false;
+  // Who moves at another pace has moved on, or waits until its own turn comes.
+  const auto is_there = [&](Participant p) {
+    return near.pace(p) == pace || (p.is_statistical() && scene.asleep(p));
   };
   const auto looked_at = [&](const FoundPair& pair) {
     if (pair.first.is_full() && pair.second.is_full())
       return false;  // two full bodies are the full level's matter
-    if (moved_on(pair.first) || moved_on(pair.second)) return false;
-    return !(scene.asleep(pair.first) && scene.asleep(pair.second));
+    return is_there(pair.first) && is_there(pair.second) &&
+           !(scene.asleep(pair.first) && scene.asleep(pair.second));
   };
-  const auto count = std::int64_t(found_.size());
-  first_contact_.resize(found_.size() + 1);
+  const auto count = std::int64_t(chosen_.size());
+  first_contact_.resize(chosen_.size() + 1);
   run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
-      FoundPair& pair = all_[found_[i]];
+      FoundPair& pair = all_[chosen_[i]];
       const bool looks = looked_at(pair);
       if (looks) find_contact(scene, time, pair);
       first_contact_[i + 1] = looks ? std::uint32_t(pair.contacts.size()) : 0;
     }
   });
   first_contact_[0] = 0;
-  for (std::size_t i = 0; i < found_.size(); ++i) first_contact_[i + 1] += first_contact_[i];
-  contacts_.resize(first_contact_.back());
+  for (std::size_t i = 0; i < chosen_.size(); ++i) first_contact_[i + 1] += first_contact_[i];
+  contacts_.resize(kept_contacts_ + first_contact_.back());
   may_close_.resize(first_contact_.back());
+  const auto found = std::span(contacts_).subspan(kept_contacts_);
   run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (first_contact_[i] == first_contact_[i + 1]) continue;
-      const FoundPair& pair = (*this)[i];
+      const FoundPair& pair = all_[chosen_[i]];
       for (std::uint32_t at = first_contact_[i]; at < first_contact_[i + 1]; ++at) {
         const HeldContact& held = pair.contacts[at - first_contact_[i]];
-        contacts_[at] = {pair.first, pair.second,
-                         follow(held, scene.pair_body(pair.first), scene.pair_body(pair.second))};
-        may_close_[at] = closes(scene, pair, contacts_[at].contact, time);
+        found[at] = {pair.first, pair.second,
+                     follow(held, scene.pair_body(pair.first), scene.pair_body(pair.second))};
+        may_close_[at] = closes(scene, pair, found[at].contact, time);
       }
     }
   });
   std::size_t kept = 0;
-  for (std::size_t at = 0; at < contacts_.size(); ++at) {
+  for (std::size_t at = 0; at < found.size(); ++at) {
     if (!may_close_[at]) continue;
-    if (kept != at) contacts_[kept] = contacts_[at];
-    for (const Participant p : {contacts_[at].first, contacts_[at].second})
-      if (p.is_statistical()) scene.body(p).crowded = true, near.mark(p);
+    if (kept != at) found[kept] = found[at];
+    for (const Participant p : {found[at].first, found[at].second})
+      if (p.is_statistical()) scene.body(p).crowded = true, near.set_pace(p, pace);
     ++kept;
   }
-  contacts_.resize(kept);
+  contacts_.resize(kept_contacts_ + kept);
 }
 
 void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int32_t> bodies) {

@@ -56,11 +56,20 @@ class NearPairs {
   void find_turning(const ContactScene& scene, std::span<const std::int32_t> bodies);
   /// Of one that was just woken.
   void clear_turning(Participant p) { turning_[p.index()] = {}; }
-  /// Contacts that may close within `time` seconds: of pairs whose bodies are near others (`near`) or asleep.
-  /// Marks as crowded, and near, who has one.
-  void find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> awake,
-                     NearMarks& near);
-  std::span<const CrowdContact> contacts() const { return contacts_; }
+  /// Chooses the pairs of which a body moves at `pace`: for find_contacts.
+  void choose(const NearMarks& near, Pace pace);
+  /// Of the pairs chosen, whose bodies must move at `pace` or sleep, the contacts that may close within
+  /// `time` seconds. Marks as crowded, and gives the pace to, who has one; of `movers`, nobody else is
+  /// crowded.
+  void find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> movers,
+                     NearMarks& near, Pace pace);
+  /// What find_contacts found.
+  std::span<const CrowdContact> contacts() const { return std::span(contacts_).subspan(kept_contacts_); }
+  /// Those of islands that have gone through their substeps stay, while others' are looked for.
+  void keep_contacts() { kept_contacts_ = contacts_.size(); }
+  /// Of all islands, as their last substeps left them.
+  std::span<const CrowdContact> all_contacts() const { return contacts_; }
+  void forget_contacts() { contacts_.clear(), kept_contacts_ = 0; }
 
   /// m: by how much the gap of a pair can shrink in `time` seconds, at most, if nothing strikes them.
   double find_approach(const ContactScene& scene, const FoundPair& pair, double time) const;
@@ -95,10 +104,12 @@ class NearPairs {
   std::vector<FoundPair> all_;  // in no order; a pair stays where it is while its bodies are near
   std::vector<std::uint32_t> found_,
       before_;  // places in all_ of the pairs of this step and, while it takes its own, of the last one
-  std::vector<std::uint32_t> spare_;  // places in all_ of none: what these have allocated serves others
-  std::vector<Newcomer> newcomers_;   // pairs of this step that were not near in the last one
-  std::vector<Turning> turning_;      // by index; of those awake
+  std::vector<std::uint32_t> spare_;   // places in all_ of none: what these have allocated serves others
+  std::vector<Newcomer> newcomers_;    // pairs of this step that were not near in the last one
+  std::vector<Turning> turning_;       // by index; of those awake
+  std::vector<std::uint32_t> chosen_;  // places in all_
   std::vector<CrowdContact> contacts_;
+  std::size_t kept_contacts_ = 0;             // the first of them
   std::vector<std::uint32_t> first_contact_;  // of each pair, among those that are looked at
   std::vector<char> may_close_;               // of each of these
 };

@@ -1,7 +1,9 @@
 #include "lod/rungs/substep_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace lodestone {
 namespace {
@@ -20,52 +22,103 @@ bool may_strike_ground(const ContactScene& scene, const StatisticalBody& body, d
 
 void mark(const FoundPair& pair, NearMarks& near) { near.mark(pair.first), near.mark(pair.second); }
 
+Pace pace_for(double way) {
+  return Pace(std::ceil(std::clamp(way / kStride, double(kLeastSubsteps), double(kMostSubsteps))));
+}
+
 }  // namespace
 
 // What strikes another or the ground may stop within the step: then who follows close behind meets it, though
-// neither gains on the other now. Returns the farthest way of a follower, over R.
-double SubstepPlan::mark_followers(const ContactScene& scene, double dt, NearMarks& near) {
+// neither gains on the other now. The way of such a pair is that of its faster body.
+void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt,
+                                 NearMarks& near) {
   const auto stops = [&](Participant p) {
     return !p.is_statistical() || near[p.index()] || may_strike_ground(scene, scene.body(p), dt);
   };
-  double farthest = 0.0;
   for (bool any = true; any;) {
     any = false;
-    std::erase_if(following_, [&](const FoundPair* pair) {
-      if (!stops(pair->first) && !stops(pair->second)) return false;
-      mark(*pair, near);
-      const double speed = std::max(scene.velocity(pair->first).norm(), scene.velocity(pair->second).norm());
-      farthest = std::max(farthest, speed * dt / least_radius(scene, *pair));
+    std::erase_if(following_, [&](std::size_t i) {
+      const FoundPair& pair = pairs[i];
+      if (!stops(pair.first) && !stops(pair.second)) return false;
+      mark(pair, near);
+      const double speed = std::max(scene.velocity(pair.first).norm(), scene.velocity(pair.second).norm());
+      ways_[i] = speed * dt / least_radius(scene, pair);
       return any = true;
     });
   }
-  return farthest;
 }
 
-int SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
-                      std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
-  bool any = false;
-  double longest = 0.0;  // way over R
+std::int32_t SubstepPlan::root_of(std::int32_t body) {
+  while (island_[std::size_t(body)] != body)
+    body = island_[std::size_t(body)] = island_[std::size_t(island_[std::size_t(body)])];
+  return body;
+}
+
+// Through every pair of two that are near anybody: who is struck may be faster than its way says. What sleeps
+// or is full hangs together with others through contacts that no pair tells of here: all of it is one, in the
+// place after the last body.
+void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near) {
+  const auto others = std::int32_t(scene.bodies.size());
+  island_.resize(scene.bodies.size() + 1);
+  longest_of_island_.resize(island_.size());
+  const auto begin = [&](std::int32_t body) {
+    island_[std::size_t(body)] = body;
+    longest_of_island_[std::size_t(body)] = kApart;
+  };
+  for (const std::int32_t body : near.marked()) begin(body);
+  begin(others);
+  const auto node_of = [&](Participant p) {
+    return p.is_full() || scene.asleep(p) ? others : std::int32_t(p.index());
+  };
+  const auto takes_part = [&](Participant p) { return node_of(p) == others || near[p.index()]; };
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto [first, second] = std::pair(pairs[i].first, pairs[i].second);
+    if (takes_part(first) && takes_part(second))
+      island_[std::size_t(root_of(node_of(first)))] = root_of(node_of(second));
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (ways_[i] == kApart) continue;
+    double& longest = longest_of_island_[std::size_t(root_of(node_of(pairs[i].first)))];
+    longest = std::max(longest, ways_[i]);
+  }
+}
+
+void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
+                       std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
+  ways_.assign(pairs.size(), kApart);
   following_.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const FoundPair& pair = pairs[i];
     const double gap = pairs.gap_left(scene, pair), approach = pairs.find_approach(scene, pair, dt);
     const Vec3 first = scene.velocity(pair.first), second = scene.velocity(pair.second);
     if (gap <= 2.0 * approach) {  // twice, since others may strike them meanwhile
-      any = true;
       mark(pair, near);
-      longest = std::max(longest, (first - second).norm() * dt / least_radius(scene, pair));
+      ways_[i] = (first - second).norm() * dt / least_radius(scene, pair);
     } else if (gap <= approach + (first.norm() + second.norm()) * dt) {
-      following_.push_back(&pair);
+      following_.push_back(i);
     }
   }
-  const double farthest = mark_followers(scene, dt, near);
-  any |= farthest > 0.0;
-  longest = std::max(longest, farthest);
+  mark_followers(scene, pairs, dt, near);
   for (const SolidContact& contact : solid_contacts)
     near.mark(Participant::statistical(std::size_t(contact.slot)));
-  if (!any) return solid_contacts.empty() ? 0 : 1;
-  return int(std::ceil(std::clamp(longest / kStride, double(kLeastSubsteps), double(kMostSubsteps))));
+
+  find_islands(scene, pairs, near);
+  std::array<bool, kMostSubsteps + 1> any = {};
+  const auto pace_of = [&](std::int32_t node) {
+    const double way = longest_of_island_[std::size_t(root_of(node))];
+    const Pace pace = way == kApart ? 1 : pace_for(way);  // of what touches the ground's solids alone: 1
+    any[pace] = true;
+    return pace;
+  };
+  const auto others = std::int32_t(scene.bodies.size());
+  for (const std::int32_t body : near.marked()) {
+    const Participant p = Participant::statistical(std::size_t(body));
+    near.set_pace(p, pace_of(scene.asleep(p) ? others : body));
+  }
+  if (longest_of_island_[std::size_t(root_of(others))] != kApart) near.set_full_pace(pace_of(others));
+  paces_.clear();
+  for (std::size_t pace = 1; pace < any.size(); ++pace)
+    if (any[pace]) paces_.push_back(Pace(pace));
 }
 
 }  // namespace lodestone

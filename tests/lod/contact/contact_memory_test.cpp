@@ -114,5 +114,46 @@ TEST(ContactMemory, ForgetsWhatWasBeforeTheLastStep) {
   for (const CrowdPoint& point : now.points) EXPECT_EQ(point.guess, Vec3::Zero());
 }
 
+// Two sets of islands, one after the other in two substeps each: the first recalls the last step, whichever
+// set its pairs were in then, the second the first.
+TEST(ContactMemory, OfIslandsIsTheirLastSubstepThenTheLastStep) {
+  const auto once = [](ContactKey key, double force) {
+    Touching t;
+    t.add(key, {{0, 0, force}});
+    return t;
+  };
+  const auto recalled = [](ContactMemory& memory, ContactKey key) {
+    Touching t;
+    t.add(key, {Vec3::Zero()});
+    memory.recall(t.keys, t.manifolds, t.points, 1.0, make_job_runner(1));
+    return t.points[0].guess.z();
+  };
+  const auto solve = [&](ContactMemory& memory, ContactKey key, double force) {
+    const double guess = recalled(memory, key);
+    const Touching t = once(key, force);
+    memory.remember(t.keys, t.manifolds, t.points, 1.0);
+    return guess;
+  };
+  const ContactKey one = contact_key(1, 2), other = contact_key(3, 4);
+  ContactMemory memory;
+  for (int step = 0; step < 3; ++step) {
+    memory.begin_step();
+    for (const ContactKey key : step % 2 == 0 ? std::vector{one, other} : std::vector{other, one}) {
+      const double own = key == one ? 10.0 : 20.0, before = own + 100.0 * (step - 1);
+      memory.begin_islands();
+      EXPECT_EQ(solve(memory, key, 1.0), step == 0 ? 0.0 : before) << step;
+      EXPECT_EQ(solve(memory, key, own + 100.0 * step), 1.0) << step;
+      memory.end_islands();
+    }
+    memory.end_step();
+  }
+  memory.begin_step();  // in which nobody touches
+  memory.end_step();
+  memory.begin_step();
+  memory.begin_islands();
+  EXPECT_EQ(recalled(memory, one), 210.0);
+  EXPECT_EQ(recalled(memory, other), 220.0);
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -31,6 +31,24 @@ TEST(NearMarks, AreThoseOfThisStep) {
   }
 }
 
+// Planned or not, it is near; the next step begins without.
+TEST(NearMarks, KnowThePaceOfEachAndOneOfAllFullBodies) {
+  NearMarks marks;
+  marks.begin(3);
+  const Participant slow = Participant::statistical(0), quick = Participant::statistical(2);
+  marks.mark(slow);
+  EXPECT_EQ(marks.pace(slow), NearMarks::kUnplanned);
+  marks.set_pace(slow, 3), marks.set_pace(quick, 12), marks.set_full_pace(5);
+  marks.mark(quick);
+  EXPECT_EQ(marks.pace(slow), 3);
+  EXPECT_EQ(marks.pace(quick), 12);
+  EXPECT_EQ(marks.pace(Participant::statistical(1)), 0);
+  EXPECT_EQ(marks.pace(Participant::full(7)), 5);
+  EXPECT_EQ(marks.marked().size(), 2u);
+  marks.begin(3);
+  for (const Participant p : {slow, quick, Participant::full(7)}) EXPECT_EQ(marks.pace(p), 0);
+}
+
 TEST(Participant, KnowsItsKindAndIndex) {
   for (const std::size_t index : {std::size_t(0), std::size_t(7), (std::size_t(1) << 30) - 1}) {
     EXPECT_TRUE(Participant::statistical(index).is_statistical());

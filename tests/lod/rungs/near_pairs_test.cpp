@@ -15,6 +15,7 @@ using testing::at;
 using testing::box_shape;
 
 constexpr double kPairStep = 1.0 / 60;
+constexpr Pace kPace = 3;
 
 // Whichever comes first.
 ContactKey pair_key(Participant a, Participant b) {
@@ -34,10 +35,13 @@ struct PairScene : testing::CrowdScene {
   void find(NearPairs& pairs, std::span<const NearPair> of) {
     const std::vector<std::int32_t> awake = everybody();
     near.begin(bodies.size());
-    for (const std::int32_t i : awake) near.mark(Participant::statistical(std::size_t(i)));
+    for (const std::int32_t i : awake) near.set_pace(Participant::statistical(std::size_t(i)), kPace);
+    near.set_full_pace(kPace);
+    pairs.forget_contacts();
     pairs.take(scene(), of);
+    pairs.choose(near, kPace);
     pairs.find_turning(scene(), awake);
-    pairs.find_contacts(scene(), kPairStep, awake, near);
+    pairs.find_contacts(scene(), kPairStep, awake, near, kPace);
   }
   double true_gap(const FoundPair& pair) {
     const auto contact =
@@ -177,15 +181,46 @@ TEST(SubstepPlan, IsByHowFarTheyCloseInOverTheirSize) {
     NearMarks near;
     near.begin(2);
     SubstepPlan plan;
-    const int count = plan.make(scene.scene(), pairs, {}, kPairStep, near);
-    EXPECT_EQ(near[0], count > 0);
-    EXPECT_EQ(near[1], count > 0);
-    return count;
+    plan.make(scene.scene(), pairs, {}, kPairStep, near);
+    EXPECT_EQ(near.pace(a), near.pace(b));
+    EXPECT_EQ(plan.paces().size(), near[0] ? 1 : 0);
+    return int(near.pace(a));
   };
   EXPECT_EQ(substeps(0.1, 0.001), 3);
   EXPECT_EQ(substeps(4.0, 0.001), int(std::ceil(4.0 / 60 / (0.07 * cube->radius))));
   EXPECT_EQ(substeps(40.0, 0.001), 12);
   EXPECT_EQ(substeps(1.0, 0.5), 0);
+}
+
+// Two pairs of one island, through the one in the middle, and a slow pair elsewhere; with what sleeps or is
+// full between them, all are one.
+TEST(SubstepPlan, IsAnIslandsOwn) {
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  const auto paces = [&](bool beside_sleepers) {
+    PairScene scene;
+    const auto add = [&](double x, double speed) {
+      return scene.add(cube, 1.0, at({x, 0, 0}, {speed, 0, 0}));
+    };
+    const Participant fast = add(0.0, 4.0), middle = add(0.201, 0.0), right = add(0.402, 0.0),
+                      slow = add(10.0, 0.1), other = add(10.201, 0.0), sleeper = add(0.603, 0.0),
+                      far_sleeper = add(10.402, 0.0);
+    std::vector<NearPair> near_pairs = {{fast, middle}, {middle, right}, {slow, other}};
+    if (beside_sleepers) near_pairs.insert(near_pairs.end(), {{right, sleeper}, {other, far_sleeper}});
+    for (const Participant p : {sleeper, far_sleeper}) scene.bodies[p.index()].motion = Motion::asleep;
+    NearPairs pairs(make_job_runner(1));
+    scene.find(pairs, near_pairs);
+    NearMarks near;
+    near.begin(scene.bodies.size());
+    SubstepPlan plan;
+    plan.make(scene.scene(), pairs, {}, kPairStep, near);
+    EXPECT_EQ(near.pace(fast), near.pace(right));
+    EXPECT_TRUE(std::ranges::is_sorted(plan.paces()));
+    EXPECT_EQ(plan.paces().size(), beside_sleepers ? 1u : 2u);
+    return std::pair(int(near.pace(fast)), int(near.pace(slow)));
+  };
+  const int quick = int(std::ceil(4.0 / 60 / (0.07 * cube->radius)));
+  EXPECT_EQ(paces(false), std::pair(quick, 3));
+  EXPECT_EQ(paces(true), std::pair(quick, quick));
 }
 
 }  // namespace

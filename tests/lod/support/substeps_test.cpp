@@ -59,5 +59,35 @@ TEST_F(Bin, ALoneBodyDoesNotDependOnACrowd) {
   EXPECT_EQ(level_->state(lone).orientation.coeffs(), alone.state(0).orientation.coeffs());
 }
 
+// Of two that lie on each other, with or without two others far away that run into each other at 30 m/s:
+// these need a dozen substeps, and nobody else.
+TEST(Substeps, OfAnIslandAreNotDisturbedByWhatGoesOnElsewhere) {
+  const auto shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
+  Ground ground;
+  ground.add_plane({});
+  MaterialTable materials;
+  const auto run = [&](bool with_others) {
+    testing::OneRung level(StatisticalModel::support, {.sleeping = false}, ground, materials);
+    const auto add = [&](const RigidState& state) {
+      return level.add(std::uint32_t(level.size()), shape, 24.0, 0, state, false, nullptr);
+    };
+    add({.position = Vec3(0.0, 0.0, 0.25)});
+    const int upper = add({.position = Vec3(0.05, 0.02, 0.7), .angular_velocity = Vec3(1.0, 0.5, 0.2)});
+    if (with_others) {
+      add({.position = Vec3(50.0, 0.0, 9.0), .velocity = Vec3(30.0, 0.0, 3.0)});
+      add({.position = Vec3(60.0, 0.1, 9.0), .velocity = Vec3(-30.0, 0.0, 3.0)});
+    }
+    StepReport report;
+    for (int i = 0; i < 30; ++i) level.step(1.0 / 60.0, {}, report);
+    EXPECT_LT(level.state(level.size() - 1).velocity.norm(), 28.0) << "the others have met";
+    return level.state(upper);
+  };
+  const RigidState alone = run(false), beside = run(true);
+  EXPECT_GT(alone.velocity.norm() + alone.angular_velocity.norm(), 1e-3) << "it moves still";
+  EXPECT_EQ(alone.position, beside.position);
+  EXPECT_EQ(alone.orientation.coeffs(), beside.orientation.coeffs());
+  EXPECT_EQ(alone.velocity, beside.velocity);
+}
+
 }  // namespace
 }  // namespace lodestone
