@@ -42,7 +42,7 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdMani
                           end = manifolds[pair.end - 1].begin + manifolds[pair.end - 1].count;
       const auto now = points.subspan(begin, end - begin);
       for (const Load& load : std::span(before.loads).subspan(run.begin, run.count))
-        find_nearest(now, load.arm).guess += step * load.force;
+        find_nearest(now, load.arm.cast<double>()).guess += step * load.force.cast<double>();
     }
   });
 }
@@ -51,8 +51,9 @@ void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const C
                              std::span<const CrowdPoint> points, double step) {
   begun_ = true;
   last_substep_.clear();
+  last_substep_.loads.reserve(points.size());
   for (const CrowdPoint& point : points)
-    last_substep_.loads.push_back({point.impulse / step, point.arm_first});
+    last_substep_.loads.push_back({(point.impulse / step).cast<float>(), point.arm_first.cast<float>()});
   each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
     last_substep_.place.add(key);
     const std::uint32_t begin = manifolds[first].begin;

@@ -40,7 +40,7 @@ class ContactMemory {
     std::uint32_t begin, count;
   };
   struct Load {
-    Vec3 force, arm;  // N, on the first body; m, from its centre of mass
+    Eigen::Vector3f force, arm;  // N, on the first body; m, from its centre of mass
   };
   struct Loads {
     PairMemory place;  // in runs

@@ -11,10 +11,10 @@ void PairMemory::clear() {
   made_ = false;
 }
 
-// Room for about so many keys.
+// Room for about so many keys, or for half as many as there was room for: one that was empty may fill again.
 void PairMemory::clear_marks(std::size_t keys) {
   constexpr std::size_t kBitsOfKey = 32;
-  marks_.assign(std::bit_ceil(std::max(kLeastMarks, keys * kBitsOfKey / 64)), 0);
+  marks_.assign(std::bit_ceil(std::max({kLeastMarks, keys * kBitsOfKey / 64, marks_.size() / 2})), 0);
 }
 
 void PairMemory::mark_anew() {
