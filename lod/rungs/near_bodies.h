@@ -29,6 +29,7 @@ class NearBodies {
         kinds_(kinds),
         jobs_(jobs),
         pairs_(jobs),
+        plan_(jobs),
         crowd_(jobs),
         rest_law_(settings.sleep) {
     tables_.options = settings.tables;

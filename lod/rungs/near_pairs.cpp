@@ -76,31 +76,38 @@ void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs)
   for (const std::uint32_t place : before_) memory_.add(all_[place].key);
   constexpr std::uint32_t kTaken = ~0u;
   found_.resize(pairs.size());
+  placed_.resize(pairs.size());
+  const auto count = std::int64_t(pairs.size());
+  // By place, so that a contact is the same on whichever rungs its bodies are and whichever was added first.
+  run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+      auto [first, second] = pairs[i];
+      if (comes_before(scene.position(second), scene.position(first))) std::swap(first, second);
+      placed_[i] = {contact_key(scene.owner(first), scene.owner(second)), first, second};
+    }
+  });
   newcomers_.clear();
   std::size_t expected = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    // By place, so that a contact is the same on whichever rungs its bodies are and whichever was added
-    // first.
-    auto [first, second] = pairs[i];
-    if (comes_before(scene.position(second), scene.position(first))) std::swap(first, second);
-    const ContactKey key = contact_key(scene.owner(first), scene.owner(second));
     const std::int32_t before = memory_.find(
-        key, expected);  // none, too, where they have changed places: what is known holds for their old order
+        placed_[i].key,
+        expected);  // none, too, where they have changed places: what is known holds for their old order
     if (before < 0 || before_[std::size_t(before)] == kTaken) {
-      newcomers_.push_back({std::uint32_t(i), key, first, second});
+      newcomers_.push_back(std::uint32_t(i));
       continue;
     }
     found_[i] = std::exchange(before_[std::size_t(before)], kTaken);
     expected = std::size_t(before) + 1;
-    all_[found_[i]].first = first;
-    all_[found_[i]].second = second;
   }
   for (const std::uint32_t place : before_)
     if (place != kTaken) spare_.push_back(place);
-  for (const Newcomer& newcomer : newcomers_) {
-    FoundPair& pair = all_[found_[newcomer.at] = take_place()];
-    pair.key = newcomer.key, pair.first = newcomer.first, pair.second = newcomer.second;
-  }
+  for (const std::uint32_t i : newcomers_) found_[i] = take_place();
+  run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+      FoundPair& pair = all_[found_[i]];
+      pair.key = placed_[i].key, pair.first = placed_[i].first, pair.second = placed_[i].second;
+    }
+  });
   put_in_order();
 }
 

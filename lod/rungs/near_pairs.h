@@ -87,10 +87,9 @@ class NearPairs {
     double rim_speed = 0.0;                // m/s: of the point farthest from the centre about it
   };
 
-  struct Newcomer {
-    std::uint32_t at;  // in found_
-    ContactKey key;
-    Participant first, second;
+  struct PlacedPair {
+    ContactKey key = 0;
+    Participant first = Participant::ground(), second = Participant::ground();
   };
 
   std::uint32_t take_place();
@@ -104,10 +103,11 @@ class NearPairs {
   std::vector<FoundPair> all_;  // in no order; a pair stays where it is while its bodies are near
   std::vector<std::uint32_t> found_,
       before_;  // places in all_ of the pairs of this step and, while it takes its own, of the last one
-  std::vector<std::uint32_t> spare_;   // places in all_ of none: what these have allocated serves others
-  std::vector<Newcomer> newcomers_;    // pairs of this step that were not near in the last one
-  std::vector<Turning> turning_;       // by index; of those awake
-  std::vector<std::uint32_t> chosen_;  // places in all_
+  std::vector<std::uint32_t> spare_;      // places in all_ of none: what these have allocated serves others
+  std::vector<PlacedPair> placed_;        // those of this step, in order
+  std::vector<std::uint32_t> newcomers_;  // of this step, those that were not near in the last one
+  std::vector<Turning> turning_;          // by index; of those awake
+  std::vector<std::uint32_t> chosen_;     // places in all_
   std::vector<CrowdContact> contacts_;
   std::size_t kept_contacts_ = 0;             // the first of them
   std::vector<std::uint32_t> first_contact_;  // of each pair, among those that are looked at

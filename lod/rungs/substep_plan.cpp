@@ -28,6 +28,23 @@ Pace pace_for(double way) {
 
 }  // namespace
 
+void SubstepPlan::find_ways(const ContactScene& scene, const NearPairs& pairs, double dt) {
+  constexpr std::int64_t kBlock = 256;  // pairs of a job
+  ways_.resize(pairs.size());
+  run_in_pieces(jobs_, std::int64_t(pairs.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+      const FoundPair& pair = pairs[i];
+      const double gap = pairs.gap_left(scene, pair), approach = pairs.find_approach(scene, pair, dt);
+      const Vec3 first = scene.velocity(pair.first), second = scene.velocity(pair.second);
+      ways_[i] = kApart;
+      if (gap <= 2.0 * approach)  // twice, since others may strike them meanwhile
+        ways_[i] = (first - second).norm() * dt / least_radius(scene, pair);
+      else if (gap <= approach + (first.norm() + second.norm()) * dt)
+        ways_[i] = kFollowing;
+    }
+  });
+}
+
 // What strikes another or the ground may stop within the step: then who follows close behind meets it, though
 // neither gains on the other now. The way of such a pair is that of its faster body.
 void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt,
@@ -77,7 +94,7 @@ void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs
       island_[std::size_t(root_of(node_of(first)))] = root_of(node_of(second));
   }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (ways_[i] == kApart) continue;
+    if (ways_[i] < 0.0) continue;
     double& longest = longest_of_island_[std::size_t(root_of(node_of(pairs[i].first)))];
     longest = std::max(longest, ways_[i]);
   }
@@ -85,18 +102,11 @@ void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs
 
 void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
                        std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
-  ways_.assign(pairs.size(), kApart);
+  find_ways(scene, pairs, dt);
   following_.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const FoundPair& pair = pairs[i];
-    const double gap = pairs.gap_left(scene, pair), approach = pairs.find_approach(scene, pair, dt);
-    const Vec3 first = scene.velocity(pair.first), second = scene.velocity(pair.second);
-    if (gap <= 2.0 * approach) {  // twice, since others may strike them meanwhile
-      mark(pair, near);
-      ways_[i] = (first - second).norm() * dt / least_radius(scene, pair);
-    } else if (gap <= approach + (first.norm() + second.norm()) * dt) {
-      following_.push_back(i);
-    }
+    if (ways_[i] >= 0.0) mark(pairs[i], near);
+    if (ways_[i] == kFollowing) following_.push_back(i);
   }
   mark_followers(scene, pairs, dt, near);
   for (const SolidContact& contact : solid_contacts)

@@ -18,6 +18,8 @@ namespace lodestone {
 
 class SubstepPlan {
  public:
+  explicit SubstepPlan(JobRunner jobs) : jobs_(std::move(jobs)) {}
+
   /// For a step of `dt` seconds: marks those that may touch another and gives them the pace of their island.
   void make(const ContactScene& scene, const NearPairs& pairs, std::span<const SolidContact> solid_contacts,
             double dt, NearMarks& near);
@@ -25,12 +27,15 @@ class SubstepPlan {
   std::span<const Pace> paces() const { return paces_; }
 
  private:
+  void find_ways(const ContactScene& scene, const NearPairs& pairs, double dt);
   void mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt, NearMarks& near);
   void find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near);
   std::int32_t root_of(std::int32_t body);
 
-  static constexpr double kApart = -1.0;
-  std::vector<double> ways_;  // of each pair, over R: how far it may close in; kApart: it may not touch
+  static constexpr double kApart = -1.0, kFollowing = -2.0;
+  JobRunner jobs_;
+  std::vector<double> ways_;  // of each pair, over R: how far it may close in; kApart: it may not touch;
+                              // kFollowing: only once one of the two is stopped
   std::vector<std::size_t> following_;     // pairs of which neither gains on the other
   std::vector<std::int32_t> island_;       // of each body: another of its island, or itself
   std::vector<double> longest_of_island_;  // of each root: the longest of its ways

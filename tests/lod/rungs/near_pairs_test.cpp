@@ -180,7 +180,7 @@ TEST(SubstepPlan, IsByHowFarTheyCloseInOverTheirSize) {
     scene.find(pairs, one);
     NearMarks near;
     near.begin(2);
-    SubstepPlan plan;
+    SubstepPlan plan(make_job_runner(1));
     plan.make(scene.scene(), pairs, {}, kPairStep, near);
     EXPECT_EQ(near.pace(a), near.pace(b));
     EXPECT_EQ(plan.paces().size(), near[0] ? 1 : 0);
@@ -211,7 +211,7 @@ TEST(SubstepPlan, IsAnIslandsOwn) {
     scene.find(pairs, near_pairs);
     NearMarks near;
     near.begin(scene.bodies.size());
-    SubstepPlan plan;
+    SubstepPlan plan(make_job_runner(1));
     plan.make(scene.scene(), pairs, {}, kPairStep, near);
     EXPECT_EQ(near.pace(fast), near.pace(right));
     EXPECT_TRUE(std::ranges::is_sorted(plan.paces()));
