@@ -1,6 +1,7 @@
 // Who takes part in a contact.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 
 namespace lodestone {
@@ -20,7 +21,7 @@ class Participant {
   bool is_ground() const { return kind() == Kind::ground; }
   Kind kind() const { return Kind(code_ >> kIndexBits); }
   std::size_t index() const { return code_ & ((1u << kIndexBits) - 1); }
-  friend bool operator==(Participant, Participant) = default;
+  friend auto operator<=>(Participant, Participant) = default;
 
  private:
   static constexpr int kIndexBits = 30;

@@ -92,7 +92,7 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
     move_crowded(step, time);
     if (with_full) move_full_on(time, i);
   }
-  step.support.take_woken();  // what the last substep woke is found in the next step
+  step.support.take_woken(woken_);  // what the last substep woke is found in the next step
   crowd_.end_islands();
   pairs_.keep_contacts();
 }
@@ -100,9 +100,9 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
 // Who is crowded is decided anew.
 void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   const double time = step.dt / pace;
-  if (step.support.take_woken()) {  // it may touch other sleepers
-    step.search.find_again(step.dt, step.support, full_);
-    pairs_.take(step.scene, step.search.pairs());
+  step.support.take_woken(woken_);
+  if (!woken_.empty()) {  // they may touch other sleepers
+    pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
     pairs_.choose(near_, pace);
   }
   if (substep > 0) pairs_.find_turning(step.scene, movers_);

@@ -70,6 +70,20 @@ void NearPairs::archive(StateArchive& a) {
   if (a.reading()) keep_contacts();
 }
 
+// By place, so that a contact is the same on whichever rungs its bodies are and whichever was added first.
+PlacedPair NearPairs::place(const ContactScene& scene, const NearPair& pair) {
+  auto [first, second] = pair;
+  if (comes_before(scene.position(second), scene.position(first))) std::swap(first, second);
+  return {contact_key(scene.owner(first), scene.owner(second)), first, second};
+}
+
+void NearPairs::add(const ContactScene& scene, std::span<const NearPair> pairs) {
+  for (const NearPair& pair : pairs) {
+    found_.push_back(take_place());
+    all_[found_.back()].stand_for(place(scene, pair));
+  }
+}
+
 void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs) {
   std::swap(found_, before_);
   memory_.clear();
@@ -78,13 +92,8 @@ void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs)
   found_.resize(pairs.size());
   placed_.resize(pairs.size());
   const auto count = std::int64_t(pairs.size());
-  // By place, so that a contact is the same on whichever rungs its bodies are and whichever was added first.
   run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
-      auto [first, second] = pairs[i];
-      if (comes_before(scene.position(second), scene.position(first))) std::swap(first, second);
-      placed_[i] = {contact_key(scene.owner(first), scene.owner(second)), first, second};
-    }
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) placed_[i] = place(scene, pairs[i]);
   });
   newcomers_.clear();
   std::size_t expected = 0;
@@ -103,10 +112,7 @@ void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs)
     if (place != kTaken) spare_.push_back(place);
   for (const std::uint32_t i : newcomers_) found_[i] = take_place();
   run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
-      FoundPair& pair = all_[found_[i]];
-      pair.key = placed_[i].key, pair.first = placed_[i].first, pair.second = placed_[i].second;
-    }
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) all_[found_[i]].stand_for(placed_[i]);
   });
   put_in_order();
 }

@@ -19,12 +19,16 @@ namespace lodestone {
 
 using NearPair = std::pair<Participant, Participant>;
 
+/// In the order in which it is looked at.
+struct PlacedPair {
+  ContactKey key = 0;
+  Participant first = Participant::ground(), second = Participant::ground();
+};
+
 /// What is known of a near pair. A gap lasts until its bodies have moved by it, so most near pairs need no
 /// look at their hulls (conservative advancement; Mirtich, Impulse-based dynamic simulation of rigid body
 /// systems, 1996); a contact lasts while they move little.
-struct FoundPair {
-  ContactKey key = 0;
-  Participant first = Participant::ground(), second = Participant::ground();
+struct FoundPair : PlacedPair {
   double gap = 0.0;  ///< m, at least, when it was found: valid while find_motion_since(*when) is less
   std::optional<PairPose> when;              ///< how the bodies lay then; none: never
   HullGap whole = {.normal = Vec3::Zero()};  ///< as the two after it, see find_pair_contacts
@@ -32,6 +36,7 @@ struct FoundPair {
   std::vector<HeldContact> contacts;
 
   void archive(StateArchive& a) { a(key, first, second, gap, when, whole, of_pieces, contacts); }
+  void stand_for(const PlacedPair& pair) { static_cast<PlacedPair&>(*this) = pair; }
   void forget() {
     when.reset();
     whole = {.normal = Vec3::Zero()};
@@ -46,6 +51,8 @@ class NearPairs {
 
   /// Takes the pairs of a step; what is known of those that were near before stays so.
   void take(const ContactScene& scene, std::span<const NearPair> pairs);
+  /// More of the same step, of which nothing is known.
+  void add(const ContactScene& scene, std::span<const NearPair> pairs);
   void clear();
   void archive(StateArchive& a);
   void make_room(std::size_t bodies) { turning_.resize(std::max(turning_.size(), bodies)); }
@@ -87,11 +94,7 @@ class NearPairs {
     double rim_speed = 0.0;                // m/s: of the point farthest from the centre about it
   };
 
-  struct PlacedPair {
-    ContactKey key = 0;
-    Participant first = Participant::ground(), second = Participant::ground();
-  };
-
+  static PlacedPair place(const ContactScene& scene, const NearPair& pair);
   std::uint32_t take_place();
   void put_in_order();
   void find_contact(const ContactScene& scene, double time, FoundPair& pair) const;

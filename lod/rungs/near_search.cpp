@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 namespace lodestone {
 namespace {
@@ -12,7 +13,7 @@ constexpr int kSharesMost = 16;  // of the work of filling the cells
 }  // namespace
 
 void NearSearch::sort_by_place(std::span<const StatisticalBody> bodies,
-                               std::vector<std::int32_t>& indices) const {
+                               std::span<std::int32_t> indices) const {
   const auto place = [&](std::int32_t index) {
     const Vec3& p = bodies[std::size_t(index)].position;
     return std::array{p.x(), p.y(), p.z()};
@@ -61,19 +62,26 @@ void NearSearch::sort_movers(std::span<const StatisticalBody> bodies) {
   for (std::size_t i = 0; i < placed_.size(); ++i) movers_[i] = placed_[i].index;
 }
 
-void NearSearch::add_ball(const Vec3& position, const Vec3& velocity, double radius, double dt) {
-  const Vec3 half_way = (0.5 * dt) * velocity, center = position + half_way;
-  x_.push_back(center.x()), y_.push_back(center.y()), z_.push_back(center.z());
-  reach_.push_back(float(kBall * radius + half_way.norm() + 0.5 * gravity_.norm() * dt * dt));
+// As far as the hull may reach in the step.
+NearSearch::Ball NearSearch::ball_of(const Vec3& position, const Vec3& velocity, double radius,
+                                     double dt) const {
+  const Vec3 half_way = (0.5 * dt) * velocity;
+  return {position + half_way, float(kBall * radius + half_way.norm() + 0.5 * gravity_.norm() * dt * dt)};
+}
+
+void NearSearch::add_ball(const Ball& ball) {
+  x_.push_back(ball.center.x()), y_.push_back(ball.center.y()), z_.push_back(ball.center.z());
+  reach_.push_back(ball.reach);
 }
 
 void NearSearch::add_hull_balls(double dt, std::span<const StatisticalBody> bodies,
                                 const SupportLevel& support, std::span<const FullNeighbor> neighbors) {
   for (const std::int32_t index : movers_) {
     const StatisticalBody& body = bodies[std::size_t(index)];
-    add_ball(body.position, body.velocity, support.kind_of(body).shape->radius, dt);
+    add_ball(ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, dt));
   }
-  for (const FullNeighbor& n : neighbors) add_ball(n.state.position, n.state.velocity, n.shape->radius, dt);
+  for (const FullNeighbor& n : neighbors)
+    add_ball(ball_of(n.state.position, n.state.velocity, n.shape->radius, dt));
 }
 
 void NearSearch::invite_cornered(const TablesLevel& tables, const SupportLevel& support) {
@@ -104,6 +112,7 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
   take_movers(support);
   mixed_ = spheres_ > 0 && movers_.size() + neighbors.size() > 0;
   x_.clear(), y_.clear(), z_.clear(), reach_.clear();
+  woken_.clear(), woken_x_.clear(), woken_y_.clear(), woken_z_.clear(), woken_reach_.clear();
   const auto cells_of_spheres = [&](const auto& x, const auto& y, const auto& z, std::span<const float> reach,
                                     const CellGrid::Lent& lent) {
     cells_.fill(
@@ -185,10 +194,12 @@ bool NearSearch::lets_meet(std::uint32_t first, std::uint32_t second) const {
 }
 
 template <class Owner>
-void NearSearch::filter_pairs(const Owner& owner) {
-  if (pair_filter_ || (properties_ && !properties_->empty()))
-    std::erase_if(pairs_,
-                  [&](const NearPair& pair) { return !lets_meet(owner(pair.first), owner(pair.second)); });
+void NearSearch::filter_pairs(std::size_t from, const Owner& owner) {
+  if (!pair_filter_ && (!properties_ || properties_->empty())) return;
+  const auto kept =
+      std::remove_if(pairs_.begin() + std::ptrdiff_t(from), pairs_.end(),
+                     [&](const NearPair& pair) { return !lets_meet(owner(pair.first), owner(pair.second)); });
+  pairs_.erase(kept, pairs_.end());
 }
 
 void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
@@ -212,7 +223,7 @@ void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<cons
   }
   find_still_pairs(support, neighbors, &tables);
   find_woken_pairs(tables);
-  filter_pairs([&](Participant p) {
+  filter_pairs(0, [&](Participant p) {
     if (p.is_full()) return neighbors[p.index()].owner;
     return p.index() < own_bodies_ ? support.body(int(p.index())).owner
                                    : tables.owner(guests_[p.index() - own_bodies_].slot);
@@ -291,33 +302,81 @@ void NearSearch::find_still_hulls_near_spheres(const SupportLevel& support, cons
   }
 }
 
-void NearSearch::find_again(double dt, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
+// Who may meet one that was woken: who is awake, full, a guest or asleep, or was woken in this step, too.
+void NearSearch::find_partners(std::int32_t index, const Vec3& center, double reach,
+                               const SupportLevel& support) {
   const std::span<const StatisticalBody> bodies = support.bodies();
-  movers_.assign(support.awake_with_guests().begin(), support.awake_with_guests().end());
-  for (std::size_t i = own_bodies_; i < bodies.size(); ++i)
-    if (bodies[i].motion == Motion::asleep) movers_.push_back(std::int32_t(i));  // in no store of `support`
-  sort_movers(bodies);
-  spheres_ = 0;
-  x_.clear(), y_.clear(), z_.clear(), reach_.clear();
-  add_hull_balls(dt, bodies, support, neighbors);
-  cells_.fill({x_, y_, z_, reach_});
-  mixed_ = true;  // the cells hold no spheres now
-  find_hull_pairs();
-  pairs_.clear();
-  const auto is_guest = [&](std::uint32_t ball) {
-    return ball < movers_.size() && support.is_guest(movers_[ball]);
+  partners_.clear();
+  const auto meets = [&](const Vec3& other, double other_reach) {
+    return (other - center).squaredNorm() < (reach + other_reach) * (reach + other_reach);
   };
-  for (std::int64_t i = 0; i < ball_pairs_.size(); ++i) {
-    const std::uint32_t low = std::min(ball_pairs_.first(i), ball_pairs_.second(i)),
-                        high = std::max(ball_pairs_.first(i), ball_pairs_.second(i));
-    if (low >= movers_.size() || (is_guest(low) && is_guest(high))) continue;
-    const Participant first = Participant::statistical(std::size_t(movers_[low]));
-    pairs_.emplace_back(first, high < movers_.size() ? Participant::statistical(std::size_t(movers_[high]))
-                                                     : Participant::full(high - movers_.size()));
+  const bool any_hulls = x_.size() > spheres_;  // else the cells hold spheres alone, if they are there still
+  if (any_hulls)
+    cells_.find_near(center, reach, [&](std::uint32_t ball) {
+      if (ball < spheres_ || !meets({x_[ball], y_[ball], z_[ball]}, double(reach_[ball]))) return;
+      const std::size_t mover = ball - spheres_;
+      partners_.push_back(mover < movers_.size() ? Participant::statistical(std::size_t(movers_[mover]))
+                                                 : Participant::full(mover - movers_.size()));
+    });
+  woken_cells_.find_near(center, reach, [&](std::uint32_t other) {
+    if (woken_[other] == index) return;
+    if (meets({woken_x_[other], woken_y_[other], woken_z_[other]}, double(woken_reach_[other])))
+      partners_.push_back(Participant::statistical(std::size_t(woken_[other])));
+  });
+  const auto add_where_it_lies = [&](std::size_t other) {
+    if (meets(bodies[other].position, kBall * support.kind_of(bodies[other]).shape->radius))
+      partners_.push_back(Participant::statistical(other));
+  };
+  sleepers_.of(StatisticalModel::support).find_near(center, reach, add_where_it_lies);
+  if (support.is_guest(index)) return;  // guests meet each other as spheres
+  for (std::size_t guest = own_bodies_; guest < bodies.size(); ++guest)
+    if (newly_woken_[guest] == 0) add_where_it_lies(guest);
+}
+
+std::span<const NearPair> NearSearch::find_woken(double dt, const SupportLevel& support,
+                                                 std::span<const FullNeighbor> neighbors,
+                                                 std::span<const std::int32_t> woken) {
+  const std::span<const StatisticalBody> bodies = support.bodies();
+  const std::size_t before = pairs_.size(), first = woken_.size();
+  woken_.insert(woken_.end(), woken.begin(), woken.end());
+  sort_by_place(bodies, std::span(woken_).subspan(first));
+  newly_woken_.assign(bodies.size(), 0);
+  for (std::size_t i = first; i < woken_.size(); ++i) {
+    const StatisticalBody& body = bodies[std::size_t(woken_[i])];
+    const auto [center, reach] =
+        ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, dt);
+    woken_x_.push_back(center.x()), woken_y_.push_back(center.y()), woken_z_.push_back(center.z());
+    woken_reach_.push_back(reach);
+    newly_woken_[std::size_t(woken_[i])] = 1;
   }
-  find_still_pairs(support, neighbors, nullptr);
-  filter_pairs(
-      [&](Participant p) { return p.is_full() ? neighbors[p.index()].owner : bodies[p.index()].owner; });
+  woken_cells_.fill({woken_x_, woken_y_, woken_z_, woken_reach_});
+
+  const auto is_new = [&](Participant p) { return p.is_statistical() && newly_woken_[p.index()] != 0; };
+  const auto in_order = [](const NearPair& pair) { return NearPair(std::minmax(pair.first, pair.second)); };
+  known_.clear();
+  for (const NearPair& pair : pairs_)
+    if (is_new(pair.first) || is_new(pair.second)) known_.push_back(in_order(pair));
+  std::ranges::sort(known_);
+  const auto place_of = [&](Participant p) {
+    const Vec3& at = p.is_full() ? neighbors[p.index()].state.position : bodies[p.index()].position;
+    return std::tuple(at.x(), at.y(), at.z(), p);
+  };
+  for (std::size_t i = first; i < woken_.size(); ++i) {
+    const auto self = Participant::statistical(std::size_t(woken_[i]));
+    find_partners(woken_[i], {woken_x_[i], woken_y_[i], woken_z_[i]}, double(woken_reach_[i]), support);
+    std::ranges::sort(partners_, {}, place_of);
+    for (const Participant other : partners_) {
+      const bool later = is_new(other) && place_of(other) < place_of(self);  // added by that one
+      const bool guests = other.is_statistical() && support.is_guest(woken_[i]) &&
+                          support.is_guest(std::int32_t(other.index()));
+      if (!later && !guests && !std::ranges::binary_search(known_, in_order({self, other})))
+        pairs_.emplace_back(self, other);
+    }
+  }
+  filter_pairs(before, [&](Participant p) {
+    return p.is_full() ? neighbors[p.index()].owner : bodies[p.index()].owner;
+  });
+  return std::span(pairs_).subspan(before);
 }
 
 }  // namespace lodestone

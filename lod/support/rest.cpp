@@ -29,7 +29,7 @@ void SupportLevel::wake(int slot) {
   } else {
     awake_.push_back(slot);
   }
-  woken_ = true;
+  woken_.push_back(slot);
 }
 
 void SupportLevel::put_to_sleep(int slot) {

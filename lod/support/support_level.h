@@ -69,8 +69,11 @@ class SupportLevel {
   std::span<const StatisticalBody> bodies() const { return bodies_; }
   bool is_guest(std::int32_t index) const { return index >= size(); }
   std::span<const std::int32_t> awake_with_guests() const { return awake_; }
-  /// Whether one that slept since an earlier step was woken, since this was last asked.
-  bool take_woken() { return std::exchange(woken_, false); }
+  /// Those that slept since an earlier step and were woken since this was last asked.
+  void take_woken(std::vector<std::int32_t>& indices) {
+    indices.clear();
+    std::swap(indices, woken_);
+  }
   /// Moves a body that touches no other, over `faces` of static solids and the planes.
   void move_alone(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally);
   /// Whether it rests, after a move of `time` seconds; what is not sound is put right.
@@ -80,7 +83,7 @@ class SupportLevel {
 
   void archive(StateArchive& a) {
     a(bodies_, clips_, angular_velocity_given_, last_places_, place_awake_, awake_, awake_in_order_, given_,
-      pushes_, fell_asleep_, woke_, woken_);
+      pushes_, fell_asleep_, woke_);
   }
 
  private:
@@ -131,7 +134,7 @@ class SupportLevel {
   std::vector<Push> pushes_;  // of the next step
   std::vector<std::uint32_t> fell_asleep_;  // owners
   std::vector<std::uint32_t> woke_;         // owners
-  bool woken_ = false;
+  std::vector<std::int32_t> woken_;         // indices
 };
 
 }  // namespace lodestone

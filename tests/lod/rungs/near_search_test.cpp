@@ -189,6 +189,31 @@ TEST(NearSearch, FindsThemAgainAfterTheBodiesMoved) {
   }
 }
 
+// Woken in two lots, within a step: with each lot all that a search at the step's beginning would have found
+// are there, once.
+TEST(NearSearch, FindsThePairsOfThoseThatAreWoken) {
+  for (std::uint32_t seed = 20; seed < 26; ++seed) {
+    Crowd3 crowd;
+    scatter(crowd, seed, 90, {Rung::support, Rung::support, Rung::full}, 1.4);
+    crowd.search_pairs();
+    for (int lot = 0; lot < 2; ++lot) {
+      const std::size_t before = crowd.search.pairs().size();
+      for (int slot = 0, left = 5; slot < crowd.support.size() && left > 0; ++slot) {
+        if (!crowd.support.asleep(slot)) continue;
+        crowd.support.wake(slot), --left;
+        crowd.places[crowd.support.body(slot).owner].asleep = false;
+      }
+      std::vector<std::int32_t> woken;
+      crowd.support.take_woken(woken);
+      EXPECT_EQ(woken.size(), 5u);
+      const auto found = crowd.search.find_woken(kSearchStep, crowd.support, crowd.full, woken);
+      EXPECT_GT(found.size(), 0u);
+      EXPECT_EQ(crowd.search.pairs().size(), before + found.size());
+      expect_all_found(crowd);
+    }
+  }
+}
+
 // Pairs and their order are the same whatever the order in which bodies were added.
 TEST(NearSearch, DoesNotHangOnTheOrderOfAdding) {
   for (std::uint32_t seed = 0; seed < 4; ++seed) {
