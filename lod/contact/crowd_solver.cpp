@@ -16,7 +16,9 @@ namespace {
 
 constexpr int kColours = 64;              // the last one: manifolds for which no other was left, one by one
 constexpr std::uint32_t kMostPoints = 4;  // of a manifold; more make no difference to its place
-constexpr std::int64_t kGrain = 64;       // batches of a job
+constexpr std::size_t kGroups =
+    2 * kMostPoints;                 // of a colour: by whether it carried something, and its points
+constexpr std::int64_t kGrain = 64;  // batches of a job
 constexpr double kUneven =
     20.0;  // a body that weighs as many times another makes all that hangs together with them uneven
 constexpr double kMostUnevenSweeps =
@@ -117,17 +119,17 @@ struct CrowdSolver::Work : CrowdArrays {
   std::vector<std::uint8_t> uneven;     // each manifold's: whether it is in an uneven island; empty: none is
   std::vector<std::int32_t> island;     // of each body: another of its island, or itself
   std::vector<std::uint8_t> island_uneven;
-  double most_uneven = 1.0;  // greatest ratio of two masses that touch
-  std::vector<std::uint32_t>
-      order;  // manifolds by colour, then those that are not uneven, then by their number of points
-  std::vector<std::uint32_t> first_of;     // of each of these groups, in `order`
+  double most_uneven = 1.0;              // greatest ratio of two masses that touch
+  std::vector<std::uint32_t> order;      // manifolds by colour, then those that are not uneven, then by group
+  std::vector<std::uint16_t> group_of_;  // of each manifold, over all colours
+  std::vector<std::uint32_t> first_of;   // of each of these groups, in `order`
   std::vector<std::uint32_t> first_batch;  // of each colour, and of its uneven ones
   std::vector<Change> changes;
   std::vector<Motion4> motions_before;
   std::vector<std::array<D4, 3>> guesses;
 
   void colour(std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds);
-  void make_batches(std::span<const CrowdManifold> manifolds);
+  void make_batches(std::span<const CrowdManifold> manifolds, std::span<const CrowdPoint> contacts);
   void fill(Batch& batch, std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds,
             std::span<const CrowdPoint> contacts);
   void hand_out(const Batch& batch, std::span<const CrowdManifold> manifolds,
@@ -201,23 +203,34 @@ void CrowdSolver::Work::colour(std::span<const SolverBody> bodies, std::span<con
   }
 }
 
-// Which manifolds each holds, and where its points will be.
-void CrowdSolver::Work::make_batches(std::span<const CrowdManifold> manifolds) {
-  const auto group_of = [&](std::size_t i) {
-    return (2 * std::size_t(colour_of[i]) + (uneven.empty() ? 0 : uneven[i])) * kMostPoints +
-           std::min(manifolds[i].count, kMostPoints) - 1;
+// Which manifolds each holds, and where its points will be. Those that carried something lie side by side,
+// since a sweep is quick where none of four does.
+void CrowdSolver::Work::make_batches(std::span<const CrowdManifold> manifolds,
+                                     std::span<const CrowdPoint> contacts) {
+  const auto carries = [&](const CrowdManifold& m) {
+    return std::ranges::any_of(contacts.subspan(m.begin, m.count),
+                               [](const CrowdPoint& point) { return !point.guess.isZero(0.0); });
   };
-  first_of.assign(2 * kColours * kMostPoints + 1, 0);
-  for (std::size_t i = 0; i < manifolds.size(); ++i) ++first_of[group_of(i) + 1];
+  const auto group_of = [&](std::size_t i) {
+    const std::size_t part = 2 * std::size_t(colour_of[i]) + (uneven.empty() ? 0 : uneven[i]);
+    return part * kGroups + carries(manifolds[i]) * kMostPoints + std::min(manifolds[i].count, kMostPoints) -
+           1;
+  };
+  group_of_.resize(manifolds.size());
+  first_of.assign(2 * kColours * kGroups + 1, 0);
+  for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    group_of_[i] = std::uint16_t(group_of(i));
+    ++first_of[group_of_[i] + 1U];
+  }
   for (std::size_t g = 1; g < first_of.size(); ++g) first_of[g] += first_of[g - 1];
   order.resize(manifolds.size());
-  for (std::size_t i = 0; i < manifolds.size(); ++i) order[first_of[group_of(i)]++] = std::uint32_t(i);
+  for (std::size_t i = 0; i < manifolds.size(); ++i) order[first_of[group_of_[i]]++] = std::uint32_t(i);
 
   batches.clear();
   first_batch.assign(1, 0);
   std::uint32_t at = 0, begin = 0;
   for (int part = 0; part < 2 * kColours; ++part) {
-    const std::uint32_t end = first_of[std::size_t(part + 1) * kMostPoints - 1];
+    const std::uint32_t end = first_of[std::size_t(part + 1) * kGroups - 1];
     const std::uint32_t width = part / 2 == kColours - 1 ? 1 : kLanes;
     for (; at < end; at = std::min(at + width, end)) {
       Batch& batch = batches.emplace_back();
@@ -370,7 +383,9 @@ struct SweepLoop {
         } else {
           const V4 velocity = va - vb + cross(wa, p.arm_first) - cross(wb, p.arm_second);
           const D4 held = p.impulse[0], held_along = p.impulse[1], held_across = p.impulse[2];
-          p.impulse[0] = most(none, held + p.effective_mass[0] * (p.target - dot(velocity, n)));
+          const D4 asked = p.effective_mass[0] * (p.target - dot(velocity, n));
+          if (!batch.bounded && !any((held > none) | (asked > none))) continue;  // no point carries anything
+          p.impulse[0] = most(none, held + asked);
           const D4 bound = batch.bounded ? solver.uneven_points[batch.begin + std::uint32_t(k)].bound
                                          : batch.friction * p.impulse[0];
           p.impulse[1] =
@@ -506,7 +521,7 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
   work.motions.back() = {};
   work.colour(bodies, manifolds);
   work.find_uneven(bodies, manifolds);
-  work.make_batches(manifolds);
+  work.make_batches(manifolds, points);
   const auto batches = std::int64_t(work.batches.size());
   run_in_pieces(jobs, batches, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)

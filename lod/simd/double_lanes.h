@@ -16,6 +16,7 @@ LODESTONE_INLINE D4 all(double x) { return D4{x, x, x, x}; }
 LODESTONE_INLINE D4 most(const D4& a, const D4& b) { return a > b ? a : b; }
 LODESTONE_INLINE D4 least(const D4& a, const D4& b) { return a < b ? a : b; }
 LODESTONE_INLINE D4 absolute(const D4& a) { return most(a, -a); }
+LODESTONE_INLINE bool any(const Mask4& which) { return (which[0] | which[1] | which[2] | which[3]) != 0; }
 LODESTONE_INLINE D4 square_root(const D4& a) {
   return D4{__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};
 }
