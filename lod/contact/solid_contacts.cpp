@@ -239,6 +239,64 @@ std::optional<HalfSpace> find_face_below(const PlacedSolid& placed, const Vec3& 
   return face;
 }
 
+SurfaceBelow find_surface_below(const PlacedSolid& placed, const Vec3& center, double reach) {
+  const SurfaceTriangle& t = *placed.solid->surface;
+  const Vec3 at = in_part(placed, center);
+  const double height = t.normal.dot(at - t.corner[0]);
+  if (std::abs(height) >= reach) return {};
+  bool inside = true, ridge = false, any_edge = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 from = at - t.corner[i], along = t.corner[(i + 1) % 3] - t.corner[i];
+    inside = inside && t.normal.cross(along).dot(from) >= 0.0;
+    const double share = std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const bool in_reach = (from - share * along).squaredNorm() < reach * reach;
+    any_edge |= in_reach;
+    ridge |= in_reach && t.ridge[i];
+  }
+  if (!inside && !any_edge) return {};
+  if (ridge || height < 0.0) return {.in_reach = true, .plane = {}};
+  const Vec3 normal = placed.orientation * t.normal,
+             corner = placed.position + placed.orientation * (t.corner[0] - placed.solid->center);
+  return {.in_reach = true,
+          .plane = HalfSpace{normal, normal.dot(corner), placed.part->material, placed.part->id}};
+}
+
+namespace {
+
+// The planes of what is within reach of a body, appended to `planes`, if these are all that it can meet there
+// and no more than a few of a surface. False, and none: there are edges, or something moves.
+bool find_faces_below(const StatisticalBody& body, const Shape& shape, std::span<const PlacedSolid> near,
+                      double reach, std::vector<HalfSpace>& planes) {
+  constexpr std::size_t kMostOfSurfaces = 2;
+  const std::size_t before = planes.size();
+  std::size_t of_surfaces = 0;
+  const auto differ = [&](const HalfSpace& a, const HalfSpace& b) {  // anywhere in reach, by what shows
+    return a.id != b.id || a.material != b.material ||
+           (a.normal - b.normal).norm() * reach +
+                   std::abs(a.height_of(body.position) - b.height_of(body.position)) >
+               1e-4 * shape.radius;
+  };
+  const auto add = [&](const PlacedSolid& solid) {
+    if (!solid.solid->surface) {
+      const auto face = find_face_below(solid, body.position, reach);
+      if (face) planes.push_back(*face);
+      return face.has_value();
+    }
+    const auto [in_reach, plane] = find_surface_below(solid, body.position, reach);
+    if (!plane) return !in_reach;
+    const auto known = std::span(planes).subspan(before);
+    if (!std::ranges::all_of(known, [&](const HalfSpace& other) { return differ(*plane, other); }))
+      return true;
+    planes.push_back(*plane);
+    return ++of_surfaces <= kMostOfSurfaces;
+  };
+  if (std::ranges::all_of(near, add)) return true;
+  planes.resize(before);
+  return false;
+}
+
+}  // namespace
+
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
                          std::vector<HalfSpace>& planes) {
@@ -262,14 +320,7 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
     else
       find_solids(*part, body.position, reach, after, near);
   }
-  const auto face_below = [&](const PlacedSolid& solid) {
-    return find_face_below(solid, body.position, reach);
-  };
-  if (!any_moves &&
-      std::ranges::all_of(near, [&](const PlacedSolid& solid) { return face_below(solid).has_value(); })) {
-    for (const PlacedSolid& solid : near) planes.push_back(*face_below(solid));
-    return;
-  }
+  if (!any_moves && find_faces_below(body, shape, near, reach, planes)) return;
   const PairBody self{&shape, body.position, body.orientation};
   for (const PlacedSolid& solid : near)
     if (const auto contact = meet(self, solid, touching + way);

@@ -22,6 +22,14 @@ struct SolidContact {
 /// `reach` beyond: there it is a plane like any other. None near an edge.
 std::optional<HalfSpace> find_face_below(const PlacedSolid& solid, const Vec3& center, double reach);
 
+/// Of a solid that is one triangle of a surface.
+struct SurfaceBelow {
+  bool in_reach = false;           ///< of a ball
+  std::optional<HalfSpace> plane;  ///< where the surface goes on beyond it, level or rising, as far as the
+                                   ///< ball reaches: no edge that stands out, and no border
+};
+SurfaceBelow find_surface_below(const PlacedSolid& triangle, const Vec3& center, double reach);
+
 /// Contacts of the body in `slot` that may close within `time` seconds, `after` so many of the step, appended
 /// to `found`. Where the body lies over faces only, away from their edges, there are none but these faces'
 /// planes, appended to `planes`.

@@ -71,10 +71,6 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
 void NearBodies::move_islands(const Step& step, Pace pace) {
   choose_movers(step.support, pace);
   pairs_.choose(near_, pace);
-  if (pace == 1)  // found for the whole step already
-    std::erase_if(solid_contacts_, [&](const SolidContact& contact) {
-      return near_.pace(Participant::statistical(std::size_t(contact.slot))) != pace;
-    });
   const bool with_full = near_.full_pace() == pace;
   const double time = step.dt / pace;
   crowd_.begin_islands();
@@ -108,7 +104,7 @@ void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   if (substep > 0) pairs_.find_turning(step.scene, movers_);
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
   wake_touched(step, pace);
-  if (pace > 1) find_ground_solids(step, movers_, substep * time, time);
+  find_ground_solids(step, movers_, substep * time, time);
   for (const SolidContact& contact : solid_contacts_)
     step.scene.bodies[std::size_t(contact.slot)].crowded = true;
 }

@@ -115,8 +115,7 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
   find_islands(scene, pairs, near);
   std::array<bool, kMostSubsteps + 1> any = {};
   const auto pace_of = [&](std::int32_t node) {
-    const double way = longest_of_island_[std::size_t(root_of(node))];
-    const Pace pace = way == kApart ? 1 : pace_for(way);  // of what touches the ground's solids alone: 1
+    const Pace pace = pace_for(longest_of_island_[std::size_t(root_of(node))]);
     any[pace] = true;
     return pace;
   };

@@ -20,7 +20,8 @@ class SubstepPlan {
  public:
   explicit SubstepPlan(JobRunner jobs) : jobs_(std::move(jobs)) {}
 
-  /// For a step of `dt` seconds: marks those that may touch another and gives them the pace of their island.
+  /// For a step of `dt` seconds: marks those that may touch another, or a solid of the ground, and gives them
+  /// the pace of their island.
   void make(const ContactScene& scene, const NearPairs& pairs, std::span<const SolidContact> solid_contacts,
             double dt, NearMarks& near);
   /// That any island has, in ascending order.

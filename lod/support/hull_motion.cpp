@@ -22,9 +22,14 @@ HullMotion move_on_hull(StatisticalBody& body, ClipPlayback& clip, const BodyKin
                         const StepWorld& world, const Vec3& clip_gravity, double time, bool may_settle,
                         const HullMotionSettings& settings) {
   const double gravity = clip_gravity.norm();
-  // A clip plays on its own ground only: that of a static solid ends at an edge.
+  // A clip plays on its own ground only: that of a static solid ends at an edge. The triangles of a level
+  // floor are one, up to rounding.
+  constexpr double kSame = 1e-3;  // over R
   const auto same = [&](const HalfSpace& plane) {
-    return plane.normal == clip.ground.normal && plane.offset == clip.ground.offset;
+    const double radius = kind.shape->radius;
+    return (plane.normal - clip.ground.normal).norm() * radius +
+               std::abs(plane.height_of(body.position) - clip.ground.height_of(body.position)) <=
+           kSame * radius;
   };
   if (body.motion == Motion::settling && std::ranges::none_of(world.planes, same))
     body.motion = Motion::dynamic;

@@ -115,6 +115,55 @@ TEST_F(SolidContacts, InACornerASphereHasAContactOfEach) {
   for (const SolidContact& contact : found_) EXPECT_NEAR(contact.contact.gap, 0.0, 1e-7);
 }
 
+// A floor of triangles, level up to x = 0, from there falling or rising by a tenth.
+Mesh make_bent_floor(double slope) {
+  Mesh mesh;
+  constexpr int kCells = 12;
+  for (int y = 0; y <= kCells; ++y)
+    for (int x = 0; x <= kCells; ++x)
+      mesh.vertices.emplace_back(0.25 * (x - 6), 0.25 * (y - 6), std::max(0.0, slope * 0.25 * (x - 6)));
+  if (slope < 0.0)
+    for (Vec3& v : mesh.vertices) v.z() = std::min(0.0, slope * v.x());
+  for (int y = 0; y < kCells; ++y)
+    for (int x = 0; x < kCells; ++x) {
+      const int a = y * (kCells + 1) + x, b = a + 1, c = a + kCells + 1, d = c + 1;
+      mesh.faces.push_back({a, b, d}), mesh.faces.push_back({a, d, c});
+    }
+  return mesh;
+}
+
+// Whatever seams it has, a floor is one plane, a hollow two; where it falls away or ends it is none.
+TEST(SurfaceContacts, AFloorOfTrianglesIsAPlaneToBodies) {
+  const BodyKind kind =
+      make_body_kind(std::make_shared<const Shape>(make_shape("cube", make_box({kSide, kSide, kSide}))));
+  const auto planes_at = [&](double slope, const Vec3& position, std::size_t& contacts) {
+    Ground ground;
+    ground.add_mesh(make_bent_floor(slope), 3);
+    StatisticalBody body;
+    body.position = position;
+    std::vector<SolidContact> found;
+    std::vector<HalfSpace> planes;
+    find_solid_contacts(body, kind, 5, ground, 0.0, kSolidStep, found, planes);
+    contacts = found.size();
+    return planes;
+  };
+  std::size_t contacts = 0;
+  for (const Vec3& place : {Vec3(-0.6, 0.1, 0.1), Vec3(-0.5, 0.25, 0.1), Vec3(-0.75, 0.0, 0.12)}) {
+    const auto planes = planes_at(0.1, place, contacts);
+    ASSERT_EQ(planes.size(), 1u);
+    EXPECT_EQ(contacts, 0u);
+    EXPECT_NEAR(planes[0].height_of(place), place.z(), 1e-9);
+    EXPECT_EQ(planes[0].material, 3u);
+  }
+  EXPECT_EQ(planes_at(0.1, {-0.02, 0.1, 0.1}, contacts).size(), 2u);
+  EXPECT_EQ(contacts, 0u);
+  EXPECT_TRUE(planes_at(-0.1, {-0.02, 0.1, 0.1}, contacts).empty());
+  EXPECT_GT(contacts, 0u);
+  EXPECT_TRUE(planes_at(0.1, {-1.45, 0.1, 0.1}, contacts).empty()) << "at its border";
+  EXPECT_TRUE(planes_at(0.1, {-0.6, 0.1, 0.8}, contacts).empty()) << "out of reach";
+  EXPECT_EQ(contacts, 0u);
+}
+
 TEST(HeldSeveralWays, IsACornerButNotAnEvenFloor) {
   const std::vector<HalfSpace> floor{{.normal = Vec3::UnitZ()}},
       corner{{.normal = Vec3::UnitZ()}, {.normal = Vec3::UnitX()}};

@@ -1,6 +1,7 @@
 // What substeps are for: many bodies that fall on each other.
 #include <gtest/gtest.h>
 
+#include "reference/random.h"
 #include "tests/lod/rungs/rung_fixture.h"
 #include "tools/compare/pile_overlap.h"
 #include "tools/compare/pile_start.h"
@@ -87,6 +88,39 @@ TEST(Substeps, OfAnIslandAreNotDisturbedByWhatGoesOnElsewhere) {
   EXPECT_EQ(alone.position, beside.position);
   EXPECT_EQ(alone.orientation.coeffs(), beside.orientation.coeffs());
   EXPECT_EQ(alone.velocity, beside.velocity);
+}
+
+// A level floor of triangles is the plane that it lies in: boxes fall, strike and turn over its seams as over
+// that.
+TEST(TriangleFloor, IsThePlaneThatItLiesIn) {
+  const auto shape = std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4})));
+  Mesh floor;
+  for (const double y : {-9.0, 0.3, 9.0})
+    for (const double x : {-9.0, -0.2, 0.5, 9.0}) floor.vertices.emplace_back(x, y, 0.0);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x) {
+      const int a = 4 * y + x;
+      floor.faces.push_back({a, a + 1, a + 5}), floor.faces.push_back({a, a + 5, a + 4});
+    }
+  Ground plane, triangles;
+  plane.add_plane({}), triangles.add_mesh(floor, 0);
+  MaterialTable materials;
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    testing::OneRung on_plane(StatisticalModel::support, {}, plane, materials),
+        on_triangles(StatisticalModel::support, {}, triangles, materials);
+    RandomStream random(77, trial, 0);
+    RigidState start;
+    start.position = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.4, 1.0)};
+    start.orientation = random.orientation();
+    start.velocity = random.direction();
+    start.angular_velocity = 4.0 * random.direction();
+    for (testing::OneRung* level : {&on_plane, &on_triangles})
+      level->add(0, shape, 24.0, 0, start, false, nullptr);
+    StepReport report;
+    for (int i = 0; i < 60; ++i)
+      on_plane.step(1.0 / 60.0, {}, report), on_triangles.step(1.0 / 60.0, {}, report);
+    EXPECT_LT((on_plane.state(0).position - on_triangles.state(0).position).norm(), 1e-6) << trial;
+  }
 }
 
 }  // namespace
