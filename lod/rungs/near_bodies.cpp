@@ -73,6 +73,7 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
   pairs_.choose(near_, pace);
   const bool with_full = near_.full_pace() == pace;
   const double time = step.dt / pace;
+  woken_.clear();
   crowd_.begin_islands();
   for (int i = 0; i < pace; ++i) {
     {
@@ -88,7 +89,6 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
     move_crowded(step, time);
     if (with_full) move_full_on(time, i);
   }
-  step.support.take_woken(woken_);  // what the last substep woke is found in the next step
   crowd_.end_islands();
   pairs_.keep_contacts();
 }
@@ -96,7 +96,6 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
 // Who is crowded is decided anew.
 void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   const double time = step.dt / pace;
-  step.support.take_woken(woken_);
   if (!woken_.empty()) {  // they may touch other sleepers
     pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
     pairs_.choose(near_, pace);
@@ -163,7 +162,7 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
 
 void NearBodies::wake_touched(const Step& step, Pace pace) {
   const ContactScene& scene = step.scene;
-  bool any = false;
+  woken_.clear();
   for (const CrowdContact& c : pairs_.contacts())
     for (const auto& [sleeper, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
       const bool carried =
@@ -172,15 +171,15 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
       if (!scene.asleep(sleeper)) continue;
       const double speed = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point).norm();
       if (speed <= rest_law_.wake_speed(scene.shape(sleeper).radius) && !carried) continue;
+      woken_.push_back(sleeper);
       if (sleeper.is_full()) {
         scene.neighbor(sleeper).asleep = false;
       } else {
         step.support.wake(int(sleeper.index()));
         pairs_.clear_turning(sleeper);
-        any = true;
       }
     }
-  if (any) choose_movers(step.support, pace);
+  if (!woken_.empty()) choose_movers(step.support, pace);
 }
 
 void NearBodies::move_crowded(const Step& step, double time) {

@@ -92,7 +92,7 @@ class NearBodies {
   Crowd crowd_;
   RestLaw rest_law_;
   std::vector<std::int32_t> movers_;              // indices: who is awake and moves at the pace in hand
-  std::vector<std::int32_t> woken_;               // indices, in the last substep
+  std::vector<Participant> woken_;                // by the contacts of the last substep
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
   std::vector<SolidContact> solid_contacts_;
   FacesBelow faces_;

@@ -13,7 +13,7 @@ constexpr int kSharesMost = 16;  // of the work of filling the cells
 }  // namespace
 
 void NearSearch::sort_by_place(std::span<const StatisticalBody> bodies,
-                               std::span<std::int32_t> indices) const {
+                               std::vector<std::int32_t>& indices) const {
   const auto place = [&](std::int32_t index) {
     const Vec3& p = bodies[std::size_t(index)].position;
     return std::array{p.x(), p.y(), p.z()};
@@ -303,8 +303,7 @@ void NearSearch::find_still_hulls_near_spheres(const SupportLevel& support, cons
 }
 
 // Who may meet one that was woken: who is awake, full, a guest or asleep, or was woken in this step, too.
-void NearSearch::find_partners(std::int32_t index, const Vec3& center, double reach,
-                               const SupportLevel& support) {
+void NearSearch::find_partners(const Vec3& center, double reach, const SupportLevel& support) {
   const std::span<const StatisticalBody> bodies = support.bodies();
   partners_.clear();
   const auto meets = [&](const Vec3& other, double other_reach) {
@@ -319,57 +318,66 @@ void NearSearch::find_partners(std::int32_t index, const Vec3& center, double re
                                                  : Participant::full(mover - movers_.size()));
     });
   woken_cells_.find_near(center, reach, [&](std::uint32_t other) {
-    if (woken_[other] == index) return;
     if (meets({woken_x_[other], woken_y_[other], woken_z_[other]}, double(woken_reach_[other])))
-      partners_.push_back(Participant::statistical(std::size_t(woken_[other])));
+      partners_.push_back(woken_[other]);
   });
   const auto add_where_it_lies = [&](std::size_t other) {
     if (meets(bodies[other].position, kBall * support.kind_of(bodies[other]).shape->radius))
       partners_.push_back(Participant::statistical(other));
   };
   sleepers_.of(StatisticalModel::support).find_near(center, reach, add_where_it_lies);
-  if (support.is_guest(index)) return;  // guests meet each other as spheres
-  for (std::size_t guest = own_bodies_; guest < bodies.size(); ++guest)
-    if (newly_woken_[guest] == 0) add_where_it_lies(guest);
+  for (std::size_t guest = own_bodies_; guest < bodies.size(); ++guest) add_where_it_lies(guest);
 }
 
 std::span<const NearPair> NearSearch::find_woken(double dt, const SupportLevel& support,
                                                  std::span<const FullNeighbor> neighbors,
-                                                 std::span<const std::int32_t> woken) {
+                                                 std::span<const Participant> woken) {
   const std::span<const StatisticalBody> bodies = support.bodies();
   const std::size_t before = pairs_.size(), first = woken_.size();
-  woken_.insert(woken_.end(), woken.begin(), woken.end());
-  sort_by_place(bodies, std::span(woken_).subspan(first));
-  newly_woken_.assign(bodies.size(), 0);
-  for (std::size_t i = first; i < woken_.size(); ++i) {
-    const StatisticalBody& body = bodies[std::size_t(woken_[i])];
-    const auto [center, reach] =
-        ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, dt);
-    woken_x_.push_back(center.x()), woken_y_.push_back(center.y()), woken_z_.push_back(center.z());
-    woken_reach_.push_back(reach);
-    newly_woken_[std::size_t(woken_[i])] = 1;
-  }
-  woken_cells_.fill({woken_x_, woken_y_, woken_z_, woken_reach_});
-
-  const auto is_new = [&](Participant p) { return p.is_statistical() && newly_woken_[p.index()] != 0; };
-  const auto in_order = [](const NearPair& pair) { return NearPair(std::minmax(pair.first, pair.second)); };
-  known_.clear();
-  for (const NearPair& pair : pairs_)
-    if (is_new(pair.first) || is_new(pair.second)) known_.push_back(in_order(pair));
-  std::ranges::sort(known_);
   const auto place_of = [&](Participant p) {
     const Vec3& at = p.is_full() ? neighbors[p.index()].state.position : bodies[p.index()].position;
     return std::tuple(at.x(), at.y(), at.z(), p);
   };
+  woken_.insert(woken_.end(), woken.begin(), woken.end());
+  const auto newly_woken = std::span(woken_).subspan(first);
+  std::ranges::sort(newly_woken, {}, place_of);
+  for (const Participant p : newly_woken) {
+    const Ball ball = [&] {
+      if (p.is_full()) {
+        const FullNeighbor& n = neighbors[p.index()];
+        return ball_of(n.state.position, n.state.velocity, n.shape->radius, dt);
+      }
+      const StatisticalBody& body = bodies[p.index()];
+      return ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, dt);
+    }();
+    woken_x_.push_back(ball.center.x()), woken_y_.push_back(ball.center.y());
+    woken_z_.push_back(ball.center.z()), woken_reach_.push_back(ball.reach);
+  }
+  woken_cells_.fill({woken_x_, woken_y_, woken_z_, woken_reach_});
+
+  new_.assign(newly_woken.begin(), newly_woken.end());
+  std::ranges::sort(new_);
+  const auto is_new = [&](Participant p) { return std::ranges::binary_search(new_, p); };
+  const auto in_order = [](Participant a, Participant b) { return NearPair(std::min(a, b), std::max(a, b)); };
+  known_.clear();
+  for (const auto& [a, b] : pairs_)
+    if (is_new(a) || is_new(b)) known_.push_back(in_order(a, b));
+  std::ranges::sort(known_);
+  const auto is_guest = [&](Participant p) {
+    return p.is_statistical() && support.is_guest(std::int32_t(p.index()));
+  };
+  const auto nobodys_matter = [&](Participant a, Participant b) {
+    return a == b || (a.is_full() && b.is_full()) || (is_guest(a) && is_guest(b));
+  };
   for (std::size_t i = first; i < woken_.size(); ++i) {
-    const auto self = Participant::statistical(std::size_t(woken_[i]));
-    find_partners(woken_[i], {woken_x_[i], woken_y_[i], woken_z_[i]}, double(woken_reach_[i]), support);
+    const Participant self = woken_[i];
+    find_partners({woken_x_[i], woken_y_[i], woken_z_[i]}, double(woken_reach_[i]), support);
     std::ranges::sort(partners_, {}, place_of);
+    partners_.erase(std::unique(partners_.begin(), partners_.end()), partners_.end());
     for (const Participant other : partners_) {
-      const bool later = is_new(other) && place_of(other) < place_of(self);  // added by that one
-      const bool guests = other.is_statistical() && support.is_guest(woken_[i]) &&
-                          support.is_guest(std::int32_t(other.index()));
-      if (!later && !guests && !std::ranges::binary_search(known_, in_order({self, other})))
+      const bool added_before = is_new(other) && place_of(other) < place_of(self);
+      if (!added_before && !nobodys_matter(self, other) &&
+          !std::ranges::binary_search(known_, in_order(self, other)))
         pairs_.emplace_back(self, other);
     }
   }

@@ -35,11 +35,11 @@ class NearSearch {
             std::span<const FullNeighbor> neighbors);
   /// The contacts of spheres, then the near pairs of all others; spheres among these are guests().
   void find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors);
-  /// Of bodies that were woken within a step of `dt` seconds, by index: the near pairs that were not known
-  /// while they slept. Guests stay who they are. Adds them to pairs().
+  /// Of bodies that were woken within a step of `dt` seconds: the near pairs that were not known while they
+  /// slept. Guests stay who they are. Adds them to pairs().
   std::span<const NearPair> find_woken(double dt, const SupportLevel& support,
                                        std::span<const FullNeighbor> neighbors,
-                                       std::span<const std::int32_t> woken);
+                                       std::span<const Participant> woken);
   void clear();
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
   void set_threads(int threads) { threads_ = threads; }
@@ -80,7 +80,7 @@ class NearSearch {
   void add_ball(const Ball& ball);
   void take_movers(const SupportLevel& support);
   void sort_movers(std::span<const StatisticalBody> bodies);
-  void sort_by_place(std::span<const StatisticalBody> bodies, std::span<std::int32_t> indices) const;
+  void sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const;
   void note_order(std::size_t spheres);
   void find_hull_pairs();
   void add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables);
@@ -88,7 +88,7 @@ class NearSearch {
   bool lets_meet(std::uint32_t first, std::uint32_t second) const;
   template <class Owner>
   void filter_pairs(std::size_t from, const Owner& owner);
-  void find_partners(std::int32_t index, const Vec3& center, double reach, const SupportLevel& support);
+  void find_partners(const Vec3& center, double reach, const SupportLevel& support);
   Participant participant(std::uint32_t ball, const TablesLevel& tables);
   Participant guest(std::int32_t slot);
   void forget_guests();
@@ -123,14 +123,14 @@ class NearSearch {
   std::size_t own_bodies_ = 0;               // of `support`: guests follow these
   std::vector<std::int32_t> still_near_;
 
-  // Woken in this step, all of them.
-  std::vector<std::int32_t> woken_;                  // indices
-  std::vector<double> woken_x_, woken_y_, woken_z_;  // m, of their balls
+  // Woken in this step, all of them, and their balls.
+  std::vector<Participant> woken_;
+  std::vector<double> woken_x_, woken_y_, woken_z_;  // m
   std::vector<float> woken_reach_;                   // m
   CellGrid woken_cells_;
-  std::vector<Participant> partners_;
-  std::vector<char> newly_woken_;  // by index
-  std::vector<NearPair> known_;    // with these, the lower one first
+  // Of those at hand.
+  std::vector<Participant> new_, partners_;
+  std::vector<NearPair> known_;  // with these, the lower one first
 };
 
 }  // namespace lodestone

@@ -29,7 +29,6 @@ void SupportLevel::wake(int slot) {
   } else {
     awake_.push_back(slot);
   }
-  woken_.push_back(slot);
 }
 
 void SupportLevel::put_to_sleep(int slot) {

@@ -131,7 +131,6 @@ void SupportLevel::begin_step(double dt, ContactTally& tally) {
   if (given_.size() > 64) std::exchange(given_, {});  // of a whole scene that was added
   given_.clear();
   fell_asleep_.clear();
-  woken_.clear();
   put_awake_in_order();
   for (const auto& [slot, force, torque] : pushes_) {
     StatisticalBody& body = bodies_[std::size_t(slot)];

@@ -69,11 +69,6 @@ class SupportLevel {
   std::span<const StatisticalBody> bodies() const { return bodies_; }
   bool is_guest(std::int32_t index) const { return index >= size(); }
   std::span<const std::int32_t> awake_with_guests() const { return awake_; }
-  /// Those that slept since an earlier step and were woken since this was last asked.
-  void take_woken(std::vector<std::int32_t>& indices) {
-    indices.clear();
-    std::swap(indices, woken_);
-  }
   /// Moves a body that touches no other, over `faces` of static solids and the planes.
   void move_alone(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally);
   /// Whether it rests, after a move of `time` seconds; what is not sound is put right.
@@ -134,7 +129,6 @@ class SupportLevel {
   std::vector<Push> pushes_;  // of the next step
   std::vector<std::uint32_t> fell_asleep_;  // owners
   std::vector<std::uint32_t> woke_;         // owners
-  std::vector<std::int32_t> woken_;         // indices
 };
 
 }  // namespace lodestone

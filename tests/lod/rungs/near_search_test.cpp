@@ -198,14 +198,19 @@ TEST(NearSearch, FindsThePairsOfThoseThatAreWoken) {
     crowd.search_pairs();
     for (int lot = 0; lot < 2; ++lot) {
       const std::size_t before = crowd.search.pairs().size();
+      std::vector<Participant> woken;
       for (int slot = 0, left = 5; slot < crowd.support.size() && left > 0; ++slot) {
         if (!crowd.support.asleep(slot)) continue;
         crowd.support.wake(slot), --left;
         crowd.places[crowd.support.body(slot).owner].asleep = false;
+        woken.push_back(Participant::statistical(std::size_t(slot)));
       }
-      std::vector<std::int32_t> woken;
-      crowd.support.take_woken(woken);
       EXPECT_EQ(woken.size(), 5u);
+      for (std::size_t i = std::size_t(lot); i < crowd.full.size(); i += 3) {
+        if (!std::exchange(crowd.full[i].asleep, false)) continue;
+        crowd.places[crowd.full[i].owner].asleep = false;
+        woken.push_back(Participant::full(i));
+      }
       const auto found = crowd.search.find_woken(kSearchStep, crowd.support, crowd.full, woken);
       EXPECT_GT(found.size(), 0u);
       EXPECT_EQ(crowd.search.pairs().size(), before + found.size());

@@ -186,11 +186,6 @@ TEST(SupportLevel, GuestsFollowItsBodies) {
   EXPECT_EQ(std::vector<std::int32_t>(s.level.awake_with_guests().begin(), s.level.awake_with_guests().end()),
             (std::vector<std::int32_t>{0, 2}));
   s.level.wake(3);
-  std::vector<std::int32_t> woken;
-  s.level.take_woken(woken);
-  EXPECT_EQ(woken.size(), 1u);
-  s.level.take_woken(woken);
-  EXPECT_TRUE(woken.empty());
   s.level.dismiss_guests();
   EXPECT_EQ(s.level.bodies().size(), 2U);
   EXPECT_EQ(s.level.awake().size(), 1U);
