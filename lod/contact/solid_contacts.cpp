@@ -282,12 +282,12 @@ bool find_faces_below(const StatisticalBody& body, const Shape& shape, std::span
       if (face) planes.push_back(*face);
       return face.has_value();
     }
-    const auto [in_reach, plane] = find_surface_below(solid, body.position, reach);
-    if (!plane) return !in_reach;
+    const SurfaceBelow below = find_surface_below(solid, body.position, reach);
+    if (!below.plane) return !below.in_reach;
     const auto known = std::span(planes).subspan(before);
-    if (!std::ranges::all_of(known, [&](const HalfSpace& other) { return differ(*plane, other); }))
+    if (!std::ranges::all_of(known, [&](const HalfSpace& other) { return differ(*below.plane, other); }))
       return true;
-    planes.push_back(*plane);
+    planes.push_back(*below.plane);
     return ++of_surfaces <= kMostOfSurfaces;
   };
   if (std::ranges::all_of(near, add)) return true;
