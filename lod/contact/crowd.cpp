@@ -291,6 +291,22 @@ void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
   records.resize(kept);
 }
 
+// What strikes the ground is answered before it has arrived: a body goes on as it came until its first
+// impact. Not so one that touches another: shifted against that, they would not keep Σ m x × v, nor their
+// gap.
+void Crowd::find_impacts() {
+  constexpr float kNone = 1e9f;
+  impact_time_.assign(solver_bodies_.size(), kNone);
+  for (const CrowdManifold& m : std::span(manifolds_).subspan(pair_manifolds_))
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
+      if (!point.bounces) continue;
+      float& first = impact_time_[std::size_t(m.first)];
+      first = std::min(first, point.impact_time);
+    }
+  for (const CrowdManifold& m : std::span(manifolds_).first(pair_manifolds_))
+    impact_time_[std::size_t(m.first)] = impact_time_[std::size_t(m.second)] = kNone;
+}
+
 // Full neighbours only get their velocities.
 void Crowd::move(const ContactScene& scene, double time) {
   const auto move_one = [&](std::size_t i) {
@@ -308,10 +324,16 @@ void Crowd::move(const ContactScene& scene, double time) {
     if (body.motion == Motion::asleep) return;
     const BodyKind& kind = scene.kind_of(body);
     if (scene.properties(p).kinematic) return advance_kinematic(body, kind, time);
+    const Vec3 added = spin_of(body.orientation, solved.angular_velocity - angular_before_[i], *kind.shape);
+    const double until = double(impact_time_[i]), left = until < time ? time - until : time;
+    if (until < time) {
+      body.position += (body.velocity + 0.5 * until * scene.gravity(p)) * until;
+      body.orientation = advance_orientation(body.orientation, body.spin, kind, until);
+    }
     body.velocity = solved.velocity;
-    body.spin += spin_of(body.orientation, solved.angular_velocity - angular_before_[i], *kind.shape);
-    body.position += body.velocity * time;
-    body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
+    body.spin += added;
+    body.position += body.velocity * left;
+    body.orientation = advance_orientation(body.orientation, body.spin, kind, left).normalized();
     ++body.events;
   };
   each_participant(move_one);
@@ -402,6 +424,7 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
 ContactTally Crowd::step(const ContactScene& scene, const CrowdTouch& touch) {
   gather(scene, touch);
   solve(scene, touch.time);
+  find_impacts();
   move(scene, touch.time);
   give_to_full(scene);
   move_apart(scene, touch.time);

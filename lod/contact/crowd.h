@@ -81,6 +81,7 @@ class Crowd {
                     for (std::int64_t i = begin; i < end; ++i) visit(std::size_t(i));
                   });
   }
+  void find_impacts();
   void move(const ContactScene& scene, double time);
   void give_to_full(const ContactScene& scene) const;
   void move_apart(const ContactScene& scene, double time);
@@ -95,6 +96,8 @@ class Crowd {
   std::vector<std::pair<const GroundPart*, std::int32_t>> moving_parts_;  // among solver_bodies_
   std::vector<SolverBody> solver_bodies_;
   std::vector<Vec3> angular_before_;
+  std::vector<float>
+      impact_time_;  // s, of each solver body: its first impact in the substep; none: not before its end
   std::vector<CrowdManifold> manifolds_;
   std::size_t pair_manifolds_ = 0;                        // the first of them
   std::vector<ContactKey> keys_;                          // of each manifold

@@ -337,7 +337,9 @@ struct PrepareLoop {
         for (int lane = 0; lane < batch.lanes; ++lane) {
           if (!bounces[lane]) continue;
           const CrowdManifold& m = manifolds[batch.manifold[lane]];
-          points[m.begin + std::uint32_t(k)].bounces = true;
+          CrowdPoint& point = points[m.begin + std::uint32_t(k)];
+          point.bounces = true;
+          point.impact_time = float(std::max(0.0, gap[lane]) / -approach[lane]);
           const bool on_still = batch.inverse_mass_second[lane] == 0.0;
           const double fall = on_still ? std::min(0.0, settings.fall.dot(m.normal)) : 0.0;
           p.target[lane] = std::max(bounce_in_fall(m.law.restitution, gap[lane], approach[lane], fall, step),

@@ -30,6 +30,7 @@ struct CrowdPoint {
   // Filled by the solver:
   Vec3 impulse = Vec3::Zero();  ///< N s, on `first`
   bool bounces = false;         ///< an impact, fast enough for restitution
+  float impact_time = 0.0f;     ///< s, of one that bounces: when in the step its gap is closed
 };
 
 class CrowdSolver {

@@ -16,11 +16,13 @@ HullGap no_axis() { return {.normal = Vec3::Zero()}; }
 
 PlacedHull place(const PairBody& body) { return {*body.shape, body.position, body.orientation}; }
 
-// The vertices that lie within a hair of the touching plane, as arms from `origin`.
-HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin) {
+// The vertices that lie within a hair of the touching plane, or up to `ahead` m above that, as arms from
+// `origin`.
+HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin,
+                          double ahead) {
   const double lowest =
       vertex < 0 ? 0.0 : normal.dot(body.orientation * body.shape->hull.vertices[std::size_t(vertex)]);
-  const double margin = lowest + kFeatureMargin * body.shape->radius;
+  const double margin = lowest + kFeatureMargin * body.shape->radius + ahead;
   HullContacts feature = find_hull_contacts(*body.shape, body.orientation, normal, 0.0, margin, vertex);
   for (int i = 0; i < feature.count; ++i) feature.contact[i].arm += body.position - origin;
   return feature;
@@ -32,16 +34,16 @@ Vec3 middle_of(const HullContacts& feature) {
   return sum / feature.count;
 }
 
-Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best,
+Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, double ahead,
                        HullContacts& upper, HullContacts& lower) {
-  upper = find_feature(first, best.normal, best.vertex_first, second.position);
-  lower = find_feature(second, -best.normal, best.vertex_second, second.position);
+  upper = find_feature(first, best.normal, best.vertex_first, second.position, ahead);
+  lower = find_feature(second, -best.normal, best.vertex_second, second.position, 0.0);
   return find_manifold(upper, lower, best.normal, best.gap);
 }
 
-Manifold find_points(const PairBody& first, const PairBody& second, const HullGap& best) {
+Manifold find_points(const PairBody& first, const PairBody& second, const HullGap& best, double ahead) {
   HullContacts upper, lower;
-  Manifold manifold = clip_features(first, second, best, upper, lower);
+  Manifold manifold = clip_features(first, second, best, ahead, upper, lower);
   if (manifold.count == 0) {  // the axis is not quite that of the nearest features
     manifold.points[0] = {0.5 * (middle_of(upper) + middle_of(lower)), best.gap};
     manifold.count = 1;
@@ -50,8 +52,9 @@ Manifold find_points(const PairBody& first, const PairBody& second, const HullGa
   return manifold;
 }
 
-PairContact contact_along(const PairBody& first, const PairBody& second, const HullGap& best) {
-  return {best.normal, best.gap, find_points(first, second, best)};
+PairContact contact_along(const PairBody& first, const PairBody& second, const HullGap& best,
+                          double ahead = 0.0) {
+  return {best.normal, best.gap, find_points(first, second, best, ahead)};
 }
 
 int count_pieces(const PairBody& body) { return std::max<int>(1, int(body.shape->pieces.size())); }
@@ -249,21 +252,22 @@ void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& 
   for (PairContact& contact : search.contacts) shift(contact, second.position);
 }
 
-std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin) {
+std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin,
+                                             double ahead) {
   const auto [a, b] = relative_to_second(first, second);
   const HullGap best = find_hull_gap(place(a), place(b), no_axis(), margin);
   if (best.gap > margin) return {};
-  PairContact contact = contact_along(a, b, best);
+  PairContact contact = contact_along(a, b, best, ahead);
   shift(contact, second.position);
   return contact;
 }
 
 std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second,
-                                              const Vec3& normal, double margin) {
+                                              const Vec3& normal, double margin, double ahead) {
   const HullGap along = measure_hull_gap(place(first), place(second), normal);
   if (along.gap > margin) return {};
   HullContacts upper, lower;
-  PairContact contact{normal, along.gap, clip_features(first, second, along, upper, lower)};
+  PairContact contact{normal, along.gap, clip_features(first, second, along, ahead, upper, lower)};
   if (contact.manifold.count == 0) return {};
   for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
   return contact;

@@ -68,12 +68,14 @@ struct HullContactSearch {
 void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole,
                         std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search);
 
-/// The two hulls, whatever pieces they have; none where the gap is above `margin`.
-std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin);
+/// The two hulls, whatever pieces they have; none where the gap is above `margin`. Of the first body, those
+/// vertices serve, too, that are up to `ahead` m farther than the nearest: they may touch next.
+std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin,
+                                             double ahead = 0.0);
 
-/// Contact of the two hulls along a given axis (unit, from `second` into `first`); none where the gap along
-/// it is above `margin` or the touching features do not overlap across it.
+/// As find_hull_contact, along a given axis (unit, from `second` into `first`); none, too, where the touching
+/// features do not overlap across it.
 std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second,
-                                              const Vec3& normal, double margin);
+                                              const Vec3& normal, double margin, double ahead = 0.0);
 
 }  // namespace lodestone

@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <limits>
 
+#include "lod/contact/faces_below.h"
 #include "lod/contact/hull_contacts.h"
 
 namespace lodestone {
 namespace {
 
 constexpr double kTouching = 0.01;  // over R: near enough to carry, as between bodies
+// Cosines, of 3 and 15°: so far triangles may turn from the mean slope that stands for them. What hulls rest
+// on is off by a few millimetres then, and by some centimetres.
+constexpr double kGentle = 0.999, kGentleToTables = 0.966;
+constexpr double kAhead = 0.25;           // over the inner radius
+constexpr double kSteepestFeature = 0.7;  // cosine: from a triangle's normal to that of what stands out of it
 
 PairBody pair_body(const PlacedSolid& placed) {
   return {placed.solid->shape.get(), placed.position, placed.orientation};
@@ -32,21 +38,23 @@ std::size_t nearest_edge(const SurfaceTriangle& t, const Vec3& point) {
   return nearest;
 }
 
-// A point of the world in the frame of the solid's part.
-Vec3 in_part(const PlacedSolid& placed, const Vec3& point) {
-  return placed.orientation.conjugate() * (point - placed.position) + placed.solid->center;
-}
-
 std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin) {
   const PairBody ground = pair_body(placed);
-  std::optional<PairContact> contact = find_hull_contact(body, ground, margin);
+  // Not those of a thin body's other side.
+  const double ahead = std::min(margin, kAhead * body.shape->inner_radius);
+  std::optional<PairContact> contact = find_hull_contact(body, ground, margin, ahead);
   if (!contact || !placed.solid->surface) return contact;
   const SurfaceTriangle& t = *placed.solid->surface;
   const Vec3 normal = placed.orientation * t.normal;
   const double along = contact->normal.dot(normal);
   const bool over_ridge =
       along > 0.0 && along < 0.999 && t.ridge[nearest_edge(t, in_part(placed, middle_of(contact->manifold)))];
-  return over_ridge ? contact : find_contact_along(body, ground, normal, margin);
+  if (over_ridge) return contact;
+  std::optional<PairContact> flat = find_contact_along(body, ground, normal, margin, ahead);
+  // What straddles a hill top is lowest, along each triangle's normal, over another: its own features hold
+  // it.
+  if (!flat && along > kSteepestFeature) return contact;
+  return flat;
 }
 
 // Whether the contact closes within `time`.
@@ -66,14 +74,25 @@ struct Seeker {
   Vec3 omega;
   double touching = 0.0, way = 0.0;  // m
   std::int32_t slot = 0;
+  double reach() const { return shape.radius + touching + way; }  // m
 };
+
+Seeker seeker_of(const StatisticalBody& body, const Shape& shape, std::int32_t slot, double time) {
+  const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
+  return {body,
+          shape,
+          omega,
+          kTouching * shape.radius,
+          (body.velocity.norm() + omega.norm() * shape.radius) * time,
+          slot};
+}
 
 // Of a part that is known by rays alone: one from above each of the body's vertices that may carry it. Where
 // they all meet one plane, it is that plane.
 void find_probed_contacts(const Seeker& s, const GroundPart& part, double time,
                           std::vector<SolidContact>& found, std::vector<HalfSpace>& planes) {
   const Vec3 up = part.pose.orientation * part.shape.up;
-  const double reach = s.shape.radius + s.touching + s.way;
+  const double reach = s.reach();
   const auto hit_below = [&](const Vec3& point) {
     return part.shape.probe(point + reach * up, -up, 2.0 * reach);
   };
@@ -223,89 +242,39 @@ void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std
   }
 }
 
-std::optional<HalfSpace> find_face_below(const PlacedSolid& placed, const Vec3& center, double reach) {
-  const GroundSolid& solid = *placed.solid;
-  if (solid.surface || solid.faces.empty())
-    return {};  // its neighbours may rise beside it; a sphere has no face
-  const Vec3 in_solid = placed.orientation.conjugate() * (center - placed.position);
-  std::optional<HalfSpace> face;
-  for (const auto& [normal, offset] : solid.faces) {
-    const double height = normal.dot(in_solid) - offset;
-    if (height <= -reach) continue;
-    if (height < 0.0 || face) return {};
-    const Vec3 up = placed.orientation * normal;
-    face = HalfSpace{up, offset + up.dot(placed.position), placed.part->material, placed.part->id};
-  }
-  return face;
-}
-
-SurfaceBelow find_surface_below(const PlacedSolid& placed, const Vec3& center, double reach) {
-  const SurfaceTriangle& t = *placed.solid->surface;
-  const Vec3 at = in_part(placed, center);
-  const double height = t.normal.dot(at - t.corner[0]);
-  if (std::abs(height) >= reach) return {};
-  bool inside = true, ridge = false, any_edge = false;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 from = at - t.corner[i], along = t.corner[(i + 1) % 3] - t.corner[i];
-    inside = inside && t.normal.cross(along).dot(from) >= 0.0;
-    const double share = std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const bool in_reach = (from - share * along).squaredNorm() < reach * reach;
-    any_edge |= in_reach;
-    ridge |= in_reach && t.ridge[i];
-  }
-  if (!inside && !any_edge) return {};
-  if (ridge || height < 0.0) return {.in_reach = true, .plane = {}};
-  const Vec3 normal = placed.orientation * t.normal,
-             corner = placed.position + placed.orientation * (t.corner[0] - placed.solid->center);
-  return {.in_reach = true,
-          .plane = HalfSpace{normal, normal.dot(corner), placed.part->material, placed.part->id}};
-}
-
-namespace {
-
-// The planes of what is within reach of a body, appended to `planes`, if these are all that it can meet there
-// and no more than a few of a surface. False, and none: there are edges, or something moves.
-bool find_faces_below(const StatisticalBody& body, const Shape& shape, std::span<const PlacedSolid> near,
-                      double reach, std::vector<HalfSpace>& planes) {
-  constexpr std::size_t kMostOfSurfaces = 2;
+bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const Ground& ground, double slack,
+                       double time, std::vector<HalfSpace>& planes) {
+  const Seeker seeker = seeker_of(body, *kind.shape, 0, time);
+  const double reach = seeker.reach() + slack;
+  thread_local std::vector<const GroundPart*> parts;
+  thread_local std::vector<PlacedSolid> near;
+  thread_local std::vector<SolidContact> uneven;
+  parts.clear(), near.clear(), uneven.clear();
+  ground.find_parts(body.position, reach, parts);
   const std::size_t before = planes.size();
-  std::size_t of_surfaces = 0;
-  const auto differ = [&](const HalfSpace& a, const HalfSpace& b) {  // anywhere in reach, by what shows
-    return a.id != b.id || a.material != b.material ||
-           (a.normal - b.normal).norm() * reach +
-                   std::abs(a.height_of(body.position) - b.height_of(body.position)) >
-               1e-4 * shape.radius;
+  const auto is_planes = [&](const GroundPart* part) {
+    if (part->moves()) return false;
+    if (part->shape.probe)
+      find_probed_contacts(seeker, *part, time, uneven, planes);
+    else
+      find_solids(*part, body.position, reach, 0.0, near);
+    return uneven.empty();
   };
-  const auto add = [&](const PlacedSolid& solid) {
-    if (!solid.solid->surface) {
-      const auto face = find_face_below(solid, body.position, reach);
-      if (face) planes.push_back(*face);
-      return face.has_value();
-    }
-    const SurfaceBelow below = find_surface_below(solid, body.position, reach);
-    if (!below.plane) return !below.in_reach;
-    const auto known = std::span(planes).subspan(before);
-    if (!std::ranges::all_of(known, [&](const HalfSpace& other) { return differ(*below.plane, other); }))
-      return true;
-    planes.push_back(*below.plane);
-    return ++of_surfaces <= kMostOfSurfaces;
-  };
-  if (std::ranges::all_of(near, add)) return true;
+  if (std::ranges::all_of(parts, is_planes)) {
+    const std::optional<HalfSpace> mean = find_mean_plane(near, body.position, reach, kGentleToTables);
+    if (mean) planes.push_back(*mean);
+    if (mean || find_faces_below(near, body.position, kind.shape->radius, reach, planes)) return true;
+  }
   planes.resize(before);
   return false;
 }
-
-}  // namespace
 
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
                          std::vector<HalfSpace>& planes) {
   const Shape& shape = *kind.shape;
-  const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
-  const double touching = kTouching * shape.radius,
-               way = (body.velocity.norm() + omega.norm() * shape.radius) * time,
-               reach = shape.radius + touching + way;
-  const Seeker seeker{body, shape, omega, touching, way, slot};
+  const Seeker seeker = seeker_of(body, shape, slot, time);
+  const double reach = seeker.reach();
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
   parts.clear();
@@ -320,11 +289,14 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
     else
       find_solids(*part, body.position, reach, after, near);
   }
-  if (!any_moves && find_faces_below(body, shape, near, reach, planes)) return;
+  if (!any_moves && find_faces_below(near, body.position, shape.radius, reach, planes)) return;
+  if (!any_moves && is_smooth(near, body.position, reach))
+    if (const auto mean = find_mean_plane(near, body.position, reach, kGentle))
+      return planes.push_back(*mean);
   const PairBody self{&shape, body.position, body.orientation};
   for (const PlacedSolid& solid : near)
-    if (const auto contact = meet(self, solid, touching + way);
-        contact && closes(*contact, *solid.part, body, omega, touching, time))
+    if (const auto contact = meet(self, solid, seeker.touching + seeker.way);
+        contact && closes(*contact, *solid.part, body, seeker.omega, seeker.touching, time))
       found.push_back({slot, solid.number, solid.part->material, solid.part, *contact});
 }
 

@@ -18,24 +18,18 @@ struct SolidContact {
   PairContact contact;  ///< the normal points into the body
 };
 
-/// The face of `solid` that a ball about `center` lies over wholly, with the solid's other faces farther than
-/// `reach` beyond: there it is a plane like any other. None near an edge.
-std::optional<HalfSpace> find_face_below(const PlacedSolid& solid, const Vec3& center, double reach);
-
-/// Of a solid that is one triangle of a surface.
-struct SurfaceBelow {
-  bool in_reach = false;           ///< of a ball
-  std::optional<HalfSpace> plane;  ///< where the surface goes on beyond it, level or rising, as far as the
-                                   ///< ball reaches: no edge that stands out, and no border
-};
-SurfaceBelow find_surface_below(const PlacedSolid& triangle, const Vec3& center, double reach);
-
 /// Contacts of the body in `slot` that may close within `time` seconds, `after` so many of the step, appended
-/// to `found`. Where the body lies over faces only, away from their edges, there are none but these faces'
-/// planes, appended to `planes`.
+/// to `found`. Where the body lies over faces only, away from their edges, or over very gentle ground of
+/// triangles, there are none but the planes that these are, appended to `planes`.
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
                          std::vector<HalfSpace>& planes);
+
+/// Appends the planes that stand for what the body may meet of the ground's parts within `time` seconds:
+/// faces, and for gentle ground of triangles one of its mean slope. False, and none, where there is more,
+/// less than `slack` m beyond what it reaches: edges, or what moves.
+bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const Ground& ground, double slack,
+                       double time, std::vector<HalfSpace>& planes);
 
 /// What a ball meets of a solid of the ground's parts: the plane across the way to its nearest point.
 struct GroundNear {

@@ -23,7 +23,6 @@ struct NearLoop {
   double wide_x, wide_y, wide_z, offset;
   const float* pressures;  // m/s², of all planes
   std::int32_t number;
-  bool level;  // hulls stand on it
   StepConstants c;
   SphereStep& step;
 
@@ -63,7 +62,7 @@ struct NearLoop {
       int otherwise = state;
       if constexpr (Hulls) {
         const int within =
-            -(int(height - size[kind[i]] + 1.001f * way < 0.002f * radius[i]) & int(state == 0) & int(level));
+            -(int(height - size[kind[i]] + 1.001f * way < 0.002f * radius[i]) & int(state == 0));
         otherwise = (int(kWithin) & within) | (state & ~within);
       }
       on_ground[i] = std::uint8_t((int(kNear) & near) | (otherwise & ~near));
@@ -322,8 +321,6 @@ void find_near_ground(const Spheres& spheres, const SphereKinds& kinds, const Sp
                       const HalfSpace& plane, std::int32_t number, const StepConstants& constants, Simd simd,
                       std::int64_t begin, std::int64_t end, SphereStep& step) {
   const Vec3& n = plane.normal;
-  const bool level =
-      StepWorld{.gravity = {constants.wide_gx, constants.wide_gy, constants.wide_gz}}.is_horizontal(plane);
   const auto run = [&]<bool Hulls>() {
     run_wide(simd,
              NearLoop<Hulls>{spheres,
@@ -335,7 +332,6 @@ void find_near_ground(const Spheres& spheres, const SphereKinds& kinds, const Sp
                              plane.offset,
                              ground.pressure.data(),
                              number,
-                             level,
                              constants,
                              step},
              begin, end);

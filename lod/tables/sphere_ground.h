@@ -29,8 +29,8 @@ struct SphereGround {
 };
 
 /// Marks as GroundState::near those that may meet a plane in this step, with the gap to it and its number: of
-/// several that which gravity presses on most, of those the nearest. Where bodies stand on their hulls and
-/// gravity presses straight onto the plane, as GroundState::within those whose hulls alone may.
+/// several that which gravity presses on most, of those the nearest. Where bodies stand on their hulls, as
+/// GroundState::within those whose hulls alone may.
 void find_near_ground(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
                       const HalfSpace& plane, std::int32_t number, const StepConstants& constants, Simd simd,
                       std::int64_t begin, std::int64_t end, SphereStep& step);

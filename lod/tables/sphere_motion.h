@@ -78,7 +78,7 @@ struct StepConstants {
   bool update_radius = true;     // of those in flight
   int ticks = 17;                // ms that the step is long, as whole ones: over many steps they add up
   bool one_kind = false;
-  bool hulls = false;  // bodies that touch no other stand on their hulls, on level ground
+  bool hulls = false;  // bodies that touch no other stand on their hulls
 };
 
 /// ms since a body last touched another, up to which it leans on it still.

@@ -1,4 +1,4 @@
-// Of TablesLevel: bodies that touch no other move over level ground on their hulls, as those of `support` do,
+// Of TablesLevel: bodies that touch no other move over planes on their hulls, as those of `support` do,
 // with fewer and coarser contact steps. Departs from the paper's sphere of the mean height (3.3.1), which is
 // blind to the orientation: its first impulse is off by 36 to 47 %, and single drops by three times as much.
 #include "lod/contact/hull_contacts.h"
@@ -6,31 +6,27 @@
 
 namespace lodestone {
 
+// Whether it does on its hull, if nothing touches it: where the ground's parts are planes to that.
+bool TablesLevel::stands_when_alone(std::int64_t place) const {
+  if (spheres_.since_crowded[std::size_t(place)] < kLeaningTicks) return false;
+  const NearFaces* near = near_faces_at(place);
+  return !near || near->even;
+}
+
 // Those that touched no other for a while stand on their hulls; the others are spheres.
 void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
   constexpr auto kFree = std::uint8_t(GroundState::free), kNear = std::uint8_t(GroundState::near);
   constexpr auto kWithin = std::uint8_t(GroundState::within);
   for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
     std::uint8_t& state = step_.on_ground[i];
-    const bool alone = !step_.touches(std::int64_t(i)) && spheres_.since_crowded[i] >= kLeaningTicks;
-    const bool level =
-        state == kWithin || (state == kNear && planes_.slope[std::size_t(step_.plane[i])] == 0.0f);
-    if (alone && level) {
+    if ((state == kWithin || state == kNear) && !step_.touches(std::int64_t(i)) &&
+        stands_when_alone(std::int64_t(i))) {
       state = std::uint8_t(GroundState::stands);
     } else {
       spheres_.on_hull[i] = HullStand::none;
       if (state == kWithin) state = kFree;
     }
   }
-}
-
-// A slope or a wall near the body, too: the sphere's rules for these hold.
-bool TablesLevel::is_over_level_ground(const StatisticalBody& body, const StepWorld& around) const {
-  const double radius = all_kinds_[body.kind].shape->radius;
-  const double farthest = 1.01 * radius + body.velocity.norm() * constants_.wide_time;  // m
-  return std::ranges::all_of(around.planes, [&](const HalfSpace& plane) {
-    return around.is_horizontal(plane) || plane.height_of(body.position) > farthest;
-  });
 }
 
 // It has come to rest, does not sleep, and its ground is what it was. Where touches are written down, it goes
@@ -57,13 +53,14 @@ void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
 // The sphere that others would meet is as high as the body stands.
 ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
                                            bool rides, std::vector<PlayingClip>& joined) {
-  static const HullMotionSettings settings{
+  static const HullMotionSettings level{
       .support = {.contact_step = 0.1,
                   .solver = {.sweeps = 4, .tolerance = 1e-2},
                   .timed_bounces = false,   // as the bounds of heaps were measured
                   .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
                   .impact_tolerance = 2e-4,
                   .impact_solver = {.sweeps = 6, .tolerance = 1e-2, .frictionless_bound = true}}};
+  static const HullMotionSettings sloped;  // as `support`: no clip takes over, it must come to rest by itself
   constexpr double kSunk = 0.01, kLeast = 0.02;  // over R
   const auto i = std::size_t(place);
   const Shape& shape = *kind_of(place).shape;
@@ -87,8 +84,10 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
     body.motion = Motion::dynamic;  // it may have turned into a rest pose as a sphere
   PlayingClip begun{.slot = spheres_.slot[i]};
   PlayingClip& playing = clip < 0 ? begun : clips_[std::size_t(clip)];
+  const bool is_level =
+      std::ranges::all_of(around.planes, [&](const HalfSpace& p) { return around.is_horizontal(p); });
   const HullMotion moved = move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity,
-                                        constants_.wide_time, may_settle, settings);
+                                        constants_.wide_time, may_settle, is_level ? level : sloped);
   body.eased = eased;
   playing.state = !moved.plays_clip ? PlayingClip::ended
                   : moved.clip_over ? PlayingClip::over

@@ -101,6 +101,7 @@ class TablesLevel {
   struct NearFaces {
     std::int64_t place = 0;
     std::int32_t begin = 0, end = 0;  // in faces_
+    bool even = false;  // level, or planes stand for all that its hull may meet of the ground's parts
   };
   struct Carried {
     std::int64_t place = 0;
@@ -131,6 +132,7 @@ class TablesLevel {
     const auto own = std::int32_t(ground_.planes().size());
     return number < own ? ground_.planes()[std::size_t(number)] : faces_[std::size_t(number - own)];
   }
+  const NearFaces* near_faces_at(std::int64_t place) const;
   std::span<const HalfSpace> faces_of(std::int64_t place) const;
   StillGrid& still() { return sleepers_.of(StatisticalModel::tables); }
   const StillGrid& still() const { return sleepers_.of(StatisticalModel::tables); }
@@ -146,8 +148,10 @@ class TablesLevel {
   void apply_pushes(double dt, ContactTally& tally);
   void start(double dt, std::span<const std::uint32_t> order);
   void find_near_faces(std::int64_t begin, std::int64_t end);
+  bool find_planes_of(std::int64_t place);
   void update_radii_one_by_one();
   void find_still_contacts();
+  void note_paired();
   void find_further_planes();
   int sweeps() const {
     return constants_.hulls ? contacts_.settings().hull_sweeps : contacts_.settings().sweeps;
@@ -164,7 +168,7 @@ class TablesLevel {
   void choose_hulls(std::int64_t begin, std::int64_t end);
   bool lies_at_clips_end(std::int64_t place) const;
   void move_alone(std::int64_t place, ContactTally& tally, std::vector<PlayingClip>& joined);
-  bool is_over_level_ground(const StatisticalBody& body, const StepWorld& around) const;
+  bool stands_when_alone(std::int64_t place) const;
   void become_sphere(std::int64_t place, StatisticalBody& body);
   ContactTally move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
                                 bool rides, std::vector<PlayingClip>& joined);
@@ -213,6 +217,7 @@ class TablesLevel {
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
       still_touches_;                      // place awake, slot asleep; then both places
   std::vector<PlaneTouch> plane_touches_;  // of this step
+  std::vector<char> paired_;               // of each place: whether it has contacts with others
   std::vector<ContactTally> tallies_;
 };
 

@@ -120,14 +120,16 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
                  way = spheres_.velocity(i).norm() * time + fall;
     const Vec3 center = spheres_.position(i);
     near.clear();
-    find_ground_near(ground_, center, 1.01 * size + way, 0.0, near);
-    if (near.empty()) continue;
-    const auto first = std::int32_t(faces_.size());
-    for (const GroundNear& n : near) {
-      faces_.push_back(n.plane(center));
-      planes_.add(faces_.back(), materials_, kinds_, settings_.gravity);
-    }
-    near_faces_.push_back({i, first, std::int32_t(faces_.size())});
+    const std::size_t first = faces_.size();
+    const bool only_planes = find_planes_of(i);
+    if (!only_planes) find_ground_near(ground_, center, 1.01 * size + way, 0.0, near);
+    for (const GroundNear& n : near) faces_.push_back(n.plane(center));
+    if (faces_.size() == first) continue;
+    for (const HalfSpace& face : std::span(faces_).subspan(first))
+      planes_.add(face, materials_, kinds_, settings_.gravity);
+    const auto is_level = [this](const HalfSpace& face) { return world().is_horizontal(face); };
+    const bool even = only_planes || std::ranges::all_of(std::span(faces_).subspan(first), is_level);
+    near_faces_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), even});
     const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
       return n.part->moves() && n.height < double(spheres_.radius[i]) + 0.01 * size + way;
     });
@@ -138,9 +140,25 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
   }
 }
 
-std::span<const HalfSpace> TablesLevel::faces_of(std::int64_t place) const {
+// Of one that may stand on its hull. Who stands does until an edge is near, who does not waits until it is
+// farther away: else one at rest there would go on to change.
+bool TablesLevel::find_planes_of(std::int64_t place) {
+  constexpr double kSlack = 0.1;  // over R
+  const auto i = std::size_t(place);
+  if (!constants_.hulls || spheres_.since_crowded[i] < kLeaningTicks) return false;
+  const BodyKind& kind = kind_of(place);
+  const double slack = spheres_.on_hull[i] == HullStand::none ? kSlack * kind.shape->radius : 0.0;
+  return find_planes_below(spheres_.body(place), kind, ground_, slack, constants_.wide_time, faces_);
+}
+
+const TablesLevel::NearFaces* TablesLevel::near_faces_at(std::int64_t place) const {
   const auto near = std::ranges::lower_bound(near_faces_, place, {}, &NearFaces::place);
-  if (near == near_faces_.end() || near->place != place) return {};
+  return near == near_faces_.end() || near->place != place ? nullptr : &*near;
+}
+
+std::span<const HalfSpace> TablesLevel::faces_of(std::int64_t place) const {
+  const NearFaces* near = near_faces_at(place);
+  if (!near) return {};
   return std::span(faces_).subspan(std::size_t(near->begin), std::size_t(near->end - near->begin));
 }
 
@@ -166,11 +184,21 @@ void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
   find_further_planes();
 }
 
+// Who has contacts with others.
+void TablesLevel::note_paired() {
+  paired_.assign(std::size_t(spheres_.awake), 0);
+  contacts_.each([&](const SphereContact& c) {
+    paired_[c.first] = 1;
+    if (c.second < paired_.size()) paired_[c.second] = 1;
+  });
+}
+
 // A body meets the plane that carries it as ground; in a corner it touches more, and is held by each.
 void TablesLevel::find_further_planes() {
   const std::span<const HalfSpace> everywhere = ground_.planes();
   plane_touches_.clear();
   if (everywhere.size() + faces_.size() < 2) return;
+  if (constants_.hulls) note_paired();
   const auto look = [&](std::int64_t i, std::uint32_t number) {
     if (std::int32_t(number) == step_.plane[std::size_t(i)]) return;
     const HalfSpace& other = plane(std::int32_t(number));
@@ -188,6 +216,7 @@ void TablesLevel::find_further_planes() {
   };
   auto near = near_faces_.begin();
   each_marked(step_.on_ground, std::uint8_t(GroundState::near), 0, spheres_.awake, [&](std::int64_t i) {
+    if (constants_.hulls && !paired_[std::size_t(i)] && stands_when_alone(i)) return;  // on all of them
     for (std::uint32_t number = 0; number < everywhere.size(); ++number) look(i, number);
     while (near != near_faces_.end() && near->place < i) ++near;
     if (near == near_faces_.end() || near->place != i) return;
@@ -448,7 +477,7 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Pl
   const auto carried = std::ranges::lower_bound(carried_, i, {}, &Carried::place);
   const bool rides = carried != carried_.end() && carried->place == i;
   if (rides) body.velocity -= carried->velocity;
-  if (step_.on_ground[i] == std::uint8_t(GroundState::stands) && is_over_level_ground(body, around)) {
+  if (step_.on_ground[i] == std::uint8_t(GroundState::stands)) {
     tally += move_over_ground(i, body, around, rides, joined);
   } else {
     become_sphere(i, body);

@@ -84,24 +84,14 @@ std::vector<HardCaseRow> measure_case(const HardCaseSettings&) {
                         .bound = 0.1});
         continue;
       }
-      if (model == StatisticalModel::tables)  // `support` may slide flat, as a box does
-        rows.push_back(
-            {.what = what + "fraction snapped into a rest pose", .value = slope.in_pose, .bound = 0.1});
       const double sliding =
           kCaseGravity * (std::sin(degrees * kDegree) - kFriction * std::cos(degrees * kDegree)) * kSeconds;
       rows.push_back(
           {.what = what + "asleep", .value = double(slope.asleep), .bound = 0.0, .unit = "bodies"});
-      if (model == StatisticalModel::support)
-        rows.push_back({.what = what + fmt::format("slowest after {} s over that of sliding", kSeconds),
-                        .value = slope.slowest / sliding,
-                        .bound = 0.95,
-                        .side = BoundSide::at_least});
-      else  // whose responses slow a body down as it skips along
-        rows.push_back({.what = what + fmt::format("slowest after {} s", kSeconds),
-                        .value = slope.slowest,
-                        .bound = 0.05,
-                        .unit = "m/s",
-                        .side = BoundSide::at_least});
+      rows.push_back({.what = what + fmt::format("slowest after {} s over that of sliding", kSeconds),
+                      .value = slope.slowest / sliding,
+                      .bound = 0.95,
+                      .side = BoundSide::at_least});
     }
   }
   return rows;

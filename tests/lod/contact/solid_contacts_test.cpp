@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "lod/contact/faces_below.h"
+
 namespace lodestone {
 namespace {
 
@@ -162,6 +164,62 @@ TEST(SurfaceContacts, AFloorOfTrianglesIsAPlaneToBodies) {
   EXPECT_TRUE(planes_at(0.1, {-1.45, 0.1, 0.1}, contacts).empty()) << "at its border";
   EXPECT_TRUE(planes_at(0.1, {-0.6, 0.1, 0.8}, contacts).empty()) << "out of reach";
   EXPECT_EQ(contacts, 0u);
+}
+
+// So gentle that no edge stands out: along each triangle's normal the cube is lowest over another one. It
+// fell through.
+TEST(SurfaceContacts, AGentleHillTopHoldsWhatStraddlesIt) {
+  const BodyKind kind =
+      make_body_kind(std::make_shared<const Shape>(make_shape("cube", make_box({kSide, kSide, kSide}))));
+  Mesh hill;
+  hill.vertices = {{0, 0, 0}, {1, 0, -0.03}, {0, 1, -0.03}, {-1, 0, -0.03}, {0, -1, -0.03}};
+  for (int i = 0; i < 4; ++i) hill.faces.push_back({0, 1 + i, 1 + (i + 1) % 4});
+  Ground ground;
+  ground.add_mesh(hill, 0);
+  for (const double over : {0.0005, -0.0005}) {
+    StatisticalBody body;
+    body.position = {0, 0, 0.5 * kSide + over};
+    std::vector<SolidContact> found;
+    std::vector<HalfSpace> planes;
+    find_solid_contacts(body, kind, 5, ground, 0.0, kSolidStep, found, planes);
+    EXPECT_TRUE(planes.empty());
+    ASSERT_FALSE(found.empty()) << over;
+    EXPECT_GT(found[0].contact.normal.z(), 0.99);
+    EXPECT_NEAR(found[0].contact.gap, over, 1e-3);
+  }
+}
+
+// The mean of gentle slopes turns by degrees; over a border, and where the ground turns sharply, there is
+// none.
+TEST(PlanesBelow, OfGentleGroundAreOneThatTurnsByDegrees) {
+  const BodyKind kind =
+      make_body_kind(std::make_shared<const Shape>(make_shape("cube", make_box({kSide, kSide, kSide}))));
+  const auto planes_at = [&](double slope, double x, bool& all) {
+    Ground ground;
+    ground.add_mesh(make_bent_floor(slope), 3);
+    StatisticalBody body;
+    body.position = {x, 0.1, 0.5 * kSide + std::min(0.0, slope * std::max(0.0, x))};
+    std::vector<HalfSpace> planes;
+    all = find_planes_below(body, kind, ground, 0.0, kSolidStep, planes);
+    return planes;
+  };
+  bool all = false;
+  double last = 0.0, last_offset = 0.0;
+  for (double x = -0.4; x < 0.4; x += 0.01) {
+    const auto planes = planes_at(-0.1, x, all);
+    ASSERT_TRUE(all) << x;
+    ASSERT_EQ(planes.size(), 1U) << x;
+    EXPECT_EQ(planes[0].material, 3U);
+    EXPECT_GE(planes[0].normal.x(), last - 1e-3) << x;
+    EXPECT_LT(planes[0].normal.x(), last + 0.015) << x;
+    EXPECT_NEAR(planes[0].offset, last_offset, 1e-3) << x;
+    last = planes[0].normal.x(), last_offset = planes[0].offset;
+  }
+  EXPECT_NEAR(last, 0.1 / std::hypot(1.0, 0.1), 1e-6);
+  EXPECT_TRUE(planes_at(-0.6, 0.0, all).empty());
+  EXPECT_FALSE(all) << "it turns by 31 deg";
+  EXPECT_TRUE(planes_at(-0.1, -1.55, all).empty());
+  EXPECT_FALSE(all) << "beyond its border";
 }
 
 TEST(HeldSeveralWays, IsACornerButNotAnEvenFloor) {

@@ -284,8 +284,10 @@ TEST_F(SphereLevel, ANeedleInFlightKeepsItsEnergy) {
   testing::OneRung level = make();
   const auto needle = std::make_shared<const Shape>(make_shape("needle", make_needle(0.4, 0.01)));
   level.add(0, needle, 0.1, 0,
-            {.orientation = Quat(0.5, 0.5, -0.5, 0.5), .angular_velocity = Vec3(200.0, 30.0, -20.0)}, false,
-            box_signature());
+            {.position = Vec3(0, 0, 5),  // clear of the ground
+             .orientation = Quat(0.5, 0.5, -0.5, 0.5),
+             .angular_velocity = Vec3(200.0, 30.0, -20.0)},
+            false, box_signature());
   const auto energy = [&] {
     const RigidState s = level.state(0);
     return s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, *needle));
