@@ -219,8 +219,8 @@ class Manager {
   Rung rung(BodyId body) const;  ///< `support` for a body that waits for its first step
   bool asleep(BodyId body) const;
   /// m, of the sphere that stands for a body at `tables`; 0 on other rungs. As published, it is what all
-  /// others meet; else what slopes and walls meet of a body that touches no other: level ground and bodies
-  /// meet heights of its hull.
+  /// others meet; else what edges and ground that turns sharply meet of a body that touches no other: planes
+  /// and bodies meet heights of its hull.
   double collision_radius(BodyId body) const;
   Why explain(BodyId body) const;       ///< the rule that decided the level, and the figures behind it
   std::string why(BodyId body) const;   ///< the same in a sentence

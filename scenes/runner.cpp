@@ -348,6 +348,7 @@ class Run {
     read_sample(manager_, bodies_, scene_, sample_);
     result_.finite = result_.finite && sample_.finite;
     result_.energy_max_j = std::max(result_.energy_max_j, sample_.energy_j);
+    result_.energy_end_j = sample_.energy_j;
     result_.max_tables_penetration_m =
         std::max(result_.max_tables_penetration_m, sample_.max_tables_penetration_m);
     max_other_penetration_m_ = std::max(max_other_penetration_m_, sample_.max_other_penetration_m);

@@ -95,9 +95,9 @@ struct RunResult {
   double max_penetration_m = 0;         ///< deepest hull vertex below a ground plane, over the run
   double max_tables_penetration_m = 0;  ///< the same of bodies at `tables` and of those that came from there
                                         ///< and were not awake for 30 steps since
-  double energy_start_j = 0, energy_max_j = 0;  ///< kinetic and potential, all bodies
-  bool finite = true;                           ///< no NaN or infinity at any step; the run ends at the first
-  std::vector<RigidState> states;               ///< at the end, in the scene's order
+  double energy_start_j = 0, energy_max_j = 0, energy_end_j = 0;  ///< kinetic and potential, all bodies
+  bool finite = true;              ///< no NaN or infinity at any step; the run ends at the first
+  std::vector<RigidState> states;  ///< at the end, in the scene's order
   std::vector<CheckResult> checks;
   std::filesystem::path playback, trajectory, csv;  ///< written files, or empty
   std::shared_ptr<const ForkedRun> fork;            ///< null without fork_step

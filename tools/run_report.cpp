@@ -149,8 +149,8 @@ std::string text_of(const RunResult& result) {
   text += fmt::format("transitions  {}, of which {} promotions\n", result.transitions, result.promotions);
   text += fmt::format("deepest      {:.4g} m below the ground, at tables {:.4g} m\n",
                       result.max_penetration_m, result.max_tables_penetration_m);
-  text += fmt::format("energy       {:.6g} J at the start, {:.6g} J at most\n", result.energy_start_j,
-                      result.energy_max_j);
+  text += fmt::format("energy       {:.6g} J at the start, {:.6g} J at most, {:.6g} J at the end\n",
+                      result.energy_start_j, result.energy_max_j, result.energy_end_j);
   text += fmt::format("counters     {}\n", text_of_counters(last.counters));
   for (const CheckResult& check : result.checks) text += text_of(check);
   if (result.incomplete) text += fmt::format("INCOMPLETE   ended after step {}\n", result.steps);
@@ -231,6 +231,7 @@ ordered_json json_of(const RunResult& result) {
   json["max_tables_penetration_m"] = number_or_null(result.max_tables_penetration_m);
   json["energy_start_j"] = number_or_null(result.energy_start_j);
   json["energy_max_j"] = number_or_null(result.energy_max_j);
+  json["energy_end_j"] = number_or_null(result.energy_end_j);
   json["finite"] = result.finite;
   if (result.incomplete) json["incomplete"] = true;
   json["checks"] = ordered_json::array();

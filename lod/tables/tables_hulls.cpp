@@ -84,8 +84,10 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
     body.motion = Motion::dynamic;  // it may have turned into a rest pose as a sphere
   PlayingClip begun{.slot = spheres_.slot[i]};
   PlayingClip& playing = clip < 0 ? begun : clips_[std::size_t(clip)];
-  const bool is_level =
-      std::ranges::all_of(around.planes, [&](const HalfSpace& p) { return around.is_horizontal(p); });
+  const double farthest = 1.01 * radius + body.velocity.norm() * constants_.wide_time;  // m
+  const bool is_level = std::ranges::all_of(around.planes, [&](const HalfSpace& p) {
+    return around.is_horizontal(p) || p.height_of(body.position) > farthest;
+  });
   const HullMotion moved = move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity,
                                         constants_.wide_time, may_settle, is_level ? level : sloped);
   body.eased = eased;

@@ -59,6 +59,8 @@ TEST_F(Runner, EnergyIsThatOfTheStart) {
   const double volume = scene.shapes.at("ball")->volume + scene.shapes.at("crate")->volume;
   EXPECT_NEAR(result.energy_start_j, 1000 * volume * 9.81 * 0.5, 1e-9);
   EXPECT_LE(result.energy_max_j, result.energy_start_j * 1.001);
+  EXPECT_LT(result.energy_end_j, result.energy_start_j);
+  EXPECT_GT(result.energy_end_j, 0.0);
 }
 
 TEST_F(Runner, SameSceneSameHash) {
