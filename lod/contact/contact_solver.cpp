@@ -47,6 +47,7 @@ double target_velocity(SolverContact& c, bool on_still, double approach, double 
   const double closing = std::min(0.0, -c.gap / step),
                fall = on_still ? std::min(0.0, s.fall.dot(c.normal)) : 0.0;
   c.bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
+  if (c.bounces) c.impact_time = std::max(0.0, c.gap) / -approach;
   return c.bounces ? std::max(bounce_in_fall(c.law.restitution, c.gap, approach, fall, step), closing)
                    : closing;
 }

@@ -32,6 +32,7 @@ struct SolverContact {
   double target = 0.0;            ///< m/s, normal velocity asked for
   double friction_bound = -1.0;   ///< N s; negative: μ times the normal impulse as it is
   bool bounces = false;           ///< an impact, fast enough for restitution
+  double impact_time = 0.0;       ///< s, of one that bounces: when in the step its gap is closed
   double impulse[3] = {0, 0, 0};  ///< N s, along the normal and both tangents
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lod/contact/lone_contacts.h"
 #include "lod/simd/double_lanes.h"
 
 namespace lodestone {
@@ -15,6 +16,7 @@ using namespace lane;
 namespace {
 
 constexpr int kColours = 64;              // the last one: manifolds for which no other was left, one by one
+constexpr std::uint8_t kNoColour = 255;   // of what is solved by itself
 constexpr std::uint32_t kMostPoints = 4;  // of a manifold; more make no difference to its place
 constexpr std::size_t kGroups =
     2 * kMostPoints;                 // of a colour: by whether it carried something, and its points
@@ -114,6 +116,7 @@ struct Change {
 
 struct CrowdSolver::Work : CrowdArrays {
   Simd simd;
+  LoneContacts lone;
   std::vector<std::uint64_t> used;      // of each body, as bits: colours that its manifolds have
   std::vector<std::uint8_t> colour_of;  // each manifold's
   std::vector<std::uint8_t> uneven;     // each manifold's: whether it is in an uneven island; empty: none is
@@ -193,6 +196,8 @@ void CrowdSolver::Work::colour(std::span<const SolverBody> bodies, std::span<con
     return body >= 0 && bodies[std::size_t(body)].inverse_mass > 0.0;
   };
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    colour_of[i] = kNoColour;
+    if (lone.holds(i)) continue;
     std::uint64_t none = 0;
     std::uint64_t& first = moves(manifolds[i].first) ? used[std::size_t(manifolds[i].first)] : none;
     std::uint64_t& second = moves(manifolds[i].second) ? used[std::size_t(manifolds[i].second)] : used.back();
@@ -219,12 +224,14 @@ void CrowdSolver::Work::make_batches(std::span<const CrowdManifold> manifolds,
   group_of_.resize(manifolds.size());
   first_of.assign(2 * kColours * kGroups + 1, 0);
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    if (colour_of[i] == kNoColour) continue;
     group_of_[i] = std::uint16_t(group_of(i));
     ++first_of[group_of_[i] + 1U];
   }
   for (std::size_t g = 1; g < first_of.size(); ++g) first_of[g] += first_of[g - 1];
   order.resize(manifolds.size());
-  for (std::size_t i = 0; i < manifolds.size(); ++i) order[first_of[group_of_[i]]++] = std::uint32_t(i);
+  for (std::size_t i = 0; i < manifolds.size(); ++i)
+    if (colour_of[i] != kNoColour) order[first_of[group_of_[i]]++] = std::uint32_t(i);
 
   batches.clear();
   first_batch.assign(1, 0);
@@ -515,6 +522,8 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
                         std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings,
                         const JobRunner& jobs) {
   Work& work = *work_;
+  work.lone.find(bodies, manifolds);
+  work.lone.solve(bodies, manifolds, points, step, settings, jobs);
   work.motions.resize(bodies.size() + 1);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Vec3 &v = bodies[i].velocity, &w = bodies[i].angular_velocity;

@@ -11,9 +11,6 @@ namespace {
 // Vertices this near the touching plane, over R, belong to the touching feature.
 constexpr double kFeatureMargin = 0.01;
 
-// The search begins at the line of centres.
-HullGap no_axis() { return {.normal = Vec3::Zero()}; }
-
 PlacedHull place(const PairBody& body) { return {*body.shape, body.position, body.orientation}; }
 
 // The vertices that lie within a hair of the touching plane, or up to `ahead` m above that, as arms from
@@ -253,9 +250,9 @@ void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& 
 }
 
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin,
-                                             double ahead) {
+                                             double ahead, const Vec3& axis) {
   const auto [a, b] = relative_to_second(first, second);
-  const HullGap best = find_hull_gap(place(a), place(b), no_axis(), margin);
+  const HullGap best = find_hull_gap(place(a), place(b), {.normal = axis}, margin);
   if (best.gap > margin) return {};
   PairContact contact = contact_along(a, b, best, ahead);
   shift(contact, second.position);

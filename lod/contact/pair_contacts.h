@@ -69,9 +69,10 @@ void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& 
                         std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search);
 
 /// The two hulls, whatever pieces they have; none where the gap is above `margin`. Of the first body, those
-/// vertices serve, too, that are up to `ahead` m farther than the nearest: they may touch next.
+/// vertices serve, too, that are up to `ahead` m farther than the nearest: they may touch next. The search
+/// begins at `axis` (from the second to the first; zero: the line of centres).
 std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBody& second, double margin,
-                                             double ahead = 0.0);
+                                             double ahead = 0.0, const Vec3& axis = Vec3::Zero());
 
 /// As find_hull_contact, along a given axis (unit, from `second` into `first`); none, too, where the touching
 /// features do not overlap across it.

@@ -38,14 +38,56 @@ std::size_t nearest_edge(const SurfaceTriangle& t, const Vec3& point) {
   return nearest;
 }
 
+/// How the lowest point of a body lies to a triangle, along its normal.
+struct LowestPoint {
+  double gap = 0.0;  ///< m
+  bool is_over = false;
+};
+
+LowestPoint find_lowest_over(const PairBody& body, const PlacedSolid& placed, const Vec3& normal) {
+  const SurfaceTriangle& t = *placed.solid->surface;
+  const Vec3 own = body.orientation.conjugate() * -normal;
+  std::int32_t hint = body.shape->sphere_radius ? -1 : std::int32_t(body.shape->support_map.find_start(own));
+  const HullContact lowest = find_lowest_point(*body.shape, body.orientation, normal, 0.0, hint);
+  const Vec3 point = in_part(placed, body.position + lowest.arm);
+  bool is_over = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 inward = t.normal.cross(t.corner[(i + 1) % 3] - t.corner[i]);
+    is_over = is_over && inward.dot(point - t.corner[i]) >= 0.0;
+  }
+  return {t.normal.dot(point - t.corner[0]), is_over};
+}
+
+// From the nearest point of a triangle to a point that does not lie over it, world, unit; zero: it lies in an
+// edge.
+Vec3 find_way_to(const PlacedSolid& placed, const Vec3& point) {
+  const SurfaceTriangle& t = *placed.solid->surface;
+  const Vec3 at = in_part(placed, point);
+  Vec3 way = Vec3::Zero();
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 from = at - t.corner[i], along = t.corner[(i + 1) % 3] - t.corner[i];
+    const Vec3 to = from - std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
+    if (to.squaredNorm() < least) least = to.squaredNorm(), way = to;
+  }
+  return least > 0.0 ? Vec3(placed.orientation * way / std::sqrt(least)) : Vec3(Vec3::Zero());
+}
+
 std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin) {
   const PairBody ground = pair_body(placed);
   // Not those of a thin body's other side.
   const double ahead = std::min(margin, kAhead * body.shape->inner_radius);
-  std::optional<PairContact> contact = find_hull_contact(body, ground, margin, ahead);
-  if (!contact || !placed.solid->surface) return contact;
+  if (!placed.solid->surface) return find_hull_contact(body, ground, margin, ahead);
   const SurfaceTriangle& t = *placed.solid->surface;
   const Vec3 normal = placed.orientation * t.normal;
+  const LowestPoint lowest = find_lowest_over(body, placed, normal);
+  if (lowest.gap > margin) return {};
+  // What is over the triangle is nearest to it along its normal.
+  if (lowest.is_over && lowest.gap > -kAhead * body.shape->inner_radius)
+    return find_contact_along(body, ground, normal, margin, ahead);
+  const std::optional<PairContact> contact =
+      find_hull_contact(body, ground, margin, ahead, find_way_to(placed, body.position));
+  if (!contact) return {};
   const double along = contact->normal.dot(normal);
   const bool over_ridge =
       along > 0.0 && along < 0.999 && t.ridge[nearest_edge(t, in_part(placed, middle_of(contact->manifold)))];
@@ -55,6 +97,20 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   // it.
   if (!flat && along > kSteepestFeature) return contact;
   return flat;
+}
+
+// A concave body of few faces meets what is convex in its pieces.
+void find_contacts(const PairBody& body, const PlacedSolid& placed, double margin,
+                   HullContactSearch& search) {
+  search.contacts.clear();
+  if (body.shape->pieces.empty() || placed.solid->surface) {
+    if (const auto contact = meet(body, placed, margin)) search.contacts.push_back(*contact);
+    return;
+  }
+  HullGap whole = {.normal = Vec3::Zero()};
+  thread_local std::vector<KnownGap> of_pieces;
+  of_pieces.clear();
+  find_pair_contacts(body, pair_body(placed), whole, of_pieces, margin, search);
 }
 
 // Whether the contact closes within `time`.
@@ -294,10 +350,13 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
     if (const auto mean = find_mean_plane(near, body.position, reach, kGentle))
       return planes.push_back(*mean);
   const PairBody self{&shape, body.position, body.orientation};
-  for (const PlacedSolid& solid : near)
-    if (const auto contact = meet(self, solid, seeker.touching + seeker.way);
-        contact && closes(*contact, *solid.part, body, seeker.omega, seeker.touching, time))
-      found.push_back({slot, solid.number, solid.part->material, solid.part, *contact});
+  thread_local HullContactSearch search;
+  for (const PlacedSolid& solid : near) {
+    find_contacts(self, solid, seeker.touching + seeker.way, search);
+    for (const PairContact& contact : search.contacts)
+      if (closes(contact, *solid.part, body, seeker.omega, seeker.touching, time))
+        found.push_back({slot, solid.number, solid.part->material, solid.part, contact});
+  }
 }
 
 }  // namespace lodestone

@@ -48,7 +48,10 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
   {
     const StageTimer timer(times.flight_ms);
     const std::span<const std::int32_t> awake = support.awake_with_guests();
-    for (const std::int32_t index : awake) step.scene.bodies[std::size_t(index)].crowded = false;
+    for (const std::int32_t index : awake) {
+      StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+      body.crowded = body.on_solid = false;
+    }
     find_ground_solids(step, awake, 0.0, dt);
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
     plan_.make(step.scene, pairs_, solid_contacts_, dt, near_);
@@ -104,8 +107,6 @@ void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
   wake_touched(step, pace);
   find_ground_solids(step, movers_, substep * time, time);
-  for (const SolidContact& contact : solid_contacts_)
-    step.scene.bodies[std::size_t(contact.slot)].crowded = true;
 }
 
 void NearBodies::choose_movers(const SupportLevel& support, Pace pace) {
@@ -114,7 +115,7 @@ void NearBodies::choose_movers(const SupportLevel& support, Pace pace) {
     if (near_.pace(Participant::statistical(std::size_t(index))) == pace) movers_.push_back(index);
 }
 
-// Parts of the ground that the bodies near: what nears one is solved with all that it touches.
+// Parts of the ground that the bodies near: what nears an edge is solved with all that it touches.
 void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after,
                                     double time) {
   solid_contacts_.clear();
@@ -130,7 +131,7 @@ void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32
       find(body, scene.kind_of(body), index, ground_, after, time, solid_contacts_, faces_.faces);
     }
     faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
-    if (solid_contacts_.size() > before) body.crowded = true;
+    body.on_solid = solid_contacts_.size() > before;
   }
 }
 
@@ -142,7 +143,7 @@ void NearBodies::move_alone(const Step& step, double time) {
     for (std::int64_t i = begin; i < end; ++i) {
       const std::int32_t index = movers_[std::size_t(i)];
       const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-      if (body.motion != Motion::asleep && !body.crowded)
+      if (body.motion != Motion::asleep && !body.is_solved_in_crowd())
         move_alone(step.support, step.guests, index, time, tallies_[std::size_t(i)]);
     }
   });
@@ -188,7 +189,7 @@ void NearBodies::move_crowded(const Step& step, double time) {
   if (pairs_.contacts().empty() && solid_contacts_.empty()) return;
   for (const std::int32_t index : movers_) {
     StatisticalBody& body = scene.bodies[std::size_t(index)];
-    if (!body.crowded) continue;
+    if (!body.is_solved_in_crowd()) continue;
     if (body.motion == Motion::settling) body.motion = Motion::dynamic;
     if (support.is_guest(index)) step.guests[std::size_t(index - support.size())].touched = true;
   }
@@ -199,7 +200,7 @@ void NearBodies::move_crowded(const Step& step, double time) {
                             {pairs_.contacts(), solid_contacts_, step.full_contacts, faces_, time});
   for (const std::int32_t index : movers_)
     if (const StatisticalBody& body = scene.bodies[std::size_t(index)];
-        body.crowded && body.motion != Motion::asleep && !support.is_guest(index))
+        body.is_solved_in_crowd() && body.motion != Motion::asleep && !support.is_guest(index))
       support.update_quiet(index, faces_.of(index), time, step.tally);
 }
 

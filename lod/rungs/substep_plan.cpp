@@ -113,6 +113,13 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
     near.mark(Participant::statistical(std::size_t(contact.slot)));
 
   find_islands(scene, pairs, near);
+
+  for (const SolidContact& contact : solid_contacts) {
+    const StatisticalBody& body = scene.bodies[std::size_t(contact.slot)];
+    if (scene.asleep(Participant::statistical(std::size_t(contact.slot)))) continue;
+    double& longest = longest_of_island_[std::size_t(root_of(contact.slot))];
+    longest = std::max(longest, body.velocity.norm() * dt / scene.kind_of(body).shape->radius);
+  }
   std::array<bool, kMostSubsteps + 1> any = {};
   const auto pace_of = [&](std::int32_t node) {
     const Pace pace = pace_for(longest_of_island_[std::size_t(root_of(node))]);

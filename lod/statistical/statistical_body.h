@@ -53,10 +53,12 @@ struct StatisticalBody {
   std::uint32_t kind = 0;
   Motion motion = Motion::dynamic;
   bool crowded = false;        ///< touches another body in this step
+  bool on_solid = false;       ///< touches parts of the ground in this step, where these are no planes to it
   float since_crowded = 1e9f;  ///< s since it last did
   float eased = 0.0f;  ///< s left in which overlaps that it brought from another rung are undone slowly
 
   bool is_sphere() const { return sphere_radius > 0.0f; }
+  bool is_solved_in_crowd() const { return crowded || on_solid; }
 };
 
 /// Kinetic energy over mass, J/kg, with the true inertia.

@@ -67,6 +67,7 @@ void SupportLevel::put_to_sleep(StatisticalBody& body) const {
   body.motion = Motion::asleep;
   body.velocity.setZero();
   body.spin.setZero();
+  body.on_solid = false;
 }
 
 void SupportLevel::end_step() {
@@ -143,7 +144,7 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
     return;
   }
   if (!settings_.sleeping || !own.allow_sleep || body.quiet_time < rest_law_.still_time(among_others)) return;
-  if (among_others || stands_firmly(body, *kind.shape, join_planes(ground_.planes(), faces)))
+  if (among_others || body.on_solid || stands_firmly(body, *kind.shape, join_planes(ground_.planes(), faces)))
     put_to_sleep(body);
 }
 

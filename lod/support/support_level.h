@@ -49,8 +49,8 @@ class SupportLevel {
   void set_state(int slot, const RigidState& state);  ///< wakes it
   bool asleep(int slot) const { return body(slot).motion == Motion::asleep; }
   bool crowded(int slot) const {
-    return body(slot).since_crowded == 0.0f;
-  }  ///< touched another body in the last step
+    return body(slot).since_crowded == 0.0f || body(slot).on_solid;
+  }  ///< touched another body, or an edge of the ground, in the last step
   void wake(int slot);
   void put_to_sleep(int slot);  ///< where it is, at once
   /// m/s², from the next step on. Clips end: they were recorded under another.

@@ -155,10 +155,12 @@ TEST(CrowdSolver, KeepsMomentumAndBoundsFriction) {
 // More contacts of one body than there are colours.
 TEST(CrowdSolver, HoldsUpABodyOnAHundredContacts) {
   RandomStream random(5, 3, 0);
-  SolverCrowd crowd = make_crowd(1, 0, false);
+  SolverCrowd crowd = make_crowd(2, 0, false);
   crowd.bodies[0].velocity = {0, 0, -1};
-  crowd.bodies[0].angular_velocity.setZero();
+  crowd.bodies[1].velocity = {0, 0, 1};  // leaves it
+  for (SolverBody& body : crowd.bodies) body.angular_velocity.setZero();
   for (int i = 0; i < 100; ++i) crowd.add_manifold(0, -1, Vec3::UnitZ(), 1, random);
+  crowd.add_manifold(1, 0, Vec3::UnitZ(), 1, random);
   for (CrowdManifold& m : crowd.manifolds) m.law.restitution = 0.0;
   for (CrowdPoint& point : crowd.points) point.guess.setZero(), point.gap = 0.0;
   solve(crowd, find_simd(), 2, {.sweeps = 2'000, .tolerance = 1e-12});

@@ -1,0 +1,31 @@
+// What bodies touch in, as the solvers of crowds take it.
+#pragma once
+
+#include <cstdint>
+
+#include "reference/geometry.h"
+#include "reference/material.h"
+
+namespace lodestone {
+
+/// What two bodies, or a body and the ground, touch in: points with one normal.
+struct CrowdManifold {
+  std::int32_t first = 0, second = -1;  ///< indices of SolverBody; second −1: the ground
+  Vec3 normal = Vec3::UnitZ();          ///< points into `first`
+  ContactLaw law;
+  std::uint32_t begin = 0, count = 0;  ///< its points
+  bool known = false;                  ///< from the last step, which gives the guesses of its points
+};
+
+struct CrowdPoint {
+  Vec3 arm_first = Vec3::Zero(),
+       arm_second = Vec3::Zero();  ///< m, from each centre of mass to the shared point
+  double gap = 0.0;                ///< m, negative where they overlap
+  Vec3 guess = Vec3::Zero();       ///< N s, on `first`: what a resting contact starts from
+  // Filled by the solver:
+  Vec3 impulse = Vec3::Zero();  ///< N s, on `first`
+  bool bounces = false;         ///< an impact, fast enough for restitution
+  float impact_time = 0.0f;     ///< s, of one that bounces: when in the step its gap is closed
+};
+
+}  // namespace lodestone
