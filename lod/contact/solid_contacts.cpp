@@ -38,6 +38,51 @@ std::size_t nearest_edge(const SurfaceTriangle& t, const Vec3& point) {
   return nearest;
 }
 
+// A point that looks for the solid's nearest one.
+const Shape& point_shape() {
+  static const Shape point = [] {
+    Shape shape;
+    shape.sphere_radius = 0.0;
+    return shape;
+  }();
+  return point;
+}
+
+/// Of a solid, what a point is nearest to: which way, how far (negative: inside).
+struct Nearest {
+  Vec3 normal;  ///< in the part's axes
+  double height = 0.0;
+};
+
+// A point in the frame of the solid's shape. None behind the edge of a surface, where a neighbour is nearer.
+std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point) {
+  if (solid.shape->sphere_radius)
+    return Nearest{point.squaredNorm() > 0.0 ? Vec3(point.normalized()) : Vec3(Vec3::UnitZ()),
+                   point.norm() - *solid.shape->sphere_radius};
+  if (const auto& t = solid.surface) {
+    const Vec3 at = point + solid.center;
+    const double height = t->normal.dot(at - t->corner[0]);
+    const std::size_t edge = nearest_edge(*t, at);
+    const Vec3 &from = t->corner[edge], along = (t->corner[(edge + 1) % 3] - from).normalized();
+    if (t->normal.cross(along).dot(at - from) >= 0.0) return Nearest{t->normal, height};
+    if (!t->ridge[edge] || height < 0.0) return {};
+  }
+  const SolidFace* highest = nullptr;
+  double most = -1e300;
+  for (const SolidFace& face : solid.faces)
+    if (const double height = face.normal.dot(point) - face.offset; height > most)
+      most = height, highest = &face;
+  const Vec3 foot = point - most * highest->normal;
+  const double rounding = 1e-9 * solid.shape->radius;
+  const bool over_face = std::ranges::all_of(
+      solid.faces, [&](const SolidFace& face) { return face.normal.dot(foot) - face.offset <= rounding; });
+  if (most <= 0.0 || over_face) return Nearest{highest->normal, most};
+  const HullGap gap =
+      find_hull_gap({point_shape(), point, Quat::Identity()}, {*solid.shape, Vec3::Zero(), Quat::Identity()},
+                    {.normal = Vec3::Zero()}, 1e300);
+  return Nearest{gap.normal, gap.gap};
+}
+
 /// How the lowest point of a body lies to a triangle, along its normal.
 struct LowestPoint {
   double gap = 0.0;  ///< m
@@ -58,9 +103,14 @@ LowestPoint find_lowest_over(const PairBody& body, const PlacedSolid& placed, co
   return {t.normal.dot(point - t.corner[0]), is_over};
 }
 
-// From the nearest point of a triangle to a point that does not lie over it, world, unit; zero: it lies in an
-// edge.
+// From the nearest point of a solid to a point, world, unit: of a triangle the nearest one of its edges.
+// Zero: it lies in one.
 Vec3 find_way_to(const PlacedSolid& placed, const Vec3& point) {
+  if (!placed.solid->surface) {
+    const auto nearest =
+        find_nearest(*placed.solid, placed.orientation.conjugate() * (point - placed.position));
+    return nearest ? Vec3(placed.orientation * nearest->normal) : Vec3(Vec3::Zero());
+  }
   const SurfaceTriangle& t = *placed.solid->surface;
   const Vec3 at = in_part(placed, point);
   Vec3 way = Vec3::Zero();
@@ -77,7 +127,10 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   const PairBody ground = pair_body(placed);
   // Not those of a thin body's other side.
   const double ahead = std::min(margin, kAhead * body.shape->inner_radius);
-  if (!placed.solid->surface) return find_hull_contact(body, ground, margin, ahead);
+  const auto find_anyhow = [&] {
+    return find_hull_contact(body, ground, margin, ahead, find_way_to(placed, body.position));
+  };
+  if (!placed.solid->surface) return find_anyhow();
   const SurfaceTriangle& t = *placed.solid->surface;
   const Vec3 normal = placed.orientation * t.normal;
   const LowestPoint lowest = find_lowest_over(body, placed, normal);
@@ -85,8 +138,7 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   // What is over the triangle is nearest to it along its normal.
   if (lowest.is_over && lowest.gap > -kAhead * body.shape->inner_radius)
     return find_contact_along(body, ground, normal, margin, ahead);
-  const std::optional<PairContact> contact =
-      find_hull_contact(body, ground, margin, ahead, find_way_to(placed, body.position));
+  const std::optional<PairContact> contact = find_anyhow();
   if (!contact) return {};
   const double along = contact->normal.dot(normal);
   const bool over_ridge =
@@ -107,7 +159,7 @@ void find_contacts(const PairBody& body, const PlacedSolid& placed, double margi
     if (const auto contact = meet(body, placed, margin)) search.contacts.push_back(*contact);
     return;
   }
-  HullGap whole = {.normal = Vec3::Zero()};
+  HullGap whole = {.normal = find_way_to(placed, body.position)};
   thread_local std::vector<KnownGap> of_pieces;
   of_pieces.clear();
   find_pair_contacts(body, pair_body(placed), whole, of_pieces, margin, search);
@@ -182,51 +234,6 @@ void find_probed_contacts(const Seeker& s, const GroundPart& part, double time,
       found.push_back(
           {s.slot, std::uint32_t(low.contact[std::size_t(i)].vertex + 1), part.material, &part, contact});
   }
-}
-
-// A point that looks for the solid's nearest one.
-const Shape& point_shape() {
-  static const Shape point = [] {
-    Shape shape;
-    shape.sphere_radius = 0.0;
-    return shape;
-  }();
-  return point;
-}
-
-/// Of a solid, what a point is nearest to: which way, how far (negative: inside).
-struct Nearest {
-  Vec3 normal;  ///< in the part's axes
-  double height = 0.0;
-};
-
-// A point in the frame of the solid's shape. None behind the edge of a surface, where a neighbour is nearer.
-std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point) {
-  if (solid.shape->sphere_radius)
-    return Nearest{point.squaredNorm() > 0.0 ? Vec3(point.normalized()) : Vec3(Vec3::UnitZ()),
-                   point.norm() - *solid.shape->sphere_radius};
-  if (const auto& t = solid.surface) {
-    const Vec3 at = point + solid.center;
-    const double height = t->normal.dot(at - t->corner[0]);
-    const std::size_t edge = nearest_edge(*t, at);
-    const Vec3 &from = t->corner[edge], along = (t->corner[(edge + 1) % 3] - from).normalized();
-    if (t->normal.cross(along).dot(at - from) >= 0.0) return Nearest{t->normal, height};
-    if (!t->ridge[edge] || height < 0.0) return {};
-  }
-  const SolidFace* highest = nullptr;
-  double most = -1e300;
-  for (const SolidFace& face : solid.faces)
-    if (const double height = face.normal.dot(point) - face.offset; height > most)
-      most = height, highest = &face;
-  const Vec3 foot = point - most * highest->normal;
-  const double rounding = 1e-9 * solid.shape->radius;
-  const bool over_face = std::ranges::all_of(
-      solid.faces, [&](const SolidFace& face) { return face.normal.dot(foot) - face.offset <= rounding; });
-  if (most <= 0.0 || over_face) return Nearest{highest->normal, most};
-  const HullGap gap =
-      find_hull_gap({point_shape(), point, Quat::Identity()}, {*solid.shape, Vec3::Zero(), Quat::Identity()},
-                    {.normal = Vec3::Zero()}, 1e300);
-  return Nearest{gap.normal, gap.gap};
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
     plan_.make(step.scene, pairs_, solid_contacts_, dt, near_);
     choose_movers(support, 0);
-    std::erase_if(movers_, [&](std::int32_t index) { return support.is_guest(index); });
+    std::erase_if(movers_,
+                  [&](std::int32_t index) { return step.scene.bodies[std::size_t(index)].is_sphere(); });
     move_alone(step, dt);
   }
   crowd_.begin_step();
@@ -127,7 +128,7 @@ void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32
     StatisticalBody& body = scene.bodies[std::size_t(index)];
     const std::size_t before = solid_contacts_.size(), faces = faces_.faces.size();
     if (meets_solids(scene.world.properties_of(body.owner))) {
-      const auto find = step.support.is_guest(index) ? find_sphere_contacts : find_solid_contacts;
+      const auto find = body.is_sphere() ? find_sphere_contacts : find_solid_contacts;
       find(body, scene.kind_of(body), index, ground_, after, time, solid_contacts_, faces_.faces);
     }
     faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
@@ -156,6 +157,10 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
   StatisticalBody& body = support.bodies()[std::size_t(index)];
   StepWorld around = world();
   around.planes = join_planes(ground_.planes(), faces_.of(index));
+  if (!body.is_sphere()) {
+    tally = step_support_body(body, kinds_[body.kind], around, time, SupportSettings{});
+    return;
+  }
   around.log = nullptr;  // where it touches nobody in the end, the tables level moves it once more
   tally = step_tables_body(body, guests[std::size_t(index - support.size())].resting, kinds_[body.kind],
                            around, time, tables_);
@@ -191,7 +196,10 @@ void NearBodies::move_crowded(const Step& step, double time) {
     StatisticalBody& body = scene.bodies[std::size_t(index)];
     if (!body.is_solved_in_crowd()) continue;
     if (body.motion == Motion::settling) body.motion = Motion::dynamic;
-    if (support.is_guest(index)) step.guests[std::size_t(index - support.size())].touched = true;
+    if (!support.is_guest(index)) continue;
+    Guest& guest = step.guests[std::size_t(index - support.size())];
+    guest.moved = true;
+    guest.touched |= body.crowded || body.is_sphere();
   }
   StepWorld crowd_world = world();
   // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.

@@ -157,7 +157,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   if (!support.awake().empty() || !search.pairs().empty() || !search.guests().empty()) {
     s.guest_bodies.clear();
     for (Guest& guest : search.guests()) {
-      guest.resting = tables.resting_of(guest.slot);
+      tables.describe(guest);
       s.guest_bodies.push_back(tables.guest_body(guest));
     }
     support.admit_guests(s.guest_bodies);

@@ -5,12 +5,38 @@
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
+namespace {
 
-// Whether it does on its hull, if nothing touches it: where the ground's parts are planes to that.
+constexpr double kSunk = 0.01, kLeastHeight = 0.02;  // over R
+
+bool is_sunk(const StatisticalBody& body, const Shape& shape, std::span<const HalfSpace> planes) {
+  return std::ranges::any_of(planes, [&](const HalfSpace& p) {
+    const double height = p.height_of(body.position);
+    if (height > shape.radius) return false;
+    std::int32_t hint = body.support_hint;
+    return find_lowest_point(shape, body.orientation, p.normal, height, hint).gap < -kSunk * shape.radius;
+  });
+}
+
+}  // namespace
+
+// Whether it moves on its hull, if nothing touches it.
+bool TablesLevel::is_alone(std::int64_t place) const {
+  return constants_.hulls && spheres_.since_crowded[std::size_t(place)] >= kLeaningTicks;
+}
+
+// Where the ground's parts are planes to that, here.
 bool TablesLevel::stands_when_alone(std::int64_t place) const {
-  if (spheres_.since_crowded[std::size_t(place)] < kLeaningTicks) return false;
+  if (!is_alone(place)) return false;
   const NearFaces* near = near_faces_at(place);
   return !near || near->even;
+}
+
+// Where they are none, as a guest.
+bool TablesLevel::is_at_edge(std::int64_t place) const {
+  if (!is_alone(place)) return false;
+  const NearFaces* near = near_faces_at(place);
+  return near && !near->even;
 }
 
 // Those that touched no other for a while stand on their hulls; the others are spheres.
@@ -60,22 +86,14 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
                   .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
                   .impact_tolerance = 2e-4,
                   .impact_solver = {.sweeps = 6, .tolerance = 1e-2, .frictionless_bound = true}}};
-  static const HullMotionSettings sloped;  // as `support`: no clip takes over, it must come to rest by itself
-  constexpr double kSunk = 0.01, kLeast = 0.02;  // over R
+  static const HullMotionSettings
+      fine;  // as `support`: where no clip takes over, it must come to rest by itself
   const auto i = std::size_t(place);
   const Shape& shape = *kind_of(place).shape;
   const double radius = shape.radius;
-  const auto is_sunk = [&] {
-    return std::ranges::any_of(around.planes, [&](const HalfSpace& p) {
-      const double height = p.height_of(body.position);
-      if (height > radius) return false;
-      const HullContact lowest =
-          find_lowest_point(shape, body.orientation, p.normal, height, body.support_hint);
-      return lowest.gap < -kSunk * radius;
-    });
-  };
   HullStand& stand = spheres_.on_hull[i];
-  if (stand != HullStand::stands) stand = is_sunk() ? HullStand::rises : HullStand::stands;
+  if (stand != HullStand::stands)
+    stand = is_sunk(body, shape, around.planes) ? HullStand::rises : HullStand::stands;
   const float eased = body.eased;
   if (stand == HullStand::rises) body.eased = std::max(eased, 1.0f);
   const std::int32_t clip = spheres_.clip[i];
@@ -88,8 +106,13 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   const bool is_level = std::ranges::all_of(around.planes, [&](const HalfSpace& p) {
     return around.is_horizontal(p) || p.height_of(body.position) > farthest;
   });
-  const HullMotion moved = move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity,
-                                        constants_.wide_time, may_settle, is_level ? level : sloped);
+  // In coarse steps a body may rock on for ever, by as little as this.
+  constexpr double kNearlyStill = 4.0;  // times what is still
+  const bool nearly_still = kinetic_energy(body, shape) <
+                            kNearlyStill * rest_law_.still_energy(false, radius, settings_.gravity.norm());
+  const HullMotion moved =
+      move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity, constants_.wide_time,
+                   may_settle, is_level && !nearly_still ? level : fine);
   body.eased = eased;
   playing.state = !moved.plays_clip ? PlayingClip::ended
                   : moved.clip_over ? PlayingClip::over
@@ -99,12 +122,45 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   for (const HalfSpace& p : around.planes) height = std::min(height, p.height_of(body.position));
   const bool touches = moved.plays_clip || moved.tally.touched_plane >= 0;
   if (!touches) height = std::min(height, double(body.sphere_radius));
-  body.sphere_radius = float(std::max(height, kLeast * radius));
+  body.sphere_radius = float(std::max(height, kLeastHeight * radius));
   return moved.tally;
 }
 
+// From its edges a hull that was a sphere parts slowly, as from a plane.
+bool TablesLevel::overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const {
+  thread_local std::vector<SolidContact> contacts;
+  thread_local std::vector<HalfSpace> planes;
+  contacts.clear();
+  planes.assign(ground_.planes().begin(), ground_.planes().end());
+  find_solid_contacts(body, kind, 0, ground_, 0.0, 0.0, contacts, planes);
+  const double deepest = -kSunk * kind.shape->radius;
+  return is_sunk(body, *kind.shape, planes) ||
+         std::ranges::any_of(contacts, [&](const SolidContact& c) { return c.contact.gap < deepest; });
+}
+
+// m, as high as it stands, for the sphere that others would meet.
+float TablesLevel::height_over_ground(std::int64_t place, const StatisticalBody& body) const {
+  const double radius = kind_of(place).shape->radius;
+  double height = radius;
+  for (const HalfSpace& plane : join_planes(ground_.planes(), faces_of(place)))
+    height = std::min(height, plane.height_of(body.position));
+  return float(std::max(height, kLeastHeight * radius));
+}
+
+// Of a guest that was moved on its hull.
+void TablesLevel::take_from_edge(std::int64_t place, const StatisticalBody& moved) {
+  const auto i = std::size_t(place);
+  HullStand& stand = spheres_.on_hull[i];
+  if (stand != HullStand::stands)
+    stand = overlaps_ground(moved, kind_of(place)) ? HullStand::rises : HullStand::stands;
+  StatisticalBody body = moved;
+  body.sphere_radius = height_over_ground(place, body);
+  spheres_.put(place, body);
+  spheres_.held[i] = 0.0f;
+}
+
 bool TablesLevel::stands(std::int64_t place) const {
-  if (spheres_.on_hull[std::size_t(place)] == HullStand::none) return true;
+  if (spheres_.on_hull[std::size_t(place)] == HullStand::none || is_at_edge(place)) return true;
   return stands_firmly(spheres_.body(place), *kind_of(place).shape,
                        join_planes(ground_.planes(), faces_of(place)));
 }

@@ -221,9 +221,22 @@ std::size_t TablesLevel::bytes() const {
   return bytes + step_.bytes() + contacts_.bytes();
 }
 
+void TablesLevel::describe(Guest& guest) const {
+  const auto i = std::int64_t(place_of(guest.slot));
+  guest.resting = {spheres_.pose[std::size_t(i)]};
+  guest.on_hull = guest.moved = i < spheres_.awake && !step_.touches(i) && is_at_edge(i);
+}
+
 StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
+  constexpr float kPartsSlowly = 1.0f;  // s
   const auto i = std::int64_t(place_of(guest.slot));
   StatisticalBody body = spheres_.body(i);
+  if (guest.on_hull) {
+    body.sphere_radius = 0.0f;
+    body.motion = Motion::dynamic;
+    if (spheres_.on_hull[std::size_t(i)] != HullStand::stands)
+      body.eased = std::max(body.eased, kPartsSlowly);
+  }
   if (i < spheres_.awake && step_.touches(i)) {
     body.velocity = step_.velocity(i) - settings_.gravity * constants_.wide_time;
     body.spin += step_.added_spin(i);
@@ -236,7 +249,7 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
 void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> bodies) {
   const std::int64_t were_awake = spheres_.awake;
   for (const Guest& guest : guests)
-    if (guest.touched) wake(guest.slot);
+    if (guest.moved) wake(guest.slot);
   if (spheres_.awake > were_awake) {
     step_.resize(std::size_t(spheres_.awake));
     find_near_faces(were_awake, spheres_.awake);
@@ -244,17 +257,22 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     clear_added(were_awake, spheres_.awake, step_);
   }
   for (std::size_t k = 0; k < guests.size(); ++k) {
-    if (!guests[k].touched) continue;
-    const std::size_t i = place_of(guests[k].slot);
+    const Guest& guest = guests[k];
+    if (!guest.moved) continue;
+    const std::size_t i = place_of(guest.slot);
     const StatisticalBody& body = bodies[k];
     end_clip(std::int64_t(i));
-    spheres_.on_hull[i] = HullStand::none;
-    spheres_.put(std::int64_t(i), body);
-    spheres_.pose[i] = std::int16_t(guests[k].resting.pose);
-    spheres_.held[i] = 0.0f;
-    // It has moved and lies among others: nothing is left to be added to what it has now.
+    if (guest.on_hull) {
+      take_from_edge(std::int64_t(i), body);
+    } else {
+      spheres_.on_hull[i] = HullStand::none;
+      spheres_.put(std::int64_t(i), body);
+      spheres_.pose[i] = std::int16_t(guest.resting.pose);
+      spheres_.held[i] = 0.0f;
+    }
+    // It has moved: nothing is left to be added to what it has now.
     step_.p[i] = {float(body.velocity.x()), float(body.velocity.y()), float(body.velocity.z()),
-                  std::max(1.0f, step_.p[i].w)};
+                  guest.touched ? std::max(1.0f, step_.p[i].w) : step_.p[i].w};
     step_.a[i] = step_.s[i] = step_.d[i] = {};
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
   }

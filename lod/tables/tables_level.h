@@ -79,14 +79,15 @@ class TablesLevel {
   /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given.
   void find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
   void forget_contacts() { contacts_.clear(); }  ///< in their place, where there are none
-  /// Slots of those in this step that parts of the ground hold several ways: one plane does not tell how they
-  /// go on.
+  /// Slots of those in this step that are at an edge of the ground, or that parts of it hold several ways:
+  /// one plane does not tell how they go on.
   std::span<const std::int32_t> cornered() const { return cornered_; }
   void respond(ContactTally& tally);
+  /// Who it is in this step: after respond().
+  void describe(Guest& guest) const;
   /// The body as it would go on, with what its contacts with spheres give it.
   StatisticalBody guest_body(const Guest& guest) const;
-  RestingRecord resting_of(int slot) const { return {spheres_.pose[place_of(slot)]}; }
-  /// Where those that were touched are now.
+  /// Where those that were moved are now.
   void take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> bodies);
   void finish(ContactTally& tally);
   void rest();
@@ -101,7 +102,7 @@ class TablesLevel {
   struct NearFaces {
     std::int64_t place = 0;
     std::int32_t begin = 0, end = 0;  // in faces_
-    bool even = false;  // level, or planes stand for all that its hull may meet of the ground's parts
+    bool even = false;                // planes stand for all that its hull may meet of the ground's parts
   };
   struct Carried {
     std::int64_t place = 0;
@@ -168,7 +169,12 @@ class TablesLevel {
   void choose_hulls(std::int64_t begin, std::int64_t end);
   bool lies_at_clips_end(std::int64_t place) const;
   void move_alone(std::int64_t place, ContactTally& tally, std::vector<PlayingClip>& joined);
+  bool is_alone(std::int64_t place) const;
   bool stands_when_alone(std::int64_t place) const;
+  bool is_at_edge(std::int64_t place) const;
+  bool overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const;
+  float height_over_ground(std::int64_t place, const StatisticalBody& body) const;
+  void take_from_edge(std::int64_t place, const StatisticalBody& moved);
   void become_sphere(std::int64_t place, StatisticalBody& body);
   ContactTally move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
                                 bool rides, std::vector<PlayingClip>& joined);

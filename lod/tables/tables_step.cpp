@@ -121,21 +121,21 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
     const Vec3 center = spheres_.position(i);
     near.clear();
     const std::size_t first = faces_.size();
-    const bool only_planes = find_planes_of(i);
+    const bool alone = is_alone(i), only_planes = alone && find_planes_of(i);
     if (!only_planes) find_ground_near(ground_, center, 1.01 * size + way, 0.0, near);
     for (const GroundNear& n : near) faces_.push_back(n.plane(center));
     if (faces_.size() == first) continue;
     for (const HalfSpace& face : std::span(faces_).subspan(first))
       planes_.add(face, materials_, kinds_, settings_.gravity);
-    const auto is_level = [this](const HalfSpace& face) { return world().is_horizontal(face); };
-    const bool even = only_planes || std::ranges::all_of(std::span(faces_).subspan(first), is_level);
-    near_faces_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), even});
+    near_faces_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), only_planes});
     const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
       return n.part->moves() && n.height < double(spheres_.radius[i]) + 0.01 * size + way;
     });
     if (mover != near.end())
       carried_.push_back({i, mover->part->velocity_at(center), mover->part->pose.angular_velocity});
-    if (is_held_several_ways(near, ground_.planes(), center, double(spheres_.radius[i]) + 0.01 * size + way))
+    const bool at_edge = alone && !only_planes;
+    if (at_edge ||
+        is_held_several_ways(near, ground_.planes(), center, double(spheres_.radius[i]) + 0.01 * size + way))
       cornered_.push_back(spheres_.slot[i]);
   }
 }
@@ -144,10 +144,9 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
 // farther away: else one at rest there would go on to change.
 bool TablesLevel::find_planes_of(std::int64_t place) {
   constexpr double kSlack = 0.1;  // over R
-  const auto i = std::size_t(place);
-  if (!constants_.hulls || spheres_.since_crowded[i] < kLeaningTicks) return false;
   const BodyKind& kind = kind_of(place);
-  const double slack = spheres_.on_hull[i] == HullStand::none ? kSlack * kind.shape->radius : 0.0;
+  const double slack =
+      spheres_.on_hull[std::size_t(place)] == HullStand::none ? kSlack * kind.shape->radius : 0.0;
   return find_planes_below(spheres_.body(place), kind, ground_, slack, constants_.wide_time, faces_);
 }
 
@@ -216,7 +215,7 @@ void TablesLevel::find_further_planes() {
   };
   auto near = near_faces_.begin();
   each_marked(step_.on_ground, std::uint8_t(GroundState::near), 0, spheres_.awake, [&](std::int64_t i) {
-    if (constants_.hulls && !paired_[std::size_t(i)] && stands_when_alone(i)) return;  // on all of them
+    if (constants_.hulls && !paired_[std::size_t(i)] && is_alone(i)) return;  // its hull, on all of them
     for (std::uint32_t number = 0; number < everywhere.size(); ++number) look(i, number);
     while (near != near_faces_.end() && near->place < i) ++near;
     if (near == near_faces_.end() || near->place != i) return;
@@ -486,7 +485,10 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Pl
       around.planes = {&plane(step_.plane[i]), 1};
       body.sphere_radius = ground_height(i, -around.planes[0].normal);
     }
-    tally += step_tables_body(body, resting, kind_of(i), around, constants_.wide_time, tables_);
+    const BodyKind& kind = kind_of(i);
+    const bool is_ball = constants_.hulls && kind.shape->sphere_radius;  // for which no table need stand
+    tally += is_ball ? step_support_body(body, kind, around, constants_.wide_time, SupportSettings{})
+                     : step_tables_body(body, resting, kind, around, constants_.wide_time, tables_);
   }
   if (rides) {
     body.velocity += carried->velocity;
