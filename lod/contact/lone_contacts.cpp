@@ -5,7 +5,7 @@
 namespace lodestone {
 namespace {
 
-constexpr int kSweeps = 40;  // at least that may be: a body that rests on two edges asks for many
+constexpr int kSweeps = 40;  // at most, or as many as the crowd takes: a body on two edges asks for many
 constexpr double kTolerance = 1e-4;
 
 }  // namespace

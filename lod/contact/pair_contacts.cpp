@@ -8,19 +8,19 @@
 namespace lodestone {
 namespace {
 
-// Vertices this near the touching plane, over R, belong to the touching feature.
+// Vertices this near the touching plane, over the lesser R, belong to the touching feature: of a great slab
+// not those of its other side.
 constexpr double kFeatureMargin = 0.01;
 
 PlacedHull place(const PairBody& body) { return {*body.shape, body.position, body.orientation}; }
 
-// The vertices that lie within a hair of the touching plane, or up to `ahead` m above that, as arms from
-// `origin`.
+// The vertices that lie within `hair` m of the touching plane, as arms from `origin`.
 HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin,
-                          double ahead) {
+                          double hair) {
   const double lowest =
       vertex < 0 ? 0.0 : normal.dot(body.orientation * body.shape->hull.vertices[std::size_t(vertex)]);
-  const double margin = lowest + kFeatureMargin * body.shape->radius + ahead;
-  HullContacts feature = find_hull_contacts(*body.shape, body.orientation, normal, 0.0, margin, vertex);
+  HullContacts feature =
+      find_hull_contacts(*body.shape, body.orientation, normal, 0.0, lowest + hair, vertex);
   for (int i = 0; i < feature.count; ++i) feature.contact[i].arm += body.position - origin;
   return feature;
 }
@@ -33,8 +33,9 @@ Vec3 middle_of(const HullContacts& feature) {
 
 Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, double ahead,
                        HullContacts& upper, HullContacts& lower) {
-  upper = find_feature(first, best.normal, best.vertex_first, second.position, ahead);
-  lower = find_feature(second, -best.normal, best.vertex_second, second.position, 0.0);
+  const double hair = kFeatureMargin * std::min(first.shape->radius, second.shape->radius);
+  upper = find_feature(first, best.normal, best.vertex_first, second.position, hair + ahead);
+  lower = find_feature(second, -best.normal, best.vertex_second, second.position, hair);
   return find_manifold(upper, lower, best.normal, best.gap);
 }
 

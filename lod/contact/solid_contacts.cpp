@@ -103,24 +103,50 @@ LowestPoint find_lowest_over(const PairBody& body, const PlacedSolid& placed, co
   return {t.normal.dot(point - t.corner[0]), is_over};
 }
 
-// From the nearest point of a solid to a point, world, unit: of a triangle the nearest one of its edges.
-// Zero: it lies in one.
-Vec3 find_way_to(const PlacedSolid& placed, const Vec3& point) {
-  if (!placed.solid->surface) {
-    const auto nearest =
-        find_nearest(*placed.solid, placed.orientation.conjugate() * (point - placed.position));
-    return nearest ? Vec3(placed.orientation * nearest->normal) : Vec3(Vec3::Zero());
-  }
-  const SurfaceTriangle& t = *placed.solid->surface;
-  const Vec3 at = in_part(placed, point);
+// m, how far a body reaches from its centre of mass along `direction` (unit, world).
+double find_extent(const PairBody& body, const Vec3& direction) {
+  std::int32_t hint = 0;
+  if (!body.shape->sphere_radius)
+    hint = std::int32_t(body.shape->support_map.find_start(body.orientation.conjugate() * direction));
+  return find_lowest_point(*body.shape, body.orientation, -direction, 0.0, hint).arm.dot(direction);
+}
+
+// From the nearest edge of a triangle to a point, in its part's axes; zero: the point lies in it.
+Vec3 find_way_from_edges(const SurfaceTriangle& t, const Vec3& point) {
   Vec3 way = Vec3::Zero();
   double least = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 from = at - t.corner[i], along = t.corner[(i + 1) % 3] - t.corner[i];
+    const Vec3 from = point - t.corner[i], along = t.corner[(i + 1) % 3] - t.corner[i];
     const Vec3 to = from - std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
     if (to.squaredNorm() < least) least = to.squaredNorm(), way = to;
   }
-  return least > 0.0 ? Vec3(placed.orientation * way / std::sqrt(least)) : Vec3(Vec3::Zero());
+  return way;
+}
+
+// An axis along which the two are nearly as far apart as along any, world, unit: where a search for that one
+// begins. Of a few: from the nearest point of the solid to the body's centre, and across each face that this
+// lies over, as an overhanging body is nearer to an edge than to the face that it lies on. Zero: there is
+// none.
+Vec3 find_start_axis(const PairBody& body, const PlacedSolid& placed) {
+  if (placed.solid->surface) {
+    const Vec3 way = find_way_from_edges(*placed.solid->surface, in_part(placed, body.position));
+    return way.isZero(0.0) ? Vec3(Vec3::Zero()) : Vec3(placed.orientation * way.normalized());
+  }
+  const Vec3 center = placed.orientation.conjugate() * (body.position - placed.position);
+  Vec3 axis = Vec3::Zero();
+  double greatest = -std::numeric_limits<double>::max();  // m, gap
+  const auto look_along = [&](const Vec3& normal, double height) {
+    const Vec3 along = placed.orientation * normal;
+    const double gap = height - find_extent(body, -along);
+    if (gap > greatest) greatest = gap, axis = along;
+  };
+  if (const auto nearest = find_nearest(*placed.solid, center)) look_along(nearest->normal, nearest->height);
+  constexpr std::size_t kFewFaces = 12;
+  if (placed.solid->faces.size() <= kFewFaces)
+    for (const SolidFace& face : placed.solid->faces)
+      if (const double height = face.normal.dot(center) - face.offset; height > 0.0)
+        look_along(face.normal, height);
+  return axis;
 }
 
 std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin) {
@@ -128,7 +154,7 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   // Not those of a thin body's other side.
   const double ahead = std::min(margin, kAhead * body.shape->inner_radius);
   const auto find_anyhow = [&] {
-    return find_hull_contact(body, ground, margin, ahead, find_way_to(placed, body.position));
+    return find_hull_contact(body, ground, margin, ahead, find_start_axis(body, placed));
   };
   if (!placed.solid->surface) return find_anyhow();
   const SurfaceTriangle& t = *placed.solid->surface;
@@ -159,9 +185,13 @@ void find_contacts(const PairBody& body, const PlacedSolid& placed, double margi
     if (const auto contact = meet(body, placed, margin)) search.contacts.push_back(*contact);
     return;
   }
-  HullGap whole = {.normal = find_way_to(placed, body.position)};
+  HullGap whole = {.normal = find_start_axis(body, placed)};
   thread_local std::vector<KnownGap> of_pieces;
   of_pieces.clear();
+  for (const Shape& piece : body.shape->pieces) {
+    const Vec3 center = body.position + body.orientation * piece.center_of_mass_in_mesh;
+    of_pieces.emplace_back().axis.normal = find_start_axis({&piece, center, body.orientation}, placed);
+  }
   find_pair_contacts(body, pair_body(placed), whole, of_pieces, margin, search);
 }
 

@@ -48,6 +48,7 @@ class NearSearch {
 
   std::span<const NearPair> pairs() const { return pairs_; }
   std::span<Guest> guests() { return guests_; }
+  std::span<const Guest> guests() const { return guests_; }
   /// Of the awake spheres, in the cells.
   std::span<const std::uint32_t> order_of_spheres() const { return mixed_ ? order_ : cells_.order(); }
   std::size_t bytes() const { return cells_.bytes(); }

@@ -54,6 +54,7 @@ struct StatisticalLevel::Impl {
     return place.model == StatisticalModel::tables ? tables.owner(place.slot)
                                                    : support.body(place.slot).owner;
   }
+  double share_of_support() const;
   double clock() const { return clocked ? thread_time_ms() : 0.0; }
   void wake_touching(StatisticalPlace place);
   bool any_pairs(std::span<const FullNeighbor> neighbors) const;
@@ -78,6 +79,14 @@ bool StatisticalLevel::Impl::any_pairs(std::span<const FullNeighbor> neighbors) 
   const bool any_moves = tables.awake().size() + support.awake().size() > 0 ||
                          std::ranges::any_of(neighbors, [](const FullNeighbor& n) { return !n.asleep; });
   return any_moves && std::size_t(tables.size() + support.size()) + neighbors.size() > 1;
+}
+
+// Of the time of hulls: the rest is that of bodies of `tables` which are at edges of the ground.
+double StatisticalLevel::Impl::share_of_support() const {
+  const auto hulls_of_tables = double(std::ranges::count_if(search.guests(), &Guest::on_hull));
+  if (hulls_of_tables == 0.0) return 1.0;
+  const double others = double(support.awake().size() + search.guests().size()) - hulls_of_tables;
+  return others / (others + hulls_of_tables);
 }
 
 void StatisticalLevel::Impl::count_bodies() {
@@ -182,7 +191,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   s.fell_asleep.assign(tables.fell_asleep().begin(), tables.fell_asleep().end());
   s.fell_asleep.insert(s.fell_asleep.end(), support.fell_asleep().begin(), support.fell_asleep().end());
   if (s.clocked) {
-    s.cost.support_ms = hulls_until - hulls_from;
+    s.cost.support_ms = (hulls_until - hulls_from) * s.share_of_support();
     s.cost.tables_ms = s.clock() - started - s.cost.support_ms;
     s.count_bodies();
   }

@@ -100,6 +100,18 @@ void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs
   }
 }
 
+// Of the islands that touch them.
+void SubstepPlan::find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts,
+                                      double dt) {
+  for (const SolidContact& contact : solid_contacts) {
+    const StatisticalBody& body = scene.bodies[std::size_t(contact.slot)];
+    if (body.motion == Motion::asleep) continue;
+    const Vec3 velocity = body.velocity - contact.part->velocity_at(body.position);
+    double& longest = longest_of_island_[std::size_t(root_of(contact.slot))];
+    longest = std::max(longest, velocity.norm() * dt / scene.kind_of(body).shape->radius);
+  }
+}
+
 void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
                        std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
   find_ways(scene, pairs, dt);
@@ -113,13 +125,7 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
     near.mark(Participant::statistical(std::size_t(contact.slot)));
 
   find_islands(scene, pairs, near);
-
-  for (const SolidContact& contact : solid_contacts) {
-    const StatisticalBody& body = scene.bodies[std::size_t(contact.slot)];
-    if (scene.asleep(Participant::statistical(std::size_t(contact.slot)))) continue;
-    double& longest = longest_of_island_[std::size_t(root_of(contact.slot))];
-    longest = std::max(longest, body.velocity.norm() * dt / scene.kind_of(body).shape->radius);
-  }
+  find_ways_to_solids(scene, solid_contacts, dt);
   std::array<bool, kMostSubsteps + 1> any = {};
   const auto pace_of = [&](std::int32_t node) {
     const Pace pace = pace_for(longest_of_island_[std::size_t(root_of(node))]);

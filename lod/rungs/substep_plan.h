@@ -31,6 +31,8 @@ class SubstepPlan {
   void find_ways(const ContactScene& scene, const NearPairs& pairs, double dt);
   void mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt, NearMarks& near);
   void find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near);
+  void find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts,
+                           double dt);
   std::int32_t root_of(std::int32_t body);
 
   static constexpr double kApart = -1.0, kFollowing = -2.0;

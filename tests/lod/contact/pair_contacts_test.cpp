@@ -56,5 +56,26 @@ TEST_F(LInL, BothBodiesMeetAlikeWhicheverIsFirst) {
   ASSERT_EQ(there.size(), back.size());
 }
 
+// A crate that overhangs a step of a wide flight of stairs by a corner: the step's other side, .2 m below, is
+// within a hundredth of its length.
+TEST(PairContacts, AGreatSlabIsTouchedOnOneSide) {
+  const Shape crate = make_shape("crate", make_box({0.2, 0.3, 0.4})),
+              step = make_shape("step", make_box({0.35, 80.0, 0.2}));
+  const PairBody lower{&step};
+  for (const double gap : {-1e-3, 1e-3}) {
+    const PairBody upper{
+        &crate, Vec3(-0.12, 17.0, 0.1 + 0.1 + gap),
+        Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ())) * Quat(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vec3::UnitY()))};
+    const auto contact = find_hull_contact(upper, lower, 0.01, 0.0, Vec3::UnitZ());
+    ASSERT_TRUE(contact);
+    EXPECT_NEAR(contact->normal.z(), 1.0, 1e-9);
+    EXPECT_GE(contact->manifold.count, 3);
+    for (int i = 0; i < contact->manifold.count; ++i) {
+      EXPECT_NEAR(contact->manifold.points[std::size_t(i)].gap, gap, 1e-9);
+      EXPECT_NEAR(contact->manifold.points[std::size_t(i)].point.z(), 0.1 + 0.5 * gap, 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lodestone
