@@ -9,6 +9,17 @@ Vec3 in_part(const PlacedSolid& placed, const Vec3& point) {
   return placed.orientation.conjugate() * (point - placed.position) + placed.solid->center;
 }
 
+bool is_over(const SurfaceTriangle& t, const Vec3& point) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (t.normal.cross(t.corner[(i + 1) % 3] - t.corner[i]).dot(point - t.corner[i]) < 0.0) return false;
+  return true;
+}
+
+Vec3 find_way_from_edge(const SurfaceTriangle& t, std::size_t edge, const Vec3& point) {
+  const Vec3 from = point - t.corner[edge], along = t.corner[(edge + 1) % 3] - t.corner[edge];
+  return from - std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
+}
+
 std::optional<HalfSpace> find_face_below(const PlacedSolid& placed, const Vec3& center, double reach) {
   const GroundSolid& solid = *placed.solid;
   if (solid.surface || solid.faces.empty())
@@ -30,16 +41,13 @@ SurfaceBelow find_surface_below(const PlacedSolid& placed, const Vec3& center, d
   const Vec3 at = in_part(placed, center);
   const double height = t.normal.dot(at - t.corner[0]);
   if (std::abs(height) >= reach) return {};
-  bool inside = true, ridge = false, any_edge = false;
+  bool ridge = false, any_edge = false;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 from = at - t.corner[i], along = t.corner[(i + 1) % 3] - t.corner[i];
-    inside = inside && t.normal.cross(along).dot(from) >= 0.0;
-    const double share = std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const bool in_reach = (from - share * along).squaredNorm() < reach * reach;
+    const bool in_reach = find_way_from_edge(t, i, at).squaredNorm() < reach * reach;
     any_edge |= in_reach;
     ridge |= in_reach && t.ridge[i];
   }
-  if (!inside && !any_edge) return {};
+  if (!any_edge && !is_over(t, at)) return {};
   if (ridge || height < 0.0) return {.in_reach = true, .plane = {}};
   const Vec3 normal = placed.orientation * t.normal,
              corner = placed.position + placed.orientation * (t.corner[0] - placed.solid->center);

@@ -12,6 +12,11 @@ namespace lodestone {
 /// A point of the world in the frame of the solid's part.
 Vec3 in_part(const PlacedSolid& placed, const Vec3& point);
 
+/// Whether a point, in the part's frame, lies over the triangle or below it, along its normal.
+bool is_over(const SurfaceTriangle& t, const Vec3& point);
+/// m: to it from the nearest point of the edge from corner `edge` to the next.
+Vec3 find_way_from_edge(const SurfaceTriangle& t, std::size_t edge, const Vec3& point);
+
 /// The face of `solid` that a ball about `center` lies over wholly, with the solid's other faces farther than
 /// `reach` beyond: there it is a plane like any other. None near an edge.
 std::optional<HalfSpace> find_face_below(const PlacedSolid& solid, const Vec3& center, double reach);

@@ -6,6 +6,15 @@
 #include <utility>
 
 namespace lodestone {
+
+PairBody piece_of(const PairBody& body, int piece) {
+  if (body.shape->pieces.empty()) return body;
+  PairBody part = body;
+  part.shape = &body.shape->pieces[std::size_t(piece)];
+  part.position += body.orientation * part.shape->center_of_mass_in_mesh;
+  return part;
+}
+
 namespace {
 
 // Vertices this near the touching plane, over the lesser R, belong to the touching feature: of a great slab
@@ -56,15 +65,6 @@ PairContact contact_along(const PairBody& first, const PairBody& second, const H
 }
 
 int count_pieces(const PairBody& body) { return std::max<int>(1, int(body.shape->pieces.size())); }
-
-// The body itself where it has none.
-PairBody piece_of(const PairBody& body, int piece) {
-  if (body.shape->pieces.empty()) return body;
-  PairBody part = body;
-  part.shape = &body.shape->pieces[std::size_t(piece)];
-  part.position += body.orientation * part.shape->center_of_mass_in_mesh;
-  return part;
-}
 
 // Deeper than this in a piece, over its R, is inside it.
 constexpr double kWithin = 1e-3;

@@ -19,6 +19,9 @@ struct PairBody {
   double sphere_radius = 0.0;  ///< m, `tables`: of the colliding sphere
 };
 
+/// One of its convex pieces; the body itself where it has none.
+PairBody piece_of(const PairBody& body, int piece);
+
 struct PairContact {
   Vec3 normal = Vec3::UnitZ();  ///< from the second body into the first
   double gap = 0.0;             ///< m, the least; negative where they overlap

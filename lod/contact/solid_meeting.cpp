@@ -1,0 +1,176 @@
+#include "lod/contact/solid_meeting.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "lod/contact/faces_below.h"
+#include "lod/contact/hull_contacts.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kAhead = 0.25;           // over the inner radius
+constexpr double kSteepestFeature = 0.7;  // cosine: from a triangle's normal to that of what stands out of it
+
+PairBody pair_body(const PlacedSolid& placed) {
+  return {placed.solid->shape.get(), placed.position, placed.orientation};
+}
+
+Vec3 middle_of(const Manifold& manifold) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < manifold.count; ++i) sum += manifold.points[i].point;
+  return sum / manifold.count;
+}
+
+// The edge of the triangle that `point` is nearest to, or farthest beyond.
+std::size_t nearest_edge(const SurfaceTriangle& t, const Vec3& point) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 inward = t.normal.cross(t.corner[(i + 1) % 3] - t.corner[i]).normalized();
+    const double distance = inward.dot(point - t.corner[i]);
+    if (distance < least) least = distance, nearest = i;
+  }
+  return nearest;
+}
+
+// A point that looks for the solid's nearest one.
+const Shape& point_shape() {
+  static const Shape point = [] {
+    Shape shape;
+    shape.sphere_radius = 0.0;
+    return shape;
+  }();
+  return point;
+}
+
+// From the centre of mass to the point farthest along `direction` (unit, world).
+Vec3 find_farthest_arm(const PairBody& body, const Vec3& direction) {
+  std::int32_t hint = -1;
+  if (!body.shape->sphere_radius)
+    hint = std::int32_t(body.shape->support_map.find_start(body.orientation.conjugate() * direction));
+  return find_lowest_point(*body.shape, body.orientation, -direction, 0.0, hint).arm;
+}
+
+/// How the lowest point of a body lies to a triangle, along its normal.
+struct LowestPoint {
+  double gap = 0.0;  ///< m
+  bool is_over = false;
+};
+
+LowestPoint find_lowest_over(const PairBody& body, const PlacedSolid& placed, const Vec3& normal) {
+  const SurfaceTriangle& t = *placed.solid->surface;
+  const Vec3 point = in_part(placed, body.position + find_farthest_arm(body, -normal));
+  return {t.normal.dot(point - t.corner[0]), is_over(t, point)};
+}
+
+// From the nearest edge of a triangle to a point, in its part's axes; zero: the point lies in it.
+Vec3 find_way_from_edges(const SurfaceTriangle& t, const Vec3& point) {
+  Vec3 way = Vec3::Zero();
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 to = find_way_from_edge(t, i, point);
+    if (to.squaredNorm() < least) least = to.squaredNorm(), way = to;
+  }
+  return way;
+}
+
+// An axis along which the two are nearly as far apart as along any, world, unit: where a search for that one
+// begins. Of a few: from the nearest point of the solid to the body's centre, and across each face that this
+// lies over, as an overhanging body is nearer to an edge than to the face that it lies on. Zero: there is
+// none.
+Vec3 find_start_axis(const PairBody& body, const PlacedSolid& placed) {
+  if (placed.solid->surface) {
+    const Vec3 way = find_way_from_edges(*placed.solid->surface, in_part(placed, body.position));
+    return way.isZero(0.0) ? Vec3(Vec3::Zero()) : Vec3(placed.orientation * way.normalized());
+  }
+  const Vec3 center = placed.orientation.conjugate() * (body.position - placed.position);
+  Vec3 axis = Vec3::Zero();
+  double greatest = -std::numeric_limits<double>::max();  // m, gap
+  const auto look_along = [&](const Vec3& normal, double height) {
+    const Vec3 along = placed.orientation * normal;
+    const double gap = height - find_farthest_arm(body, -along).dot(-along);
+    if (gap > greatest) greatest = gap, axis = along;
+  };
+  if (const auto nearest = find_nearest(*placed.solid, center)) look_along(nearest->normal, nearest->height);
+  constexpr std::size_t kFewFaces = 12;
+  if (placed.solid->faces.size() <= kFewFaces)
+    for (const SolidFace& face : placed.solid->faces)
+      if (const double height = face.normal.dot(center) - face.offset; height > 0.0)
+        look_along(face.normal, height);
+  return axis;
+}
+
+std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin) {
+  const PairBody ground = pair_body(placed);
+  // Not those of a thin body's other side.
+  const double ahead = std::min(margin, kAhead * body.shape->inner_radius);
+  const auto meet_as_hulls = [&] {
+    return find_hull_contact(body, ground, margin, ahead, find_start_axis(body, placed));
+  };
+  if (!placed.solid->surface) return meet_as_hulls();
+  const SurfaceTriangle& t = *placed.solid->surface;
+  const Vec3 normal = placed.orientation * t.normal;
+  const LowestPoint lowest = find_lowest_over(body, placed, normal);
+  if (lowest.gap > margin) return {};
+  // What is over the triangle is nearest to it along its normal.
+  if (lowest.is_over && lowest.gap > -kAhead * body.shape->inner_radius)
+    return find_contact_along(body, ground, normal, margin, ahead);
+  const std::optional<PairContact> contact = meet_as_hulls();
+  if (!contact) return {};
+  const double along = contact->normal.dot(normal);
+  const bool over_ridge =
+      along > 0.0 && along < 0.999 && t.ridge[nearest_edge(t, in_part(placed, middle_of(contact->manifold)))];
+  if (over_ridge) return contact;
+  std::optional<PairContact> flat = find_contact_along(body, ground, normal, margin, ahead);
+  // What straddles a hill top is lowest, along each triangle's normal, over another: its own features hold
+  // it.
+  if (!flat && along > kSteepestFeature) return contact;
+  return flat;
+}
+
+}  // namespace
+
+std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point) {
+  if (solid.shape->sphere_radius)
+    return Nearest{point.squaredNorm() > 0.0 ? Vec3(point.normalized()) : Vec3(Vec3::UnitZ()),
+                   point.norm() - *solid.shape->sphere_radius};
+  if (const auto& t = solid.surface) {
+    const Vec3 at = point + solid.center;
+    const double height = t->normal.dot(at - t->corner[0]);
+    const std::size_t edge = nearest_edge(*t, at);
+    const Vec3 &from = t->corner[edge], along = (t->corner[(edge + 1) % 3] - from).normalized();
+    if (t->normal.cross(along).dot(at - from) >= 0.0) return Nearest{t->normal, height};
+    if (!t->ridge[edge] || height < 0.0) return {};
+  }
+  const SolidFace* highest = nullptr;
+  double most = -1e300;
+  for (const SolidFace& face : solid.faces)
+    if (const double height = face.normal.dot(point) - face.offset; height > most)
+      most = height, highest = &face;
+  const Vec3 foot = point - most * highest->normal;
+  const double rounding = 1e-9 * solid.shape->radius;
+  const bool over_face = std::ranges::all_of(
+      solid.faces, [&](const SolidFace& face) { return face.normal.dot(foot) - face.offset <= rounding; });
+  if (most <= 0.0 || over_face) return Nearest{highest->normal, most};
+  const HullGap gap =
+      find_hull_gap({point_shape(), point, Quat::Identity()}, {*solid.shape, Vec3::Zero(), Quat::Identity()},
+                    {.normal = Vec3::Zero()}, 1e300);
+  return Nearest{gap.normal, gap.gap};
+}
+
+void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search) {
+  search.contacts.clear();
+  if (body.shape->pieces.empty() || placed.solid->surface) {
+    if (const auto contact = meet(body, placed, margin)) search.contacts.push_back(*contact);
+    return;
+  }
+  HullGap whole = {.normal = find_start_axis(body, placed)};
+  thread_local std::vector<KnownGap> of_pieces;
+  of_pieces.clear();
+  for (int piece = 0; piece < int(body.shape->pieces.size()); ++piece)
+    of_pieces.emplace_back().axis.normal = find_start_axis(piece_of(body, piece), placed);
+  find_pair_contacts(body, pair_body(placed), whole, of_pieces, margin, search);
+}
+
+}  // namespace lodestone
