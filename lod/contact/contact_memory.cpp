@@ -41,8 +41,12 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdMani
       const std::uint32_t begin = manifolds[pair.first].begin,
                           end = manifolds[pair.end - 1].begin + manifolds[pair.end - 1].count;
       const auto now = points.subspan(begin, end - begin);
-      for (const Load& load : std::span(before.loads).subspan(run.begin, run.count))
-        find_nearest(now, load.arm.cast<double>()).guess += step * load.force.cast<double>();
+      for (const Load& load : std::span(before.loads).subspan(run.begin, run.count)) {
+        CrowdPoint& point = find_nearest(now, load.arm.cast<double>());
+        point.guess += step * load.force.cast<double>();
+        if (load.frictionless >= 0.0F)
+          point.frictionless = std::max(0.0F, point.frictionless) + float(step) * load.frictionless;
+      }
     }
   });
 }
@@ -53,7 +57,8 @@ void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const C
   last_substep_.clear();
   last_substep_.loads.reserve(points.size());
   for (const CrowdPoint& point : points)
-    last_substep_.loads.push_back({(point.impulse / step).cast<float>(), point.arm_first.cast<float>()});
+    last_substep_.loads.push_back({(point.impulse / step).cast<float>(), point.arm_first.cast<float>(),
+                                   point.frictionless / float(step)});
   each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
     last_substep_.place.add(key);
     const std::uint32_t begin = manifolds[first].begin;

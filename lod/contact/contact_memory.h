@@ -41,6 +41,7 @@ class ContactMemory {
   };
   struct Load {
     Eigen::Vector3f force, arm;  // N, on the first body; m, from its centre of mass
+    float frictionless;          // N, as CrowdPoint has it
   };
   struct Loads {
     PairMemory place;  // in runs

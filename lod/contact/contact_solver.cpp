@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "lod/contact/contact_impulse.h"
-#include "lod/simd/wide_loop.h"
+#include "lod/simd/double_lanes.h"
 
 namespace lodestone {
+
+using namespace lane;
+
 namespace {
 
 // What stands on the ground (second below zero) meets nothing that moves.
@@ -19,27 +22,40 @@ LODESTONE_INLINE Vec3 contact_velocity(std::span<const SolverBody> bodies, const
   return of_first - b.velocity - b.angular_velocity.cross(c.arm_second);
 }
 
-LODESTONE_INLINE double inverse_mass_along(const SolverBody& body, const Vec3& arm, const Vec3& axis) {
-  const Vec3 turning = arm.cross(axis);
-  return body.inverse_mass + turning.dot(body.inverse_inertia * turning);
-}
+/// A body's velocities, and after all bodies those of the ground, as sweeps read and change them.
+struct alignas(64) Motion {
+  D4 velocity{}, angular{};
+};
 
-LODESTONE_INLINE double effective_mass_along(std::span<const SolverBody> bodies, const SolverContact& c,
-                                             const Vec3& axis) {
-  double inverse = inverse_mass_along(bodies[c.first], c.arm_first, axis);
-  if (c.second >= 0) inverse += inverse_mass_along(bodies[c.second], c.arm_second, axis);
-  return 1.0 / inverse;
-}
+/// What of a contact acts along one axis: on the first body, and the other way on the second.
+struct Row {
+  D4 axis;                             // the last of each four is 0
+  D4 turning_first, turning_second;    // arm × axis
+  D4 response_first, response_second;  // rad/s per N s
+};
 
-LODESTONE_INLINE void apply(std::span<SolverBody> bodies, const SolverContact& c, const Vec3& impulse) {
-  SolverBody& a = bodies[c.first];
-  a.velocity += a.inverse_mass * impulse;
-  a.angular_velocity += a.inverse_inertia * c.arm_first.cross(impulse);
-  if (c.second < 0) return;
-  SolverBody& b = bodies[c.second];
-  b.velocity -= b.inverse_mass * impulse;
-  b.angular_velocity -= b.inverse_inertia * c.arm_second.cross(impulse);
-}
+/// A contact as sweeps read and change it. Of its four lanes the first three are along the normal and both
+/// tangents.
+struct alignas(64) Point {
+  Row rows[3];
+  D4 effective_mass, target, impulse;  // kg, m/s, N s
+  double friction, bound;              // N s; negative: friction times the normal impulse as it is
+  double inverse_mass_first, inverse_mass_second;
+  std::int32_t first, second;
+};
+
+struct Arrays {
+  std::vector<Motion> motions, before;
+  std::vector<Point> points;
+};
+
+enum class Round {
+  guesses,       // gives what the impulses are
+  frictionless,  // relaxes those along the normal
+  relaxed,
+};
+
+LODESTONE_INLINE D4 lanes_of(const Vec3& v) { return D4{v.x(), v.y(), v.z(), 0.0}; }
 
 // The normal velocity to reach: a bounce, or closing the gap just within the step.
 double target_velocity(SolverContact& c, bool on_still, double approach, double step,
@@ -52,65 +68,139 @@ double target_velocity(SolverContact& c, bool on_still, double approach, double 
                    : closing;
 }
 
-void prepare(std::span<SolverBody> bodies, SolverContact& c, double step, const ContactSolverSettings& s) {
+Point prepare(std::span<const SolverBody> bodies, SolverContact& c, double step,
+              const ContactSolverSettings& s) {
   const Vec3 velocity = contact_velocity(bodies, c);
   const Mat3 frame = contact_frame(c.normal, velocity);
   c.tangent[0] = frame.col(1);
   c.tangent[1] = frame.col(2);
-  for (int i = 0; i < 3; ++i) c.effective_mass[i] = effective_mass_along(bodies, c, frame.col(i));
   const bool on_still = c.second < 0 || bodies[c.second].inverse_mass == 0.0;
   c.target = target_velocity(c, on_still, velocity.dot(c.normal), step, s);
-}
 
-// Returns the size of the change, N s.
-LODESTONE_INLINE double relax(std::span<SolverBody> bodies, SolverContact& c) {
-  const Vec3 velocity = contact_velocity(bodies, c);
-  const double before = c.impulse[0];
-  c.impulse[0] = std::max(0.0, before + c.effective_mass[0] * (c.target - velocity.dot(c.normal)));
-  Vec3 change = (c.impulse[0] - before) * c.normal;
-  const double bound = c.friction_bound >= 0.0 ? c.friction_bound : c.law.friction * c.impulse[0];
-  for (int t = 0; t < 2; ++t) {
-    const double held = c.impulse[t + 1];
-    c.impulse[t + 1] = std::clamp(held - c.effective_mass[t + 1] * velocity.dot(c.tangent[t]), -bound, bound);
-    change += (c.impulse[t + 1] - held) * c.tangent[t];
+  const SolverBody& a = bodies[c.first];
+  Point p{};
+  p.first = c.first, p.second = c.second < 0 ? std::int32_t(bodies.size()) : c.second;
+  p.inverse_mass_first = a.inverse_mass;
+  p.friction = c.law.friction, p.bound = -1.0;
+  p.target = D4{c.target, 0.0, 0.0, 0.0};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 axis = frame.col(i), turning = c.arm_first.cross(axis), response = a.inverse_inertia * turning;
+    Row& row = p.rows[i];
+    row.axis = lanes_of(axis), row.turning_first = lanes_of(turning), row.response_first = lanes_of(response);
+    double inverse = a.inverse_mass + turning.dot(response);
+    if (c.second >= 0) {
+      const SolverBody& b = bodies[c.second];
+      const Vec3 turning_second = c.arm_second.cross(axis),
+                 response_second = b.inverse_inertia * turning_second;
+      row.turning_second = lanes_of(turning_second), row.response_second = lanes_of(response_second);
+      p.inverse_mass_second = b.inverse_mass;
+      inverse += b.inverse_mass + turning_second.dot(response_second);
+    }
+    p.effective_mass[i] = 1.0 / inverse;
   }
-  apply(bodies, c, change);
-  return change.lpNorm<1>();
+  return p;
 }
 
-void start_from_guess(std::span<SolverBody> bodies, SolverContact& c) {
-  if (c.bounces || c.guess.isZero(0.0)) return;
-  c.impulse[0] = std::max(0.0, c.guess.dot(c.normal));
-  const double bound = c.friction_bound >= 0.0 ? c.friction_bound : c.law.friction * c.impulse[0];
-  for (int t = 0; t < 2; ++t) c.impulse[t + 1] = std::clamp(c.guess.dot(c.tangent[t]), -bound, bound);
-  apply(bodies, c, impulse_of(c));
+LODESTONE_INLINE D4 sums_of(const D4& a, const D4& b, const D4& c) {
+  const V4 columns = columns_of(a, b, c, D4{});
+  return columns.x + columns.y + columns.z;
 }
 
-void sweep(std::span<SolverBody> bodies, std::span<SolverContact> contacts,
-           const ContactSolverSettings& settings) {
+LODESTONE_INLINE D4 velocity_along(const Row& row, const D4& velocity, const D4& turns_first,
+                                   const D4& turns_second) {
+  return row.axis * velocity + row.turning_first * turns_first - row.turning_second * turns_second;
+}
+
+struct RoundLoop {
+  Arrays& arrays;
+  Round round;
+  double& greatest_change;   // N s
+  double& greatest_impulse;  // along a normal
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    Motion* motions = arrays.motions.data();
+    for (std::int64_t i = begin; i < end; ++i) {
+      Point& p = arrays.points[std::size_t(i)];
+      Motion &a = motions[p.first], &b = motions[p.second];
+      const Row* rows = p.rows;
+      if (round == Round::frictionless) {
+        const D4 along = velocity_along(rows[0], a.velocity - b.velocity, a.angular, b.angular);
+        const double speed = along[0] + along[1] + along[2], held = p.impulse[0],
+                     now = std::max(0.0, held + p.effective_mass[0] * (p.target[0] - speed)),
+                     change = now - held;
+        p.impulse[0] = now;
+        a.velocity += (p.inverse_mass_first * change) * rows[0].axis;
+        b.velocity -= (p.inverse_mass_second * change) * rows[0].axis;
+        a.angular += change * rows[0].response_first;
+        b.angular -= change * rows[0].response_second;
+        greatest_change = std::max(greatest_change, std::abs(change));
+        greatest_impulse = std::max(greatest_impulse, now);
+        continue;
+      }
+      D4 change = p.impulse;
+      if (round == Round::relaxed) {
+        const D4 apart = a.velocity - b.velocity;
+        const D4 speeds = sums_of(velocity_along(rows[0], apart, a.angular, b.angular),
+                                  velocity_along(rows[1], apart, a.angular, b.angular),
+                                  velocity_along(rows[2], apart, a.angular, b.angular));
+        const D4 asked = p.impulse + p.effective_mass * (p.target - speeds);
+        const double normal = std::max(0.0, asked[0]), bound = p.bound >= 0.0 ? p.bound : p.friction * normal;
+        const D4 now = most(D4{normal, -bound, -bound, 0.0}, least(asked, D4{normal, bound, bound, 0.0}));
+        change = now - p.impulse;
+        p.impulse = now;
+        const D4 size = absolute(change);
+        greatest_change = std::max(greatest_change, size[0] + size[1] + size[2]);
+        greatest_impulse = std::max(greatest_impulse, normal);
+      }
+      const D4 impulse = change[0] * rows[0].axis + change[1] * rows[1].axis + change[2] * rows[2].axis;
+      a.velocity += p.inverse_mass_first * impulse;
+      b.velocity -= p.inverse_mass_second * impulse;
+      a.angular += change[0] * rows[0].response_first + change[1] * rows[1].response_first +
+                   change[2] * rows[2].response_first;
+      b.angular -= change[0] * rows[0].response_second + change[1] * rows[1].response_second +
+                   change[2] * rows[2].response_second;
+    }
+  }
+};
+
+void sweep(Arrays& arrays, Round round, const ContactSolverSettings& settings, Simd simd) {
   for (int i = 0; i < settings.sweeps; ++i) {
     double changed = 0.0, greatest = 0.0;
-    for (SolverContact& c : contacts) {
-      changed = std::max(changed, relax(bodies, c));
-      greatest = std::max(greatest, c.impulse[0]);
-    }
+    run_wide(simd, RoundLoop{arrays, round, changed, greatest}, 0, std::int64_t(arrays.points.size()));
     if (changed <= settings.tolerance * greatest) return;
   }
 }
 
+void give_guesses(Arrays& arrays, Simd simd) {
+  double none = 0.0;
+  run_wide(simd, RoundLoop{arrays, Round::guesses, none, none}, 0, std::int64_t(arrays.points.size()));
+}
+
 // What the normal impulses are without friction bounds it.
-void bound_friction(std::span<SolverBody> bodies, std::span<SolverContact> contacts,
-                    const ContactSolverSettings& settings) {
-  thread_local std::vector<SolverBody> before;
-  before.assign(bodies.begin(), bodies.end());
-  for (SolverContact& c : contacts) c.friction_bound = 0.0;
-  for (SolverContact& c : contacts) start_from_guess(bodies, c);
-  sweep(bodies, contacts, settings);
-  std::ranges::copy(before, bodies.begin());
-  for (SolverContact& c : contacts) {
-    c.friction_bound = c.law.friction * c.impulse[0];
-    c.impulse[0] = 0.0;
+void bound_friction(Arrays& arrays, std::span<SolverContact> contacts, const ContactSolverSettings& settings,
+                    Simd simd) {
+  arrays.before = arrays.motions;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const SolverContact& c = contacts[i];
+    const double guess = c.frictionless >= 0.0 ? c.frictionless : std::max(0.0, c.guess.dot(c.normal));
+    arrays.points[i].impulse = D4{c.bounces ? 0.0 : guess, 0.0, 0.0, 0.0};
   }
+  give_guesses(arrays, simd);
+  sweep(arrays, Round::frictionless, settings, simd);
+  std::swap(arrays.motions, arrays.before);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    Point& p = arrays.points[i];
+    contacts[i].frictionless = p.impulse[0];
+    p.bound = p.friction * p.impulse[0];
+  }
+}
+
+void start_from_guess(const SolverContact& c, Point& p) {
+  p.impulse = D4{};
+  if (c.bounces) return;
+  p.impulse[0] = std::max(0.0, c.guess.dot(c.normal));
+  const double bound = p.bound >= 0.0 ? p.bound : p.friction * p.impulse[0];
+  for (int t = 0; t < 2; ++t) p.impulse[t + 1] = std::clamp(c.guess.dot(c.tangent[t]), -bound, bound);
 }
 
 }  // namespace
@@ -126,11 +216,25 @@ double bounce_in_fall(double restitution, double gap, double approach, double fa
 }
 
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step,
-                    const ContactSolverSettings& settings) {
-  for (SolverContact& c : contacts) prepare(bodies, c, step, settings);
-  if (settings.frictionless_bound) bound_friction(bodies, contacts, settings);
-  for (SolverContact& c : contacts) start_from_guess(bodies, c);
-  sweep(bodies, contacts, settings);
+                    const ContactSolverSettings& settings, Simd simd) {
+  thread_local Arrays arrays;
+  arrays.motions.clear(), arrays.points.clear();
+  for (const SolverBody& body : bodies)
+    arrays.motions.push_back({lanes_of(body.velocity), lanes_of(body.angular_velocity)});
+  arrays.motions.emplace_back();
+  for (SolverContact& c : contacts) arrays.points.push_back(prepare(bodies, c, step, settings));
+  if (settings.frictionless_bound) bound_friction(arrays, contacts, settings, simd);
+  for (std::size_t i = 0; i < contacts.size(); ++i) start_from_guess(contacts[i], arrays.points[i]);
+  give_guesses(arrays, simd);
+  sweep(arrays, Round::relaxed, settings, simd);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) contacts[i].impulse[axis] = arrays.points[i].impulse[axis];
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].inverse_mass == 0.0) continue;
+    const auto& [v, w] = arrays.motions[i];
+    bodies[i].velocity = {v[0], v[1], v[2]};
+    bodies[i].angular_velocity = {w[0], w[1], w[2]};
+  }
 }
 
 }  // namespace lodestone

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "lod/simd/wide_loop.h"
 #include "reference/geometry.h"
 #include "reference/material.h"
 
@@ -25,12 +26,12 @@ struct SolverContact {
   Vec3 arm_first = Vec3::Zero(), arm_second = Vec3::Zero();  ///< from each centre of mass to the shared point
   double gap = 0.0;                                          ///< m, negative where they overlap
   ContactLaw law;
-  Vec3 guess = Vec3::Zero();  ///< N s, on `first`: what a resting contact starts from
+  Vec3 guess = Vec3::Zero();   ///< N s, on `first`: what a resting contact starts from
+  double frictionless = -1.0;  ///< N s, normal impulse to start from where there is no friction; below zero:
+                               ///< that of `guess`. What it comes to, where friction is bounded by it
   // Filled by the solver:
   Vec3 tangent[2] = {Vec3::Zero(), Vec3::Zero()};
-  double effective_mass[3] = {0.0, 0.0, 0.0};
   double target = 0.0;            ///< m/s, normal velocity asked for
-  double friction_bound = -1.0;   ///< N s; negative: μ times the normal impulse as it is
   bool bounces = false;           ///< an impact, fast enough for restitution
   double impact_time = 0.0;       ///< s, of one that bounces: when in the step its gap is closed
   double impulse[3] = {0, 0, 0};  ///< N s, along the normal and both tangents
@@ -55,7 +56,7 @@ struct ContactSolverSettings {
 /// restitution and Coulomb friction. An overlap is kept from growing, not undone: that is a matter of
 /// positions (see push_out_overlap).
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step,
-                    const ContactSolverSettings& settings);
+                    const ContactSolverSettings& settings, Simd simd = find_simd());
 
 /// m/s along the normal at the end of a `step` that a body began with `approach` (negative, with the step's
 /// `fall` of gravity in it): it falls through the gap, bounces off what stands still and falls on.

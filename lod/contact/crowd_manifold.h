@@ -22,6 +22,8 @@ struct CrowdPoint {
        arm_second = Vec3::Zero();  ///< m, from each centre of mass to the shared point
   double gap = 0.0;                ///< m, negative where they overlap
   Vec3 guess = Vec3::Zero();       ///< N s, on `first`: what a resting contact starts from
+  float frictionless = -1.0F;      ///< N s, normal impulse that there was without friction; below zero: not
+                                   ///< known. Filled anew by the solver where friction is bounded by it
   // Filled by the solver:
   Vec3 impulse = Vec3::Zero();  ///< N s, on `first`
   bool bounces = false;         ///< an impact, fast enough for restitution

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "lod/contact/lone_contacts.h"
+#include "lod/contact/crowd_islands.h"
+#include "lod/contact/small_islands.h"
 #include "lod/simd/double_lanes.h"
 
 namespace lodestone {
@@ -21,8 +22,6 @@ constexpr std::uint32_t kMostPoints = 4;  // of a manifold; more make no differe
 constexpr std::size_t kGroups =
     2 * kMostPoints;                 // of a colour: by whether it carried something, and its points
 constexpr std::int64_t kGrain = 64;  // batches of a job
-constexpr double kUneven =
-    20.0;  // a body that weighs as many times another makes all that hangs together with them uneven
 constexpr double kMostUnevenSweeps =
     80.0;  // times as many as elsewhere; for a ratio r about √(r / 2) times, as such an iteration asks for
 // Points, four lanes wide, of one body on another: an impact on a light one, of whose impulses nothing is
@@ -116,13 +115,10 @@ struct Change {
 
 struct CrowdSolver::Work : CrowdArrays {
   Simd simd;
-  LoneContacts lone;
-  std::vector<std::uint64_t> used;      // of each body, as bits: colours that its manifolds have
-  std::vector<std::uint8_t> colour_of;  // each manifold's
-  std::vector<std::uint8_t> uneven;     // each manifold's: whether it is in an uneven island; empty: none is
-  std::vector<std::int32_t> island;     // of each body: another of its island, or itself
-  std::vector<std::uint8_t> island_uneven;
-  double most_uneven = 1.0;              // greatest ratio of two masses that touch
+  CrowdIslands islands;
+  SmallIslands small_islands;
+  std::vector<std::uint64_t> used;       // of each body, as bits: colours that its manifolds have
+  std::vector<std::uint8_t> colour_of;   // each manifold's
   std::vector<std::uint32_t> order;      // manifolds by colour, then those that are not uneven, then by group
   std::vector<std::uint16_t> group_of_;  // of each manifold, over all colours
   std::vector<std::uint32_t> first_of;   // of each of these groups, in `order`
@@ -137,8 +133,6 @@ struct CrowdSolver::Work : CrowdArrays {
             std::span<const CrowdPoint> contacts);
   void hand_out(const Batch& batch, std::span<const CrowdManifold> manifolds,
                 std::span<CrowdPoint> contacts) const;
-  std::int32_t island_of(std::int32_t body);
-  void find_uneven(std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds);
   enum class Which { all, uneven };
   Change sweep(Round round, Which which, const JobRunner& jobs, double part = 1.0);
   void sweep_uneven(const ContactSolverSettings& settings, const JobRunner& jobs);
@@ -152,42 +146,6 @@ struct CrowdSolver::Work : CrowdArrays {
   void bound_friction(const ContactSolverSettings& settings, const JobRunner& jobs);
 };
 
-std::int32_t CrowdSolver::Work::island_of(std::int32_t body) {
-  while (island[std::size_t(body)] != body)
-    body = island[std::size_t(body)] = island[std::size_t(island[std::size_t(body)])];
-  return body;
-}
-
-// Islands in which much heavier bodies meet light ones.
-void CrowdSolver::Work::find_uneven(std::span<const SolverBody> bodies,
-                                    std::span<const CrowdManifold> manifolds) {
-  uneven.clear();
-  const auto inverse_mass = [&](std::int32_t body) {
-    return body < 0 ? 0.0 : bodies[std::size_t(body)].inverse_mass;
-  };
-  const auto is_uneven = [&](const CrowdManifold& m) {
-    const double a = inverse_mass(m.first), b = inverse_mass(m.second);
-    return a > 0.0 && b > 0.0 && std::max(a, b) >= kUneven * std::min(a, b);
-  };
-  if (std::ranges::none_of(manifolds, is_uneven)) return;
-  most_uneven = 1.0;
-  island.resize(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) island[i] = std::int32_t(i);
-  for (const CrowdManifold& m : manifolds)
-    if (inverse_mass(m.first) > 0.0 && inverse_mass(m.second) > 0.0)
-      island[std::size_t(island_of(m.second))] = island_of(m.first);
-  island_uneven.assign(bodies.size(), 0);
-  for (const CrowdManifold& m : manifolds)
-    if (is_uneven(m)) {
-      const double a = inverse_mass(m.first), b = inverse_mass(m.second);
-      most_uneven = std::max({most_uneven, a / b, b / a});
-      island_uneven[std::size_t(island_of(m.first))] = 1;
-    }
-  for (const CrowdManifold& m : manifolds)
-    uneven.push_back(island_uneven[std::size_t(
-        island_of(inverse_mass(m.first) > 0.0 || m.second < 0 ? m.first : m.second))]);
-}
-
 // Each manifold gets the first colour that none of its bodies has yet. What does not move may be shared.
 void CrowdSolver::Work::colour(std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds) {
   used.assign(bodies.size() + 1, 0);
@@ -197,7 +155,7 @@ void CrowdSolver::Work::colour(std::span<const SolverBody> bodies, std::span<con
   };
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
     colour_of[i] = kNoColour;
-    if (lone.holds(i)) continue;
+    if (islands.kind_of(i) == IslandKind::small) continue;
     std::uint64_t none = 0;
     std::uint64_t& first = moves(manifolds[i].first) ? used[std::size_t(manifolds[i].first)] : none;
     std::uint64_t& second = moves(manifolds[i].second) ? used[std::size_t(manifolds[i].second)] : used.back();
@@ -217,7 +175,7 @@ void CrowdSolver::Work::make_batches(std::span<const CrowdManifold> manifolds,
                                [](const CrowdPoint& point) { return !point.guess.isZero(0.0); });
   };
   const auto group_of = [&](std::size_t i) {
-    const std::size_t part = 2 * std::size_t(colour_of[i]) + (uneven.empty() ? 0 : uneven[i]);
+    const std::size_t part = 2 * std::size_t(colour_of[i]) + (islands.kind_of(i) == IslandKind::uneven);
     return part * kGroups + carries(manifolds[i]) * kMostPoints + std::min(manifolds[i].count, kMostPoints) -
            1;
   };
@@ -457,7 +415,7 @@ void CrowdSolver::Work::sweep_uneven(const ContactSolverSettings& settings, cons
   std::size_t count = 0;  // of points, four lanes wide
   each_uneven_point([&](const Batch&, const PointLanes&, const UnevenLanes&, std::uint32_t) { ++count; });
   const int sweeps =
-      std::max(int(settings.sweeps * std::min(kMostUnevenSweeps, 1.0 + std::sqrt(most_uneven / 2))),
+      std::max(int(settings.sweeps * std::min(kMostUnevenSweeps, 1.0 + std::sqrt(islands.most_uneven() / 2))),
                count <= kFewPoints ? int(kRelaxations / std::max<std::size_t>(count, 1)) : 0);
   const double enough = kUnevenTolerance * settings.fall.norm();
   double last = 0.0;
@@ -522,8 +480,9 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
                         std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings,
                         const JobRunner& jobs) {
   Work& work = *work_;
-  work.lone.find(bodies, manifolds);
-  work.lone.solve(bodies, manifolds, points, step, settings, jobs);
+  work.islands.find(bodies, manifolds);
+  work.small_islands.find(bodies, manifolds, work.islands);
+  work.small_islands.solve(bodies, manifolds, points, step, settings, work.simd, jobs);
   work.motions.resize(bodies.size() + 1);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Vec3 &v = bodies[i].velocity, &w = bodies[i].angular_velocity;
@@ -531,7 +490,6 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
   }
   work.motions.back() = {};
   work.colour(bodies, manifolds);
-  work.find_uneven(bodies, manifolds);
   work.make_batches(manifolds, points);
   const auto batches = std::int64_t(work.batches.size());
   run_in_pieces(jobs, batches, kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -540,13 +498,13 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
     run_wide(work.simd, PrepareLoop{work, manifolds, points, step, settings}, begin, end);
   });
   using Which = Work::Which;
-  if (!work.uneven.empty()) work.bound_friction(settings, jobs);
+  if (work.islands.any_uneven()) work.bound_friction(settings, jobs);
   work.sweep(Round::guesses, Which::all, jobs);
   for (int i = 0; i < settings.sweeps; ++i)
     if (const Change change = work.sweep(Round::relaxed, Which::all, jobs);
         change.greatest_change <= settings.tolerance * change.greatest_impulse)
       break;
-  if (!work.uneven.empty()) work.sweep_uneven(settings, jobs);
+  if (work.islands.any_uneven()) work.sweep_uneven(settings, jobs);
 
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i].velocity = {work.motions[i].velocity[0], work.motions[i].velocity[1],

@@ -65,21 +65,15 @@ void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pai
   }
 }
 
-std::int32_t SubstepPlan::root_of(std::int32_t body) {
-  while (island_[std::size_t(body)] != body)
-    body = island_[std::size_t(body)] = island_[std::size_t(island_[std::size_t(body)])];
-  return body;
-}
-
 // Through every pair of two that are near anybody: who is struck may be faster than its way says. What sleeps
 // or is full hangs together with others through contacts that no pair tells of here: all of it is one, in the
 // place after the last body.
 void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near) {
   const auto others = std::int32_t(scene.bodies.size());
-  island_.resize(scene.bodies.size() + 1);
-  longest_of_island_.resize(island_.size());
+  islands_.make_room(scene.bodies.size() + 1);
+  longest_of_island_.resize(scene.bodies.size() + 1);
   const auto begin = [&](std::int32_t body) {
-    island_[std::size_t(body)] = body;
+    islands_.set_apart(body);
     longest_of_island_[std::size_t(body)] = kApart;
   };
   for (const std::int32_t body : near.marked()) begin(body);
@@ -90,12 +84,11 @@ void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs
   const auto takes_part = [&](Participant p) { return node_of(p) == others || near[p.index()]; };
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto [first, second] = std::pair(pairs[i].first, pairs[i].second);
-    if (takes_part(first) && takes_part(second))
-      island_[std::size_t(root_of(node_of(first)))] = root_of(node_of(second));
+    if (takes_part(first) && takes_part(second)) islands_.join(node_of(first), node_of(second));
   }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (ways_[i] < 0.0) continue;
-    double& longest = longest_of_island_[std::size_t(root_of(node_of(pairs[i].first)))];
+    double& longest = longest_of_island_[std::size_t(islands_.root_of(node_of(pairs[i].first)))];
     longest = std::max(longest, ways_[i]);
   }
 }
@@ -107,7 +100,7 @@ void SubstepPlan::find_ways_to_solids(const ContactScene& scene, std::span<const
     const StatisticalBody& body = scene.bodies[std::size_t(contact.slot)];
     if (body.motion == Motion::asleep) continue;
     const Vec3 velocity = body.velocity - contact.part->velocity_at(body.position);
-    double& longest = longest_of_island_[std::size_t(root_of(contact.slot))];
+    double& longest = longest_of_island_[std::size_t(islands_.root_of(contact.slot))];
     longest = std::max(longest, velocity.norm() * dt / scene.kind_of(body).shape->radius);
   }
 }
@@ -128,7 +121,7 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
   find_ways_to_solids(scene, solid_contacts, dt);
   std::array<bool, kMostSubsteps + 1> any = {};
   const auto pace_of = [&](std::int32_t node) {
-    const Pace pace = pace_for(longest_of_island_[std::size_t(root_of(node))]);
+    const Pace pace = pace_for(longest_of_island_[std::size_t(islands_.root_of(node))]);
     any[pace] = true;
     return pace;
   };
@@ -137,7 +130,8 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
     const Participant p = Participant::statistical(std::size_t(body));
     near.set_pace(p, pace_of(scene.asleep(p) ? others : body));
   }
-  if (longest_of_island_[std::size_t(root_of(others))] != kApart) near.set_full_pace(pace_of(others));
+  if (longest_of_island_[std::size_t(islands_.root_of(others))] != kApart)
+    near.set_full_pace(pace_of(others));
   paces_.clear();
   for (std::size_t pace = 1; pace < any.size(); ++pace)
     if (any[pace]) paces_.push_back(Pace(pace));

@@ -13,6 +13,7 @@
 #include "lod/contact/solid_contacts.h"
 #include "lod/rungs/near_marks.h"
 #include "lod/rungs/near_pairs.h"
+#include "reference/disjoint_sets.h"
 
 namespace lodestone {
 
@@ -33,14 +34,13 @@ class SubstepPlan {
   void find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near);
   void find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts,
                            double dt);
-  std::int32_t root_of(std::int32_t body);
 
   static constexpr double kApart = -1.0, kFollowing = -2.0;
   JobRunner jobs_;
   std::vector<double> ways_;  // of each pair, over R: how far it may close in; kApart: it may not touch;
                               // kFollowing: only once one of the two is stopped
   std::vector<std::size_t> following_;     // pairs of which neither gains on the other
-  std::vector<std::int32_t> island_;       // of each body: another of its island, or itself
+  DisjointSets islands_;                   // of bodies
   std::vector<double> longest_of_island_;  // of each root: the longest of its ways
   std::vector<Pace> paces_;
 };

@@ -1,8 +1,9 @@
 #include "reference/ode/islands.h"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
+
+#include "reference/disjoint_sets.h"
 
 namespace lodestone {
 
@@ -13,20 +14,15 @@ int largest_island(std::span<const OdeContact> contacts) {
   std::ranges::sort(bodies);
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
   const auto number_of = [&](OdeBodyId body) {
-    return std::size_t(std::ranges::lower_bound(bodies, body.value) - bodies.begin());
+    return std::int32_t(std::ranges::lower_bound(bodies, body.value) - bodies.begin());
   };
 
-  std::vector<std::size_t> parent(bodies.size());
-  std::iota(parent.begin(), parent.end(), std::size_t(0));
-  const auto root_of = [&](OdeBodyId body) {
-    std::size_t root = number_of(body);
-    while (parent[root] != root) root = parent[root] = parent[parent[root]];
-    return root;
-  };
+  DisjointSets islands;
+  islands.set_all_apart(bodies.size());
   for (const OdeContact& c : contacts)
-    if (c.second) parent[root_of(c.first)] = root_of(c.second);
+    if (c.second) islands.join(number_of(c.first), number_of(c.second));
   std::vector<int> count(bodies.size());
-  for (const OdeContact& c : contacts) ++count[root_of(c.first)];
+  for (const OdeContact& c : contacts) ++count[std::size_t(islands.root_of(number_of(c.first)))];
   return count.empty() ? 0 : std::ranges::max(count);
 }
 

@@ -73,7 +73,7 @@ TEST(Substeps, OfAnIslandAreNotDisturbedByWhatGoesOnElsewhere) {
       return level.add(std::uint32_t(level.size()), shape, 24.0, 0, state, false, nullptr);
     };
     add({.position = Vec3(0.0, 0.0, 0.25)});
-    const int upper = add({.position = Vec3(0.05, 0.02, 0.7), .angular_velocity = Vec3(1.0, 0.5, 0.2)});
+    const int upper = add({.position = Vec3(0.05, 0.02, 0.9), .angular_velocity = Vec3(2.0, 1.0, 0.4)});
     if (with_others) {
       add({.position = Vec3(50.0, 0.0, 9.0), .velocity = Vec3(30.0, 0.0, 3.0)});
       add({.position = Vec3(60.0, 0.1, 9.0), .velocity = Vec3(-30.0, 0.0, 3.0)});

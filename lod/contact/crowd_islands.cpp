@@ -1,0 +1,46 @@
+#include "lod/contact/crowd_islands.h"
+
+#include <algorithm>
+
+namespace lodestone {
+namespace {
+
+// Of an island that is small: as many contacts as the full level gives to dWorldStep, whose law that is;
+// beyond it has QuickStep's.
+constexpr std::uint32_t kFewPoints = 150;
+constexpr float kUneven = 20.0F;
+
+}  // namespace
+
+IslandKind CrowdIslands::kind_of(const Island& island) const {
+  if (island.unevenness >= kUneven) return IslandKind::uneven;
+  const bool is_small = island.unevenness == 0.0F || island.points <= kFewPoints;
+  return is_small ? IslandKind::small : IslandKind::great;
+}
+
+void CrowdIslands::find(std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds) {
+  const auto inverse_mass = [&](std::int32_t body) {
+    return body < 0 ? 0.0 : bodies[std::size_t(body)].inverse_mass;
+  };
+  sets_.set_all_apart(bodies.size());
+  for (const CrowdManifold& m : manifolds)
+    if (inverse_mass(m.first) > 0.0 && inverse_mass(m.second) > 0.0) sets_.join(m.second, m.first);
+  islands_.assign(bodies.size(), {});
+  island_of_.clear();
+  for (const CrowdManifold& m : manifolds) {
+    const double a = inverse_mass(m.first), b = inverse_mass(m.second);
+    island_of_.push_back(sets_.root_of(a > 0.0 || m.second < 0 ? m.first : m.second));
+    Island& island = islands_[std::size_t(island_of_.back())];
+    island.points += m.count;
+    if (a > 0.0 && b > 0.0) island.unevenness = std::max({island.unevenness, float(a / b), float(b / a)});
+  }
+  kinds_.clear();
+  most_uneven_ = 1.0;
+  for (const std::int32_t i : island_of_) {
+    const Island& island = islands_[std::size_t(i)];
+    kinds_.push_back(kind_of(island));
+    if (kinds_.back() == IslandKind::uneven) most_uneven_ = std::max(most_uneven_, double(island.unevenness));
+  }
+}
+
+}  // namespace lodestone
