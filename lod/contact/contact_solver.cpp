@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "lod/contact/contact_impulse.h"
@@ -44,9 +45,17 @@ struct alignas(64) Point {
   std::int32_t first, second;
 };
 
+/// Of a run in the round at hand.
+struct Progress {
+  std::uint32_t begin, count;          // points
+  int sweeps;                          // left
+  double change = 0.0, impulse = 0.0;  // N s, the greatest; the latter along a normal
+};
+
 struct Arrays {
   std::vector<Motion> motions, before;
   std::vector<Point> points;
+  std::vector<Progress> progress;  // of the runs that are not done
 };
 
 enum class Round {
@@ -111,82 +120,101 @@ LODESTONE_INLINE D4 velocity_along(const Row& row, const D4& velocity, const D4&
   return row.axis * velocity + row.turning_first * turns_first - row.turning_second * turns_second;
 }
 
+/// Changes a point's impulse and what it acts on.
+LODESTONE_INLINE void answer(Round round, Point& p, Motion* motions, Progress& progress) {
+  Motion &a = motions[p.first], &b = motions[p.second];
+  const Row* rows = p.rows;
+  if (round == Round::frictionless) {
+    const D4 along = velocity_along(rows[0], a.velocity - b.velocity, a.angular, b.angular);
+    const double speed = along[0] + along[1] + along[2], held = p.impulse[0],
+                 now = std::max(0.0, held + p.effective_mass[0] * (p.target[0] - speed)), change = now - held;
+    p.impulse[0] = now;
+    a.velocity += (p.inverse_mass_first * change) * rows[0].axis;
+    a.angular += change * rows[0].response_first;
+    progress.change = std::max(progress.change, std::abs(change));
+    progress.impulse = std::max(progress.impulse, now);
+    if (p.inverse_mass_second == 0.0) return;
+    b.velocity -= (p.inverse_mass_second * change) * rows[0].axis;
+    b.angular -= change * rows[0].response_second;
+    return;
+  }
+  D4 change = p.impulse;
+  if (round == Round::relaxed) {
+    const D4 apart = a.velocity - b.velocity;
+    const D4 speeds = sums_of(velocity_along(rows[0], apart, a.angular, b.angular),
+                              velocity_along(rows[1], apart, a.angular, b.angular),
+                              velocity_along(rows[2], apart, a.angular, b.angular));
+    const D4 asked = p.impulse + p.effective_mass * (p.target - speeds);
+    const double normal = std::max(0.0, asked[0]), bound = p.bound >= 0.0 ? p.bound : p.friction * normal;
+    const D4 now = most(D4{normal, -bound, -bound, 0.0}, least(asked, D4{normal, bound, bound, 0.0}));
+    change = now - p.impulse;
+    p.impulse = now;
+    const D4 size = absolute(change);
+    progress.change = std::max(progress.change, size[0] + size[1] + size[2]);
+    progress.impulse = std::max(progress.impulse, normal);
+  }
+  const D4 impulse = change[0] * rows[0].axis + change[1] * rows[1].axis + change[2] * rows[2].axis;
+  a.velocity += p.inverse_mass_first * impulse;
+  a.angular += change[0] * rows[0].response_first + change[1] * rows[1].response_first +
+               change[2] * rows[2].response_first;
+  if (p.inverse_mass_second == 0.0) return;
+  b.velocity -= p.inverse_mass_second * impulse;
+  b.angular -= change[0] * rows[0].response_second + change[1] * rows[1].response_second +
+               change[2] * rows[2].response_second;
+}
+
+// One round over runs [begin, end), which are in order of their lengths: the first point of each, then the
+// second of each, and so on. Each point waits for the one before it in its run, but not for those of others.
 struct RoundLoop {
   Arrays& arrays;
   Round round;
-  double& greatest_change;   // N s
-  double& greatest_impulse;  // along a normal
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
-    Motion* motions = arrays.motions.data();
-    for (std::int64_t i = begin; i < end; ++i) {
-      Point& p = arrays.points[std::size_t(i)];
-      Motion &a = motions[p.first], &b = motions[p.second];
-      const Row* rows = p.rows;
-      if (round == Round::frictionless) {
-        const D4 along = velocity_along(rows[0], a.velocity - b.velocity, a.angular, b.angular);
-        const double speed = along[0] + along[1] + along[2], held = p.impulse[0],
-                     now = std::max(0.0, held + p.effective_mass[0] * (p.target[0] - speed)),
-                     change = now - held;
-        p.impulse[0] = now;
-        a.velocity += (p.inverse_mass_first * change) * rows[0].axis;
-        b.velocity -= (p.inverse_mass_second * change) * rows[0].axis;
-        a.angular += change * rows[0].response_first;
-        b.angular -= change * rows[0].response_second;
-        greatest_change = std::max(greatest_change, std::abs(change));
-        greatest_impulse = std::max(greatest_impulse, now);
-        continue;
-      }
-      D4 change = p.impulse;
-      if (round == Round::relaxed) {
-        const D4 apart = a.velocity - b.velocity;
-        const D4 speeds = sums_of(velocity_along(rows[0], apart, a.angular, b.angular),
-                                  velocity_along(rows[1], apart, a.angular, b.angular),
-                                  velocity_along(rows[2], apart, a.angular, b.angular));
-        const D4 asked = p.impulse + p.effective_mass * (p.target - speeds);
-        const double normal = std::max(0.0, asked[0]), bound = p.bound >= 0.0 ? p.bound : p.friction * normal;
-        const D4 now = most(D4{normal, -bound, -bound, 0.0}, least(asked, D4{normal, bound, bound, 0.0}));
-        change = now - p.impulse;
-        p.impulse = now;
-        const D4 size = absolute(change);
-        greatest_change = std::max(greatest_change, size[0] + size[1] + size[2]);
-        greatest_impulse = std::max(greatest_impulse, normal);
-      }
-      const D4 impulse = change[0] * rows[0].axis + change[1] * rows[1].axis + change[2] * rows[2].axis;
-      a.velocity += p.inverse_mass_first * impulse;
-      b.velocity -= p.inverse_mass_second * impulse;
-      a.angular += change[0] * rows[0].response_first + change[1] * rows[1].response_first +
-                   change[2] * rows[2].response_first;
-      b.angular -= change[0] * rows[0].response_second + change[1] * rows[1].response_second +
-                   change[2] * rows[2].response_second;
+    Progress* runs = arrays.progress.data();
+    for (std::int64_t i = begin; i < end; ++i) runs[i].change = runs[i].impulse = 0.0;
+    std::int64_t last = end;
+    for (std::uint32_t k = 0;; ++k) {
+      while (last > begin && runs[last - 1].count <= k) --last;
+      if (last == begin) return;
+      for (std::int64_t i = begin; i < last; ++i)
+        answer(round, arrays.points[runs[i].begin + k], arrays.motions.data(), runs[i]);
     }
   }
 };
 
-void sweep(Arrays& arrays, Round round, const ContactSolverSettings& settings, Simd simd) {
-  for (int i = 0; i < settings.sweeps; ++i) {
-    double changed = 0.0, greatest = 0.0;
-    run_wide(simd, RoundLoop{arrays, round, changed, greatest}, 0, std::int64_t(arrays.points.size()));
-    if (changed <= settings.tolerance * greatest) return;
+void begin_rounds(Arrays& arrays, std::span<const IslandRun> runs) {
+  arrays.progress.clear();
+  for (const IslandRun& run : runs) arrays.progress.push_back({run.begin, run.count, run.sweeps});
+  std::ranges::sort(arrays.progress, std::greater{},
+                    &Progress::count);  // equal ones in any order: they share nothing
+}
+
+// Each run until nothing changes in it any more.
+void sweep(Arrays& arrays, Round round, std::span<const IslandRun> runs, double tolerance, Simd simd) {
+  begin_rounds(arrays, runs);
+  while (!arrays.progress.empty()) {
+    run_wide(simd, RoundLoop{arrays, round}, 0, std::int64_t(arrays.progress.size()));
+    std::erase_if(arrays.progress,
+                  [&](Progress& run) { return --run.sweeps <= 0 || run.change <= tolerance * run.impulse; });
   }
 }
 
-void give_guesses(Arrays& arrays, Simd simd) {
-  double none = 0.0;
-  run_wide(simd, RoundLoop{arrays, Round::guesses, none, none}, 0, std::int64_t(arrays.points.size()));
+void give_guesses(Arrays& arrays, std::span<const IslandRun> runs, Simd simd) {
+  begin_rounds(arrays, runs);
+  run_wide(simd, RoundLoop{arrays, Round::guesses}, 0, std::int64_t(runs.size()));
 }
 
 // What the normal impulses are without friction bounds it.
-void bound_friction(Arrays& arrays, std::span<SolverContact> contacts, const ContactSolverSettings& settings,
-                    Simd simd) {
+void bound_friction(Arrays& arrays, std::span<SolverContact> contacts, std::span<const IslandRun> runs,
+                    double tolerance, Simd simd) {
   arrays.before = arrays.motions;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const SolverContact& c = contacts[i];
     const double guess = c.frictionless >= 0.0 ? c.frictionless : std::max(0.0, c.guess.dot(c.normal));
     arrays.points[i].impulse = D4{c.bounces ? 0.0 : guess, 0.0, 0.0, 0.0};
   }
-  give_guesses(arrays, simd);
-  sweep(arrays, Round::frictionless, settings, simd);
+  give_guesses(arrays, runs, simd);
+  sweep(arrays, Round::frictionless, runs, tolerance, simd);
   std::swap(arrays.motions, arrays.before);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     Point& p = arrays.points[i];
@@ -217,16 +245,23 @@ double bounce_in_fall(double restitution, double gap, double approach, double fa
 
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step,
                     const ContactSolverSettings& settings, Simd simd) {
+  const IslandRun all{0, std::uint32_t(contacts.size()), settings.sweeps};
+  solve_contacts(bodies, contacts, {&all, 1}, step, settings, simd);
+}
+
+void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts,
+                    std::span<const IslandRun> runs, double step, const ContactSolverSettings& settings,
+                    Simd simd) {
   thread_local Arrays arrays;
   arrays.motions.clear(), arrays.points.clear();
   for (const SolverBody& body : bodies)
     arrays.motions.push_back({lanes_of(body.velocity), lanes_of(body.angular_velocity)});
   arrays.motions.emplace_back();
   for (SolverContact& c : contacts) arrays.points.push_back(prepare(bodies, c, step, settings));
-  if (settings.frictionless_bound) bound_friction(arrays, contacts, settings, simd);
+  if (settings.frictionless_bound) bound_friction(arrays, contacts, runs, settings.tolerance, simd);
   for (std::size_t i = 0; i < contacts.size(); ++i) start_from_guess(contacts[i], arrays.points[i]);
-  give_guesses(arrays, simd);
-  sweep(arrays, Round::relaxed, settings, simd);
+  give_guesses(arrays, runs, simd);
+  sweep(arrays, Round::relaxed, runs, settings.tolerance, simd);
   for (std::size_t i = 0; i < contacts.size(); ++i)
     for (int axis = 0; axis < 3; ++axis) contacts[i].impulse[axis] = arrays.points[i].impulse[axis];
   for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -58,6 +58,18 @@ struct ContactSolverSettings {
 void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts, double step,
                     const ContactSolverSettings& settings, Simd simd = find_simd());
 
+/// Of contacts: a run in a row.
+struct IslandRun {
+  std::uint32_t begin = 0, count = 0;
+  int sweeps = 10;  ///< at most
+};
+
+/// The same of several runs at a time that share no body: each has the result that it has alone. `sweeps` are
+/// those of the runs.
+void solve_contacts(std::span<SolverBody> bodies, std::span<SolverContact> contacts,
+                    std::span<const IslandRun> runs, double step, const ContactSolverSettings& settings,
+                    Simd simd = find_simd());
+
 /// m/s along the normal at the end of a `step` that a body began with `approach` (negative, with the step's
 /// `fall` of gravity in it): it falls through the gap, bounces off what stands still and falls on.
 double bounce_in_fall(double restitution, double gap, double approach, double fall, double step);

@@ -8,7 +8,7 @@ namespace {
 constexpr int kMostIslandSweeps = 40;  // of few points: a body on two edges asks for many
 constexpr int kIslandRelaxations =
     400;  // of points, in as many sweeps as that is, but never fewer than a crowd's
-constexpr double kIslandTolerance = 1e-4;
+constexpr std::int64_t kSideBySide = 8;  // islands
 
 }  // namespace
 
@@ -30,22 +30,25 @@ void SmallIslands::solve(std::span<SolverBody> bodies, std::span<const CrowdMani
                          Simd simd, const JobRunner& jobs) {
   constexpr std::int64_t kBlock = 32;  // islands of a job
   ContactSolverSettings own = settings;
-  own.tolerance = std::min(settings.tolerance, kIslandTolerance);
   own.frictionless_bound = true;
   run_in_pieces(jobs, std::int64_t(first_.size()) - 1, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = std::size_t(begin); i < std::size_t(end); ++i)
-      solve_one(bodies, manifolds, points, step, own, simd,
-                std::span(own_).subspan(first_[i], first_[i + 1] - first_[i]));
+    for (std::int64_t i = begin; i < end; i += kSideBySide) {
+      const std::int64_t count = std::min(kSideBySide, end - i);
+      solve_some(bodies, manifolds, points, step, own, simd,
+                 std::span(first_).subspan(std::size_t(i), std::size_t(count) + 1));
+    }
   });
 }
 
-void SmallIslands::solve_one(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
-                             std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings,
-                             Simd simd, std::span<const Own> own) {
+void SmallIslands::solve_some(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
+                              std::span<CrowdPoint> points, double step,
+                              const ContactSolverSettings& settings, Simd simd,
+                              std::span<const std::uint32_t> first) {
   thread_local std::vector<SolverBody> local;      // those that move once, of what does not a copy a manifold
   thread_local std::vector<std::int32_t> body_of;  // of each of these, or −1 of what does not move
   thread_local std::vector<SolverContact> contacts;
-  local.clear(), body_of.clear(), contacts.clear();
+  thread_local std::vector<IslandRun> runs;  // of each island
+  local.clear(), body_of.clear(), contacts.clear(), runs.clear();
   const auto place_of = [&](std::int32_t body) {
     if (body < 0) return -1;
     const auto next = std::int32_t(local.size());
@@ -57,35 +60,40 @@ void SmallIslands::solve_one(std::span<SolverBody> bodies, std::span<const Crowd
     body_of.push_back(moves ? body : -1);
     return place = next;
   };
-  for (const Own& one : own) {
-    const CrowdManifold& m = manifolds[one.manifold];
-    const std::int32_t first = place_of(m.first), second = place_of(m.second);
-    for (const CrowdPoint& point : points.subspan(m.begin, m.count))
-      contacts.push_back({.first = first,
-                          .second = second,
-                          .normal = m.normal,
-                          .arm_first = point.arm_first,
-                          .arm_second = point.arm_second,
-                          .gap = point.gap,
-                          .law = m.law,
-                          .guess = point.guess,
-                          .frictionless = point.frictionless});
+  for (std::size_t island = 0; island + 1 < first.size(); ++island) {
+    const auto begin = std::uint32_t(contacts.size());
+    for (std::uint32_t i = first[island]; i < first[island + 1]; ++i) {
+      const CrowdManifold& m = manifolds[own_[i].manifold];
+      const std::int32_t one = place_of(m.first), other = place_of(m.second);
+      for (const CrowdPoint& point : points.subspan(m.begin, m.count))
+        contacts.push_back({.first = one,
+                            .second = other,
+                            .normal = m.normal,
+                            .arm_first = point.arm_first,
+                            .arm_second = point.arm_second,
+                            .gap = point.gap,
+                            .law = m.law,
+                            .guess = point.guess,
+                            .frictionless = point.frictionless});
+    }
+    const std::uint32_t count = std::uint32_t(contacts.size()) - begin;
+    const int enough = std::min(kIslandRelaxations / int(std::max(count, 1U)), kMostIslandSweeps);
+    runs.push_back({begin, count, std::max(settings.sweeps, enough)});
   }
-  ContactSolverSettings enough = settings;
-  enough.sweeps =
-      std::max(settings.sweeps, std::min(kIslandRelaxations / int(contacts.size()), kMostIslandSweeps));
-  solve_contacts(local, contacts, step, enough, simd);
+  solve_contacts(local, contacts, runs, step, settings, simd);
   for (std::size_t i = 0; i < local.size(); ++i)
     if (body_of[i] >= 0) bodies[std::size_t(body_of[i])] = local[i];
   std::size_t at = 0;
-  for (const Own& one : own)
-    for (CrowdPoint& point : points.subspan(manifolds[one.manifold].begin, manifolds[one.manifold].count)) {
+  for (const Own& own : std::span(own_).subspan(first.front(), first.back() - first.front())) {
+    const CrowdManifold& m = manifolds[own.manifold];
+    for (CrowdPoint& point : points.subspan(m.begin, m.count)) {
       const SolverContact& solved = contacts[at++];
       point.impulse = impulse_of(solved);
       point.frictionless = float(solved.frictionless);
       point.bounces = solved.bounces;
       point.impact_time = float(solved.impact_time);
     }
+  }
 }
 
 }  // namespace lodestone

@@ -29,9 +29,10 @@ class SmallIslands {
     std::int32_t island;
     std::uint32_t manifold;
   };
-  void solve_one(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
-                 std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings, Simd simd,
-                 std::span<const Own> own);
+  /// Islands, each from its first manifold in `own_` to the next one's.
+  void solve_some(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
+                  std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings, Simd simd,
+                  std::span<const std::uint32_t> first);
 
   std::vector<Own> own_;                // by island
   std::vector<std::uint32_t> first_;    // of each island's manifolds, in `own_`; one more
