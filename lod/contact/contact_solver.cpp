@@ -105,7 +105,7 @@ Point prepare(std::span<const SolverBody> bodies, SolverContact& c, double step,
       p.inverse_mass_second = b.inverse_mass;
       inverse += b.inverse_mass + turning_second.dot(response_second);
     }
-    p.effective_mass[i] = 1.0 / inverse;
+    p.effective_mass[i] = inverse > 0.0 ? 1.0 / inverse : 0.0;
   }
   return p;
 }

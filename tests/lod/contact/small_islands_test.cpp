@@ -151,6 +151,18 @@ TEST(SmallIslands, WhatElseThereIsChangesNothing) {
   EXPECT_EQ(islands.bodies[0].velocity, among.bodies[1].velocity);  // its like
 }
 
+// What moves by its own rule and what sleeps: neither can be pushed.
+TEST(SmallIslands, TwoThatNothingMovesGiveEachOtherNothing) {
+  IslandScene islands;
+  const std::int32_t moving = islands.add_body(0.0, {0, 0, -1}),
+                     sleeper = islands.add_body(0.0, Vec3::Zero());
+  islands.touch(moving, sleeper, Vec3::UnitZ(), {{0, 0, -0.1}});
+  islands.solve();
+  EXPECT_EQ(islands.points[0].impulse, Vec3::Zero());
+  EXPECT_EQ(islands.bodies[std::size_t(moving)].velocity, Vec3(0, 0, -1));
+  EXPECT_EQ(islands.bodies[std::size_t(sleeper)].velocity, Vec3::Zero());
+}
+
 TEST(SmallIslands, GroundThatMovesCarriesABody) {
   IslandScene riding;
   const std::int32_t body = riding.add_body(1.0, Vec3::Zero()), belt = riding.add_body(0.0, {0.1, 0, 0});
