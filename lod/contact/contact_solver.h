@@ -18,6 +18,7 @@ struct SolverBody {
   Vec3 angular_velocity = Vec3::Zero();
   double inverse_mass = 0.0;
   Mat3 inverse_inertia = Mat3::Zero();  ///< world axes
+  bool in_great_heap = false;  ///< as StatisticalBody has it: asleep, read by crowds; else set by these
 };
 
 struct SolverContact {

@@ -18,7 +18,10 @@ void lift_sphere_out(StatisticalBody& body, const HalfSpace& plane) {
 
 SolverBody solver_body_of(const ContactScene& scene, Participant p, double time) {
   SolverBody solver;
-  if (scene.asleep(p)) return solver;
+  if (scene.asleep(p)) {
+    solver.in_great_heap = p.is_statistical() && scene.body(p).in_great_heap;
+    return solver;
+  }
   const bool moved = !scene.properties(p).kinematic;  // by what it meets
   const Vec3 gravity = moved ? scene.gravity(p) : Vec3(Vec3::Zero());
   if (p.is_statistical()) {
@@ -330,6 +333,7 @@ void Crowd::move(const ContactScene& scene, double time) {
       body.position += (body.velocity + 0.5 * until * scene.gravity(p)) * until;
       body.orientation = advance_orientation(body.orientation, body.spin, kind, until);
     }
+    body.in_great_heap = solved.in_great_heap;
     body.velocity = solved.velocity;
     body.spin += added;
     body.position += body.velocity * left;

@@ -14,7 +14,8 @@ namespace lodestone {
 enum class IslandKind : std::uint8_t {
   small,   ///< of one body that moves, or of few points: each by itself, with ODE's bound on friction
   uneven,  ///< with bodies of which one weighs 20 times another that it touches: ODE's bound and more sweeps
-  great,   ///< any other: friction is bounded by the impulses as they are
+  great,   ///< any other, and what is left awake of such a heap: friction is bounded by the impulses as they
+           ///< are
 };
 
 class CrowdIslands {
@@ -23,6 +24,11 @@ class CrowdIslands {
   IslandKind kind_of(std::size_t manifold) const { return kinds_[manifold]; }
   /// The body that stands for the island of a manifold.
   std::int32_t island_of(std::size_t manifold) const { return island_of_[manifold]; }
+  /// Whether a body that moves is in a great island, or on what sleeps in one.
+  bool in_great_heap(std::int32_t body) {
+    const Island& island = islands_[std::size_t(sets_.root_of(body))];
+    return island.on_great_heap || kind_of(island) == IslandKind::great;
+  }
   /// Greatest ratio of the masses of two that touch, of those in uneven islands; 1: there are none.
   double most_uneven() const { return most_uneven_; }
   bool any_uneven() const { return most_uneven_ > 1.0; }
@@ -30,7 +36,8 @@ class CrowdIslands {
  private:
   struct Island {
     std::uint32_t points = 0;
-    float unevenness = 0.0F;  // greatest ratio of the masses of two that touch; 0: one body alone
+    bool on_great_heap = false;  // touches what sleeps in one
+    float unevenness = 0.0F;     // greatest ratio of the masses of two that touch; 0: one body alone
   };
   IslandKind kind_of(const Island& island) const;
 

@@ -507,6 +507,7 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
   if (work.islands.any_uneven()) work.sweep_uneven(settings, jobs);
 
   for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].inverse_mass > 0.0) bodies[i].in_great_heap = work.islands.in_great_heap(std::int32_t(i));
     bodies[i].velocity = {work.motions[i].velocity[0], work.motions[i].velocity[1],
                           work.motions[i].velocity[2]};
     bodies[i].angular_velocity = {work.motions[i].angular[0], work.motions[i].angular[1],

@@ -50,7 +50,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     const std::span<const std::int32_t> awake = support.awake_with_guests();
     for (const std::int32_t index : awake) {
       StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-      body.crowded = body.on_solid = false;
+      body.crowded = body.on_solid = body.in_great_heap = false;
     }
     find_ground_solids(step, awake, 0.0, dt);
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
