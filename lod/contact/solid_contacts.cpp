@@ -103,7 +103,8 @@ void find_ground_near(const Ground& ground, const Vec3& center, double reach, do
       if (const auto nearest =
               find_nearest(*placed.solid, placed.orientation.conjugate() * (center - placed.position));
           nearest && std::abs(nearest->height) < reach)
-        found.push_back({placed.orientation * nearest->normal, nearest->height, part, placed.number});
+        found.push_back(
+            {placed.orientation * nearest->normal, nearest->height, part, placed.number, nearest->at_edge});
   }
 }
 

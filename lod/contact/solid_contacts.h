@@ -37,6 +37,7 @@ struct GroundNear {
   double height = 0.0;          ///< m, of the ball's centre
   const GroundPart* part = nullptr;
   std::uint32_t number = 0;  ///< as SolidContact's
+  bool at_edge = false;      ///< no face is straight below
   HalfSpace plane(const Vec3& center) const {
     return {normal, normal.dot(center) - height, part->material, part->id};
   }

@@ -156,7 +156,7 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
   const HullGap gap =
       find_hull_gap({point_shape(), point, Quat::Identity()}, {*solid.shape, Vec3::Zero(), Quat::Identity()},
                     {.normal = Vec3::Zero()}, 1e300);
-  return Nearest{gap.normal, gap.gap};
+  return Nearest{gap.normal, gap.gap, true};
 }
 
 void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search) {

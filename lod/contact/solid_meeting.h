@@ -10,8 +10,9 @@ namespace lodestone {
 
 /// Of a solid, what a point is nearest to: which way, how far (negative: inside).
 struct Nearest {
-  Vec3 normal;          ///< in the part's axes
-  double height = 0.0;  ///< m
+  Vec3 normal;           ///< in the part's axes
+  double height = 0.0;   ///< m
+  bool at_edge = false;  ///< of a solid's faces none is straight below: across an edge or a corner
 };
 /// `point` in the frame of the solid's shape. None behind the edge of a surface, where a neighbour is nearer.
 std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point);

@@ -39,6 +39,15 @@ bool TablesLevel::is_at_edge(std::int64_t place) const {
   return near && !near->even;
 }
 
+// In coarse steps, or pressed by others as a sphere and held as a hull, it might go on for ever, by as little
+// as this.
+bool TablesLevel::is_nearly_still(const StatisticalBody& body, const BodyKind& kind,
+                                  bool among_others) const {
+  constexpr double kNearlyStill = 4.0;  // times what is still
+  return kinetic_energy(body, *kind.shape) <
+         kNearlyStill * rest_law_.still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
+}
+
 // Those that touched no other for a while stand on their hulls; the others are spheres.
 void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
   constexpr auto kFree = std::uint8_t(GroundState::free), kNear = std::uint8_t(GroundState::near);
@@ -106,13 +115,9 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   const bool is_level = std::ranges::all_of(around.planes, [&](const HalfSpace& p) {
     return around.is_horizontal(p) || p.height_of(body.position) > farthest;
   });
-  // In coarse steps a body may rock on for ever, by as little as this.
-  constexpr double kNearlyStill = 4.0;  // times what is still
-  const bool nearly_still = kinetic_energy(body, shape) <
-                            kNearlyStill * rest_law_.still_energy(false, radius, settings_.gravity.norm());
   const HullMotion moved =
       move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity, constants_.wide_time,
-                   may_settle, is_level && !nearly_still ? level : fine);
+                   may_settle, is_level && !is_nearly_still(body, kind_of(place), false) ? level : fine);
   body.eased = eased;
   playing.state = !moved.plays_clip ? PlayingClip::ended
                   : moved.clip_over ? PlayingClip::over

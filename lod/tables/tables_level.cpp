@@ -224,7 +224,8 @@ std::size_t TablesLevel::bytes() const {
 void TablesLevel::describe(Guest& guest) const {
   const auto i = std::int64_t(place_of(guest.slot));
   guest.resting = {spheres_.pose[std::size_t(i)]};
-  guest.on_hull = guest.moved = i < spheres_.awake && !step_.touches(i) && is_at_edge(i);
+  const NearFaces* near = near_faces_at(i);
+  guest.on_hull = guest.moved = constants_.hulls && i < spheres_.awake && near && near->cornered;
 }
 
 StatisticalBody TablesLevel::guest_body(const Guest& guest) const {

@@ -78,9 +78,10 @@ class TablesLevel {
   CellGrid::Lent free_rows() { return step_.free_rows(); }      ///< to search in, until respond()
   /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given.
   void find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
-  void forget_contacts() { contacts_.clear(); }  ///< in their place, where there are none
-  /// Slots of those in this step that are at an edge of the ground, or that parts of it hold several ways:
-  /// one plane does not tell how they go on.
+  /// In their place, where there are none.
+  void forget_contacts() { contacts_.clear(), plane_touches_.clear(); }
+  /// Slots of those in this step that are at an edge of the ground or between parts of it that move, or,
+  /// published, that parts of it hold several ways: planes do not tell how they go on.
   std::span<const std::int32_t> cornered() const { return cornered_; }
   void respond(ContactTally& tally);
   /// Who it is in this step: after respond().
@@ -103,6 +104,7 @@ class TablesLevel {
     std::int64_t place = 0;
     std::int32_t begin = 0, end = 0;  // in faces_
     bool even = false;                // planes stand for all that its hull may meet of the ground's parts
+    bool cornered = false;            // planes do not tell how it goes on
   };
   struct Carried {
     std::int64_t place = 0;
@@ -150,10 +152,12 @@ class TablesLevel {
   void start(double dt, std::span<const std::uint32_t> order);
   void find_near_faces(std::int64_t begin, std::int64_t end);
   bool find_planes_of(std::int64_t place);
+  bool is_cornered(std::int64_t place, std::span<const GroundNear> near, double margin) const;
   void update_radii_one_by_one();
   void find_still_contacts();
   void note_paired();
   void find_further_planes();
+  bool touches_further_planes(std::int64_t place) const;
   int sweeps() const {
     return constants_.hulls ? contacts_.settings().hull_sweeps : contacts_.settings().sweeps;
   }
@@ -172,6 +176,7 @@ class TablesLevel {
   bool is_alone(std::int64_t place) const;
   bool stands_when_alone(std::int64_t place) const;
   bool is_at_edge(std::int64_t place) const;
+  bool is_nearly_still(const StatisticalBody& body, const BodyKind& kind, bool among_others) const;
   bool overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const;
   float height_over_ground(std::int64_t place, const StatisticalBody& body) const;
   void take_from_edge(std::int64_t place, const StatisticalBody& moved);

@@ -127,17 +127,33 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
     if (faces_.size() == first) continue;
     for (const HalfSpace& face : std::span(faces_).subspan(first))
       planes_.add(face, materials_, kinds_, settings_.gravity);
-    near_faces_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), only_planes});
+    const double margin = 0.01 * size + way;
+    const bool cornered = (alone && !only_planes) || is_cornered(i, near, margin);
+    near_faces_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered});
     const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
-      return n.part->moves() && n.height < double(spheres_.radius[i]) + 0.01 * size + way;
+      return n.part->moves() && n.height < double(spheres_.radius[i]) + margin;
     });
     if (mover != near.end())
       carried_.push_back({i, mover->part->velocity_at(center), mover->part->pose.angular_velocity});
-    const bool at_edge = alone && !only_planes;
-    if (at_edge ||
-        is_held_several_ways(near, ground_.planes(), center, double(spheres_.radius[i]) + 0.01 * size + way))
-      cornered_.push_back(spheres_.slot[i]);
+    if (cornered) cornered_.push_back(spheres_.slot[i]);
   }
+}
+
+// Among others, of what is nearer than it reaches, `margin` m around. A published sphere meets one plane; one
+// that knows its hull meets as many as there are, but over edges its hull tips as long as it moves, and what
+// moves holds it.
+bool TablesLevel::is_cornered(std::int64_t place, std::span<const GroundNear> near, double margin) const {
+  const auto is_held = [&] {
+    return is_held_several_ways(near, ground_.planes(), spheres_.position(place),
+                                double(spheres_.radius[std::size_t(place)]) + margin);
+  };
+  if (!constants_.hulls) return is_held();
+  const auto is_over_edge = [&](const GroundNear& n) {
+    return n.at_edge && n.height <= double(ground_height(place, -n.normal)) + margin;
+  };
+  if (std::ranges::any_of(near, is_over_edge) && !is_nearly_still(spheres_.body(place), kind_of(place), true))
+    return true;
+  return std::ranges::any_of(near, [](const GroundNear& n) { return n.part->moves(); }) && is_held();
 }
 
 // Of one that may stand on its hull. Who stands does until an edge is near, who does not waits until it is
@@ -395,8 +411,18 @@ void TablesLevel::sort_ground() {
   });
 }
 
-// The rest pose that needs the smallest rotation (3.4), unless it has one that holds it.
+bool TablesLevel::touches_further_planes(std::int64_t place) const {
+  return std::ranges::binary_search(plane_touches_, std::uint32_t(place), {}, &PlaneTouch::place);
+}
+
+// The rest pose that needs the smallest rotation (3.4), unless it has one that holds it. What knows its hull
+// lies in a wedge as it came.
 void TablesLevel::choose_rest_pose(std::int64_t i) {
+  if (constants_.hulls && touches_further_planes(i)) {
+    spheres_.motion[i] = Motion::dynamic;
+    step_.on_ground[i] = std::uint8_t(GroundState::lies);
+    return;
+  }
   const Quat orientation = spheres_.orientation(i);
   const BodyKind& kind = kind_of(i);
   const HalfSpace& under = plane(step_.plane[i]);

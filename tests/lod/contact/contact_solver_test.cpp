@@ -56,6 +56,29 @@ TEST(ContactSolver, WithEitherBoundNothingMovesIntoTheGroundAfterwards) {
   }
 }
 
+// One sweep is enough where the impulses with and without friction are known, and else it is not: friction
+// turns the body onto the points ahead, which carry less without it.
+TEST(ContactSolver, BeginsWithTheFrictionlessImpulsesOfTheLastStep) {
+  const SolverBody start{
+      .velocity = {3, 0, -1}, .inverse_mass = 1.0, .inverse_inertia = 150.0 * Mat3::Identity()};
+  std::array<SolverContact, 2> contacts;
+  contacts[0].arm_first = {0.1, 0.06, -0.1}, contacts[1].arm_first = {0.06, -0.1, -0.1};
+  for (SolverContact& c : contacts) c.law = {.restitution = 0.0, .friction = kFriction};
+  const auto solve = [&](std::array<SolverContact, 2>& of, int sweeps) {
+    std::array<SolverBody, 1> bodies{start};
+    solve_contacts(bodies, of, 1e-9,
+                   {.sweeps = sweeps, .tolerance = 0.0, .frictionless_bound = true, .bounce_velocity = 10.0});
+    return bodies[0].velocity;
+  };
+  std::array<SolverContact, 2> solved = contacts;
+  const Vec3 converged = solve(solved, 2000);
+  for (std::size_t i = 0; i < 2; ++i) contacts[i].guess = impulse_of(solved[i]);
+  std::array<SolverContact, 2> unknown = contacts;
+  for (std::size_t i = 0; i < 2; ++i) contacts[i].frictionless = solved[i].frictionless;
+  EXPECT_LT((solve(contacts, 1) - converged).norm(), 1e-9);
+  EXPECT_GT((solve(unknown, 1) - converged).norm(), 1e-3);
+}
+
 // Dropped from rest h above the ground, it is there within the step, bounces, and falls on: v² = 2 g h.
 TEST(ContactSolver, AnImpactWithinAStepIsAnsweredAtItsOwnTime) {
   constexpr double kGravity = 9.81, kStep = 1.0 / 60, kGap = 2e-4, kRestitution = 0.6;

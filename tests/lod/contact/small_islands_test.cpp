@@ -98,22 +98,6 @@ TEST(SmallIslands, ImpulsesActBothWays) {
   EXPECT_LT((momentum() - before - given).norm(), 1e-12);
 }
 
-// What a step finds without friction the next one may begin with.
-TEST(SmallIslands, BeginWhereTheLastStepEnded) {
-  IslandScene islands;
-  islands.add_pair();
-  for (CrowdManifold& m : islands.manifolds) m.law.restitution = 0.0;
-  IslandScene again = islands;
-  islands.solve();
-  for (std::size_t i = 0; i < islands.points.size(); ++i) {
-    again.points[i].guess = islands.points[i].impulse;
-    again.points[i].frictionless = islands.points[i].frictionless;
-  }
-  again.solve();
-  for (std::size_t i = 0; i < islands.bodies.size(); ++i)
-    EXPECT_LT((again.bodies[i].velocity - islands.bodies[i].velocity).norm(), 1e-3) << i;
-}
-
 TEST(SmallIslands, HaveOneResultForEveryInstructionSetAndNumberOfThreads) {
   IslandScene portable;
   for (int i = 0; i < 100; ++i) {

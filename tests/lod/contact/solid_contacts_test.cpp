@@ -106,6 +106,15 @@ TEST_F(SolidContacts, ASphereMeetsWhatIsNearestToIt) {
   EXPECT_NEAR(planes_[0].height_of({1.06, 0.2, 0.08}), 0.1, 1e-6);
 }
 
+TEST_F(SolidContacts, OverAFaceIsNoEdge) {
+  std::vector<GroundNear> near;
+  find_ground_near(ground_, {0.3, 0.2, 0.1}, 0.2, 0.0, near);
+  find_ground_near(ground_, {1.06, 0.2, 0.08}, 0.2, 0.0, near);
+  ASSERT_EQ(near.size(), 2U);
+  EXPECT_FALSE(near[0].at_edge);
+  EXPECT_TRUE(near[1].at_edge);
+}
+
 // Where a wall stands on the table, one plane would let it sink into the other.
 TEST_F(SolidContacts, InACornerASphereHasAContactOfEach) {
   ground_.add_box({1, 2, 1}, {-0.5, 0, 0.5}, Quat::Identity(), 0);

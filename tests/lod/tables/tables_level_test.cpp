@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "reference/free_rotation.h"
@@ -204,6 +205,60 @@ TEST_F(SphereLevel, ABinComesToRestInItsTime) {
     asleep += int(level.asleep_count());
   }
   EXPECT_GT(asleep, 290);
+}
+
+// Of 96 boxes in eight narrow bins between boxes of the ground NN are asleep after five seconds; MM where
+// what two walls hold is moved as one sphere among hulls.
+TEST_F(SphereLevel, WhatWallsHoldSeveralWaysComesToRest) {
+  constexpr double kWide = 0.8, kThick = 0.2, kHigh = 3.0, kApart = 3.0;  // m
+  testing::OneRung level = make();
+  for (int bin = 0; bin < 8; ++bin) {
+    const Vec3 middle(kApart * bin, 0, 0.5 * kHigh);
+    for (const Vec3& out : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+      const Vec3 across = out.cwiseAbs();
+      ground_.add_box(kThick * across + (kWide + 2.0 * kThick) * (Vec3(1, 1, 0) - across) + Vec3(0, 0, kHigh),
+                      middle + 0.5 * (kWide + kThick) * out, Quat::Identity(), 0);
+    }
+    for (int i = 0; i < 12; ++i) {
+      RandomStream random(7, std::uint64_t(12 * bin + i), 0);
+      RigidState s;
+      s.position =
+          middle + Vec3(i % 2 == 0 ? 0.18 : -0.18, i / 2 % 2 == 0 ? 0.18 : -0.18, 0.6 * (i / 4) - 1.0);
+      s.orientation = random.orientation();
+      add(level, s);
+    }
+  }
+  run(level, 300);
+  for (int slot = 0; slot < level.size(); ++slot) {
+    const Vec3 position = level.position(slot);
+    EXPECT_LT(std::abs(position.x() - kApart * std::round(position.x() / kApart)), 0.5 * kWide) << slot;
+    EXPECT_LT(std::abs(position.y()), 0.5 * kWide) << slot;
+  }
+  EXPECT_GT(level.asleep_count(), 90);
+}
+
+// On hills with valleys of half a box's reach all of 128 boxes; 79 where each turned into the rest pose of
+// whatever triangle it was nearest to, and what several of them hold was moved as one sphere among hulls.
+TEST_F(SphereLevel, RoughGroundLetsThemRest) {
+  constexpr int kCells = 24;
+  constexpr double kSide = 8.0, kTwoPi = 6.283185307179586;  // m
+  Mesh hills;
+  for (int y = 0; y <= kCells; ++y)
+    for (int x = 0; x <= kCells; ++x) {
+      const Vec3 at(kSide * x / kCells - 2.0, kSide * y / kCells - 2.0, 0.0);
+      hills.vertices.push_back(
+          at + Vec3(0, 0, 0.3 + 0.25 * std::sin(kTwoPi * at.x() / 1.6) * std::sin(kTwoPi * at.y() / 1.4)));
+    }
+  for (int y = 0; y < kCells; ++y)
+    for (int x = 0; x < kCells; ++x) {
+      const int a = y * (kCells + 1) + x, b = a + 1, c = a + kCells + 1, d = c + 1;
+      hills.faces.push_back({a, b, d}), hills.faces.push_back({a, d, c});
+    }
+  ground_.add_mesh(hills, 0);
+  testing::OneRung level = make();
+  add_heap(level, 8, 2);
+  run(level, 480);
+  EXPECT_GT(level.asleep_count(), 120);
 }
 
 // Along the line of centres alone they fall over. They sag, by 0, 2 and 6 %.
