@@ -89,7 +89,7 @@ void find_probed_contacts(const Seeker& s, const GroundPart& part, double time,
 }  // namespace
 
 void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after,
-                      std::vector<GroundNear>& found) {
+                      std::vector<GroundNear>& found, const PairBody* hull) {
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
   parts.clear();
@@ -99,12 +99,13 @@ void find_ground_near(const Ground& ground, const Vec3& center, double reach, do
       found.push_back({plane->normal, plane->height_of(center), part, part->first_number});
     near.clear();
     find_solids(*part, center, reach, after, near);
-    for (const PlacedSolid& placed : near)
-      if (const auto nearest =
-              find_nearest(*placed.solid, placed.orientation.conjugate() * (center - placed.position));
-          nearest && std::abs(nearest->height) < reach)
-        found.push_back(
-            {placed.orientation * nearest->normal, nearest->height, part, placed.number, nearest->at_edge});
+    for (const PlacedSolid& placed : near) {
+      auto nearest = find_nearest(*placed.solid, placed.orientation.conjugate() * (center - placed.position));
+      if (!nearest || std::abs(nearest->height) >= reach) continue;
+      if (hull && nearest->at_edge) nearest = find_farthest_apart(*hull, placed, *nearest);
+      found.push_back(
+          {placed.orientation * nearest->normal, nearest->height, part, placed.number, nearest->at_edge});
+    }
   }
 }
 

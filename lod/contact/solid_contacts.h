@@ -44,9 +44,9 @@ struct GroundNear {
 };
 
 /// Appends what a ball of radius `reach` about `center` meets of the ground's parts, `after` so many seconds
-/// of the step.
+/// of the step. With a `hull` in it, at an edge the plane that keeps this farthest from the solid.
 void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after,
-                      std::vector<GroundNear>& found);
+                      std::vector<GroundNear>& found, const PairBody* hull = nullptr);
 
 /// Whether, of the ground within `reach` of `center`, two faces look different ways: a corner or a wedge.
 bool is_held_several_ways(std::span<const GroundNear> near, std::span<const HalfSpace> planes,

@@ -76,29 +76,16 @@ Vec3 find_way_from_edges(const SurfaceTriangle& t, const Vec3& point) {
 }
 
 // An axis along which the two are nearly as far apart as along any, world, unit: where a search for that one
-// begins. Of a few: from the nearest point of the solid to the body's centre, and across each face that this
-// lies over, as an overhanging body is nearer to an edge than to the face that it lies on. Zero: there is
-// none.
+// begins. Zero: there is none.
 Vec3 find_start_axis(const PairBody& body, const PlacedSolid& placed) {
   if (placed.solid->surface) {
     const Vec3 way = find_way_from_edges(*placed.solid->surface, in_part(placed, body.position));
     return way.isZero(0.0) ? Vec3(Vec3::Zero()) : Vec3(placed.orientation * way.normalized());
   }
-  const Vec3 center = placed.orientation.conjugate() * (body.position - placed.position);
-  Vec3 axis = Vec3::Zero();
-  double greatest = -std::numeric_limits<double>::max();  // m, gap
-  const auto look_along = [&](const Vec3& normal, double height) {
-    const Vec3 along = placed.orientation * normal;
-    const double gap = height - find_farthest_arm(body, -along).dot(-along);
-    if (gap > greatest) greatest = gap, axis = along;
-  };
-  if (const auto nearest = find_nearest(*placed.solid, center)) look_along(nearest->normal, nearest->height);
-  constexpr std::size_t kFewFaces = 12;
-  if (placed.solid->faces.size() <= kFewFaces)
-    for (const SolidFace& face : placed.solid->faces)
-      if (const double height = face.normal.dot(center) - face.offset; height > 0.0)
-        look_along(face.normal, height);
-  return axis;
+  const auto nearest =
+      find_nearest(*placed.solid, placed.orientation.conjugate() * (body.position - placed.position));
+  if (!nearest) return Vec3::Zero();
+  return placed.orientation * find_farthest_apart(body, placed, *nearest).normal;
 }
 
 std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin) {
@@ -157,6 +144,25 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
       find_hull_gap({point_shape(), point, Quat::Identity()}, {*solid.shape, Vec3::Zero(), Quat::Identity()},
                     {.normal = Vec3::Zero()}, 1e300);
   return Nearest{gap.normal, gap.gap, true};
+}
+
+Nearest find_farthest_apart(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest) {
+  constexpr std::size_t kFewFaces = 12;
+  const Vec3 center = placed.orientation.conjugate() * (body.position - placed.position);
+  const auto gap_along = [&](const Vec3& normal, double height) {
+    const Vec3 along = placed.orientation * normal;
+    return height - find_farthest_arm(body, -along).dot(-along);
+  };
+  Nearest best = nearest;
+  if (placed.solid->faces.size() > kFewFaces) return best;
+  double greatest = gap_along(nearest.normal, nearest.height);  // m
+  for (const SolidFace& face : placed.solid->faces) {
+    const double height = face.normal.dot(center) - face.offset;
+    if (height <= 0.0) continue;
+    const double gap = gap_along(face.normal, height);
+    if (gap > greatest) greatest = gap, best.normal = face.normal, best.height = height;
+  }
+  return best;
 }
 
 void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search) {

@@ -17,6 +17,10 @@ struct Nearest {
 /// `point` in the frame of the solid's shape. None behind the edge of a surface, where a neighbour is nearer.
 std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point);
 
+/// What keeps a body farthest from a solid, of `nearest`, which is of its centre, and the solid's faces that
+/// the centre lies over: what overhangs an edge lies on the face, though the edge is nearer.
+Nearest find_farthest_apart(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest);
+
 /// Those contacts of the body with a gap of at most `margin` m: one of its hull, or, as find_pair_contacts
 /// has it, those of its convex pieces. A triangle is met along its normal but for where an edge of it stands
 /// out, by the hull. What `search` held before is gone.

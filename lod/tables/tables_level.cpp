@@ -42,10 +42,12 @@ int TablesLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, const
   one_mass_ =
       size() == 1 || (one_mass_ && spheres_.inverse_mass[place] == spheres_.inverse_mass[place > 0 ? 0 : 1]);
   set_state(slot, state);
-  const StatisticalBody body = spheres_.body(place);
-  spheres_.radius[place] =
-      arrives ? arriving_radius(body, kind_of(place))
-              : float(find_sphere_radius(body, kind_of(place), settings_.tables, settings_.seed));
+  if (settings_.tables.as_published()) {
+    const StatisticalBody body = spheres_.body(place);
+    spheres_.radius[place] =
+        arrives ? arriving_radius(body, kind_of(place))
+                : float(find_sphere_radius(body, kind_of(place), settings_.tables, settings_.seed));
+  }
   if (arrives) spheres_.eased[std::size_t(place)] = kEasedUnits, ++eased_;
   if (asleep) lay_still(place);
   return slot;
@@ -91,7 +93,8 @@ float TablesLevel::arriving_radius(const StatisticalBody& body, const BodyKind& 
          least_height = shape.radius;
   std::vector<GroundNear> near;
   std::vector<HalfSpace> faces;
-  find_ground_near(ground_, body.position, shape.radius + least_gap, 0.0, near);
+  const PairBody hull{&shape, body.position, body.orientation};
+  find_ground_near(ground_, body.position, shape.radius + least_gap, 0.0, near, &hull);
   for (const GroundNear& n : near) faces.push_back(n.plane(body.position));
   for (const HalfSpace& plane : join_planes(ground_.planes(), faces)) {
     const double height = plane.height_of(body.position);
@@ -126,6 +129,8 @@ void TablesLevel::set_state(int slot, const RigidState& state) {
   body.quiet_time = 0.0f;
   spheres_.put(place, body);
   spheres_.twice_energy[place] = float(body.spin.dot(state.angular_velocity));
+  if (!settings_.tables.as_published())
+    spheres_.radius[std::size_t(place)] = arriving_radius(spheres_.body(place), kind_of(place));
   given_[std::uint32_t(slot)] = state;
 }
 

@@ -122,7 +122,9 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
     near.clear();
     const std::size_t first = faces_.size();
     const bool alone = is_alone(i), only_planes = alone && find_planes_of(i);
-    if (!only_planes) find_ground_near(ground_, center, 1.01 * size + way, 0.0, near);
+    const PairBody hull{kind_of(i).shape.get(), center, spheres_.orientation(i)};
+    if (!only_planes)
+      find_ground_near(ground_, center, 1.01 * size + way, 0.0, near, constants_.hulls ? &hull : nullptr);
     for (const GroundNear& n : near) faces_.push_back(n.plane(center));
     if (faces_.size() == first) continue;
     for (const HalfSpace& face : std::span(faces_).subspan(first))
