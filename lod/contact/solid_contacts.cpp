@@ -92,6 +92,7 @@ void find_ground_near(const Ground& ground, const Vec3& center, double reach, do
                       std::vector<GroundNear>& found, const PairBody* hull) {
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
+  thread_local std::vector<Nearest> planes;
   parts.clear();
   ground.find_parts(center, reach, parts);
   for (const GroundPart* part : parts) {
@@ -100,11 +101,17 @@ void find_ground_near(const Ground& ground, const Vec3& center, double reach, do
     near.clear();
     find_solids(*part, center, reach, after, near);
     for (const PlacedSolid& placed : near) {
-      auto nearest = find_nearest(*placed.solid, placed.orientation.conjugate() * (center - placed.position));
+      const auto nearest =
+          find_nearest(*placed.solid, placed.orientation.conjugate() * (center - placed.position));
       if (!nearest || std::abs(nearest->height) >= reach) continue;
-      if (hull && nearest->at_edge) nearest = find_farthest_apart(*hull, placed, *nearest);
-      found.push_back(
-          {placed.orientation * nearest->normal, nearest->height, part, placed.number, nearest->at_edge});
+      planes.clear();
+      if (hull)
+        find_planes_to_hull(*hull, placed, *nearest, planes);
+      else
+        planes.push_back(*nearest);
+      for (const Nearest& plane : planes)
+        found.push_back(
+            {placed.orientation * plane.normal, plane.height, part, placed.number, plane.at_edge});
     }
   }
 }

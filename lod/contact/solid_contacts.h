@@ -44,7 +44,7 @@ struct GroundNear {
 };
 
 /// Appends what a ball of radius `reach` about `center` meets of the ground's parts, `after` so many seconds
-/// of the step. With a `hull` in it, at an edge the plane that keeps this farthest from the solid.
+/// of the step. With a `hull` in it, the planes that stand for the ground to this.
 void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after,
                       std::vector<GroundNear>& found, const PairBody* hull = nullptr);
 

@@ -75,6 +75,44 @@ Vec3 find_way_from_edges(const SurfaceTriangle& t, const Vec3& point) {
   return way;
 }
 
+// What keeps a body farthest from a solid, of `nearest`, which is of its centre, and the solid's faces that
+// the centre lies over: what overhangs an edge lies on the face, though the edge is nearer.
+Nearest find_farthest_apart(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest) {
+  constexpr std::size_t kFewFaces = 12;
+  const Vec3 center = placed.orientation.conjugate() * (body.position - placed.position);
+  const auto gap_along = [&](const Vec3& normal, double height) {
+    const Vec3 along = placed.orientation * normal;
+    return height - find_farthest_arm(body, -along).dot(-along);
+  };
+  Nearest best = nearest;
+  if (placed.solid->faces.size() > kFewFaces) return best;
+  double greatest = gap_along(nearest.normal, nearest.height);  // m
+  for (const SolidFace& face : placed.solid->faces) {
+    const double height = face.normal.dot(center) - face.offset;
+    if (height <= 0.0) continue;
+    const double gap = gap_along(face.normal, height);
+    if (gap > greatest) greatest = gap, best.normal = face.normal, best.height = height;
+  }
+  return best;
+}
+
+// Whether a point lies straight above or below the face with this normal (in the part's axes).
+bool is_over_face(const PlacedSolid& placed, const Vec3& normal, const Vec3& point) {
+  constexpr double kSame = 0.999;  // cosine
+  const GroundSolid& solid = *placed.solid;
+  if (solid.surface)
+    return solid.surface->normal.dot(normal) > kSame && is_over(*solid.surface, in_part(placed, point));
+  if (solid.shape->sphere_radius) return true;
+  const Vec3 at = placed.orientation.conjugate() * (point - placed.position);
+  const auto face =
+      std::ranges::max_element(solid.faces, {}, [&](const SolidFace& f) { return f.normal.dot(normal); });
+  if (face == solid.faces.end() || face->normal.dot(normal) < kSame) return false;
+  const Vec3 foot = at - (face->normal.dot(at) - face->offset) * face->normal;
+  const double rounding = 1e-3 * solid.shape->radius;
+  return std::ranges::all_of(solid.faces,
+                             [&](const SolidFace& f) { return f.normal.dot(foot) - f.offset <= rounding; });
+}
+
 // An axis along which the two are nearly as far apart as along any, world, unit: where a search for that one
 // begins. Zero: there is none.
 Vec3 find_start_axis(const PairBody& body, const PlacedSolid& placed) {
@@ -146,23 +184,19 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
   return Nearest{gap.normal, gap.gap, true};
 }
 
-Nearest find_farthest_apart(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest) {
-  constexpr std::size_t kFewFaces = 12;
-  const Vec3 center = placed.orientation.conjugate() * (body.position - placed.position);
-  const auto gap_along = [&](const Vec3& normal, double height) {
-    const Vec3 along = placed.orientation * normal;
-    return height - find_farthest_arm(body, -along).dot(-along);
-  };
-  Nearest best = nearest;
-  if (placed.solid->faces.size() > kFewFaces) return best;
-  double greatest = gap_along(nearest.normal, nearest.height);  // m
-  for (const SolidFace& face : placed.solid->faces) {
-    const double height = face.normal.dot(center) - face.offset;
-    if (height <= 0.0) continue;
-    const double gap = gap_along(face.normal, height);
-    if (gap > greatest) greatest = gap, best.normal = face.normal, best.height = height;
-  }
-  return best;
+void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest,
+                         std::vector<Nearest>& found) {
+  constexpr double kOverlap = 0.01;  // over R: less of it may be the planes' own error
+  const Nearest best = nearest.at_edge ? find_farthest_apart(body, placed, nearest) : nearest;
+  const double most = kOverlap * body.shape->radius;
+  const Vec3 along = placed.orientation * best.normal, arm = find_farthest_arm(body, -along);
+  if (best.height + arm.dot(along) >= -most || is_over_face(placed, best.normal, body.position + arm))
+    return found.push_back(best);
+  thread_local HullContactSearch search;
+  meet_solid(body, placed, most, search);
+  for (const PairContact& contact : search.contacts)
+    found.push_back({placed.orientation.conjugate() * contact.normal,
+                     contact.gap - find_farthest_arm(body, -contact.normal).dot(contact.normal), true});
 }
 
 void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search) {

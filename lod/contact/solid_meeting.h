@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "lod/contact/pair_contacts.h"
 #include "lod/ground/ground.h"
@@ -17,9 +18,11 @@ struct Nearest {
 /// `point` in the frame of the solid's shape. None behind the edge of a surface, where a neighbour is nearer.
 std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point);
 
-/// What keeps a body farthest from a solid, of `nearest`, which is of its centre, and the solid's faces that
-/// the centre lies over: what overhangs an edge lies on the face, though the edge is nearer.
-Nearest find_farthest_apart(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest);
+/// Appends the planes that stand for a solid to a hull: as a rule one, across the way to what its centre is
+/// `nearest` to, or the face that it lies on though an edge is nearer. Where it hangs over an edge and below
+/// the face beside that, those of their contacts, or none.
+void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest,
+                         std::vector<Nearest>& found);
 
 /// Those contacts of the body with a gap of at most `margin` m: one of its hull, or, as find_pair_contacts
 /// has it, those of its convex pieces. A triangle is met along its normal but for where an edge of it stands

@@ -264,10 +264,11 @@ struct LieLoop {
       s[i].x = turn.x, s[i].y = turn.y, s[i].z = turn.z, s[i].w = moving;
       held[i] = choose(lies & others, given_speed, 0.0f);
       motion[i] = choose(lies & !rests, int(Motion::dynamic), moves);
-      // The ground has the last word: among others no sinking in; alone down onto it, or out of it gradually.
-      const float height = above + dot(v, n) * c.time + dot(out, n),
-                  alone = choose(above < 0.0f, -kRise * above, -above);
-      const float raise = choose(lies, choose(others, most(0.0f, -height), alone), 0.0f);
+      // The ground has the last word: among others no sinking in; alone down onto it; out of it gradually.
+      const float height = above + dot(v, n) * c.time + dot(out, n), sunk = most(0.0f, -above),
+                  alone = choose(above < 0.0f, kRise * sunk, -above),
+                  among = most(0.0f, -height - (1.0f - kRise) * sunk);
+      const float raise = choose(lies, choose(others, among, alone), 0.0f);
       d[i].x = out.x + raise * n.x, d[i].y = out.y + raise * n.y, d[i].z = out.z + raise * n.z,
       d[i].w = lifted + raise;
     }

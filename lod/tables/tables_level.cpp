@@ -15,6 +15,13 @@ namespace {
 constexpr auto kEasedUnits = std::uint8_t(125.0f * kEasedTime);  // of 8 ms
 static_assert(125.0f * kEasedTime < 256.0f);
 
+bool is_turned(const StatisticalBody& body) { return std::abs(body.orientation.squaredNorm() - 1.0) < 1e-6; }
+
+bool is_sound(const StatisticalBody& body, const Shape& shape) {
+  return is_turned(body) && is_within_limit(body.position) && is_within_limit(body.velocity) &&
+         is_within_limit(angular_velocity(body.orientation, body.spin, shape));
+}
+
 }  // namespace
 
 TablesLevel::TablesLevel(const StatisticalSettings& settings, const Ground& ground,
@@ -129,7 +136,7 @@ void TablesLevel::set_state(int slot, const RigidState& state) {
   body.quiet_time = 0.0f;
   spheres_.put(place, body);
   spheres_.twice_energy[place] = float(body.spin.dot(state.angular_velocity));
-  if (!settings_.tables.as_published())
+  if (!settings_.tables.as_published() && is_sound(body, *kind_of(place).shape))
     spheres_.radius[std::size_t(place)] = arriving_radius(spheres_.body(place), kind_of(place));
   given_[std::uint32_t(slot)] = state;
 }
@@ -287,14 +294,12 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
 // What is no number must not spread.
 void TablesLevel::recover(std::int64_t place, ContactTally& tally) {
   StatisticalBody body = spheres_.body(place);
-  const Vec3 omega = angular_velocity(body.orientation, body.spin, *kind_of(place).shape);
-  const bool turned = std::abs(body.orientation.squaredNorm() - 1.0) < 1e-6;
-  if (is_within_limit(body.position) && is_within_limit(body.velocity) && is_within_limit(omega) && turned) {
+  if (is_sound(body, *kind_of(place).shape)) {
     spheres_.put(place, body);
     return;
   }
   for (double& x : body.position) x = std::isfinite(x) ? std::clamp(x, -kStateLimit, kStateLimit) : 0.0;
-  if (!turned) body.orientation = Quat::Identity();
+  if (!is_turned(body)) body.orientation = Quat::Identity();
   body.velocity.setZero();
   body.spin.setZero();
   spheres_.put(place, body);

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "lod/contact/faces_below.h"
+#include "lod/contact/hull_contacts.h"
 
 namespace lodestone {
 namespace {
@@ -113,6 +115,27 @@ TEST_F(SolidContacts, OverAFaceIsNoEdge) {
   ASSERT_EQ(near.size(), 2U);
   EXPECT_FALSE(near[0].at_edge);
   EXPECT_TRUE(near[1].at_edge);
+}
+
+// A corner that hangs over the edge of the table and below its face does not lie on this: the edge holds the
+// hull.
+TEST_F(SolidContacts, AHullThatHangsOverAnEdgeLiesOnTheEdge) {
+  constexpr double kTilt = 0.349;  // rad
+  const Shape cube = make_shape("cube", make_box({kSide, kSide, kSide}));
+  const PairBody hull{&cube, {0.98, 0.2, 0.112}, Quat(Eigen::AngleAxisd(kTilt, Vec3::UnitY()))};
+  std::vector<GroundNear> bare, near;
+  find_ground_near(ground_, hull.position, 0.2, 0.0, bare);
+  find_ground_near(ground_, hull.position, 0.2, 0.0, near, &hull);
+  const auto gap = [&](const GroundNear& of) {
+    std::int32_t hint = 0;
+    return find_lowest_point(cube, hull.orientation, of.normal, of.height, hint).gap;
+  };
+  ASSERT_EQ(bare.size(), 1U);
+  EXPECT_LT(gap(bare[0]), -0.01);
+  ASSERT_EQ(near.size(), 1U);
+  EXPECT_LT((near[0].normal - Vec3(std::sin(kTilt), 0, std::cos(kTilt))).norm(), 1e-3);
+  EXPECT_NEAR(gap(near[0]), -0.002, 1e-3);
+  EXPECT_TRUE(near[0].at_edge);
 }
 
 // Where a wall stands on the table, one plane would let it sink into the other.

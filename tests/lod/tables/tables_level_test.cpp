@@ -261,6 +261,39 @@ TEST_F(SphereLevel, RoughGroundLetsThemRest) {
   EXPECT_GT(level.asleep_count(), 120);
 }
 
+// Who lies beside another from the start is as high as it lies, not as its sphere is.
+TEST_F(SphereLevel, TheHeightOfItsHullIsABodysFirst) {
+  const auto plank = std::make_shared<const Shape>(make_shape("plank", make_box({2.0, 0.3, 0.05})));
+  testing::OneRung level = make();
+  const auto add_plank = [&](double y) {
+    return level.add(std::uint32_t(level.size()), plank, 15.0, 0, {.position = {0.0, y, 0.025}}, false,
+                     box_signature());
+  };
+  add_plank(0.0), add_plank(0.301);
+  const int moved = add_plank(5.0);
+  level.set_state(moved, {.position = {0.0, 0.602, 0.025}});
+  for (int step = 0; step < 60; ++step) {
+    run(level, 1);
+    for (int slot = 0; slot < level.size(); ++slot)
+      ASSERT_NEAR(level.position(slot).z(), 0.025, 1e-3) << step;
+  }
+}
+
+// Its centre is over neither block, and nearest to their edges.
+TEST_F(SphereLevel, ABarOnTwoBlocksStaysThereWhenACrateFallsOntoIt) {
+  const auto bar = std::make_shared<const Shape>(make_shape("bar", make_box({3.0, 0.2, 0.1})));
+  const auto crate = std::make_shared<const Shape>(make_shape("crate", make_box({0.3, 0.3, 0.3})));
+  for (const double x : {-1.3, 1.3}) ground_.add_box({0.6, 0.6, 1.0}, {x, 0.0, 0.5}, Quat::Identity(), 0);
+  testing::OneRung level = make();
+  level.add(0, bar, 36.0, 0, {.position = {0.0, 0.0, 1.05}}, false, box_signature());
+  level.add(1, crate, 16.0, 0, {.position = {0.0, 0.0, 1.7}}, false, box_signature());
+  for (int step = 0; step < 180; ++step) {
+    run(level, 1);
+    ASSERT_LT((level.position(0) - Vec3(0.0, 0.0, 1.05)).norm(), 0.02) << step;
+  }
+  EXPECT_NEAR(level.position(1).z(), 1.25, 0.02);
+}
+
 // Along the line of centres alone they fall over. They sag, by 0, 2 and 6 %.
 TEST_F(SphereLevel, TowersStand) {
   const auto cube = std::make_shared<const Shape>(make_shape("cube", make_box({0.2, 0.2, 0.2})));
