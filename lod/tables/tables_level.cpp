@@ -249,6 +249,8 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
     body.motion = Motion::dynamic;
     if (spheres_.on_hull[std::size_t(i)] != HullStand::stands)
       body.eased = std::max(body.eased, kPartsSlowly);
+  } else if (constants_.hulls) {
+    body.sphere_radius = arriving_radius(body, kind_of(i));  // what it rests on it does not leave as a guest
   }
   if (i < spheres_.awake && step_.touches(i)) {
     body.velocity = step_.velocity(i) - settings_.gravity * constants_.wide_time;
