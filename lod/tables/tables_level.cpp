@@ -98,8 +98,9 @@ float TablesLevel::arriving_radius(const StatisticalBody& body, const BodyKind& 
   double least_gap = kNear * shape.radius,
          radius = find_sphere_radius(body, kind, settings_.tables, settings_.seed),
          least_height = shape.radius;
-  std::vector<GroundNear> near;
-  std::vector<HalfSpace> faces;
+  thread_local std::vector<GroundNear> near;
+  thread_local std::vector<HalfSpace> faces;
+  near.clear(), faces.clear();
   const PairBody hull{&shape, body.position, body.orientation};
   find_ground_near(ground_, body.position, shape.radius + least_gap, 0.0, near, &hull);
   for (const GroundNear& n : near) faces.push_back(n.plane(body.position));
