@@ -52,7 +52,7 @@ int TablesLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, const
   if (settings_.tables.as_published()) {
     const StatisticalBody body = spheres_.body(place);
     spheres_.radius[place] =
-        arrives ? arriving_radius(body, kind_of(place))
+        arrives ? radius_at_ground(body, kind_of(place))
                 : float(find_sphere_radius(body, kind_of(place), settings_.tables, settings_.seed));
   }
   if (arrives) spheres_.eased[std::size_t(place)] = kEasedUnits, ++eased_;
@@ -91,8 +91,8 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
 }
 
 // The height that its hull has over the plane that it is nearest to, where it is near one: it neither sinks
-// nor rises as it arrives. Else as it moves, but into no plane.
-float TablesLevel::arriving_radius(const StatisticalBody& body, const BodyKind& kind) const {
+// nor rises as it arrives, or while it is a guest. Else as it moves, but into no plane.
+float TablesLevel::radius_at_ground(const StatisticalBody& body, const BodyKind& kind) const {
   constexpr double kNear = 0.3, kLeast = 0.02;  // over R: a gap; a radius
   const Shape& shape = *kind.shape;
   double least_gap = kNear * shape.radius,
@@ -138,7 +138,7 @@ void TablesLevel::set_state(int slot, const RigidState& state) {
   spheres_.put(place, body);
   spheres_.twice_energy[place] = float(body.spin.dot(state.angular_velocity));
   if (!settings_.tables.as_published() && is_sound(body, *kind_of(place).shape))
-    spheres_.radius[std::size_t(place)] = arriving_radius(spheres_.body(place), kind_of(place));
+    spheres_.radius[std::size_t(place)] = radius_at_ground(spheres_.body(place), kind_of(place));
   given_[std::uint32_t(slot)] = state;
 }
 
@@ -251,7 +251,7 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
     if (spheres_.on_hull[std::size_t(i)] != HullStand::stands)
       body.eased = std::max(body.eased, kPartsSlowly);
   } else if (constants_.hulls) {
-    body.sphere_radius = arriving_radius(body, kind_of(i));  // what it rests on it does not leave as a guest
+    body.sphere_radius = radius_at_ground(body, kind_of(i));  // what it rests on it does not leave as a guest
   }
   if (i < spheres_.awake && step_.touches(i)) {
     body.velocity = step_.velocity(i) - settings_.gravity * constants_.wide_time;

@@ -140,7 +140,7 @@ class TablesLevel {
   StillGrid& still() { return sleepers_.of(StatisticalModel::tables); }
   const StillGrid& still() const { return sleepers_.of(StatisticalModel::tables); }
   const BodyKind& kind_of(std::int64_t place) const { return all_kinds_[spheres_.kind[std::size_t(place)]]; }
-  float arriving_radius(const StatisticalBody& body, const BodyKind& kind) const;
+  float radius_at_ground(const StatisticalBody& body, const BodyKind& kind) const;
   float bounce_velocity() const {
     return float(world().bounce_velocity) + constants_.gravity * constants_.time;
   }  // with what gravity adds in a step

@@ -49,6 +49,14 @@ class Meeting : public ::testing::Test {
     }
     return places;
   }
+  /// Returns the states before it.
+  static std::vector<RigidState> step(StatisticalLevel& level, std::span<const StatisticalPlace> places) {
+    std::vector<RigidState> before;
+    for (const StatisticalPlace place : places) before.push_back(level.state(place));
+    StepReport report;
+    level.step(kFrame, {}, report);
+    return before;
+  }
   static FullNeighbor full_box(std::uint32_t owner, const RigidState& state) {
     FullNeighbor neighbor;
     neighbor.owner = owner, neighbor.shape = box().get(), neighbor.mass = kMass, neighbor.state = state;
@@ -301,12 +309,9 @@ TEST_F(Meeting, AGuestIsAsHighAsItsHull) {
   const std::vector<StatisticalPlace> places = add_heap(level);
   double greatest = 0.0;  // m, beyond its motion, of a body in a step
   for (int i = 0; i < 240; ++i) {
-    std::vector<Vec3> before;
-    for (const StatisticalPlace place : places) before.push_back(level.position(place));
-    StepReport report;
-    level.step(kFrame, {}, report);
+    const std::vector<RigidState> before = step(level, places);
     for (std::size_t k = 0; k < places.size(); ++k) {
-      const double rise = level.position(places[k]).z() - before[k].z(),
+      const double rise = level.position(places[k]).z() - before[k].position.z(),
                    motion = std::max(0.0, level.state(places[k]).velocity.z()) * kFrame;
       if (i > 60) greatest = std::max(greatest, rise - motion);
     }
@@ -327,10 +332,7 @@ TEST_F(Meeting, OverlapsThatArriveAreUndoneSlowly) {
     }
     double farthest = 0.0;
     for (int i = 0; i < 120; ++i) {
-      std::vector<RigidState> before;
-      for (const StatisticalPlace place : places) before.push_back(level.state(place));
-      StepReport report;
-      level.step(kFrame, {}, report);
+      const std::vector<RigidState> before = step(level, places);
       for (std::size_t k = 0; k < places.size(); ++k) {
         const RigidState after = level.state(places[k]);
         const double explained = std::max(before[k].velocity.norm(), after.velocity.norm()) * kFrame;
