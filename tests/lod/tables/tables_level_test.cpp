@@ -294,7 +294,7 @@ TEST_F(SphereLevel, ABarOnTwoBlocksStaysThereWhenACrateFallsOntoIt) {
   EXPECT_NEAR(level.position(1).z(), 1.25, 0.02);
 }
 
-// Along the line of centres alone they fall over. They sag, by 0, 2 and 6 %.
+// Along the line of centres alone they fall over. They sag, by .1, .6 and 1.6 %.
 TEST_F(SphereLevel, TowersStand) {
   const auto cube = std::make_shared<const Shape>(make_shape("cube", make_box({0.2, 0.2, 0.2})));
   for (const int cubes : {3, 5, 10}) {
