@@ -234,13 +234,14 @@ class Manager {
   /// hooks, ground and materials, nor the caller's own bodies. Only the same build reads it.
   std::vector<std::byte> snapshot() const;
   /// From then on steps give the same states, to the bit, as they gave the manager that the snapshot is of,
-  /// on any number of threads, if the same is done to it and, in a caller's world, his own bodies are as they
-  /// were then. That manager or another: with the same settings, policy, materials and ground. Its shapes are
-  /// looked for among `shapes` and those of the bodies here. Ids of bodies are those of the snapshot; one
-  /// given since may be given again. Where the full bodies are not those that the snapshot has, all ODE
-  /// bodies of the manager are made anew, in a caller's world after his own. Throws InputError, and nothing
-  /// has changed, where the snapshot is damaged or of another build, seed, material table or set of planes,
-  /// where a shape is missing, or a body that is made anew hangs on a joint.
+  /// on any number of threads, if the same is done to it and, in a caller's world, his own geoms and bodies
+  /// are as they were then: put them so before. That manager or another, even one that has made no step: with
+  /// the same settings, policy, materials and ground. Its shapes are looked for among `shapes` and those of
+  /// the bodies here. Ids of bodies are those of the snapshot; one given since may be given again. Where the
+  /// full bodies are not those that the snapshot has, all ODE bodies of the manager are made anew, in a
+  /// caller's world after his own. Throws InputError, and nothing has changed, where the snapshot is damaged
+  /// or of another build, seed, material table or set of planes, where a shape is missing, or a body that is
+  /// made anew hangs on a joint.
   void restore(std::span<const std::byte> snapshot,
                std::span<const std::shared_ptr<const Shape>> shapes = {});
 

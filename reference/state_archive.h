@@ -65,8 +65,18 @@ class StateArchive {
     return std::size_t(wide);
   }
 
+  /// What lies between members goes as zeros, where the compiler can tell.
   template <PlainState T>
   void take(T& value) {
+#if __has_builtin(__builtin_clear_padding)
+    if constexpr (!std::is_arithmetic_v<T>) {
+      if (!reading_) {
+        T copy = value;
+        __builtin_clear_padding(&copy);
+        return take_bytes(static_cast<void*>(&copy), sizeof(T));
+      }
+    }
+#endif
     take_bytes(static_cast<void*>(&value), sizeof(T));
   }
   template <ArchivesItself T>
@@ -77,7 +87,7 @@ class StateArchive {
   void take(std::vector<T>& values) {
     const std::size_t count = take_count(values.size());
     if (reading_) values.resize(count);
-    if constexpr (PlainState<T>)
+    if constexpr (std::is_arithmetic_v<T>)
       take_bytes(static_cast<void*>(values.data()), count * sizeof(T));
     else
       for (T& value : values) take(value);

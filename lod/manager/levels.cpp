@@ -99,6 +99,10 @@ void Levels::follow_callers_space(double dt) {
   callers.bodies.follow(*mirror);
 }
 
+void Levels::look_away() {
+  if (full.world()) full.world()->look_away();
+}
+
 std::vector<CallersPart> Levels::callers_parts() const {
   const SpaceMirror* mirror = full.world() ? full.world()->callers_space() : nullptr;
   return mirror ? callers.bodies.find_parts(*mirror) : std::vector<CallersPart>{};

@@ -71,6 +71,8 @@ struct Levels {
   /// Brings ground and bodies to what the caller's space holds now, before a step of `dt` s; what lay on
   /// ground that came, went or moved wakes.
   void follow_callers_space(double dt);
+  /// After that, where no step follows: the caller may change it again.
+  void look_away();
   /// The geoms of the caller's dynamic bodies as they are now, at any time.
   std::vector<CallersPart> callers_parts() const;
   /// Wakes the statistical bodies whose bounding spheres meet `box`.

@@ -195,6 +195,7 @@ Manager::Impl::Undo::~Undo() {
   if (std::uncaught_exceptions() == exceptions_) return;
   impl_.report = before_;
   impl_.levels.now = before_.step;
+  impl_.levels.look_away();
   BodyTable& bodies = impl_.levels.bodies;
   for (std::uint32_t body = 0; body < bodies.indices();
        ++body)  // in the step to come they are looked at anew

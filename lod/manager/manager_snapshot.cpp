@@ -16,6 +16,8 @@
 namespace lodestone {
 namespace {
 
+constexpr double kAnyStep = 1.0 / 60.0;  // s; the next step sees anew what moves
+
 using Shapes = std::vector<std::shared_ptr<const Shape>>;
 
 // What a reader must have alike.
@@ -163,10 +165,13 @@ void Manager::restore(std::span<const std::byte> snapshot,
   if (impl_->waits_for_world_step)
     throw_input_error("restore", "one between before_world_step and after_world_step", "none");
   const Header header = read_header(snapshot);
+  impl_->follow_gravity();
   check_alike(header.circumstances, circumstances_of(levels, impl_->callers_world != nullptr));
   const std::span<const std::byte> body = snapshot.subspan(sizeof header);
   StateArchive state(body.subspan(header.shapes * sizeof(ShapeName)),
                      find_shapes(body, header.shapes, shapes, levels.bodies));
+  levels.follow_callers_space(kAnyStep);  // contacts are remembered with the parts of his ground
+  levels.look_away();
   impl_->archive(state);
   check_that(state.at_end(), "a snapshot is read to its end");
 }

@@ -125,6 +125,8 @@ void OdeWorld::look_at_callers_space() {
   impl_->look_at_callers_space();
 }
 
+void OdeWorld::look_away() { impl_->has_looked = false; }
+
 const SpaceMirror* OdeWorld::callers_space() const { return impl_->mirror.get(); }
 void OdeWorld::include_body(dxBody* body) { impl_->held_forces.include(body); }
 void OdeWorld::exclude_body(dxBody* body) { impl_->held_forces.exclude(body); }
@@ -180,6 +182,7 @@ void OdeWorld::archive(StateArchive& a) {
   if (a.reading())
     for (const Body& body : impl.bodies.slots())
       if (body.body) impl.collision.broad_phase().note_sleep(body);
+  if (a.reading()) impl.vacated.clear();
   a(impl.joints, impl.quick_steps);
   double cfm = dWorldGetCFM(impl.world);
   a(cfm);

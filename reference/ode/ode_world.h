@@ -201,6 +201,9 @@ class OdeWorld {
   /// Looks at what the caller did since the last step: what his space holds, and bodies here that he spoilt,
   /// which are put back; each step does so first.
   void look_at_callers_space();
+  /// Where no step follows: until the next look nothing of what was seen is touched, as the caller may change
+  /// it.
+  void look_away();
   /// As seen then; null in a world of its own.
   const SpaceMirror* callers_space() const;
   /// Forces that the caller gives a body (dBodyAddForce, dBodyAddTorque, the motors of joints) act for the

@@ -61,7 +61,7 @@ struct OdeWorld::Impl {
   OdeCounters counters;
   OdeTimes times;
   std::uint64_t quick_steps = 0;
-  bool has_looked = false;                   // since the last step
+  bool has_looked = false;                   // for the step to come
   std::string failure = {};                  // why ODE gave up; empty: it has not
   double callers_step_s = 0.0;               // between begin_callers_step and end_callers_step; else 0
   std::vector<Eigen::AlignedBox3d> vacated;  // m, by bodies that were removed between steps: the caller's

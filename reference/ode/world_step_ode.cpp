@@ -70,7 +70,6 @@ bool OdeWorld::Impl::has_work() {
 }
 
 void OdeWorld::Impl::look_at_callers_space() {
-  if (has_looked) return;
   put_back_unsound();
   if (!mirror) return;
   mirror->refresh();
@@ -82,7 +81,7 @@ void OdeWorld::Impl::look_at_callers_space() {
 
 void OdeWorld::Impl::begin_step(double h) {
   if (!failure.empty()) throw SimulationError(failure);
-  look_at_callers_space();
+  if (!has_looked) look_at_callers_space();
   times = {};
   touches.begin_step();
   joints.tell(records_touches ? &touches : nullptr);

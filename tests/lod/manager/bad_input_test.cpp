@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "reference/error.h"
+#include "tests/lod/callers/callers_scene.h"
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/message_of.h"
 
@@ -236,6 +237,36 @@ TEST(BadInput, StepThatThrowsForASignatureHasMovedNothing) {
   manager.step(kFrame);
   EXPECT_EQ(manager.rung(body), Rung::support);
   EXPECT_LT(manager.state(body).position.z(), 2.0);
+}
+
+// In a caller's world: what he changes before he steps again is seen, and nothing is ground twice, which a
+// body between a box and another would feel.
+TEST(BadInput, AfterAStepThatThrewTheCallersSpaceIsLookedAtAnew) {
+  std::uint64_t hashes[2];
+  for (const bool throws : {false, true}) {
+    CallersScene his;
+    dWorldSetGravity(his.world, 0, 0, -kGravity);
+    dCreatePlane(his.space, 0, 0, 1, 0);
+    his.box({2, 2, 0.2}, {0, 0, 0.1});
+    bool fails = throws;
+    ManagerSettings settings = unmeasured();
+    settings.signatures = [&](const Shape&, const ContactLaw&) -> std::shared_ptr<const Signature> {
+      if (fails) throw InputError("no signature today");
+      return nullptr;
+    };
+    Manager manager(his.world, his.space, settings);
+    for (int i = 0; i < 6; ++i)
+      add(manager, box_shape({0.2, 0.2, 0.2}),
+          at({0.05 * i, 0.4 * (i / 3), 0.31 + 0.25 * (i % 3)}, {1, 0, 0}), LevelChoice::support);
+    if (throws) {
+      EXPECT_THROW(manager.step(kFrame), InputError);
+    }
+    fails = false;
+    his.box({0.2, 2, 0.8}, {0.6, 0, 0.4});
+    run(manager, 0.8);
+    hashes[throws] = manager.state_hash();
+  }
+  EXPECT_EQ(hashes[false], hashes[true]);
 }
 
 // Of a source that has none, or one of another shape.

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/random.h"
+#include "tests/lod/callers/callers_scene.h"
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/message_of.h"
 
@@ -152,6 +153,55 @@ TEST(ManagerSnapshot, WhatWaitsIsPartOfIt) {
   reader.manager.restore(snapshot, kShapes);
   reader.step(20);
   EXPECT_EQ(reader.manager.state_hash(), expected);
+}
+
+// Whose bins are ground, and whose kinematic slide moves what lies on it.
+struct SavedCallersWorld {
+  SavedCallersWorld() : manager(his.world, his.space, unmeasured({.policy = DistancePolicy{1.5, 6.0}})) {
+    dWorldSetGravity(his.world, 0, 0, -kGravity);
+    dCreatePlane(his.space, 0, 0, 1, 0);
+    for (const double side : {-0.6, 0.6}) {
+      his.box({0.1, 1.3, 1.2}, {side, 0, 0.6});
+      his.box({1.3, 0.1, 1.2}, {0, side, 0.6});
+    }
+    slide = his.body(1.0, {0.4, 0.4, 0.2});
+    dBodySetKinematic(slide);
+    for (int i = 0; i < 10; ++i) {
+      RandomStream random(17, std::uint32_t(i), 0);
+      manager.add_body({.shape = SavedWorld::box,
+                        .state = testing::at({0.2 * (i % 3) - 0.2, 0.1 * (i % 2), 0.3 + 0.3 * i}, {0, 0, 0},
+                                             {0, 0, 0}, random.orientation()),
+                        .level = i % 4 == 1 ? LevelChoice::full : LevelChoice::support});
+    }
+  }
+  // The slide goes to and fro.
+  void run(int from, int to) {
+    for (int i = from; i < to; ++i) {
+      dBodySetLinearVel(slide, i / 20 % 2 ? 0.5 : -0.5, 0, 0);
+      manager.step(kFrame);
+    }
+  }
+  CallersScene his;
+  Manager manager;
+  dBodyID slide;
+};
+
+// Contacts with his ground are remembered by its parts, which a manager that is new has not met yet.
+TEST(ManagerSnapshot, InACallersWorldANewManagerGoesOnToTheBit) {
+  SavedCallersWorld writer;
+  writer.run(0, 50);
+  const Bytes snapshot = writer.manager.snapshot();
+  const dReal* place = dBodyGetPosition(writer.slide);
+  const Vec3 slide(place[0], place[1], place[2]);
+  writer.run(50, 110);
+  for (const int steps_before : {0, 7}) {
+    SavedCallersWorld reader;
+    reader.run(0, steps_before);
+    dBodySetPosition(reader.slide, slide.x(), slide.y(), slide.z());
+    reader.manager.restore(snapshot);
+    reader.run(50, 110);
+    EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash()) << steps_before;
+  }
 }
 
 }  // namespace
