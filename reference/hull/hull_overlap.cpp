@@ -46,9 +46,10 @@ double depth_along(const PlacedHull& first, const PlacedHull& second, const Vec3
 
 /// Of a body's hull around its vertex farthest along `direction`, in the world.
 struct Corner {
+  Vec3 farthest;  // m
   std::vector<Vec3> normals, edges;
 
-  Corner(const PlacedHull& body, const Vec3& direction) {
+  Corner(const PlacedHull& body, const Vec3& direction) : farthest(body.farthest(direction)) {
     if (body.shape->sphere_radius) return;
     const Hull& hull = body.shape->hull;
     const int vertex = body.farthest_vertex(direction);
@@ -77,17 +78,22 @@ class Walk {
     const double before = best_.depth;
     const Vec3 from = best_.direction;
     const Corner first(first_, -from), second(second_, from);
-    for (const Vec3& normal : first.normals) consider(-normal, from);
-    for (const Vec3& normal : second.normals) consider(normal, from);
+    const Vec3 between = second.farthest - first.farthest;
+    for (const Vec3& normal : first.normals) consider(-normal, from, between);
+    for (const Vec3& normal : second.normals) consider(normal, from, between);
     for (const Vec3& a : first.edges)
-      for (const Vec3& b : second.edges) consider(a.cross(b), from);
+      for (const Vec3& b : second.edges) consider(a.cross(b), from, between);
     return best_.depth < before;
   }
-  void consider(const Vec3& raw, const Vec3& from) {
+  // `between`: from a point of the first to one of the second. Along any direction the hulls overlap by that
+  // at least, so most directions need no search for their farthest points.
+  void consider(const Vec3& raw, const Vec3& from, const Vec3& between) {
     constexpr double kParallel = 1e-20;  // squared
+    constexpr double kRounding = 1e-12;  // × radius
     const double size = raw.squaredNorm();
     if (!(size > kParallel * first_.shape->radius * second_.shape->radius)) return;
     const Vec3 direction = (raw.dot(from) < 0.0 ? -raw : raw) / std::sqrt(size);
+    if (between.dot(direction) > best_.depth + kRounding * first_.shape->radius) return;
     const double depth = depth_along(first_, second_, direction);
     if (depth < best_.depth) best_ = {depth, direction};
   }
