@@ -123,6 +123,18 @@ std::optional<Vec3> find_way_out(const PlacedHull& first, const PlacedHull& seco
   return direction / norm;
 }
 
+/// Around the first's place, so that nothing is lost far from the origin.
+struct PlacedPair {
+  PlacedHull first, second;
+
+  PlacedPair(const Shape& a, const RigidState& state_of_a, const Shape& b, const RigidState& state_of_b)
+      : first{&a, state_of_a}, second{&b, state_of_b} {
+    second.state.position -= first.state.position;
+    first.state.position.setZero();
+  }
+  bool are_spheres() const { return first.shape->sphere_radius && second.shape->sphere_radius; }
+};
+
 /// `between`: from the second centre to the first.
 std::optional<HullOverlap> find_sphere_overlap(double radii, const Vec3& between) {
   const double distance = between.norm();
@@ -142,13 +154,17 @@ void each_piece(const Shape& shape, const RigidState& state, const Visit& visit)
 
 }  // namespace
 
+bool may_hulls_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
+                       const RigidState& second_state) {
+  const PlacedPair pair(first, first_state, second, second_state);
+  return pair.are_spheres() || find_way_out(pair.first, pair.second, ccdMPRPenetration);
+}
+
 std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidState& first_state,
                                              const Shape& second, const RigidState& second_state) {
-  // Around the origin, so that nothing is lost far from it.
-  PlacedHull a{&first, first_state}, b{&second, second_state};
-  b.state.position -= a.state.position;
-  a.state.position.setZero();
-  if (first.sphere_radius && second.sphere_radius)
+  const PlacedPair pair(first, first_state, second, second_state);
+  const auto& [a, b] = pair;
+  if (pair.are_spheres())
     return find_sphere_overlap(*first.sphere_radius + *second.sphere_radius, -b.state.position);
   // The portal tells best whether the hulls overlap, but may be misled about the way out where they do so by
   // far; the polytope now and then.

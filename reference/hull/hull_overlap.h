@@ -23,6 +23,10 @@ struct HullOverlap {
 std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidState& first_state,
                                              const Shape& second, const RigidState& second_state);
 
+/// Whether they overlap, as far as libccd's portal tells: at a sixth of the price.
+bool may_hulls_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
+                       const RigidState& second_state);
+
 /// Its depth (m); 0 where they are apart.
 double measure_hull_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
                             const RigidState& second_state);

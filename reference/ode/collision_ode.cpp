@@ -262,11 +262,14 @@ void Collision::prepare_for_convex(dGeomID geom) {
 void Collision::find_filtered_points(const Body& body, const Body& other, const Candidate& pair,
                                      double size) {
   const RigidState first = state_of(body.body), second = state_of(other.body);
-  const auto overlap = find_hull_overlap(*body.shape, first, *other.shape, second);
-  if (!overlap) return;
+  if (!may_hulls_overlap(*body.shape, first, *other.shape, second)) return;
   narrow_phase_.find(pair.first, pair.second, size, points_);
-  if (points_.empty() &&
-      is_inside_other(body, other)) {  // surfaces that do not cross make no contact, wherever they are
+  // Surfaces that do not cross make no contact, wherever they are.
+  const bool swallowed = points_.empty() && is_inside_other(body, other);
+  if (points_.empty() && !swallowed) return;
+  const auto overlap = find_hull_overlap(*body.shape, first, *other.shape, second);
+  if (!overlap) return points_.clear();
+  if (swallowed) {
     ++swallowed_;
     find_hull_manifold(*body.shape, first, *other.shape, second, *overlap, points_);
   }
