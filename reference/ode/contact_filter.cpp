@@ -32,10 +32,11 @@ class Places {
       : measure_(measure), middle_(Vec3::Zero()) {
     for (const ContactPoint& contact : contacts) middle_ += contact.point / double(contacts.size());
   }
-  std::optional<WayOut> measure(const Vec3& place, const Vec3& direction, double inward) const {
+  std::optional<WayOut> measure(const Vec3& place, const Vec3& direction, double inward,
+                                double longest = std::numeric_limits<double>::infinity()) const {
     ++measured_;
-    if (auto way = measure_(place + inward * (middle_ - place), direction)) return way;
-    return measure_(place + kBarely * (middle_ - place), direction);
+    if (auto way = measure_(place + inward * (middle_ - place), direction, longest)) return way;
+    return measure_(place + kBarely * (middle_ - place), direction, longest);
   }
   int measured() const { return measured_; }  ///< so far
 
@@ -85,8 +86,7 @@ class Search {
   void refine() {
     for (std::size_t tried = 0; tried != tried_.size();) {
       tried = tried_.size();
-      for (const WayOut& way : std::vector(faces_of_best_))
-        consider(way.second_face), consider(way.first_face);
+      for (const WayOut& way : std::vector(faces_of_best_)) consider_faces(way);
     }
   }
 
@@ -107,7 +107,7 @@ class Search {
       for (int axis = 0; axis < 6; ++axis)
         if (const auto way = places_.measure(
                 contact.point, axis < 3 ? Vec3::Unit(axis) : Vec3(-Vec3::Unit(axis - 3)), kToCompare))
-          consider(way->second_face), consider(way->first_face);
+          consider_faces(*way);
   }
 
   const std::optional<Displacement>& best() const { return best_; }
@@ -116,21 +116,35 @@ class Search {
   }
 
  private:
+  void consider_faces(const WayOut& way) {
+    consider(way.second_face);
+    if (way.first_face) consider(*way.first_face);
+  }
+
   /// Shallowest first; gives up where the direction can no longer be the best.
   std::vector<WayOut> measure(const Vec3& direction) {
     std::vector<WayOut> ways;
-    const double count = double(sample_.size());
-    double useful = count;
+    const double longest = least_ * double(sample_.size()) - slack_;
+    std::size_t left = sample_.size();
     for (const ContactPoint& contact : sample_) {
-      const auto way = places_.measure(contact.point, direction, kToCompare);
-      if (way) add_unlike(first_faces_, way->first_face), add_unlike(second_faces_, way->second_face);
-      if (way && way->depth + slack_ < least_ * count)
-        ways.push_back(*way);
-      else if (slack_ >= least_ * --useful)
-        return {};
+      const auto way = places_.measure(contact.point, direction, kToCompare, longest);
+      --left;
+      if (way) add_unlike(second_faces_, way->second_face);
+      if (way && way->first_face) add_unlike(first_faces_, *way->first_face);
+      if (way && way->depth < longest) {
+        const auto longer = std::ranges::upper_bound(ways, way->depth, {}, &WayOut::depth);
+        ways.insert(longer, *way);
+      }
+      if (!can_be_best(ways, left)) return {};
     }
-    std::ranges::sort(ways, {}, &WayOut::depth);
     return ways;
+  }
+  /// `ways`, and nothing at all in the way of the places that are left.
+  bool can_be_best(std::span<const WayOut> ways, std::size_t left) const {
+    if (left > 0 && slack_ < least_ * double(left)) return true;
+    for (std::size_t i = 0; i < ways.size(); ++i)
+      if (ways[i].depth + slack_ < least_ * double(left + i + 1)) return true;
+    return false;
   }
 
   std::span<const ContactPoint> sample_;

@@ -20,14 +20,16 @@ namespace lodestone {
 /// What moving the first body along a direction meets.
 struct WayOut {
   double depth = 0.0;  ///< m until the two are clear of each other at the place; 0 where they are already
-  Vec3 second_face = Vec3::UnitZ();  ///< the directions (unit) that the faces met last ask for: the outward
-                                     ///< normal of the second body's …
-  Vec3 first_face = Vec3::UnitZ();   ///< … and the inward normal of the first's
+  /// The directions (unit) that the faces met last ask for: the outward normal of the second body's and the
+  /// inward normal of the first's; without the latter where the way is too long to be measured to its end.
+  Vec3 second_face = Vec3::UnitZ();
+  std::optional<Vec3> first_face = {};
 };
 
-/// Measures the way out along `direction` (unit) at `place`; nothing where the place is outside either body
-/// by more than rounding.
-using WayOutMeasure = std::function<std::optional<WayOut>(const Vec3& place, const Vec3& direction)>;
+/// Measures the way out along `direction` (unit) at `place`, of one longer than `longest` (m) perhaps a part
+/// that is; nothing where the place is outside either body by more than rounding.
+using WayOutMeasure =
+    std::function<std::optional<WayOut>(const Vec3& place, const Vec3& direction, double longest)>;
 
 /// Moves the contacts to believe to the front and returns how many they are. `size` (m) is the smaller body's
 /// radius. Once about `most_measures` ways out were measured, the best directions known so far are taken: the

@@ -94,8 +94,8 @@ void NarrowPhase::find_of_meshes(dGeomID first, dGeomID second, double size,
   const auto found = std::span(points).subspan(before);
   if (filtered_ && !plainly_believable(found, size)) {
     const auto few = found.first(reduce_contacts(found, kMostFiltered, size));
-    const auto measure = [&](const Vec3& place, const Vec3& direction) {
-      return measure_way_out(place, direction);
+    const auto measure = [&](const Vec3& place, const Vec3& direction, double longest) {
+      return measure_way_out(place, direction, longest);
     };
     points.resize(before + filter_contacts(few, size, measure, most_measures_));
   }
@@ -105,9 +105,12 @@ void NarrowPhase::find_of_meshes(dGeomID first, dGeomID second, double size,
   }
 }
 
-std::optional<WayOut> NarrowPhase::measure_way_out(const Vec3& place, const Vec3& direction) const {
+std::optional<WayOut> NarrowPhase::measure_way_out(const Vec3& place, const Vec3& direction,
+                                                   double longest) const {
   const auto second = find_exit(1, place, direction);
   if (!second) return {};
+  const double least = second->distance - kWithin * size_;  // the first's may be as far behind the place
+  if (least > longest) return WayOut{least, second->normal, {}};
   const auto first = find_exit(0, place, -direction);
   if (!first) return {};
   return WayOut{std::max(0.0, second->distance + first->distance), second->normal, -first->normal};

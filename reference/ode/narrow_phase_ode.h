@@ -35,7 +35,7 @@ class NarrowPhase {
   void find_of_meshes(dGeomID first, dGeomID second, double size, std::vector<ContactPoint>& points);
   int collide_meshes(dGeomID first, dGeomID second);
   void place(dGeomID first, dGeomID second, const Vec3& origin);
-  std::optional<WayOut> measure_way_out(const Vec3& place, const Vec3& direction) const;
+  std::optional<WayOut> measure_way_out(const Vec3& place, const Vec3& direction, double longest) const;
   std::optional<Exit> find_exit(int which, const Vec3& place, const Vec3& direction) const;
   std::optional<Exit> cast_ray(dGeomID mesh, const Vec3& point, const Vec3& direction) const;
 

@@ -17,7 +17,7 @@ struct FloorAndWall {
   bool wall = false;
   double wall_depth = 5e-3;  // of the first body's face at x = −wall_depth
 
-  std::optional<WayOut> operator()(const Vec3& place, const Vec3& direction) const {
+  std::optional<WayOut> operator()(const Vec3& place, const Vec3& direction, double longest) const {
     constexpr double kRounding = 1e-2;
     const bool in_second = place.z() <= kRounding || (wall && place.x() <= kRounding);
     const bool in_first = place.z() >= -depth - kRounding && (!wall || place.x() >= -wall_depth - kRounding);
@@ -27,7 +27,7 @@ struct FloorAndWall {
     const bool on_floor = !wall || place.x() > kRounding;
     const double away = on_floor ? up : (place.z() > kRounding ? aside : std::max(up, aside));
     const Vec3 face = on_floor ? Vec3::UnitZ() : Vec3::UnitX();
-    return WayOut{away, face, face};
+    return WayOut{away, face, away > longest ? std::nullopt : std::optional(face)};
   }
 };
 
@@ -87,8 +87,8 @@ TEST(ContactFilter, EndsTheSearchOnceEnoughWasMeasured) {
                           0.2 + 0.01 * i});
     const int kept = filter_contacts(
         contacts, 1.0,
-        [&](const Vec3& place, const Vec3& direction) {
-          return ++measured, FloorAndWall{}(place, direction);
+        [&](const Vec3& place, const Vec3& direction, double longest) {
+          return ++measured, FloorAndWall{}(place, direction, longest);
         },
         most_measures);
     for (const ContactPoint& contact : std::span(contacts).first(std::size_t(kept)))
