@@ -2,6 +2,9 @@
 
 #include <ccd/ccd.h>
 
+#include <algorithm>
+#include <array>
+#include <span>
 #include <vector>
 
 namespace lodestone {
@@ -40,16 +43,16 @@ void center(const void* object, ccd_vec3_t* point) {
   assign(*point, static_cast<const PlacedHull*>(object)->state.position);
 }
 
-double depth_along(const PlacedHull& first, const PlacedHull& second, const Vec3& direction) {
-  return (second.farthest(direction) - first.farthest(-direction)).dot(direction);
+/// Of the Minkowski difference of the two: how deep they overlap along `direction`, and between which points.
+Vec3 farthest_between(const PlacedHull& first, const PlacedHull& second, const Vec3& direction) {
+  return second.farthest(direction) - first.farthest(-direction);
 }
 
 /// Of a body's hull around its vertex farthest along `direction`, in the world.
 struct Corner {
-  Vec3 farthest;  // m
   std::vector<Vec3> normals, edges;
 
-  Corner(const PlacedHull& body, const Vec3& direction) : farthest(body.farthest(direction)) {
+  Corner(const PlacedHull& body, const Vec3& direction) {
     if (body.shape->sphere_radius) return;
     const Hull& hull = body.shape->hull;
     const int vertex = body.farthest_vertex(direction);
@@ -64,7 +67,9 @@ struct Corner {
 class Walk {
  public:
   Walk(const PlacedHull& first, const PlacedHull& second, const Vec3& start)
-      : first_(first), second_(second), best_{depth_along(first, second, start), start} {}
+      : first_(first), second_(second) {
+    best_ = {measure(start), start};
+  }
 
   HullOverlap end() {
     constexpr int kMostSteps = 64;
@@ -78,28 +83,39 @@ class Walk {
     const double before = best_.depth;
     const Vec3 from = best_.direction;
     const Corner first(first_, -from), second(second_, from);
-    const Vec3 between = second.farthest - first.farthest;
-    for (const Vec3& normal : first.normals) consider(-normal, from, between);
-    for (const Vec3& normal : second.normals) consider(normal, from, between);
+    for (const Vec3& normal : first.normals) consider(-normal, from);
+    for (const Vec3& normal : second.normals) consider(normal, from);
     for (const Vec3& a : first.edges)
-      for (const Vec3& b : second.edges) consider(a.cross(b), from, between);
+      for (const Vec3& b : second.edges) consider(a.cross(b), from);
     return best_.depth < before;
   }
-  // `between`: from a point of the first to one of the second. Along any direction the hulls overlap by that
-  // at least, so most directions need no search for their farthest points.
-  void consider(const Vec3& raw, const Vec3& from, const Vec3& between) {
+  void consider(const Vec3& raw, const Vec3& from) {
     constexpr double kParallel = 1e-20;  // squared
-    constexpr double kRounding = 1e-12;  // × radius
     const double size = raw.squaredNorm();
     if (!(size > kParallel * first_.shape->radius * second_.shape->radius)) return;
     const Vec3 direction = (raw.dot(from) < 0.0 ? -raw : raw) / std::sqrt(size);
-    if (between.dot(direction) > best_.depth + kRounding * first_.shape->radius) return;
-    const double depth = depth_along(first_, second_, direction);
+    if (is_deeper(direction)) return;
+    const double depth = measure(direction);
     if (depth < best_.depth) best_ = {depth, direction};
+  }
+  double measure(const Vec3& direction) {
+    const Vec3 between = farthest_between(first_, second_, direction);
+    known_[known_count_++ % known_.size()] = between;
+    return between.dot(direction);
+  }
+  // Than the best, told by points that were found along other directions: the hulls overlap by what is
+  // between any two of theirs at least, so most directions need no search.
+  bool is_deeper(const Vec3& direction) const {
+    constexpr double kRounding = 1e-12;  // × radius
+    const double enough = best_.depth + kRounding * first_.shape->radius;
+    const auto known = std::span(known_).first(std::min(known_count_, known_.size()));
+    return std::ranges::any_of(known, [&](const Vec3& between) { return between.dot(direction) > enough; });
   }
 
   const PlacedHull &first_, &second_;
   HullOverlap best_;
+  std::array<Vec3, 16> known_;  // m, the last ones
+  std::size_t known_count_ = 0;
 };
 
 using Search = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*, ccd_vec3_t*);
