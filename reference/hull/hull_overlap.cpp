@@ -43,7 +43,8 @@ void center(const void* object, ccd_vec3_t* point) {
   assign(*point, static_cast<const PlacedHull*>(object)->state.position);
 }
 
-/// Of the Minkowski difference of the two: how deep they overlap along `direction`, and between which points.
+/// The point (m) of the Minkowski difference, second − first, that is farthest along `direction`. So far they
+/// overlap that way.
 Vec3 farthest_between(const PlacedHull& first, const PlacedHull& second, const Vec3& direction) {
   return second.farthest(direction) - first.farthest(-direction);
 }
@@ -103,8 +104,8 @@ class Walk {
     known_[known_count_++ % known_.size()] = between;
     return between.dot(direction);
   }
-  // Than the best, told by points that were found along other directions: the hulls overlap by what is
-  // between any two of theirs at least, so most directions need no search.
+  // Than the best, as points show that were found along other directions: no overlap is less than what lies
+  // between any two points. Most directions need no search for their own.
   bool is_deeper(const Vec3& direction) const {
     constexpr double kRounding = 1e-12;  // × radius
     const double enough = best_.depth + kRounding * first_.shape->radius;

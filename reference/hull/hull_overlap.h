@@ -23,7 +23,7 @@ struct HullOverlap {
 std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidState& first_state,
                                              const Shape& second, const RigidState& second_state);
 
-/// Whether they overlap, as far as libccd's portal tells: at a sixth of the price.
+/// False where libccd's portal finds the hulls apart: asked first, it spares most pairs the rest.
 bool may_hulls_overlap(const Shape& first, const RigidState& first_state, const Shape& second,
                        const RigidState& second_state);
 

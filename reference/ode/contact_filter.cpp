@@ -139,7 +139,7 @@ class Search {
     }
     return ways;
   }
-  /// `ways`, and nothing at all in the way of the places that are left.
+  /// With these `ways`, if nothing is in the way of the places that are `left`.
   bool can_be_best(std::span<const WayOut> ways, std::size_t left) const {
     if (left > 0 && slack_ < least_ * double(left)) return true;
     for (std::size_t i = 0; i < ways.size(); ++i)

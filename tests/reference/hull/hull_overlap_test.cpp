@@ -21,6 +21,8 @@ TEST(HullOverlap, IsZeroApart) {
   const auto box = box_shape({0.2, 0.3, 0.4});
   EXPECT_EQ(measure_hull_overlap(*box, at({0, 0, 0}), *box, at({0.05, 0.1, 0.4001})), 0.0);
   EXPECT_EQ(measure_hull_overlap(*box, at({0, 0, 0}), *box, at({3, 0, 0})), 0.0);
+  EXPECT_FALSE(may_hulls_overlap(*box, at({0, 0, 0}), *box, at({0.05, 0.1, 0.41})));
+  EXPECT_TRUE(may_hulls_overlap(*box, at({0, 0, 0}), *box, at({0.05, 0.1, 0.39})));
 }
 
 // A crate that stands on a slab to the bit, anywhere on it, or sinks in by a little.
