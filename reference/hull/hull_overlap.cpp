@@ -180,7 +180,7 @@ bool may_hulls_overlap(const Shape& first, const RigidState& first_state, const 
 std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidState& first_state,
                                              const Shape& second, const RigidState& second_state) {
   const PlacedPair pair(first, first_state, second, second_state);
-  const auto& [a, b] = pair;
+  const PlacedHull &a = pair.first, &b = pair.second;
   if (pair.are_spheres())
     return find_sphere_overlap(*first.sphere_radius + *second.sphere_radius, -b.state.position);
   // The portal tells best whether the hulls overlap, but may be misled about the way out where they do so by
