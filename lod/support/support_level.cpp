@@ -137,6 +137,7 @@ void SupportLevel::begin_step(double dt, ContactTally& tally) {
     const double impulse = dt / body.mass;
     body.velocity += impulse * force;
     body.spin += impulse * torque;
+    body.motion = Motion::dynamic;  // a settling clip knows no force but gravity
     if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape)))
       recover(body, last_places_[std::size_t(slot)], tally);
   }

@@ -44,10 +44,12 @@ void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, Co
 void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
   for (const Push& push : pushes_) {
     const std::int64_t place = spheres_.place_of_slot[std::size_t(push.slot)];
+    end_clip(place);  // it knows no force but gravity
     StatisticalBody body = spheres_.body(place);
     const double impulse = dt * spheres_.inverse_mass[std::size_t(place)];
     body.velocity += impulse * push.force;
     body.spin += impulse * push.torque;
+    body.motion = Motion::dynamic;
     spheres_.put(place, body);
     if (!is_within_limit(body.velocity) || !is_within_limit(body.spin)) recover(place, tally);
   }

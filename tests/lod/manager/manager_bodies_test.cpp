@@ -50,6 +50,28 @@ TEST(ManagerBodies, AnImpulseGivesItsMomentumOnEveryRung) {
     }
 }
 
+// A crate at rest that is pushed harder than friction holds it slides as a rigid body does, and one that is
+// pushed less stays: its settling clip knows nothing of the force.
+TEST(ManagerBodies, AForceMovesWhatIsAtRest) {
+  constexpr double kFriction = 0.5, kTime = 0.5;  // s
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const double share : {0.3, 0.9}) {  // of the weight
+      Manager manager = on_floor({.signatures = coarse_signature});
+      manager.materials().replace(0, {.restitution = 0.0, .friction = kFriction});
+      const BodyId body = add(manager, box_shape({0.3, 0.3, 0.3}), testing::at({0, 0, 0.15}), level);
+      run(manager, 2.0);
+      const double before = manager.state(body).position.x();
+      for (int i = 0; i < 30; ++i) {
+        manager.add_force_at(body, {share * manager.mass(body) * 9.81, 0, 0},
+                             manager.state(body).position - Vec3(0, 0, 0.05));
+        manager.step(kFrame);
+      }
+      const double moved = manager.state(body).position.x() - before,
+                   expected = 0.5 * std::max(0.0, share - kFriction) * 9.81 * kTime * kTime;
+      EXPECT_NEAR(moved, expected, 0.25 * expected + 0.02) << int(level) << " at " << share;
+    }
+}
+
 TEST(ManagerBodies, AForceAtAPointIsAForceAndATorque) {
   for (const LevelChoice level : kRungsOf) {
     Manager one = in_space(), other = in_space();
