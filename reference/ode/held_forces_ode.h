@@ -21,16 +21,27 @@ class HeldForces {
   /// Before each substep.
   void give() const;
 
+  /// Notes where those of the caller's are, so that a substep can be taken back.
+  void note_states();
+  void take_back() const;
+
  private:
   struct Held {
     dBodyID body;
     Vec3 force, torque;
   };
+  struct Before {
+    dBodyID body;
+    RigidState state;
+    bool enabled;
+  };
   void note(dBodyID body);
-  void note_jointed();
+  void note_callers(dBodyID body);
+  void note_jointed(Bodies& bodies);
 
-  std::vector<dBodyID> included_, jointed_;
+  std::vector<dBodyID> included_, jointed_, callers_;
   std::vector<Held> held_;
+  std::vector<Before> before_;  // of callers_
 };
 
 }  // namespace lodestone::ode

@@ -99,11 +99,11 @@ void OdeWorld::Impl::end_step() {
 // ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in
 // a message and leaving the bodies without their contact forces. Such a substep is taken back and repeated
 // with contacts a little softer and more uneven, and at last by QuickStep, which has nothing to give up on:
-// bodies once let fall into each other are thrown apart later (a heap of plates: energy × 2). Not in a
-// caller's world, whose other bodies cannot be taken back.
+// bodies once let fall into each other are thrown apart later (a heap of plates: energy × 2). Of a caller's
+// bodies those are taken back that are known: that have geoms in his space, or joints with one that has.
 void OdeWorld::Impl::substep(double h) {
   sweep.begin(bodies);
-  bool solved = try_substep(h) || !own_world;
+  bool solved = try_substep(h);
   for (int attempt = 1; !solved && attempt < ContactJoints::kMostAttempts; ++attempt)
     solved = retry_substep(h, attempt, false);
   if (!solved) retry_substep(h, 0, true);
@@ -113,6 +113,7 @@ void OdeWorld::Impl::substep(double h) {
 /// False where ODE had something to complain of.
 bool OdeWorld::Impl::try_substep(double h) {
   held_forces.give();
+  held_forces.note_states();
   begin_substep(h);
   return advance(h, false);
 }
@@ -120,6 +121,7 @@ bool OdeWorld::Impl::try_substep(double h) {
 bool OdeWorld::Impl::retry_substep(double h, int attempt, bool by_quick_step) {
   joints.end();
   take_back_bodies();
+  held_forces.take_back();
   held_forces.give();
   find_contacts(h, attempt);
   return advance(h, by_quick_step);
