@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint32_t kFirstOwner = 0x40000000;  // above every body of the manager's
 constexpr double kTouching = 0.02;                 // over R: so near it is held up
+constexpr double kLeft = 0.02;  // over its longest side: a geom whose bounds move by more in a step has left
 
 // What contacts need of a body's shape, or of a convex piece of it, about `center`.
 Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {
@@ -32,7 +33,8 @@ bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impu
 
 }  // namespace
 
-void CallersBodies::follow(const SpaceMirror& mirror) {
+void CallersBodies::follow(const SpaceMirror& mirror,
+                           const std::function<void(const Eigen::AlignedBox3d&)>& left) {
   const std::span<const MirroredGeom> geoms = mirror.geoms();
   body_of_slot_.resize(geoms.size(), nullptr);
   const auto entry_of = [&](dxBody* body) { return std::ranges::find(bodies_, body, &Entry::body); };
@@ -42,6 +44,7 @@ void CallersBodies::follow(const SpaceMirror& mirror) {
     body_of_slot_[slot] = nullptr;
     std::erase(entry->slots, slot);
     entry->stale = true;
+    left(geoms[slot].bounds);
     if (entry->slots.empty()) bodies_.erase(entry);
   }
   for (const std::uint32_t slot : mirror.added()) {
@@ -56,6 +59,12 @@ void CallersBodies::follow(const SpaceMirror& mirror) {
     body_of_slot_[slot] = geoms[slot].body;
     entry->slots.insert(std::ranges::lower_bound(entry->slots, slot), slot);
     entry->stale = true;
+  }
+  for (const std::uint32_t slot : mirror.moved()) {
+    const Eigen::AlignedBox3d &before = geoms[slot].previous_bounds, &now = geoms[slot].bounds;
+    const double moved = std::max((now.min() - before.min()).cwiseAbs().maxCoeff(),
+                                  (now.max() - before.max()).cwiseAbs().maxCoeff());
+    if (body_of_slot_[slot] && moved > kLeft * now.sizes().maxCoeff()) left(before);
   }
   for (Entry& entry : bodies_) {
     if (!entry.stale) continue;

@@ -2,6 +2,7 @@
 // of their geoms. They take impulses and give them.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -25,8 +26,9 @@ struct CallersPart {
 
 class CallersBodies {
  public:
-  /// Takes in what the mirror saw in its last refresh.
-  void follow(const SpaceMirror& mirror);
+  /// Takes in what the mirror saw in its last refresh. Calls left(box) with the bounds (m, world) that a geom
+  /// had which is no more, or is not there any more: what slept on it has lost its hold.
+  void follow(const SpaceMirror& mirror, const std::function<void(const Eigen::AlignedBox3d&)>& left);
   std::size_t size() const { return bodies_.size(); }
 
   /// Appends them as neighbours, as they are now, and what holds them up: `first` is the index that the first

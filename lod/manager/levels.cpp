@@ -5,9 +5,6 @@
 namespace lodestone {
 namespace {
 
-// Bodies at rest on each other are apart by less than this fraction of their radii.
-constexpr double kTouchMargin = 0.05;
-
 // Fewer full bodies are looked at one by one.
 constexpr std::size_t kFewFull = 32;
 
@@ -45,7 +42,7 @@ void Levels::set_motion(std::uint32_t body, const RigidState& state) {
   const BodyRecord& record = bodies[body];
   wake(body);
   if (record.ode)
-    full.world()->set_state(record.ode, state), note_full(body);
+    full.world()->set_state(record.ode, state), note_full(body), eased.forget(body);
   else if (record.statistical)
     statistical->set_state(record.statistical, state);
   else
@@ -95,8 +92,9 @@ void Levels::follow_callers_space(double dt) {
   full.world()->look_at_callers_space();  // puts back what the caller spoilt of ours, too
   const SpaceMirror* mirror = full.world()->callers_space();
   if (!mirror) return;
-  callers.ground.follow(*mirror, dt, [this](const Eigen::AlignedBox3d& box) { wake_in(box); });
-  callers.bodies.follow(*mirror);
+  const auto wake = [this](const Eigen::AlignedBox3d& box) { wake_in(box); };
+  callers.ground.follow(*mirror, dt, wake);
+  callers.bodies.follow(*mirror, wake);
 }
 
 void Levels::look_away() {
@@ -109,6 +107,7 @@ std::vector<CallersPart> Levels::callers_parts() const {
 }
 
 void Levels::wake_in(const Eigen::AlignedBox3d& box) {
+  eased.wake_in(*this, box);
   if (!statistical || statistical->asleep_count() == 0) return;
   std::vector<std::uint32_t> near;
   statistical->find_sleepers(box.center(), 0.5 * box.sizes().norm(), near);
@@ -127,29 +126,41 @@ void Levels::wake_near(std::uint32_t body, Level level) {
   for (const std::uint32_t other : near) wake(other);
 }
 
+void Levels::wake_at(const Vec3& center, double radius) {
+  std::vector<std::uint32_t> near;
+  for (const Level level : {Level::full, Level::statistical})
+    find_at(center, radius, 1.0 + kTouchMargin, level, near, true);
+  std::ranges::sort(near);
+  for (const std::uint32_t body : near) wake(body);
+}
+
 void Levels::find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near,
                        bool asleep_only) const {
   const Vec3 position = state(body).position;
   if (!position.allFinite()) return;  // the caller spoilt it, and the next step puts it back
-  const double radius = bodies.shape(body)->radius;
-  const auto add = [&](std::uint32_t other, const Vec3& place) {
-    const double reach = factor * (radius + bodies.shape(other)->radius);
-    if (other != body && (place - position).squaredNorm() <= reach * reach) near.push_back(other);
+  find_at(position, bodies.shape(body)->radius, factor, level, near, asleep_only);
+  std::erase(near, body);
+}
+
+void Levels::find_at(const Vec3& center, double radius, double factor, Level level,
+                     std::vector<std::uint32_t>& near, bool asleep_only) const {
+  const auto add = [&](std::uint32_t body, const Vec3& place) {
+    const double reach = factor * (radius + bodies.shape(body)->radius);
+    if ((place - center).squaredNorm() <= reach * reach) near.push_back(body);
   };
   if (level == Level::full) {
-    const auto add_full = [&](std::uint32_t other) {
-      if (bodies[other].ode) add(other, full.world()->state(bodies[other].ode).position);
+    const auto add_full = [&](std::uint32_t body) {
+      if (bodies[body].ode) add(body, full.world()->state(bodies[body].ode).position);
     };
     if (full.members().size() > kFewFull)
-      near_full().find(position, factor * radius, add_full);
+      near_full().find(center, factor * radius, add_full);
     else
       for (const FullLevel::Member& member : full.members()) add_full(member.owner);
     return;
   }
   if (!statistical) return;
   std::vector<std::uint32_t> owners;
-  statistical->find_sleepers(position, factor * (radius + statistical->reach()) - statistical->reach(),
-                             owners);
+  statistical->find_sleepers(center, factor * (radius + statistical->reach()) - statistical->reach(), owners);
   if (!asleep_only) statistical->find_awake(owners);
   for (const std::uint32_t owner : owners) add(owner, statistical->position(bodies[owner].statistical));
 }

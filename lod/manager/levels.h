@@ -16,6 +16,9 @@
 
 namespace lodestone {
 
+/// Bodies at rest on each other are apart by less than this fraction of their radii.
+inline constexpr double kTouchMargin = 0.05;
+
 struct Levels {
   Levels(const StatisticalSettings& statistical_level, const FullSettings& full_level, SignatureStore store)
       : full(full_level, materials),
@@ -75,10 +78,13 @@ struct Levels {
   void look_away();
   /// The geoms of the caller's dynamic bodies as they are now, at any time.
   std::vector<CallersPart> callers_parts() const;
-  /// Wakes the statistical bodies whose bounding spheres meet `box`.
+  /// Wakes the statistical bodies whose bounding spheres meet `box`, and full ones that lie as they did
+  /// there.
   void wake_in(const Eigen::AlignedBox3d& box);
   /// Wakes every other body of `level` whose bounding sphere meets that of `body`.
   void wake_near(std::uint32_t body, Level level);
+  /// Wakes every body, of either level, whose bounding sphere meets one of `radius` m about `center`.
+  void wake_at(const Vec3& center, double radius);
   /// Adds the other bodies of `level`, or those of them that sleep, whose bounding sphere meets that of
   /// `body`, both `factor` times as large.
   void find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near,
@@ -91,6 +97,8 @@ struct Levels {
   void give_forces();
 
  private:
+  void find_at(const Vec3& center, double radius, double factor, Level level,
+               std::vector<std::uint32_t>& near, bool asleep_only) const;
   const NearFull& near_full() const;
   mutable NearFull near_full_;
 };

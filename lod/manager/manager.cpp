@@ -155,6 +155,7 @@ void Manager::Impl::begin_lists() {
 
 const StepReport& Manager::Impl::finish_lists(double dt) {
   changes.finish();
+  left_places.follow(levels, changes.fell_asleep(), changes.moved_and_slept(), changes.woke());
   for (const BodyId body : changes.fell_asleep()) choose.note(body.index);  // whoever laid it to sleep
   events.finish(dt, changes.woke());
   queries.finish(changes.fell_asleep(), changes.moved_and_slept());
@@ -238,6 +239,7 @@ void Manager::Impl::begin_stages(double dt) {
   auto& [_, laps, measured] = *underway;
   const StageTimer timer(report.times.total_ms);
   levels.follow_callers_space(dt);
+  left_places.wake(levels);
   audit.begin_step();
   // 1 choose rungs
   move_bodies.count_down_retries();

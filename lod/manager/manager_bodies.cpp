@@ -15,6 +15,7 @@ BodyId Manager::add_body(const BodyDefinition& definition) {
   sound.state = checked(definition.state);
   const BodyId body = levels.bodies.add(sound, mass);
   impl_->changes.add(body.index);
+  impl_->left_places.add(impl_->levels, body);
   impl_->queries.touch();
   if (definition.events) impl_->events.ask(body.index, true);
   if (definition.level == LevelChoice::full &&

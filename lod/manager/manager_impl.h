@@ -9,6 +9,7 @@
 #include "lod/manager/choose.h"
 #include "lod/manager/contact_events.h"
 #include "lod/manager/cost_model.h"
+#include "lod/manager/left_places.h"
 #include "lod/manager/levels.h"
 #include "lod/manager/move_bodies.h"
 #include "lod/manager/query_scene.h"
@@ -34,6 +35,7 @@ struct Manager::Impl {
   MoveBodies move_bodies{levels, choose, audit};
   StepLevels step_levels{levels};
   StepChanges changes{levels};
+  LeftPlaces left_places;
   ContactEvents events;
   QueryScene queries{levels};
   StepReport report;

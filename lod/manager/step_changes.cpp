@@ -16,7 +16,7 @@ void StepChanges::begin() {
 
 void StepChanges::add(std::uint32_t body) {
   if (slept_.size() <= body) slept_.resize(std::size_t(body) + 1, 0);
-  slept_[body] = 0;
+  slept_[body] = levels_.asleep(body);
   lies_at_.resize(slept_.size(), Vec3::Zero());
 }
 

@@ -80,6 +80,15 @@ bool lies_among_others(const Levels& levels, std::uint32_t body, const RigidStat
          state.angular_velocity.norm() * radius <= slow;
 }
 
+// m that its mesh may be above what its rung had it lie on, at most: its hull is wider where it is hollow,
+// and what lies at `tables` lies a little off.
+double find_gap_below(const Levels& levels, std::uint32_t body, Rung from) {
+  constexpr double kHollow = 0.3, kAtTables = 0.02;  // over R
+  const Shape& shape = *levels.bodies.shape(body);
+  const bool hollow = !shape.convex && shape.pieces.empty();
+  return shape.radius * (hollow ? kHollow : (from == Rung::tables ? kAtTables : 0.0));
+}
+
 // With planes and the parts of the ground; those known by rays count as the plane below.
 bool overlaps_ground(const Levels& levels, const Shape& shape, const RigidState& state) {
   if (overlaps_planes(levels.ground.planes(), shape, state)) return true;
@@ -130,12 +139,13 @@ void transfer(Levels& levels, std::uint32_t body, Rung to) {
     levels.wake_near(body, level_of(to));
     if (from == level_of(to)) levels.wake_near(body, Level::full);
   }
-  const bool lies =
-      to == Rung::full && levels.bodies[body].statistical && lies_among_others(levels, body, state);
   const Rung before = levels.bodies.level(body).rung;
+  const bool lies = to == Rung::full && levels.bodies[body].statistical &&
+                    (asleep || lies_among_others(levels, body, state));
+  const double gap = lies ? find_gap_below(levels, body, before) : 0.0;
   leave(levels, body, asleep);
   enter(levels, body, to, state, asleep, true);
-  if (lies) levels.eased.add(body, levels.bodies[body].ode);
+  if (lies) levels.eased.add(body, levels.bodies[body].ode, state.position, gap);
   if (before != to) levels.rung_changes.push_back({levels.bodies.id(body), before, to});
 }
 

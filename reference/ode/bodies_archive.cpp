@@ -26,7 +26,7 @@ struct Motion {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero(), given_force = Vec3::Zero(), given_torque = Vec3::Zero();
   double to_sleep_s = 0.0;
   int last_support = 0;
-  bool awake = true, was_enabled = true;
+  bool awake = true, was_enabled = true, disturbed = false;
 };
 
 struct Slot {
@@ -55,7 +55,8 @@ Motion motion_of(const Body& body) {
   motion.given_force = body.force, motion.given_torque = body.torque;
   motion.last_support = body.last_support;
   motion.to_sleep_s = body.to_sleep_s;
-  motion.awake = dBodyIsEnabled(body.body), motion.was_enabled = body.was_enabled;
+  motion.awake = dBodyIsEnabled(body.body), motion.was_enabled = body.was_enabled,
+  motion.disturbed = body.disturbed;
   return motion;
 }
 
@@ -68,7 +69,8 @@ void set_motion(Body& body, const Motion& motion) {
   body.last_good = motion.last_good;
   body.last_support = motion.last_support;
   body.impact_time.reset();
-  body.to_sleep_s = motion.to_sleep_s, body.was_enabled = motion.was_enabled;
+  body.to_sleep_s = motion.to_sleep_s, body.was_enabled = motion.was_enabled,
+  body.disturbed = motion.disturbed;
   motion.awake ? dBodyEnable(body.body) : dBodyDisable(body.body);
 }
 

@@ -180,13 +180,21 @@ std::span<const dGeomID> BroadPhase::find_others(const Eigen::AlignedBox3d& box,
   return others_;
 }
 
+// Who is awake may be about to sleep.
 void BroadPhase::wake_ours(Bodies& bodies, const Eigen::AlignedBox3d& box) {
   found_.clear();
   sleepers_.find(widened(box, kTouchMargin * bodies.greatest_reach()), found_);
   for (const std::uint32_t sleeper : found_) {
-    const Body& body = bodies.slots()[sleeper];
-    if (!dBodyIsEnabled(body.body) && widened(bounds_of(body), kTouchMargin * body.reach).intersects(box))
-      dBodyEnable(body.body);
+    Body& body = bodies.slots()[sleeper];
+    if (dBodyIsEnabled(body.body) || !widened(bounds_of(body), kTouchMargin * body.reach).intersects(box))
+      continue;
+    dBodyEnable(body.body);
+    body.disturbed = true;
+  }
+  for (Body& body : bodies.slots()) {
+    const double reach = (1.0 + kTouchMargin) * body.reach;
+    if (body.body && dBodyIsEnabled(body.body))
+      body.disturbed |= box.squaredExteriorDistance(to_vec3(dBodyGetPosition(body.body))) <= reach * reach;
   }
 }
 

@@ -22,8 +22,9 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
     body.fell_asleep = false;
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
     // Woken from outside, and not by ODE's own step with those that it hangs together with.
-    if (!body.was_enabled) body.to_sleep_s = law_.time;
+    if (!body.was_enabled || body.disturbed) body.to_sleep_s = law_.time;
     body.was_enabled = true;
+    body.disturbed = false;
     if (!on_ || dBodyGetNumJoints(body.body) == 0 || !body.properties.allow_sleep ||
         body.properties.kinematic)
       continue;

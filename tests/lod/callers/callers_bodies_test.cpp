@@ -13,7 +13,7 @@ class BodiesOfCaller : public ::testing::Test {
  protected:
   void follow() {
     scene_.mirror->refresh();
-    callers_.follow(*scene_.mirror);
+    callers_.follow(*scene_.mirror, [this](const Eigen::AlignedBox3d& box) { left_.push_back(box); });
   }
   std::vector<FullNeighbor> gather() {
     std::vector<FullNeighbor> neighbors;
@@ -34,6 +34,7 @@ class BodiesOfCaller : public ::testing::Test {
   Ground ground_;
   CallersBodies callers_;
   std::vector<FullContact> contacts_;
+  std::vector<Eigen::AlignedBox3d> left_;
 };
 
 TEST_F(BodiesOfCaller, AreNeighboursAsTheyAreNow) {
@@ -115,6 +116,21 @@ TEST_F(BodiesOfCaller, ComeAndGo) {
   EXPECT_EQ(of(after, late).mass, 4.0);
   EXPECT_EQ(std::ranges::count(owners, of(after, late).owner), 0);
   EXPECT_EQ(callers_.body_of(owners[1]), nullptr);
+}
+
+// Where one was that has gone, or was put elsewhere; not where one moves on a little.
+TEST_F(BodiesOfCaller, WhatTheyLeaveIsSaid) {
+  const dBodyID goes = scene_.body(1, {0, 0, 0}), jumps = scene_.body(1, {3, 0, 0}),
+                moves = scene_.body(1, {6, 0, 0});
+  follow();
+  EXPECT_TRUE(left_.empty());
+  dGeomDestroy(dBodyGetFirstGeom(goes));
+  dBodySetPosition(jumps, 3, 0, 5);
+  dBodySetPosition(moves, 6.001, 0, 0);
+  follow();
+  ASSERT_EQ(left_.size(), 2U);
+  EXPECT_LT(left_[0].center().norm(), 1e-9);
+  EXPECT_LT((left_[1].center() - Vec3(3, 0, 0)).norm(), 1e-9);
 }
 
 // A body of several geoms is all of them, about its own centre of mass; one that changes its size is another

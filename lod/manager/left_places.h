@@ -1,0 +1,48 @@
+// Places where bodies lay asleep until something woke them: once such a body has left, what slept beside it,
+// or on it, is woken, too, and again as it goes on: a body that is drawn away touches nothing that it could
+// wake by that.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lod/body.h"
+#include "reference/geometry.h"
+#include "reference/state_archive.h"
+
+namespace lodestone {
+
+struct Levels;
+
+class LeftPlaces {
+ public:
+  /// A new body, which may sleep.
+  void add(const Levels& levels, BodyId body) { note_place(levels, body); }
+  /// After a step: these fell asleep in it, or slept in another place, and these woke.
+  void follow(const Levels& levels, std::span<const BodyId> slept, std::span<const BodyId> moved_and_slept,
+              std::span<const BodyId> woke);
+  /// At the beginning of a step: wakes who slept where somebody left in the last one.
+  void wake(Levels& levels);
+  void archive(StateArchive& a) { a(slept_at_, awake_, left_); }
+
+ private:
+  struct Awake {
+    BodyId body;
+    Vec3 from;          // m, where it lay
+    double next = 0.0;  // m from there: so far off it is looked at again who slept beside it
+  };
+  struct Left {
+    Vec3 place;     // m
+    double radius;  // m
+  };
+  void note_place(const Levels& levels, BodyId body);
+  void watch(const Levels& levels, BodyId body, const Vec3& from);
+  void watch_full_ones_at(const Levels& levels, BodyId sleeper);
+
+  std::vector<Vec3> slept_at_;  // m, by the body's index
+  std::vector<Awake> awake_;    // who woke, or is full and bears a sleeper, and has not left altogether yet
+  std::vector<Left> left_;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,123 @@
+// What sleeps on something that goes, of a pile of any height, comes down.
+#include "lod/manager/left_places.h"
+
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+constexpr double kSide = 0.3;  // m
+constexpr int kTall = 4;
+constexpr LevelChoice kRungs[] = {LevelChoice::full, LevelChoice::support, LevelChoice::tables};
+
+std::shared_ptr<const Shape> cube() { return box_shape({kSide, kSide, kSide}); }
+
+ManagerSettings settings() { return {.signatures = coarse_signature}; }
+
+/// Asleep, its lowest crate on z = `floor`.
+std::vector<BodyId> sleeping_tower(Manager& manager, LevelChoice level, double floor) {
+  std::vector<BodyId> tower;
+  for (int i = 0; i < kTall; ++i)
+    tower.push_back(add(manager, cube(), testing::at({0, 0, floor + kSide * (i + 0.5) + 1e-4 * i}), level));
+  run(manager, 3.0);
+  for (const BodyId body : tower) EXPECT_TRUE(manager.asleep(body));
+  return tower;
+}
+
+/// m, of the highest.
+double top_of(const Manager& manager, const std::vector<BodyId>& tower) {
+  return manager.state(tower.back()).position.z() + kSide / 2;
+}
+
+TEST(LeftPlaces, ATowerComesDownWhereItsLowestCrateIsRemoved) {
+  for (const LevelChoice level : kRungs) {
+    Manager manager = on_floor(settings());
+    const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
+    const double before = top_of(manager, tower);
+    manager.remove_body(tower.front());
+    run(manager, 1.0);
+    EXPECT_NEAR(top_of(manager, tower), before - kSide, 0.2 * kSide) << int(level);
+  }
+}
+
+TEST(LeftPlaces, ATowerComesDownWhereItsLowestCrateIsStruckAway) {
+  for (const LevelChoice level : kRungs)
+    for (const double speed : {8.0, 25.0}) {  // m/s
+      Manager manager = on_floor(settings());
+      const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
+      const double before = top_of(manager, tower);
+      manager.add_impulse(tower.front(), Vec3(speed * manager.mass(tower.front()), 0, 0),
+                          manager.state(tower.front()).position);
+      run(manager, 1.0);
+      EXPECT_LT(top_of(manager, tower), before - 0.4 * kSide) << int(level) << " at " << speed << " m/s";
+    }
+}
+
+TEST(LeftPlaces, ATowerFallsWhereItsGroundGoes) {
+  for (const LevelChoice level : kRungs) {
+    Manager manager(settings());
+    manager.add_plane(Vec3::UnitZ(), -10.0);
+    const GroundId slab = manager.add_static_box({1, 1, 0.2}, {0, 0, -0.1}, Quat::Identity());
+    const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
+    manager.remove_ground(slab);
+    run(manager, 1.0);
+    for (const BodyId body : tower) EXPECT_LT(manager.state(body).position.z(), -1.0) << int(level);
+  }
+}
+
+// One that the caller himself removes, or puts elsewhere.
+TEST(LeftPlaces, ATowerFallsWhereABodyOfTheCallersGoes) {
+  for (const LevelChoice level : kRungs)
+    for (const bool is_destroyed : {true, false}) {
+      dInitODE2(0);
+      const dWorldID world = dWorldCreate();
+      const dSpaceID space = dHashSpaceCreate(nullptr);
+      dWorldSetGravity(world, 0, 0, -9.81);
+      dCreatePlane(space, 0, 0, 1, -10.0);
+      {
+        const dBodyID his = dBodyCreate(world);
+        dMass mass;
+        dMassSetBoxTotal(&mass, 500.0, 1, 1, 0.2);
+        dBodySetMass(his, &mass);
+        dGeomSetBody(dCreateBox(space, 1, 1, 0.2), his);
+        dBodySetPosition(his, 0, 0, -0.1);
+        const dJointID hold = dJointCreateFixed(world, nullptr);
+        dJointAttach(hold, his, nullptr);
+        dJointSetFixed(hold);
+        dBodySetAutoDisableFlag(his, 1);
+        Manager manager(world, space, settings());
+        const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
+        const double before = top_of(manager, tower);
+        dJointDestroy(hold);
+        if (is_destroyed)
+          dGeomDestroy(dBodyGetFirstGeom(his)), dBodyDestroy(his);
+        else
+          dBodySetPosition(his, 50, 0, -0.1);
+        run(manager, 1.0);
+        EXPECT_LT(top_of(manager, tower), before - 1.0) << int(level) << " destroyed: " << is_destroyed;
+      }
+      dSpaceDestroy(space);
+      dWorldDestroy(world);
+    }
+}
+
+// Nothing else wakes: a crate that is moved by a hair, and the crates that stand by themselves.
+TEST(LeftPlaces, WhoStandsFarOffSleepsOn) {
+  Manager manager = on_floor(settings());
+  const std::vector<BodyId> tower = sleeping_tower(manager, LevelChoice::support, 0.0);
+  const BodyId apart = add(manager, cube(), testing::at({3, 0, kSide / 2}), LevelChoice::support);
+  run(manager, 2.0);
+  manager.remove_body(tower.front());
+  for (int i = 0; i < 60; ++i) {
+    manager.step(kFrame);
+    EXPECT_TRUE(manager.asleep(apart));
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
