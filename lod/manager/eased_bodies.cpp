@@ -8,10 +8,9 @@
 namespace lodestone {
 namespace {
 
-constexpr double kInEarnest =
-    3.0;  // × the speed of parting: nothing that is held back becomes so fast by itself
-constexpr double kSinks = 0.5;     // × that speed: what is as fast has not come down yet …
-constexpr double kPatience = 8.0;  // … and is held back so many times as long
+constexpr double kInEarnest = 3.0;  // × the speed of parting: nothing held back becomes so fast by itself
+constexpr double kSinks = 0.5;      // × that speed: what is as fast has not come down yet …
+constexpr double kPatience = 8.0;   // … and is held back so many times as long
 
 }  // namespace
 
@@ -28,24 +27,22 @@ void EasedBodies::wake_in(Levels& levels, const Eigen::AlignedBox3d& box) const 
   }
 }
 
-// At the speed of parting the drag is the body's weight; it opposes sinking alone.
+// At the speed of parting the drag is the body's weight.
 void EasedBodies::hold_back(Levels& levels, double dt) {
-  const Vec3& gravity = levels.statistical_settings.gravity;
-  const double strength = gravity.norm();
+  const double gravity = levels.statistical_settings.gravity.norm();
   std::erase_if(bodies_, [&](Eased& eased) {
     if (!(levels.bodies[eased.body].ode == eased.ode)) return true;
     OdeWorld& world = *levels.full.world();
     if (world.asleep(eased.ode)) return false;
-    const double slow = parting_speed(levels.bodies.shape(eased.body)->radius, strength);
+    const Shape& shape = *levels.bodies.shape(eased.body);
+    const double slow = parting_speed(shape.radius, gravity);
     const RigidState state = world.state(eased.ode);
-    const double speed = state.velocity.norm();
-    if (strength == 0.0 || speed > kInEarnest * slow || (state.position - eased.begin).norm() > eased.deepest)
-      return true;
-    const Vec3 down = gravity / strength;
-    const double rate = std::min(strength / slow, 1.0 / dt),
-                 mass = levels.bodies[eased.body].mass,  // 1/s, kg
-        sinking = std::max(0.0, state.velocity.dot(down));
-    if (sinking > 0.0) world.add_force(eased.ode, -rate * mass * sinking * down, Vec3::Zero());
+    const double speed = std::max(state.velocity.norm(), state.angular_velocity.norm() * shape.radius);
+    if (speed > kInEarnest * slow || (state.position - eased.begin).norm() > eased.deepest) return true;
+    const double rate = std::min(gravity / slow, 1.0 / dt), mass = levels.bodies[eased.body].mass;  // 1/s, kg
+    const Quat& q = state.orientation;
+    world.add_force(eased.ode, -rate * mass * state.velocity,
+                    -rate * mass * (q * (shape.inertia_per_mass * (q.conjugate() * state.angular_velocity))));
     eased.left_s -= speed > kSinks * slow ? dt / kPatience : dt;
     return eased.left_s <= 0.0;
   });

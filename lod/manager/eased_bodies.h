@@ -16,7 +16,7 @@ struct Levels;
 
 class EasedBodies {
  public:
-  /// `body`: the manager's index; it has just become full, `deepest` m above where it may sink to.
+  /// `body`: the manager's index; it has just become full, and may sink by `deepest` m.
   void add(std::uint32_t body, OdeBodyId ode, const Vec3& position, double deepest);
   /// Wakes those that sleep and lie at `box` (m, world) or nearly so: what moves there does not touch them.
   void wake_in(Levels& levels, const Eigen::AlignedBox3d& box) const;

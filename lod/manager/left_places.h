@@ -42,7 +42,7 @@ class LeftPlaces {
 
   std::vector<Vec3> slept_at_;  // m, by the body's index
   std::vector<Awake> awake_;    // who woke, or is full and bears a sleeper, and has not left altogether yet
-  std::vector<Left> left_;
+  std::vector<Left> left_;      // in the last step
 };
 
 }  // namespace lodestone

@@ -80,13 +80,10 @@ bool lies_among_others(const Levels& levels, std::uint32_t body, const RigidStat
          state.angular_velocity.norm() * radius <= slow;
 }
 
-// m that its mesh may be above what its rung had it lie on, at most: its hull is wider where it is hollow,
-// and what lies at `tables` lies a little off.
-double find_gap_below(const Levels& levels, std::uint32_t body, Rung from) {
-  constexpr double kHollow = 0.3, kAtTables = 0.02;  // over R
-  const Shape& shape = *levels.bodies.shape(body);
-  const bool hollow = !shape.convex && shape.pieces.empty();
-  return shape.radius * (hollow ? kHollow : (from == Rung::tables ? kAtTables : 0.0));
+// m that its mesh may be above what its hull lies on, at most, where it is hollow.
+double find_gap_below(const Shape& shape) {
+  constexpr double kHollow = 0.3;  // over R
+  return shape.convex || !shape.pieces.empty() ? 0.0 : kHollow * shape.radius;
 }
 
 // With planes and the parts of the ground; those known by rays count as the plane below.
@@ -142,10 +139,11 @@ void transfer(Levels& levels, std::uint32_t body, Rung to) {
   const Rung before = levels.bodies.level(body).rung;
   const bool lies = to == Rung::full && levels.bodies[body].statistical &&
                     (asleep || lies_among_others(levels, body, state));
-  const double gap = lies ? find_gap_below(levels, body, before) : 0.0;
   leave(levels, body, asleep);
   enter(levels, body, to, state, asleep, true);
-  if (lies) levels.eased.add(body, levels.bodies[body].ode, state.position, gap);
+  if (lies)
+    levels.eased.add(body, levels.bodies[body].ode, state.position,
+                     find_gap_below(*levels.bodies.shape(body)));
   if (before != to) levels.rung_changes.push_back({levels.bodies.id(body), before, to});
 }
 

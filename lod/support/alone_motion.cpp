@@ -1,4 +1,6 @@
 // How a body moves that touches no other: flight and impacts, or a settling clip.
+#include <algorithm>
+
 #include "lod/statistical/flight.h"
 #include "lod/support/hull_motion.h"
 #include "lod/support/support_level.h"
@@ -26,7 +28,15 @@ void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> face
     if (moved.clip_over && settings_.sleeping) put_to_sleep(body);
     return;
   }
+  if (moved.tally.touched_plane < 0) take_back_excess(slot, time);
   update_quiet(slot, faces, time, tally);
+}
+
+// Of a body that flew through the whole step.
+void SupportLevel::take_back_excess(std::int32_t slot, double time) {
+  const auto acting = std::ranges::lower_bound(acting_, slot, {}, &Acting::slot);
+  if (acting != acting_.end() && acting->slot == slot && acting->step == time)
+    bodies_[std::size_t(slot)].position -= acting->too_far;
 }
 
 }  // namespace lodestone

@@ -132,16 +132,20 @@ void SupportLevel::begin_step(double dt, ContactTally& tally) {
   given_.clear();
   fell_asleep_.clear();
   put_awake_in_order();
+  acting_.clear();
   for (const auto& [slot, force, torque] : pushes_) {
     StatisticalBody& body = bodies_[std::size_t(slot)];
-    const double impulse = dt / body.mass;
+    const double impulse = properties_of(body).kinematic ? 0.0 : dt / body.mass;
     body.velocity += impulse * force;
     body.spin += impulse * torque;
     body.motion = Motion::dynamic;  // a settling clip knows no force but gravity
     if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape)))
       recover(body, last_places_[std::size_t(slot)], tally);
+    else
+      acting_.push_back({slot, dt, 0.5 * dt * impulse * force});
   }
   pushes_.clear();
+  std::ranges::sort(acting_, {}, &Acting::slot);
   for (const std::int32_t slot : awake_)
     last_places_[std::size_t(slot)] = bodies_[std::size_t(slot)].position;
 }

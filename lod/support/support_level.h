@@ -87,6 +87,14 @@ class SupportLevel {
     Vec3 force, torque;
   };
 
+  /// A force that gave its whole impulse at the step's beginning: where nothing is touched meanwhile it has
+  /// moved its body too far.
+  struct Acting {
+    std::int32_t slot;
+    double step;   // s
+    Vec3 too_far;  // m
+  };
+
   StepWorld world() const {
     return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, settings_.properties, log_};
   }
@@ -102,6 +110,7 @@ class SupportLevel {
   void drop_awake(std::int32_t slot);
   void put_awake_in_order();
   void note_given(std::int32_t slot);
+  void take_back_excess(std::int32_t slot, double time);
   bool surely_moves_on(const StatisticalBody& body, const BodyKind& kind, double still_energy) const;
   bool is_sound(const StatisticalBody& body, double energy) const;
   void recover(StatisticalBody& body, const Vec3& last_place, ContactTally& tally) const;
@@ -127,6 +136,7 @@ class SupportLevel {
   std::vector<std::int32_t>
       given_;                 // slots whose angular velocity was given, and some for which that is so no more
   std::vector<Push> pushes_;  // of the next step
+  std::vector<Acting> acting_;              // in this step, by slot
   std::vector<std::uint32_t> fell_asleep_;  // owners
   std::vector<std::uint32_t> woke_;         // owners
 };

@@ -39,8 +39,7 @@ TEST(EasedBodies, WhatLosesItsGroundFallsFreely) {
     const double before = crate.position().z();
     crate.manager.remove_ground(crate.slab);
     run(crate.manager, 0.5);
-    EXPECT_NEAR(before - crate.position().z(), 0.5 * 9.81 * 0.25, slept == LevelChoice::tables ? 0.2 : 0.02)
-        << int(slept);
+    EXPECT_NEAR(before - crate.position().z(), 0.5 * 9.81 * 0.25, 0.02) << int(slept);
   }
 }
 
@@ -65,7 +64,8 @@ TEST(EasedBodies, GroundThatMovesTakesItAlong) {
       crate.manager.move_ground(crate.slab, pose);
       crate.manager.step(kFrame);
     }
-    EXPECT_NEAR(crate.position().x() - before, kSpeed, 0.05) << int(slept);
+    const double slips = kSpeed * kSpeed / (2.0 * 0.5 * 9.81);  // until it is as fast, v² / 2 μ g
+    EXPECT_NEAR(crate.position().x() - before, kSpeed - slips, 0.03) << int(slept);
   }
 }
 

@@ -72,6 +72,29 @@ TEST(ManagerBodies, AForceMovesWhatIsAtRest) {
     }
 }
 
+// One that bears its weight holds a body where it is; what moves by itself alone no force moves.
+TEST(ManagerBodies, AForceInTheAirActsThroughTheWholeStep) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support}) {
+    Manager manager = on_floor();
+    const auto box = box_shape({0.3, 0.3, 0.3});
+    const BodyId hovers = add(manager, box, testing::at({0, 0, 3}), level),
+                 flies = add(manager, box, testing::at({5, 0, 3}), level);
+    const BodyId lift = manager.add_body({.shape = box,
+                                          .state = testing::at({0, 5, 3}, {0, 0, 0.5}),
+                                          .level = level,
+                                          .properties = {.kinematic = true}});
+    for (int i = 0; i < 60; ++i) {
+      for (const BodyId body : {hovers, flies, lift})
+        manager.add_force(body,
+                          {body == flies ? 3.0 * manager.mass(body) : 0.0, 0, manager.mass(body) * 9.81});
+      manager.step(kFrame);
+    }
+    EXPECT_NEAR(manager.state(hovers).position.z(), 3.0, 0.025) << int(level);
+    EXPECT_NEAR(manager.state(flies).position.x(), 5.0 + 0.5 * 3.0, 0.01) << int(level);
+    EXPECT_NEAR(manager.state(lift).position.z(), 3.5, 1e-9) << int(level);
+  }
+}
+
 TEST(ManagerBodies, AForceAtAPointIsAForceAndATorque) {
   for (const LevelChoice level : kRungsOf) {
     Manager one = in_space(), other = in_space();

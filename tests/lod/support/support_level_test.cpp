@@ -89,6 +89,7 @@ TEST(SupportLevel, IsAsAPlainListOfBodies) {
       const Vec3 force = 30.0 * random.direction();
       s.level.add_force(slot, force, Vec3::Zero());
       body.asleep = false, body.velocity += force * kSupportStep / 2.0;
+      body.at -= 0.5 * kSupportStep * kSupportStep * force / 2.0;  // it acts through the whole step
       s.step();
       for (auto& [other, b] : known) b.at += kSupportStep * b.velocity;
     } else {
