@@ -14,15 +14,16 @@ constexpr double kPatience = 8.0;   // … and is held back so many times as lon
 
 }  // namespace
 
-void EasedBodies::add(std::uint32_t body, OdeBodyId ode, const Vec3& position, double deepest) {
-  bodies_.push_back({body, ode, position, deepest, kEasedTime});
+void EasedBodies::add(std::uint32_t body, OdeBodyId ode, const Vec3& position, double radius,
+                      double deepest) {
+  bodies_.push_back({body, ode, position, radius, deepest, kEasedTime});
 }
 
 void EasedBodies::wake_in(Levels& levels, const Eigen::AlignedBox3d& box) const {
   for (const Eased& eased : bodies_) {
-    if (!(levels.bodies[eased.body].ode == eased.ode) || !levels.asleep(eased.body)) continue;
-    const double reach = (1.0 + kTouchMargin) * levels.bodies.shape(eased.body)->radius;
-    if (box.squaredExteriorDistance(levels.state(eased.body).position) <= reach * reach)
+    const double reach = (1.0 + kTouchMargin) * eased.radius + eased.deepest;
+    if (box.squaredExteriorDistance(eased.begin) <= reach * reach &&
+        levels.bodies[eased.body].ode == eased.ode)
       levels.wake(eased.body);
   }
 }
@@ -34,12 +35,12 @@ void EasedBodies::hold_back(Levels& levels, double dt) {
     if (!(levels.bodies[eased.body].ode == eased.ode)) return true;
     OdeWorld& world = *levels.full.world();
     if (world.asleep(eased.ode)) return false;
-    const Shape& shape = *levels.bodies.shape(eased.body);
-    const double slow = parting_speed(shape.radius, gravity);
+    const double slow = parting_speed(eased.radius, gravity);
     const RigidState state = world.state(eased.ode);
-    const double speed = std::max(state.velocity.norm(), state.angular_velocity.norm() * shape.radius);
+    const double speed = std::max(state.velocity.norm(), state.angular_velocity.norm() * eased.radius);
     if (speed > kInEarnest * slow || (state.position - eased.begin).norm() > eased.deepest) return true;
     const double rate = std::min(gravity / slow, 1.0 / dt), mass = levels.bodies[eased.body].mass;  // 1/s, kg
+    const Shape& shape = *levels.bodies.shape(eased.body);
     const Quat& q = state.orientation;
     world.add_force(eased.ode, -rate * mass * state.velocity,
                     -rate * mass * (q * (shape.inertia_per_mass * (q.conjugate() * state.angular_velocity))));

@@ -16,8 +16,8 @@ struct Levels;
 
 class EasedBodies {
  public:
-  /// `body`: the manager's index; it has just become full, and may sink by `deepest` m.
-  void add(std::uint32_t body, OdeBodyId ode, const Vec3& position, double deepest);
+  /// `body`: the manager's index; it has just become full, of `radius` m, and may sink by `deepest` m.
+  void add(std::uint32_t body, OdeBodyId ode, const Vec3& position, double radius, double deepest);
   /// Wakes those that sleep and lie at `box` (m, world) or nearly so: what moves there does not touch them.
   void wake_in(Levels& levels, const Eigen::AlignedBox3d& box) const;
   /// Somebody moves it on purpose.
@@ -33,6 +33,7 @@ class EasedBodies {
     std::uint32_t body;
     OdeBodyId ode;   // another once it has left the full level
     Vec3 begin;      // m, where it lay
+    double radius;   // m
     double deepest;  // m that it may move from there
     double left_s;   // awake
   };

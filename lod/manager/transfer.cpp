@@ -141,9 +141,10 @@ void transfer(Levels& levels, std::uint32_t body, Rung to) {
                     (asleep || lies_among_others(levels, body, state));
   leave(levels, body, asleep);
   enter(levels, body, to, state, asleep, true);
-  if (lies)
-    levels.eased.add(body, levels.bodies[body].ode, state.position,
-                     find_gap_below(*levels.bodies.shape(body)));
+  if (lies) {
+    const Shape& shape = *levels.bodies.shape(body);
+    levels.eased.add(body, levels.bodies[body].ode, state.position, shape.radius, find_gap_below(shape));
+  }
   if (before != to) levels.rung_changes.push_back({levels.bodies.id(body), before, to});
 }
 
