@@ -181,6 +181,11 @@ void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vecto
   }
 }
 
+void CallersBodies::append_ode_bodies(std::vector<dxBody*>& bodies) const {
+  for (const Entry& entry : bodies_)
+    if (entry.shape) bodies.push_back(entry.body);
+}
+
 void CallersBodies::hand_over(std::span<const FullNeighbor> neighbors, double dt) const {
   std::size_t next = 0;
   for (const Entry& entry : bodies_) {

@@ -35,6 +35,8 @@ class CallersBodies {
   /// of them has there.
   void gather(const Ground& ground, const Vec3& gravity, std::vector<FullNeighbor>& neighbors,
               std::vector<FullContact>& contacts) const;
+  /// ODE's, of each neighbour that gather() appends.
+  void append_ode_bodies(std::vector<dxBody*>& bodies) const;
   /// Gives each what came back, for a step of `dt` s. `neighbors` are those that gather() appended.
   void hand_over(std::span<const FullNeighbor> neighbors, double dt) const;
   /// Calls visit(shape, state) for each whose ball meets that of `radius` m about `center`.

@@ -1,6 +1,10 @@
 #include "lod/manager/cross_level.h"
 
 #include <algorithm>
+#include <span>
+
+#include "lod/manager/joint_contacts.h"
+#include "reference/ode/body_joints.h"
 
 namespace lodestone {
 namespace {
@@ -36,7 +40,7 @@ void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Se
   const std::size_t fresh = now.size();
   for (Neighborhood::Seen& old : seen) {
     if (++old.age > kStepsSeen || std::ranges::binary_search(now.begin(), now.begin() + std::ptrdiff_t(fresh),
-                                                        pair_of(old), {}, pair_of))
+                                                             pair_of(old), {}, pair_of))
       continue;
     old.contact.depth = 0.0;
     now.push_back(old);
@@ -65,15 +69,15 @@ Vec3 angular_velocity_change(const FullNeighbor& body, const Vec3& angular_impul
 
 bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impulse.angular.isZero(0.0); }
 
-// ODE lets no body sleep that none of its own contacts holds up: by the same measure, one that statistical
-// bodies hold up sleeps here.
+// ODE lets no body sleep that none of its own contacts or joints holds up: by the same measure, one that
+// statistical bodies hold up sleeps here. Jointed ones sleep by ODE's law, all that hang together at once.
 bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepThresholds& thresholds,
                   double dt) {
   const double still_speed = thresholds.speed, still_time = 5.0 * thresholds.time;  // m/s and s, as alone
   if (!bodies.properties(neighbor.owner).allow_sleep) return false;
   const double turning = neighbor.state.angular_velocity.norm() * neighbor.shape->radius;
-  const bool still =
-      !is_zero(neighbor.push) && neighbor.state.velocity.norm() < still_speed && turning < still_speed;
+  const bool still = !is_zero(neighbor.push) && !neighbor.carried &&
+                     neighbor.state.velocity.norm() < still_speed && turning < still_speed;
   if (!still) return bodies.stir(neighbor.owner), false;
   double& still_s = bodies.rare(neighbor.owner).still_s;
   still_s += dt;
@@ -108,11 +112,16 @@ bool is_touched(const FullNeighbor& neighbor) { return !is_zero(neighbor.hit) ||
 void gather(const Levels& levels, Neighborhood& neighborhood) {
   neighborhood.bodies.clear();
   neighborhood.contacts.clear();
-  for (const FullLevel::Member& member : levels.full.members())
+  neighborhood.ode_bodies.clear();
+  for (const FullLevel::Member& member : levels.full.members()) {
     neighborhood.bodies.push_back(neighbor_of(levels, member));
+    neighborhood.ode_bodies.push_back(levels.full.world()->ode_body(member.id));
+  }
   if (!neighborhood.bodies.empty()) gather_contacts(levels, neighborhood);
   levels.callers.bodies.gather(levels.ground, levels.statistical_settings.gravity, neighborhood.bodies,
                                neighborhood.contacts);
+  levels.callers.bodies.append_ode_bodies(neighborhood.ode_bodies);
+  add_joint_contacts(neighborhood.bodies, neighborhood.ode_bodies, neighborhood.contacts);
 }
 
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
@@ -122,7 +131,7 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
     const bool sleeps = falls_asleep(levels.bodies, neighbor, levels.statistical_settings.sleep, dt) &&
-                        levels.statistical_settings.sleeping;
+                        levels.statistical_settings.sleeping && !has_joints(neighborhood.ode_bodies[i]);
     if (sleeps)
       put_to_sleep(*levels.full.world(), id, neighbor.state);
     else

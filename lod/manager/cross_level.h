@@ -9,10 +9,12 @@
 
 namespace lodestone {
 
-/// The full bodies, in the order of the full level's members, then the caller's, and the contacts among them.
+/// The full bodies, in the order of the full level's members, then the caller's, and the contacts among them,
+/// joints counted in.
 struct Neighborhood {
   std::vector<FullNeighbor> bodies;
   std::vector<FullContact> contacts;
+  std::vector<dxBody*> ode_bodies;  // of each of the bodies
 
   /// A contact that ODE found, kept for some steps after: bodies at rest touch and part from substep to
   /// substep.

@@ -68,6 +68,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     neighbors[i].hit = full_[i].hit;
     neighbors[i].push = full_[i].push;
     neighbors[i].shift = full_[i].shift;
+    neighbors[i].carried = full_[i].carried;
   }
 }
 
@@ -106,8 +107,9 @@ void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   }
   if (substep > 0) pairs_.find_turning(step.scene, movers_);
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
-  wake_touched(step, pace);
   find_ground_solids(step, movers_, substep * time, time);
+  wake_touched(step, pace);
+  if (!woken_.empty()) find_ground_solids(step, movers_, substep * time, time);
 }
 
 void NearBodies::choose_movers(const SupportLevel& support, Pace pace) {
@@ -166,25 +168,38 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
                            around, time, tables_);
 }
 
+void NearBodies::keep_awake(const Step& step, Participant p) {
+  if (p.is_full()) {
+    step.scene.neighbor(p).carried = true;
+    return;
+  }
+  step.scene.body(p).quiet_time = 0.0f;
+  if (step.support.is_guest(std::int32_t(p.index())))
+    step.guests[p.index() - std::size_t(step.support.size())].carried = true;
+}
+
 void NearBodies::wake_touched(const Step& step, Pace pace) {
   const ContactScene& scene = step.scene;
   woken_.clear();
+  carried_.find(scene, pairs_.contacts(), solid_contacts_);
   for (const CrowdContact& c : pairs_.contacts())
-    for (const auto& [sleeper, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
-      const bool carried =
-          scene.properties(other).kinematic && !scene.velocity(other).isZero(0.0);  // however slowly
-      if (carried && sleeper.is_statistical()) scene.body(sleeper).quiet_time = 0.0f;
-      if (!scene.asleep(sleeper)) continue;
+    for (const auto& [touched, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
+      const bool carried = carried_.contains(touched);
+      if (carried) keep_awake(step, touched);
+      if (!scene.asleep(touched)) continue;
       const double speed = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point).norm();
-      if (speed <= rest_law_.wake_speed(scene.shape(sleeper).radius) && !carried) continue;
-      woken_.push_back(sleeper);
-      if (sleeper.is_full()) {
-        scene.neighbor(sleeper).asleep = false;
+      if (speed <= rest_law_.wake_speed(scene.shape(touched).radius) && !carried) continue;
+      woken_.push_back(touched);
+      if (touched.is_full()) {
+        scene.neighbor(touched).asleep = false;
       } else {
-        step.support.wake(int(sleeper.index()));
-        pairs_.clear_turning(sleeper);
+        step.support.wake(int(touched.index()));
+        pairs_.clear_turning(touched);
       }
     }
+  if (!carried_.none())
+    for (const SolidContact& c : solid_contacts_)
+      if (c.part->moves()) keep_awake(step, Participant::statistical(std::size_t(c.slot)));
   if (!woken_.empty()) choose_movers(step.support, pace);
 }
 

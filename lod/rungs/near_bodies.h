@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lod/contact/crowd.h"
+#include "lod/rungs/carried_bodies.h"
 #include "lod/rungs/near_marks.h"
 #include "lod/rungs/near_pairs.h"
 #include "lod/rungs/near_search.h"
@@ -74,6 +75,7 @@ class NearBodies {
   void move_alone(const Step& step, double time);
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                   ContactTally& tally) const;
+  static void keep_awake(const Step& step, Participant p);
   void wake_touched(const Step& step, Pace pace);
   void move_crowded(const Step& step, double time);
   void move_full_on(double time, int substep);
@@ -91,6 +93,7 @@ class NearBodies {
   SubstepPlan plan_;
   Crowd crowd_;
   RestLaw rest_law_;
+  CarriedBodies carried_;
   std::vector<std::int32_t> movers_;              // indices: who is awake and moves at the pace in hand
   std::vector<Participant> woken_;                // by the contacts of the last substep
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps

@@ -23,13 +23,15 @@ struct FullNeighbor {
   RigidState state;           ///< at the start of the step
   Vec3 force = Vec3::Zero();  ///< N, acting on it over the step besides gravity
   bool asleep = false;        ///< stands still like ground; also out: false where a hit woke it
+  bool carried = false;       ///< out: by what nothing stops, so that it must not sleep (CarriedBodies)
   Impulse hit;                ///< out: of impacts, to be given to the body before the full level's step
   Impulse push;  ///< out: of resting, sliding and rolling, to be given as a force spread over that step
   Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
 };
 
-/// Where two full neighbours, or one and the ground, touch: what holds up a body that statistical ones lean
-/// on. Solved along with their contacts; what it gives to the full bodies is the full level's matter.
+/// Where two full neighbours, or one and the ground, touch, or a joint holds one: what holds up a body that
+/// statistical ones lean on, or presses it onto them. Solved along with their contacts; what it gives to the
+/// full bodies is the full level's matter.
 struct FullContact {
   std::int32_t first = 0, second = -1;  ///< indices of neighbours; `second` −1: the ground
   Vec3 point = Vec3::Zero();            ///< world

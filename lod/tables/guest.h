@@ -12,6 +12,7 @@ struct Guest {
   bool on_hull =
       false;           ///< meets the ground on its hull, as it touches none of its own rung; else as a sphere
   bool moved = false;  ///< out: else it moves as if it had not been here
+  bool carried = false;  ///< out: by what nothing stops (rungs/carried_bodies.h)
   bool touched = false;  ///< out: by a body of another rung, or, a sphere, by several parts of the ground
 };
 

@@ -15,12 +15,22 @@ constexpr float kRise = 0.25f;      // of a sphere that has grown into the plane
 
 constexpr auto kWithin = std::uint8_t(GroundState::within);
 
+// Of the ground at a plane.
+template <bool OnePlane>
+LODESTONE_INLINE F3 velocity_of(const SphereGround& ground, int plane) {
+  if constexpr (OnePlane)
+    return {0.0f, 0.0f, 0.0f};
+  else
+    return {ground.ux.data()[plane], ground.uy.data()[plane], ground.uz.data()[plane]};
+}
+
 template <bool Hulls>
 struct NearLoop {
   const Spheres& spheres;
   const SphereKinds& kinds;
   F3 n;
   double wide_x, wide_y, wide_z, offset;
+  F3 moving;               // m/s: of the ground at the plane
   const float* pressures;  // m/s², of all planes
   std::int32_t number;
   StepConstants c;
@@ -34,7 +44,7 @@ struct NearLoop {
     std::int32_t* plane = step.plane.data();
     float* gap = step.gap.data();
     const float pressure = pressures[number], same = 1e-3f * c.gravity;
-    const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz);
+    const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz), rising = dot(moving, n);
     [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
     [[maybe_unused]] const float *size = kinds.radius.data(), *heights = kinds.hull_height.data();
     [[maybe_unused]] const std::uint8_t* since_crowded = spheres.since_crowded.data();
@@ -51,8 +61,8 @@ struct NearLoop {
         own = choose(int(since_crowded[i]) < kLeaningTicks, of_hull, own);
       }
       const float above = height - own;
-      const float way = least(0.0f, n.x * float(vx[i]) + n.y * float(vy[i]) + n.z * float(vz[i])) * c.time +
-                        0.5f * pull * c.time * c.time;
+      const float speed = n.x * float(vx[i]) + n.y * float(vy[i]) + n.z * float(vz[i]);
+      const float way = least(0.0f, speed - rising) * c.time + 0.5f * pull * c.time * c.time;
       const int state = on_ground[i], other = plane[i];
       const float known = gap[i];
       const int near = -int(above + 1.001f * way < 0.002f * radius[i]),
@@ -98,7 +108,8 @@ struct SortLoop {
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), moves = int(motion[i]);
       const int state = on_ground[i];
-      const F3 n{nx[p], ny[p], nz[p]}, v{float(vx[i]), float(vy[i]), float(vz[i])};
+      const F3 n{nx[p], ny[p], nz[p]},
+          v = F3{float(vx[i]), float(vy[i]), float(vz[i])} - velocity_of<OnePlane>(ground, p);
       const float touching = start[i].w, moving = s[i].x + s[i].y + s[i].z + s[i].w,
                   threshold = c.resting_energy * c.gravity * size[k];
       const float kept = c.remembered * held[i], weight = pressure[p] * c.time;
@@ -140,8 +151,9 @@ struct SweepLoop {
       const bool lies = (state >= int(kLies)) & (state <= int(kSettles)) & (touching > 0.0f);
       const F3 v{start[i].x + seen * added[i].x, start[i].y + seen * added[i].y,
                  start[i].z + seen * added[i].z};
-      const float speed = v.x * nx[p] + v.y * ny[p] + v.z * nz[p], shut = least(0.0f, -gap[i] * per_time),
-                  before = added[i].w;
+      const F3 u = velocity_of<OnePlane>(ground, p);
+      const float speed = (v.x - u.x) * nx[p] + (v.y - u.y) * ny[p] + (v.z - u.z) * nz[p],
+                  shut = least(0.0f, -gap[i] * per_time), before = added[i].w;
       const float raised = most(0.0f, before + (shut - speed)), after = choose(lies, raised, before),
                   change = after - before;
       added[i].x += change * nx[p], added[i].y += change * ny[p], added[i].z += change * nz[p],
@@ -221,7 +233,8 @@ struct LieLoop {
       const float r = radius[i], above = gap[i], given_speed = a[i].w, moving = s[i].w, lifted = d[i].w,
                   big = size[k];
       const F3 solved = start + old;
-      F3 v = solved - choose(others, 0.0f, dot(solved, n)) * n, spin = start_spin + old_turn;
+      const F3 u = velocity_of<OnePlane>(ground, p);
+      F3 v = solved - choose(others, 0.0f, dot(solved - u, n)) * n, spin = start_spin + old_turn;
 
       // Under the resting conditions the spin is that of the turn into the rest pose; its energy comes from
       // what the body still moves with. The pose's normal `up` goes to n by `angle` about up × n within the
@@ -246,7 +259,7 @@ struct LieLoop {
       // kFootprint R, its mean lever, times the same bound.
       const bool on_face = rests & (slope[p] > 0.0f);  // which does not roll
       const F3 omega = in_world(soft, k, q, spin), arm = choose(on_face, 0.0f, -r) * n,
-               touching = v + cross(omega, arm), slip = touching - dot(touching, n) * n;
+               touching = v - u + cross(omega, arm), slip = touching - dot(touching, n) * n;
       const float speed = length(slip), available = friction[row[p] * kind_count + k] * given_speed;
       const F3 direction = 1.0f / most(speed, 1e-12f) * slip, lever = cross(arm, direction);
       const float needed = speed / (1.0f + dot(lever, in_world(soft, k, q, lever)));
@@ -255,7 +268,8 @@ struct LieLoop {
       spin = spin + cross(arm, rub);
       // A torque about the normal turns a leaning body about other axes, too: τ changes ω·n by τ n·I⁻¹n.
       const F3 per_torque = in_world(soft, k, q, n);
-      const float pivot = dot(spin, per_torque) / most(dot(n, per_torque), 1e-12f),
+      const float turning = OnePlane ? 0.0f : ground.turn.data()[p];
+      const float pivot = (dot(spin, per_torque) - turning) / most(dot(n, per_torque), 1e-12f),
                   most_pivot = kFootprint * big * available;
       spin = spin - most(-most_pivot, least(pivot, most_pivot)) * n;
 
@@ -265,7 +279,7 @@ struct LieLoop {
       held[i] = choose(lies & others, given_speed, 0.0f);
       motion[i] = choose(lies & !rests, int(Motion::dynamic), moves);
       // The ground has the last word: among others no sinking in; alone down onto it; out of it gradually.
-      const float height = above + dot(v, n) * c.time + dot(out, n), sunk = most(0.0f, -above),
+      const float height = above + dot(v - u, n) * c.time + dot(out, n), sunk = most(0.0f, -above),
                   alone = choose(above < 0.0f, kRise * sunk, -above),
                   among = most(0.0f, -height - (1.0f - kRise) * sunk);
       const float raise = choose(lies, choose(others, among, alone), 0.0f);
@@ -279,7 +293,7 @@ struct LieLoop {
 // under one kind are rare.
 template <class Run>
 void choose_loop(const StepConstants& constants, const SphereGround& ground, const Run& run) {
-  const bool one_plane = ground.nx.size() == 1;
+  const bool one_plane = ground.is_one_plane();
   if (constants.one_kind && one_plane)
     run.template operator()<true, true>();
   else if (one_plane)
@@ -291,14 +305,18 @@ void choose_loop(const StepConstants& constants, const SphereGround& ground, con
 }  // namespace
 
 void SphereGround::clear(std::size_t kinds_now) {
-  for (auto* array : {&nx, &ny, &nz, &pressure, &slope, &friction}) array->clear();
+  for (auto* array : {&nx, &ny, &nz, &ux, &uy, &uz, &turn, &pressure, &slope, &friction}) array->clear();
   row.clear();
   row_of_material.clear();
+  any_moves = false;
   kinds = kinds_now;
 }
 
 std::int32_t SphereGround::add(const HalfSpace& plane, const MaterialTable& materials, const SphereKinds& of,
-                               const Vec3& gravity) {
+                               const Vec3& gravity, const Vec3& velocity, const Vec3& angular_velocity) {
+  ux.push_back(float(velocity.x())), uy.push_back(float(velocity.y())), uz.push_back(float(velocity.z()));
+  any_moves |= !velocity.isZero(0.0) || !angular_velocity.isZero(0.0);
+  turn.push_back(float(angular_velocity.dot(plane.normal)));
   nx.push_back(float(plane.normal.x())), ny.push_back(float(plane.normal.y())),
       nz.push_back(float(plane.normal.z()));
   pressure.push_back(float(std::max(0.0, -gravity.dot(plane.normal))));
@@ -331,6 +349,7 @@ void find_near_ground(const Spheres& spheres, const SphereKinds& kinds, const Sp
                              n.y(),
                              n.z(),
                              plane.offset,
+                             velocity_of<false>(ground, number),
                              ground.pressure.data(),
                              number,
                              constants,
@@ -355,7 +374,7 @@ void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const Sp
 
 void sweep_ground(const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin,
                   std::int64_t end, SphereStep& step) {
-  if (ground.nx.size() == 1)
+  if (ground.is_one_plane())
     run_wide(simd, SweepLoop<true>{ground, constants, step}, begin, end);
   else
     run_wide(simd, SweepLoop<false>{ground, constants, step}, begin, end);

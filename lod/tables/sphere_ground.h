@@ -13,19 +13,25 @@ namespace lodestone {
 /// near it. Friction is by material and kind.
 struct SphereGround {
   std::vector<float> nx, ny, nz;  // normals
+  std::vector<float> ux, uy, uz;  // m/s: of the ground there
+  std::vector<float> turn;        // rad/s: of the ground about the normal
   std::vector<float> pressure;    // m/s²: of gravity onto the plane
   std::vector<float>
       slope;  // 0: gravity presses straight onto it; 1: not so, and not every rest pose holds there
   std::vector<std::int32_t> row;  // of each plane's material in `friction`
   std::vector<float> friction;    // of kind k with a material at row · kinds + k
   std::size_t kinds = 0;
+  bool any_moves = false;
   std::vector<std::int32_t> row_of_material;
   std::vector<float> of_material;  // friction with the material of a new row; negative: not asked for yet
 
+  bool is_one_plane() const { return nx.size() == 1 && !any_moves; }  ///< and it stands
   void clear(std::size_t kinds_now);
-  /// Returns the plane's number.
+  /// Returns the plane's number. Its ground moves and turns by `velocity` (m/s, there) and `angular_velocity`
+  /// (rad/s).
   std::int32_t add(const HalfSpace& plane, const MaterialTable& materials, const SphereKinds& of,
-                   const Vec3& gravity);
+                   const Vec3& gravity, const Vec3& velocity = Vec3::Zero(),
+                   const Vec3& angular_velocity = Vec3::Zero());
 };
 
 /// Marks as GroundState::near those that may meet a plane in this step, with the gap to it and its number: of

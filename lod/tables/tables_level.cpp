@@ -238,7 +238,9 @@ void TablesLevel::describe(Guest& guest) const {
   const auto i = std::int64_t(place_of(guest.slot));
   guest.resting = {spheres_.pose[std::size_t(i)]};
   const NearFaces* near = near_faces_at(i);
-  guest.on_hull = guest.moved = constants_.hulls && i < spheres_.awake && near && near->cornered;
+  const bool awake = i < spheres_.awake, touches = awake && step_.touches(i);
+  guest.moved = constants_.hulls && awake && near && near->cornered;
+  guest.on_hull = guest.moved || (is_alone(i) && !touches);
 }
 
 StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
@@ -247,7 +249,7 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
   StatisticalBody body = spheres_.body(i);
   if (guest.on_hull) {
     body.sphere_radius = 0.0f;
-    body.motion = Motion::dynamic;
+    if (i < spheres_.awake) body.motion = Motion::dynamic;
     if (spheres_.on_hull[std::size_t(i)] != HullStand::stands)
       body.eased = std::max(body.eased, kPartsSlowly);
   } else if (constants_.hulls) {
@@ -276,6 +278,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     const Guest& guest = guests[k];
     if (!guest.moved) continue;
     const std::size_t i = place_of(guest.slot);
+    if (guest.carried) carried_guests_.push_back(std::int64_t(i));
     const StatisticalBody& body = bodies[k];
     end_clip(std::int64_t(i));
     if (guest.on_hull) {
@@ -288,7 +291,8 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     }
     // It has moved: nothing is left to be added to what it has now.
     step_.p[i] = {float(body.velocity.x()), float(body.velocity.y()), float(body.velocity.z()),
-                  guest.touched ? std::max(1.0f, step_.p[i].w) : step_.p[i].w};
+                  guest.touched && !guest.on_hull ? std::max(1.0f, step_.p[i].w) : step_.p[i].w};
+    if (guest.on_hull && guest.touched) leaning_.push_back(std::int64_t(i));
     step_.a[i] = step_.s[i] = step_.d[i] = {};
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
   }

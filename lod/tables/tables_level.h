@@ -23,6 +23,7 @@
 #include "lod/tables/guest.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_ground.h"
+#include "reference/disjoint_sets.h"
 #include "reference/state_archive.h"
 
 namespace lodestone {
@@ -79,7 +80,7 @@ class TablesLevel {
   /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given.
   void find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
   /// In their place, where there are none.
-  void forget_contacts() { contacts_.clear(), plane_touches_.clear(); }
+  void forget_contacts() { contacts_.clear(), plane_touches_.clear(), left_asleep_.clear(); }
   /// Slots of those in this step that are at an edge of the ground or between parts of it that move, or,
   /// published, that parts of it hold several ways: planes do not tell how they go on.
   std::span<const std::int32_t> cornered() const { return cornered_; }
@@ -147,6 +148,7 @@ class TablesLevel {
   void lay_still(std::int64_t place);
   void forget_all_given();
   void ease();
+  bool find_riders();
 
   void apply_pushes(double dt, ContactTally& tally);
   void start(double dt, std::span<const std::uint32_t> order);
@@ -212,6 +214,9 @@ class TablesLevel {
   std::vector<NearFaces> near_faces_;   // by place
   std::vector<std::int32_t> cornered_;  // slots
   std::vector<Carried> carried_;        // by place: near ground that moves
+  std::vector<std::int64_t> carried_guests_,
+      leaning_;          // places: of guests; of those on their hulls that touch
+  DisjointSets riders_;  // of the places awake, and what nothing stops
   StepConstants constants_;
   double elapsed_ = 0.0;  // s, over all steps
   std::int64_t steps_ = 0;
@@ -226,7 +231,8 @@ class TablesLevel {
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
-      still_touches_;                      // place awake, slot asleep; then both places
+      still_touches_,                      // place awake, slot asleep; then both places
+      left_asleep_;                        // those of them that touch too gently to wake the sleeper
   std::vector<PlaneTouch> plane_touches_;  // of this step
   std::vector<char> paired_;               // of each place: whether it has contacts with others
   std::vector<ContactTally> tallies_;

@@ -1,4 +1,6 @@
 // Stage 7 of TablesLevel's step: coming to rest, the second threshold of section 3.4.
+#include <algorithm>
+
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
@@ -8,10 +10,30 @@ constexpr float kPartingTime = 0.05f;  // of the time
 
 }  // namespace
 
+// Who is moved, directly or through others, by what nothing stops: as CarriedBodies are. False: nobody.
+bool TablesLevel::find_riders() {
+  if (carried_.empty() && carried_guests_.empty()) return false;
+  const auto nothing_stops = std::int32_t(spheres_.awake);
+  riders_.set_all_apart(std::size_t(spheres_.awake) + 1);
+  for (const Carried& carried : carried_) riders_.join(std::int32_t(carried.place), nothing_stops);
+  for (const std::int64_t place : carried_guests_) riders_.join(std::int32_t(place), nothing_stops);
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second < std::uint32_t(spheres_.awake)) riders_.join(std::int32_t(c.first), std::int32_t(c.second));
+  });
+  return true;
+}
+
 void TablesLevel::rest() {
   ++steps_;
   ease();
   if (!settings_.sleeping) return;
+  std::ranges::sort(leaning_);
+  const bool any_rides = find_riders();
+  const auto nothing_stops = std::int32_t(spheres_.awake);
+  const auto rides = [&](std::int64_t place) {
+    return any_rides && riders_.root_of(std::int32_t(place)) == riders_.root_of(nothing_stops);
+  };
+  std::erase_if(left_asleep_, [&](const auto& touch) { return !rides(std::int64_t(touch.first)); });
   const double gravity = settings_.gravity.norm();
   for (std::int64_t i = spheres_.awake - 1; i >= 0;
        --i) {  // from the end: the last one takes the place of one that falls asleep
@@ -21,7 +43,8 @@ void TablesLevel::rest() {
       continue;
     }
     const double radius = kind_of(i).shape->radius;
-    const bool among_others = spheres_.since_crowded[i] < kLeaningTicks;
+    const bool among_others =
+        spheres_.since_crowded[i] < kLeaningTicks || std::ranges::binary_search(leaning_, i);
     const StatisticalBody body = spheres_.body(i);
     const bool still =
         kinetic_energy(body, *kind_of(i).shape) < rest_law_.still_energy(among_others, radius, gravity);
@@ -29,11 +52,17 @@ void TablesLevel::rest() {
     // far as it is taken out stays where it is. In a wedge it may go to and fro for ever.
     const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
     const bool parts = step_.touches(i) && out >= rest_law_.sleep_speed(radius);
+    if (rides(i)) {
+      spheres_.quiet[i] = 0.0f;
+      continue;
+    }
     spheres_.quiet[i] = still ? spheres_.quiet[i] + (parts ? kPartingTime : 1.0f) * constants_.time : 0.0f;
     if (spheres_.quiet[i] < rest_law_.still_time(among_others) || (!among_others && !stands(i))) continue;
     fell_asleep_.push_back(spheres_.owner[std::size_t(i)]);
     lay_still(i);
   }
+  for (const auto& [_, slot] : left_asleep_) wake(int(slot));
+  left_asleep_.clear();
 }
 
 }  // namespace lodestone

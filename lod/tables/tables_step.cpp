@@ -95,6 +95,7 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   near_faces_.clear();
   cornered_.clear();
   carried_.clear();
+  carried_guests_.clear(), leaning_.clear();
   find_near_faces(0, spheres_.awake);
   each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
 }
@@ -129,8 +130,12 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
       find_ground_near(ground_, center, 1.01 * size + way, 0.0, near, constants_.hulls ? &hull : nullptr);
     for (const GroundNear& n : near) faces_.push_back(n.plane(center));
     if (faces_.size() == first) continue;
-    for (const HalfSpace& face : std::span(faces_).subspan(first))
-      planes_.add(face, materials_, kinds_, settings_.gravity);
+    for (std::size_t face = first; face < faces_.size(); ++face) {
+      const GroundPart* part = only_planes ? nullptr : near[face - first].part;  // which moves, perhaps
+      planes_.add(faces_[face], materials_, kinds_, settings_.gravity,
+                  part ? part->velocity_at(center) : Vec3(Vec3::Zero()),
+                  part ? part->pose.angular_velocity : Vec3(Vec3::Zero()));
+    }
     const double margin = 0.01 * size + way;
     const bool cornered = (alone && !only_planes) || is_cornered(i, near, margin);
     near_faces_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered});
@@ -287,7 +292,7 @@ std::pair<Vec3, double> TablesLevel::separate(std::int64_t first, std::int64_t s
 
 // Of awake bodies with sleepers; those that are hit hard enough wake.
 void TablesLevel::find_still_contacts() {
-  still_touches_.clear();
+  still_touches_.clear(), left_asleep_.clear();
   if (still().empty()) return;
   for (std::int64_t i = 0; i < spheres_.awake; ++i) {
     const Vec3 position = spheres_.position(i);
@@ -313,7 +318,11 @@ void TablesLevel::find_still_contacts() {
     const Vec3 velocity = spheres_.velocity(place);
     const bool touches = gap + velocity.dot(normal) * constants_.wide_time <=
                          0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
-    if (touches && velocity.norm() > rest_law_.wake_speed(kind_of(at).shape->radius)) wake(int(slot));
+    if (!touches) continue;
+    if (velocity.norm() > rest_law_.wake_speed(kind_of(at).shape->radius))
+      wake(int(slot));
+    else
+      left_asleep_.emplace_back(place, slot);
   }
 }
 
@@ -408,10 +417,12 @@ void TablesLevel::sort_ground() {
     each_marked(step_.on_ground, std::uint8_t(GroundState::settles), begin, end,
                 [&](std::int64_t i) { choose_rest_pose(i); });
     for (auto carried = std::ranges::lower_bound(carried_, begin, {}, &Carried::place);
-         carried != carried_.end() && carried->place < end; ++carried)
-      if (step_.on_ground[std::size_t(carried->place)] != std::uint8_t(GroundState::stands))
-        step_.on_ground[std::size_t(carried->place)] =
-            std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
+         carried != carried_.end() && carried->place < end; ++carried) {
+      std::uint8_t& state = step_.on_ground[std::size_t(carried->place)];
+      const bool among_others = state >= std::uint8_t(GroundState::lies) && step_.touches(carried->place);
+      if (state != std::uint8_t(GroundState::stands) && !among_others)
+        state = std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
+    }
   });
 }
 

@@ -3,6 +3,69 @@
 #include <ode/ode.h>
 
 namespace lodestone {
+namespace {
+
+Vec3 read(dJointID joint, void (*get)(dJointID, dVector3)) {
+  dVector3 v;
+  get(joint, v);
+  return {v[0], v[1], v[2]};
+}
+
+Vec3 place_of(dxBody* body) {
+  const dReal* p = dBodyGetPosition(body);
+  return {p[0], p[1], p[2]};
+}
+
+void hold(dxBody* second, const Vec3& point, std::vector<JointRow>& rows) {
+  for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
+    rows.push_back({second, point, direction});
+}
+
+}  // namespace
+
+void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
+  for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
+    const dJointID joint = dBodyGetJoint(body, i);
+    if (!dJointIsEnabled(joint)) continue;
+    const dBodyID first = dJointGetBody(joint, 0), other = dJointGetBody(joint, 1);
+    if (first && first != body) continue;
+    const dBodyID second = first ? other : nullptr;
+    switch (dJointGetType(joint)) {
+      case dJointTypeBall:
+        hold(second, read(joint, dJointGetBallAnchor), rows);
+        break;
+      case dJointTypeUniversal:
+        hold(second, read(joint, dJointGetUniversalAnchor), rows);
+        break;
+      case dJointTypeHinge2:
+        hold(second, read(joint, dJointGetHinge2Anchor), rows);
+        break;
+      case dJointTypeHinge: {
+        const Vec3 anchor = read(joint, dJointGetHingeAnchor),
+                   way = 0.5 * reach * read(joint, dJointGetHingeAxis);
+        hold(second, anchor + way, rows), hold(second, anchor - way, rows);
+        break;
+      }
+      case dJointTypeFixed: {
+        const Vec3 middle = second ? Vec3(0.5 * (place_of(body) + place_of(second))) : place_of(body);
+        hold(second, middle, rows);
+        hold(second, middle + reach * Vec3::UnitX(), rows),
+            hold(second, middle + reach * Vec3::UnitY(), rows);
+        break;
+      }
+      case dJointTypeSlider: {
+        const Vec3 axis = read(joint, dJointGetSliderAxis), across = axis.unitOrthogonal(),
+                   along = axis.cross(across), at = place_of(body), way = 0.5 * reach * axis;
+        for (const Vec3& point : {Vec3(at + way), Vec3(at - way)})
+          rows.push_back({second, point, across}), rows.push_back({second, point, along});
+        rows.push_back({second, at + reach * across, along});
+        break;
+      }
+      default:
+        break;
+    }
+  }
+}
 
 std::vector<dxBody*> joined_bodies(dxBody* body) {
   std::vector<dxBody*> joined;

@@ -15,6 +15,19 @@ std::vector<dxBody*> joined_bodies(dxBody* body);
 /// Whether there are any.
 bool has_joints(dxBody* body);
 
+/// A direction (unit, world) in which a joint holds a point of one body to that of another.
+struct JointRow {
+  dxBody* second = nullptr;   ///< null: the world
+  Vec3 point = Vec3::Zero();  ///< m, world
+  Vec3 direction = Vec3::UnitZ();
+};
+
+/// Appends what the joints hold whose first body is `body`, or whose only one: of a ball joint its anchor, of
+/// a hinge two points of its axis, of a fixed joint three points, of a slider all but the way along its axis;
+/// a universal joint and a wheel's (hinge 2) count as ball joints. Others, limits, motors, and joints that
+/// are disabled are left out. Points are `reach` m apart. To be asked outside of a step.
+void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows);
+
 enum class JointKind { ball, hinge };
 
 /// Joins `first` to `second`, or to the world where that is null, as they are now, at `anchor` (m, world);

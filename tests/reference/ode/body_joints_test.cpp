@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "reference/ode/ode_world.h"
 #include "tests/reference/ode/ode_fixture.h"
@@ -54,6 +55,43 @@ TEST_F(BodyJoints, ContactsAreNone) {
   EXPECT_TRUE(joined_bodies(body(a)).empty());
   EXPECT_FALSE(has_joints(body(b)));
   dJointDestroy(joint);
+}
+
+TEST_F(BodyJoints, HoldTheseDirections) {
+  const OdeBodyId a = add({0, 0, 1}), b = add({0.3, 0, 1});
+  const auto rows_of = [&](OdeBodyId id) {
+    std::vector<JointRow> rows;
+    find_joint_rows(body(id), 0.2, rows);
+    return rows;
+  };
+  EXPECT_TRUE(rows_of(a).empty());
+  join_bodies(body(a), body(b), JointKind::ball, {0.15, 0, 1});
+  ASSERT_EQ(rows_of(a).size(), 3u);  // of the first body alone
+  EXPECT_TRUE(rows_of(b).empty());
+  for (const JointRow& row : rows_of(a)) {
+    EXPECT_EQ(row.second, body(b));
+    EXPECT_NEAR((row.point - Vec3(0.15, 0, 1)).norm(), 0.0, 1e-12);
+  }
+  join_bodies(body(b), nullptr, JointKind::hinge, {0.45, 0, 1}, Vec3::UnitY());
+  const std::vector<JointRow> hinged = rows_of(b);
+  ASSERT_EQ(hinged.size(), 6u);
+  for (const JointRow& row : hinged) {
+    EXPECT_EQ(row.second, nullptr);
+    EXPECT_NEAR(std::abs(row.point.y()), 0.1, 1e-12);
+  }
+  dJointDisable(dBodyGetJoint(body(b), 0)), dJointDisable(dBodyGetJoint(body(b), 1));
+  EXPECT_TRUE(rows_of(b).empty());
+}
+
+TEST_F(BodyJoints, ASliderHoldsAllButItsAxis) {
+  const OdeBodyId a = add({0, 0, 1});
+  const dJointID slider = dJointCreateSlider(dBodyGetWorld(body(a)), nullptr);
+  dJointAttach(slider, body(a), nullptr);
+  dJointSetSliderAxis(slider, 0, 1, 0);
+  std::vector<JointRow> rows;
+  find_joint_rows(body(a), 0.2, rows);
+  ASSERT_EQ(rows.size(), 5u);
+  for (const JointRow& row : rows) EXPECT_NEAR(row.direction.y(), 0.0, 1e-12);
 }
 
 // A pendulum swings about its anchor at a constant distance; a hinge lets it turn about one axis alone.

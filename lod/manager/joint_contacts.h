@@ -1,0 +1,19 @@
+// What joints of full bodies hold, as contacts among them, so that statistical bodies which one of them leans
+// on bear what the joints bring onto it: a ragdoll's leg has its whole weight on it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lod/statistical/full_neighbor.h"
+
+struct dxBody;
+
+namespace lodestone {
+
+/// Appends two for each direction in which a joint holds a body, without friction and against each other.
+/// `bodies`: ODE's of each of the neighbours. To be asked outside of ODE's step.
+void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBody* const> bodies,
+                        std::vector<FullContact>& contacts);
+
+}  // namespace lodestone

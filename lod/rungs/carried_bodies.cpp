@@ -1,0 +1,40 @@
+#include "lod/rungs/carried_bodies.h"
+
+#include <algorithm>
+
+namespace lodestone {
+namespace {
+
+bool is_kinematic(const ContactScene& scene, Participant p) { return scene.properties(p).kinematic; }
+
+bool drives(const ContactScene& scene, Participant p) {
+  if (!is_kinematic(scene, p) || scene.asleep(p)) return false;
+  const bool turns = p.is_statistical() ? !scene.body(p).spin.isZero(0.0)
+                                        : !scene.neighbor(p).state.angular_velocity.isZero(0.0);
+  return turns || !scene.velocity(p).isZero(0.0);
+}
+
+}  // namespace
+
+void CarriedBodies::find(const ContactScene& scene, std::span<const CrowdContact> contacts,
+                         std::span<const SolidContact> solid_contacts) {
+  const auto is_on_mover = [](const SolidContact& c) { return c.part->moves(); };
+  any_ = std::ranges::any_of(solid_contacts, is_on_mover) ||
+         std::ranges::any_of(contacts, [&](const CrowdContact& c) {
+           return drives(scene, c.first) || drives(scene, c.second);
+         });
+  if (!any_) return;
+  bodies_ = scene.bodies.size();
+  sets_.set_all_apart(1 + bodies_ + scene.neighbors.size());
+  for (const CrowdContact& c : contacts) {
+    const std::int32_t first = drives(scene, c.first) ? 0 : node_of(c.first),
+                       second = drives(scene, c.second) ? 0 : node_of(c.second);
+    const bool through_resting =
+        (first != 0 && is_kinematic(scene, c.first)) || (second != 0 && is_kinematic(scene, c.second));
+    if (!through_resting) sets_.join(first, second);
+  }
+  for (const SolidContact& c : solid_contacts)
+    if (c.part->moves()) sets_.join(0, node_of(Participant::statistical(std::size_t(c.slot))));
+}
+
+}  // namespace lodestone

@@ -1,0 +1,134 @@
+// What joints bring onto a full body, statistical bodies under it bear.
+#include "lod/manager/joint_contacts.h"
+
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+constexpr double kCrate = 0.3, kLimb = 0.1, kTorso = 0.2;  // m
+constexpr double kLimbMass = 1.0, kTorsoMass = 50.0;       // kg
+constexpr double kBears = 0.005;  // m: without the joint's load the limb goes through the crate
+const Vec3 kLimbAt(0.02, 0, kCrate + kLimb / 2 + 0.001),
+    kTorsoAt(0.02, 0, kCrate + kLimb + kTorso / 2 + 0.003), kBetween = 0.5 * (kLimbAt + kTorsoAt);
+
+const ManagerSettings kSettings{.signatures = coarse_signature};
+
+struct TheirWorld {
+  TheirWorld() { dWorldSetGravity(world, 0, 0, -9.81); }
+  ~TheirWorld() {
+    dSpaceDestroy(space);
+    dWorldDestroy(world);
+  }
+  dBodyID add_box(double side, double mass, const Vec3& at) {
+    const dBodyID body = dBodyCreate(world);
+    dMass m;
+    dMassSetBoxTotal(&m, mass, side, side, side);
+    dBodySetMass(body, &m);
+    dBodySetPosition(body, at.x(), at.y(), at.z());
+    dGeomSetBody(dCreateBox(space, side, side, side), body);
+    return body;
+  }
+  void join(const std::string& kind, dBodyID first, dBodyID second) const {
+    dJointID joint = nullptr;
+    if (kind == "hinge") joint = dJointCreateHinge(world, nullptr);
+    if (kind == "fixed") joint = dJointCreateFixed(world, nullptr);
+    if (kind == "slider") joint = dJointCreateSlider(world, nullptr);
+    dJointAttach(joint, first, second);
+    if (kind == "hinge") {
+      dJointSetHingeAnchor(joint, kBetween.x(), kBetween.y(), kBetween.z());
+      dJointSetHingeAxis(joint, 0, 0, 1);
+    }
+    if (kind == "fixed") dJointSetFixed(joint);
+    if (kind == "slider") dJointSetSliderAxis(joint, 1, 0, 0);
+  }
+  dWorldID world = dWorldCreate();
+  dSpaceID space = dHashSpaceCreate(nullptr);
+  dGeomID floor = dCreatePlane(space, 0, 0, 1, 0);
+};
+
+BodyId add_crate(Manager& manager, LevelChoice level) {
+  return manager.add_body({.shape = box_shape({kCrate, kCrate, kCrate}),
+                           .state = testing::at({0, 0, kCrate / 2}),
+                           .mass = 5.0,
+                           .level = level});
+}
+
+BodyId add_full(Manager& manager, double side, double mass, const Vec3& at) {
+  return manager.add_body({.shape = box_shape({side, side, side}),
+                           .state = testing::at(at),
+                           .mass = mass,
+                           .level = LevelChoice::full});
+}
+
+TEST(JointContacts, ACrateBearsWhatIsJointedToALimb) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const char* kind : {"hinge", "fixed", "slider"}) {
+      TheirWorld theirs;
+      Manager manager(theirs.world, theirs.space, kSettings);
+      const BodyId crate = add_crate(manager, level), limb = add_full(manager, kLimb, kLimbMass, kLimbAt),
+                   torso = add_full(manager, kTorso, kTorsoMass, kTorsoAt);
+      manager.step(kFrame);
+      theirs.join(kind, manager.ode_body(limb), manager.ode_body(torso));
+      double deepest = 0.0;
+      for (int i = 0; i < 240; ++i) {
+        manager.step(kFrame);
+        deepest = std::max(deepest, manager.state(crate).position.z() + kCrate / 2 -
+                                        (manager.state(limb).position.z() - kLimb / 2));
+      }
+      EXPECT_LT(deepest, kBears) << int(level) << ", " << kind;
+      for (const BodyId body : {crate, limb, torso})
+        EXPECT_TRUE(manager.asleep(body)) << int(level) << ", " << kind;
+    }
+}
+
+TEST(JointContacts, SoItDoesForBodiesOfTheCallers) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    TheirWorld theirs;
+    Manager manager(theirs.world, theirs.space, kSettings);
+    const BodyId crate = add_crate(manager, level);
+    const dBodyID limb = theirs.add_box(kLimb, kLimbMass, kLimbAt),
+                  torso = theirs.add_box(kTorso, kTorsoMass, kTorsoAt);
+    theirs.join("fixed", limb, torso);
+    double deepest = 0.0;
+    for (int i = 0; i < 240; ++i) {
+      manager.step(kFrame);
+      deepest = std::max(
+          deepest, manager.state(crate).position.z() + kCrate / 2 - (dBodyGetPosition(limb)[2] - kLimb / 2));
+    }
+    EXPECT_LT(deepest, 2 * kBears) << int(level);
+  }
+}
+
+// A plank with one end on a hinge of the world, at the height of the crate on which its other end lies.
+TEST(JointContacts, TheWorldBearsItsShare) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+    TheirWorld theirs;
+    Manager manager(theirs.world, theirs.space, kSettings);
+    const BodyId crate = add_crate(manager, level),
+                 plank = manager.add_body({.shape = box_shape({1.0, 0.2, 0.1}),
+                                           .state = testing::at({0.4, 0, kCrate + 0.051}),
+                                           .mass = 20.0,
+                                           .level = LevelChoice::full});
+    manager.step(kFrame);
+    const dJointID hinge = dJointCreateHinge(theirs.world, nullptr);
+    dJointAttach(hinge, manager.ode_body(plank), nullptr);
+    dJointSetHingeAnchor(hinge, 0.9, 0, kCrate + 0.05);
+    dJointSetHingeAxis(hinge, 0, 1, 0);
+    run(manager, 4.0);
+    EXPECT_NEAR(manager.state(plank).position.z(), kCrate + 0.05, kBears) << int(level);
+    EXPECT_LT(manager.state(crate).position.head<2>().norm(), 0.01) << int(level);
+    EXPECT_TRUE(manager.asleep(plank)) << int(level);
+  }
+}
+
+}  // namespace
+}  // namespace lodestone

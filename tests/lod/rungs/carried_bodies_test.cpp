@@ -1,0 +1,149 @@
+// What nothing stops, a platform or a kinematic body, moves sleepers and all that they carry, however slowly
+// it goes.
+#include "lod/rungs/carried_bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+constexpr double kCrate = 0.3;                   // m
+constexpr double kSpeeds[] = {0.01, 0.05, 0.3};  // m/s: sleepers wake by themselves from .1 m/s on
+constexpr double kLiftedFor = 2.0;               // s
+
+std::shared_ptr<const Shape> crate() { return box_shape({kCrate, kCrate, kCrate}); }
+
+struct OnLift {
+  Manager manager{{.signatures = coarse_signature}};
+  GroundId lift = manager.add_static_box({2, 2, 0.2}, Vec3(0, 0, -0.1), Quat::Identity());
+  std::vector<BodyId> stack;
+
+  OnLift(LevelChoice level, int crates) {
+    for (int i = 0; i < crates; ++i)
+      stack.push_back(add(manager, crate(), testing::at({0, 0, kCrate * (i + 0.5) + 1e-4 * i}), level));
+    run(manager, 2.0);
+    for (const BodyId body : stack) EXPECT_TRUE(manager.asleep(body));
+  }
+  /// m: by how much the stack became lower at most.
+  double move(const Vec3& velocity) {
+    double most = 0.0;
+    for (int i = 1; i <= int(kLiftedFor / kFrame); ++i) {
+      RigidState state = testing::at(Vec3(0, 0, -0.1) + velocity * (i * kFrame));
+      state.velocity = velocity;
+      manager.move_ground(lift, state);
+      manager.step(kFrame);
+      const double top = state.position.z() + 0.1;
+      most = std::max(most, top + kCrate * (double(stack.size()) - 0.5) - z(stack.back()));
+    }
+    return most;
+  }
+  double z(BodyId body) const { return manager.state(body).position.z(); }
+};
+
+TEST(CarriedBodies, ALiftCarriesAStack) {
+  for (const auto& [level, shrinks] :
+       {std::pair{LevelChoice::full, 0.002},
+        {LevelChoice::support, 0.002},
+        {LevelChoice::tables, 0.02}})  // m: among others its bodies give way a little
+    for (const double speed : kSpeeds)
+      EXPECT_LT(OnLift(level, 3).move({0, 0, speed}), shrinks) << int(level) << " at " << speed << " m/s";
+}
+
+TEST(CarriedBodies, APlatformCarriesAStackAlong) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support})
+    for (const double speed : kSpeeds) {
+      OnLift on(level, 3);
+      on.move({speed, 0, 0});
+      for (const BodyId body : on.stack)
+        EXPECT_NEAR(on.manager.state(body).position.x(), speed * kLiftedFor, 0.02)
+            << int(level) << " at " << speed << " m/s";
+    }
+}
+
+TEST(CarriedBodies, TheySleepAgainWhereItStands) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support}) {
+    OnLift on(level, 3);
+    on.move({0, 0, 0.05});
+    RigidState stands = testing::at({0, 0, -0.1 + 0.05 * kLiftedFor});
+    on.manager.move_ground(on.lift, stands);
+    run(on.manager, 2.0);
+    for (const BodyId body : on.stack) EXPECT_TRUE(on.manager.asleep(body)) << int(level);
+  }
+}
+
+// Spheres roll on one another, so that only the lowest goes along.
+TEST(CarriedBodies, APlatformCarriesTheLowestOfAStackOfTables) {
+  OnLift on(LevelChoice::tables, 2);
+  on.move({0.3, 0, 0});
+  EXPECT_NEAR(on.manager.state(on.stack.front()).position.x(), 0.3 * kLiftedFor, 0.1);
+}
+
+// A wall, kinematic, of either rung, that pushes a row. At `tables` among others its bodies give way a
+// little, and as nothing turns them back they leave it sideways after a while.
+TEST(CarriedBodies, AKinematicBodyPushesARow) {
+  for (const LevelChoice wall_level : {LevelChoice::full, LevelChoice::support})
+    for (const auto& [level, overlaps, farthest] : {std::tuple{LevelChoice::full, 0.005, 0.5},
+                                                    {LevelChoice::support, 0.005, 0.5},
+                                                    {LevelChoice::tables, 0.05, 0.25}})  // m
+      for (const double speed : {0.02, 0.05, 0.3}) {
+        Manager manager = on_floor({.signatures = coarse_signature});
+        BodyProperties kinematic;
+        kinematic.kinematic = true;
+        const BodyId wall = manager.add_body({.shape = box_shape({0.2, 2, 0.8}),
+                                              .state = testing::at({-0.27, 0, 0.5}),
+                                              .level = wall_level,
+                                              .properties = kinematic});
+        std::vector<BodyId> row;
+        for (int i = 0; i < 3; ++i)
+          row.push_back(add(manager, crate(), testing::at({(kCrate + 1e-3) * i, 0, kCrate / 2}), level));
+        run(manager, 2.0);
+        RigidState state = manager.state(wall);
+        state.velocity = Vec3(speed, 0, 0);
+        manager.set_state(wall, state);
+        for (double way = 0.0; way < farthest; way += speed * kFrame) {
+          manager.step(kFrame);
+          double face = manager.state(wall).position.x() + 0.1;
+          for (const BodyId body : row) {
+            const double x = manager.state(body).position.x();
+            ASSERT_LT(face - (x - kCrate / 2), overlaps) << int(wall_level) << " on " << int(level) << " at "
+                                                         << speed << " m/s, after " << way << " m";
+            face = x + kCrate / 2;
+          }
+        }
+      }
+}
+
+// What touches none of its own rung meets another's bodies on its hull: it does not roll before them.
+TEST(CarriedBodies, ACrateOfTablesStaysFlatBeforeAKinematicBody) {
+  for (const LevelChoice wall_level : {LevelChoice::full, LevelChoice::support})
+    for (const double speed : kSpeeds) {
+      Manager manager = on_floor({.signatures = coarse_signature});
+      BodyProperties kinematic;
+      kinematic.kinematic = true;
+      const BodyId wall = manager.add_body({.shape = box_shape({0.2, 2, 0.8}),
+                                            .state = testing::at({-0.26, 0, 0.5}),
+                                            .level = wall_level,
+                                            .properties = kinematic}),
+                   pushed = add(manager, crate(), testing::at({0, 0, kCrate / 2}), LevelChoice::tables);
+      run(manager, 2.0);
+      RigidState state = manager.state(wall);
+      state.velocity = Vec3(speed, 0, 0);
+      manager.set_state(wall, state);
+      run(manager, 0.2 / speed);
+      const RigidState end = manager.state(pushed);
+      EXPECT_NEAR(end.position.x() - manager.state(wall).position.x(), 0.1 + kCrate / 2, 0.002);
+      EXPECT_NEAR(end.position.z(), kCrate / 2, 0.001);
+      EXPECT_GT((end.orientation * Vec3::UnitZ()).z(), 0.9999);
+    }
+}
+
+}  // namespace
+}  // namespace lodestone
