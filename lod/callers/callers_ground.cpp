@@ -29,7 +29,8 @@ HalfSpace plane_of(const MirroredGeom& geom) { return {geom.normal, geom.offset,
 }  // namespace
 
 void CallersGround::follow(const SpaceMirror& mirror, double dt,
-                           const std::function<void(const Eigen::AlignedBox3d&)>& disturbed) {
+                           const std::function<void(const Eigen::AlignedBox3d&)>& disturbed,
+                           const std::function<void(const HalfSpace&)>& came) {
   const std::span<const MirroredGeom> geoms = mirror.geoms();
   ids_.resize(geoms.size());
   for (const std::uint32_t slot : mirror.removed()) {
@@ -43,7 +44,10 @@ void CallersGround::follow(const SpaceMirror& mirror, double dt,
   for (const std::uint32_t slot : mirror.added()) {
     if (geoms[slot].dynamic) continue;
     add(geoms[slot], slot, dt);
-    if (!ground_.is_plane(ids_[slot])) disturbed(geoms[slot].bounds);
+    if (ground_.is_plane(ids_[slot]))
+      came(plane_of(geoms[slot]));
+    else
+      disturbed(geoms[slot].bounds);
   }
   for (const std::uint32_t slot : moving_)
     if (ids_[slot]) ground_.move_part(ids_[slot], pose_of(geoms[slot], false, dt));

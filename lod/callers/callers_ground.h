@@ -17,9 +17,10 @@ class CallersGround {
   explicit CallersGround(Ground& ground) : ground_(ground) {}
 
   /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s. Calls disturbed(box)
-  /// for where something came, went or moved: what lies there wakes.
+  /// for where something came, went or moved, and came(plane) for a new plane: what lies there wakes.
   void follow(const SpaceMirror& mirror, double dt,
-              const std::function<void(const Eigen::AlignedBox3d&)>& disturbed);
+              const std::function<void(const Eigen::AlignedBox3d&)>& disturbed,
+              const std::function<void(const HalfSpace&)>& came);
 
   /// The geom that a part or plane is; null where it is none of the caller's.
   dxGeom* geom_of(GroundId id) const;

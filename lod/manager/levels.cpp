@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lod/contact/hull_contacts.h"
+
 namespace lodestone {
 namespace {
 
@@ -93,7 +95,7 @@ void Levels::follow_callers_space(double dt) {
   const SpaceMirror* mirror = full.world()->callers_space();
   if (!mirror) return;
   const auto wake = [this](const Eigen::AlignedBox3d& box) { wake_in(box); };
-  callers.ground.follow(*mirror, dt, wake);
+  callers.ground.follow(*mirror, dt, wake, [this](const HalfSpace& plane) { wake_on(plane); });
   callers.bodies.follow(*mirror, wake);
 }
 
@@ -115,6 +117,29 @@ void Levels::wake_in(const Eigen::AlignedBox3d& box) {
   for (const std::uint32_t body : near) {
     const double reach = (1.0 + kTouchMargin) * bodies.shape(body)->radius;
     if (box.squaredExteriorDistance(statistical->position(bodies[body].statistical)) <= reach * reach)
+      wake(body);
+  }
+}
+
+void Levels::wake_all_in(const Eigen::AlignedBox3d& box) {
+  wake_in(box);
+  for (const FullLevel::Member& member : full.members()) {
+    const double reach = (1.0 + kTouchMargin) * bodies.shape(member.owner)->radius;
+    if (asleep(member.owner) && box.squaredExteriorDistance(state(member.owner).position) <= reach * reach)
+      wake(member.owner);
+  }
+}
+
+void Levels::wake_on(const HalfSpace& plane) {
+  constexpr double kCut = 0.01;  // over R
+  for (std::uint32_t body = 0; body < bodies.indices(); ++body) {
+    if (!bodies.alive(body) || !asleep(body)) continue;
+    const Shape& shape = *bodies.shape(body);
+    const RigidState at = state(body);
+    const double height = plane.height_of(at.position);
+    std::int32_t hint = 0;
+    if (height < shape.radius &&
+        find_lowest_point(shape, at.orientation, plane.normal, height, hint).gap < -kCut * shape.radius)
       wake(body);
   }
 }

@@ -81,6 +81,10 @@ struct Levels {
   /// Wakes the statistical bodies whose bounding spheres meet `box`, and full ones that lie as they did
   /// there.
   void wake_in(const Eigen::AlignedBox3d& box);
+  /// Wakes the bodies of either level whose bounding spheres meet `box`: new ground is there.
+  void wake_all_in(const Eigen::AlignedBox3d& box);
+  /// Wakes the bodies of either level that a new `plane` cuts.
+  void wake_on(const HalfSpace& plane);
   /// Wakes every other body of `level` whose bounding sphere meets that of `body`.
   void wake_near(std::uint32_t body, Level level);
   /// Wakes every body, of either level, whose bounding sphere meets one of `radius` m about `center`.

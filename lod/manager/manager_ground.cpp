@@ -31,6 +31,7 @@ GroundId Manager::add_plane(const Vec3& normal, double offset, MaterialId materi
   const HalfSpace plane{unit, offset, material};
   const GroundId id = impl_->levels.ground.add_plane(plane);
   impl_->levels.full.add_plane(id, plane);
+  impl_->levels.wake_on(plane);
   impl_->queries.touch();
   impl_->recorder.note(Call::add_plane, normal, offset, material);
   return id;
@@ -41,7 +42,8 @@ GroundId Manager::add_static_mesh(const Mesh& mesh, MaterialId material) {
   impl_->levels.materials.check_known(material);
   const GroundId id = impl_->levels.ground.add_mesh(mesh, material);
   impl_->levels.full.add_static_mesh(id, mesh, material);
-  impl_->disturb(impl_->levels.ground.bounds(id));
+  impl_->levels.wake_all_in(impl_->levels.ground.bounds(id));
+  impl_->queries.touch();
   impl_->recorder.note(Call::add_static_mesh, mesh.vertices, mesh.faces, material);
   return id;
 }
@@ -53,7 +55,8 @@ GroundId Manager::add_static_box(const Vec3& sides, const Vec3& position, const 
   impl_->levels.materials.check_known(material);
   const GroundId id = impl_->levels.ground.add_box(sides, position, pose.orientation, material);
   impl_->levels.full.add_static_box(id, sides, position, pose.orientation, material);
-  impl_->disturb(impl_->levels.ground.bounds(id));
+  impl_->levels.wake_all_in(impl_->levels.ground.bounds(id));
+  impl_->queries.touch();
   impl_->recorder.note(Call::add_static_box, sides, position, orientation, material);
   return id;
 }

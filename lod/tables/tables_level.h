@@ -124,6 +124,10 @@ class TablesLevel {
     std::int32_t slot;
     Vec3 force, torque;
   };
+  struct Acting {
+    std::int32_t slot;
+    Vec3 too_far;  // m: where a push at the step's beginning takes it, less where the force does
+  };
 
   StepWorld world() const {
     return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, nullptr, log_};
@@ -151,6 +155,7 @@ class TablesLevel {
   bool find_riders();
 
   void apply_pushes(double dt, ContactTally& tally);
+  void take_back_excess();
   void start(double dt, std::span<const std::uint32_t> order);
   void find_near_faces(std::int64_t begin, std::int64_t end);
   bool find_planes_of(std::int64_t place);
@@ -228,6 +233,7 @@ class TablesLevel {
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
   std::vector<Push> pushes_;
+  std::vector<Acting> acting_;  // in this step
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::pair<std::uint32_t, std::uint32_t>>

@@ -42,6 +42,7 @@ void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, Co
 }
 
 void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
+  acting_.clear();
   for (const Push& push : pushes_) {
     const std::int64_t place = spheres_.place_of_slot[std::size_t(push.slot)];
     end_clip(place);  // it knows no force but gravity
@@ -51,7 +52,10 @@ void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
     body.spin += impulse * push.torque;
     body.motion = Motion::dynamic;
     spheres_.put(place, body);
-    if (!is_within_limit(body.velocity) || !is_within_limit(body.spin)) recover(place, tally);
+    if (!is_within_limit(body.velocity) || !is_within_limit(body.spin))
+      recover(place, tally);
+    else
+      acting_.push_back({push.slot, 0.5 * dt * impulse * push.force});
   }
   pushes_.clear();
 }
@@ -472,8 +476,18 @@ void TablesLevel::finish(ContactTally& tally) {
                 [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
+  take_back_excess();
   update_clips();
   if (log_ && ground) write_ground();
+}
+
+// Of bodies that flew through the whole step: a force acted through it, not at its beginning.
+void TablesLevel::take_back_excess() {
+  for (const auto& [slot, too_far] : acting_) {
+    const std::size_t i = place_of(slot);
+    if (step_.on_ground[i] != std::uint8_t(GroundState::free) || step_.touches(std::int64_t(i))) continue;
+    spheres_.x[i] -= too_far.x(), spheres_.y[i] -= too_far.y(), spheres_.z[i] -= too_far.z();
+  }
 }
 
 // The orientations of slender bodies, and of those that turn far in a step, follow by splitting, one by one.

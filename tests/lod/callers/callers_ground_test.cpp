@@ -15,10 +15,11 @@ constexpr double kCallersStep = 1.0 / 60;
 class GroundOfCaller : public ::testing::Test {
  protected:
   void follow() {
-    disturbed_.clear();
+    disturbed_.clear(), planes_.clear();
     scene_.mirror->refresh();
     callers_.follow(*scene_.mirror, kCallersStep,
-                    [this](const Eigen::AlignedBox3d& box) { disturbed_.push_back(box); });
+                    [this](const Eigen::AlignedBox3d& box) { disturbed_.push_back(box); },
+                    [this](const HalfSpace& plane) { planes_.push_back(plane); });
   }
   /// The geoms of the parts that come within a metre of a place.
   std::multiset<dGeomID> near(const Vec3& place) const {
@@ -43,6 +44,7 @@ class GroundOfCaller : public ::testing::Test {
   Ground ground_;
   CallersGround callers_{ground_};
   std::vector<Eigen::AlignedBox3d> disturbed_;
+  std::vector<HalfSpace> planes_;  // that came
 };
 
 // Whatever came, went and moved: the ground's parts are his geoms, where they are.
@@ -73,6 +75,8 @@ TEST_F(GroundOfCaller, IsWhatHisSpaceHolds) {
 TEST_F(GroundOfCaller, PlanesAreHalfSpaces) {
   const dGeomID plane = dCreatePlane(scene_.space, 0, 0, 1, 0.5);
   follow();
+  ASSERT_EQ(planes_.size(), 1u);
+  EXPECT_EQ(planes_[0].offset, 0.5);
   ASSERT_EQ(ground_.planes().size(), 1U);
   EXPECT_EQ(ground_.planes()[0].height_of({3, 4, 2}), 1.5);
   EXPECT_EQ(callers_.geom_of(ground_.id_of_plane(0)), plane);

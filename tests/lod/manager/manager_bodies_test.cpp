@@ -74,8 +74,8 @@ TEST(ManagerBodies, AForceMovesWhatIsAtRest) {
 
 // One that bears its weight holds a body where it is; what moves by itself alone no force moves.
 TEST(ManagerBodies, AForceInTheAirActsThroughTheWholeStep) {
-  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support}) {
-    Manager manager = on_floor();
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+    Manager manager = on_floor({.signatures = coarse_signature});
     const auto box = box_shape({0.3, 0.3, 0.3});
     const BodyId hovers = add(manager, box, testing::at({0, 0, 3}), level),
                  flies = add(manager, box, testing::at({5, 0, 3}), level);
