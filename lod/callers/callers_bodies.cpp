@@ -81,22 +81,20 @@ void CallersBodies::follow(const SpaceMirror& mirror,
 
 // Each geom a convex piece, or several; of a trimesh that has no pieces, its hull.
 void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
-  const RigidState at = callers::state(entry.body);
   std::vector<std::vector<Vec3>> pieces;
   std::optional<double> sphere;  // m, where it is just that
   for (std::size_t at_slot = 0; at_slot < entry.slots.size(); ++at_slot) {
     const MirroredGeom& geom = mirror.geoms()[entry.slots[at_slot]];
     const GeomShape read = read_geom(geom.geom);
-    const auto in_body = [&](const Vec3& p) {
-      return Vec3(at.orientation.conjugate() * (geom.position + geom.orientation * p - at.position));
-    };
+    const Vec3 offset = callers::offset_position(geom.geom);  // not as it stands: the same wherever that is
+    const Quat turn = callers::offset_orientation(geom.geom);
+    const auto in_body = [&](const Vec3& p) { return Vec3(offset + turn * p); };
     const auto made = std::make_shared<const GroundSolids>(solids_of(read));
     const GroundSolids& solids = *made;
     if (solids.size() > 0) entry.solids[at_slot] = made;
     const bool surface = solids.size() > 0 && solids[0].surface;
     if (read.kind == GeomKind::sphere) {
-      if (entry.slots.size() == 1 && (geom.position - at.position).norm() < 1e-9 * read.radius)
-        sphere = read.radius;
+      if (entry.slots.size() == 1 && offset.norm() < 1e-9 * read.radius) sphere = read.radius;
       std::vector<Vec3>& piece = pieces.emplace_back();
       for (const Vec3& corner : corners_of(read)) piece.push_back(in_body(corner));
       continue;
@@ -195,12 +193,40 @@ void CallersBodies::hand_over(std::span<const FullNeighbor> neighbors, double dt
     if (!callers::is_enabled(entry.body)) callers::set_enabled(entry.body, true);
     if (!is_zero(neighbor.push))
       callers::add_force(entry.body, neighbor.push.linear / dt, neighbor.push.angular / dt);
+    if (!neighbor.shift.isZero(0.0))
+      callers::set_position(entry.body, neighbor.state.position + neighbor.shift);
     if (is_zero(neighbor.hit)) continue;
     const Vec3 turn = inverse_inertia_world(neighbor.state.orientation, *neighbor.shape) *
                       neighbor.hit.angular / neighbor.mass;
     callers::set_velocity(entry.body, neighbor.state.velocity + neighbor.hit.linear / neighbor.mass,
                           neighbor.state.angular_velocity + turn);
   }
+}
+
+void CallersBodies::archive(StateArchive& a) {
+  struct Known {
+    std::uint32_t owner;
+    Vec3 position;
+  };
+  std::vector<Known> known;
+  for (const Entry& entry : bodies_) known.push_back({entry.owner, callers::state(entry.body).position});
+  std::uint32_t owners = owners_;
+  a(known, owners);
+  if (!a.reading()) return;
+  const auto is_there = [](const Known& at) {
+    return [&at](const Entry& entry) { return callers::state(entry.body).position == at.position; };
+  };
+  auto next = bodies_.begin();
+  for (const Known& at : known) {
+    auto same = std::find_if(next, bodies_.end(), is_there(at));
+    if (same == bodies_.end()) same = next;
+    if (same == bodies_.end()) break;
+    same->owner = at.owner;
+    std::rotate(next, same, same + 1);
+    ++next;
+  }
+  owners_ = std::max(owners, owners_);
+  for (; next != bodies_.end(); ++next) next->owner = kFirstOwner + owners_++;
 }
 
 void CallersBodies::each_near(const Vec3& center, double radius,

@@ -11,6 +11,7 @@
 #include "lod/ground/ground.h"
 #include "lod/statistical/full_neighbor.h"
 #include "reference/ode/space_mirror.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -39,6 +40,9 @@ class CallersBodies {
   void append_ode_bodies(std::vector<dxBody*>& bodies) const;
   /// Gives each what came back, for a step of `dt` s. `neighbors` are those that gather() appended.
   void hand_over(std::span<const FullNeighbor> neighbors, double dt) const;
+  /// Not the bodies themselves, but their order and by what numbers their contacts are remembered: of those
+  /// that the reader has in the same places, and of others in their order.
+  void archive(StateArchive& a);
   /// Calls visit(shape, state) for each whose ball meets that of `radius` m about `center`.
   void each_near(const Vec3& center, double radius,
                  const std::function<void(const Shape&, const RigidState&)>& visit) const;

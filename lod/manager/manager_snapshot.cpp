@@ -28,7 +28,7 @@ struct Circumstances {
 
 struct Header {
   std::array<char, 8> magic = {'L', 'O', 'D', 'E', 'S', 'N', 'A', 'P'};
-  std::uint32_t format = 6, version = LODESTONE_VERSION;
+  std::uint32_t format = 7, version = LODESTONE_VERSION;
   // Sizes of what goes as it lies in memory: a build with other ones is no reader.
   std::array<std::uint16_t, 8> layout = {sizeof(void*),           sizeof(BodyRecord),   sizeof(BodyLevel),
                                          sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport),
@@ -123,8 +123,8 @@ void append(std::vector<std::byte>& bytes, const void* from, std::size_t count) 
 
 // The full level first: it refuses what does not fit before anything has changed.
 void Manager::Impl::archive(StateArchive& a) {
-  a(levels.full, levels.ground, levels.bodies, levels.now, levels.woken, levels.eased, report, costs, choose,
-    move_bodies, step_levels, changes, left_places, events);
+  a(levels.full, levels.ground, levels.callers.bodies, levels.bodies, levels.now, levels.woken, levels.eased,
+    report, costs, choose, move_bodies, step_levels, changes, left_places, events);
   if (a.reading()) queries.forget_all(), levels.forget_places(), audit.forget_watched();
   bool has_statistical = levels.statistical != nullptr;
   a(has_statistical);

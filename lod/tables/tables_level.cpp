@@ -249,8 +249,9 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
   StatisticalBody body = spheres_.body(i);
   if (guest.on_hull) {
     body.sphere_radius = 0.0f;
-    if (i < spheres_.awake) body.motion = Motion::dynamic;
-    if (spheres_.on_hull[std::size_t(i)] != HullStand::stands)
+    const bool awake = i < spheres_.awake;
+    if (awake) body.motion = Motion::dynamic;
+    if (awake && spheres_.on_hull[std::size_t(i)] != HullStand::stands)
       body.eased = std::max(body.eased, kPartsSlowly);
   } else if (constants_.hulls) {
     body.sphere_radius = radius_at_ground(body, kind_of(i));  // what it rests on it does not leave as a guest

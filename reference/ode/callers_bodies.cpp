@@ -24,6 +24,13 @@ Quat orientation(dxGeom* geom) {
   return to_quat(q);
 }
 
+Vec3 offset_position(dxGeom* geom) { return to_vec3(dGeomGetOffsetPosition(geom)); }
+Quat offset_orientation(dxGeom* geom) {
+  dQuaternion q;
+  dGeomGetOffsetQuaternion(geom, q);
+  return to_quat(q);
+}
+
 double mass(dxBody* body) {
   dMass mass;
   dBodyGetMass(body, &mass);
@@ -45,6 +52,10 @@ bool has_gravity(dxBody* body) { return dBodyGetGravityMode(body); }
 void set_velocity(dxBody* body, const Vec3& linear, const Vec3& angular) {
   dBodySetLinearVel(body, linear.x(), linear.y(), linear.z());
   dBodySetAngularVel(body, angular.x(), angular.y(), angular.z());
+}
+
+void set_position(dxBody* body, const Vec3& position) {
+  dBodySetPosition(body, position.x(), position.y(), position.z());
 }
 
 void add_force(dxBody* body, const Vec3& force, const Vec3& torque) {

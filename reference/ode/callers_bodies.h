@@ -16,16 +16,19 @@ dxBody* body_of(dxGeom* geom);  ///< null: static
 RigidState state(dxBody* body);
 Vec3 position(dxGeom* geom);  ///< m, world; of one that is no plane
 Quat orientation(dxGeom* geom);
-double mass(dxBody* body);           ///< kg
-Mat3 inverse_inertia(dxBody* body);  ///< 1/(kg m²), about the centre of mass, in the body's axes
-Vec3 force(dxBody* body);            ///< N, gathered since its last step
-Vec3 torque(dxBody* body);           ///< N m, world
+Vec3 offset_position(dxGeom* geom);     ///< m, from its body's centre of mass, in the body's axes
+Quat offset_orientation(dxGeom* geom);  ///< to the body's axes
+double mass(dxBody* body);              ///< kg
+Mat3 inverse_inertia(dxBody* body);     ///< 1/(kg m²), about the centre of mass, in the body's axes
+Vec3 force(dxBody* body);               ///< N, gathered since its last step
+Vec3 torque(dxBody* body);              ///< N m, world
 bool is_enabled(dxBody* body);
 bool is_kinematic(dxBody* body);
 bool has_gravity(dxBody* body);
 
 void set_velocity(dxBody* body, const Vec3& linear,
-                  const Vec3& angular);  ///< m/s and rad/s, world; does not wake
+                  const Vec3& angular);                 ///< m/s and rad/s, world; does not wake
+void set_position(dxBody* body, const Vec3& position);  ///< m, world; does not wake
 void add_force(dxBody* body, const Vec3& force,
                const Vec3& torque);  ///< N at the centre of mass and N m, world, over its next step
 void set_enabled(dxBody* body, bool enabled);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "tests/lod/manager/manager_fixture.h"
 
@@ -106,6 +107,48 @@ TEST(JointContacts, SoItDoesForBodiesOfTheCallers) {
     }
     EXPECT_LT(deepest, 2 * kBears) << int(level);
   }
+}
+
+// Who sleeps moves no more: what overlaps of theirs have grown is undone by moving their bodies.
+TEST(JointContacts, TheirsDoNotSinkIntoSleepers) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    TheirWorld theirs;
+    Manager manager(theirs.world, theirs.space, kSettings);
+    std::vector<BodyId> crates;
+    for (const double x : {-0.33, 0.0, 0.33})
+      crates.push_back(
+          add(manager, box_shape({kCrate, kCrate, kCrate}), testing::at({x, 0, kCrate / 2}), level));
+    run(manager, 2.0);
+    const dBodyID light = theirs.add_box(kLimb, 2.0, {-0.17, 0, kCrate + 0.07}),
+                  heavy = theirs.add_box(kLimb, 20.0, {0.17, 0, kCrate + 0.07});
+    const dJointID hinge = dJointCreateHinge(theirs.world, nullptr);
+    dJointAttach(hinge, light, heavy);
+    dJointSetHingeAnchor(hinge, 0, 0, kCrate + 0.07);
+    dJointSetHingeAxis(hinge, 0, 1, 0);
+    run(manager, 20.0);
+    for (const BodyId crate : crates) EXPECT_TRUE(manager.asleep(crate)) << int(level);
+    for (const dBodyID body : {light, heavy})
+      EXPECT_NEAR(dBodyGetPosition(body)[2], kCrate + kLimb / 2, 0.002) << int(level);
+  }
+}
+
+// A motor is not known to the statistical rungs, but goes no farther into a sleeper than in a step.
+TEST(JointContacts, AMotorDoesNotPressAPlateThroughACrate) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const double force : {50.0, 500.0}) {  // N
+      TheirWorld theirs;
+      Manager manager(theirs.world, theirs.space, kSettings);
+      add_crate(manager, level);
+      const dBodyID plate = theirs.add_box(kTorso, 10.0, {0, 0, kCrate + 0.15});
+      const dJointID slider = dJointCreateSlider(theirs.world, nullptr);
+      dJointAttach(slider, plate, nullptr);
+      dJointSetSliderAxis(slider, 0, 0, 1);
+      dJointSetSliderParam(slider, dParamVel, -0.5);
+      dJointSetSliderParam(slider, dParamFMax, force);
+      run(manager, 5.0);
+      EXPECT_NEAR(dBodyGetPosition(plate)[2], kCrate + kTorso / 2, 0.03)
+          << int(level) << ", " << force << " N";
+    }
 }
 
 // A plank with one end on a hinge of the world, at the height of the crate on which its other end lies.

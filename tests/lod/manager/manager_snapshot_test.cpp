@@ -204,5 +204,50 @@ TEST(ManagerSnapshot, InACallersWorldANewManagerGoesOnToTheBit) {
   }
 }
 
+// Contacts with his bodies are remembered by numbers of theirs, and his shapes by how they stand to their
+// bodies, wherever these are.
+TEST(ManagerSnapshot, WhatTouchesACallersBodyGoesOnToTheBit) {
+  struct World {
+    World() : manager(his.world, his.space, unmeasured()) {
+      dCreatePlane(his.space, 0, 0, 1, 0);
+      for (const double y : {-2.0, 0.03}) {  // the first touches nobody
+        dBodyID& body = y < 0.0 ? bystander : pusher;
+        body = his.body(80.0, {-1.2, y, 0.3});
+        dBodySetGravityMode(body, 0);
+      }
+      for (int i = 0; i < 3; ++i)
+        row.push_back(manager.add_body({.shape = SavedWorld::box,
+                                        .state = testing::at({0.45 * i, 0, 0.2}),
+                                        .level = LevelChoice::support}));
+    }
+    void run(int from, int to) {
+      for (int i = from; i < to; ++i) {
+        dBodyEnable(pusher), dBodySetLinearVel(pusher, 1, 0, 0), dBodySetAngularVel(pusher, 0, 0, 0);
+        manager.step(kFrame);
+      }
+    }
+    CallersScene his;
+    Manager manager;
+    dBodyID bystander = nullptr, pusher = nullptr;
+    std::vector<BodyId> row;
+  };
+  World writer;
+  writer.run(0, 70);
+  const Bytes snapshot = writer.manager.snapshot();
+  dVector3 at;
+  dQuaternion turned;
+  dBodyCopyPosition(writer.pusher, at);
+  dBodyCopyQuaternion(writer.pusher, turned);
+  World reader;
+  for (World* world : {&writer, &reader}) {
+    dBodySetPosition(world->pusher, at[0], at[1], at[2]);
+    dBodySetQuaternion(world->pusher, turned);  // which ODE normalizes
+    if (world == &reader) reader.manager.restore(snapshot);
+    world->run(70, 130);
+  }
+  EXPECT_GT(writer.manager.state(writer.row[0]).position.x(), 0.2);  // it was pushed
+  EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash());
+}
+
 }  // namespace
 }  // namespace lodestone
