@@ -54,6 +54,10 @@ bool is_eased(const ContactScene& scene, Participant p) {
   return p.is_statistical() && scene.body(p).eased > 0.0f;
 }
 
+bool is_borne_up(const ContactScene& scene, Participant p) {
+  return p.is_statistical() && scene.body(p).borne_up;
+}
+
 }  // namespace
 
 int Crowd::solver_index(Participant p) {
@@ -130,6 +134,7 @@ void Crowd::add_pair_contacts(const ContactScene& scene, std::span<const CrowdCo
       CrowdManifold& m = manifolds_[i];
       keys_[i] = contact_key(scene.owner(first), scene.owner(second));
       m.normal = contact.normal, m.law = scene.law(first, second), m.known = false;
+      if (is_borne_up(scene, first) || is_borne_up(scene, second)) m.law.restitution = 0.0;
       m.count = std::uint32_t(contact.manifold.count);
       for (std::uint32_t k = 0; k < m.count; ++k) {
         const auto& [point, gap] = contact.manifold.points[k];
@@ -347,14 +352,17 @@ void Crowd::give_to_full(const ContactScene& scene) const {
   if (scene.neighbors.empty()) return;
   for (const CrowdManifold& m : std::span(manifolds_).first(pair_manifolds_))
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
-      const auto give = [&](Participant to, const Vec3& impulse, const Vec3& arm) {
+      const auto give = [&](Participant to, Participant from, const Vec3& impulse, const Vec3& arm) {
         if (!to.is_full() || scene.neighbor(to).asleep || scene.properties(to).kinematic) return;
-        Impulse& share = point.bounces ? scene.neighbor(to).hit : scene.neighbor(to).push;
+        const bool hits = point.bounces && !is_borne_up(scene, from);
+        Impulse& share = hits ? scene.neighbor(to).hit : scene.neighbor(to).push;
         share.linear += impulse;
         share.angular += arm.cross(impulse);
       };
-      give(participants_[std::size_t(m.first)], point.impulse, point.arm_first);
-      give(participants_[std::size_t(m.second)], -point.impulse, point.arm_second);
+      const Participant first = participants_[std::size_t(m.first)],
+                        second = participants_[std::size_t(m.second)];
+      give(first, second, point.impulse, point.arm_first);
+      give(second, first, -point.impulse, point.arm_second);
     }
 }
 

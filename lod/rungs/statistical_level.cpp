@@ -171,7 +171,8 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     }
     support.admit_guests(s.guest_bodies);
     s.near_bodies.step(dt, support, search.guests(), search, neighbors, full_contacts, times, tally);
-    tables.take_guests(search.guests(), support.bodies().subspan(std::size_t(support.size())));
+    tables.take_guests(search.guests(), s.guest_bodies,
+                       support.bodies().subspan(std::size_t(support.size())));
     support.dismiss_guests();
   } else {
     s.near_bodies.forget_pairs();

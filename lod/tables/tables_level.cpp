@@ -183,7 +183,7 @@ void TablesLevel::lay_still(std::int64_t place) {
 
 void TablesLevel::archive(StateArchive& a) {
   a(spheres_, contacts_, elapsed_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_, cornered_,
-    given_, pushes_, clips_);
+    given_, pushes_, clips_, loads_);
   if (!a.reading()) return;
   kinds_ = {};
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());
@@ -258,6 +258,10 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
   }
   if (i < spheres_.awake && step_.touches(i)) {
     body.velocity = step_.velocity(i) - settings_.gravity * constants_.wide_time;
+    if (const Load* load = load_of(i)) {
+      body.velocity -= load->steady * constants_.wide_time;
+      body.borne_up = true;
+    }
     body.spin += step_.added_spin(i);
     body.position += step_.push_out(i);
   }
@@ -265,7 +269,27 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
   return body;
 }
 
-void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> bodies) {
+// What is there in two steps running; and where the hulls press less than was expected, what bore the body
+// must not fling it up.
+void TablesLevel::keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after) {
+  const Load* known = load_of(place);
+  const Vec3 last = (after.velocity - before) / constants_.wide_time - settings_.gravity,
+             earlier = known ? known->last : Vec3(Vec3::Zero()),
+             expected = known ? known->steady : Vec3(Vec3::Zero());
+  Vec3 steady = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (last[axis] * earlier[axis] > 0.0)
+      steady[axis] = std::abs(last[axis]) < std::abs(earlier[axis]) ? last[axis] : earlier[axis];
+  new_loads_.push_back(
+      {std::uint32_t(spheres_.slot[std::size_t(place)]), spheres_.owner[std::size_t(place)], last, steady});
+  const double length = expected.norm();
+  if (length > 0.0)
+    after.velocity +=
+        std::max(0.0, (expected - last).dot(expected) / (length * length)) * expected * constants_.wide_time;
+}
+
+void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> before,
+                              std::span<const StatisticalBody> bodies) {
   const std::int64_t were_awake = spheres_.awake;
   for (const Guest& guest : guests)
     if (guest.moved) wake(guest.slot);
@@ -280,7 +304,9 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     if (!guest.moved) continue;
     const std::size_t i = place_of(guest.slot);
     if (guest.carried) carried_guests_.push_back(std::int64_t(i));
-    const StatisticalBody& body = bodies[k];
+    StatisticalBody body = bodies[k];
+    if (guest.touched && !guest.on_hull && step_.touches(std::int64_t(i)))
+      keep_load(std::int64_t(i), before[k].velocity, body);
     end_clip(std::int64_t(i));
     if (guest.on_hull) {
       take_from_edge(std::int64_t(i), body);
@@ -297,6 +323,9 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     step_.a[i] = step_.s[i] = step_.d[i] = {};
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
   }
+  std::ranges::sort(new_loads_, {}, &Load::slot);
+  loads_.swap(new_loads_);
+  new_loads_.clear();
 }
 
 // What is no number must not spread.

@@ -89,8 +89,9 @@ class TablesLevel {
   void describe(Guest& guest) const;
   /// The body as it would go on, with what its contacts with spheres give it.
   StatisticalBody guest_body(const Guest& guest) const;
-  /// Where those that were moved are now.
-  void take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> bodies);
+  /// Where those that were moved are now; `before`: as guest_body() gave them.
+  void take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> before,
+                   std::span<const StatisticalBody> bodies);
   void finish(ContactTally& tally);
   void rest();
 
@@ -106,6 +107,12 @@ class TablesLevel {
     std::int32_t begin = 0, end = 0;  // in faces_
     bool even = false;                // planes stand for all that its hull may meet of the ground's parts
     bool cornered = false;            // planes do not tell how it goes on
+  };
+  /// What hulls press onto a body that touches its own rung, too.
+  struct Load {
+    std::uint32_t slot = 0, owner = 0;
+    Vec3 last = Vec3::Zero();    // m/s², in the last step
+    Vec3 steady = Vec3::Zero();  // m/s²: what of it was there in the step before, too
   };
   struct Carried {
     std::int64_t place = 0;
@@ -164,6 +171,9 @@ class TablesLevel {
   void find_still_contacts();
   void note_paired();
   void find_further_planes();
+  void press();
+  const Load* load_of(std::int64_t place) const;
+  void keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after);
   bool touches_further_planes(std::int64_t place) const;
   int sweeps() const {
     return constants_.hulls ? contacts_.settings().hull_sweeps : contacts_.settings().sweeps;
@@ -232,8 +242,9 @@ class TablesLevel {
 
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
+  std::vector<Load> loads_, new_loads_;                  // of the last step's guests, by slot; of this one's
   std::vector<Push> pushes_;
-  std::vector<Acting> acting_;  // in this step
+  std::vector<Acting> acting_;                    // in this step
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::pair<std::uint32_t, std::uint32_t>>

@@ -330,11 +330,34 @@ void TablesLevel::find_still_contacts() {
   }
 }
 
+const TablesLevel::Load* TablesLevel::load_of(std::int64_t place) const {
+  const auto slot = std::uint32_t(spheres_.slot[std::size_t(place)]);
+  const auto load = std::ranges::lower_bound(loads_, slot, {}, &Load::slot);
+  const bool known =
+      load != loads_.end() && load->slot == slot && load->owner == spheres_.owner[std::size_t(place)];
+  return known ? &*load : nullptr;
+}
+
+// Contacts with hulls are answered after those of spheres: what hulls pressed with in the last step these are
+// to bear now, else what lies on a heap sinks into it at the speed that gravity gives it in a step.
+void TablesLevel::press() {
+  for (const Load& load : loads_) {
+    if (load.slot >= spheres_.place_of_slot.size()) continue;
+    const std::size_t i = spheres_.place_of_slot[load.slot];
+    if (std::int64_t(i) >= spheres_.awake || !step_.touches(std::int64_t(i)) ||
+        load_of(std::int64_t(i)) != &load)
+      continue;
+    const Vec3 by = load.steady * constants_.wide_time;
+    step_.p[i].x += float(by.x()), step_.p[i].y += float(by.y()), step_.p[i].z += float(by.z());
+  }
+}
+
 void TablesLevel::respond(ContactTally& tally) {
   tally.contacts += contacts_.count();
   if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
   const bool crowd = contacts_.count() > 0;
   if (crowd) contacts_.begin(spheres_, kinds_, materials_, constants_, step_, jobs_);
+  if (crowd) press();
   sort_ground();
   if (!crowd) return;
   for (int sweep = 1; sweep <= sweeps(); ++sweep) {
