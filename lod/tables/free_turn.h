@@ -26,8 +26,9 @@ LODESTONE_INLINE F3 turn_to_energy(const Tensors& inverse, int kind, F3 own, flo
   const float curve = dot(across, times(inverse, kind, across)) - twice_energy * slope * inverse_square;
   // Where the great circle does not reach the energy (bend > 1) it goes as near as it can: x = −slope/curve.
   const float bend = curve * excess * inverse_slope * inverse_slope;
-  const float x = -excess * inverse_slope / (most(bend, 1.0f) + square_root(1.0f - least(bend, 1.0f))),
-              t = x * x * slope * inverse_square;
+  constexpr float kFarthest = 1e3f;  // beyond it lies only what comes of a spin that is none, and is dropped
+  const float asked = -excess * inverse_slope / (most(bend, 1.0f) + square_root(1.0f - least(bend, 1.0f))),
+              x = least(most(asked, -kFarthest), kFarthest), t = x * x * slope * inverse_square;
   const float turn = x * inverse_square / (1.0f + square_root(1.0f + t));
   return choose(slope > 1e-12f * now * now * inverse_square, turn, 0.0f) * cross(own, omega);
 }
