@@ -323,9 +323,6 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     step_.a[i] = step_.s[i] = step_.d[i] = {};
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
   }
-  std::ranges::sort(new_loads_, {}, &Load::slot);
-  loads_.swap(new_loads_);
-  new_loads_.clear();
 }
 
 // What is no number must not spread.

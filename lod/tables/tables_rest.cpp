@@ -26,6 +26,9 @@ bool TablesLevel::find_riders() {
 void TablesLevel::rest() {
   ++steps_;
   ease();
+  std::ranges::sort(new_loads_, {}, &Load::slot);
+  loads_.swap(new_loads_);
+  new_loads_.clear();
   if (!settings_.sleeping) return;
   std::ranges::sort(leaning_);
   const bool any_rides = find_riders();

@@ -1,8 +1,6 @@
 // Hulls that lie on heaps of `tables`.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
