@@ -260,7 +260,7 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
     body.velocity = step_.velocity(i) - settings_.gravity * constants_.wide_time;
     if (const Load* load = load_of(i)) {
       body.velocity -= load->steady * constants_.wide_time;
-      body.borne_up = true;
+      body.borne_up = !load->steady.isZero(0.0);
     }
     body.spin += step_.added_spin(i);
     body.position += step_.push_out(i);

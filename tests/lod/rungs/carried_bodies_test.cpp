@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double kCrate = 0.3;                   // m
+constexpr double kCrate = 0.3, kHalfWall = 0.1;  // m
 constexpr double kSpeeds[] = {0.01, 0.05, 0.3};  // m/s: sleepers wake by themselves from .1 m/s on
 constexpr double kLiftedFor = 2.0;               // s
 
@@ -86,6 +86,24 @@ TEST(CarriedBodies, APlatformCarriesTheLowestOfAStackOfTables) {
   EXPECT_NEAR(on.manager.state(on.stack.front()).position.x(), 0.3 * kLiftedFor, 0.1);
 }
 
+/// Kinematic; its face is 2 cm before a crate that stands at the origin.
+BodyId add_wall(Manager& manager, LevelChoice level) {
+  BodyProperties kinematic;
+  kinematic.kinematic = true;
+  return manager.add_body({.shape = box_shape({2 * kHalfWall, 2, 0.8}),
+                           .state = testing::at({-0.02 - kCrate / 2 - kHalfWall, 0, 0.5}),
+                           .level = level,
+                           .properties = kinematic});
+}
+
+void drive(Manager& manager, BodyId wall, double speed) {
+  RigidState state = manager.state(wall);
+  state.velocity = Vec3(speed, 0, 0);
+  manager.set_state(wall, state);
+}
+
+double face_of(const Manager& manager, BodyId wall) { return manager.state(wall).position.x() + kHalfWall; }
+
 // A wall, kinematic, of either rung, that pushes a row. At `tables` among others its bodies give way a
 // little, and as nothing turns them back they leave it sideways after a while.
 TEST(CarriedBodies, AKinematicBodyPushesARow) {
@@ -95,22 +113,15 @@ TEST(CarriedBodies, AKinematicBodyPushesARow) {
                                                     {LevelChoice::tables, 0.05, 0.25}})  // m
       for (const double speed : {0.02, 0.05, 0.3}) {
         Manager manager = on_floor({.signatures = coarse_signature});
-        BodyProperties kinematic;
-        kinematic.kinematic = true;
-        const BodyId wall = manager.add_body({.shape = box_shape({0.2, 2, 0.8}),
-                                              .state = testing::at({-0.27, 0, 0.5}),
-                                              .level = wall_level,
-                                              .properties = kinematic});
+        const BodyId wall = add_wall(manager, wall_level);
         std::vector<BodyId> row;
         for (int i = 0; i < 3; ++i)
           row.push_back(add(manager, crate(), testing::at({(kCrate + 1e-3) * i, 0, kCrate / 2}), level));
         run(manager, 2.0);
-        RigidState state = manager.state(wall);
-        state.velocity = Vec3(speed, 0, 0);
-        manager.set_state(wall, state);
+        drive(manager, wall, speed);
         for (double way = 0.0; way < farthest; way += speed * kFrame) {
           manager.step(kFrame);
-          double face = manager.state(wall).position.x() + 0.1;
+          double face = face_of(manager, wall);
           for (const BodyId body : row) {
             const double x = manager.state(body).position.x();
             ASSERT_LT(face - (x - kCrate / 2), overlaps) << int(wall_level) << " on " << int(level) << " at "
@@ -126,20 +137,13 @@ TEST(CarriedBodies, ACrateOfTablesStaysFlatBeforeAKinematicBody) {
   for (const LevelChoice wall_level : {LevelChoice::full, LevelChoice::support})
     for (const double speed : kSpeeds) {
       Manager manager = on_floor({.signatures = coarse_signature});
-      BodyProperties kinematic;
-      kinematic.kinematic = true;
-      const BodyId wall = manager.add_body({.shape = box_shape({0.2, 2, 0.8}),
-                                            .state = testing::at({-0.26, 0, 0.5}),
-                                            .level = wall_level,
-                                            .properties = kinematic}),
+      const BodyId wall = add_wall(manager, wall_level),
                    pushed = add(manager, crate(), testing::at({0, 0, kCrate / 2}), LevelChoice::tables);
       run(manager, 2.0);
-      RigidState state = manager.state(wall);
-      state.velocity = Vec3(speed, 0, 0);
-      manager.set_state(wall, state);
+      drive(manager, wall, speed);
       run(manager, 0.2 / speed);
       const RigidState end = manager.state(pushed);
-      EXPECT_NEAR(end.position.x() - manager.state(wall).position.x(), 0.1 + kCrate / 2, 0.002);
+      EXPECT_NEAR(end.position.x() - face_of(manager, wall), kCrate / 2, 0.002);
       EXPECT_NEAR(end.position.z(), kCrate / 2, 0.001);
       EXPECT_GT((end.orientation * Vec3::UnitZ()).z(), 0.9999);
     }
