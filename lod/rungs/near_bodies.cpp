@@ -78,7 +78,6 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
   pairs_.choose(near_, pace);
   const bool with_full = near_.full_pace() == pace;
   const double time = step.dt / pace;
-  woken_.clear();
   crowd_.begin_islands();
   for (int i = 0; i < pace; ++i) {
     {
@@ -101,15 +100,15 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
 // Who is crowded is decided anew.
 void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   const double time = step.dt / pace;
-  if (!woken_.empty()) {  // they may touch other sleepers
-    pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
-    pairs_.choose(near_, pace);
-  }
   if (substep > 0) pairs_.find_turning(step.scene, movers_);
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
   find_ground_solids(step, movers_, substep * time, time);
-  wake_touched(step, pace);
-  if (!woken_.empty()) find_ground_solids(step, movers_, substep * time, time);
+  for (wake_touched(step, pace); !woken_.empty(); wake_touched(step, pace)) {  // they may touch others
+    choose_movers(step.support, pace);
+    pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
+    pairs_.find_more_contacts(step.scene, time, near_, pace);
+    find_ground_solids(step, movers_, substep * time, time);
+  }
 }
 
 void NearBodies::choose_movers(const SupportLevel& support, Pace pace) {
@@ -178,6 +177,17 @@ void NearBodies::keep_awake(const Step& step, Participant p) {
     step.guests[p.index() - std::size_t(step.support.size())].carried = true;
 }
 
+void NearBodies::wake(const Step& step, Participant p, Pace pace) {
+  woken_.push_back(p);
+  if (p.is_full()) {
+    step.scene.neighbor(p).asleep = false;
+    return;
+  }
+  step.support.wake(int(p.index()));
+  pairs_.clear_turning(p);
+  near_.set_pace(p, pace);
+}
+
 void NearBodies::wake_touched(const Step& step, Pace pace) {
   const ContactScene& scene = step.scene;
   woken_.clear();
@@ -188,19 +198,13 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
       if (carried) keep_awake(step, touched);
       if (!scene.asleep(touched)) continue;
       const double speed = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point).norm();
-      if (speed <= rest_law_.wake_speed(scene.shape(touched).radius) && !carried) continue;
-      woken_.push_back(touched);
-      if (touched.is_full()) {
-        scene.neighbor(touched).asleep = false;
-      } else {
-        step.support.wake(int(touched.index()));
-        pairs_.clear_turning(touched);
-      }
+      if (carried || speed > rest_law_.wake_speed(scene.shape(touched).radius)) wake(step, touched, pace);
     }
+  blows_.find(scene, pairs_, rest_law_, struck_);
+  for (const Participant p : struck_) wake(step, p, pace);
   if (!carried_.none())
     for (const SolidContact& c : solid_contacts_)
       if (c.part->moves()) keep_awake(step, Participant::statistical(std::size_t(c.slot)));
-  if (!woken_.empty()) choose_movers(step.support, pace);
 }
 
 void NearBodies::move_crowded(const Step& step, double time) {

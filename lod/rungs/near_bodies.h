@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lod/contact/crowd.h"
+#include "lod/rungs/blows.h"
 #include "lod/rungs/carried_bodies.h"
 #include "lod/rungs/near_marks.h"
 #include "lod/rungs/near_pairs.h"
@@ -76,6 +77,7 @@ class NearBodies {
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                   ContactTally& tally) const;
   static void keep_awake(const Step& step, Participant p);
+  void wake(const Step& step, Participant p, Pace pace);
   void wake_touched(const Step& step, Pace pace);
   void move_crowded(const Step& step, double time);
   void move_full_on(double time, int substep);
@@ -94,8 +96,10 @@ class NearBodies {
   Crowd crowd_;
   RestLaw rest_law_;
   CarriedBodies carried_;
+  Blows blows_;
   std::vector<std::int32_t> movers_;              // indices: who is awake and moves at the pace in hand
-  std::vector<Participant> woken_;                // by the contacts of the last substep
+  std::vector<Participant> woken_;                // by contacts, those that were found last
+  std::vector<Participant> struck_;               // of these, those that blows reach through others
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
   std::vector<SolidContact> solid_contacts_;
   FacesBelow faces_;

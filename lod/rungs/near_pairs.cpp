@@ -81,6 +81,7 @@ void NearPairs::add(const ContactScene& scene, std::span<const NearPair> pairs) 
   for (const NearPair& pair : pairs) {
     found_.push_back(take_place());
     all_[found_.back()].stand_for(place(scene, pair));
+    chosen_.push_back(found_.back());
   }
 }
 
@@ -197,6 +198,12 @@ void NearPairs::choose(const NearMarks& near, Pace pace) {
 void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> movers,
                               NearMarks& near, Pace pace) {
   for (const std::int32_t slot : movers) scene.bodies[std::size_t(slot)].crowded = false;
+  contacts_.resize(kept_contacts_);
+  looked_at_ = 0;
+  find_more_contacts(scene, time, near, pace);
+}
+
+void NearPairs::find_more_contacts(const ContactScene& scene, double time, NearMarks& near, Pace pace) {
   // Who moves at another pace has moved on, or waits until its own turn comes.
   const auto is_there = [&](Participant p) {
     return near.pace(p) == pace || (p.is_statistical() && scene.asleep(p));
@@ -207,25 +214,28 @@ void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<
     return is_there(pair.first) && is_there(pair.second) &&
            !(scene.asleep(pair.first) && scene.asleep(pair.second));
   };
-  const auto count = std::int64_t(chosen_.size());
-  first_contact_.resize(chosen_.size() + 1);
+  const std::span<const std::uint32_t> chosen = std::span(chosen_).subspan(looked_at_);
+  looked_at_ = chosen_.size();
+  const auto count = std::int64_t(chosen.size());
+  first_contact_.resize(chosen.size() + 1);
   run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
-      FoundPair& pair = all_[chosen_[i]];
+      FoundPair& pair = all_[chosen[i]];
       const bool looks = looked_at(pair);
       if (looks) find_contact(scene, time, pair);
       first_contact_[i + 1] = looks ? std::uint32_t(pair.contacts.size()) : 0;
     }
   });
   first_contact_[0] = 0;
-  for (std::size_t i = 0; i < chosen_.size(); ++i) first_contact_[i + 1] += first_contact_[i];
-  contacts_.resize(kept_contacts_ + first_contact_.back());
+  for (std::size_t i = 0; i < chosen.size(); ++i) first_contact_[i + 1] += first_contact_[i];
+  const std::size_t before = contacts_.size();
+  contacts_.resize(before + first_contact_.back());
   may_close_.resize(first_contact_.back());
-  const auto found = std::span(contacts_).subspan(kept_contacts_);
+  const auto found = std::span(contacts_).subspan(before);
   run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (first_contact_[i] == first_contact_[i + 1]) continue;
-      const FoundPair& pair = all_[chosen_[i]];
+      const FoundPair& pair = all_[chosen[i]];
       for (std::uint32_t at = first_contact_[i]; at < first_contact_[i + 1]; ++at) {
         const HeldContact& held = pair.contacts[at - first_contact_[i]];
         found[at] = {pair.first, pair.second,
@@ -242,7 +252,7 @@ void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<
       if (p.is_statistical()) scene.body(p).crowded = true, near.set_pace(p, pace);
     ++kept;
   }
-  contacts_.resize(kept_contacts_ + kept);
+  contacts_.resize(before + kept);
 }
 
 void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int32_t> bodies) {

@@ -51,7 +51,7 @@ class NearPairs {
 
   /// Takes the pairs of a step; what is known of those that were near before stays so.
   void take(const ContactScene& scene, std::span<const NearPair> pairs);
-  /// More of the same step, of which nothing is known.
+  /// More of the same step, of which nothing is known, for find_more_contacts().
   void add(const ContactScene& scene, std::span<const NearPair> pairs);
   void clear();
   void archive(StateArchive& a);
@@ -70,7 +70,9 @@ class NearPairs {
   /// crowded.
   void find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> movers,
                      NearMarks& near, Pace pace);
-  /// What find_contacts found.
+  /// Of those that were added since, for the same time.
+  void find_more_contacts(const ContactScene& scene, double time, NearMarks& near, Pace pace);
+  /// What these found.
   std::span<const CrowdContact> contacts() const { return std::span(contacts_).subspan(kept_contacts_); }
   /// Those of islands that have gone through their substeps stay, while others' are looked for.
   void keep_contacts() { kept_contacts_ = contacts_.size(); }
@@ -111,6 +113,7 @@ class NearPairs {
   std::vector<std::uint32_t> newcomers_;  // of this step, those that were not near in the last one
   std::vector<Turning> turning_;          // by index; of those awake
   std::vector<std::uint32_t> chosen_;     // places in all_
+  std::size_t looked_at_ = 0;             // the first of them: whose contacts are among these
   std::vector<CrowdContact> contacts_;
   std::size_t kept_contacts_ = 0;             // the first of them
   std::vector<std::uint32_t> first_contact_;  // of each pair, among those that are looked at

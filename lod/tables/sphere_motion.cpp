@@ -56,19 +56,6 @@ struct EndLoop {
       // Among others and off the ground it settles no more.
       motion[i] = std::uint8_t(
           choose(touches & (moves == int(Motion::settling)) & (state == kFree), int(Motion::dynamic), moves));
-      // On others a near-still body just stops (3.4): so do the turns of the paper's spheres, which would go
-      // on for ever, and what knows its hull once it is no faster than what a few rounds of contacts leave
-      // undone. A hull there resists rolling by its weight, however fast it turns.
-      const bool calms = touches & (crowded > kLying) & (s[i].w < c.resting_energy * c.gravity * size[k]);
-      const bool stops = touches & (crowded > kLying) & (s[i].w < least_energy * size[k]);
-      crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
-      const double stopping = select(-std::int64_t(stops), stop, 1.0);
-      const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};
-      const float turning = most(length(turned_to), 1e-20f),
-                  braked = most(0.0f, 1.0f - choose(touches, rolling * lever[k], 0.0f) / turning);
-      const double kept = double(braked) * select(-std::int64_t(calms), calm, 1.0);
-      const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)),
-                   by_z = kept * (spun_z + double(s[i].z));
       // In flight a body follows its parabola; else the velocity that its contacts left it.
       const std::int64_t flight = -std::int64_t(flies), stays = -std::int64_t(!here);
       const F3 given{p[i].x + a[i].x - (float(old_x) + c.gx * c.time),
@@ -78,6 +65,24 @@ struct EndLoop {
                    fallen_z = old_z + c.wide_gz * c.wide_time;
       const double solved_x = fallen_x + double(given.x), solved_y = fallen_y + double(given.y),
                    solved_z = fallen_z + double(given.z), half = 0.5 * c.wide_time;
+      // On others a near-still body just stops (3.4): so do the turns of the paper's spheres, which would go
+      // on for ever, and what knows its hull once it is no faster than what a few rounds of contacts leave
+      // undone. A hull there resists rolling by its weight, however fast it turns.
+      // What has just been struck is not near-still.
+      const float moving =
+          c.hulls
+              ? most(s[i].w, 0.5f * float(solved_x * solved_x + solved_y * solved_y + solved_z * solved_z))
+              : s[i].w;
+      const bool calms = touches & (crowded > kLying) & (moving < c.resting_energy * c.gravity * size[k]);
+      const bool stops = touches & (crowded > kLying) & (moving < least_energy * size[k]);
+      crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
+      const double stopping = select(-std::int64_t(stops), stop, 1.0);
+      const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};
+      const float turning = most(length(turned_to), 1e-20f),
+                  braked = most(0.0f, 1.0f - choose(touches, rolling * lever[k], 0.0f) / turning);
+      const double kept = double(braked) * select(-std::int64_t(calms), calm, 1.0);
+      const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)),
+                   by_z = kept * (spun_z + double(s[i].z));
       // What only takes a near-still body out of an overlap is no motion.
       const F3 out{d[i].x, d[i].y, d[i].z};
       const float against =

@@ -15,6 +15,7 @@
 #include "lod/contact/solid_contacts.h"
 #include "lod/ground/ground.h"
 #include "lod/jobs.h"
+#include "lod/statistical/blow_reach.h"
 #include "lod/statistical/rest_law.h"
 #include "lod/statistical/sleepers.h"
 #include "lod/statistical/statistical_settings.h"
@@ -169,6 +170,7 @@ class TablesLevel {
   bool is_cornered(std::int64_t place, std::span<const GroundNear> near, double margin) const;
   void update_radii_one_by_one();
   void find_still_contacts();
+  void wake_struck();
   void note_paired();
   void find_further_planes();
   void press();
@@ -248,8 +250,12 @@ class TablesLevel {
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
-      still_touches_,                      // place awake, slot asleep; then both places
-      left_asleep_;                        // those of them that touch too gently to wake the sleeper
+      still_touches_,  // place awake, slot asleep; then both places
+      left_asleep_;    // those of them that touch too gently to wake the sleeper
+  BlowReach blows_;
+  std::vector<std::int32_t> numbered_;      // of each place awake: its number there; −1: none
+  std::vector<std::int64_t> blown_places_;  // of each number
+  std::vector<std::uint32_t> struck_slots_;
   std::vector<PlaneTouch> plane_touches_;  // of this step
   std::vector<char> paired_;               // of each place: whether it has contacts with others
   std::vector<ContactTally> tallies_;

@@ -294,42 +294,6 @@ std::pair<Vec3, double> TablesLevel::separate(std::int64_t first, std::int64_t s
   return {Vec3(double(found.normal.x), double(found.normal.y), double(found.normal.z)), double(found.gap)};
 }
 
-// Of awake bodies with sleepers; those that are hit hard enough wake.
-void TablesLevel::find_still_contacts() {
-  still_touches_.clear(), left_asleep_.clear();
-  if (still().empty()) return;
-  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
-    const Vec3 position = spheres_.position(i);
-    still().find_near(position, double(step_.reach[i]), [&](std::uint32_t other) {
-      const std::int64_t at = spheres_.place_of_slot[other];
-      const double limit =
-          double(step_.reach[i]) +
-          1.01 * double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[at]] : spheres_.radius[at]);
-      if ((spheres_.position(at) - position).squaredNorm() < limit * limit)
-        still_touches_.emplace_back(std::uint32_t(i), other);
-    });
-  }
-  if (settings_.pair_filter)
-    std::erase_if(still_touches_, [&](const auto& touch) {
-      return !settings_.pair_filter(spheres_.owner[touch.first],
-                                    spheres_.owner[spheres_.place_of_slot[touch.second]]);
-    });
-  std::ranges::sort(still_touches_);
-  for (const auto& [place, slot] : still_touches_) {
-    const std::int64_t at = spheres_.place_of_slot[slot];
-    if (at < spheres_.awake) continue;
-    const auto [normal, gap] = separate(place, at);
-    const Vec3 velocity = spheres_.velocity(place);
-    const bool touches = gap + velocity.dot(normal) * constants_.wide_time <=
-                         0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
-    if (!touches) continue;
-    if (velocity.norm() > rest_law_.wake_speed(kind_of(at).shape->radius))
-      wake(int(slot));
-    else
-      left_asleep_.emplace_back(place, slot);
-  }
-}
-
 const TablesLevel::Load* TablesLevel::load_of(std::int64_t place) const {
   const auto slot = std::uint32_t(spheres_.slot[std::size_t(place)]);
   const auto load = std::ranges::lower_bound(loads_, slot, {}, &Load::slot);

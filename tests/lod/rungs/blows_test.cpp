@@ -1,0 +1,81 @@
+// A sleeper holds like ground; what strikes a row of them must move it all the same, whichever rungs they are
+// on.
+#include "lod/rungs/blows.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+constexpr double kCube = 0.3, kLight = 5.0, kHeavy = 20.0;    // m, kg
+constexpr double kFriction = 0.4, kSpeed = 3.0, kWay = 0.05;  // m/s; m, before it strikes
+constexpr int kRow = 5;
+
+struct StruckRow {
+  Manager manager = on_floor({.full_substeps = 8, .signatures = coarse_signature});
+  std::vector<BodyId> row;
+  BodyId striker;
+
+  StruckRow(LevelChoice striker_level, LevelChoice even, LevelChoice odd) {
+    manager.materials().replace(0, {.restitution = 0.0, .friction = kFriction});
+    const auto cube = box_shape({kCube, kCube, kCube});
+    const auto add = [&](double x, double mass, LevelChoice level) {
+      return manager.add_body(
+          {.shape = cube, .state = testing::at({x, 0, kCube / 2}), .mass = mass, .level = level});
+    };
+    for (int i = 0; i < kRow; ++i) row.push_back(add((kCube + 1e-3) * i, kLight, i % 2 == 0 ? even : odd));
+    striker = add(-kCube - kWay, kHeavy, striker_level);
+    run(manager, 1.5);
+    for (const BodyId body : row) EXPECT_TRUE(manager.asleep(body));
+    RigidState state = manager.state(striker);
+    state.velocity = Vec3(kSpeed, 0, 0);
+    manager.set_state(striker, state);
+  }
+  double momentum() const {  // N s
+    double sum = kHeavy * manager.state(striker).velocity.x();
+    for (const BodyId body : row) sum += kLight * manager.state(body).velocity.x();
+    return sum;
+  }
+};
+
+TEST(Blows, ARowOfSleepersTakesTheMomentumOfWhatStrikesIt) {
+  constexpr LevelChoice kLevels[] = {LevelChoice::full, LevelChoice::support, LevelChoice::tables};
+  for (const LevelChoice striker : kLevels)
+    for (const LevelChoice even : kLevels)
+      for (const LevelChoice odd : kLevels) {
+        StruckRow on(striker, even, odd);
+        constexpr double kTime = 0.1;  // s: by then it has gone through the row
+        run(on.manager, kTime);
+        const double all = kHeavy + kRow * kLight,
+                     most_braked = kFriction * 9.81 * all * kTime;  // N s, if all slid from the start
+        SCOPED_TRACE(std::to_string(int(striker)) + " on " + std::to_string(int(even)) + ", " +
+                     std::to_string(int(odd)));
+        EXPECT_GT(on.momentum(), kHeavy * kSpeed - 1.3 * most_braked);
+        EXPECT_GT(on.manager.state(on.row.back()).velocity.x(), 0.3 * kSpeed);
+      }
+}
+
+// What only leans on them does not wake them.
+TEST(Blows, ARowThatIsTouchedGentlySleepsOn) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    StruckRow on(level, level, level);
+    RigidState state = on.manager.state(on.striker);
+    state.position.x() = -kCube - 0.005;
+    state.velocity.x() = 0.05;
+    on.manager.set_state(on.striker, state);
+    for (int i = 0; i < 60; ++i) {
+      on.manager.step(kFrame);
+      for (std::size_t k = 1; k < on.row.size(); ++k) ASSERT_TRUE(on.manager.asleep(on.row[k])) << k;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
