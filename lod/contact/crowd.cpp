@@ -9,6 +9,8 @@
 namespace lodestone {
 namespace {
 
+constexpr double kFalling = 0.5;  // of what gravity gives a body in a step
+
 void lift_sphere_out(StatisticalBody& body, const HalfSpace& plane) {
   const double gap = plane.height_of(body.position) - body.sphere_radius;
   if (gap >= 0.0) return;
@@ -338,6 +340,11 @@ void Crowd::move(const ContactScene& scene, double time) {
       body.position += (body.velocity + 0.5 * until * scene.gravity(p)) * until;
       body.orientation = advance_orientation(body.orientation, body.spin, kind, until);
     }
+    // What falls with all that it touches is at no rest, however slow.
+    const Vec3 gravity = scene.gravity(p);
+    if (!body.borne_up &&
+        (solved.velocity - body.velocity).dot(gravity) > kFalling * gravity.squaredNorm() * time)
+      body.quiet_time = std::max(0.0f, body.quiet_time - 2.0f * float(time));
     body.in_great_heap = solved.in_great_heap;
     body.velocity = solved.velocity;
     body.spin += added;
@@ -348,13 +355,28 @@ void Crowd::move(const ContactScene& scene, double time) {
   each_participant(move_one);
 }
 
-void Crowd::give_to_full(const ContactScene& scene) const {
+// Whether something else of ODE's stands behind it: what is struck against that does not start at a speed
+// with which ODE would have it bounce there, though all contacts together left it none.
+bool Crowd::is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const {
+  constexpr double kAgainst = 0.5;  // cosine
+  const auto runs = std::span(full_order_)
+                        .subspan(std::size_t(full_start_[neighbor]),
+                                 std::size_t(full_start_[neighbor + 1] - full_start_[neighbor]));
+  return std::ranges::any_of(runs, [&](std::int32_t i) {
+    const FullContact& contact = touch.full_contacts[std::size_t(i)];
+    const double into = contact.normal.dot(impulse) * (contact.first == std::int32_t(neighbor) ? 1.0 : -1.0);
+    return into < -kAgainst * impulse.norm();
+  });
+}
+
+void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) const {
   if (scene.neighbors.empty()) return;
   for (const CrowdManifold& m : std::span(manifolds_).first(pair_manifolds_))
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       const auto give = [&](Participant to, Participant from, const Vec3& impulse, const Vec3& arm) {
         if (!to.is_full() || scene.neighbor(to).asleep || scene.properties(to).kinematic) return;
-        const bool hits = point.bounces && !is_borne_up(scene, from);
+        const bool hits =
+            point.bounces && !is_borne_up(scene, from) && !is_backed(to.index(), impulse, touch);
         Impulse& share = hits ? scene.neighbor(to).hit : scene.neighbor(to).push;
         share.linear += impulse;
         share.angular += arm.cross(impulse);
@@ -378,8 +400,11 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
     if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
     const Participant p = participants_[index];
     scene.position(p) += by;
-    if (p.is_full()) scene.neighbor(p).shift += by;
+    if (!p.is_full()) return;
+    scene.neighbor(p).shift += by;
+    shifts_[std::size_t(index)] += by;
   };
+  shifts_.assign(scene.neighbors.empty() ? 0 : solver_bodies_.size(), Vec3::Zero());
   partners_.assign(solver_bodies_.size(), 0);
   for (const CrowdManifold& m : manifolds_) {
     ++partners_[std::size_t(m.first)];
@@ -412,6 +437,37 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
       move(m.second, -distance * second / (first + second) * m.normal);
     }
   }
+  keep_full_apart(scene);
+}
+
+// What was moved must not be moved into what holds it up: ODE would throw it back, the faster the shorter its
+// substeps are. Another full body gives way, the lighter one farther, and so on; the ground does not.
+void Crowd::keep_full_apart(const ContactScene& scene) {
+  constexpr int kRounds = 4;
+  if (shifts_.empty()) return;
+  const auto shift_of = [&](std::int32_t index) {
+    return index < 0 ? Vec3(Vec3::Zero()) : shifts_[std::size_t(index)];
+  };
+  const auto move = [&](std::int32_t index, const Vec3& by) {
+    if (index < 0 || solver_bodies_[std::size_t(index)].inverse_mass == 0.0) return;
+    FullNeighbor& body = scene.neighbor(participants_[std::size_t(index)]);
+    body.state.position += by, body.shift += by;
+    shifts_[std::size_t(index)] += by;
+  };
+  const auto is_of_full = [&](const CrowdManifold& m) {
+    return participants_[std::size_t(m.first)].is_full() &&
+           (m.second < 0 || participants_[std::size_t(m.second)].is_full());
+  };
+  for (int i = 0; i < kRounds; ++i)
+    for (const CrowdManifold& m : std::span(manifolds_).subspan(pair_manifolds_)) {
+      if (!is_of_full(m)) continue;
+      const double nearing = (shift_of(m.second) - shift_of(m.first)).dot(m.normal);
+      const double first = solver_bodies_[std::size_t(m.first)].inverse_mass,
+                   second = m.second < 0 ? 0.0 : solver_bodies_[std::size_t(m.second)].inverse_mass;
+      if (nearing <= 0.0 || first + second == 0.0) continue;
+      move(m.first, nearing * first / (first + second) * m.normal);
+      move(m.second, -nearing * second / (first + second) * m.normal);
+    }
 }
 
 // The ground has the last word.
@@ -438,7 +494,7 @@ ContactTally Crowd::step(const ContactScene& scene, const CrowdTouch& touch) {
   solve(scene, touch.time);
   find_impacts();
   move(scene, touch.time);
-  give_to_full(scene);
+  give_to_full(scene, touch);
   move_apart(scene, touch.time);
   lift_off_ground(scene, touch);
   ContactTally tally;

@@ -83,8 +83,10 @@ class Crowd {
   }
   void find_impacts();
   void move(const ContactScene& scene, double time);
-  void give_to_full(const ContactScene& scene) const;
+  bool is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const;
+  void give_to_full(const ContactScene& scene, const CrowdTouch& touch) const;
   void move_apart(const ContactScene& scene, double time);
+  void keep_full_apart(const ContactScene& scene);
   void lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) const;
 
   CrowdSettings settings_;
@@ -105,6 +107,7 @@ class Crowd {
   std::vector<CrowdPoint> points_;
   GroundMeetings meetings_;
   std::vector<int> partners_;  // manifolds of each solver body
+  std::vector<Vec3> shifts_;   // m: of full ones out of overlaps, in this substep; empty: there are none
   CrowdSolver solver_;
   ContactMemory memory_;
   BorneWeights borne_weights_;

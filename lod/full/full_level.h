@@ -59,6 +59,7 @@ class FullLevel {
   /// Of the owners of two bodies: whether they may meet; empty: all may.
   void set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter);
   void set_substeps(int substeps) { settings_.substeps = substeps; }
+  int substeps_of(double dt) const;  ///< in a step of `dt` seconds
 
   OdeBodyId add(std::uint32_t owner, const OdeBodyDefinition& definition, bool asleep);
   /// Wakes what touched it, unless it `stays` where it is, on another rung.
@@ -103,7 +104,6 @@ class FullLevel {
   void filter_pairs();
   void make_world();
   /// As many as were set, or more while thin bodies are awake among others.
-  int substeps_of(double dt) const;
   bool may_thin_meet(double dt) const;
   void add_new_counts(Counters& counters);
 

@@ -90,19 +90,47 @@ void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
   world.set_asleep(body, true);
 }
 
-// A hit changes the velocity before the first substep. Support is a force over the whole step: it then
-// balances gravity in every substep, where a change of velocity would make the body hop, and bounce on what
-// holds it up.
-void hand_over(OdeWorld& world, OdeBodyId body, const FullNeighbor& neighbor, double dt) {
-  if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
-  if (world.asleep(body)) world.set_asleep(body, false);
-  if (!is_zero(neighbor.push)) world.add_force(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
-  if (is_zero(neighbor.hit) && neighbor.shift.isZero(0.0)) return;
+// Who touches statistical bodies alone was moved by their solver. ODE, which knows their contacts as a force,
+// is to bring it to where that left it: the state to begin with, under `acceleration` (m/s², of all forces
+// but theirs). Else overlaps are left that the next step undoes, and stacks of both kinds rock ever more.
+RigidState begin_towards_end(const FullNeighbor& neighbor, const Vec3& acceleration, double dt,
+                             int substeps) {
+  const double lasts = 0.5 * dt * (1.0 + 1.0 / substeps);  // s: what a force gives in a substep, on average
+  RigidState state = neighbor.end;
+  state.velocity = neighbor.state.velocity + neighbor.hit.linear / neighbor.mass;
+  state.angular_velocity =
+      neighbor.state.angular_velocity + angular_velocity_change(neighbor, neighbor.hit.angular);
+  state.position -= state.velocity * dt + (acceleration * dt + neighbor.push.linear / neighbor.mass) * lasts;
+  const Vec3 turn =
+      state.angular_velocity * dt + angular_velocity_change(neighbor, neighbor.push.angular) * lasts;
+  state.orientation = rotation_from_vector(-turn) * state.orientation;
+  return state;
+}
+
+RigidState begin_after_hits(const FullNeighbor& neighbor) {
   RigidState state = neighbor.state;
   state.position += neighbor.shift;
   state.velocity += neighbor.hit.linear / neighbor.mass;
   state.angular_velocity += angular_velocity_change(neighbor, neighbor.hit.angular);
-  world.set_state(body, state);
+  return state;
+}
+
+// A hit changes the velocity before the first substep. Support is a force over the whole step: it then
+// balances gravity in every substep, where a change of velocity would make the body hop, and bounce on what
+// holds it up.
+void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, bool touches_full, double dt) {
+  if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
+  OdeWorld& world = *levels.full.world();
+  if (world.asleep(body)) world.set_asleep(body, false);
+  if (!is_zero(neighbor.push)) world.add_force(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
+  const BodyProperties& own = levels.bodies.properties(neighbor.owner);
+  if (!touches_full && !own.kinematic && is_touched(neighbor)) {
+    const Vec3 falls = own.gravity ? levels.statistical_settings.gravity : Vec3(Vec3::Zero());
+    world.set_state(body, begin_towards_end(neighbor, falls + neighbor.force / neighbor.mass, dt,
+                                            levels.full.substeps_of(dt)));
+  } else if (!is_zero(neighbor.hit) || !neighbor.shift.isZero(0.0)) {
+    world.set_state(body, begin_after_hits(neighbor));
+  }
 }
 
 }  // namespace
@@ -127,6 +155,10 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
   const std::size_t own = levels.full.members().size();
   levels.callers.bodies.hand_over(std::span(neighborhood.bodies).subspan(own), dt);
+  std::vector<char> touches_full(neighborhood.bodies.size(), 0);
+  for (const FullContact& contact : neighborhood.contacts)
+    for (const std::int32_t end : {contact.first, contact.second})
+      if (end >= 0) touches_full[std::size_t(end)] = 1;
   for (std::size_t i = 0; i < own; ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
@@ -135,7 +167,7 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
     if (sleeps)
       put_to_sleep(*levels.full.world(), id, neighbor.state);
     else
-      hand_over(*levels.full.world(), id, neighbor, dt);
+      hand_over(levels, id, neighbor, touches_full[i] != 0, dt);
   }
 }
 

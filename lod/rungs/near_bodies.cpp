@@ -69,6 +69,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     neighbors[i].push = full_[i].push;
     neighbors[i].shift = full_[i].shift;
     neighbors[i].carried = full_[i].carried;
+    neighbors[i].end = full_[i].state;
   }
 }
 

@@ -27,6 +27,7 @@ struct FullNeighbor {
   Impulse hit;                ///< out: of impacts, to be given to the body before the full level's step
   Impulse push;  ///< out: of resting, sliding and rolling, to be given as a force spread over that step
   Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
+  RigidState end;             ///< out: at the end of the step, where nothing else touches it
 };
 
 /// Where two full neighbours, or one and the ground, touch, or a joint holds one: what holds up a body that

@@ -14,6 +14,7 @@ using namespace lane;
 
 constexpr float kCalming = 4.0f;                        // 1/s
 constexpr float kStopRate = 30.0f, kStopping = 0.005f;  // 1/s; J/kg over g R
+constexpr float kStruck = 0.08f;                        // J/kg over g R: .6 m/s at R = .2 m
 constexpr int kLying = 110;                             // ms in a row on others: no passing blow in the air
 
 template <bool OneKind>
@@ -39,6 +40,7 @@ struct EndLoop {
     const float rolling = c.hulls ? c.gravity * c.time : 0.0f;  // m/s over the lever
     const double calm = c.hulls ? 1.0 : double(most(0.0f, 1.0f - kCalming * c.time)),
                  stop = double(most(0.0f, 1.0f - kStopRate * c.time));
+    const bool published = !c.hulls;
     const float least_energy = c.hulls ? kStopping * c.gravity : 0.0f;
     constexpr int kMoved = int(GroundState::moved), kFree = int(GroundState::free),
                   kLies = int(GroundState::lies), kSettles = int(GroundState::settles);
@@ -69,12 +71,10 @@ struct EndLoop {
       // on for ever, and what knows its hull once it is no faster than what a few rounds of contacts leave
       // undone. A hull there resists rolling by its weight, however fast it turns.
       // What has just been struck is not near-still.
-      const float moving =
-          c.hulls
-              ? most(s[i].w, 0.5f * float(solved_x * solved_x + solved_y * solved_y + solved_z * solved_z))
-              : s[i].w;
-      const bool calms = touches & (crowded > kLying) & (moving < c.resting_energy * c.gravity * size[k]);
-      const bool stops = touches & (crowded > kLying) & (moving < least_energy * size[k]);
+      const float leaves = 0.5f * float(solved_x * solved_x + solved_y * solved_y + solved_z * solved_z);
+      const bool lies = touches & (crowded > kLying) & (published | (leaves < kStruck * c.gravity * size[k]));
+      const bool calms = lies & (s[i].w < c.resting_energy * c.gravity * size[k]);
+      const bool stops = lies & (s[i].w < least_energy * size[k]);
       crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
       const double stopping = select(-std::int64_t(stops), stop, 1.0);
       const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};

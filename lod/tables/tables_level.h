@@ -161,6 +161,7 @@ class TablesLevel {
   void forget_all_given();
   void ease();
   bool find_riders();
+  void note_who_falls();
 
   void apply_pushes(double dt, ContactTally& tally);
   void take_back_excess();

@@ -1,12 +1,14 @@
 // Stage 7 of TablesLevel's step: coming to rest, the second threshold of section 3.4.
 #include <algorithm>
+#include <cmath>
 
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
 namespace {
 
-constexpr float kPartingTime = 0.05f;  // of the time
+constexpr float kPartingTime = 0.05f;      // of the time
+constexpr double kFallingInterval = 0.05;  // s; less than anybody must lie still for
 
 }  // namespace
 
@@ -23,9 +25,28 @@ bool TablesLevel::find_riders() {
   return true;
 }
 
+// What falls with all that it touches does not lie on it, however long they touch.
+void TablesLevel::note_who_falls() {
+  const auto intervals = [](double time) { return std::floor(time / kFallingInterval); };
+  const bool is_due = intervals(elapsed_) != intervals(elapsed_ - constants_.wide_time);
+  if (!is_due || !constants_.hulls || contacts_.count() == 0) return;
+  const auto carries = std::int32_t(spheres_.awake);
+  riders_.set_all_apart(std::size_t(spheres_.awake) + 1);
+  contacts_.each([&](const SphereContact& c) {
+    riders_.join(std::int32_t(c.first), std::int32_t(std::min(c.second, std::uint32_t(carries))));
+  });
+  for (std::int64_t i = 0; i < spheres_.awake; ++i)
+    if (step_.on_ground[std::size_t(i)] != std::uint8_t(GroundState::free))
+      riders_.join(std::int32_t(i), carries);
+  for (std::int64_t i = 0; i < spheres_.awake; ++i)
+    if (riders_.root_of(std::int32_t(i)) != riders_.root_of(carries))
+      spheres_.crowded_for[std::size_t(i)] = 0, spheres_.quiet[std::size_t(i)] = 0.0f;
+}
+
 void TablesLevel::rest() {
   ++steps_;
   ease();
+  note_who_falls();
   std::ranges::sort(new_loads_, {}, &Load::slot);
   loads_.swap(new_loads_);
   new_loads_.clear();
@@ -54,8 +75,8 @@ void TablesLevel::rest() {
     // While it is still being taken out of an overlap its time hardly counts; one that is pressed in again as
     // far as it is taken out stays where it is. In a wedge it may go to and fro for ever.
     const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
-    const bool parts = spheres_.on_hull[i] == HullStand::rises ||
-                       (step_.touches(i) && out >= rest_law_.sleep_speed(radius));
+    const bool parts =
+        spheres_.on_hull[i] == HullStand::rises || (step_.touches(i) && out >= rest_law_.sleep_speed(radius));
     if (rides(i)) {
       spheres_.quiet[i] = 0.0f;
       continue;
