@@ -56,6 +56,10 @@ bool is_eased(const ContactScene& scene, Participant p) {
   return p.is_statistical() && scene.body(p).eased > 0.0f;
 }
 
+bool is_sphere(const ContactScene& scene, Participant p) {
+  return p.is_statistical() && scene.body(p).is_sphere();
+}
+
 bool is_borne_up(const ContactScene& scene, Participant p) {
   return p.is_statistical() && scene.body(p).borne_up;
 }
@@ -400,11 +404,10 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
     if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
     const Participant p = participants_[index];
     scene.position(p) += by;
-    if (!p.is_full()) return;
-    scene.neighbor(p).shift += by;
     shifts_[std::size_t(index)] += by;
+    if (p.is_full()) scene.neighbor(p).shift += by;
   };
-  shifts_.assign(scene.neighbors.empty() ? 0 : solver_bodies_.size(), Vec3::Zero());
+  shifts_.assign(solver_bodies_.size(), Vec3::Zero());
   partners_.assign(solver_bodies_.size(), 0);
   for (const CrowdManifold& m : manifolds_) {
     ++partners_[std::size_t(m.first)];
@@ -425,9 +428,14 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
     if (first + second == 0.0) continue;
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
-      for (const Participant p : {one, other})
+      const bool inside =
+          point.gap < -kWakingOverlap * radius && !is_sphere(scene, one) && !is_sphere(scene, other);
+      for (const Participant p : {one, other}) {
         if (is_eased(scene, p) && point.gap < -kBroughtOverlap * radius)
           scene.body(p).eased = kEasedTime;  // for as long as there is some
+        if (inside && p.is_statistical())
+          scene.body(p).quiet_time = 0.0f;  // it is being moved out, though it has no velocity
+      }
       const double parting =
           (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
       const double overlap =
@@ -444,7 +452,7 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
 // substeps are. Another full body gives way, the lighter one farther, and so on; the ground does not.
 void Crowd::keep_full_apart(const ContactScene& scene) {
   constexpr int kRounds = 4;
-  if (shifts_.empty()) return;
+  if (scene.neighbors.empty()) return;
   const auto shift_of = [&](std::int32_t index) {
     return index < 0 ? Vec3(Vec3::Zero()) : shifts_[std::size_t(index)];
   };

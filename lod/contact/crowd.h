@@ -107,7 +107,7 @@ class Crowd {
   std::vector<CrowdPoint> points_;
   GroundMeetings meetings_;
   std::vector<int> partners_;  // manifolds of each solver body
-  std::vector<Vec3> shifts_;   // m: of full ones out of overlaps, in this substep; empty: there are none
+  std::vector<Vec3> shifts_;   // m: of each solver body, out of overlaps in this substep
   CrowdSolver solver_;
   ContactMemory memory_;
   BorneWeights borne_weights_;

@@ -150,15 +150,15 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
                                neighborhood.contacts);
   levels.callers.bodies.append_ode_bodies(neighborhood.ode_bodies);
   add_joint_contacts(neighborhood.bodies, neighborhood.ode_bodies, neighborhood.contacts);
+  neighborhood.touches_full.assign(neighborhood.bodies.size(), 0);
+  for (const FullContact& contact : neighborhood.contacts)
+    for (const std::int32_t end : {contact.first, contact.second})
+      if (end >= 0) neighborhood.touches_full[std::size_t(end)] = 1;
 }
 
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
   const std::size_t own = levels.full.members().size();
   levels.callers.bodies.hand_over(std::span(neighborhood.bodies).subspan(own), dt);
-  std::vector<char> touches_full(neighborhood.bodies.size(), 0);
-  for (const FullContact& contact : neighborhood.contacts)
-    for (const std::int32_t end : {contact.first, contact.second})
-      if (end >= 0) touches_full[std::size_t(end)] = 1;
   for (std::size_t i = 0; i < own; ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
@@ -167,7 +167,7 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
     if (sleeps)
       put_to_sleep(*levels.full.world(), id, neighbor.state);
     else
-      hand_over(levels, id, neighbor, touches_full[i] != 0, dt);
+      hand_over(levels, id, neighbor, neighborhood.touches_full[i] != 0, dt);
   }
 }
 

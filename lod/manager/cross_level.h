@@ -15,6 +15,7 @@ struct Neighborhood {
   std::vector<FullNeighbor> bodies;
   std::vector<FullContact> contacts;
   std::vector<dxBody*> ode_bodies;  // of each of the bodies
+  std::vector<char> touches_full;   // of each: whether any of the contacts is its own
 
   /// A contact that ODE found, kept for some steps after: bodies at rest touch and part from substep to
   /// substep.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lod/statistical/parting.h"
 #include "lod/timing/stage_timer.h"
 
 namespace lodestone {
@@ -18,6 +19,15 @@ void advance(FullNeighbor& body, const BodyProperties& own, const Vec3& before, 
   body.state.position += body.state.velocity * time;
   body.state.orientation =
       (rotation_from_vector(body.state.angular_velocity * time) * body.state.orientation).normalized();
+}
+
+// Of two hulls, one of which was put where the other is: both are to part.
+bool is_added_inside(const ContactScene& scene, const CrowdContact& contact) {
+  const auto is_hull = [&](Participant p) {
+    return !p.is_statistical() || (!scene.body(p).is_sphere() && scene.body(p).eased == 0.0f);
+  };
+  const double radius = std::min(scene.shape(contact.first).radius, scene.shape(contact.second).radius);
+  return contact.contact.gap < -kWakingOverlap * radius && is_hull(contact.first) && is_hull(contact.second);
 }
 
 bool meets_solids(const BodyProperties& own) { return !own.kinematic && meets_ground(own); }
@@ -199,7 +209,8 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
       if (carried) keep_awake(step, touched);
       if (!scene.asleep(touched)) continue;
       const double speed = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point).norm();
-      if (carried || speed > rest_law_.wake_speed(scene.shape(touched).radius)) wake(step, touched, pace);
+      if (carried || speed > rest_law_.wake_speed(scene.shape(touched).radius) || is_added_inside(scene, c))
+        wake(step, touched, pace);
     }
   blows_.find(scene, pairs_, rest_law_, struck_);
   for (const Participant p : struck_) wake(step, p, pace);

@@ -1,5 +1,4 @@
-// How fast bodies come apart that overlap since one of them changed its rung: slowly enough that nobody sees
-// it.
+// How bodies come apart that overlap: since one of them changed its rung, slowly enough that nobody sees it.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +7,8 @@
 namespace lodestone {
 
 inline constexpr double kBroughtOverlap = 0.02;  // over R: what a pile at rest has anyway is less
+inline constexpr double kWakingOverlap =
+    0.1;  // over R: into each other so far only bodies get that were added so; then none of the two sleeps
 inline constexpr float kEasedTime =
     2.0f;  // s awake after a change of rung, in which overlaps that it brought are undone so slowly
 

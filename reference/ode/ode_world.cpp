@@ -17,6 +17,26 @@ namespace {
 
 constexpr double kShortestSubstep = 1e-12;  // s; over a shorter one ODE divides by what is no longer a number
 
+// A caller's contacts keep the depth that they were made with through all substeps of a step: of the world's
+// error reduction each takes its share, so that together they undo what one dWorldStep of his would, and what
+// rests does not hop. Ours, which are found in each, bring their own (dContactSoftERP).
+class SharedErrorReduction {
+ public:
+  SharedErrorReduction(dWorldID callers_world, int substeps)
+      : world_(callers_world), erp_(world_ ? dWorldGetERP(world_) : 0.0) {
+    if (world_) dWorldSetERP(world_, erp_ / substeps);
+  }
+  ~SharedErrorReduction() {
+    if (world_) dWorldSetERP(world_, erp_);
+  }
+  SharedErrorReduction(const SharedErrorReduction&) = delete;
+  SharedErrorReduction& operator=(const SharedErrorReduction&) = delete;
+
+ private:
+  dWorldID world_;
+  dReal erp_;
+};
+
 void check_step(double dt, int substeps) {
   if (!(dt > 0.0 && std::isfinite(dt) && substeps > 0 && dt / substeps >= kShortestSubstep))
     throw InputError(fmt::format(
@@ -94,10 +114,12 @@ void OdeWorld::step(double dt, int substeps) {
   prepare();
   const std::int64_t messages_before = messages_of_this_thread();
   impl_->begin_step(dt / substeps);
-  if (impl_->has_work())
+  if (impl_->has_work()) {
+    const SharedErrorReduction shared(impl_->own_world ? nullptr : impl_->world, substeps);
     for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
-  else
+  } else {
     impl_->joints.begin(dt, 0);  // no contacts
+  }
   impl_->end_step();
   impl_->counters.messages += messages_of_this_thread() - messages_before;
 }

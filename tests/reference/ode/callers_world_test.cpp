@@ -403,5 +403,35 @@ TEST(OdeGround, MovesCarriesAndGoes) {
   EXPECT_LT(world.state(far).position.z(), -2.5);
 }
 
+// His contacts last through all substeps at the depth that they were found with.
+TEST(CallersContacts, HoldAtRestWhateverTheSubsteps) {
+  for (const int substeps : {1, 4, 16, 64}) {
+    His his;
+    OdeWorld world(his.world, his.space, {}, kMaterials);
+    const double erp = dWorldGetERP(his.world);
+    const dBodyID box = his.body(10.0, {0, 0, 0.1});
+    const dJointGroupID contacts = dJointGroupCreate(0);
+    for (int i = 0; i < 120; ++i) {
+      for (const double x : {-0.1, 0.1})
+        for (const double y : {-0.1, 0.1}) {
+          const double z = dBodyGetPosition(box)[2] - 0.1;
+          if (z > 0.0) continue;
+          dContact contact{};
+          contact.surface.mode = dContactApprox1;
+          contact.surface.mu = 0.5;
+          contact.geom.pos[0] = x, contact.geom.pos[1] = y, contact.geom.pos[2] = z;
+          contact.geom.normal[2] = 1.0;
+          contact.geom.depth = -z;
+          dJointAttach(dJointCreateContact(his.world, contacts, &contact), box, nullptr);
+        }
+      world.step(kFrame, substeps);
+      dJointGroupEmpty(contacts);
+      ASSERT_NEAR(dBodyGetPosition(box)[2], 0.1, 0.002) << substeps << " substeps, step " << i;
+    }
+    EXPECT_EQ(dWorldGetERP(his.world), erp);
+    dJointGroupDestroy(contacts);
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -1,0 +1,99 @@
+// Stacks whose bodies are on different rungs stand as those of one rung do.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "reference/random.h"
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+constexpr double kStackedSide = 0.3, kSetDown = 0.02, kAsideBy = 0.02;  // m
+
+LevelChoice level_of(char letter) {
+  return letter == 'f' ? LevelChoice::full : letter == 's' ? LevelChoice::support : LevelChoice::tables;
+}
+
+/// Set down from a little above, each a little aside of the one below: from below, a letter a cube.
+struct MixedStack {
+  Manager manager;
+  std::vector<BodyId> cubes;
+
+  MixedStack(const std::string& levels, double restitution, int substeps, std::uint32_t seed)
+      : manager(on_floor({.full_substeps = substeps, .signatures = coarse_signature})) {
+    manager.materials().replace(0, {.restitution = restitution, .friction = 0.5});
+    RandomStream random(seed, 0, 0);
+    const auto cube = box_shape({kStackedSide, kStackedSide, kStackedSide});
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      cubes.push_back(
+          add(manager, cube,
+              testing::at({random.uniform(-kAsideBy, kAsideBy), random.uniform(-kAsideBy, kAsideBy),
+                           kStackedSide * (double(i) + 0.5) + kSetDown + 0.01 * double(i)}),
+              level_of(levels[i])));
+  }
+};
+
+TEST(MixedStacks, Stand) {
+  for (const std::string levels : {"fs", "ft", "sf", "tf", "fsfs", "sfsf", "ftft", "tftf", "sfff", "fsst"})
+    for (const double restitution : {0.0, 0.4})
+      for (const int substeps : {4, 16}) {
+        MixedStack stack(levels, restitution, substeps, 1);
+        run(stack.manager, 5.0);
+        SCOPED_TRACE(levels + ", e " + std::to_string(restitution) + ", " + std::to_string(substeps) +
+                     " substeps");
+        for (std::size_t i = 0; i < levels.size(); ++i) {
+          EXPECT_NEAR(stack.manager.state(stack.cubes[i]).position.z(), kStackedSide * (double(i) + 0.5),
+                      0.03)
+              << i;
+          EXPECT_TRUE(stack.manager.asleep(stack.cubes[i])) << i;
+        }
+      }
+}
+
+TEST(MixedStacks, WhatIsAddedInsideOthersPartsFromThem) {
+  Manager manager = on_floor({.signatures = coarse_signature});
+  const auto cube = box_shape({kStackedSide, kStackedSide, kStackedSide});
+  std::vector<BodyId> cubes;
+  for (int i = 0; i < 8; ++i) {  // each before the last one has fallen away
+    cubes.push_back(add(manager, cube, testing::at({0, 0, 1}), LevelChoice::support));
+    for (int k = 0; k < 10; ++k) manager.step(kFrame);
+  }
+  run(manager, 8.0);
+  std::vector<double> heights;
+  for (const BodyId body : cubes) heights.push_back(manager.state(body).position.z());
+  std::ranges::sort(heights);
+  for (std::size_t i = 1; i < heights.size(); ++i)
+    EXPECT_TRUE(heights[i] - heights[i - 1] > 0.8 * kStackedSide || heights[i] - heights[i - 1] < 0.01) << i;
+}
+
+// What touches, and is slow where it turns back, is still on its way.
+TEST(MixedStacks, WhatFallsTogetherDoesNotComeToRestInTheAir) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const auto& [gravity, frame] : {std::pair{9.81, 1.0 / 30}, {1.62, 1.0 / 30}, {1.62, 1.0 / 60}}) {
+      Manager manager = on_floor({.signatures = coarse_signature});
+      manager.set_gravity({0, 0, -gravity});
+      std::vector<BodyId> cubes;
+      const double speed = 2.0;
+      for (int i = 0; i < 8; ++i) {
+        RigidState state = testing::at({0.301 * (i % 2), 0.301 * (i / 2 % 2), 1.0 + 0.301 * (i / 4)});
+        state.velocity.z() = speed;
+        cubes.push_back(add(manager, box_shape({kStackedSide, kStackedSide, kStackedSide}), state, level));
+      }
+      const int frames = int(2.0 * speed / gravity / frame);  // until it is back where it began
+      for (int i = 0; i < frames; ++i) {
+        manager.step(frame);
+        for (const BodyId body : cubes) ASSERT_FALSE(manager.asleep(body)) << int(level) << " in frame " << i;
+      }
+      for (const BodyId body : cubes)
+        EXPECT_NEAR(manager.state(body).velocity.z(), speed - gravity * frames * frame, 0.1 * speed)
+            << int(level) << " at " << gravity << " m/s², steps of " << frame << " s";
+    }
+}
+
+}  // namespace
+}  // namespace lodestone
