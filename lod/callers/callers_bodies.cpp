@@ -29,8 +29,6 @@ Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {
   return shape;
 }
 
-bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impulse.angular.isZero(0.0); }
-
 }  // namespace
 
 void CallersBodies::follow(const SpaceMirror& mirror,
@@ -184,22 +182,18 @@ void CallersBodies::append_ode_bodies(std::vector<dxBody*>& bodies) const {
     if (entry.shape) bodies.push_back(entry.body);
 }
 
-void CallersBodies::hand_over(std::span<const FullNeighbor> neighbors, double dt) const {
+void CallersBodies::hand_over(std::span<const FullNeighbor> neighbors, const Vec3& gravity, double dt,
+                              int substeps) const {
   std::size_t next = 0;
   for (const Entry& entry : bodies_) {
     if (!entry.shape) continue;
     const FullNeighbor& neighbor = neighbors[next++];
     if (neighbor.asleep) continue;
     if (!callers::is_enabled(entry.body)) callers::set_enabled(entry.body, true);
-    if (!is_zero(neighbor.push))
+    if (!neighbor.push.is_zero())
       callers::add_force(entry.body, neighbor.push.linear / dt, neighbor.push.angular / dt);
-    if (!neighbor.shift.isZero(0.0))
-      callers::set_position(entry.body, neighbor.state.position + neighbor.shift);
-    if (is_zero(neighbor.hit)) continue;
-    const Vec3 turn = inverse_inertia_world(neighbor.state.orientation, *neighbor.shape) *
-                      neighbor.hit.angular / neighbor.mass;
-    callers::set_velocity(entry.body, neighbor.state.velocity + neighbor.hit.linear / neighbor.mass,
-                          neighbor.state.angular_velocity + turn);
+    if (neighbor.is_touched() || !neighbor.shift.isZero(0.0))
+      callers::set_state(entry.body, find_start(neighbor, gravity, dt, substeps));
   }
 }
 

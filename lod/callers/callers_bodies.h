@@ -38,8 +38,9 @@ class CallersBodies {
               std::vector<FullContact>& contacts) const;
   /// ODE's, of each neighbour that gather() appends.
   void append_ode_bodies(std::vector<dxBody*>& bodies) const;
-  /// Gives each what came back, for a step of `dt` s. `neighbors` are those that gather() appended.
-  void hand_over(std::span<const FullNeighbor> neighbors, double dt) const;
+  /// Gives each what came back, for a step of `dt` s in `substeps`. `neighbors` are those that gather()
+  /// appended, under the same gravity.
+  void hand_over(std::span<const FullNeighbor> neighbors, const Vec3& gravity, double dt, int substeps) const;
   /// Not the bodies themselves, but their order and by what numbers their contacts are remembered: of those
   /// that the reader has in the same places, and of others in their order.
   void archive(StateArchive& a);

@@ -62,13 +62,6 @@ void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
   }
 }
 
-Vec3 angular_velocity_change(const FullNeighbor& body, const Vec3& angular_impulse) {
-  const Quat& q = body.state.orientation;
-  return q * (body.shape->inverse_inertia_per_mass * (q.conjugate() * angular_impulse)) / body.mass;
-}
-
-bool is_zero(const Impulse& impulse) { return impulse.linear.isZero(0.0) && impulse.angular.isZero(0.0); }
-
 // ODE lets no body sleep that none of its own contacts or joints holds up: by the same measure, one that
 // statistical bodies hold up sleeps here. Jointed ones sleep by ODE's law, all that hang together at once.
 bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepThresholds& thresholds,
@@ -76,7 +69,7 @@ bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepTh
   const double still_speed = thresholds.speed, still_time = 5.0 * thresholds.time;  // m/s and s, as alone
   if (!bodies.properties(neighbor.owner).allow_sleep) return false;
   const double turning = neighbor.state.angular_velocity.norm() * neighbor.shape->radius;
-  const bool still = !is_zero(neighbor.push) && !neighbor.carried &&
+  const bool still = !neighbor.push.is_zero() && !neighbor.carried &&
                      neighbor.state.velocity.norm() < still_speed && turning < still_speed;
   if (!still) return bodies.stir(neighbor.owner), false;
   double& still_s = bodies.rare(neighbor.owner).still_s;
@@ -90,52 +83,18 @@ void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
   world.set_asleep(body, true);
 }
 
-// Who touches statistical bodies alone was moved by their solver. ODE, which knows their contacts as a force,
-// is to bring it to where that left it: the state to begin with, under `acceleration` (m/s², of all forces
-// but theirs). Else overlaps are left that the next step undoes, and stacks of both kinds rock ever more.
-RigidState begin_towards_end(const FullNeighbor& neighbor, const Vec3& acceleration, double dt,
-                             int substeps) {
-  const double lasts = 0.5 * dt * (1.0 + 1.0 / substeps);  // s: what a force gives in a substep, on average
-  RigidState state = neighbor.end;
-  state.velocity = neighbor.state.velocity + neighbor.hit.linear / neighbor.mass;
-  state.angular_velocity =
-      neighbor.state.angular_velocity + angular_velocity_change(neighbor, neighbor.hit.angular);
-  state.position -= state.velocity * dt + (acceleration * dt + neighbor.push.linear / neighbor.mass) * lasts;
-  const Vec3 turn =
-      state.angular_velocity * dt + angular_velocity_change(neighbor, neighbor.push.angular) * lasts;
-  state.orientation = rotation_from_vector(-turn) * state.orientation;
-  return state;
-}
-
-RigidState begin_after_hits(const FullNeighbor& neighbor) {
-  RigidState state = neighbor.state;
-  state.position += neighbor.shift;
-  state.velocity += neighbor.hit.linear / neighbor.mass;
-  state.angular_velocity += angular_velocity_change(neighbor, neighbor.hit.angular);
-  return state;
-}
-
-// A hit changes the velocity before the first substep. Support is a force over the whole step: it then
-// balances gravity in every substep, where a change of velocity would make the body hop, and bounce on what
-// holds it up.
-void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, bool touches_full, double dt) {
+void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, double dt) {
   if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
   OdeWorld& world = *levels.full.world();
   if (world.asleep(body)) world.set_asleep(body, false);
-  if (!is_zero(neighbor.push)) world.add_force(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
+  if (!neighbor.push.is_zero()) world.add_force(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
   const BodyProperties& own = levels.bodies.properties(neighbor.owner);
-  if (!touches_full && !own.kinematic && is_touched(neighbor)) {
-    const Vec3 falls = own.gravity ? levels.statistical_settings.gravity : Vec3(Vec3::Zero());
-    world.set_state(body, begin_towards_end(neighbor, falls + neighbor.force / neighbor.mass, dt,
-                                            levels.full.substeps_of(dt)));
-  } else if (!is_zero(neighbor.hit) || !neighbor.shift.isZero(0.0)) {
-    world.set_state(body, begin_after_hits(neighbor));
-  }
+  if (own.kinematic || (!neighbor.is_touched() && neighbor.shift.isZero(0.0))) return;
+  const Vec3 gravity = own.gravity ? levels.statistical_settings.gravity : Vec3(Vec3::Zero());
+  world.set_state(body, find_start(neighbor, gravity, dt, levels.full.substeps_of(dt)));
 }
 
 }  // namespace
-
-bool is_touched(const FullNeighbor& neighbor) { return !is_zero(neighbor.hit) || !is_zero(neighbor.push); }
 
 void gather(const Levels& levels, Neighborhood& neighborhood) {
   neighborhood.bodies.clear();
@@ -150,15 +109,15 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
                                neighborhood.contacts);
   levels.callers.bodies.append_ode_bodies(neighborhood.ode_bodies);
   add_joint_contacts(neighborhood.bodies, neighborhood.ode_bodies, neighborhood.contacts);
-  neighborhood.touches_full.assign(neighborhood.bodies.size(), 0);
   for (const FullContact& contact : neighborhood.contacts)
     for (const std::int32_t end : {contact.first, contact.second})
-      if (end >= 0) neighborhood.touches_full[std::size_t(end)] = 1;
+      if (end >= 0) neighborhood.bodies[std::size_t(end)].touches_full = true;
 }
 
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
   const std::size_t own = levels.full.members().size();
-  levels.callers.bodies.hand_over(std::span(neighborhood.bodies).subspan(own), dt);
+  levels.callers.bodies.hand_over(std::span(neighborhood.bodies).subspan(own),
+                                  levels.statistical_settings.gravity, dt, levels.full.substeps_of(dt));
   for (std::size_t i = 0; i < own; ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
@@ -167,7 +126,7 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
     if (sleeps)
       put_to_sleep(*levels.full.world(), id, neighbor.state);
     else
-      hand_over(levels, id, neighbor, neighborhood.touches_full[i] != 0, dt);
+      hand_over(levels, id, neighbor, dt);
   }
 }
 

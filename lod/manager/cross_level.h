@@ -15,7 +15,6 @@ struct Neighborhood {
   std::vector<FullNeighbor> bodies;
   std::vector<FullContact> contacts;
   std::vector<dxBody*> ode_bodies;  // of each of the bodies
-  std::vector<char> touches_full;   // of each: whether any of the contacts is its own
 
   /// A contact that ODE found, kept for some steps after: bodies at rest touch and part from substep to
   /// substep.
@@ -31,8 +30,5 @@ void gather(const Levels& levels, Neighborhood& neighborhood);
 
 /// Gives each full body what came back, for a step of `dt` seconds.
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt);
-
-/// Whether a statistical body gave it anything in the step.
-bool is_touched(const FullNeighbor& neighbor);
 
 }  // namespace lodestone

@@ -33,7 +33,7 @@ void StepLevels::step_full(double dt, StepReport& report) {
 void StepLevels::note_touching() {
   levels_.full.note_touching();
   for (std::size_t i = 0; i < std::min(neighborhood_.bodies.size(), levels_.full.members().size()); ++i)
-    if (is_touched(neighborhood_.bodies[i])) levels_.full.note_touching(i);
+    if (neighborhood_.bodies[i].is_touched()) levels_.full.note_touching(i);
 }
 
 }  // namespace lodestone

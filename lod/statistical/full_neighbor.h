@@ -11,6 +11,7 @@ namespace lodestone {
 /// Linear (N s) and angular (N m s, about the centre of mass) momentum given to a body.
 struct Impulse {
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+  bool is_zero() const { return linear.isZero(0.0) && angular.isZero(0.0); }
 };
 
 /// A body of the full level, as statistical ones meet it: it takes part in this step's contacts with its own
@@ -22,13 +23,20 @@ struct FullNeighbor {
   MaterialId material = 0;
   RigidState state;           ///< at the start of the step
   Vec3 force = Vec3::Zero();  ///< N, acting on it over the step besides gravity
+  bool touches_full = false;  ///< whether any FullContact is its own
   bool asleep = false;        ///< stands still like ground; also out: false where a hit woke it
   bool carried = false;       ///< out: by what nothing stops, so that it must not sleep (CarriedBodies)
   Impulse hit;                ///< out: of impacts, to be given to the body before the full level's step
   Impulse push;  ///< out: of resting, sliding and rolling, to be given as a force spread over that step
   Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
   RigidState end;             ///< out: at the end of the step, where nothing else touches it
+
+  bool is_touched() const { return !hit.is_zero() || !push.is_zero(); }  ///< by a statistical body
 };
+
+/// Of one that is not asleep, what ODE's step of `dt` seconds, in `substeps`, is to begin with, its push
+/// given as a force. `gravity` in m/s², as it acts on the body.
+RigidState find_start(const FullNeighbor& neighbor, const Vec3& gravity, double dt, int substeps);
 
 /// Where two full neighbours, or one and the ground, touch, or a joint holds one: what holds up a body that
 /// statistical ones lean on, or presses it onto them. Solved along with their contacts; what it gives to the

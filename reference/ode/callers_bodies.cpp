@@ -49,14 +49,7 @@ bool is_enabled(dxBody* body) { return dBodyIsEnabled(body); }
 bool is_kinematic(dxBody* body) { return dBodyIsKinematic(body); }
 bool has_gravity(dxBody* body) { return dBodyGetGravityMode(body); }
 
-void set_velocity(dxBody* body, const Vec3& linear, const Vec3& angular) {
-  dBodySetLinearVel(body, linear.x(), linear.y(), linear.z());
-  dBodySetAngularVel(body, angular.x(), angular.y(), angular.z());
-}
-
-void set_position(dxBody* body, const Vec3& position) {
-  dBodySetPosition(body, position.x(), position.y(), position.z());
-}
+void set_state(dxBody* body, const RigidState& state) { ode::set_state(body, state); }
 
 void add_force(dxBody* body, const Vec3& force, const Vec3& torque) {
   dBodyAddForce(body, force.x(), force.y(), force.z());

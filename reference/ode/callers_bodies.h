@@ -26,9 +26,7 @@ bool is_enabled(dxBody* body);
 bool is_kinematic(dxBody* body);
 bool has_gravity(dxBody* body);
 
-void set_velocity(dxBody* body, const Vec3& linear,
-                  const Vec3& angular);                 ///< m/s and rad/s, world; does not wake
-void set_position(dxBody* body, const Vec3& position);  ///< m, world; does not wake
+void set_state(dxBody* body, const RigidState& state);  ///< does not wake
 void add_force(dxBody* body, const Vec3& force,
                const Vec3& torque);  ///< N at the centre of mass and N m, world, over its next step
 void set_enabled(dxBody* body, bool enabled);

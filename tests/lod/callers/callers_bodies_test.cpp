@@ -70,7 +70,8 @@ TEST_F(BodiesOfCaller, WhatTheyAreGivenArrives) {
   of(n, b).asleep = false;  // a hit woke it
   of(n, b).hit = {{0, 0, 4}, Vec3::Zero()};
   of(n, c).hit = {{9, 9, 9}, Vec3::Zero()};
-  callers_.hand_over(n, 0.5);
+  for (FullNeighbor& each : n) each.touches_full = true;
+  callers_.hand_over(n, Vec3(0, 0, -9.81), 0.5, 4);
   EXPECT_LT((velocity(a) - Vec3(3, 1, 0)).norm(), 1e-12);
   const double inertia = 2.0 * 0.4 * 0.4 / 6.0;
   EXPECT_NEAR(dBodyGetAngularVel(a)[2], 0.1 / inertia, 1e-9);

@@ -128,12 +128,13 @@ TEST_F(GeomShapeOf, CallersBodyIsReadAndPushed) {
   dBodySetMass(body, &mass);
   dBodyAddForce(body, 1, 2, 3);
   callers::add_force(body, {1, 1, 1}, {0, 0, 5});
-  callers::set_velocity(body, {4, 5, 6}, {7, 8, 9});
+  callers::set_state(body, {.position = {1, 2, 3}, .velocity = {4, 5, 6}, .angular_velocity = {7, 8, 9}});
   EXPECT_EQ(callers::mass(body), 6.0);
   EXPECT_TRUE(callers::inverse_inertia(body).isApprox(
       Vec3(1 / 6.5, 1 / 5.0, 1 / 2.5).asDiagonal().toDenseMatrix(), 1e-12));
   EXPECT_EQ(callers::force(body), Vec3(2, 3, 4));
   EXPECT_EQ(callers::torque(body), Vec3(0, 0, 5));
+  EXPECT_EQ(callers::state(body).position, Vec3(1, 2, 3));
   EXPECT_EQ(callers::state(body).velocity, Vec3(4, 5, 6));
   EXPECT_EQ(callers::state(body).angular_velocity, Vec3(7, 8, 9));
   callers::set_enabled(body, false);
