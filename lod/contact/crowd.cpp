@@ -344,9 +344,10 @@ void Crowd::move(const ContactScene& scene, double time) {
       body.position += (body.velocity + 0.5 * until * scene.gravity(p)) * until;
       body.orientation = advance_orientation(body.orientation, body.spin, kind, until);
     }
-    // What falls with all that it touches is at no rest, however slow.
+    // What falls with all that it touches is at no rest, however slow. (Spheres that are guests here are
+    // carried by others that this solver knows nothing of.)
     const Vec3 gravity = scene.gravity(p);
-    if (!body.borne_up &&
+    if (!body.is_sphere() && !body.borne_up &&
         (solved.velocity - body.velocity).dot(gravity) > kFalling * gravity.squaredNorm() * time)
       body.quiet_time = std::max(0.0f, body.quiet_time - 2.0f * float(time));
     body.in_great_heap = solved.in_great_heap;
@@ -382,6 +383,9 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) con
         const bool hits =
             point.bounces && !is_borne_up(scene, from) && !is_backed(to.index(), impulse, touch);
         Impulse& share = hits ? scene.neighbor(to).hit : scene.neighbor(to).push;
+        const bool moves =
+            from.is_statistical() && !scene.asleep(from) && scene.body(from).quiet_time == 0.0f;
+        scene.neighbor(to).carried |= moves;
         share.linear += impulse;
         share.angular += arm.cross(impulse);
       };

@@ -86,7 +86,7 @@ void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
 void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, double dt) {
   if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
   OdeWorld& world = *levels.full.world();
-  if (world.asleep(body)) world.set_asleep(body, false);
+  if (world.asleep(body) || neighbor.carried) world.set_asleep(body, false);  // ODE's clock begins anew
   if (!neighbor.push.is_zero()) world.add_force(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
   const BodyProperties& own = levels.bodies.properties(neighbor.owner);
   if (own.kinematic || (!neighbor.is_touched() && neighbor.shift.isZero(0.0))) return;

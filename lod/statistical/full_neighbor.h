@@ -25,7 +25,8 @@ struct FullNeighbor {
   Vec3 force = Vec3::Zero();  ///< N, acting on it over the step besides gravity
   bool touches_full = false;  ///< whether any FullContact is its own
   bool asleep = false;        ///< stands still like ground; also out: false where a hit woke it
-  bool carried = false;       ///< out: by what nothing stops, so that it must not sleep (CarriedBodies)
+  bool carried = false;       ///< out: by what nothing stops (CarriedBodies), or touched by a statistical
+                              ///< body that moves: it must not sleep
   Impulse hit;                ///< out: of impacts, to be given to the body before the full level's step
   Impulse push;  ///< out: of resting, sliding and rolling, to be given as a force spread over that step
   Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
