@@ -83,7 +83,7 @@ void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
   world.set_asleep(body, true);
 }
 
-void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, double dt) {
+void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, double dt, int substeps) {
   if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
   OdeWorld& world = *levels.full.world();
   if (world.asleep(body) || neighbor.carried) world.set_asleep(body, false);  // ODE's clock begins anew
@@ -91,7 +91,7 @@ void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, dou
   const BodyProperties& own = levels.bodies.properties(neighbor.owner);
   if (own.kinematic || (!neighbor.is_touched() && neighbor.shift.isZero(0.0))) return;
   const Vec3 gravity = own.gravity ? levels.statistical_settings.gravity : Vec3(Vec3::Zero());
-  world.set_state(body, find_start(neighbor, gravity, dt, levels.full.substeps_of(dt)));
+  world.set_state(body, find_start(neighbor, gravity, dt, substeps));
 }
 
 }  // namespace
@@ -114,10 +114,10 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
       if (end >= 0) neighborhood.bodies[std::size_t(end)].touches_full = true;
 }
 
-void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
+void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt, int substeps) {
   const std::size_t own = levels.full.members().size();
   levels.callers.bodies.hand_over(std::span(neighborhood.bodies).subspan(own),
-                                  levels.statistical_settings.gravity, dt, levels.full.substeps_of(dt));
+                                  levels.statistical_settings.gravity, dt, substeps);
   for (std::size_t i = 0; i < own; ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
@@ -126,7 +126,7 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt) {
     if (sleeps)
       put_to_sleep(*levels.full.world(), id, neighbor.state);
     else
-      hand_over(levels, id, neighbor, dt);
+      hand_over(levels, id, neighbor, dt, substeps);
   }
 }
 

@@ -28,7 +28,7 @@ struct Neighborhood {
 /// To be called while the bodies' forces are still held for them.
 void gather(const Levels& levels, Neighborhood& neighborhood);
 
-/// Gives each full body what came back, for a step of `dt` seconds.
-void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt);
+/// Gives each full body what came back, for a step of `dt` seconds that ODE takes in `substeps`.
+void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt, int substeps);
 
 }  // namespace lodestone

@@ -127,7 +127,7 @@ void Manager::before_world_step(double dt) {
   impl.begin_lists();
   {
     const Impl::Undo undo(impl);
-    impl.begin_stages(dt);
+    impl.begin_stages(dt, WorldStepBy::caller);
   }
   impl.levels.eased.hold_back(impl.levels, dt);
   impl.levels.full.begin_callers_step(dt);
@@ -205,7 +205,7 @@ Manager::Impl::Undo::~Undo() {
 
 void Manager::Impl::step_part(double dt) {
   const Undo undo(*this);
-  begin_stages(dt);
+  begin_stages(dt, WorldStepBy::manager);
   step_levels.step_full(dt, report);
   end_stages();
   changes.take_part();
@@ -228,7 +228,7 @@ void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
       find_signature(levels, newcomers[i].index, newcomers[i].rung);
 }
 
-void Manager::Impl::begin_stages(double dt) {
+void Manager::Impl::begin_stages(double dt, WorldStepBy by) {
   report = {.step = report.step + 1, .times = {}, .counters = report.counters};
   levels.now = report.step;
   const PolicySettings& policy = choose.policy();
@@ -253,7 +253,7 @@ void Manager::Impl::begin_stages(double dt) {
   measured.others_ms += laps.lap_ms();
   // 3 statistical rungs and their contacts with full bodies
   if (levels.statistical) levels.statistical->set_log(events.log());
-  step_levels.step_statistical(dt, report);
+  step_levels.step_statistical(dt, by, report);
   if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::as_it_slept, report);
   add_statistical(levels, laps.lap_ms(), measured);
   // 4 full level

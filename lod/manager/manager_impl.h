@@ -77,7 +77,7 @@ struct Manager::Impl {
     const StepReport before_;
     const int exceptions_ = std::uncaught_exceptions();
   };
-  void begin_stages(double dt);
+  void begin_stages(double dt, WorldStepBy by);
   void end_stages();
   void begin_lists();
   const StepReport& finish_lists(double dt);

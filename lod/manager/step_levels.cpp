@@ -6,7 +6,7 @@
 
 namespace lodestone {
 
-void StepLevels::step_statistical(double dt, StepReport& report) {
+void StepLevels::step_statistical(double dt, WorldStepBy by, StepReport& report) {
   if (!levels_.statistical || levels_.statistical->size() == 0) {
     if (levels_.statistical) levels_.statistical->forget_contacts();
     neighborhood_.bodies.clear();
@@ -20,7 +20,7 @@ void StepLevels::step_statistical(double dt, StepReport& report) {
   }
   levels_.statistical->step(dt, neighborhood_.bodies, report, neighborhood_.contacts);
   const StageTimer timer(report.times.cross_level_ms);
-  hand_over(levels_, neighborhood_, dt);
+  hand_over(levels_, neighborhood_, dt, by == WorldStepBy::caller ? 1 : levels_.full.substeps_of(dt));
 }
 
 void StepLevels::step_full(double dt, StepReport& report) {

@@ -9,11 +9,14 @@
 
 namespace lodestone {
 
+/// Who advances the world of the full bodies: the manager, in its substeps, or the caller, in one step.
+enum class WorldStepBy { manager, caller };
+
 class StepLevels {
  public:
   explicit StepLevels(Levels& levels) : levels_(levels) {}
 
-  void step_statistical(double dt, StepReport& report);
+  void step_statistical(double dt, WorldStepBy by, StepReport& report);
   void step_full(double dt, StepReport& report);
   /// Notes which full bodies touch another, on whatever rung; after both.
   void note_touching();
