@@ -182,8 +182,9 @@ class Manager {
   /// For a caller who keeps his own dSpaceCollide and dWorldStep, on his world alone. Before his dWorldStep
   /// or dWorldQuickStep of `dt` s, 1e-9 … .1: chooses rungs, moves the statistical bodies and makes the
   /// contacts of the full ones, as joints in his world; after it: removes these and does what else a step
-  /// does. Both in place of step(). Between the two he calls nothing else of the manager but what reads, and
-  /// destroys neither bodies nor geoms. Throws InputError where the two do not take turns.
+  /// does. Both in place of step(). Between the two he calls nothing else of the manager but what reads,
+  /// destroys neither bodies nor geoms, and attaches no joint elsewhere. Throws InputError where the two do
+  /// not take turns.
   void before_world_step(double dt);
   const StepReport& after_world_step();
 

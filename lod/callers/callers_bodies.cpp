@@ -169,6 +169,7 @@ void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vecto
     neighbor.mass = callers::mass(entry.body);
     neighbor.state = callers::state(entry.body);
     neighbor.force = callers::force(entry.body);
+    neighbor.torque = callers::torque(entry.body);
     if (!callers::has_gravity(entry.body)) neighbor.force -= neighbor.mass * gravity;
     neighbor.asleep = !callers::is_enabled(entry.body);
     const auto index = std::int32_t(neighbors.size());

@@ -41,6 +41,7 @@ struct alignas(64) Point {
   Row rows[3];
   D4 effective_mass, target, impulse;  // kg, m/s, N s
   double friction, bound;              // N s; negative: friction times the normal impulse as it is
+  double most_impulse;                 // N s, along the normal
   double inverse_mass_first, inverse_mass_second;
   std::int32_t first, second;
 };
@@ -69,6 +70,7 @@ LODESTONE_INLINE D4 lanes_of(const Vec3& v) { return D4{v.x(), v.y(), v.z(), 0.0
 // The normal velocity to reach: a bounce, or closing the gap just within the step.
 double target_velocity(SolverContact& c, bool on_still, double approach, double step,
                        const ContactSolverSettings& s) {
+  if (c.most_impulse < kUnbounded) return -c.gap / step;
   const double closing = std::min(0.0, -c.gap / step),
                fall = on_still ? std::min(0.0, s.fall.dot(c.normal)) : 0.0;
   c.bounces = approach < -s.bounce_velocity && c.gap + approach * step < 0.0;
@@ -90,7 +92,7 @@ Point prepare(std::span<const SolverBody> bodies, SolverContact& c, double step,
   Point p{};
   p.first = c.first, p.second = c.second < 0 ? std::int32_t(bodies.size()) : c.second;
   p.inverse_mass_first = a.inverse_mass;
-  p.friction = c.law.friction, p.bound = -1.0;
+  p.friction = c.law.friction, p.bound = -1.0, p.most_impulse = c.most_impulse;
   p.target = D4{c.target, 0.0, 0.0, 0.0};
   for (int i = 0; i < 3; ++i) {
     const Vec3 axis = frame.col(i), turning = c.arm_first.cross(axis), response = a.inverse_inertia * turning;
@@ -127,7 +129,8 @@ LODESTONE_INLINE void answer(Round round, Point& p, Motion* motions, Progress& p
   if (round == Round::frictionless) {
     const D4 along = velocity_along(rows[0], a.velocity - b.velocity, a.angular, b.angular);
     const double speed = along[0] + along[1] + along[2], held = p.impulse[0],
-                 now = std::max(0.0, held + p.effective_mass[0] * (p.target[0] - speed)), change = now - held;
+                 asked = held + p.effective_mass[0] * (p.target[0] - speed),
+                 now = std::min(p.most_impulse, std::max(0.0, asked)), change = now - held;
     p.impulse[0] = now;
     a.velocity += (p.inverse_mass_first * change) * rows[0].axis;
     a.angular += change * rows[0].response_first;
@@ -145,7 +148,8 @@ LODESTONE_INLINE void answer(Round round, Point& p, Motion* motions, Progress& p
                               velocity_along(rows[1], apart, a.angular, b.angular),
                               velocity_along(rows[2], apart, a.angular, b.angular));
     const D4 asked = p.impulse + p.effective_mass * (p.target - speeds);
-    const double normal = std::max(0.0, asked[0]), bound = p.bound >= 0.0 ? p.bound : p.friction * normal;
+    const double normal = std::min(p.most_impulse, std::max(0.0, asked[0])),
+                 bound = p.bound >= 0.0 ? p.bound : p.friction * normal;
     const D4 now = most(D4{normal, -bound, -bound, 0.0}, least(asked, D4{normal, bound, bound, 0.0}));
     change = now - p.impulse;
     p.impulse = now;
@@ -210,7 +214,8 @@ void bound_friction(Arrays& arrays, std::span<SolverContact> contacts, std::span
   arrays.before = arrays.motions;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const SolverContact& c = contacts[i];
-    const double guess = c.frictionless >= 0.0 ? c.frictionless : std::max(0.0, c.guess.dot(c.normal));
+    const double known = c.frictionless >= 0.0 ? c.frictionless : std::max(0.0, c.guess.dot(c.normal)),
+                 guess = std::min(known, c.most_impulse);
     arrays.points[i].impulse = D4{c.bounces ? 0.0 : guess, 0.0, 0.0, 0.0};
   }
   give_guesses(arrays, runs, simd);
@@ -226,7 +231,7 @@ void bound_friction(Arrays& arrays, std::span<SolverContact> contacts, std::span
 void start_from_guess(const SolverContact& c, Point& p) {
   p.impulse = D4{};
   if (c.bounces) return;
-  p.impulse[0] = std::max(0.0, c.guess.dot(c.normal));
+  p.impulse[0] = std::min(c.most_impulse, std::max(0.0, c.guess.dot(c.normal)));
   const double bound = p.bound >= 0.0 ? p.bound : p.friction * p.impulse[0];
   for (int t = 0; t < 2; ++t) p.impulse[t + 1] = std::clamp(c.guess.dot(c.tangent[t]), -bound, bound);
 }

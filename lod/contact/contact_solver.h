@@ -21,6 +21,8 @@ struct SolverBody {
   bool in_great_heap = false;  ///< as StatisticalBody has it: asleep, read by crowds; else set by these
 };
 
+inline constexpr double kUnbounded = 1e300;
+
 struct SolverContact {
   std::int32_t first = 0, second = -1;  ///< indices of SolverBody; second −1: the ground
   Vec3 normal = Vec3::UnitZ();          ///< points into `first`
@@ -30,6 +32,8 @@ struct SolverContact {
   Vec3 guess = Vec3::Zero();   ///< N s, on `first`: what a resting contact starts from
   double frictionless = -1.0;  ///< N s, normal impulse to start from where there is no friction; below zero:
                                ///< that of `guess`. What it comes to, where friction is bounded by it
+  double most_impulse = kUnbounded;  ///< N s, along the normal; a bounded one is a motor's, which closes or
+                                     ///< opens the gap, however wide, just within the step
   // Filled by the solver:
   Vec3 tangent[2] = {Vec3::Zero(), Vec3::Zero()};
   double target = 0.0;            ///< m/s, normal velocity asked for

@@ -42,6 +42,7 @@ SolverBody solver_body_of(const ContactScene& scene, Participant p, double time)
     solver.velocity += (gravity + body.force / body.mass) * time;
     solver.inverse_mass = 1.0 / body.mass;
     solver.inverse_inertia = inverse_inertia_world(body.state.orientation, *body.shape) / body.mass;
+    solver.angular_velocity += solver.inverse_inertia * (body.torque * time);
   }
   return solver;
 }
@@ -212,7 +213,8 @@ void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdT
         {.restitution = 0.0, .friction = contact.friction});
     add_point(contact.point - at_self,
               other < 0 ? Vec3(Vec3::Zero()) : Vec3(contact.point - scene.neighbors[other].state.position),
-              contact.gap);
+              contact.drive ? -contact.drive->speed * touch.time : contact.gap);
+    if (contact.drive) manifolds_.back().most_impulse = contact.drive->force * touch.time;
   }
 }
 
@@ -456,6 +458,7 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
 // substeps are. Another full body gives way, the lighter one farther, and so on; the ground does not.
 void Crowd::keep_full_apart(const ContactScene& scene) {
   constexpr int kRounds = 4;
+  constexpr double kMost = 0.99;
   if (scene.neighbors.empty()) return;
   const auto shift_of = [&](std::int32_t index) {
     return index < 0 ? Vec3(Vec3::Zero()) : shifts_[std::size_t(index)];
@@ -470,9 +473,12 @@ void Crowd::keep_full_apart(const ContactScene& scene) {
     return participants_[std::size_t(m.first)].is_full() &&
            (m.second < 0 || participants_[std::size_t(m.second)].is_full());
   };
+  const auto gives_way = [&](const CrowdManifold& m) {  // a motor that does what it can
+    return m.most_impulse < kUnbounded && points_[m.begin].impulse.dot(m.normal) >= kMost * m.most_impulse;
+  };
   for (int i = 0; i < kRounds; ++i)
     for (const CrowdManifold& m : std::span(manifolds_).subspan(pair_manifolds_)) {
-      if (!is_of_full(m)) continue;
+      if (!is_of_full(m) || gives_way(m)) continue;
       const double nearing = (shift_of(m.second) - shift_of(m.first)).dot(m.normal);
       const double first = solver_bodies_[std::size_t(m.first)].inverse_mass,
                    second = m.second < 0 ? 0.0 : solver_bodies_[std::size_t(m.second)].inverse_mass;

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "reference/geometry.h"
+#include "lod/contact/contact_solver.h"
 #include "reference/material.h"
 
 namespace lodestone {
@@ -15,6 +15,7 @@ struct CrowdManifold {
   ContactLaw law;
   std::uint32_t begin = 0, count = 0;  ///< its points
   bool known = false;                  ///< from the last step, which gives the guesses of its points
+  double most_impulse = kUnbounded;    ///< N s, of each point along the normal; as SolverContact has it
 };
 
 struct CrowdPoint {

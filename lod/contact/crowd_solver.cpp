@@ -89,7 +89,7 @@ struct alignas(64) Batch {
   std::uint32_t begin = 0;            // its points
   bool bounded = false;               // friction by what the normal impulses are without any
   V4 normal;
-  D4 friction, inverse_mass_first, inverse_mass_second;
+  D4 friction, most_impulse, inverse_mass_first, inverse_mass_second;
   Tensor4 inertia_first, inertia_second;  // inverse
 };
 
@@ -226,6 +226,7 @@ void CrowdSolver::Work::fill(Batch& batch, std::span<const SolverBody> bodies,
     batch.first[lane] = m.first;
     set_lane(batch.normal, lane, m.normal);
     batch.friction[lane] = m.law.friction;
+    batch.most_impulse[lane] = m.most_impulse;
     batch.inverse_mass_first[lane] = first.inverse_mass;
     set_lane(batch.inertia_first, lane, first.inverse_inertia);
     if (m.second >= 0) {
@@ -293,10 +294,13 @@ struct PrepareLoop {
               inverse_mass_along(batch.inverse_mass_second, batch.inertia_second, p.arm_second, axes[i]);
           p.effective_mass[i] = (used & (inverse > none)) ? 1.0 / most(inverse, all(1e-300)) : none;
         }
-        const D4 gap = p.target, approach = dot(velocity, n), closing = least(none, -gap / step);
-        const Mask4 bounces = used & (approach < -settings.bounce_velocity) & (gap + approach * step < none);
+        const Mask4 drives = batch.most_impulse < kUnbounded;
+        const D4 gap = p.target, approach = dot(velocity, n), asked = -gap / step,
+                 closing = drives ? asked : least(none, asked);
+        const Mask4 bounces =
+            used & ~drives & (approach < -settings.bounce_velocity) & (gap + approach * step < none);
         p.target = closing;
-        p.impulse[0] = bounces ? none : most(none, dot(guess, n));
+        p.impulse[0] = bounces ? none : least(batch.most_impulse, most(none, dot(guess, n)));
         const D4 bound = batch.friction * p.impulse[0];
         for (int i = 1; i < 3; ++i) p.impulse[i] = most(-bound, least(dot(guess, axes[i]), bound));
         for (int lane = 0; lane < batch.lanes; ++lane) {
@@ -352,7 +356,7 @@ struct SweepLoop {
           const D4 held = p.impulse[0], held_along = p.impulse[1], held_across = p.impulse[2];
           const D4 asked = p.effective_mass[0] * (p.target - dot(velocity, n));
           if (!batch.bounded && !any((held > none) | (asked > none))) continue;  // no point carries anything
-          p.impulse[0] = most(none, held + asked);
+          p.impulse[0] = least(batch.most_impulse, most(none, held + asked));
           const D4 bound = batch.bounded ? solver.uneven_points[batch.begin + std::uint32_t(k)].bound
                                          : batch.friction * p.impulse[0];
           p.impulse[1] =

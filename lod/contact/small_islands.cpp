@@ -74,7 +74,8 @@ void SmallIslands::solve_some(std::span<SolverBody> bodies, std::span<const Crow
                             .gap = point.gap,
                             .law = m.law,
                             .guess = point.guess,
-                            .frictionless = point.frictionless});
+                            .frictionless = point.frictionless,
+                            .most_impulse = m.most_impulse});
     }
     const std::uint32_t count = std::uint32_t(contacts.size()) - begin;
     const int enough = std::min(kIslandRelaxations / int(std::max(count, 1U)), kMostIslandSweeps);

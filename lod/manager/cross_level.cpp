@@ -18,6 +18,7 @@ FullNeighbor neighbor_of(const Levels& levels, const FullLevel::Member& member) 
   neighbor.material = record.material;
   neighbor.state = levels.full.world()->state(member.id);
   neighbor.force = levels.bodies.force(member.owner).force;
+  neighbor.torque = levels.bodies.force(member.owner).torque;
   neighbor.asleep = levels.full.world()->asleep(member.id);
   return neighbor;
 }

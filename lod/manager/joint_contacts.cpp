@@ -12,24 +12,31 @@ void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBod
   constexpr double kToOneSide = 0.1;  // of that: along its normal, so that loads are remembered for each
   std::unordered_map<dxBody*, std::int32_t> index_of;
   std::vector<JointRow> rows;
+  std::vector<JointMotor> motors;
   for (std::size_t i = 0; i < neighbors.size(); ++i) {
     const double reach = kReach * neighbors[i].shape->radius;
-    rows.clear();
+    rows.clear(), motors.clear();
     find_joint_rows(bodies[i], reach, rows);
-    if (rows.empty()) continue;
+    find_joint_motors(bodies[i], reach, motors);
+    if (rows.empty() && motors.empty()) continue;
     if (index_of.empty())
       for (std::size_t k = 0; k < bodies.size(); ++k) index_of.emplace(bodies[k], std::int32_t(k));
-    for (const JointRow& row : rows) {
-      const auto second = row.second ? index_of.find(row.second) : index_of.end();
-      if (row.second && second == index_of.end()) continue;  // without geoms: of no shape that is known
-      for (const Vec3& normal : {row.direction, Vec3(-row.direction)})
-        contacts.push_back({.first = std::int32_t(i),
-                            .second = row.second ? second->second : -1,
-                            .point = row.point + kToOneSide * reach * normal,
-                            .normal = normal,
-                            .gap = 0.0,
-                            .friction = 0.0});
-    }
+    const auto add = [&](dxBody* other, const Vec3& point, const Vec3& direction, const JointMotor* motor) {
+      const auto second = other ? index_of.find(other) : index_of.end();
+      if (other && second == index_of.end()) return;  // without geoms: of no shape that is known
+      for (const double sign : {1.0, -1.0}) {
+        FullContact& contact =
+            contacts.emplace_back(FullContact{.first = std::int32_t(i),
+                                              .second = other ? second->second : -1,
+                                              .point = point + sign * kToOneSide * reach * direction,
+                                              .normal = sign * direction,
+                                              .gap = 0.0,
+                                              .friction = 0.0});
+        if (motor) contact.drive = Drive{.speed = sign * motor->speed, .force = motor->force};
+      }
+    };
+    for (const JointRow& row : rows) add(row.second, row.point, row.direction, nullptr);
+    for (const JointMotor& motor : motors) add(motor.second, motor.point, motor.direction, &motor);
   }
 }
 

@@ -1,5 +1,6 @@
-// What joints of full bodies hold, as contacts among them, so that statistical bodies which one of them leans
-// on bear what the joints bring onto it: a ragdoll's leg has its whole weight on it.
+// What joints of full bodies hold and drive, as contacts among them, so that statistical bodies which one of
+// them leans on bear what the joints bring onto it: a ragdoll's leg has its whole weight on it, a press that
+// of its motor.
 #pragma once
 
 #include <span>
@@ -11,7 +12,8 @@ struct dxBody;
 
 namespace lodestone {
 
-/// Appends two for each direction in which a joint holds a body, without friction and against each other.
+/// Appends two for each direction in which a joint holds or drives a body, without friction and against each
+/// other.
 /// `bodies`: ODE's of each of the neighbours. To be asked outside of ODE's step.
 void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBody* const> bodies,
                         std::vector<FullContact>& contacts);

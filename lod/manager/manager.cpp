@@ -129,8 +129,7 @@ void Manager::before_world_step(double dt) {
     const Impl::Undo undo(impl);
     impl.begin_stages(dt, WorldStepBy::caller);
   }
-  impl.levels.eased.hold_back(impl.levels, dt);
-  impl.levels.full.begin_callers_step(dt);
+  impl.step_levels.begin_callers_step(dt);
   impl.waits_for_world_step = true;
 }
 
@@ -141,8 +140,7 @@ const StepReport& Manager::after_world_step() {
   const StageZones zones(impl.profile, impl.report.times);
   impl.waits_for_world_step = false;
   const double dt = impl.underway->dt;
-  impl.levels.full.end_callers_step(impl.report.counters);
-  impl.levels.forget_places();
+  impl.step_levels.end_callers_step(impl.report.counters);
   impl.end_stages();
   impl.changes.take_part();
   return impl.finish_lists(dt);

@@ -5,17 +5,28 @@
 #include "lod/timing/stage_timer.h"
 
 namespace lodestone {
+namespace {
+
+struct EndOfStep {
+  JointForces& forces;
+  ~EndOfStep() { forces.end(); }
+};
+
+}  // namespace
 
 void StepLevels::step_statistical(double dt, WorldStepBy by, StepReport& report) {
   if (!levels_.statistical || levels_.statistical->size() == 0) {
     if (levels_.statistical) levels_.statistical->forget_contacts();
     neighborhood_.bodies.clear();
+    neighborhood_.ode_bodies.clear();
     levels_.give_forces();
     return;
   }
   {
     const StageTimer timer(report.times.cross_level_ms);
     gather(levels_, neighborhood_);
+    joint_forces_.add_to(neighborhood_.bodies);
+    driven_bodies_.mark(neighborhood_, dt);
     levels_.give_forces();
   }
   levels_.statistical->step(dt, neighborhood_.bodies, report, neighborhood_.contacts);
@@ -26,7 +37,23 @@ void StepLevels::step_statistical(double dt, WorldStepBy by, StepReport& report)
 void StepLevels::step_full(double dt, StepReport& report) {
   const StageTimer timer(report.times.full_ms);
   levels_.eased.hold_back(levels_, dt);
-  levels_.full.step(dt, report.counters);
+  {
+    joint_forces_.begin(neighborhood_.bodies, neighborhood_.ode_bodies);
+    const EndOfStep end{joint_forces_};  // though ODE may give up
+    levels_.full.step(dt, report.counters);
+  }
+  levels_.forget_places();
+}
+
+void StepLevels::begin_callers_step(double dt) {
+  levels_.eased.hold_back(levels_, dt);
+  joint_forces_.begin(neighborhood_.bodies, neighborhood_.ode_bodies);
+  levels_.full.begin_callers_step(dt);
+}
+
+void StepLevels::end_callers_step(Counters& counters) {
+  levels_.full.end_callers_step(counters);
+  joint_forces_.end();
   levels_.forget_places();
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "lod/manager/cross_level.h"
+#include "lod/manager/driven_bodies.h"
+#include "lod/manager/joint_forces.h"
 #include "lod/manager/levels.h"
 #include "lod/step_report.h"
 #include "reference/state_archive.h"
@@ -18,13 +20,18 @@ class StepLevels {
 
   void step_statistical(double dt, WorldStepBy by, StepReport& report);
   void step_full(double dt, StepReport& report);
+  /// Instead of it, around the step that the caller takes of his world.
+  void begin_callers_step(double dt);
+  void end_callers_step(Counters& counters);
   /// Notes which full bodies touch another, on whatever rung; after both.
   void note_touching();
-  void archive(StateArchive& a) { a(neighborhood_.seen); }
+  void archive(StateArchive& a) { a(neighborhood_.seen, joint_forces_, driven_bodies_); }
 
  private:
   Levels& levels_;
   Neighborhood neighborhood_;
+  JointForces joint_forces_;
+  DrivenBodies driven_bodies_;
 };
 
 }  // namespace lodestone

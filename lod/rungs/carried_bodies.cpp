@@ -8,7 +8,9 @@ namespace {
 bool is_kinematic(const ContactScene& scene, Participant p) { return scene.properties(p).kinematic; }
 
 bool drives(const ContactScene& scene, Participant p) {
-  if (!is_kinematic(scene, p) || scene.asleep(p)) return false;
+  if (scene.asleep(p)) return false;
+  if (p.is_full() && scene.neighbor(p).driven) return true;
+  if (!is_kinematic(scene, p)) return false;
   const bool turns = p.is_statistical() ? !scene.body(p).spin.isZero(0.0)
                                         : !scene.neighbor(p).state.angular_velocity.isZero(0.0);
   return turns || !scene.velocity(p).isZero(0.0);

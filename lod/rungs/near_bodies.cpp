@@ -13,21 +13,24 @@ namespace {
 void advance(FullNeighbor& body, const BodyProperties& own, const Vec3& before, const Vec3& gravity,
              double time) {
   if (body.asleep) return;
-  if (body.state.velocity == before && !own.kinematic)
+  if (body.state.velocity == before && !own.kinematic) {
     body.state.velocity +=
         (own.gravity ? Vec3(gravity + body.force / body.mass) : Vec3(body.force / body.mass)) * time;
+    body.state.angular_velocity +=
+        inverse_inertia_world(body.state.orientation, *body.shape) * (body.torque * (time / body.mass));
+  }
   body.state.position += body.state.velocity * time;
   body.state.orientation =
       (rotation_from_vector(body.state.angular_velocity * time) * body.state.orientation).normalized();
 }
 
-// Of two hulls, one of which was put where the other is: both are to part.
-bool is_added_inside(const ContactScene& scene, const CrowdContact& contact) {
+// `depth` over R.
+bool overlap_by(const ContactScene& scene, const CrowdContact& contact, double depth) {
   const auto is_hull = [&](Participant p) {
     return !p.is_statistical() || (!scene.body(p).is_sphere() && scene.body(p).eased == 0.0f);
   };
   const double radius = std::min(scene.shape(contact.first).radius, scene.shape(contact.second).radius);
-  return contact.contact.gap < -kWakingOverlap * radius && is_hull(contact.first) && is_hull(contact.second);
+  return contact.contact.gap < -depth * radius && is_hull(contact.first) && is_hull(contact.second);
 }
 
 bool meets_solids(const BodyProperties& own) { return !own.kinematic && meets_ground(own); }
@@ -203,13 +206,22 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
   const ContactScene& scene = step.scene;
   woken_.clear();
   carried_.find(scene, pairs_.contacts(), solid_contacts_);
+  // Two hulls, one of which was put where the other is, are to part; no sleeper is to hold them together.
+  inside_.clear();
+  for (const CrowdContact& c : pairs_.contacts())
+    if (overlap_by(scene, c, kWakingOverlap)) inside_.insert(inside_.end(), {c.first, c.second});
+  const auto are_to_part = [&](const CrowdContact& c) {
+    return !inside_.empty() && overlap_by(scene, c, kBroughtOverlap) &&
+           (std::ranges::find(inside_, c.first) != inside_.end() ||
+            std::ranges::find(inside_, c.second) != inside_.end());
+  };
   for (const CrowdContact& c : pairs_.contacts())
     for (const auto& [touched, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
       const bool carried = carried_.contains(touched);
       if (carried) keep_awake(step, touched);
       if (!scene.asleep(touched)) continue;
       const double speed = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point).norm();
-      if (carried || speed > rest_law_.wake_speed(scene.shape(touched).radius) || is_added_inside(scene, c))
+      if (carried || speed > rest_law_.wake_speed(scene.shape(touched).radius) || are_to_part(c))
         wake(step, touched, pace);
     }
   blows_.find(scene, pairs_, rest_law_, struck_);

@@ -100,6 +100,7 @@ class NearBodies {
   std::vector<std::int32_t> movers_;              // indices: who is awake and moves at the pace in hand
   std::vector<Participant> woken_;                // by contacts, those that were found last
   std::vector<Participant> struck_;               // of these, those that blows reach through others
+  std::vector<Participant> inside_;               // others, so deep that these were added there
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
   std::vector<SolidContact> solid_contacts_;
   FacesBelow faces_;

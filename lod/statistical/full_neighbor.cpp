@@ -26,8 +26,8 @@ RigidState find_start(const FullNeighbor& neighbor, const Vec3& gravity, double 
   const double lasts = 0.5 * dt * (1.0 + 1.0 / substeps);  // s: what a force gives in a substep, on average
   const Vec3 accelerates = gravity * dt + (neighbor.force * dt + neighbor.push.linear) / neighbor.mass;
   state.position = neighbor.end.position - state.velocity * dt - accelerates * lasts;
-  const Vec3 turn =
-      state.angular_velocity * dt + angular_velocity_change(neighbor, neighbor.push.angular) * lasts;
+  const Vec3 turn = state.angular_velocity * dt +
+                    angular_velocity_change(neighbor, neighbor.torque * dt + neighbor.push.angular) * lasts;
   state.orientation = rotation_from_vector(-turn) * neighbor.end.orientation;
   return state;
 }

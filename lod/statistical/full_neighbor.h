@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "reference/material.h"
 #include "reference/shape.h"
@@ -21,13 +22,15 @@ struct FullNeighbor {
   const Shape* shape = nullptr;
   double mass = 1.0;
   MaterialId material = 0;
-  RigidState state;           ///< at the start of the step
-  Vec3 force = Vec3::Zero();  ///< N, acting on it over the step besides gravity
-  bool touches_full = false;  ///< whether any FullContact is its own
-  bool asleep = false;        ///< stands still like ground; also out: false where a hit woke it
-  bool carried = false;       ///< out: by what nothing stops (CarriedBodies), or touched by a statistical
-                              ///< body that moves: it must not sleep
-  Impulse hit;                ///< out: of impacts, to be given to the body before the full level's step
+  RigidState state;  ///< at the start of the step
+  Vec3 force = Vec3::Zero(),
+       torque = Vec3::Zero();  ///< N and N m, acting on it over the step besides gravity
+  bool touches_full = false;   ///< whether any FullContact is its own
+  bool driven = false;         ///< by a motor
+  bool asleep = false;         ///< stands still like ground; also out: false where a hit woke it
+  bool carried = false;        ///< out: by what nothing stops (CarriedBodies), or touched by a statistical
+                               ///< body that moves: it must not sleep
+  Impulse hit;                 ///< out: of impacts, to be given to the body before the full level's step
   Impulse push;  ///< out: of resting, sliding and rolling, to be given as a force spread over that step
   Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
   RigidState end;             ///< out: at the end of the step, where nothing else touches it
@@ -39,15 +42,22 @@ struct FullNeighbor {
 /// given as a force. `gravity` in m/s², as it acts on the body.
 RigidState find_start(const FullNeighbor& neighbor, const Vec3& gravity, double dt, int substeps);
 
-/// Where two full neighbours, or one and the ground, touch, or a joint holds one: what holds up a body that
-/// statistical ones lean on, or presses it onto them. Solved along with their contacts; what it gives to the
-/// full bodies is the full level's matter.
+/// What a motor does along a direction.
+struct Drive {
+  double speed = 0.0;  ///< m/s, that it is to reach
+  double force = 0.0;  ///< N, at most
+};
+
+/// Where two full neighbours, or one and the ground, touch, or a joint holds or drives one: what holds up a
+/// body that statistical ones lean on, or presses it onto them. Solved along with their contacts; what it
+/// gives to the full bodies is the full level's matter.
 struct FullContact {
   std::int32_t first = 0, second = -1;  ///< indices of neighbours; `second` −1: the ground
   Vec3 point = Vec3::Zero();            ///< world
   Vec3 normal = Vec3::UnitZ();          ///< from `second` into `first`
   double gap = 0.0;                     ///< m, negative where they overlap
   double friction = 0.5;
+  std::optional<Drive> drive = {};  ///< a motor's: no contact, but pushes along its normal
 };
 
 }  // namespace lodestone

@@ -182,7 +182,8 @@ class TablesLevel {
     return constants_.hulls ? contacts_.settings().hull_sweeps : contacts_.settings().sweeps;
   }
   float ground_height(std::int64_t place, const Vec3& direction) const;
-  float pair_height(std::int64_t place, const Vec3& direction) const;
+  double exit_distance(std::int64_t place, const Vec3& direction) const;
+  Vec3 meeting_point(std::int64_t first, std::int64_t second) const;
   float read_heights(const std::vector<float>& heights, std::int64_t place, const Vec3& direction) const;
   std::pair<Vec3, double> separate(std::int64_t first, std::int64_t second) const;
   void respond_as_paper(ContactTally& tally);

@@ -260,9 +260,24 @@ float TablesLevel::ground_height(std::int64_t place, const Vec3& direction) cons
                           : spheres_.radius[std::size_t(place)];
 }
 
-float TablesLevel::pair_height(std::int64_t place, const Vec3& direction) const {
-  return constants_.hulls ? read_heights(kinds_.pair_height, place, direction)
-                          : spheres_.radius[std::size_t(place)];
+/// m: where a line in that direction (unit) from its centre leaves it.
+double TablesLevel::exit_distance(std::int64_t place, const Vec3& direction) const {
+  const auto i = std::size_t(place);
+  if (!constants_.hulls) return double(spheres_.radius[i]);
+  const Vec3 own = spheres_.orientation(place).conjugate() * direction;
+  const lane::MapPlace at = lane::place_in_map({float(own.x()), float(own.y()), float(own.z())});
+  const lane::Row& face = kinds_.pair_face[std::size_t(int(spheres_.kind[i]) * kHullHeights + at.nearest)];
+  const double cosine = Vec3(double(face.x), double(face.y), double(face.z)).dot(own);
+  return cosine > 0.0 ? double(face.w) / cosine : double(face.w);
+}
+
+/// On the line of their centres, midway between where it leaves the one and the other: on or in both.
+Vec3 TablesLevel::meeting_point(std::int64_t first, std::int64_t second) const {
+  const Vec3 from = spheres_.position(second), between = spheres_.position(first) - from;
+  const double distance = between.norm();
+  if (distance < 1e-12) return from;
+  const Vec3 line = between / distance;
+  return from + 0.5 * (exit_distance(second, line) + distance - exit_distance(first, -line)) * line;
 }
 
 float TablesLevel::read_heights(const std::vector<float>& heights, std::int64_t place,
@@ -354,7 +369,7 @@ void TablesLevel::write_contacts() {
     }
     log_->add({.first = spheres_.owner[c.first],
                .second = spheres_.owner[c.second],
-               .point = spheres_.position(c.first) - double(pair_height(c.first, -normal)) * normal,
+               .point = meeting_point(c.first, c.second),
                .normal = normal,
                .impulse = double(c.impulse),
                .approach = std::max(0.0, -double(c.closing))});

@@ -67,6 +67,39 @@ void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
   }
 }
 
+void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& motors) {
+  for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
+    const dJointID joint = dBodyGetJoint(body, i);
+    if (!has_motor(joint)) continue;
+    const dBodyID first = dJointGetBody(joint, 0), other = dJointGetBody(joint, 1);
+    if (first && first != body) continue;
+    const dBodyID second = first ? other : nullptr;
+    if (dJointGetType(joint) == dJointTypeSlider) {
+      const Vec3 at = second ? Vec3(0.5 * (place_of(body) + place_of(second))) : place_of(body);
+      const double way = first ? 1.0 : -1.0;  // ODE turns a slider round whose only body is its second
+      motors.push_back({second, at, way * read(joint, dJointGetSliderAxis),
+                        dJointGetSliderParam(joint, dParamVel), dJointGetSliderParam(joint, dParamFMax)});
+    } else {
+      const Vec3 axis = read(joint, dJointGetHingeAxis), across = axis.unitOrthogonal();
+      motors.push_back({second, read(joint, dJointGetHingeAnchor) + reach * across, axis.cross(across),
+                        dJointGetHingeParam(joint, dParamVel) * reach,
+                        dJointGetHingeParam(joint, dParamFMax) / reach});
+    }
+  }
+}
+
+bool has_motor(dxJoint* joint) {
+  const auto moves_freely = [&](const auto& parameter, double at) {
+    return parameter(joint, dParamFMax) > 0.0 && at > parameter(joint, dParamLoStop) &&
+           at < parameter(joint, dParamHiStop);
+  };
+  if (!dJointIsEnabled(joint)) return false;
+  if (dJointGetType(joint) == dJointTypeSlider)
+    return moves_freely(dJointGetSliderParam, dJointGetSliderPosition(joint));
+  return dJointGetType(joint) == dJointTypeHinge &&
+         moves_freely(dJointGetHingeParam, dJointGetHingeAngle(joint));
+}
+
 std::vector<dxBody*> joined_bodies(dxBody* body) {
   std::vector<dxBody*> joined;
   for (int i = 0; i < dBodyGetNumJoints(body); ++i) {

@@ -6,6 +6,7 @@
 #include "reference/geometry.h"
 
 struct dxBody;
+struct dxJoint;
 
 namespace lodestone {
 
@@ -27,6 +28,20 @@ struct JointRow {
 /// a universal joint and a wheel's (hinge 2) count as ball joints. Others, limits, motors, and joints that
 /// are disabled are left out. Points are `reach` m apart. To be asked outside of a step.
 void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows);
+
+/// A motor that drives a point of one body along a direction, against a point of another.
+struct JointMotor {
+  dxBody* second = nullptr;   ///< null: the world
+  Vec3 point = Vec3::Zero();  ///< m, world
+  Vec3 direction = Vec3::UnitZ();
+  double speed = 0.0, force = 0.0;  ///< m/s along it, N at most
+};
+
+/// Appends those of sliders and hinges whose first body is `body`, or whose only one; a hinge's at a point
+/// `reach` m from its axis. Not of those that stand at a stop. To be asked outside of a step.
+void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& motors);
+/// Whether find_joint_motors() has the joint's.
+bool has_motor(dxJoint* joint);
 
 enum class JointKind { ball, hinge };
 

@@ -123,5 +123,34 @@ TEST(ContactEvents, NothingIsSaidUnlessAskedFor) {
   EXPECT_GT(told, 0u);
 }
 
+// Where sparks would fly: not in the air beside long bodies that meet as spheres.
+TEST(ContactEvents, OfBodiesAtTablesAreOnBothBodies) {
+  ManagerSettings settings = telling();
+  settings.signatures = coarse_signature;
+  Manager manager = on_floor(settings);
+  const Vec3 sides(0.2, 0.3, 0.4);
+  for (int i = 0; i < 18; ++i) {
+    RigidState state = testing::at({0.25 * (i % 3), 0.3 * (i / 3 % 2), 0.4 + 0.5 * (i / 6)});
+    state.orientation = rotation_from_vector(Vec3(0.5 * i, 0.3 * i, 0.0));
+    add(manager, box_shape(sides), state, LevelChoice::tables);
+  }
+  const auto beside = [&](BodyId body, const Vec3& point) {  // m
+    const RigidState state = manager.state(body);
+    const Vec3 own = state.orientation.conjugate() * (point - state.position);
+    return (own.cwiseAbs() - 0.5 * sides).cwiseMax(0.0).norm();
+  };
+  int begun = 0;
+  for (int i = 0; i < 120; ++i) {
+    manager.step(kFrame);
+    for (const ContactEvent& event : manager.contact_events()) {
+      if (event.phase != ContactPhase::begin || event.second.kind != ContactSide::Kind::body) continue;
+      ++begun;
+      EXPECT_LT(beside(event.first.body, event.point), 0.1);
+      EXPECT_LT(beside(event.second.body, event.point), 0.1);
+    }
+  }
+  EXPECT_GT(begun, 20);
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -132,23 +132,113 @@ TEST(JointContacts, TheirsDoNotSinkIntoSleepers) {
   }
 }
 
-// A motor is not known to the statistical rungs, but goes no farther into a sleeper than in a step.
+// A slider of `body` with a motor; `reversed`: as the second body of its joint, which turns it round.
+void drive(TheirWorld& theirs, dBodyID body, const Vec3& along, double speed, double force,
+           bool reversed = false) {
+  const dJointID slider = dJointCreateSlider(theirs.world, nullptr);
+  dJointAttach(slider, reversed ? nullptr : body, reversed ? body : nullptr);
+  dJointSetSliderAxis(slider, along.x(), along.y(), along.z());
+  dJointSetSliderParam(slider, dParamVel, reversed ? -speed : speed);
+  dJointSetSliderParam(slider, dParamFMax, force);
+}
+
 TEST(JointContacts, AMotorDoesNotPressAPlateThroughACrate) {
   for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
-    for (const double force : {50.0, 500.0}) {  // N
+    for (const double force : {50.0, 500.0, 10000.0}) {  // N
       TheirWorld theirs;
       Manager manager(theirs.world, theirs.space, kSettings);
-      add_crate(manager, level);
+      const BodyId crate = add_crate(manager, level);
       const dBodyID plate = theirs.add_box(kTorso, 10.0, {0, 0, kCrate + 0.15});
-      const dJointID slider = dJointCreateSlider(theirs.world, nullptr);
-      dJointAttach(slider, plate, nullptr);
-      dJointSetSliderAxis(slider, 0, 0, 1);
-      dJointSetSliderParam(slider, dParamVel, -0.5);
-      dJointSetSliderParam(slider, dParamFMax, force);
+      drive(theirs, plate, Vec3::UnitZ(), -0.2, force);
       run(manager, 5.0);
-      EXPECT_NEAR(dBodyGetPosition(plate)[2], kCrate + kTorso / 2, 0.03)
+      EXPECT_NEAR(dBodyGetPosition(plate)[2], kCrate + kTorso / 2, 0.002)
           << int(level) << ", " << force << " N";
+      EXPECT_TRUE(manager.asleep(crate)) << int(level) << ", " << force << " N";
     }
+}
+
+TEST(JointContacts, AMotorPushesARowOfSleepers) {
+  constexpr int kRow = 4;
+  constexpr double kTorsoToCrate = (kTorso + kCrate) / 2, kWay = 0.6;
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const double speed : {0.05, 0.3})  // m/s: also what is too slow to wake a sleeper
+      for (const bool reversed : {false, true}) {
+        TheirWorld theirs;
+        Manager manager(theirs.world, theirs.space, kSettings);
+        std::vector<BodyId> row;
+        for (int i = 0; i < kRow; ++i)
+          row.push_back(manager.add_body({.shape = box_shape({kCrate, kCrate, kCrate}),
+                                          .state = testing::at({0.31 * i, 0, kCrate / 2}),
+                                          .mass = 5.0,
+                                          .level = level}));
+        run(manager, 2.0);
+        const dBodyID ram = theirs.add_box(kTorso, 20.0, {-kTorsoToCrate - 0.01, 0, kTorso / 2});
+        drive(theirs, ram, Vec3::UnitX(), speed, 1000.0, reversed);
+        run(manager, kWay / speed);
+        const auto told = [&] {
+          return ::testing::Message() << int(level) << ", " << speed << " m/s, " << reversed;
+        };
+        EXPECT_NEAR(dBodyGetPosition(ram)[0], -kTorsoToCrate - 0.01 + kWay, 0.02) << told();
+        EXPECT_NEAR(manager.state(row.front()).position.x(), kWay - 0.01, 0.02) << told();
+      }
+}
+
+TEST(JointContacts, ALiftOnAMotorCarriesAStack) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const double speed : {0.05, 0.5}) {
+      TheirWorld theirs;
+      Manager manager(theirs.world, theirs.space, kSettings);
+      const dBodyID lift = theirs.add_box(1.0, 20.0, {0, 0, 1.0});
+      drive(theirs, lift, Vec3::UnitZ(), 0.0, 5000.0);
+      std::vector<BodyId> stack;
+      for (int i = 0; i < 3; ++i)
+        stack.push_back(manager.add_body({.shape = box_shape({kCrate, kCrate, kCrate}),
+                                          .state = testing::at({0.01 * i, 0, 1.5 + kCrate * (i + 0.5)}),
+                                          .mass = 5.0,
+                                          .level = level}));
+      run(manager, 2.0);
+      EXPECT_NEAR(dBodyGetPosition(lift)[2], 1.0, 0.01) << int(level);
+      dJointSetSliderParam(dBodyGetJoint(lift, 0), dParamVel, speed);
+      dBodyEnable(lift);
+      run(manager, 1.0 / speed);
+      EXPECT_NEAR(dBodyGetPosition(lift)[2], 2.0, 0.02) << int(level) << ", " << speed << " m/s";
+      for (std::size_t i = 0; i < stack.size(); ++i)
+        EXPECT_NEAR(manager.state(stack[i]).position.z() - dBodyGetPosition(lift)[2],
+                    0.5 + kCrate * (double(i) + 0.5), 0.02)
+            << int(level) << ", " << speed << " m/s";
+    }
+}
+
+TEST(JointContacts, ADoorOnAMotorSweepsCratesAside) {
+  const auto mean_of = [](LevelChoice level) {
+    TheirWorld theirs;
+    Manager manager(theirs.world, theirs.space, kSettings);
+    std::vector<BodyId> crates;
+    for (int i = 0; i < 3; ++i)
+      crates.push_back(add(manager, box_shape({kCrate, kCrate, kCrate}),
+                           testing::at({0.5 + 0.31 * i, 0.3, kCrate / 2}), level));
+    run(manager, 1.0);
+    const dBodyID door = dBodyCreate(theirs.world);
+    dMass mass;
+    dMassSetBoxTotal(&mass, 20.0, 1.6, 0.05, 0.6);
+    dBodySetMass(door, &mass);
+    dBodySetPosition(door, 0.85, 0, 0.35);
+    dGeomSetBody(dCreateBox(theirs.space, 1.6, 0.05, 0.6), door);
+    const dJointID hinge = dJointCreateHinge(theirs.world, nullptr);
+    dJointAttach(hinge, door, nullptr);
+    dJointSetHingeAnchor(hinge, 0, 0, 0.35);
+    dJointSetHingeAxis(hinge, 0, 0, 1);
+    dJointSetHingeParam(hinge, dParamVel, 0.5);
+    dJointSetHingeParam(hinge, dParamFMax, 2000.0);
+    run(manager, 2.0);
+    EXPECT_NEAR(dJointGetHingeAngle(hinge), 1.0, 0.02) << int(level);
+    Vec3 mean = Vec3::Zero();
+    for (const BodyId crate : crates) mean += manager.state(crate).position / double(crates.size());
+    return mean;
+  };
+  const Vec3 full = mean_of(LevelChoice::full);
+  EXPECT_LT((mean_of(LevelChoice::support) - full).norm(), 0.08);
+  EXPECT_LT((mean_of(LevelChoice::tables) - full).norm(), 0.3);
 }
 
 // A plank with one end on a hinge of the world, at the height of the crate on which its other end lies.

@@ -116,5 +116,52 @@ TEST_F(BodyJoints, APendulumKeepsItsLength) {
   }
 }
 
+// Whichever end of the joint it is.
+TEST_F(BodyJoints, MotorsReachTheirSpeed) {
+  for (const bool is_first : {true, false})
+    for (const bool is_hinge : {true, false}) {
+      MaterialTable materials;
+      OdeWorld world({.gravity = Vec3::Zero()}, materials);
+      const dBodyID body = world.ode_body(
+          world.add_body({.shape = testing::box_shape({0.2, 0.2, 0.2}), .state = at({0, 0, 1})}));
+      const dJointID joint = is_hinge ? dJointCreateHinge(dBodyGetWorld(body), nullptr)
+                                      : dJointCreateSlider(dBodyGetWorld(body), nullptr);
+      dJointAttach(joint, is_first ? body : nullptr, is_first ? nullptr : body);
+      if (is_hinge) {
+        dJointSetHingeAnchor(joint, 0, 0, 1), dJointSetHingeAxis(joint, 0, 0, 1);
+        dJointSetHingeParam(joint, dParamVel, 0.7), dJointSetHingeParam(joint, dParamFMax, 1e3);
+      } else {
+        dJointSetSliderAxis(joint, 1, 0, 0);
+        dJointSetSliderParam(joint, dParamVel, 0.7), dJointSetSliderParam(joint, dParamFMax, 1e3);
+      }
+      std::vector<JointMotor> motors;
+      find_joint_motors(body, 0.1, motors);
+      ASSERT_EQ(motors.size(), 1u);
+      const JointMotor& motor = motors.front();
+      world.step(1e-3);
+      dVector3 velocity;
+      dBodyGetPointVel(body, motor.point.x(), motor.point.y(), motor.point.z(), velocity);
+      EXPECT_NEAR(Vec3(velocity[0], velocity[1], velocity[2]).dot(motor.direction), motor.speed, 1e-4)
+          << is_first << is_hinge;
+      EXPECT_GT(motor.speed, 0.0);
+      EXPECT_NEAR(motor.force, is_hinge ? 1e4 : 1e3, 1e-6);
+    }
+}
+
+TEST_F(BodyJoints, AMotorAtItsStopOrSwitchedOffIsNone) {
+  const OdeBodyId a = add({0, 0, 1});
+  const dJointID slider = dJointCreateSlider(dBodyGetWorld(body(a)), nullptr);
+  dJointAttach(slider, body(a), nullptr);
+  dJointSetSliderAxis(slider, 1, 0, 0);
+  EXPECT_FALSE(has_motor(slider));  // no force
+  dJointSetSliderParam(slider, dParamFMax, 10.0);
+  EXPECT_TRUE(has_motor(slider));
+  dJointDisable(slider);
+  EXPECT_FALSE(has_motor(slider));
+  dJointEnable(slider);
+  dJointSetSliderParam(slider, dParamHiStop, 0.0);
+  EXPECT_FALSE(has_motor(slider));
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -1,0 +1,113 @@
+#include "reference/ode/joint_listener.h"
+
+#include <ode/ode.h>
+
+#include <deque>
+#include <unordered_set>
+
+#include "reference/ode/body_joints.h"
+#include "reference/ode/geometry_ode.h"
+
+namespace lodestone {
+namespace {
+
+template <class Get>
+Vec3 read_vector(dJointID joint, Get get) {
+  dVector3 v;
+  get(joint, v);
+  return ode::to_vec3(v);
+}
+
+// Of all that the joint gives, what find_joint_rows() does not hold and find_joint_motors() does not drive.
+JointForce free_part_of(dJointID joint, const JointForce& all, const Vec3& position) {
+  const auto about = [&](const Vec3& anchor) {
+    return Vec3(all.torque - (anchor - position).cross(all.force));
+  };
+  switch (dJointGetType(joint)) {
+    case dJointTypeContact:
+    case dJointTypeFixed:
+      return {};
+    case dJointTypeSlider: {
+      if (has_motor(joint)) return {};
+      const Vec3 axis = read_vector(joint, dJointGetSliderAxis);
+      return {.force = axis.dot(all.force) * axis};
+    }
+    case dJointTypeHinge: {
+      if (has_motor(joint)) return {};
+      const Vec3 axis = read_vector(joint, dJointGetHingeAxis);
+      return {.torque = axis.dot(about(read_vector(joint, dJointGetHingeAnchor))) * axis};
+    }
+    case dJointTypeBall:
+      return {.torque = about(read_vector(joint, dJointGetBallAnchor))};
+    case dJointTypeUniversal:
+      return {.torque = about(read_vector(joint, dJointGetUniversalAnchor))};
+    case dJointTypeHinge2:
+      return {.torque = about(read_vector(joint, dJointGetHinge2Anchor))};
+    default:
+      return all;
+  }
+}
+
+template <class Visit>
+void each_joint(dBodyID body, const Visit& visit) {
+  for (int i = 0; i < dBodyGetNumJoints(body); ++i) visit(dBodyGetJoint(body, i));
+}
+
+}  // namespace
+
+struct JointListener::Feedback {
+  std::deque<dJointFeedback> of_joints;  // which stay where they are
+  std::unordered_set<const dJointFeedback*> places;
+  std::size_t used = 0;
+
+  dJointFeedback* take() {
+    if (used == of_joints.size()) places.insert(&of_joints.emplace_back());
+    dJointFeedback& taken = of_joints[used++];
+    taken = {};
+    return &taken;
+  }
+};
+
+JointListener::JointListener() : feedback_(std::make_unique<Feedback>()) {}
+JointListener::~JointListener() {
+  if (feedback_) stop();
+}
+JointListener::JointListener(JointListener&&) noexcept = default;
+JointListener& JointListener::operator=(JointListener&&) noexcept = default;
+
+void JointListener::listen(std::span<dxBody* const> bodies) {
+  stop();
+  bodies_.assign(bodies.begin(), bodies.end());
+  for (const dBodyID body : bodies_)
+    each_joint(body, [&](dJointID joint) {
+      if (dJointGetType(joint) != dJointTypeContact && !dJointGetFeedback(joint))
+        dJointSetFeedback(joint, feedback_->take());
+    });
+}
+
+std::span<const JointForce> JointListener::stop() {
+  forces_.assign(bodies_.size(), {});
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const dBodyID body = bodies_[i];
+    if (!dBodyIsEnabled(body)) continue;
+    const Vec3 position = ode::to_vec3(dBodyGetPosition(body));
+    each_joint(body, [&](dJointID joint) {
+      const dJointFeedback* feedback = dJointGetFeedback(joint);
+      if (!feedback || !dJointIsEnabled(joint)) return;
+      const bool is_second = dJointGetBody(joint, 0) && dJointGetBody(joint, 0) != body;
+      const JointForce all{ode::to_vec3(is_second ? feedback->f2 : feedback->f1),
+                           ode::to_vec3(is_second ? feedback->t2 : feedback->t1)};
+      const JointForce given = free_part_of(joint, all, position);
+      forces_[i].force += given.force, forces_[i].torque += given.torque;
+    });
+  }
+  for (const dBodyID body : bodies_)
+    each_joint(body, [&](dJointID joint) {
+      if (feedback_->places.contains(dJointGetFeedback(joint))) dJointSetFeedback(joint, nullptr);
+    });
+  bodies_.clear();
+  feedback_->used = 0;
+  return forces_;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,142 @@
+// What joints do besides holding: of kinds that are known by ODE's feedback alone.
+#include "lod/manager/joint_forces.h"
+
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include <vector>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+constexpr double kJointedCrate = 0.3;  // m, of crates
+
+struct JointedWorld {
+  JointedWorld() { dWorldSetGravity(world, 0, 0, -9.81); }
+  ~JointedWorld() {
+    dSpaceDestroy(space);
+    dWorldDestroy(world);
+  }
+  dBodyID add_plate(const Vec3& sides, double mass, const Vec3& at) {
+    const dBodyID body = dBodyCreate(world);
+    dMass m;
+    dMassSetBoxTotal(&m, mass, sides.x(), sides.y(), sides.z());
+    dBodySetMass(body, &m);
+    dBodySetPosition(body, at.x(), at.y(), at.z());
+    dGeomSetBody(dCreateBox(space, sides.x(), sides.y(), sides.z()), body);
+    return body;
+  }
+  dWorldID world = dWorldCreate();
+  dSpaceID space = dHashSpaceCreate(nullptr);
+  dGeomID floor = dCreatePlane(space, 0, 0, 1, 0);
+};
+
+BodyId add_box(Manager& manager, const Vec3& at, double mass) {
+  return manager.add_body({.shape = box_shape({kJointedCrate, kJointedCrate, kJointedCrate}),
+                           .state = testing::at(at),
+                           .mass = mass,
+                           .level = LevelChoice::support});
+}
+
+TEST(JointForces, APistonPushesARow) {
+  JointedWorld theirs;
+  Manager manager(theirs.world, theirs.space, unmeasured());
+  std::vector<BodyId> row;
+  for (int i = 0; i < 3; ++i) row.push_back(add_box(manager, {0.31 * i, 0, kJointedCrate / 2}, 5.0));
+  run(manager, 1.0);
+  const dBodyID plate = theirs.add_plate({0.1, 1.0, 0.6}, 20.0, {-0.21, 0, 0.35});
+  const dJointID piston = dJointCreatePiston(theirs.world, nullptr);
+  dJointAttach(piston, plate, nullptr);
+  dJointSetPistonAnchor(piston, -0.5, 0, 0.35);
+  dJointSetPistonAxis(piston, 1, 0, 0);
+  dJointSetPistonParam(piston, dParamVel, 0.3);
+  dJointSetPistonParam(piston, dParamFMax, 1000.0);
+  run(manager, 2.0);
+  EXPECT_NEAR(dBodyGetPosition(plate)[0], -0.21 + 0.6, 0.02);
+  EXPECT_NEAR(manager.state(row.front()).position.x(), 0.59, 0.02);
+}
+
+// In steps of the caller's, as long as those for which he made the spring.
+TEST(JointForces, ASpringBearsWhatLiesOnIt) {
+  constexpr double kStiffness = 3000.0, kDamping = 200.0, kPlate = 5.0, kCrateMass = 10.0;  // N/m, N s/m, kg
+  JointedWorld theirs;
+  Manager manager(theirs.world, theirs.space, unmeasured());
+  const dBodyID plate = theirs.add_plate({1, 1, 0.1}, kPlate, {0, 0, 0.5});
+  const dJointID slider = dJointCreateSlider(theirs.world, nullptr);
+  dJointAttach(slider, plate, nullptr);
+  dJointSetSliderAxis(slider, 0, 0, 1);
+  dJointSetSliderParam(slider, dParamLoStop, 0.0);
+  dJointSetSliderParam(slider, dParamHiStop, 0.2);
+  dJointSetSliderParam(slider, dParamStopERP, kFrame * kStiffness / (kFrame * kStiffness + kDamping));
+  dJointSetSliderParam(slider, dParamStopCFM, 1.0 / (kFrame * kStiffness + kDamping));
+  std::vector<BodyId> stack;
+  for (int i = 0; i < 2; ++i) stack.push_back(add_box(manager, {0, 0, 0.75 + 0.31 * i}, kCrateMass));
+  for (int i = 0; i < 300; ++i) {
+    manager.before_world_step(kFrame);
+    dWorldStep(theirs.world, kFrame);
+    manager.after_world_step();
+  }
+  const double height = dBodyGetPosition(plate)[2];
+  EXPECT_NEAR(height, 0.5 - (kPlate + 2 * kCrateMass) * 9.81 / kStiffness, 0.005);
+  for (std::size_t i = 0; i < stack.size(); ++i)
+    EXPECT_NEAR(manager.state(stack[i]).position.z() - height, 0.05 + kJointedCrate * (double(i) + 0.5),
+                0.01);
+}
+
+TEST(JointForces, SnapshotsKnowThem) {
+  struct Saved {
+    Vec3 position, velocity;
+  };
+  struct World {
+    World() : manager(theirs.world, theirs.space, unmeasured()) {
+      plate = theirs.add_plate({0.1, 1.0, 0.6}, 20.0, {-0.21, 0, 0.35});
+      const dJointID piston = dJointCreatePiston(theirs.world, nullptr);
+      dJointAttach(piston, plate, nullptr);
+      dJointSetPistonAnchor(piston, -0.5, 0, 0.35);
+      dJointSetPistonAxis(piston, 1, 0, 0);
+      dJointSetPistonParam(piston, dParamVel, 0.3);
+      dJointSetPistonParam(piston, dParamFMax, 60.0);
+      for (int i = 0; i < 3; ++i) add_box(manager, {0.31 * i, 0, kJointedCrate / 2}, 5.0);
+    }
+    JointedWorld theirs;
+    Manager manager;
+    dBodyID plate = nullptr;
+  };
+  World writer;
+  run(writer.manager, 1.0);
+  const auto snapshot = writer.manager.snapshot();
+  const dReal *p = dBodyGetPosition(writer.plate), *q = dBodyGetQuaternion(writer.plate),
+              *v = dBodyGetLinearVel(writer.plate), *w = dBodyGetAngularVel(writer.plate);
+  World reader;
+  dBodySetPosition(reader.plate, p[0], p[1], p[2]), dBodySetQuaternion(reader.plate, q);
+  dBodySetLinearVel(reader.plate, v[0], v[1], v[2]), dBodySetAngularVel(reader.plate, w[0], w[1], w[2]);
+  reader.manager.restore(snapshot);
+  run(writer.manager, 0.5), run(reader.manager, 0.5);
+  EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash());
+}
+
+TEST(JointForces, TheFeedbackOfJointsIsTheCallersAgain) {
+  JointedWorld theirs;
+  Manager manager(theirs.world, theirs.space, unmeasured());
+  add_box(manager, {0, 0, kJointedCrate / 2}, 5.0);
+  dJointFeedback own{};
+  std::vector<dJointID> joints;
+  for (dJointFeedback* feedback : {static_cast<dJointFeedback*>(nullptr), &own}) {
+    const dBodyID plate = theirs.add_plate({0.1, 0.1, 0.1}, 2.0, {1.0 + double(joints.size()), 0, 1});
+    joints.push_back(dJointCreateBall(theirs.world, nullptr));
+    dJointAttach(joints.back(), plate, nullptr);
+    dJointSetBallAnchor(joints.back(), dBodyGetPosition(plate)[0], 0, 1);
+    dJointSetFeedback(joints.back(), feedback);
+  }
+  run(manager, 0.1);
+  EXPECT_EQ(dJointGetFeedback(joints[0]), nullptr);
+  EXPECT_EQ(dJointGetFeedback(joints[1]), &own);
+  EXPECT_NEAR(own.f1[2], 2.0 * 9.81, 1e-6);
+}
+
+}  // namespace
+}  // namespace lodestone
