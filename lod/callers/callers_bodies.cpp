@@ -130,8 +130,9 @@ void add_ground_contacts(const Ground& ground, const FullNeighbor& body, std::in
                          std::vector<FullContact>& contacts) {
   const Shape& shape = *body.shape;
   const double margin = kTouching * shape.radius;
-  const auto add = [&](const Vec3& point, const Vec3& normal, double gap) {
-    contacts.push_back({index, -1, point, normal, gap});
+  const auto add = [&](const Vec3& point, const Vec3& normal, double gap, const GroundPart* part = nullptr) {
+    FullContact& contact = contacts.emplace_back(FullContact{index, -1, point, normal, gap});
+    if (part) contact.velocity = part->velocity_at(point);
   };
   for (const HalfSpace& plane : ground.planes()) {
     const double height = plane.height_of(body.state.position);
@@ -156,7 +157,7 @@ void add_ground_contacts(const Ground& ground, const FullNeighbor& body, std::in
             find_hull_contact(self, {solid.solid->shape.get(), solid.position, solid.orientation}, margin))
       for (int i = 0; i < contact->manifold.count; ++i)
         add(contact->manifold.points[std::size_t(i)].point, contact->normal,
-            contact->manifold.points[std::size_t(i)].gap);
+            contact->manifold.points[std::size_t(i)].gap, solid.part);
 }
 
 void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vector<FullNeighbor>& neighbors,

@@ -59,6 +59,10 @@ void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const C
   for (const CrowdPoint& point : points)
     last_substep_.loads.push_back({(point.impulse / step).cast<float>(), point.arm_first.cast<float>(),
                                    point.frictionless / float(step)});
+  for (const CrowdManifold& m : manifolds)
+    if (m.to_forget)
+      for (Load& load : std::span(last_substep_.loads).subspan(m.begin, m.count))
+        load.force.setZero(), load.frictionless = -1.0F;
   each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
     last_substep_.place.add(key);
     const std::uint32_t begin = manifolds[first].begin;

@@ -92,6 +92,10 @@ void Crowd::take_bodies(const ContactScene& scene, std::size_t from, double time
     body.velocity = part->pose.velocity;
     body.angular_velocity = part->pose.angular_velocity;
   }
+  for (const auto& [velocity, index] : moving_ground_) {
+    solver_bodies_[std::size_t(index)] = {};
+    solver_bodies_[std::size_t(index)].velocity = velocity;
+  }
 }
 
 // Ground that moves carries what touches it: a body that nothing stops. −1: it stands still.
@@ -102,6 +106,17 @@ std::int32_t Crowd::solver_index(const GroundPart& part) {
   if (known != moving_parts_.end()) return known->second;
   const auto index = std::int32_t(participants_.size());
   moving_parts_.emplace_back(&part, index);
+  participants_.push_back(Participant::ground());
+  return index;
+}
+
+// Of what a full body lies on. −1: it stands still.
+std::int32_t Crowd::solver_index_of_ground(const Vec3& velocity) {
+  if (velocity.isZero(0.0)) return -1;
+  const auto known = std::ranges::find(moving_ground_, velocity, &std::pair<Vec3, std::int32_t>::first);
+  if (known != moving_ground_.end()) return known->second;
+  const auto index = std::int32_t(participants_.size());
+  moving_ground_.emplace_back(velocity, index);
   participants_.push_back(Participant::ground());
   return index;
 }
@@ -140,7 +155,8 @@ void Crowd::add_pair_contacts(const ContactScene& scene, std::span<const CrowdCo
       const auto& [first, second, contact] = contacts[i];
       CrowdManifold& m = manifolds_[i];
       keys_[i] = contact_key(scene.owner(first), scene.owner(second));
-      m.normal = contact.normal, m.law = scene.law(first, second), m.known = false;
+      m.normal = contact.normal, m.law = scene.law(first, second);
+      m.known = m.to_forget = false, m.most_impulse = kUnbounded;
       if (is_borne_up(scene, first) || is_borne_up(scene, second)) m.law.restitution = 0.0;
       m.count = std::uint32_t(contact.manifold.count);
       for (std::uint32_t k = 0; k < m.count; ++k) {
@@ -204,7 +220,8 @@ void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdT
     const FullContact& contact = touch.full_contacts[full_order_[i]];
     const bool is_first = contact.first == self;
     const std::int32_t other = is_first ? contact.second : contact.first,
-                       second = other < 0 ? -1 : solver_index(Participant::full(std::size_t(other)));
+                       second = other < 0 ? solver_index_of_ground(contact.velocity)
+                                          : solver_index(Participant::full(std::size_t(other)));
     const bool added_by_the_other = other >= 0 && second < index && !scene.neighbors[other].asleep;
     if (added_by_the_other) continue;
     add_manifold(
@@ -221,7 +238,7 @@ void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdT
 // Pair contacts, then what is under every moving participant.
 void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   participants_.clear();
-  moving_parts_.clear();
+  moving_parts_.clear(), moving_ground_.clear();
   make_room(scene.bodies.size());
   index_of_neighbor_.assign(scene.neighbors.size(), -1);
 
@@ -244,7 +261,7 @@ void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   take_bodies(scene, taken, touch.time);
 }
 
-void Crowd::solve(const ContactScene& scene, double time) {
+void Crowd::solve_gathered(const ContactScene& scene, double time) {
   ContactSolverSettings settings = settings_.solver;
   settings.bounce_velocity =
       scene.world.bounce_velocity +
@@ -252,10 +269,8 @@ void Crowd::solve(const ContactScene& scene, double time) {
   settings.fall = scene.world.gravity * time;
   memory_.recall(keys_, manifolds_, points_, time, jobs_);
   borne_weights_.guess(solver_bodies_, manifolds_, points_, settings.fall, time);
-  const std::size_t known = scene.world.log ? note_approaches(scene, time) : 0;
+  noted_ = scene.world.log ? note_approaches(scene, time) : 0;
   solver_.solve(solver_bodies_, manifolds_, points_, time, settings, jobs_);
-  memory_.remember(keys_, manifolds_, points_, time);
-  if (scene.world.log) note_impulses(*scene.world.log, known);
 }
 
 // What touches, but for two full bodies. The impulses follow, in the same order.
@@ -307,6 +322,55 @@ void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
   records.resize(kept);
 }
 
+// A sleeper stands like ground, and what is between it and the ground is held as in a vice: by impulses that
+// need no weight, and are the next step's guesses. Who is pushed up by more than before and than it weighs,
+// or along by more than friction holds, is to wake, and of what held it nothing is remembered. (What lies on
+// it is not known: by how much it was pushed before was no blow.)
+void Crowd::find_pressed(const ContactScene& scene, double time) {
+  constexpr double kHeld = 2.0;    // times as much
+  constexpr double kStirs = 0.03;  // over √(g R): slower it would hardly move
+  pressed_.clear();
+  const double strength = scene.world.gravity_strength();
+  if (strength == 0.0) return;
+  const Vec3 up = -scene.world.gravity / strength;
+  const auto sleeps = [&](std::int32_t body) {
+    if (body < 0) return false;
+    const Participant p = participants_[std::size_t(body)];
+    return !p.is_ground() && scene.asleep(p) && !scene.properties(p).kinematic;
+  };
+  const auto manifolds = std::span(manifolds_).first(pair_manifolds_);
+  if (std::ranges::none_of(manifolds,
+                           [&](const CrowdManifold& m) { return sleeps(m.first) || sleeps(m.second); }))
+    return;
+  pushes_.assign(solver_bodies_.size(), {});
+  for (const CrowdManifold& m : manifolds)
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
+      Push &first = pushes_[std::size_t(m.first)], &second = pushes_[std::size_t(m.second)];
+      first.now += point.impulse, first.before += point.guess;
+      second.now -= point.impulse, second.before -= point.guess;
+    }
+  const auto is_pressed = [&](std::int32_t body, double friction) {
+    if (!sleeps(body)) return false;
+    const Participant p = participants_[std::size_t(body)];
+    const double mass = p.is_statistical() ? scene.body(p).mass : scene.neighbor(p).mass,
+                 weight = mass * strength * time,  // N s
+        stirs = mass * kStirs * std::sqrt(strength * scene.shape(p).radius);
+    const auto [now, before] = pushes_[std::size_t(body)];
+    const Vec3 more = now - before;
+    const double rise = now.dot(up), along = (now - rise * up).norm(), more_rise = more.dot(up),
+                 more_along = (more - more_rise * up).norm();
+    const double holds = kHeld * friction * (weight + std::max(0.0, -rise));
+    return std::min(rise, more_rise) > std::max(kHeld * weight, stirs) ||
+           std::min(along, more_along) > std::max(holds, stirs);
+  };
+  for (CrowdManifold& m : manifolds)
+    for (const std::int32_t body : {m.first, m.second})
+      if (is_pressed(body, m.law.friction)) {
+        pressed_.push_back(participants_[std::size_t(body)]);
+        m.to_forget = true;
+      }
+}
+
 // What strikes the ground is answered before it has arrived: a body goes on as it came until its first
 // impact. Not so one that touches another: shifted against that, they would not keep Σ m x × v, nor their
 // gap.
@@ -324,7 +388,7 @@ void Crowd::find_impacts() {
 }
 
 // Full neighbours only get their velocities.
-void Crowd::move(const ContactScene& scene, double time) {
+void Crowd::move_bodies(const ContactScene& scene, double time) {
   const auto move_one = [&](std::size_t i) {
     const Participant p = participants_[i];
     const SolverBody& solved = solver_bodies_[i];
@@ -471,7 +535,7 @@ void Crowd::keep_full_apart(const ContactScene& scene) {
   };
   const auto is_of_full = [&](const CrowdManifold& m) {
     return participants_[std::size_t(m.first)].is_full() &&
-           (m.second < 0 || participants_[std::size_t(m.second)].is_full());
+           (m.second < 0 || !participants_[std::size_t(m.second)].is_statistical());
   };
   const auto gives_way = [&](const CrowdManifold& m) {  // a motor that does what it can
     return m.most_impulse < kUnbounded && points_[m.begin].impulse.dot(m.normal) >= kMost * m.most_impulse;
@@ -507,11 +571,23 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
   });
 }
 
-ContactTally Crowd::step(const ContactScene& scene, const CrowdTouch& touch) {
+void Crowd::solve(const ContactScene& scene, const CrowdTouch& touch) {
   gather(scene, touch);
-  solve(scene, touch.time);
+  solve_gathered(scene, touch.time);
+  find_pressed(scene, touch.time);
+}
+
+void Crowd::drop(const ContactScene& scene) {
+  for (const Participant p : participants_)
+    if (p.is_statistical()) index_of_body_[p.index()] = -1;
+  if (scene.world.log) scene.world.log->records().resize(noted_);
+}
+
+ContactTally Crowd::move(const ContactScene& scene, const CrowdTouch& touch) {
+  memory_.remember(keys_, manifolds_, points_, touch.time);
+  if (scene.world.log) note_impulses(*scene.world.log, noted_);
   find_impacts();
-  move(scene, touch.time);
+  move_bodies(scene, touch.time);
   give_to_full(scene, touch);
   move_apart(scene, touch.time);
   lift_off_ground(scene, touch);

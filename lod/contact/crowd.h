@@ -43,10 +43,16 @@ class Crowd {
       : settings_(settings), jobs_(std::move(jobs)) {}
 
   /// Solves the contacts of `touch` with the ground contacts of every body in them (the faces among these)
-  /// and those of the full contacts that hold up a full body, then moves the statistical ones among them by
-  /// its time. Bodies asleep hold still; full neighbours receive impulses, the velocities that these give
-  /// them, and shifts, but do not move on.
-  ContactTally step(const ContactScene& scene, const CrowdTouch& touch);
+  /// and those of the full contacts that hold up a full body. Bodies asleep hold still; none moves. One of
+  /// move() and drop() follows.
+  void solve(const ContactScene& scene, const CrowdTouch& touch);
+  /// Who sleeps and held still in that, though its weight and friction would not have held it.
+  std::span<const Participant> pressed() const { return pressed_; }
+  /// As if it had not been solved.
+  void drop(const ContactScene& scene);
+  /// With what was solved: moves the statistical bodies by the touch's time. Full neighbours receive
+  /// impulses, the velocities that these give them, and shifts, but do not move on.
+  ContactTally move(const ContactScene& scene, const CrowdTouch& touch);
   /// Of a step in which sets of islands take their substeps one after the other, each between begin_islands()
   /// and end_islands(): the impulses of its first substep begin with those of the last step.
   void begin_step() { memory_.begin_step(); }
@@ -59,9 +65,15 @@ class Crowd {
  private:
   static constexpr std::int64_t kBlock = 128;  // bodies or contacts of a job
 
+  /// What all its contacts give a body, and what the solver started from, N s.
+  struct Push {
+    Vec3 now = Vec3::Zero(), before = Vec3::Zero();
+  };
+
   void gather(const ContactScene& scene, const CrowdTouch& touch);
   int solver_index(Participant participant);
   std::int32_t solver_index(const GroundPart& part);
+  std::int32_t solver_index_of_ground(const Vec3& velocity);
   void add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal,
                     const ContactLaw& law);
   void add_point(const Vec3& arm_first, const Vec3& arm_second, double gap);
@@ -71,7 +83,7 @@ class Crowd {
   void add_ground_contacts(const ContactScene& scene, std::int32_t index);
   void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
   void add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch);
-  void solve(const ContactScene& scene, double time);
+  void solve_gathered(const ContactScene& scene, double time);
   std::size_t note_approaches(const ContactScene& scene, double time) const;
   void note_impulses(ContactLog& log, std::size_t known) const;
   template <class Visit>
@@ -81,8 +93,9 @@ class Crowd {
                     for (std::int64_t i = begin; i < end; ++i) visit(std::size_t(i));
                   });
   }
+  void find_pressed(const ContactScene& scene, double time);
   void find_impacts();
-  void move(const ContactScene& scene, double time);
+  void move_bodies(const ContactScene& scene, double time);
   bool is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const;
   void give_to_full(const ContactScene& scene, const CrowdTouch& touch) const;
   void move_apart(const ContactScene& scene, double time);
@@ -96,6 +109,8 @@ class Crowd {
   std::vector<std::int32_t> full_start_, full_next_,
       full_order_;  // of each neighbour: its run of full contacts
   std::vector<std::pair<const GroundPart*, std::int32_t>> moving_parts_;  // among solver_bodies_
+  std::vector<std::pair<Vec3, std::int32_t>>
+      moving_ground_;  // likewise, under full bodies: its velocities, m/s
   std::vector<SolverBody> solver_bodies_;
   std::vector<Vec3> angular_before_;
   std::vector<float>
@@ -106,6 +121,9 @@ class Crowd {
   std::vector<std::pair<GroundId, MaterialId>> grounds_;  // that it is with, for the log
   std::vector<CrowdPoint> points_;
   GroundMeetings meetings_;
+  std::size_t noted_ = 0;  // contacts in the log before those at hand
+  std::vector<Participant> pressed_;
+  std::vector<Push> pushes_;   // on each solver body
   std::vector<int> partners_;  // manifolds of each solver body
   std::vector<Vec3> shifts_;   // m: of each solver body, out of overlaps in this substep
   CrowdSolver solver_;

@@ -15,6 +15,7 @@ struct CrowdManifold {
   ContactLaw law;
   std::uint32_t begin = 0, count = 0;  ///< its points
   bool known = false;                  ///< from the last step, which gives the guesses of its points
+  bool to_forget = false;              ///< the next step knows nothing of it
   double most_impulse = kUnbounded;    ///< N s, of each point along the normal; as SolverContact has it
 };
 

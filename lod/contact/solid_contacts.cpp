@@ -100,9 +100,12 @@ void find_ground_near(const Ground& ground, const Vec3& center, double reach, do
       found.push_back({plane->normal, plane->height_of(center), part, part->first_number});
     near.clear();
     find_solids(*part, center, reach, after, near);
+    const auto in_solid = [&](const PlacedSolid& placed) {
+      return Vec3(placed.orientation.conjugate() * (center - placed.position));
+    };
+    const std::size_t before = found.size();
     for (const PlacedSolid& placed : near) {
-      const auto nearest =
-          find_nearest(*placed.solid, placed.orientation.conjugate() * (center - placed.position));
+      const auto nearest = find_nearest(*placed.solid, in_solid(placed));
       if (!nearest || std::abs(nearest->height) >= reach) continue;
       planes.clear();
       if (hull)
@@ -113,6 +116,14 @@ void find_ground_near(const Ground& ground, const Vec3& center, double reach, do
         found.push_back(
             {placed.orientation * plane.normal, plane.height, part, placed.number, plane.at_edge});
     }
+    if (found.size() > before) continue;
+    std::optional<GroundNear> beyond;
+    for (const PlacedSolid& placed : near) {
+      const auto nearest = find_nearest_beyond(*placed.solid, in_solid(placed));
+      if (nearest && nearest->height < (beyond ? beyond->height : reach))
+        beyond = {placed.orientation * nearest->normal, nearest->height, part, placed.number, true};
+    }
+    if (beyond) found.push_back(*beyond);
   }
 }
 

@@ -154,20 +154,7 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   return flat;
 }
 
-}  // namespace
-
-std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point) {
-  if (solid.shape->sphere_radius)
-    return Nearest{point.squaredNorm() > 0.0 ? Vec3(point.normalized()) : Vec3(Vec3::UnitZ()),
-                   point.norm() - *solid.shape->sphere_radius};
-  if (const auto& t = solid.surface) {
-    const Vec3 at = point + solid.center;
-    const double height = t->normal.dot(at - t->corner[0]);
-    const std::size_t edge = nearest_edge(*t, at);
-    const Vec3 &from = t->corner[edge], along = (t->corner[(edge + 1) % 3] - from).normalized();
-    if (t->normal.cross(along).dot(at - from) >= 0.0) return Nearest{t->normal, height};
-    if (!t->ridge[edge] || height < 0.0) return {};
-  }
+Nearest find_nearest_of_faces(const GroundSolid& solid, const Vec3& point) {
   const SolidFace* highest = nullptr;
   double most = -1e300;
   for (const SolidFace& face : solid.faces)
@@ -182,6 +169,29 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
       find_hull_gap({point_shape(), point, Quat::Identity()}, {*solid.shape, Vec3::Zero(), Quat::Identity()},
                     {.normal = Vec3::Zero()}, 1e300);
   return Nearest{gap.normal, gap.gap, true};
+}
+
+}  // namespace
+
+std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point) {
+  if (solid.shape->sphere_radius)
+    return Nearest{point.squaredNorm() > 0.0 ? Vec3(point.normalized()) : Vec3(Vec3::UnitZ()),
+                   point.norm() - *solid.shape->sphere_radius};
+  if (const auto& t = solid.surface) {
+    const Vec3 at = point + solid.center;
+    const double height = t->normal.dot(at - t->corner[0]);
+    const std::size_t edge = nearest_edge(*t, at);
+    const Vec3 &from = t->corner[edge], along = (t->corner[(edge + 1) % 3] - from).normalized();
+    if (t->normal.cross(along).dot(at - from) >= 0.0) return Nearest{t->normal, height};
+    if (!t->ridge[edge] || height < 0.0) return {};
+  }
+  return find_nearest_of_faces(solid, point);
+}
+
+std::optional<Nearest> find_nearest_beyond(const GroundSolid& solid, const Vec3& point) {
+  const auto& t = solid.surface;
+  if (!t || t->normal.dot(point + solid.center - t->corner[0]) < 0.0) return {};
+  return find_nearest_of_faces(solid, point);
 }
 
 void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest,

@@ -17,6 +17,9 @@ struct Nearest {
 };
 /// `point` in the frame of the solid's shape. None behind the edge of a surface, where a neighbour is nearer.
 std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point);
+/// Of a triangle, over the edges that do not stand out, too: above a corner of a saddle each of its triangles
+/// has the point behind such an edge. None below it.
+std::optional<Nearest> find_nearest_beyond(const GroundSolid& solid, const Vec3& point);
 
 /// Appends the planes that stand for a solid to a hull: as a rule one, across the way to what its centre is
 /// `nearest` to, or the face that it lies on though an edge is nearer. Where it hangs over an edge and below

@@ -60,6 +60,7 @@ void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
     FullContact& full = neighborhood.contacts.emplace_back(
         FullContact{first, second, contact.point, contact.normal, -contact.depth});
     full.friction = friction_between(levels, neighborhood, full);
+    full.velocity = contact.velocity;
   }
 }
 

@@ -104,7 +104,7 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
     }
     const StageTimer timer(step.times.crowd_ms);
     if (with_full) full_before_.assign(full_.begin(), full_.end());
-    move_crowded(step, time);
+    move_crowded(step, pace, i);
     if (with_full) move_full_on(time, i);
   }
   crowd_.end_islands();
@@ -117,7 +117,14 @@ void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   if (substep > 0) pairs_.find_turning(step.scene, movers_);
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
   find_ground_solids(step, movers_, substep * time, time);
-  for (wake_touched(step, pace); !woken_.empty(); wake_touched(step, pace)) {  // they may touch others
+  wake_touched(step, pace);
+  meet_woken(step, pace, substep);
+}
+
+// They may touch others, who wake, and so on.
+void NearBodies::meet_woken(const Step& step, Pace pace, int substep) {
+  const double time = step.dt / pace;
+  for (; !woken_.empty(); wake_touched(step, pace)) {
     choose_movers(step.support, pace);
     pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
     pairs_.find_more_contacts(step.scene, time, near_, pace);
@@ -231,10 +238,39 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
       if (c.part->moves()) keep_awake(step, Participant::statistical(std::size_t(c.slot)));
 }
 
-void NearBodies::move_crowded(const Step& step, double time) {
+// Who sleeps holds still; where it would not, it wakes, and what touches it is solved once more.
+void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
+  constexpr int kMostRounds = 8;
   const ContactScene& scene = step.scene;
-  SupportLevel& support = step.support;
+  const double time = step.dt / pace;
   if (pairs_.contacts().empty() && solid_contacts_.empty()) return;
+  StepWorld crowd_world = world();
+  // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
+  if (!full_.empty()) crowd_world.bounce_velocity += settings_.gravity.norm() * (step.dt - time);
+  const ContactScene crowd_scene{scene.bodies, scene.neighbors, kinds_, crowd_world};
+  const auto touch = [&] {
+    return CrowdTouch{pairs_.contacts(), solid_contacts_, step.full_contacts, faces_, time};
+  };
+  for (int round = 0;; ++round) {
+    take_crowded(step);
+    crowd_.solve(crowd_scene, touch());
+    if (round == kMostRounds || crowd_.pressed().empty()) break;
+    for (const Participant p : crowd_.pressed())
+      if (scene.asleep(p)) wake(step, p, pace);
+    crowd_.drop(crowd_scene);
+    meet_woken(step, pace, substep);
+  }
+  step.tally += crowd_.move(crowd_scene, touch());
+  for (const std::int32_t index : movers_)
+    if (const StatisticalBody& body = scene.bodies[std::size_t(index)];
+        body.is_solved_in_crowd() && body.motion != Motion::asleep && !step.support.is_guest(index))
+      step.support.update_quiet(index, faces_.of(index), time, step.tally);
+}
+
+// Of the movers those that are solved with others.
+void NearBodies::take_crowded(const Step& step) {
+  const ContactScene& scene = step.scene;
+  const SupportLevel& support = step.support;
   for (const std::int32_t index : movers_) {
     StatisticalBody& body = scene.bodies[std::size_t(index)];
     if (!body.is_solved_in_crowd()) continue;
@@ -244,15 +280,6 @@ void NearBodies::move_crowded(const Step& step, double time) {
     guest.moved = true;
     guest.touched |= body.crowded || body.is_sphere();
   }
-  StepWorld crowd_world = world();
-  // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
-  if (!full_.empty()) crowd_world.bounce_velocity += settings_.gravity.norm() * (step.dt - time);
-  step.tally += crowd_.step({scene.bodies, scene.neighbors, kinds_, crowd_world},
-                            {pairs_.contacts(), solid_contacts_, step.full_contacts, faces_, time});
-  for (const std::int32_t index : movers_)
-    if (const StatisticalBody& body = scene.bodies[std::size_t(index)];
-        body.is_solved_in_crowd() && body.motion != Motion::asleep && !support.is_guest(index))
-      support.update_quiet(index, faces_.of(index), time, step.tally);
 }
 
 void NearBodies::move_full_on(double time, int substep) {

@@ -79,7 +79,9 @@ class NearBodies {
   static void keep_awake(const Step& step, Participant p);
   void wake(const Step& step, Participant p, Pace pace);
   void wake_touched(const Step& step, Pace pace);
-  void move_crowded(const Step& step, double time);
+  void meet_woken(const Step& step, Pace pace, int substep);
+  void move_crowded(const Step& step, Pace pace, int substep);
+  void take_crowded(const Step& step);
   void move_full_on(double time, int substep);
 
   StatisticalSettings settings_;
@@ -98,7 +100,7 @@ class NearBodies {
   CarriedBodies carried_;
   Blows blows_;
   std::vector<std::int32_t> movers_;              // indices: who is awake and moves at the pace in hand
-  std::vector<Participant> woken_;                // by contacts, those that were found last
+  std::vector<Participant> woken_;                // by contacts, those that were found or solved last
   std::vector<Participant> struck_;               // of these, those that blows reach through others
   std::vector<Participant> inside_;               // others, so deep that these were added there
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps

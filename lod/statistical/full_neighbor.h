@@ -57,6 +57,7 @@ struct FullContact {
   Vec3 normal = Vec3::UnitZ();          ///< from `second` into `first`
   double gap = 0.0;                     ///< m, negative where they overlap
   double friction = 0.5;
+  Vec3 velocity = Vec3::Zero();     ///< m/s, of the ground there
   std::optional<Drive> drive = {};  ///< a motor's: no contact, but pushes along its normal
 };
 

@@ -90,8 +90,10 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second,
   for (const ContactPoint& point : points) {
     add_joint(first, second, point);
     const double side = first.id ? 1.0 : -1.0;  // contacts() names this world's body first
-    contacts_.push_back({first.id ? first.id : second.id, first.id ? second.id : first.id, point.point,
-                         side * point.normal, std::max(0.0, point.depth)});
+    const ContactSide& other = first.id ? second : first;
+    contacts_.push_back({first.id ? first.id : second.id, other.id, point.point, side * point.normal,
+                         std::max(0.0, point.depth),
+                         other.id ? Vec3(Vec3::Zero()) : velocity_at(other, point.point)});
   }
   made_ += std::int64_t(points.size());
 }

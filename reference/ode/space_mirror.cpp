@@ -26,6 +26,7 @@ struct Identity {
   unsigned category = 0, collide = 0;
   std::array<dReal, 4> sizes{};  // m; of a plane, its parameters
   const void* data = nullptr;    // of a trimesh
+  std::uint64_t content = 0;     // likewise: a print of some of its triangles
   friend bool operator==(const Identity&, const Identity&) = default;
 };
 
@@ -114,7 +115,8 @@ bool is_spoilt(dGeomID geom, int geom_class) {
   return !std::isfinite(all);
 }
 
-Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
+Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned collide,
+                     std::uint64_t content) {
   const dBodyID body = dGeomGetBody(geom);
   return {.geom = geom,
           .body = body,
@@ -123,7 +125,8 @@ Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned c
           .category = category,
           .collide = collide,
           .sizes = sizes_of(geom, geom_class),
-          .data = geom_class == dTriMeshClass ? dGeomTriMeshGetData(geom) : nullptr};
+          .data = geom_class == dTriMeshClass ? dGeomTriMeshGetData(geom) : nullptr,
+          .content = content};
 }
 
 Pose pose_of(dGeomID geom, int geom_class) {
@@ -135,8 +138,14 @@ Pose pose_of(dGeomID geom, int geom_class) {
   return pose;
 }
 
+// What keeps its place and has other bounds is of another form.
+bool changes_within(const Pose& before, const Pose& now) {
+  return before.position == now.position && before.rotation == now.rotation && before.bounds != now.bounds;
+}
+
 // The bounds of the first few follow from their place and sizes.
-std::uint64_t print_of(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
+std::uint64_t print_of(dGeomID geom, int geom_class, unsigned category, unsigned collide,
+                       std::uint64_t content) {
   Print print;
   const dBodyID body = dGeomGetBody(geom);
   print.add(body);
@@ -150,7 +159,7 @@ std::uint64_t print_of(dGeomID geom, int geom_class, unsigned category, unsigned
   if (geom_class == dSphereClass || geom_class == dBoxClass || geom_class == dCapsuleClass ||
       geom_class == dCylinderClass)
     return print.value();
-  if (geom_class == dTriMeshClass) print.add(dGeomTriMeshGetData(geom));
+  if (geom_class == dTriMeshClass) print.add(dGeomTriMeshGetData(geom)), print.add(content);
   std::array<dReal, 6> bounds;
   dGeomGetAABB(geom, bounds.data());
   for (const dReal side : bounds) print.add(side);
@@ -197,14 +206,20 @@ MirroredGeom mirror(const Seen& seen) {
 
 struct SpaceMirror::Impl {
   explicit Impl(dSpaceID callers)
-      : space(callers), probe(dCreateBox(nullptr, kEverywhere, kEverywhere, kEverywhere)) {}
-  ~Impl() { dGeomDestroy(probe); }
+      : space(callers),
+        probe(dCreateBox(nullptr, kEverywhere, kEverywhere, kEverywhere)),
+        mesh_probe(dCreateTriMesh(nullptr, nullptr, nullptr, nullptr, nullptr)) {}
+  ~Impl() {
+    dGeomDestroy(probe);
+    dGeomDestroy(mesh_probe);
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
   void forget_moves();
   template <class Visit>
   bool walk(dSpaceID in, unsigned category, unsigned collide, const Visit& visit) const;
+  std::uint64_t content_of(dGeomID mesh) const;
   void look_at(dGeomID geom, int geom_class, unsigned category, unsigned collide);
   const Given* find_last(dGeomID geom);
   void note(const Given& given);
@@ -216,7 +231,8 @@ struct SpaceMirror::Impl {
   void follow(std::size_t index);
 
   dSpaceID space;
-  dGeomID probe;  // meets everything
+  dGeomID probe;       // meets everything
+  dGeomID mesh_probe;  // at the origin
   std::vector<dSpaceID> excluded;
   std::vector<MirroredGeom> geoms;
   std::vector<Seen> seen;     // one of each slot
@@ -301,14 +317,35 @@ bool SpaceMirror::Impl::walk(dSpaceID in, unsigned category, unsigned collide, c
   return std::ranges::all_of(found.geoms, enter);
 }
 
+// A mesh that a caller makes where he destroyed another often has all its addresses. Of its triangles, in
+// their own axes, the first, the last and some between tell it from that.
+std::uint64_t SpaceMirror::Impl::content_of(dGeomID mesh) const {
+  constexpr int kSamples = 4;
+  dGeomTriMeshSetData(mesh_probe, dGeomTriMeshGetData(mesh));
+  const int count = dGeomTriMeshGetTriangleCount(mesh_probe);
+  Print print;
+  print.add(std::uint64_t(count));
+  for (int i = 0; i < std::min(kSamples, count); ++i) {
+    std::array<dVector3, 3> corners;
+    dGeomTriMeshGetTriangle(mesh_probe, int(std::int64_t(count - 1) * i / std::max(1, kSamples - 1)),
+                            &corners[0], &corners[1], &corners[2]);
+    for (const dVector3& corner : corners)
+      for (const int axis : {0, 1, 2}) print.add(corner[axis]);
+  }
+  return print.value();
+}
+
 void SpaceMirror::Impl::look_at(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
   if (cursor + kAhead < last_order.size()) fetch(last_order[cursor + kAhead].geom);
   if (is_spoilt(geom, geom_class)) return;
-  const std::uint64_t print = print_of(geom, geom_class, category, collide);
+  const std::uint64_t content = geom_class == dTriMeshClass ? content_of(geom) : 0,
+                      print = print_of(geom, geom_class, category, collide, content);
   const Given* last = find_last(geom);
   if (last && last->print == print) return note(*last);
-  const Seen found{identity_of(geom, geom_class, category, collide), pose_of(geom, geom_class)};
-  if (!last || seen[last->slot].identity != found.identity) return add(found, print);
+  const Seen found{identity_of(geom, geom_class, category, collide, content), pose_of(geom, geom_class)};
+  if (!last || seen[last->slot].identity != found.identity ||
+      changes_within(seen[last->slot].pose, found.pose))
+    return add(found, print);
   const std::uint32_t slot = last->slot;
   note({geom, last->body, print, slot});
   if (seen[slot].pose == found.pose) return;

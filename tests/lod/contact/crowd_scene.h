@@ -33,7 +33,9 @@ struct CrowdScene {
       if (const auto contact = find_hull_contact(scene().pair_body(first), scene().pair_body(second), 0.02))
         contacts.push_back({first, second, *contact});
     for (FullNeighbor& full : neighbors) full.hit = {}, full.push = {}, full.shift = Vec3::Zero();
-    return crowd.step(scene(), {contacts, {}, {}, faces, time});
+    const CrowdTouch touch{contacts, {}, {}, faces, time};
+    crowd.solve(scene(), touch);
+    return crowd.move(scene(), touch);
   }
   Vec3 momentum() const {
     Vec3 sum = Vec3::Zero();

@@ -1,6 +1,7 @@
 // Bodies that fall on edges of the ground, each on a block of its own.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "reference/random.h"
@@ -73,6 +74,40 @@ TEST(Edge, BodiesAloneFallOffItAsOften) {
       EXPECT_NEAR(fallen.on_top, full.on_top, 16);
       EXPECT_EQ(fallen.asleep, kRows * kRows);
       EXPECT_GT(fallen.lowest, 0.07);
+    }
+  }
+}
+
+// Over a corner of a saddle each triangle has the body beyond an edge that does not stand out.
+TEST(Edge, NothingFallsThroughTheCornersOfHills) {
+  constexpr int kCells = 20;
+  constexpr double kCell = 0.75, kWave = 0.15;  // m
+  const auto height = [](double x, double y) { return kWave * std::sin(0.7 * x) * std::cos(0.6 * y); };
+  Mesh hills;
+  for (int i = 0; i <= kCells; ++i)
+    for (int j = 0; j <= kCells; ++j) {
+      const double x = kCell * (i - kCells / 2), y = kCell * (j - kCells / 2);
+      hills.vertices.push_back({x, y, height(x, y)});
+    }
+  for (int i = 0; i < kCells; ++i)
+    for (int j = 0; j < kCells; ++j) {
+      const int a = i * (kCells + 1) + j, b = a + kCells + 1;
+      hills.faces.push_back({a, b, b + 1}), hills.faces.push_back({a, b + 1, a + 1});
+    }
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    Manager manager({.signatures = testing::coarse_signature});
+    manager.add_static_mesh(hills);
+    std::vector<BodyId> cubes;
+    for (int i = 2; i < kCells - 1; i += 2)
+      for (int j = 2; j < kCells - 1; j += 2) {
+        const double x = kCell * (i - kCells / 2), y = kCell * (j - kCells / 2);
+        cubes.push_back(testing::add(manager, testing::box_shape({0.4, 0.4, 0.4}),
+                                     testing::at({x, y, height(x, y) + 0.5}), level));
+      }
+    testing::run(manager, 3.0);
+    for (const BodyId body : cubes) {
+      const Vec3 at = manager.state(body).position;
+      EXPECT_GT(at.z(), height(at.x(), at.y()) + 0.1) << int(level);
     }
   }
 }

@@ -119,5 +119,47 @@ TEST(MixedStacks, WhatFallsTogetherDoesNotComeToRestInTheAir) {
     }
 }
 
+// The full one below knows that its ground goes up, or sideways; so must those that it carries.
+TEST(MixedStacks, RideOnAKinematicLift) {
+  constexpr double kRideSpeed = 0.7, kLift = 0.2;  // m/s, reached within a second; m, its height
+  for (const std::string levels : {"fs", "ft", "fss", "fsf", "ffs"})
+    for (const Vec3& way : {Vec3(Vec3::UnitZ()), Vec3(Vec3::UnitX())}) {
+      if (way.x() != 0.0 && levels == "ft") continue;  // spheres roll on what moves sideways
+      dInitODE2(0);
+      const dWorldID world = dWorldCreate();
+      const dSpaceID space = dHashSpaceCreate(nullptr);
+      dWorldSetGravity(world, 0, 0, -9.81);
+      const dBodyID lift = dBodyCreate(world);
+      dBodySetKinematic(lift);
+      dGeomSetBody(dCreateBox(space, 2, 2, kLift), lift);
+      {
+        Manager manager(world, space, {.signatures = coarse_signature});
+        std::vector<BodyId> cubes;
+        for (std::size_t i = 0; i < levels.size(); ++i)
+          cubes.push_back(add(
+              manager, box_shape({kStackedSide, kStackedSide, kStackedSide}),
+              testing::at({0.02 * double(i % 2), 0, 0.5 * kLift + kStackedSide * (double(i) + 0.5) + 1e-3}),
+              level_of(levels[i])));
+        run(manager, 1.0);
+        const auto place_of = [&](BodyId body) {
+          const dReal* place = dBodyGetPosition(lift);
+          return Vec3(manager.state(body).position - Vec3(place[0], place[1], place[2]));
+        };
+        std::vector<Vec3> before;
+        for (const BodyId body : cubes) before.push_back(place_of(body));
+        for (int i = 0; i < 300; ++i) {
+          const Vec3 velocity = std::min(kRideSpeed, kRideSpeed * i * kFrame) * way;
+          dBodySetLinearVel(lift, velocity.x(), velocity.y(), velocity.z());
+          manager.step(kFrame);
+        }
+        for (std::size_t i = 0; i < cubes.size(); ++i)
+          EXPECT_LT((place_of(cubes[i]) - before[i]).norm(), 0.03)
+              << levels << ", cube " << i << " along " << way.transpose();
+      }
+      dSpaceDestroy(space);
+      dWorldDestroy(world);
+    }
+}
+
 }  // namespace
 }  // namespace lodestone
