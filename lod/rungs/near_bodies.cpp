@@ -92,6 +92,7 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
   pairs_.choose(near_, pace);
   const bool with_full = near_.full_pace() == pace;
   const double time = step.dt / pace;
+  woken_.clear();
   crowd_.begin_islands();
   for (int i = 0; i < pace; ++i) {
     {
@@ -114,6 +115,10 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
 // Who is crowded is decided anew.
 void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   const double time = step.dt / pace;
+  if (!woken_.empty()) {  // at the end of the substep before
+    choose_movers(step.support, pace);
+    pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
+  }
   if (substep > 0) pairs_.find_turning(step.scene, movers_);
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
   find_ground_solids(step, movers_, substep * time, time);
@@ -241,6 +246,7 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
 // Who sleeps holds still; where it would not, it wakes, and what touches it is solved once more.
 void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   constexpr int kMostRounds = 8;
+  constexpr std::size_t kFew = 256;  // contacts: of more a round costs too much
   const ContactScene& scene = step.scene;
   const double time = step.dt / pace;
   if (pairs_.contacts().empty() && solid_contacts_.empty()) return;
@@ -254,9 +260,9 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   for (int round = 0;; ++round) {
     take_crowded(step);
     crowd_.solve(crowd_scene, touch());
-    if (round == kMostRounds || crowd_.pressed().empty()) break;
     for (const Participant p : crowd_.pressed())
       if (scene.asleep(p)) wake(step, p, pace);
+    if (woken_.empty() || round == kMostRounds || pairs_.contacts().size() > kFew) break;
     crowd_.drop(crowd_scene);
     meet_woken(step, pace, substep);
   }
