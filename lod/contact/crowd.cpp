@@ -371,6 +371,27 @@ void Crowd::find_pressed(const ContactScene& scene, double time) {
       }
 }
 
+// Where somebody is about to fall asleep. In great heaps others hold who stands on an edge.
+void Crowd::find_footing(const ContactScene& scene, const CrowdTouch& touch) {
+  const double strength = scene.world.gravity_strength();
+  const auto is_asked = [&](std::size_t i) {
+    const Participant p = participants_[i];
+    return p.is_statistical() && !scene.asleep(p) && !scene.body(p).is_sphere() &&
+           !solver_bodies_[i].in_great_heap;
+  };
+  bool any = false;
+  radii_.assign(participants_.size(), 0.0);
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    if (!is_asked(i)) continue;
+    radii_[i] = scene.shape(participants_[i]).radius;
+    any |= scene.body(participants_[i]).quiet_time + float(touch.time) >= touch.still_time;
+  }
+  if (!any || strength == 0.0) return;
+  footing_.find(solver_bodies_, radii_, manifolds_, points_, -scene.world.gravity / strength);
+  for (std::size_t i = 0; i < participants_.size(); ++i)
+    if (is_asked(i)) scene.body(participants_[i]).on_edge = !footing_.is_firm(i);
+}
+
 // What strikes the ground is answered before it has arrived: a body goes on as it came until its first
 // impact. Not so one that touches another: shifted against that, they would not keep Σ m x × v, nor their
 // gap.
@@ -586,6 +607,7 @@ void Crowd::drop(const ContactScene& scene) {
 ContactTally Crowd::move(const ContactScene& scene, const CrowdTouch& touch) {
   memory_.remember(keys_, manifolds_, points_, touch.time);
   if (scene.world.log) note_impulses(*scene.world.log, noted_);
+  find_footing(scene, touch);
   find_impacts();
   move_bodies(scene, touch.time);
   give_to_full(scene, touch);

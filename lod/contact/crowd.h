@@ -10,6 +10,7 @@
 #include "lod/contact/contact_memory.h"
 #include "lod/contact/contact_scene.h"
 #include "lod/contact/crowd_solver.h"
+#include "lod/contact/footing.h"
 #include "lod/contact/ground_meetings.h"
 #include "lod/contact/solid_contacts.h"
 #include "lod/jobs.h"
@@ -33,7 +34,8 @@ struct CrowdTouch {
   std::span<const SolidContact> solid_contacts;
   std::span<const FullContact> full_contacts;
   const FacesBelow& faces;
-  double time = 0.0;  ///< s
+  double time = 0.0;         ///< s
+  float still_time = 1e30f;  ///< s: who was still for so long falls asleep, if it stands firmly
 };
 
 /// The contact solver's work arrays, kept between steps so that a warm step allocates nothing.
@@ -94,6 +96,7 @@ class Crowd {
                   });
   }
   void find_pressed(const ContactScene& scene, double time);
+  void find_footing(const ContactScene& scene, const CrowdTouch& touch);
   void find_impacts();
   void move_bodies(const ContactScene& scene, double time);
   bool is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const;
@@ -129,6 +132,8 @@ class Crowd {
   CrowdSolver solver_;
   ContactMemory memory_;
   BorneWeights borne_weights_;
+  Footing footing_;
+  std::vector<double> radii_;  // m, of each solver body
 };
 
 }  // namespace lodestone

@@ -63,7 +63,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     const std::span<const std::int32_t> awake = support.awake_with_guests();
     for (const std::int32_t index : awake) {
       StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-      body.crowded = body.on_solid = body.in_great_heap = false;
+      body.crowded = body.on_solid = body.in_great_heap = body.on_edge = false;
     }
     find_ground_solids(step, awake, 0.0, dt);
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
@@ -253,9 +253,10 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   StepWorld crowd_world = world();
   // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
   if (!full_.empty()) crowd_world.bounce_velocity += settings_.gravity.norm() * (step.dt - time);
+  const float still_time = settings_.sleeping ? rest_law_.still_time(true) : 1e30f;  // s
   const ContactScene crowd_scene{scene.bodies, scene.neighbors, kinds_, crowd_world};
   const auto touch = [&] {
-    return CrowdTouch{pairs_.contacts(), solid_contacts_, step.full_contacts, faces_, time};
+    return CrowdTouch{pairs_.contacts(), solid_contacts_, step.full_contacts, faces_, time, still_time};
   };
   for (int round = 0;; ++round) {
     take_crowded(step);

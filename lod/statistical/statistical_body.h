@@ -56,6 +56,7 @@ struct StatisticalBody {
   bool on_solid = false;       ///< touches parts of the ground in this step, where these are no planes to it
   bool borne_up = false;       ///< of a guest of `support`: what bears it was reckoned with a load to come
   bool in_great_heap = false;  ///< many bodies hang together with it (IslandKind::great); asleep: did so last
+  bool on_edge = false;        ///< slow and in a crowd, but not over an area of what it stands on (Footing)
   float since_crowded = 1e9f;  ///< s since it last did
   float eased = 0.0f;  ///< s left in which overlaps that it brought from another rung are undone slowly
 

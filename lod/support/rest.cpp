@@ -143,7 +143,8 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
     if (settings_.sleeping && own.allow_sleep && energy == 0.0) put_to_sleep(body);
     return;
   }
-  if (!settings_.sleeping || !own.allow_sleep || body.quiet_time < rest_law_.still_time(among_others)) return;
+  const float still_time = rest_law_.still_time(among_others && !body.on_edge);
+  if (!settings_.sleeping || !own.allow_sleep || body.quiet_time < still_time) return;
   if (among_others || body.on_solid || stands_firmly(body, *kind.shape, join_planes(ground_.planes(), faces)))
     put_to_sleep(body);
 }
