@@ -105,6 +105,7 @@ void finish(Shape& shape) {
   shape.support_map = SupportMap(shape.hull);
   shape.inverse_inertia_per_mass = shape.inertia_per_mass.inverse();
   shape.radius = greatest_distance(shape.hull.vertices);
+  shape.tips = TipMap(shape.hull, shape.radius);
   shape.inner_radius = least_distance_of_faces(shape.hull);
   shape.size = longest_side(shape.hull.vertices);
   shape.content_hash = hash_content(shape);

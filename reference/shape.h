@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reference/hull/hull.h"
+#include "reference/hull/tip_map.h"
 #include "reference/mesh/mass_properties.h"
 #include "reference/mesh/mesh.h"
 
@@ -19,6 +20,7 @@ struct Shape {
   Mesh mesh;  ///< vertices relative to the centre of mass
   Hull hull;
   SupportMap support_map;
+  TipMap tips;  ///< may be none: then every vertex is looked at
   double volume = 0.0;  ///< m³
   Vec3 center_of_mass_in_mesh =
       Vec3::Zero();  ///< m, where the body frame's origin lies in the mesh that was given

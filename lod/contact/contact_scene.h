@@ -42,6 +42,8 @@ struct ContactScene {
     if (asleep(p)) return Vec3::Zero();
     return p.is_statistical() ? body(p).velocity : neighbor(p).state.velocity;
   }
+  /// kg.
+  double mass(Participant p) const { return p.is_statistical() ? body(p).mass : neighbor(p).mass; }
   const BodyProperties& properties(Participant p) const { return world.properties_of(owner(p)); }
   /// m/s², as it acts on the body.
   Vec3 gravity(Participant p) const { return properties(p).gravity ? world.gravity : Vec3(Vec3::Zero()); }

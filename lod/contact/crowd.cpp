@@ -261,8 +261,9 @@ void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   take_bodies(scene, taken, touch.time);
 }
 
-void Crowd::solve_gathered(const ContactScene& scene, double time) {
-  ContactSolverSettings settings = settings_.solver;
+void Crowd::solve_gathered(const ContactScene& scene, const CrowdTouch& touch) {
+  const double time = touch.time;
+  ContactSolverSettings settings{.sweeps = touch.sweeps, .tolerance = settings_.tolerance};
   settings.bounce_velocity =
       scene.world.bounce_velocity +
       scene.world.gravity_strength() * time;  // what gravity adds in a step is no impact
@@ -485,7 +486,7 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) con
 
 // Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's
 // matter.
-void Crowd::move_apart(const ContactScene& scene, double time) {
+void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
   const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
     return index < 0
                ? Vec3(Vec3::Zero())
@@ -513,7 +514,7 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
     const int partners =
         std::max(partners_[std::size_t(m.first)], m.second < 0 ? 0 : partners_[std::size_t(m.second)]);
     const double farthest =
-        eased ? parting_speed(radius, scene.world.gravity_strength()) * time / partners : 1e300;
+        eased ? parting_speed(radius, scene.world.gravity_strength()) * touch.time / partners : 1e300;
     const double first = solver_bodies_[m.first].inverse_mass,
                  second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
     if (first + second == 0.0) continue;
@@ -530,8 +531,9 @@ void Crowd::move_apart(const ContactScene& scene, double time) {
       const double parting =
           (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
       const double overlap =
-          point.gap + std::max(0.0, parting) * time;  // the rest is undone by the motion itself
-      const double distance = std::min(push_out_overlap(overlap, radius), farthest) / double(m.count);
+          point.gap + std::max(0.0, parting) * touch.time;  // the rest is undone by the motion itself
+      const double distance =
+          std::min(touch.parting * push_out_overlap(overlap, radius), farthest) / double(m.count);
       move(m.first, distance * first / (first + second) * m.normal);
       move(m.second, -distance * second / (first + second) * m.normal);
     }
@@ -594,7 +596,7 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
 
 void Crowd::solve(const ContactScene& scene, const CrowdTouch& touch) {
   gather(scene, touch);
-  solve_gathered(scene, touch.time);
+  solve_gathered(scene, touch);
   find_pressed(scene, touch.time);
 }
 
@@ -611,7 +613,7 @@ ContactTally Crowd::move(const ContactScene& scene, const CrowdTouch& touch) {
   find_impacts();
   move_bodies(scene, touch.time);
   give_to_full(scene, touch);
-  move_apart(scene, touch.time);
+  move_apart(scene, touch);
   lift_off_ground(scene, touch);
   ContactTally tally;
   tally.contacts = std::int64_t(points_.size());

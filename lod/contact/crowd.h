@@ -24,7 +24,7 @@ struct CrowdContact {
 };
 
 struct CrowdSettings {
-  ContactSolverSettings solver{.sweeps = 10, .tolerance = 1e-3};
+  double tolerance = 1e-3;        ///< see ContactSolverSettings
   double contact_margin = 0.002;  ///< over R
 };
 
@@ -36,6 +36,8 @@ struct CrowdTouch {
   const FacesBelow& faces;
   double time = 0.0;         ///< s
   float still_time = 1e30f;  ///< s: who was still for so long falls asleep, if it stands firmly
+  int sweeps = 10;           ///< of the solver, at most
+  double parting = 1.0;      ///< how much of what push_out_overlap says is undone
 };
 
 /// The contact solver's work arrays, kept between steps so that a warm step allocates nothing.
@@ -85,7 +87,7 @@ class Crowd {
   void add_ground_contacts(const ContactScene& scene, std::int32_t index);
   void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
   void add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch);
-  void solve_gathered(const ContactScene& scene, double time);
+  void solve_gathered(const ContactScene& scene, const CrowdTouch& touch);
   std::size_t note_approaches(const ContactScene& scene, double time) const;
   void note_impulses(ContactLog& log, std::size_t known) const;
   template <class Visit>
@@ -101,7 +103,7 @@ class Crowd {
   void move_bodies(const ContactScene& scene, double time);
   bool is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const;
   void give_to_full(const ContactScene& scene, const CrowdTouch& touch) const;
-  void move_apart(const ContactScene& scene, double time);
+  void move_apart(const ContactScene& scene, const CrowdTouch& touch);
   void keep_full_apart(const ContactScene& scene);
   void lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) const;
 

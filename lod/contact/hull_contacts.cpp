@@ -56,6 +56,28 @@ void find_below(const Hull& hull, const Vec3& normal_in_body, double height, dou
   }
 }
 
+// The same where no others can be.
+void find_below_among(std::span<const std::uint16_t> vertices, const Hull& hull, const Vec3& normal_in_body,
+                      double height, double margin, const GapChange& change, Below& below) {
+  std::array<float, TipMap::kMost> x, y, z, gap;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    x[i] = hull.lanes.x[vertices[i]], y[i] = hull.lanes.y[vertices[i]], z[i] = hull.lanes.z[vertices[i]];
+  find_gaps(x.data(), y.data(), z.data(), vertices.size(), normal_in_body.cast<float>(), float(height),
+            change.of_arm.cast<float>(), float(change.of_center), gap.data());
+  const auto limit = float(margin);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    below.vertex[below.count] = vertices[i];
+    below.x[below.count] = x[i], below.y[below.count] = y[i], below.z[below.count] = z[i];
+    below.count += gap[i] < limit;
+  }
+}
+
+// m: how far short of the lowest vertex, whose gap is `lowest`, one below `margin` now or after the change
+// may be. Floats err by less than what is added.
+double find_depth(double lowest, double margin, const GapChange& change, double radius) {
+  return margin - lowest + std::max(0.0, change.of_arm.norm() * radius - change.of_center) + 1e-5 * radius;
+}
+
 // Below a plane vertices are connected by edges.
 bool is_lowest_alone(const Hull& hull, std::int32_t lowest, const Vec3& normal_in_body, double height,
                      double margin) {
@@ -119,7 +141,13 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   const Vec3 normal_in_body = orientation.conjugate() * normal;
   if (change.is_none() && is_lowest_alone(shape.hull, lowest, normal_in_body, height, margin)) return result;
   Below below;
-  find_below(shape.hull, normal_in_body, height, margin, change, below);
+  std::span<const std::uint16_t> tips;
+  if (find_depth(result.contact[0].gap, margin, change, shape.radius) < TipMap::kDepth * shape.radius)
+    tips = shape.tips.find(-normal_in_body);
+  if (tips.empty())
+    find_below(shape.hull, normal_in_body, height, margin, change, below);
+  else
+    find_below_among(tips, shape.hull, normal_in_body, height, margin, change, below);
   if (below.count == 0) return result;  // as it is in single precision
   const auto keep = [&](std::int32_t vertex) {
     const Vec3 arm = orientation * shape.hull.vertices[std::size_t(vertex)];

@@ -204,15 +204,30 @@ PairPose pose_of(const PairBody& first, const PairBody& second) {
           second.orientation.coeffs().cast<float>()};
 }
 
-double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second) {
+namespace {
+
+// m: by how much no gap has shrunk more since then by how both have turned.
+double find_turning_since(const PairPose& then, const PairBody& first, const PairBody& second) {
   // An angle is at most 2.2 times the chord of two quaternions, up to half a turn.
   const auto turned = [](const Eigen::Vector4f& from, const Quat& to) {
     const Eigen::Vector4d was = from.cast<double>();
     return 2.2 * std::sqrt(std::min((was - to.coeffs()).squaredNorm(), (was + to.coeffs()).squaredNorm()));
   };
-  return (first.position - second.position - then.apart.cast<double>()).norm() +
-         turned(then.first, first.orientation) * first.shape->radius +
+  return turned(then.first, first.orientation) * first.shape->radius +
          turned(then.second, second.orientation) * second.shape->radius;
+}
+
+}  // namespace
+
+double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second) {
+  return (first.position - second.position - then.apart.cast<double>()).norm() +
+         find_turning_since(then, first, second);
+}
+
+double find_gap_left_along(const HullGap& found, const PairPose& then, const PairBody& first,
+                           const PairBody& second) {
+  return found.gap + (first.position - second.position - then.apart.cast<double>()).dot(found.normal) -
+         find_turning_since(then, first, second);
 }
 
 HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second) {

@@ -50,6 +50,9 @@ struct PairPose {
 PairPose pose_of(const PairBody& first, const PairBody& second);
 /// m: no gap between them has changed by more since they lay so.
 double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second);
+/// m: what is left now, at least, of a gap of the two hulls that was found when they lay so, along its axis.
+double find_gap_left_along(const HullGap& found, const PairPose& then, const PairBody& first,
+                           const PairBody& second);
 
 /// The gap of two pieces of bodies as it was found.
 struct KnownGap {

@@ -256,7 +256,14 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   const float still_time = settings_.sleeping ? rest_law_.still_time(true) : 1e30f;  // s
   const ContactScene crowd_scene{scene.bodies, scene.neighbors, kinds_, crowd_world};
   const auto touch = [&] {
-    return CrowdTouch{pairs_.contacts(), solid_contacts_, step.full_contacts, faces_, time, still_time};
+    return CrowdTouch{.contacts = pairs_.contacts(),
+                      .solid_contacts = solid_contacts_,
+                      .full_contacts = step.full_contacts,
+                      .faces = faces_,
+                      .time = time,
+                      .still_time = still_time,
+                      .sweeps = sweeps_of(pace),
+                      .parting = parting_of(pace)};
   };
   for (int round = 0;; ++round) {
     take_crowded(step);

@@ -13,6 +13,9 @@ namespace lodestone {
 
 /// In how many substeps of a step a body moves, with all that it may touch; 0: it may touch none.
 using Pace = std::uint8_t;
+/// Whether its substeps are so long that bodies turn and fall on their way by more than what counts as
+/// touching.
+inline bool is_long(Pace pace) { return pace < 3; }
 
 class NearMarks {
  public:

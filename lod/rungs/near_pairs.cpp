@@ -148,24 +148,38 @@ Vec3 NearPairs::point_velocity(const ContactScene& scene, Participant p, const V
   return body.velocity + turning_[p.index()].angular_velocity.cross(point - body.position);
 }
 
-void NearPairs::find_contact(const ContactScene& scene, double time, FoundPair& pair) const {
+// In `time` seconds, for all that is known of the two. In long substeps they fall and turn by so much that
+// most would be looked at for that, had their gap to shrink in whatever direction they go.
+bool NearPairs::stay_apart(const ContactScene& scene, double time, Pace pace, const FoundPair& pair) const {
+  if (!pair.when || !pair.contacts.empty()) return false;
+  const PairBody a = scene.pair_body(pair.first), b = scene.pair_body(pair.second);
+  const double touching = kTouching * std::min(a.shape->radius, b.shape->radius);
+  if (pair.gap - find_motion_since(*pair.when, a, b) > touching + find_approach(scene, pair, time))
+    return true;
+  if (!is_long(pace) || !pair.of_pieces.empty()) return false;
+  const Vec3 closing = scene.velocity(pair.first) - scene.velocity(pair.second);
+  return find_gap_left_along(pair.whole, *pair.when, a, b) >
+         touching + std::max(0.0, -closing.dot(pair.whole.normal)) * time +
+             find_approach_by_turning(scene, pair, time);
+}
+
+void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, FoundPair& pair) const {
   // Over R: so far bodies take a contact along. A sphere's orientation is coarse anyway, and spheres among
   // others may overlap deeply, where a search is dear.
   constexpr double kHeld = 0.02, kHeldBySphere = 0.1;
+  if (stay_apart(scene, time, pace, pair)) return;
   const PairBody a = scene.pair_body(pair.first), b = scene.pair_body(pair.second);
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
-  const double moved = pair.when ? find_motion_since(*pair.when, a, b) : 0.0;
-  if (pair.when && pair.contacts.empty() && pair.gap - moved > touching + find_approach(scene, pair, time))
-    return;
   const auto is_sphere = [&](Participant p) { return p.is_statistical() && scene.body(p).is_sphere(); };
   const auto is_eased = [&](Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; };
   const double held = is_sphere(pair.first) || is_sphere(pair.second) ? kHeldBySphere : kHeld;
-  if (!pair.contacts.empty() && moved < held * least_radius) return;
+  if (!pair.contacts.empty() && find_motion_since(*pair.when, a, b) < held * least_radius) return;
   const Vec3 closing = scene.velocity(pair.first) - scene.velocity(pair.second);
   thread_local HullContactSearch search;
   search.exact =
       !is_sphere(pair.first) && !is_sphere(pair.second) && !is_eased(pair.first) && !is_eased(pair.second);
-  find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + closing.norm() * time, search);
+  const double approach = is_long(pace) ? find_approach(scene, pair, time) : closing.norm() * time;
+  find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + approach, search);
   pair.gap = search.gap;
   pair.when = pose_of(a, b);
   pair.contacts.clear();
@@ -222,7 +236,7 @@ void NearPairs::find_more_contacts(const ContactScene& scene, double time, NearM
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
       FoundPair& pair = all_[chosen[i]];
       const bool looks = looked_at(pair);
-      if (looks) find_contact(scene, time, pair);
+      if (looks) find_contact(scene, time, pace, pair);
       first_contact_[i + 1] = looks ? std::uint32_t(pair.contacts.size()) : 0;
     }
   });
@@ -269,15 +283,19 @@ void NearPairs::find_turning(const ContactScene& scene, std::span<const std::int
 }
 
 double NearPairs::find_approach(const ContactScene& scene, const FoundPair& pair, double time) const {
+  return (scene.velocity(pair.first) - scene.velocity(pair.second)).norm() * time +
+         find_approach_by_turning(scene, pair, time);
+}
+
+// And by falling, since one of them may be held up.
+double NearPairs::find_approach_by_turning(const ContactScene& scene, const FoundPair& pair,
+                                           double time) const {
   const auto rim_speed = [&](Participant p) {
     if (p.is_statistical()) return scene.asleep(p) ? 0.0 : turning_[p.index()].rim_speed;
     return scene.neighbor(p).state.angular_velocity.norm() * scene.shape(p).radius;
   };
   const double fall = 0.5 * scene.world.gravity_strength() * time * time;
-  return ((scene.velocity(pair.first) - scene.velocity(pair.second)).norm() + rim_speed(pair.first) +
-          rim_speed(pair.second)) *
-             time +
-         fall;
+  return (rim_speed(pair.first) + rim_speed(pair.second)) * time + fall;
 }
 
 double NearPairs::gap_left(const ContactScene& scene, const FoundPair& pair) const {

@@ -99,7 +99,9 @@ class NearPairs {
   static PlacedPair place(const ContactScene& scene, const NearPair& pair);
   std::uint32_t take_place();
   void put_in_order();
-  void find_contact(const ContactScene& scene, double time, FoundPair& pair) const;
+  void find_contact(const ContactScene& scene, double time, Pace pace, FoundPair& pair) const;
+  bool stay_apart(const ContactScene& scene, double time, Pace pace, const FoundPair& pair) const;
+  double find_approach_by_turning(const ContactScene& scene, const FoundPair& pair, double time) const;
   bool closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact,
               double time) const;
 

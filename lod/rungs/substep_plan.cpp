@@ -9,6 +9,9 @@ namespace lodestone {
 namespace {
 
 constexpr int kLeastSubsteps = 3, kMostSubsteps = 12;
+constexpr double kLongest = 1.0 / 60.0;  // s, of a step taken at once
+constexpr int kManyBodies = 30;          // awake, of an island that may take it: of fewer, each one shows
+constexpr double kUneven = 20.0;         // ratio of the masses of two that may touch
 constexpr double kStride =
     0.07;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
 
@@ -22,8 +25,13 @@ bool may_strike_ground(const ContactScene& scene, const StatisticalBody& body, d
 
 void mark(const FoundPair& pair, NearMarks& near) { near.mark(pair.first), near.mark(pair.second); }
 
-Pace pace_for(double way) {
-  return Pace(std::ceil(std::clamp(way / kStride, double(kLeastSubsteps), double(kMostSubsteps))));
+Pace pace_for(double way, double least) {
+  return Pace(std::ceil(std::clamp(way / kStride, least, double(kMostSubsteps))));
+}
+
+bool is_uneven(const ContactScene& scene, const FoundPair& pair) {
+  const double first = scene.mass(pair.first), second = scene.mass(pair.second);
+  return std::max(first, second) >= kUneven * std::min(first, second);
 }
 
 }  // namespace
@@ -71,10 +79,10 @@ void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pai
 void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near) {
   const auto others = std::int32_t(scene.bodies.size());
   islands_.make_room(scene.bodies.size() + 1);
-  longest_of_island_.resize(scene.bodies.size() + 1);
+  island_of_root_.resize(scene.bodies.size() + 1);
   const auto begin = [&](std::int32_t body) {
     islands_.set_apart(body);
-    longest_of_island_[std::size_t(body)] = kApart;
+    island_of_root_[std::size_t(body)] = {};
   };
   for (const std::int32_t body : near.marked()) begin(body);
   begin(others);
@@ -86,11 +94,18 @@ void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs
     const auto [first, second] = std::pair(pairs[i].first, pairs[i].second);
     if (takes_part(first) && takes_part(second)) islands_.join(node_of(first), node_of(second));
   }
+  const auto stands = [&](Participant p) { return scene.asleep(p) || scene.properties(p).kinematic; };
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (ways_[i] < 0.0) continue;
-    double& longest = longest_of_island_[std::size_t(islands_.root_of(node_of(pairs[i].first)))];
-    longest = std::max(longest, ways_[i]);
+    const FoundPair& pair = pairs[i];
+    if (!takes_part(pair.first) || !takes_part(pair.second)) continue;
+    Island& island = island_of(node_of(pair.first));
+    island.longest = std::max(island.longest, ways_[i]);
+    island.is_hard |= pair.first.is_full() || pair.second.is_full() ||
+                      scene.properties(pair.first).kinematic || scene.properties(pair.second).kinematic ||
+                      (!stands(pair.first) && !stands(pair.second) && is_uneven(scene, pair));
   }
+  for (const std::int32_t body : near.marked())
+    if (scene.bodies[std::size_t(body)].motion != Motion::asleep) ++island_of(body).bodies;
 }
 
 // Of the islands that touch them.
@@ -100,8 +115,9 @@ void SubstepPlan::find_ways_to_solids(const ContactScene& scene, std::span<const
     const StatisticalBody& body = scene.bodies[std::size_t(contact.slot)];
     if (body.motion == Motion::asleep) continue;
     const Vec3 velocity = body.velocity - contact.part->velocity_at(body.position);
-    double& longest = longest_of_island_[std::size_t(islands_.root_of(contact.slot))];
-    longest = std::max(longest, velocity.norm() * dt / scene.kind_of(body).shape->radius);
+    Island& island = island_of(contact.slot);
+    island.longest = std::max(island.longest, velocity.norm() * dt / scene.kind_of(body).shape->radius);
+    island.is_hard |= contact.part->moves();
   }
 }
 
@@ -120,8 +136,12 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
   find_islands(scene, pairs, near);
   find_ways_to_solids(scene, solid_contacts, dt);
   std::array<bool, kMostSubsteps + 1> any = {};
+  const double least = std::max(1.0, dt / kLongest - 1e-6);
   const auto pace_of = [&](std::int32_t node) {
-    const Pace pace = pace_for(longest_of_island_[std::size_t(islands_.root_of(node))]);
+    const Island& island = island_of(node);
+    const bool is_slow_heap = island.bodies >= kManyBodies && !island.is_hard;
+    const Pace pace =
+        pace_for(island.longest, is_slow_heap ? least : std::max(least, double(kLeastSubsteps)));
     any[pace] = true;
     return pace;
   };
@@ -130,8 +150,7 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
     const Participant p = Participant::statistical(std::size_t(body));
     near.set_pace(p, pace_of(scene.asleep(p) ? others : body));
   }
-  if (longest_of_island_[std::size_t(islands_.root_of(others))] != kApart)
-    near.set_full_pace(pace_of(others));
+  if (island_of(others).longest != kApart) near.set_full_pace(pace_of(others));
   paces_.clear();
   for (std::size_t pace = 1; pace < any.size(); ++pace)
     if (any[pace]) paces_.push_back(Pace(pace));

@@ -1,11 +1,13 @@
 // Stage 3: in how many substeps those bodies move that may touch another. A pile needs them: contacts found
 // once in 1/60 s miss what a body that falls into it at several m/s meets on its way, and ten sweeps over a
 // pile of many layers leave it sinking into itself (a bin of 100 boxes: time to sleep three times ODE's, a
-// third too low). After Macklin et al., Small steps in physics simulation, 2019. Each island, the bodies that
-// may touch within the step, directly or through others, has a pace of its own: what goes on elsewhere
-// changes nothing for it.
+// third too low). After Macklin et al., Small steps in physics simulation, 2019. A heap that has slowed down
+// meets nothing new on its way: it takes the step at once, with the sweeps of three substeps. Each island,
+// the bodies that may touch within the step, directly or through others, has a pace of its own: what goes on
+// elsewhere changes nothing for it.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,12 @@
 #include "reference/disjoint_sets.h"
 
 namespace lodestone {
+
+/// Of the contact solver, at most, in each substep.
+inline int sweeps_of(Pace pace) { return std::max(10, 30 / pace); }
+/// Of overlaps, how much of what a substep undoes elsewhere (push_out_overlap): at once nearly as much is
+/// undone in a step as in three substeps.
+inline double parting_of(Pace pace) { return pace == 1 ? 1.6 : 1.0; }
 
 class SubstepPlan {
  public:
@@ -29,19 +37,26 @@ class SubstepPlan {
   std::span<const Pace> paces() const { return paces_; }
 
  private:
+  struct Island {
+    double longest = kApart;  // of its ways
+    int bodies = 0;           // that are awake
+    bool is_hard = false;     // sweeps of three substeps are not enough for a step at once
+  };
+
   void find_ways(const ContactScene& scene, const NearPairs& pairs, double dt);
   void mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt, NearMarks& near);
   void find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near);
   void find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts,
                            double dt);
+  Island& island_of(std::int32_t node) { return island_of_root_[std::size_t(islands_.root_of(node))]; }
 
   static constexpr double kApart = -1.0, kFollowing = -2.0;
   JobRunner jobs_;
   std::vector<double> ways_;  // of each pair, over R: how far it may close in; kApart: it may not touch;
                               // kFollowing: only once one of the two is stopped
-  std::vector<std::size_t> following_;     // pairs of which neither gains on the other
-  DisjointSets islands_;                   // of bodies
-  std::vector<double> longest_of_island_;  // of each root: the longest of its ways
+  std::vector<std::size_t> following_;  // pairs of which neither gains on the other
+  DisjointSets islands_;                // of bodies
+  std::vector<Island> island_of_root_;  // of each body, where it stands for its island
   std::vector<Pace> paces_;
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "reference/geometry.h"
+#include "reference/hull/cube_map.h"
 
 namespace lodestone {
 
@@ -55,18 +56,17 @@ void transform_hull(Hull& hull, const Vec3& origin, double factor);
 /// Direction zero or not finite: some vertex.
 int find_support(const Hull& hull, const Vec3& direction, int start = 0);
 
-/// For a direction, a vertex near the farthest one: cube map of 6 × `side` × `side` cells (a start for the
-/// climb, which is then exact).
+/// For a direction, a vertex near the farthest one: a start for the climb, which is then exact.
 class SupportMap {
  public:
   SupportMap() = default;
   explicit SupportMap(const Hull& hull, int side = 32);
-  int find_start(const Vec3& direction) const;
-  std::span<const std::uint16_t> cells() const { return cells_; }
+  int find_start(const Vec3& direction) const { return vertices_[std::size_t(cells_.cell_of(direction))]; }
+  std::span<const std::uint16_t> vertices() const { return vertices_; }  ///< by cell
 
  private:
-  int side_ = 0;
-  std::vector<std::uint16_t> cells_;
+  CubeMap cells_;
+  std::vector<std::uint16_t> vertices_;
 };
 
 /// What looking up the map without the climb would cost: support height missed, m, over directions even on

@@ -106,5 +106,37 @@ TEST(HullContacts, ADiscOfManyVerticesStandsWide) {
   EXPECT_NEAR((found.contact[2].arm - found.contact[3].arm).norm(), 2.0, 0.01);
 }
 
+// Of a hull with many vertices only those are looked at that may be low (reference/hull/tip_map.h): to the
+// bit what a look at all finds, for thin margins and thick ones, and whatever changes within a step.
+TEST(HullContacts, AreTheSameWithALookAtAllVertices) {
+  std::vector<Vec3> points;
+  RandomStream random(64, 0, 0);
+  for (int i = 0; i < 400; ++i) points.emplace_back(Vec3(0.2, 0.3, 0.25).cwiseProduct(random.direction()));
+  Shape shape;
+  shape.hull = make_hull(points);
+  for (const Vec3& v : shape.hull.vertices) shape.radius = std::max(shape.radius, v.norm());
+  Shape with_map = shape;
+  with_map.tips = TipMap(with_map.hull, with_map.radius);
+  int several = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Quat orientation = random.orientation();
+    const double height = random.uniform(0.1, 0.4), margin = random.uniform(-0.1, 0.06);
+    GapChange change;
+    if (i % 2) change = {random.uniform(-0.01, 0.01), 0.02 * random.direction()};
+    std::int32_t hint = 0, other_hint = 0;
+    const HullContacts all = find_hull_contacts(shape, orientation, Vec3::UnitZ(), height, margin, hint,
+                                                change),
+                       few = find_hull_contacts(with_map, orientation, Vec3::UnitZ(), height, margin,
+                                                other_hint, change);
+    ASSERT_EQ(all.count, few.count) << i;
+    several += all.count == kMaxGroundContacts;
+    for (std::size_t k = 0; k < std::size_t(all.count); ++k) {
+      EXPECT_EQ(all.contact[k].vertex, few.contact[k].vertex) << i;
+      EXPECT_EQ(all.contact[k].gap, few.contact[k].gap) << i;
+    }
+  }
+  EXPECT_GT(several, 500);
+}
+
 }  // namespace
 }  // namespace lodestone

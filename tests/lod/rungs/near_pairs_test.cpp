@@ -15,7 +15,6 @@ using testing::at;
 using testing::box_shape;
 
 constexpr double kPairStep = 1.0 / 60;
-constexpr Pace kPace = 3;
 
 // Whichever comes first.
 ContactKey pair_key(Participant a, Participant b) {
@@ -24,7 +23,7 @@ ContactKey pair_key(Participant a, Participant b) {
 }
 
 struct PairScene : testing::CrowdScene {
-  PairScene() { near.begin(0); }
+  explicit PairScene(Pace all = 3) : pace(all) { near.begin(0); }
 
   std::vector<std::int32_t> everybody() const {
     std::vector<std::int32_t> all;
@@ -35,13 +34,13 @@ struct PairScene : testing::CrowdScene {
   void find(NearPairs& pairs, std::span<const NearPair> of) {
     const std::vector<std::int32_t> awake = everybody();
     near.begin(bodies.size());
-    for (const std::int32_t i : awake) near.set_pace(Participant::statistical(std::size_t(i)), kPace);
-    near.set_full_pace(kPace);
+    for (const std::int32_t i : awake) near.set_pace(Participant::statistical(std::size_t(i)), pace);
+    near.set_full_pace(pace);
     pairs.forget_contacts();
     pairs.take(scene(), of);
-    pairs.choose(near, kPace);
+    pairs.choose(near, pace);
     pairs.find_turning(scene(), awake);
-    pairs.find_contacts(scene(), kPairStep, awake, near, kPace);
+    pairs.find_contacts(scene(), kPairStep, awake, near, pace);
   }
   double true_gap(const FoundPair& pair) {
     const auto contact =
@@ -55,13 +54,17 @@ struct PairScene : testing::CrowdScene {
       body.orientation = advance_orientation(body.orientation, body.spin, shape, kPairStep).normalized();
     }
   }
+  Pace pace;
   NearMarks near;
 };
 
+class NearPairsAt : public ::testing::TestWithParam<Pace> {};
+
 // What is remembered of a gap is never more than is there, and who meets within the step has a contact: as
-// bodies fly about among each other for a second.
-TEST(NearPairs, AGapKeptIsNeverTooWideAndNoMeetingIsMissed) {
-  PairScene scene;
+// bodies fly about among each other for a second. At whichever pace they move: long substeps look for
+// contacts in another way.
+TEST_P(NearPairsAt, AGapKeptIsNeverTooWideAndNoMeetingIsMissed) {
+  PairScene scene(GetParam());
   RandomStream random(31, 0, 0);
   const auto crate = box_shape({0.2, 0.3, 0.4});
   std::vector<NearPair> all;
@@ -97,6 +100,23 @@ TEST(NearPairs, AGapKeptIsNeverTooWideAndNoMeetingIsMissed) {
   }
   EXPECT_GT(met, 5);
   EXPECT_GT(kept, 200);
+}
+INSTANTIATE_TEST_SUITE_P(Pace, NearPairsAt, ::testing::Values(Pace(1), Pace(3)));
+
+// A box that lies on an edge 5 mm above another and turns down onto it by 2 rad/s: its corner is there within
+// the step, though its centre comes no nearer. In a substep so long the contact is there beforehand.
+TEST(NearPairs, InLongSubstepsWhoTurnsTowardsAnotherMeetsIt) {
+  const auto contacts = [](Pace pace) {
+    PairScene scene(pace);
+    const auto plank = box_shape({0.8, 0.2, 0.1}), cube = box_shape({0.2, 0.2, 0.2});
+    const NearPair one[] = {{scene.add(plank, 1.0, at({0, 0, 0}, {0, 0, 0}, {0, 2, 0})),
+                             scene.add(cube, 1.0, at({0.3, 0, -0.155}))}};
+    NearPairs pairs(make_job_runner(1));
+    scene.find(pairs, one);
+    return pairs.contacts().size();
+  };
+  EXPECT_EQ(contacts(1), 1U);
+  EXPECT_EQ(contacts(3), 0U);
 }
 
 // Whichever is named first, and whatever came before: by place.
@@ -221,6 +241,45 @@ TEST(SubstepPlan, IsAnIslandsOwn) {
   const int quick = int(std::ceil(4.0 / 60 / (0.07 * cube->radius)));
   EXPECT_EQ(paces(false), std::pair(quick, 3));
   EXPECT_EQ(paces(true), std::pair(quick, quick));
+}
+
+// A row of cubes that touch, of which one closes in at `speed`: the pace of all. A heap that is slow takes
+// the step at once, or a longer one in steps of 1/60 s; few bodies, and such as differ in mass by much, never
+// do.
+TEST(SubstepPlan, ASlowHeapTakesAStepAtOnce) {
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  const auto pace = [&](int bodies, double speed, double dt = kPairStep, double mass_of_last = 1.0) {
+    PairScene scene;
+    std::vector<NearPair> row;
+    for (int i = 0; i < bodies; ++i) {
+      const Participant p = scene.add(cube, i + 1 == bodies ? mass_of_last : 1.0,
+                                      at({0.2001 * i, 0, 0}, {i == 0 ? speed : 0.0, 0, 0}));
+      if (i > 0) row.emplace_back(Participant::statistical(p.index() - 1), p);
+    }
+    NearPairs pairs(make_job_runner(1));
+    scene.find(pairs, row);
+    NearMarks near;
+    near.begin(scene.bodies.size());
+    SubstepPlan plan(make_job_runner(1));
+    plan.make(scene.scene(), pairs, {}, dt, near);
+    EXPECT_EQ(plan.paces().size(), 1U);
+    return int(near.pace(Participant::statistical(0)));
+  };
+  EXPECT_EQ(pace(40, 0.1), 1);
+  EXPECT_EQ(pace(40, 0.1, 1.0 / 30), 2);
+  EXPECT_EQ(pace(40, 0.1, 1.0 / 240), 1);
+  EXPECT_EQ(pace(40, 0.6), 2);
+  EXPECT_EQ(pace(40, 4.0), pace(3, 4.0));
+  EXPECT_EQ(pace(20, 0.1), 3);
+  EXPECT_EQ(pace(40, 0.1, kPairStep, 20.0), 3);
+  EXPECT_EQ(pace(40, 0.1, kPairStep, 19.0), 1);
+}
+
+// Sweeps of a step are the same three times ten at least, however it is divided.
+TEST(SubstepPlan, SweepsAreThoseOfThreeSubsteps) {
+  for (Pace pace = 1; pace <= 12; ++pace) EXPECT_GE(pace * sweeps_of(pace), 30);
+  EXPECT_EQ(sweeps_of(1), 30);
+  EXPECT_EQ(sweeps_of(12), 10);
 }
 
 }  // namespace

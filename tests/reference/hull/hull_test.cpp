@@ -166,7 +166,7 @@ TEST(Hull, IsTheSameFromSeveralThreadsAtOnce) {
 TEST(SupportMap, StartsAtOrBesideTheFarthestVertex) {
   const Shape bunny = make_bunny_shape(0.2);
   const SupportMap map(bunny.hull);
-  EXPECT_EQ(map.cells().size(), 6u * 32 * 32);
+  EXPECT_EQ(map.vertices().size(), 6u * 32 * 32);
   RandomStream random(11, 0, 0);
   int exact = 0;
   for (int i = 0; i < 10'000; ++i) {

@@ -88,7 +88,7 @@ TEST(SupportMap, ALookupAndAClimbAreExactForAnyFineness) {
   for (const int side : {1, 2, 7, 32}) {
     const Hull hull = draw_hull(21);
     const SupportMap map(hull, side);
-    EXPECT_EQ(map.cells().size(), std::size_t(6 * side * side));
+    EXPECT_EQ(map.vertices().size(), std::size_t(6 * side * side));
     RandomStream random(59, std::uint32_t(side), 0);
     for (int i = 0; i < 300; ++i) {
       const Vec3 direction = random.uniform(1e-6, 1e6) * random.direction();
