@@ -1,6 +1,7 @@
 #include "lod/broad_phase/still_grid.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "reference/error.h"
 
@@ -71,15 +72,9 @@ void StillGrid::grow() {
   count_groups();
 }
 
-// A group is four cells wide along each axis.
-std::size_t StillGrid::group_of(const Key& cell) const {
-  return hash_of({cell.x >> 2, cell.y >> 2, cell.z >> 2, cell.level}) & (groups_.size() - 1);
-}
-
 // Anew, from the cells.
 void StillGrid::count_groups() {
-  groups_.assign(with_blocks_ ? 0 : cells_.size(), 0);
-  if (with_blocks_) return;
+  groups_.assign(kGroups * cells_.size(), 0);
   for (const Cell& cell : cells_)
     if (cell.head != kNone) mark(cell.key);
 }
@@ -93,71 +88,14 @@ void StillGrid::find_levels() {
   }
 }
 
-bool StillGrid::is_empty(const Range& range, std::int32_t level) const {
-  for (std::int32_t z = range.low[2] >> 2; z <= range.high[2] >> 2; ++z)
-    for (std::int32_t y = range.low[1] >> 2; y <= range.high[1] >> 2; ++y)
-      for (std::int32_t x = range.low[0] >> 2; x <= range.high[0] >> 2; ++x)
-        if (groups_[group_of({4 * x, 4 * y, 4 * z, level})] != 0) return false;
-  return true;
-}
-
-std::size_t StillGrid::block_of(const Key& block) const {
-  const std::size_t mask = blocks_.size() - 1;
-  std::size_t place = hash_of(block) & mask;
-  while (blocks_[place].key.level != kNoLevel && blocks_[place].key != block) place = (place + 1) & mask;
-  return place;
-}
-
-// Calls act(block, bit) for the eight blocks that the cell lies in, and its bit there.
-template <class Act>
-void StillGrid::each_block(const Key& cell, const Act& act) {
-  for (int corner = 0; corner < 8; ++corner) {
-    const Key block{(cell.x >> 1) - (corner & 1), (cell.y >> 1) - (corner >> 1 & 1),
-                    (cell.z >> 1) - (corner >> 2), cell.level};
-    act(block, std::uint64_t(1) << ((cell.x - 2 * block.x) + 4 * (cell.y - 2 * block.y) +
-                                    16 * (cell.z - 2 * block.z)));
-  }
-}
-
 void StillGrid::mark(const Key& cell) {
-  if (!with_blocks_) {
-    std::uint8_t& count = groups_[group_of(cell)];
-    if (count < kMany) ++count;
-    return;
-  }
-  if (2 * (used_blocks_ + 8) > blocks_.size()) grow_blocks();
-  each_block(cell, [this](const Key& key, std::uint64_t bit) {
-    Block& block = blocks_[block_of(key)];
-    if (block.key.level == kNoLevel) block.key = key, ++used_blocks_;
-    block.lived_in |= bit;
-  });
+  std::uint8_t& count = groups_[place_of_group(group_of(cell))];
+  if (count < kMany) ++count;
 }
 
 void StillGrid::unmark(const Key& cell) {
-  if (with_blocks_)
-    return each_block(cell,
-                      [this](const Key& key, std::uint64_t bit) { blocks_[block_of(key)].lived_in &= ~bit; });
-  std::uint8_t& count = groups_[group_of(cell)];
+  std::uint8_t& count = groups_[place_of_group(group_of(cell))];
   if (count < kMany) --count;
-}
-
-// Blocks in which nobody lies any more are left out.
-void StillGrid::grow_blocks() {
-  std::vector<Block> old = std::move(blocks_);
-  used_blocks_ =
-      std::size_t(std::ranges::count_if(old, [](const Block& block) { return block.lived_in != 0; }));
-  blocks_.assign(std::bit_ceil(std::max<std::size_t>(64, 3 * (used_blocks_ + 8))), {});
-  for (const Block& block : old)
-    if (block.lived_in != 0) blocks_[block_of(block.key)] = block;
-}
-
-// Anew, from the cells.
-void StillGrid::make_blocks() {
-  blocks_.clear();
-  used_blocks_ = 0;
-  if (!with_blocks_) return;
-  for (const Cell& cell : cells_)
-    if (cell.head != kNone) mark(cell.key);
 }
 
 }  // namespace lodestone

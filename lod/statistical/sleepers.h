@@ -28,7 +28,7 @@ class Sleepers {
  private:
   // Of `support` with blocks: its bodies ask for sleepers one by one. Spheres ask rarely, and have no bytes
   // to spare.
-  std::array<StillGrid, 2> grids_{StillGrid(false), StillGrid(true)};
+  std::array<StillGrid, 2> grids_;
   static_assert(std::size_t(StatisticalModel::support) == 1);
 };
 

@@ -268,7 +268,7 @@ TEST(SubstepPlan, ASlowHeapTakesAStepAtOnce) {
   EXPECT_EQ(pace(40, 0.1), 1);
   EXPECT_EQ(pace(40, 0.1, 1.0 / 30), 2);
   EXPECT_EQ(pace(40, 0.1, 1.0 / 240), 1);
-  EXPECT_EQ(pace(40, 0.6), 2);
+  EXPECT_EQ(pace(40, 1.0), 2);
   EXPECT_EQ(pace(40, 4.0), pace(3, 4.0));
   EXPECT_EQ(pace(20, 0.1), 3);
   EXPECT_EQ(pace(40, 0.1, kPairStep, 20.0), 3);
