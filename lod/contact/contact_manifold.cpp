@@ -117,23 +117,47 @@ Feature cross_thin(const Feature& a, const Feature& b) {
   return crossing;
 }
 
-// The height of a feature's surface at p: constant, along the edge, or on the plane of the polygon.
-double height_at(const Feature& f, const Point& p) {
-  if (f.count == 1) return f.at[0].height;
-  if (f.count == 2) {
-    const double dx = f.at[1].x - f.at[0].x, dy = f.at[1].y - f.at[0].y, length = dx * dx + dy * dy;
-    const double along = length > 0.0 ? ((p.x - f.at[0].x) * dx + (p.y - f.at[0].y) * dy) / length : 0.0;
-    return between(f.at[0], f.at[1], std::clamp(along, 0.0, 1.0)).height;
+// The height of a feature's surface over the touching plane: constant, along the edge, or on the plane of the
+// polygon.
+class Surface {
+ public:
+  explicit Surface(const Feature& f) : count_(f.count), first_(f.at[0]) {
+    if (f.count == 2) {
+      second_ = f.at[1];
+      x_ = second_.x - first_.x, y_ = second_.y - first_.y;
+      const double length = x_ * x_ + y_ * y_;
+      per_length_ = length > 0.0 ? 1.0 / length : 0.0;
+    } else if (f.count > 2) {
+      find_plane(f);
+    }
   }
-  Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
-  const auto vec = [](const Point& v) { return Vec3(v.x, v.y, v.height); };
-  for (int i = 0; i < f.count; ++i) {
-    const Vec3 a = vec(f.at[i]);
-    normal += (a - vec(f.at[0])).cross(vec(f.at[(i + 1) % f.count]) - vec(f.at[0]));
-    middle += a / f.count;
+  double height_at(const Point& p) const {
+    if (count_ == 1) return first_.height;
+    if (count_ > 2) return first_.height - (x_ * (p.x - first_.x) + y_ * (p.y - first_.y));
+    const double along = ((p.x - first_.x) * x_ + (p.y - first_.y) * y_) * per_length_;
+    return between(first_, second_, std::clamp(along, 0.0, 1.0)).height;
   }
-  return middle.z() - (normal.x() * (p.x - middle.x()) + normal.y() * (p.y - middle.y())) / normal.z();
-}
+
+ private:
+  // Through the middle of the corners, with the mean of what each three of them say (Newell).
+  void find_plane(const Feature& f) {
+    const auto vec = [](const Point& v) { return Vec3(v.x, v.y, v.height); };
+    const Vec3 origin = vec(f.at[0]);
+    Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
+    for (int i = 1; i < f.count; ++i) {
+      const Vec3 from = vec(f.at[i]) - origin;
+      middle += from;
+      if (i + 1 < f.count) normal += from.cross(vec(f.at[i + 1]) - origin);
+    }
+    middle = origin + middle / f.count;
+    first_ = {middle.x(), middle.y(), middle.z()};
+    x_ = normal.x() / normal.z(), y_ = normal.y() / normal.z();
+  }
+
+  int count_;
+  Point first_, second_;  // of a polygon: its middle; of an edge: its ends
+  double x_ = 0.0, y_ = 0.0, per_length_ = 0.0;
+};
 
 // Keeps the first point and those that span the widest area with it.
 void keep_four(Feature& f) {
@@ -168,9 +192,10 @@ Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, con
   keep_four(overlap);
 
   Manifold manifold;
+  const Surface upper_surface(above), lower_surface(below);
   for (int i = 0; i < overlap.count; ++i) {
     Point p = overlap.at[i];
-    const double top = height_at(above, p), bottom = height_at(below, p);
+    const double top = upper_surface.height_at(p), bottom = lower_surface.height_at(p);
     p.height = 0.5 * (top + bottom);
     manifold.points[manifold.count++] = {plane.to_world(p), std::max(least_gap, top - bottom)};
   }

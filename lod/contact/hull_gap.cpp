@@ -118,7 +118,7 @@ Vec3 core_of(const Shape& shape, const Vec3& arm) { return shape.sphere_radius ?
 
 // Of the two when the first is moved by `shift`. Whether their cores are apart then: `gap` is of the hulls
 // where they are, along the axis found; else along the best one that was met.
-bool find_axis(const PlacedHull& first, const PlacedHull& second, const Vec3& shift, double enough,
+bool find_axis(const PlacedHull& first, const PlacedHull& second, const Vec3& shift, const Enough& enough,
                HullGap& gap) {
   const Vec3 between = first.position - second.position;
   const double size = first.shape->radius + second.shape->radius, nothing = 1e-18 * size * size;
@@ -142,7 +142,7 @@ bool find_axis(const PlacedHull& first, const PlacedHull& second, const Vec3& sh
     const Vec3 arm_first = first.find_farthest(-gap.normal, gap.vertex_first),
                arm_second = second.find_farthest(gap.normal, gap.vertex_second);
     gap.gap = gap.normal.dot(between + arm_first - arm_second);
-    if (gap.gap > enough) return true;
+    if (gap.gap > enough.along(gap.normal)) return true;
     if (gap.gap > best.gap) best = gap;
     const Vec3 corner =
         between + shift + core_of(*first.shape, arm_first) - core_of(*second.shape, arm_second);
@@ -166,7 +166,8 @@ Vec3 from_line_of_centers(const PlacedHull& first, const PlacedHull& second) {
 }
 
 // Taken apart along an axis that is nearly right, they show a better one.
-HullGap find_axis_of_overlap(const PlacedHull& first, const PlacedHull& second, HullGap best, double enough) {
+HullGap find_axis_of_overlap(const PlacedHull& first, const PlacedHull& second, HullGap best,
+                             const Enough& enough) {
   constexpr int kMostTries = 4;
   const double apart = kApart * std::min(first.shape->radius, second.shape->radius);
   for (int i = 0; i < kMostTries; ++i) {
@@ -198,12 +199,12 @@ HullGap measure_hull_gap(const PlacedHull& first, const PlacedHull& second, cons
   return along;
 }
 
-HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough,
-                      bool exact) {
+HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start,
+                      const Enough& enough, bool exact) {
   const bool known = !start.normal.isZero(0.0);
   HullGap gap =
       measure_hull_gap(first, second, known ? start.normal : from_line_of_centers(first, second), start);
-  if (gap.gap > enough) return gap;
+  if (gap.gap > enough.along(gap.normal)) return gap;
   // What overlapped a little a moment ago probably does so still.
   if (known && gap.gap < 0.0) {
     gap = find_axis_of_overlap(first, second, gap, enough);
@@ -224,7 +225,7 @@ HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const H
                                               : gap;
 }
 
-bool are_apart(const PlacedHull& first, const PlacedHull& second, double enough, HullGap& gap) {
+bool are_apart(const PlacedHull& first, const PlacedHull& second, const Enough& enough, HullGap& gap) {
   if (gap.normal.isZero(0.0)) gap.normal = from_line_of_centers(first, second);
   return find_axis(first, second, Vec3::Zero(), enough, gap);
 }

@@ -3,6 +3,7 @@
 // are first taken apart along an axis that served before.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "reference/shape.h"
@@ -42,15 +43,26 @@ struct HullGap {
   std::int32_t corner_count = 0;
 };
 
+/// m: a gap that is as good as any wider one, since two bodies cannot close it.
+struct Enough {
+  double still = 0.0;       ///< whichever way they go
+  Vec3 way = Vec3::Zero();  ///< and how the first one goes, seen from the second
+
+  Enough(double everywhere) : still(everywhere) {}
+  Enough(double everywhere, const Vec3& goes) : still(everywhere), way(goes) {}
+  double along(const Vec3& normal) const { return still + std::max(0.0, -way.dot(normal)); }
+  double anywhere() const { return still + way.norm(); }
+};
+
 /// The axis of the greatest gap, from `start` (its normal, zero: the line of centres; its vertices, −1:
 /// unknown). Ends early, with a gap above `enough`, once an axis shows one. Not `exact`: of hulls that
 /// overlap deeply any axis that was found will do, since the one of least depth takes a long search.
-HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start, double enough,
-                      bool exact = true);
+HullGap find_hull_gap(const PlacedHull& first, const PlacedHull& second, const HullGap& start,
+                      const Enough& enough, bool exact = true);
 
 /// Whether they do not overlap; `gap` is where the search begins and what it finds: their distance, or a gap
 /// above `enough`.
-bool are_apart(const PlacedHull& first, const PlacedHull& second, double enough, HullGap& gap);
+bool are_apart(const PlacedHull& first, const PlacedHull& second, const Enough& enough, HullGap& gap);
 
 /// The gap along one axis (unit).
 HullGap measure_hull_gap(const PlacedHull& first, const PlacedHull& second, const Vec3& normal,

@@ -142,19 +142,20 @@ void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std:
 }
 
 void search_relative(const PairBody& first, const PairBody& second, HullGap& whole,
-                     std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
+                     std::vector<KnownGap>& of_pieces, const Enough& margin, HullContactSearch& search) {
   search.contacts.clear();
   if (first.shape->pieces.empty() && second.shape->pieces.empty()) {
     whole = find_hull_gap(place(first), place(second), whole, margin, search.exact);
     search.gap = whole.gap;
-    if (search.gap <= margin) search.contacts.push_back(contact_along(first, second, whole));
+    if (search.gap <= margin.along(whole.normal))
+      search.contacts.push_back(contact_along(first, second, whole));
     return;
   }
   const bool apart = are_apart(place(first), place(second), margin, whole);
   search.gap = whole.gap;
-  if (apart && search.gap > margin) return;
+  if (apart && search.gap > margin.along(whole.normal)) return;
   of_pieces.resize(std::size_t(count_pieces(first) * count_pieces(second)));
-  find_contacts_of_pieces(first, second, of_pieces, margin, search);
+  find_contacts_of_pieces(first, second, of_pieces, margin.anywhere(), search);
 }
 
 // As std::round does, to the bit, without a call: half away from zero, and the sign of a zero kept. What is
@@ -208,10 +209,12 @@ namespace {
 
 // m: by how much no gap has shrunk more since then by how both have turned.
 double find_turning_since(const PairPose& then, const PairBody& first, const PairBody& second) {
-  // An angle is at most 2.2 times the chord of two quaternions, up to half a turn.
+  // Of two quaternions that are a chord c apart the angle is 4 asin(c / 2), up to half a turn at most 2 c +
+  // c³/8.
   const auto turned = [](const Eigen::Vector4f& from, const Quat& to) {
     const Eigen::Vector4d was = from.cast<double>();
-    return 2.2 * std::sqrt(std::min((was - to.coeffs()).squaredNorm(), (was + to.coeffs()).squaredNorm()));
+    const double square = std::min((was - to.coeffs()).squaredNorm(), (was + to.coeffs()).squaredNorm());
+    return std::sqrt(square) * (2.0 + square / 8.0);
   };
   return turned(then.first, first.orientation) * first.shape->radius +
          turned(then.second, second.orientation) * second.shape->radius;
@@ -224,10 +227,25 @@ double find_motion_since(const PairPose& then, const PairBody& first, const Pair
          find_turning_since(then, first, second);
 }
 
-double find_gap_left_along(const HullGap& found, const PairPose& then, const PairBody& first,
-                           const PairBody& second) {
-  return found.gap + (first.position - second.position - then.apart.cast<double>()).dot(found.normal) -
-         find_turning_since(then, first, second);
+GapLeft find_gap_left(const HullGap& found, const PairPose& then, const PairBody& first,
+                      const PairBody& second) {
+  const Vec3 moved = first.position - second.position - then.apart.cast<double>();
+  const double turned = find_turning_since(then, first, second);
+  return {found.gap - moved.norm() - turned, found.gap + moved.dot(found.normal) - turned};
+}
+
+double look_along(HullGap& found, const PairBody& first, const PairBody& second) {
+  const auto reach_along = [](const PairBody& body, const Vec3& direction, std::int32_t& vertex) {
+    if (body.shape->sphere_radius) return *body.shape->sphere_radius;
+    const Vec3 own = body.orientation.conjugate() * direction;
+    if (vertex < 0) vertex = body.shape->support_map.find_start(own);
+    vertex = find_support(body.shape->hull, own, vertex);
+    return own.dot(body.shape->hull.vertices[std::size_t(vertex)]);
+  };
+  found.gap = found.normal.dot(first.position - second.position) -
+              reach_along(first, -found.normal, found.vertex_first) -
+              reach_along(second, found.normal, found.vertex_second);
+  return found.gap;
 }
 
 HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second) {
@@ -259,7 +277,7 @@ PairContact follow(const HeldContact& held, const PairBody& first, const PairBod
 }
 
 void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole,
-                        std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search) {
+                        std::vector<KnownGap>& of_pieces, const Enough& margin, HullContactSearch& search) {
   const auto [a, b] = relative_to_second(first, second);
   search_relative(a, b, whole, of_pieces, margin, search);
   for (PairContact& contact : search.contacts) shift(contact, second.position);

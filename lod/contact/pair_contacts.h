@@ -50,9 +50,16 @@ struct PairPose {
 PairPose pose_of(const PairBody& first, const PairBody& second);
 /// m: no gap between them has changed by more since they lay so.
 double find_motion_since(const PairPose& then, const PairBody& first, const PairBody& second);
-/// m: what is left now, at least, of a gap of the two hulls that was found when they lay so, along its axis.
-double find_gap_left_along(const HullGap& found, const PairPose& then, const PairBody& first,
-                           const PairBody& second);
+/// m: what is left now, at least, of a gap of the two hulls that was found when they lay so.
+struct GapLeft {
+  double anyhow = 0.0;  ///< of their distance
+  double along = 0.0;   ///< along its axis
+};
+GapLeft find_gap_left(const HullGap& found, const PairPose& then, const PairBody& first,
+                      const PairBody& second);
+
+/// m: the gap of the two hulls now along the axis on which it was found, which it is then.
+double look_along(HullGap& found, const PairBody& first, const PairBody& second);
 
 /// The gap of two pieces of bodies as it was found.
 struct KnownGap {
@@ -72,7 +79,7 @@ struct HullContactSearch {
 /// `of_pieces`, of every two pieces (at first empty), are what earlier searches found. What `search` held
 /// before is gone.
 void find_pair_contacts(const PairBody& first, const PairBody& second, HullGap& whole,
-                        std::vector<KnownGap>& of_pieces, double margin, HullContactSearch& search);
+                        std::vector<KnownGap>& of_pieces, const Enough& margin, HullContactSearch& search);
 
 /// The two hulls, whatever pieces they have; none where the gap is above `margin`. Of the first body, those
 /// vertices serve, too, that are up to `ahead` m farther than the nearest: they may touch next. The search

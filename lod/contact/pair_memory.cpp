@@ -36,7 +36,7 @@ std::int32_t PairMemory::find(ContactKey key, std::size_t expected) {
 // Where the key is, or the free entry in which it would be.
 std::size_t PairMemory::entry_of(ContactKey key) const {
   const std::size_t mask = table_.size() - 1;
-  std::size_t i = std::size_t((key * 0x9e3779b97f4a7c15u) >> 20) & mask;
+  std::size_t i = std::size_t(hash_of(key)) & mask;
   while (table_[i] >= 0 && keys_[std::size_t(table_[i])] != key) i = (i + 1) & mask;
   return i;
 }

@@ -42,9 +42,16 @@ class PairMemory {
   struct Marks {
     std::size_t one, other;
   };
+  // Each bit of it hangs on both bodies: what lies on the ground has one second for all (the finalizer of
+  // SplitMix64; Steele, Lea and Flood, Fast splittable pseudorandom number generators, 2014).
+  static std::uint64_t hash_of(ContactKey key) {
+    key = (key ^ key >> 30) * 0xbf58476d1ce4e5b9u;
+    key = (key ^ key >> 27) * 0x94d049bb133111ebu;
+    return key ^ key >> 31;
+  }
   Marks marks_of(ContactKey key) const {
-    const std::uint64_t hash = key * 0x9e3779b97f4a7c15u, bits = 64 * marks_.size();
-    return {std::size_t(hash >> 20 & (bits - 1)), std::size_t(hash >> 40 & (bits - 1))};
+    const std::uint64_t hash = hash_of(key), bits = 64 * marks_.size();
+    return {std::size_t(hash & (bits - 1)), std::size_t(hash >> 32 & (bits - 1))};
   }
   bool is_marked(std::size_t bit) const { return (marks_[bit / 64] >> bit % 64 & 1) != 0; }
   void mark(ContactKey key) {

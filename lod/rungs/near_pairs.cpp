@@ -148,28 +148,39 @@ Vec3 NearPairs::point_velocity(const ContactScene& scene, Participant p, const V
   return body.velocity + turning_[p.index()].angular_velocity.cross(point - body.position);
 }
 
-// In `time` seconds, for all that is known of the two. In long substeps they fall and turn by so much that
-// most would be looked at for that, had their gap to shrink in whatever direction they go.
-bool NearPairs::stay_apart(const ContactScene& scene, double time, Pace pace, const FoundPair& pair) const {
+// How the two may close in within `time` seconds.
+Enough NearPairs::find_reach(const ContactScene& scene, double time, const FoundPair& pair) const {
+  return {kTouching * least_radius(scene, pair) + find_approach_by_turning(scene, pair, time),
+          (scene.velocity(pair.first) - scene.velocity(pair.second)) * time};
+}
+
+// For all that is known of the two.
+bool NearPairs::stay_apart(const FoundPair& pair, const PairBody& first, const PairBody& second,
+                           const Enough& reach) {
   if (!pair.when || !pair.contacts.empty()) return false;
-  const PairBody a = scene.pair_body(pair.first), b = scene.pair_body(pair.second);
-  const double touching = kTouching * std::min(a.shape->radius, b.shape->radius);
-  if (pair.gap - find_motion_since(*pair.when, a, b) > touching + find_approach(scene, pair, time))
-    return true;
-  if (!is_long(pace) || !pair.of_pieces.empty()) return false;
-  const Vec3 closing = scene.velocity(pair.first) - scene.velocity(pair.second);
-  return find_gap_left_along(pair.whole, *pair.when, a, b) >
-         touching + std::max(0.0, -closing.dot(pair.whole.normal)) * time +
-             find_approach_by_turning(scene, pair, time);
+  if (!pair.of_pieces.empty())
+    return pair.gap - find_motion_since(*pair.when, first, second) > reach.anywhere();
+  const GapLeft left = find_gap_left(pair.whole, *pair.when, first, second);
+  return left.along > reach.along(pair.whole.normal) || left.anyhow > reach.anywhere();
 }
 
 void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, FoundPair& pair) const {
   // Over R: so far bodies take a contact along. A sphere's orientation is coarse anyway, and spheres among
   // others may overlap deeply, where a search is dear.
-  constexpr double kHeld = 0.02, kHeldBySphere = 0.1;
-  if (stay_apart(scene, time, pace, pair)) return;
+  constexpr double kHeld = 0.02, kHeldBySphere = 0.1, kOfTurning = 0.3;
   const PairBody a = scene.pair_body(pair.first), b = scene.pair_body(pair.second);
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
+  const Enough reach = find_reach(scene, time, pair);
+  if (stay_apart(pair, a, b, reach)) return;
+  // Points that come near by turning alone are few, and in short substeps met soon after.
+  const Enough margin(is_long(pace) ? reach.still : touching + kOfTurning * (reach.still - touching),
+                      reach.way);
+  if (pair.when && pair.contacts.empty() && pair.of_pieces.empty() &&
+      look_along(pair.whole, a, b) > margin.along(pair.whole.normal)) {
+    pair.gap = pair.whole.gap;
+    pair.when = pose_of(a, b);
+    return;
+  }
   const auto is_sphere = [&](Participant p) { return p.is_statistical() && scene.body(p).is_sphere(); };
   const auto is_eased = [&](Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; };
   const double held = is_sphere(pair.first) || is_sphere(pair.second) ? kHeldBySphere : kHeld;
@@ -178,8 +189,7 @@ void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, 
   thread_local HullContactSearch search;
   search.exact =
       !is_sphere(pair.first) && !is_sphere(pair.second) && !is_eased(pair.first) && !is_eased(pair.second);
-  const double approach = is_long(pace) ? find_approach(scene, pair, time) : closing.norm() * time;
-  find_pair_contacts(a, b, pair.whole, pair.of_pieces, touching + approach, search);
+  find_pair_contacts(a, b, pair.whole, pair.of_pieces, margin, search);
   pair.gap = search.gap;
   pair.when = pose_of(a, b);
   pair.contacts.clear();

@@ -100,7 +100,9 @@ class NearPairs {
   std::uint32_t take_place();
   void put_in_order();
   void find_contact(const ContactScene& scene, double time, Pace pace, FoundPair& pair) const;
-  bool stay_apart(const ContactScene& scene, double time, Pace pace, const FoundPair& pair) const;
+  Enough find_reach(const ContactScene& scene, double time, const FoundPair& pair) const;
+  static bool stay_apart(const FoundPair& pair, const PairBody& first, const PairBody& second,
+                         const Enough& reach);
   double find_approach_by_turning(const ContactScene& scene, const FoundPair& pair, double time) const;
   bool closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact,
               double time) const;

@@ -7,21 +7,20 @@
 
 namespace lodestone {
 
+// Without a branch for each neighbour: which of them is higher, no processor foretells.
 int find_support(const Hull& hull, const Vec3& direction, int start) {
   int best = start;
-  double height = hull.vertices[start].dot(direction);
-  for (bool higher = true; higher;) {
-    higher = false;
-    for (int i : hull.neighbors(best)) {
-      const double other = hull.vertices[i].dot(direction);
-      if (other > height) {
-        height = other;
-        best = i;
-        higher = true;
-      }
+  double height = hull.vertices[std::size_t(start)].dot(direction);
+  while (true) {
+    int next = best;
+    for (const std::int32_t i : hull.neighbors(best)) {
+      const double other = hull.vertices[std::size_t(i)].dot(direction);
+      next = other > height ? i : next;
+      height = std::max(height, other);
     }
+    if (next == best) return best;
+    best = next;
   }
-  return best;
 }
 
 SupportMap::SupportMap(const Hull& hull, int side) : cells_(side) {

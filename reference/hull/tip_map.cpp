@@ -3,7 +3,7 @@
 namespace lodestone {
 namespace {
 
-constexpr int kSide = 8;                       // cells along a face of the cube
+constexpr int kSide = 16;                      // cells along a face of the cube
 constexpr std::size_t kFewVertices = 64;       // of a hull
 constexpr std::size_t kMostVertices = 65'536;  // that have a number here
 

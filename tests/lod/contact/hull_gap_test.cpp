@@ -109,5 +109,26 @@ TEST_F(HullGapOfPairs, EndsEarlyWhereAnAxisPartsThemByEnough) {
   EXPECT_NEAR(measure_hull_gap(pair.first, pair.second, Vec3::UnitZ()).gap, 4.6, 1e-12);
 }
 
+// Boxes .3 m apart along z, an axis at 37° to that known, along which they are less far apart: who goes
+// aside or away cannot close that gap; who comes nearer can, so that their true distance is looked for.
+TEST_F(HullGapOfPairs, WhatIsEnoughHangsOnWhichWayTheyGo) {
+  const Pair pair{PlacedHull(shapes_[4], Vec3(0, 0, 0.7), Quat::Identity()),
+                  PlacedHull(shapes_[4], Vec3::Zero(), Quat::Identity())};
+  const Vec3 slanting(0.6, 0.0, 0.8);
+  const double along = measure_hull_gap(pair.first, pair.second, slanting).gap;
+  ASSERT_GT(along, 0.05);
+  ASSERT_LT(along, 0.2);
+  const auto found = [&](const Vec3& way) {
+    return find_hull_gap(pair.first, pair.second, {.normal = slanting}, Enough(0.05, way)).gap;
+  };
+  EXPECT_NEAR(found(Vec3(0.0, 1.0, 0.0)), along, 1e-12);
+  EXPECT_NEAR(found(1.0 * slanting), along, 1e-12);
+  EXPECT_NEAR(found(Vec3(0.0, 0.0, -1.0)), 0.3, 1e-9);
+  const Enough enough(0.05, Vec3(-0.3, 0.0, 0.4));
+  EXPECT_NEAR(enough.along(Vec3::UnitX()), 0.35, 1e-12);
+  EXPECT_NEAR(enough.along(Vec3::UnitZ()), 0.05, 1e-12);
+  EXPECT_NEAR(enough.anywhere(), 0.55, 1e-12);
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "reference/random.h"
+
 namespace lodestone {
 namespace {
 
@@ -75,6 +80,39 @@ TEST(PairContacts, AGreatSlabIsTouchedOnOneSide) {
       EXPECT_NEAR(contact->manifold.points[std::size_t(i)].point.z(), 0.1 + 0.5 * gap, 1e-9);
     }
   }
+}
+
+// What was found once bounds what is there later, however they have moved and turned, up to a full turn; and
+// a look along the axis says what is left along it.
+TEST(PairContacts, AGapThatWasFoundIsNeverThoughtWiderThanItIs) {
+  const Shape crate = make_shape("crate", make_box({0.2, 0.3, 0.4}));
+  RandomStream random(47, 0, 0);
+  int told = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const PairBody first = at(crate, random.uniform(0.3, 1.5) * random.direction(), random.orientation()),
+                   second = at(crate, Vec3::Zero(), random.orientation());
+    HullGap gap =
+        find_hull_gap({crate, first.position, first.orientation},
+                      {crate, second.position, second.orientation}, {.normal = Vec3::Zero()}, 1e300);
+    const PairPose then = pose_of(first, second);
+    const auto move = [&](const PairBody& body) {
+      const double much = std::pow(10.0, random.uniform(-3.0, 0.5));
+      return at(crate, body.position + 0.1 * much * random.direction(),
+                rotation_from_vector(much * random.direction()) * body.orientation);
+    };
+    const PairBody one = move(first), other = move(second);
+    const PlacedHull placed_one(crate, one.position, one.orientation),
+        placed_other(crate, other.position, other.orientation);
+    const GapLeft left = find_gap_left(gap, then, one, other);
+    const double along = measure_hull_gap(placed_one, placed_other, gap.normal).gap,
+                 apart = find_hull_gap(placed_one, placed_other, {.normal = Vec3::Zero()}, 1e300).gap;
+    EXPECT_LE(left.along, along + 1e-6) << i;
+    EXPECT_LE(left.anyhow, std::max(0.0, apart) + 1e-6) << i;
+    EXPECT_NEAR(look_along(gap, one, other), along, 1e-12);
+    EXPECT_EQ(gap.gap, look_along(gap, one, other));
+    told += left.along > 0.0;
+  }
+  EXPECT_GT(told, 500);
 }
 
 }  // namespace
