@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lod/contact/contact_impulse.h"
-#include "lod/simd/double_lanes.h"
+#include "lod/simd/lanes.h"
 
 namespace lodestone {
 

@@ -1,7 +1,4 @@
-// The contacts of a whole crowd at once: sequential impulses as in contact_solver.h, four manifolds side by
-// side. Manifolds are coloured so that those of one colour share no body that moves (greedy colouring;
-// Fratarcangeli, Tibaldo and Pellacini, Vivace, 2016): any number of them can be answered at a time, with one
-// result.
+// The contacts of a whole crowd at once, each island of what hangs together as its kind asks for.
 #pragma once
 
 #include <memory>
@@ -20,8 +17,8 @@ class CrowdSolver {
   ~CrowdSolver();
 
   /// As solve_contacts; with its frictionless bound for islands of few points, and, with more sweeps, where
-  /// bodies that hang together differ in mass by much; without it elsewhere. The points of a manifold follow
-  /// each other in `points`.
+  /// bodies that hang together differ in mass by much; without it elsewhere, where impulses are floats. The
+  /// points of a manifold follow each other in `points`.
   void solve(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
              std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings,
              const JobRunner& jobs);

@@ -1,0 +1,163 @@
+#include "lod/contact/uneven_islands.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "lod/contact/crowd_lanes.h"
+
+namespace lodestone {
+
+using namespace lane;
+
+namespace {
+
+constexpr double kMostUnevenSweeps =
+    80.0;  // times as many as elsewhere; for a ratio r about √(r / 2) times, as such an iteration asks for
+// Points, four lanes wide, of one body on another: an impact on a light one, of whose impulses nothing is
+// known, is solved to the end, in which so many points are relaxed. Larger ones are no better for it: slabs
+// of a thousand times a column's mass then crush it more often.
+constexpr std::size_t kFewPoints = 12, kRelaxations = 16'000;
+constexpr double kUnevenTolerance = 1e-4;  // of what gravity adds to a velocity in the step
+
+/// More of a point: its friction's bound; where the impulses are led, and what they were.
+struct alignas(64) LedPoint {
+  D4 bound, step[3], before[3];
+};
+
+struct BoundedRelaxation {
+  const LedPoint* led;
+
+  LODESTONE_INLINE bool operator()(const PointAtHand<D4>& at, V4& impulse) const {
+    PointLanes<D4>& p = at.point;
+    const V4 velocity = at.velocity();
+    const D4 held[3] = {p.impulse[0], p.impulse[1], p.impulse[2]}, bound = led[at.index].bound;
+    const D4 asked = p.effective_mass[0] * (p.target - dot(velocity, at.batch.normal));
+    p.impulse[0] = least(at.batch.most_impulse, most(D4{}, held[0] + asked));
+    p.impulse[1] = most(-bound, least(held[1] - p.effective_mass[1] * dot(velocity, p.tangent), bound));
+    p.impulse[2] = most(-bound, least(held[2] - p.effective_mass[2] * dot(velocity, at.across), bound));
+    const D4 change[3] = {p.impulse[0] - held[0], p.impulse[1] - held[1], p.impulse[2] - held[2]};
+    impulse = at.along_axes(change);
+    return true;
+  }
+};
+
+/// Adds a part of `step` to the impulses.
+struct Leading {
+  const LedPoint* led;
+  double part;
+
+  LODESTONE_INLINE bool operator()(const PointAtHand<D4>& at, V4& impulse) const {
+    const D4* way = led[at.index].step;
+    const D4 change[3] = {part * way[0], part * way[1], part * way[2]};
+    for (int i = 0; i < 3; ++i) at.point.impulse[i] = at.point.impulse[i] + change[i];
+    impulse = at.along_axes(change);
+    return true;
+  }
+};
+
+}  // namespace
+
+struct UnevenIslands::Work {
+  explicit Work(Simd simd) : lanes(simd) {}
+
+  CrowdLanes<D4> lanes;
+  std::vector<LedPoint> led;  // beside the points
+  std::vector<Motion<D4>> motions_before;
+  std::vector<std::array<D4, 3>> guesses;
+
+  template <class Visit>
+  void each_point(const Visit& visit) {
+    for (const BatchLanes<D4>& batch : lanes.batches())
+      for (std::uint32_t i = batch.begin; i < batch.begin + std::uint32_t(batch.count); ++i)
+        visit(batch, lanes.points()[i], i);
+  }
+  void bound_friction(int sweeps, double enough, const JobRunner& jobs);
+  void sweep_led(int sweeps, double enough, const JobRunner& jobs);
+};
+
+// Sweeps by themselves carry a weight through a light body as many of them as the one is heavier: each is led
+// on along the way of the ones before, as conjugate gradients are (Silcowitz, Niebe and Erleben, A nonsmooth
+// nonlinear conjugate gradient method for interactive contact force problems, 2010). They end with the
+// velocities that are left to be mended: of a great weight's impulses a small part is much for a light body.
+void UnevenIslands::Work::sweep_led(int sweeps, double enough, const JobRunner& jobs) {
+  double last = 0.0;
+  for (int i = 0; i < sweeps; ++i) {
+    each_point([&](const BatchLanes<D4>&, PointLanes<D4>& p, std::uint32_t at) {
+      std::ranges::copy(p.impulse, led[at].before);
+    });
+    lanes.sweep(BoundedRelaxation{led.data()}, jobs);
+    if (i + 1 == sweeps) return;       // within its bounds
+    double size = 0.0, fastest = 0.0;  // of the change: J over the unit of mass; m/s
+    each_point([&](const BatchLanes<D4>& batch, const PointLanes<D4>& p, std::uint32_t at) {
+      for (int axis = 0; axis < 3; ++axis)
+        for (int lane = 0; lane < batch.lanes; ++lane) {
+          const double mass = p.effective_mass[axis][lane],
+                       change = p.impulse[axis][lane] - led[at].before[axis][lane];
+          if (mass <= 0.0) continue;
+          size += change * change / mass;
+          fastest = std::max(fastest, std::abs(change) / mass);
+        }
+    });
+    if (fastest <= enough) return;
+    const double part = i > 0 && size <= last ? (last > 0.0 ? size / last : 0.0) : 0.0;
+    each_point([&](const BatchLanes<D4>&, PointLanes<D4>& p, std::uint32_t at) {
+      for (int axis = 0; axis < 3; ++axis) led[at].before[axis] = p.impulse[axis] - led[at].before[axis];
+    });
+    if (part > 0.0) lanes.sweep(Leading{led.data(), part}, jobs);
+    each_point([&](const BatchLanes<D4>&, const PointLanes<D4>&, std::uint32_t at) {
+      for (int axis = 0; axis < 3; ++axis)
+        led[at].step[axis] =
+            i == 0 || part == 0.0 ? led[at].before[axis] : part * led[at].step[axis] + led[at].before[axis];
+    });
+    last = size;
+  }
+}
+
+// A weight that rolls or slides onto light bodies presses them to the ground, where friction then holds them
+// all the more, and so on: bounds that follow the normal impulses brake a ball of two tons on boxes of ten
+// kilograms within a metre. dWorldStep with Approx1, the truth's law, has bounds from the normal impulses
+// without friction.
+void UnevenIslands::Work::bound_friction(int sweeps, double enough, const JobRunner& jobs) {
+  motions_before = lanes.motions();
+  led.resize(lanes.points().size());
+  guesses.resize(lanes.points().size());
+  each_point([&](const BatchLanes<D4>&, PointLanes<D4>& p, std::uint32_t at) {
+    guesses[at] = {p.impulse[0], p.impulse[1], p.impulse[2]};
+    led[at].bound = p.impulse[1] = p.impulse[2] = D4{};
+  });
+  lanes.sweep(GuessesGiven<D4>{}, jobs);
+  sweep_led(sweeps, enough, jobs);
+  lanes.motions() = motions_before;
+  each_point([&](const BatchLanes<D4>& batch, PointLanes<D4>& p, std::uint32_t at) {
+    const D4 bound = led[at].bound = batch.friction * p.impulse[0];
+    p.impulse[0] = guesses[at][0];
+    for (std::size_t i = 1; i < 3; ++i) p.impulse[i] = most(-bound, least(guesses[at][i], bound));
+  });
+}
+
+UnevenIslands::UnevenIslands(Simd simd) : work_(std::make_unique<Work>(simd)) {}
+UnevenIslands::~UnevenIslands() = default;
+
+void UnevenIslands::solve(const CrowdContacts& contacts, std::span<const std::uint32_t> which, double ratio,
+                          const JobRunner& jobs) {
+  if (which.empty()) return;
+  Work& work = *work_;
+  const ContactSolverSettings& settings = contacts.settings;
+  work.lanes.take(contacts, which, jobs);
+  const std::size_t count = work.lanes.points().size();  // of points, four lanes wide
+  const int more = int(settings.sweeps * std::min(kMostUnevenSweeps, 1.0 + std::sqrt(ratio / 2))),
+            sweeps = std::max(more, count <= kFewPoints ? int(kRelaxations / count) : 0);
+  const double enough = kUnevenTolerance * settings.fall.norm();
+  work.bound_friction(sweeps, enough, jobs);
+  work.lanes.sweep(GuessesGiven<D4>{}, jobs);
+  for (int i = 0; i < settings.sweeps; ++i)
+    if (const SweepChange change = work.lanes.sweep(BoundedRelaxation{work.led.data()}, jobs);
+        change.greatest_change <= settings.tolerance * change.greatest_impulse)
+      break;
+  work.sweep_led(sweeps, enough, jobs);
+  work.lanes.hand_out(contacts, jobs);
+}
+
+}  // namespace lodestone
