@@ -9,7 +9,8 @@ namespace {
 // ball of ten boxes' weight that rolls into a stack of these comes back by .6 m/s less than in ODE
 // (heavy_on_light).
 constexpr std::uint32_t kFewPoints = 60;
-constexpr float kUneven = 20.0F;
+// From here on sweeps alone do not carry a weight through a light body.
+constexpr float kUneven = 12.0F;
 
 }  // namespace
 
@@ -40,11 +41,12 @@ void CrowdIslands::find(std::span<const SolverBody> bodies, std::span<const Crow
     if (a > 0.0 && b > 0.0) island.unevenness = std::max({island.unevenness, float(a / b), float(b / a)});
   }
   kinds_.clear();
-  most_uneven_ = 1.0;
+  most_uneven_ = most_uneven_of_great_ = 1.0;
   for (const std::int32_t i : island_of_) {
     const Island& island = islands_[std::size_t(i)];
     kinds_.push_back(kind_of(island));
-    if (kinds_.back() == IslandKind::uneven) most_uneven_ = std::max(most_uneven_, double(island.unevenness));
+    double& most = kinds_.back() == IslandKind::uneven ? most_uneven_ : most_uneven_of_great_;
+    if (kinds_.back() != IslandKind::small) most = std::max(most, double(island.unevenness));
   }
 }
 

@@ -13,7 +13,8 @@ namespace lodestone {
 
 enum class IslandKind : std::uint8_t {
   small,   ///< of one body that moves, or of few points: each by itself, with ODE's bound on friction
-  uneven,  ///< with bodies of which one weighs 20 times another that it touches: ODE's bound and more sweeps
+  uneven,  ///< with bodies of which one weighs twelve times another that it touches: ODE's bound and more
+           ///< sweeps
   great,   ///< any other, and what is left awake of such a heap: friction is bounded by the impulses as they
            ///< are
 };
@@ -31,7 +32,8 @@ class CrowdIslands {
   }
   /// Greatest ratio of the masses of two that touch, of those in uneven islands; 1: there are none.
   double most_uneven() const { return most_uneven_; }
-  bool any_uneven() const { return most_uneven_ > 1.0; }
+  /// The same of great islands.
+  double most_uneven_of_great() const { return most_uneven_of_great_; }
 
  private:
   struct Island {
@@ -45,7 +47,7 @@ class CrowdIslands {
   std::vector<Island> islands_;  // of each body, where it stands for its island
   std::vector<std::int32_t> island_of_;
   std::vector<IslandKind> kinds_;
-  double most_uneven_ = 1.0;
+  double most_uneven_ = 1.0, most_uneven_of_great_ = 1.0;
 };
 
 }  // namespace lodestone

@@ -16,8 +16,8 @@ class CrowdSolver {
   explicit CrowdSolver(Simd simd = find_simd());
   ~CrowdSolver();
 
-  /// As solve_contacts; with its frictionless bound for islands of few points, and, with more sweeps, where
-  /// bodies that hang together differ in mass by much; without it elsewhere, where impulses are floats. The
+  /// Friction is bounded without regard to itself for islands of few points, and, with more sweeps, where
+  /// bodies that hang together differ in mass by much; by the impulses as they are elsewhere. The
   /// points of a manifold follow each other in `points`.
   void solve(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
              std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings,

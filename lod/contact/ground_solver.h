@@ -33,7 +33,7 @@ struct GroundContact {
   }
 };
 
-/// As solve_contacts, for one body of the inverse inertia `inverse_inertia` (over mass, body axes); of the
+/// For one body of the inverse inertia `inverse_inertia` (over mass, body axes); of the
 /// settings, `fall` is in body axes.
 void solve_ground_contacts(GroundMotion& motion, const Mat3& inverse_inertia,
                            std::span<GroundContact> contacts, double step,

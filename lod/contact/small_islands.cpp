@@ -1,100 +1,235 @@
 #include "lod/contact/small_islands.h"
 
 #include <algorithm>
+#include <array>
+#include <tuple>
+#include <vector>
+
+#include "lod/contact/contact_lanes.h"
 
 namespace lodestone {
+
+using namespace lane;
+
 namespace {
 
+using L = F8;
+constexpr std::size_t kWidth = kLanes<L>;
 constexpr int kMostIslandSweeps = 40;  // of few points: a body on two edges asks for many
 constexpr int kIslandRelaxations =
     400;  // of points, in as many sweeps as that is, but never fewer than a crowd's
-constexpr std::int64_t kSideBySide = 8;  // islands
+
+/// A manifold, by its island.
+struct Own {
+  std::int32_t island;
+  std::uint32_t manifold;
+};
+
+struct Island {
+  std::uint32_t begin = 0, count = 0;  // its manifolds among those that are owned
+  std::uint32_t points = 0;
+};
+
+/// Islands in lanes, each in the same one of all its batches: the first manifold of each, the second of each,
+/// and so on.
+struct Group {
+  std::int64_t begin = 0;  // batches
+  std::array<std::uint32_t, kWidth> manifolds{};
+  std::array<int, kWidth> sweeps{};  // at most
+};
+
+/// More of a point: its friction's bound, and what its impulses begin with.
+struct alignas(64) StartLanes {
+  L bound, guess[3];
+};
+
+struct FrictionlessRelaxation {
+  const L& live;  // 1 or 0, of each lane
+
+  LODESTONE_INLINE bool operator()(const PointAtHand<L>& at, Vec3Lanes<L>& impulse) const {
+    PointLanes<L>& p = at.point;
+    const L held = p.impulse[0],
+            asked = live * p.effective_mass[0] * (p.target - dot(at.velocity(), at.batch.normal));
+    p.impulse[0] = least(at.batch.most_impulse, most(L{}, held + asked));
+    impulse = (p.impulse[0] - held) * at.batch.normal;
+    return true;
+  }
+};
+
+struct BoundedRelaxation {
+  const StartLanes* starts;
+  const L& live;
+
+  LODESTONE_INLINE bool operator()(const PointAtHand<L>& at, Vec3Lanes<L>& impulse) const {
+    PointLanes<L>& p = at.point;
+    const Vec3Lanes<L> velocity = at.velocity();
+    const L held[3] = {p.impulse[0], p.impulse[1], p.impulse[2]}, bound = starts[at.index].bound;
+    const L asked = live * p.effective_mass[0] * (p.target - dot(velocity, at.batch.normal));
+    p.impulse[0] = least(at.batch.most_impulse, most(L{}, held[0] + asked));
+    const L slip[2] = {dot(velocity, p.tangent), dot(velocity, at.across)};
+    for (int t = 1; t < 3; ++t)
+      p.impulse[t] = most(-bound, least(held[t] - live * p.effective_mass[t] * slip[t - 1], bound));
+    const L change[3] = {p.impulse[0] - held[0], p.impulse[1] - held[1], p.impulse[2] - held[2]};
+    impulse = at.along_axes(change);
+    return true;
+  }
+};
 
 }  // namespace
 
-void SmallIslands::find(std::span<const SolverBody> bodies, std::span<const CrowdManifold> manifolds,
-                        const CrowdIslands& islands) {
-  own_.clear();
-  for (std::uint32_t i = 0; i < manifolds.size(); ++i)
-    if (islands.kind_of(i) == IslandKind::small) own_.push_back({islands.island_of(i), i});
-  std::ranges::sort(own_, {}, [](const Own& own) { return std::pair(own.island, own.manifold); });
-  first_.clear();
-  for (std::uint32_t i = 0; i < own_.size(); ++i)
-    if (i == 0 || own_[i].island != own_[i - 1].island) first_.push_back(i);
-  first_.push_back(std::uint32_t(own_.size()));
-  place_of_.assign(bodies.size(), -1);
-}
+struct SmallIslands::Work {
+  explicit Work(Simd simd) : lanes(simd) {}
 
-void SmallIslands::solve(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
-                         std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings,
-                         Simd simd, const JobRunner& jobs) {
-  constexpr std::int64_t kBlock = 32;  // islands of a job
-  ContactSolverSettings own = settings;
-  own.frictionless_bound = true;
-  run_in_pieces(jobs, std::int64_t(first_.size()) - 1, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; i += kSideBySide) {
-      const std::int64_t count = std::min(kSideBySide, end - i);
-      solve_some(bodies, manifolds, points, step, own, simd,
-                 std::span(first_).subspan(std::size_t(i), std::size_t(count) + 1));
+  ContactLanes<L> lanes;
+  std::vector<Own> own;
+  std::vector<Island> islands;
+  std::vector<Group> groups;
+  std::vector<StartLanes> starts;  // beside the points
+
+  void find(const CrowdContacts& contacts, const CrowdIslands& kinds);
+  void make_groups(const CrowdContacts& contacts);
+  void solve_group(const Group& group, const CrowdContacts& contacts);
+  template <class Visit>
+  void each_point(const Group& group, const Visit& visit) {
+    for (std::uint32_t round = 0; round < group.manifolds.front(); ++round) {
+      const BatchLanes<L>& batch = lanes.batches()[std::size_t(group.begin) + round];
+      for (std::uint32_t k = 0; k < std::uint32_t(batch.count); ++k)
+        visit(batch, lanes.points()[batch.begin + k], starts[batch.begin + k], k);
     }
+  }
+  void take_motions_back(const Group& group, const CrowdContacts& contacts);
+  template <class Answer>
+  void sweep(const Group& group, const Answer& answer, L& live, double tolerance);
+};
+
+// The islands with most manifolds first, so that those side by side are alike.
+void SmallIslands::Work::find(const CrowdContacts& contacts, const CrowdIslands& kinds) {
+  own.clear();
+  for (std::uint32_t i = 0; i < contacts.manifolds.size(); ++i)
+    if (kinds.kind_of(i) == IslandKind::small) own.push_back({kinds.island_of(i), i});
+  std::ranges::sort(own, {}, [](const Own& o) { return std::pair(o.island, o.manifold); });
+  islands.clear();
+  for (std::uint32_t i = 0; i < own.size(); ++i) {
+    if (i == 0 || own[i].island != own[i - 1].island) islands.push_back({.begin = i});
+    ++islands.back().count;
+    islands.back().points += contacts.manifolds[own[i].manifold].count;
+  }
+  std::ranges::sort(islands, [](const Island& a, const Island& b) {
+    return std::tuple(b.count, b.points, a.begin) < std::tuple(a.count, a.points, b.begin);
   });
 }
 
-void SmallIslands::solve_some(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
-                              std::span<CrowdPoint> points, double step,
-                              const ContactSolverSettings& settings, Simd simd,
-                              std::span<const std::uint32_t> first) {
-  thread_local std::vector<SolverBody> local;      // those that move once, of what does not a copy a manifold
-  thread_local std::vector<std::int32_t> body_of;  // of each of these, or −1 of what does not move
-  thread_local std::vector<SolverContact> contacts;
-  thread_local std::vector<IslandRun> runs;  // of each island
-  local.clear(), body_of.clear(), contacts.clear(), runs.clear();
-  const auto place_of = [&](std::int32_t body) {
-    if (body < 0) return -1;
-    const auto next = std::int32_t(local.size());
-    const bool moves = bodies[std::size_t(body)].inverse_mass > 0.0;
-    std::int32_t none = -1;
-    std::int32_t& place = moves ? place_of_[std::size_t(body)] : none;
-    if (place >= 0) return place;
-    local.push_back(bodies[std::size_t(body)]);
-    body_of.push_back(moves ? body : -1);
-    return place = next;
+void SmallIslands::Work::make_groups(const CrowdContacts& contacts) {
+  const auto mass_of = [&](std::int32_t body) {
+    const double inverse = body < 0 ? 0.0 : contacts.bodies[std::size_t(body)].inverse_mass;
+    return inverse > 0.0 ? 1.0 / inverse : 0.0;
   };
-  for (std::size_t island = 0; island + 1 < first.size(); ++island) {
-    const auto begin = std::uint32_t(contacts.size());
-    for (std::uint32_t i = first[island]; i < first[island + 1]; ++i) {
-      const CrowdManifold& m = manifolds[own_[i].manifold];
-      const std::int32_t one = place_of(m.first), other = place_of(m.second);
-      for (const CrowdPoint& point : points.subspan(m.begin, m.count))
-        contacts.push_back({.first = one,
-                            .second = other,
-                            .normal = m.normal,
-                            .arm_first = point.arm_first,
-                            .arm_second = point.arm_second,
-                            .gap = point.gap,
-                            .law = m.law,
-                            .guess = point.guess,
-                            .frictionless = point.frictionless,
-                            .most_impulse = m.most_impulse});
+  groups.clear();
+  lanes.clear();
+  for (std::size_t first = 0; first < islands.size(); first += kWidth) {
+    const auto side_by_side = std::span(islands).subspan(first, std::min(kWidth, islands.size() - first));
+    Group& group = groups.emplace_back();
+    group.begin = std::int64_t(lanes.batches().size());
+    std::array<double, kWidth> unit_mass;
+    for (std::size_t i = 0; i < side_by_side.size(); ++i) {
+      const Island& island = side_by_side[i];
+      group.manifolds[i] = island.count;
+      group.sweeps[i] =
+          std::max(contacts.settings.sweeps,
+                   std::min(kIslandRelaxations / int(std::max(island.points, 1U)), kMostIslandSweeps));
+      const CrowdManifold& one = contacts.manifolds[own[island.begin].manifold];
+      unit_mass[i] = std::max(mass_of(one.first), mass_of(one.second));
+      if (unit_mass[i] == 0.0) unit_mass[i] = 1.0;
     }
-    const std::uint32_t count = std::uint32_t(contacts.size()) - begin;
-    const int enough = std::min(kIslandRelaxations / int(std::max(count, 1U)), kMostIslandSweeps);
-    runs.push_back({begin, count, std::max(settings.sweeps, enough)});
-  }
-  solve_contacts(local, contacts, runs, step, settings, simd);
-  for (std::size_t i = 0; i < local.size(); ++i)
-    if (body_of[i] >= 0) bodies[std::size_t(body_of[i])] = local[i];
-  std::size_t at = 0;
-  for (const Own& own : std::span(own_).subspan(first.front(), first.back() - first.front())) {
-    const CrowdManifold& m = manifolds[own.manifold];
-    for (CrowdPoint& point : points.subspan(m.begin, m.count)) {
-      const SolverContact& solved = contacts[at++];
-      point.impulse = impulse_of(solved);
-      point.frictionless = float(solved.frictionless);
-      point.bounces = solved.bounces;
-      point.impact_time = float(solved.impact_time);
+    std::array<std::uint32_t, kWidth> manifolds;
+    for (std::uint32_t round = 0; round < side_by_side.front().count; ++round) {
+      std::size_t count = 0;
+      for (; count < side_by_side.size() && side_by_side[count].count > round; ++count)
+        manifolds[count] = own[side_by_side[count].begin + round].manifold;
+      lanes.add_batch(contacts, std::span(manifolds).first(count), std::span(unit_mass).first(count));
     }
   }
+  lanes.end();
+  starts.resize(lanes.points().size());
+}
+
+void SmallIslands::Work::take_motions_back(const Group& group, const CrowdContacts& contacts) {
+  for (std::uint32_t round = 0; round < group.manifolds.front(); ++round) {
+    const BatchLanes<L>& batch = lanes.batches()[std::size_t(group.begin) + round];
+    const auto take_back = [&](std::int32_t body, bool moves) {
+      if (!moves) return;
+      const SolverBody& from = contacts.bodies[std::size_t(body)];
+      lanes.motions()[std::size_t(body)].set(from.velocity, from.angular_velocity);
+    };
+    for (int lane = 0; lane < batch.lanes; ++lane) {
+      take_back(batch.first[lane], batch.inverse_mass_first[lane] > 0.0F);
+      take_back(batch.second[lane], batch.inverse_mass_second[lane] > 0.0F);
+    }
+  }
+}
+
+// Each lane until nothing changes in it any more.
+template <class Answer>
+void SmallIslands::Work::sweep(const Group& group, const Answer& answer, L& live, double tolerance) {
+  for (std::size_t i = 0; i < kWidth; ++i) live[i] = group.manifolds[i] > 0 ? 1.0F : 0.0F;
+  for (int done = 1;; ++done) {
+    std::uint32_t rounds = 0;
+    for (std::size_t i = 0; i < kWidth; ++i)
+      if (live[i] > 0.0F) rounds = std::max(rounds, group.manifolds[i]);
+    if (rounds == 0) return;
+    const LaneChange<L> change = lanes.sweep(answer, group.begin, group.begin + rounds);
+    for (std::size_t i = 0; i < kWidth; ++i)
+      if (done >= group.sweeps[i] || change.of_impulse[i] <= float(tolerance) * change.greatest_impulse[i])
+        live[i] = 0.0F;
+  }
+}
+
+// Twice: what the normal impulses are without friction bounds it.
+void SmallIslands::Work::solve_group(const Group& group, const CrowdContacts& contacts) {
+  const std::int64_t end = group.begin + group.manifolds.front();
+  lanes.prepare(contacts, group.begin, end);
+  each_point(group, [&](const BatchLanes<L>& batch, PointLanes<L>& p, StartLanes& start, std::uint32_t k) {
+    std::ranges::copy(p.impulse, start.guess);
+    for (int lane = 0; lane < batch.lanes; ++lane) {
+      const CrowdManifold& m = contacts.manifolds[batch.manifold[lane]];
+      if (k >= m.count) continue;
+      const CrowdPoint& point = contacts.points[m.begin + k];
+      if (point.frictionless >= 0.0F && !point.bounces)
+        p.impulse[0][lane] =
+            std::min(float(double(point.frictionless) / batch.unit_mass[lane]), batch.most_impulse[lane]);
+    }
+    p.impulse[1] = p.impulse[2] = L{};
+  });
+  L live;
+  lanes.sweep(GuessesGiven<L>{}, group.begin, end);
+  sweep(group, FrictionlessRelaxation{live}, live, contacts.settings.tolerance);
+  take_motions_back(group, contacts);
+  each_point(group, [&](const BatchLanes<L>& batch, PointLanes<L>& p, StartLanes& start, std::uint32_t k) {
+    for (int lane = 0; lane < batch.lanes; ++lane)
+      if (const CrowdManifold& m = contacts.manifolds[batch.manifold[lane]]; k < m.count)
+        contacts.points[m.begin + k].frictionless = float(double(p.impulse[0][lane]) * batch.unit_mass[lane]);
+    start.bound = batch.friction * p.impulse[0];
+    p.impulse[0] = start.guess[0];
+    for (int t = 1; t < 3; ++t) p.impulse[t] = most(-start.bound, least(start.guess[t], start.bound));
+  });
+  lanes.sweep(GuessesGiven<L>{}, group.begin, end);
+  sweep(group, BoundedRelaxation{starts.data(), live}, live, contacts.settings.tolerance);
+  lanes.hand_out(contacts, group.begin, end);
+}
+
+SmallIslands::SmallIslands(Simd simd) : work_(std::make_unique<Work>(simd)) {}
+SmallIslands::~SmallIslands() = default;
+
+void SmallIslands::solve(const CrowdContacts& contacts, const CrowdIslands& islands, const JobRunner& jobs) {
+  constexpr std::int64_t kGrain = 4;  // groups of a job
+  Work& work = *work_;
+  work.find(contacts, islands);
+  if (work.own.empty()) return;
+  work.make_groups(contacts);
+  work.lanes.take_motions(contacts.bodies);
+  run_in_pieces(jobs, std::int64_t(work.groups.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) work.solve_group(work.groups[std::size_t(i)], contacts);
+  });
 }
 
 }  // namespace lodestone

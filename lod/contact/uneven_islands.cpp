@@ -60,9 +60,10 @@ struct Leading {
 }  // namespace
 
 struct UnevenIslands::Work {
-  explicit Work(Simd simd) : lanes(simd) {}
+  explicit Work(Simd simd) : crowd(simd), lanes(crowd.lanes()) {}
 
-  CrowdLanes<D4> lanes;
+  CrowdLanes<D4> crowd;
+  ContactLanes<D4>& lanes;
   std::vector<LedPoint> led;  // beside the points
   std::vector<Motion<D4>> motions_before;
   std::vector<std::array<D4, 3>> guesses;
@@ -87,7 +88,7 @@ void UnevenIslands::Work::sweep_led(int sweeps, double enough, const JobRunner& 
     each_point([&](const BatchLanes<D4>&, PointLanes<D4>& p, std::uint32_t at) {
       std::ranges::copy(p.impulse, led[at].before);
     });
-    lanes.sweep(BoundedRelaxation{led.data()}, jobs);
+    crowd.sweep(BoundedRelaxation{led.data()}, jobs);
     if (i + 1 == sweeps) return;       // within its bounds
     double size = 0.0, fastest = 0.0;  // of the change: J over the unit of mass; m/s
     each_point([&](const BatchLanes<D4>& batch, const PointLanes<D4>& p, std::uint32_t at) {
@@ -105,7 +106,7 @@ void UnevenIslands::Work::sweep_led(int sweeps, double enough, const JobRunner& 
     each_point([&](const BatchLanes<D4>&, PointLanes<D4>& p, std::uint32_t at) {
       for (int axis = 0; axis < 3; ++axis) led[at].before[axis] = p.impulse[axis] - led[at].before[axis];
     });
-    if (part > 0.0) lanes.sweep(Leading{led.data(), part}, jobs);
+    if (part > 0.0) crowd.sweep(Leading{led.data(), part}, jobs);
     each_point([&](const BatchLanes<D4>&, const PointLanes<D4>&, std::uint32_t at) {
       for (int axis = 0; axis < 3; ++axis)
         led[at].step[axis] =
@@ -127,7 +128,7 @@ void UnevenIslands::Work::bound_friction(int sweeps, double enough, const JobRun
     guesses[at] = {p.impulse[0], p.impulse[1], p.impulse[2]};
     led[at].bound = p.impulse[1] = p.impulse[2] = D4{};
   });
-  lanes.sweep(GuessesGiven<D4>{}, jobs);
+  crowd.sweep(GuessesGiven<D4>{}, jobs);
   sweep_led(sweeps, enough, jobs);
   lanes.motions() = motions_before;
   each_point([&](const BatchLanes<D4>& batch, PointLanes<D4>& p, std::uint32_t at) {
@@ -145,19 +146,17 @@ void UnevenIslands::solve(const CrowdContacts& contacts, std::span<const std::ui
   if (which.empty()) return;
   Work& work = *work_;
   const ContactSolverSettings& settings = contacts.settings;
-  work.lanes.take(contacts, which, jobs);
+  work.crowd.take(contacts, which, jobs);
   const std::size_t count = work.lanes.points().size();  // of points, four lanes wide
   const int more = int(settings.sweeps * std::min(kMostUnevenSweeps, 1.0 + std::sqrt(ratio / 2))),
             sweeps = std::max(more, count <= kFewPoints ? int(kRelaxations / count) : 0);
   const double enough = kUnevenTolerance * settings.fall.norm();
   work.bound_friction(sweeps, enough, jobs);
-  work.lanes.sweep(GuessesGiven<D4>{}, jobs);
+  work.crowd.sweep(GuessesGiven<D4>{}, jobs);
   for (int i = 0; i < settings.sweeps; ++i)
-    if (const SweepChange change = work.lanes.sweep(BoundedRelaxation{work.led.data()}, jobs);
-        change.greatest_change <= settings.tolerance * change.greatest_impulse)
-      break;
+    if (work.crowd.sweep(BoundedRelaxation{work.led.data()}, jobs) <= enough) break;
   work.sweep_led(sweeps, enough, jobs);
-  work.lanes.hand_out(contacts, jobs);
+  work.crowd.hand_out(contacts, jobs);
 }
 
 }  // namespace lodestone

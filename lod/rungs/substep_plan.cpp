@@ -9,9 +9,10 @@ namespace lodestone {
 namespace {
 
 constexpr int kLeastSubsteps = 3, kMostSubsteps = 12;
-constexpr double kLongest = 1.0 / 60.0;  // s, of a step taken at once
-constexpr int kManyBodies = 30;          // awake, of an island that may take it: of fewer, each one shows
-constexpr double kUneven = 20.0;         // ratio of the masses of two that may touch
+constexpr double kLongest = 1.0 / 60.0;     // s, of a step taken at once
+constexpr double kLongestOfSmall = 0.0615;  // over √(R/g), of a substep, but for slow heaps: three times that
+constexpr int kManyBodies = 30;             // awake, of an island that may take it: of fewer, each one shows
+constexpr double kUneven = 20.0;            // ratio of the masses of two that may touch
 constexpr double kStride =
     0.07;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
 
@@ -26,7 +27,7 @@ bool may_strike_ground(const ContactScene& scene, const StatisticalBody& body, d
 void mark(const FoundPair& pair, NearMarks& near) { near.mark(pair.first), near.mark(pair.second); }
 
 Pace pace_for(double way, double least) {
-  return Pace(std::ceil(std::clamp(way / kStride, least, double(kMostSubsteps))));
+  return Pace(std::ceil(std::min(std::max(way / kStride, least), double(kMostSubsteps))));
 }
 
 bool is_uneven(const ContactScene& scene, const FoundPair& pair) {
@@ -76,7 +77,8 @@ void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pai
 // Through every pair of two that are near anybody: who is struck may be faster than its way says. What sleeps
 // or is full hangs together with others through contacts that no pair tells of here: all of it is one, in the
 // place after the last body.
-void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near) {
+void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs, double dt,
+                               const NearMarks& near) {
   const auto others = std::int32_t(scene.bodies.size());
   islands_.make_room(scene.bodies.size() + 1);
   island_of_root_.resize(scene.bodies.size() + 1);
@@ -104,8 +106,14 @@ void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs
                       scene.properties(pair.first).kinematic || scene.properties(pair.second).kinematic ||
                       (!stands(pair.first) && !stands(pair.second) && is_uneven(scene, pair));
   }
-  for (const std::int32_t body : near.marked())
-    if (scene.bodies[std::size_t(body)].motion != Motion::asleep) ++island_of(body).bodies;
+  for (const std::int32_t i : near.marked()) {
+    const StatisticalBody& body = scene.bodies[std::size_t(i)];
+    if (body.motion == Motion::asleep) continue;
+    Island& island = island_of(i);
+    ++island.bodies;
+    const double fall = scene.world.gravity_strength() * dt * dt / scene.kind_of(body).shape->radius;
+    island.fall = std::max(island.fall, fall);
+  }
 }
 
 // Of the islands that touch them.
@@ -133,15 +141,17 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
   for (const SolidContact& contact : solid_contacts)
     near.mark(Participant::statistical(std::size_t(contact.slot)));
 
-  find_islands(scene, pairs, near);
+  find_islands(scene, pairs, dt, near);
   find_ways_to_solids(scene, solid_contacts, dt);
   std::array<bool, kMostSubsteps + 1> any = {};
   const double least = std::max(1.0, dt / kLongest - 1e-6);
   const auto pace_of = [&](std::int32_t node) {
     const Island& island = island_of(node);
     const bool is_slow_heap = island.bodies >= kManyBodies && !island.is_hard;
+    const double for_fall = std::sqrt(island.fall) / kLongestOfSmall;
     const Pace pace =
-        pace_for(island.longest, is_slow_heap ? least : std::max(least, double(kLeastSubsteps)));
+        pace_for(island.longest, is_slow_heap ? std::max(least, for_fall / kLeastSubsteps)
+                                              : std::max({least, double(kLeastSubsteps), for_fall}));
     any[pace] = true;
     return pace;
   };

@@ -39,13 +39,14 @@ class SubstepPlan {
  private:
   struct Island {
     double longest = kApart;  // of its ways
+    double fall = 0.0;        // over R: what gravity adds to the way of its smallest body in the step
     int bodies = 0;           // that are awake
     bool is_hard = false;     // sweeps of three substeps are not enough for a step at once
   };
 
   void find_ways(const ContactScene& scene, const NearPairs& pairs, double dt);
   void mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt, NearMarks& near);
-  void find_islands(const ContactScene& scene, const NearPairs& pairs, const NearMarks& near);
+  void find_islands(const ContactScene& scene, const NearPairs& pairs, double dt, const NearMarks& near);
   void find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts,
                            double dt);
   Island& island_of(std::int32_t node) { return island_of_root_[std::size_t(islands_.root_of(node))]; }

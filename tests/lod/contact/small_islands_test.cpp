@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "lod/contact/crowd_solver.h"
+#include "tests/lod/contact/plain_solver.h"
 
 namespace lodestone {
 namespace {
@@ -38,8 +39,8 @@ struct IslandScene {
     touch(body, -1, Vec3::UnitZ(), {{0.1, 0, -0.1}});
     return body;
   }
-  std::vector<SolverContact> contacts() const {
-    std::vector<SolverContact> all;
+  std::vector<PlainContact> contacts() const {
+    std::vector<PlainContact> all;
     for (const CrowdManifold& m : manifolds)
       for (const CrowdPoint& p : std::span(points).subspan(m.begin, m.count))
         all.push_back({.first = m.first,
@@ -68,9 +69,8 @@ TEST(SmallIslands, FrictionIsBoundedAsInOde) {
   const std::int32_t on_sleeper = islands.add_body(1.0, {0, 1, -1}), pair = islands.add_pair();
   islands.touch(sleeper, on_sleeper, -Vec3::UnitZ(), {{0, 0, 0.1}});
   std::vector<SolverBody> plain = islands.bodies;
-  std::vector<SolverContact> contacts = islands.contacts();
-  solve_contacts(plain, contacts, kIslandStep,
-                 {.sweeps = 500, .tolerance = 1e-9, .frictionless_bound = true});
+  std::vector<PlainContact> contacts = islands.contacts();
+  solve_plainly(plain, contacts, kIslandStep, {.sweeps = 500, .tolerance = 1e-9, .frictionless_bound = true});
   islands.solve();
   for (const std::int32_t i : {body, sleeper, on_sleeper, pair, pair + 1}) {
     const auto at = std::size_t(i);
