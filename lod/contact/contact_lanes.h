@@ -26,6 +26,16 @@ struct CrowdContacts {
   const ContactSolverSettings& settings;
 };
 
+/// kg: of the heavier of the two that move, or 1. Impulses over it lie in the midst of what floats hold.
+inline double unit_mass_of(const CrowdContacts& contacts, const CrowdManifold& m) {
+  const auto mass_of = [&](std::int32_t body) {
+    const double inverse = body < 0 ? 0.0 : contacts.bodies[std::size_t(body)].inverse_mass;
+    return inverse > 0.0 ? 1.0 / inverse : 0.0;
+  };
+  const double heavier = std::max(mass_of(m.first), mass_of(m.second));
+  return heavier > 0.0 ? heavier : 1.0;
+}
+
 namespace lane {
 
 /// A body's velocities as contacts read and change them, m/s and rad/s.
@@ -228,22 +238,45 @@ class ContactLanes {
   std::vector<Motion<L>> motions_;
 };
 
+/// A bound of friction: times the normal impulse, or as it is.
+template <Lanes L>
+struct FrictionTimes {
+  const L& friction;
+  LODESTONE_INLINE L operator()(const L& normal) const { return friction * normal; }
+};
+template <Lanes L>
+struct FrictionWithin {
+  const L& bound;
+  LODESTONE_INLINE L operator()(const L&) const { return bound; }
+};
+
+/// Adds what is `asked` along the normal, and as much along the tangents as stops the slip of `velocity`
+/// within `bound_of` the normal impulse, by the effective masses times `live`. Returns by how much that
+/// changes the impulse.
+template <Lanes L, class BoundOf>
+LODESTONE_INLINE Vec3Lanes<L> relax(const PointAtHand<L>& at, const Vec3Lanes<L>& velocity, const L& asked,
+                                    const L& live, const BoundOf& bound_of) {
+  PointLanes<L>& p = at.point;
+  const L held[3] = {p.impulse[0], p.impulse[1], p.impulse[2]},
+          slip[2] = {dot(velocity, p.tangent), dot(velocity, at.across)};
+  p.impulse[0] = least(at.batch.most_impulse, most(L{}, held[0] + asked));
+  const L bound = bound_of(p.impulse[0]);
+  for (int t = 1; t < 3; ++t)
+    p.impulse[t] = most(-bound, least(held[t] - live * p.effective_mass[t] * slip[t - 1], bound));
+  const L change[3] = {p.impulse[0] - held[0], p.impulse[1] - held[1], p.impulse[2] - held[2]};
+  return at.along_axes(change);
+}
+
 /// Relaxes a point, its friction bounded by its normal impulse as it is.
 template <Lanes L>
 struct Relaxation {
   LODESTONE_INLINE bool operator()(const PointAtHand<L>& at, Vec3Lanes<L>& impulse) const {
-    PointLanes<L>& p = at.point;
+    const PointLanes<L>& p = at.point;
     const L none = {};
     const Vec3Lanes<L> velocity = at.velocity();
-    const L held[3] = {p.impulse[0], p.impulse[1], p.impulse[2]};
     const L asked = p.effective_mass[0] * (p.target - dot(velocity, at.batch.normal));
-    if (!any((held[0] > none) | (asked > none))) return false;  // no point carries anything
-    p.impulse[0] = least(at.batch.most_impulse, most(none, held[0] + asked));
-    const L bound = at.batch.friction * p.impulse[0];
-    p.impulse[1] = most(-bound, least(held[1] - p.effective_mass[1] * dot(velocity, p.tangent), bound));
-    p.impulse[2] = most(-bound, least(held[2] - p.effective_mass[2] * dot(velocity, at.across), bound));
-    const L change[3] = {p.impulse[0] - held[0], p.impulse[1] - held[1], p.impulse[2] - held[2]};
-    impulse = at.along_axes(change);
+    if (!any((p.impulse[0] > none) | (asked > none))) return false;  // no point carries anything
+    impulse = relax(at, velocity, asked, all<L>(1), FrictionTimes<L>{at.batch.friction});
     return true;
   }
 };

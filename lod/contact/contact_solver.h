@@ -5,10 +5,6 @@
 // not undone: that is a matter of positions (see push_out_overlap).
 #pragma once
 
-#include <cstdint>
-#include <span>
-
-#include "lod/simd/wide_loop.h"
 #include "reference/geometry.h"
 #include "reference/material.h"
 
@@ -30,7 +26,8 @@ struct ContactSolverSettings {
                     ///< or in a crowd no velocity by more than that of `fall`
   double tolerance = 1e-4;
   bool frictionless_bound = false;  ///< friction is bounded by μ times the normal impulses without friction,
-                                    ///< as dWorldStep with Approx1 has it
+                                    ///< as dWorldStep with Approx1 has it; crowds choose that
+                                    ///< themselves
   double bounce_velocity = 0.05;    ///< m/s, slower approaches do not bounce (as in ODE)
   Vec3 fall = Vec3::Zero();  ///< m/s, what gravity has given the velocities for this step: an impact on what
                              ///< stands still is answered as fast as it is when it happens, within the step

@@ -106,14 +106,8 @@ void CrowdLanes<L>::make_batches(const CrowdContacts& contacts, std::span<const 
   order_.resize(which.size());
   for (std::size_t i = 0; i < which.size(); ++i) order_[first_of_[group_of_[i]]++] = which[i];
 
-  const auto mass = [&](std::int32_t body) {
-    return body < 0 || bodies[std::size_t(body)].inverse_mass <= 0.0
-               ? 0.0
-               : 1.0 / bodies[std::size_t(body)].inverse_mass;
-  };
   std::array<double, kWidth> unit_mass;
-  unit_mass.fill(std::max(mass(manifolds[which.front()].first), mass(manifolds[which.front()].second)));
-  if (unit_mass[0] == 0.0) unit_mass.fill(1.0);
+  unit_mass.fill(unit_mass_of(contacts, manifolds[which.front()]));
   first_batch_.assign(1, 0);
   std::uint32_t at = 0;
   for (int colour = 0; colour < kColours; ++colour) {

@@ -61,16 +61,10 @@ struct BoundedRelaxation {
   const L& live;
 
   LODESTONE_INLINE bool operator()(const PointAtHand<L>& at, Vec3Lanes<L>& impulse) const {
-    PointLanes<L>& p = at.point;
+    const PointLanes<L>& p = at.point;
     const Vec3Lanes<L> velocity = at.velocity();
-    const L held[3] = {p.impulse[0], p.impulse[1], p.impulse[2]}, bound = starts[at.index].bound;
     const L asked = live * p.effective_mass[0] * (p.target - dot(velocity, at.batch.normal));
-    p.impulse[0] = least(at.batch.most_impulse, most(L{}, held[0] + asked));
-    const L slip[2] = {dot(velocity, p.tangent), dot(velocity, at.across)};
-    for (int t = 1; t < 3; ++t)
-      p.impulse[t] = most(-bound, least(held[t] - live * p.effective_mass[t] * slip[t - 1], bound));
-    const L change[3] = {p.impulse[0] - held[0], p.impulse[1] - held[1], p.impulse[2] - held[2]};
-    impulse = at.along_axes(change);
+    impulse = relax(at, velocity, asked, live, FrictionWithin<L>{starts[at.index].bound});
     return true;
   }
 };
@@ -120,10 +114,6 @@ void SmallIslands::Work::find(const CrowdContacts& contacts, const CrowdIslands&
 }
 
 void SmallIslands::Work::make_groups(const CrowdContacts& contacts) {
-  const auto mass_of = [&](std::int32_t body) {
-    const double inverse = body < 0 ? 0.0 : contacts.bodies[std::size_t(body)].inverse_mass;
-    return inverse > 0.0 ? 1.0 / inverse : 0.0;
-  };
   groups.clear();
   lanes.clear();
   for (std::size_t first = 0; first < islands.size(); first += kWidth) {
@@ -137,9 +127,7 @@ void SmallIslands::Work::make_groups(const CrowdContacts& contacts) {
       group.sweeps[i] =
           std::max(contacts.settings.sweeps,
                    std::min(kIslandRelaxations / int(std::max(island.points, 1U)), kMostIslandSweeps));
-      const CrowdManifold& one = contacts.manifolds[own[island.begin].manifold];
-      unit_mass[i] = std::max(mass_of(one.first), mass_of(one.second));
-      if (unit_mass[i] == 0.0) unit_mass[i] = 1.0;
+      unit_mass[i] = unit_mass_of(contacts, contacts.manifolds[own[island.begin].manifold]);
     }
     std::array<std::uint32_t, kWidth> manifolds;
     for (std::uint32_t round = 0; round < side_by_side.front().count; ++round) {

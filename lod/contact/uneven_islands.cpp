@@ -30,15 +30,9 @@ struct BoundedRelaxation {
   const LedPoint* led;
 
   LODESTONE_INLINE bool operator()(const PointAtHand<D4>& at, V4& impulse) const {
-    PointLanes<D4>& p = at.point;
     const V4 velocity = at.velocity();
-    const D4 held[3] = {p.impulse[0], p.impulse[1], p.impulse[2]}, bound = led[at.index].bound;
-    const D4 asked = p.effective_mass[0] * (p.target - dot(velocity, at.batch.normal));
-    p.impulse[0] = least(at.batch.most_impulse, most(D4{}, held[0] + asked));
-    p.impulse[1] = most(-bound, least(held[1] - p.effective_mass[1] * dot(velocity, p.tangent), bound));
-    p.impulse[2] = most(-bound, least(held[2] - p.effective_mass[2] * dot(velocity, at.across), bound));
-    const D4 change[3] = {p.impulse[0] - held[0], p.impulse[1] - held[1], p.impulse[2] - held[2]};
-    impulse = at.along_axes(change);
+    const D4 asked = at.point.effective_mass[0] * (at.point.target - dot(velocity, at.batch.normal));
+    impulse = relax(at, velocity, asked, all<D4>(1.0), FrictionWithin<D4>{led[at.index].bound});
     return true;
   }
 };
