@@ -316,7 +316,8 @@ typedef enum lodestone_rule {
   LODESTONE_RULE_RUNG_RANGE = 11,
   LODESTONE_RULE_OUT_OF_VIEW = 12,
   LODESTONE_RULE_LOOK_AHEAD = 13,
-  LODESTONE_RULE_JOINED = 14
+  LODESTONE_RULE_JOINED = 14,
+  LODESTONE_RULE_CARRIES_FULL = 15
 } lodestone_rule;
 
 /* Why it has its rung; see Why. `in_view` and what is about pictures is as without viewpoints where there is

@@ -26,7 +26,8 @@ enum class Rule : std::uint8_t {
   rung_range,  ///< the caller left one rung
   out_of_view,
   look_ahead,
-  joined,  ///< joints of the caller's on its ODE body
+  joined,        ///< joints of the caller's on its ODE body
+  carries_full,  ///< it is kinematic and touches full bodies
 };
 std::string_view text_of(Rule rule);
 

@@ -27,7 +27,7 @@ constexpr std::array<char, 8> kMagic{'L', 'O', 'D', 'E', 'P', 'L', 'A', 'Y'};
 constexpr double kMostFaces = 3e6;       // of all bodies together
 constexpr int kLeastFaces = 60;          // of one, where it had more
 constexpr double kUnitsOfRadius = 8192;  // positions are kept to this part of the smallest body's radius
-constexpr int kLastRule = int(Rule::joined);
+constexpr int kLastRule = int(Rule::carries_full);
 
 // The blobs, and their places for the header.
 class Blobs {

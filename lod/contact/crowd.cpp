@@ -47,10 +47,10 @@ SolverBody solver_body_of(const ContactScene& scene, Participant p, double time)
   return solver;
 }
 
-// Of a pair with a full body the statistical one, of two statistical ones the later one.
-Participant deciding(Participant one, Participant other) {
-  if (!one.is_statistical() || !other.is_statistical()) return one.is_statistical() ? one : other;
-  return one.index() > other.index() ? one : other;
+// m: by which overlaps of two bodies, or of one and the ground, are judged: that of the smaller.
+double radius_of_pair(const ContactScene& scene, Participant one, Participant other) {
+  const double radius = scene.shape(one).radius;
+  return other.is_ground() ? radius : std::min(radius, scene.shape(other).radius);
 }
 
 bool is_eased(const ContactScene& scene, Participant p) {
@@ -509,7 +509,7 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
     const Participant one = participants_[std::size_t(m.first)],
                       other = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
     if (!one.is_statistical() && !other.is_statistical()) continue;
-    const double radius = scene.shape(deciding(one, other)).radius;
+    const double radius = radius_of_pair(scene, one, other);
     const bool eased = is_eased(scene, one) || is_eased(scene, other);
     const int partners =
         std::max(partners_[std::size_t(m.first)], m.second < 0 ? 0 : partners_[std::size_t(m.second)]);

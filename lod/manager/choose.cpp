@@ -150,7 +150,9 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
     ask_for_tables(body);
   const Activity does = budgeted() || policy_.contact_groups_together ? activity(body) : Activity::alone;
   const bool pinned = level.rung == Rung::full && !level.newcomer && groups_.pinned(body);
-  const RungSet open = pinned ? RungSet{Rung::full} : open_to(level, does == Activity::asleep);
+  const RungSet may_be = open_to(level, does == Activity::asleep);
+  const bool carries = level.own_properties && !group && may_be.has(Rung::full) && carriers_.contains(body);
+  const RungSet open = pinned || carries ? RungSet{Rung::full} : may_be;
   if (does == Activity::asleep || unseen) level.woke_at = report.step;
   const bool held = pinned && does != Activity::asleep;
   const float mesh = budgeted() ? mesh_weight(*levels_.bodies.shape(body)) : 0.0f;
@@ -165,6 +167,7 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   }
   LevelCandidate candidate = make_candidate(body, open, does == Activity::asleep);
   if (pinned) candidate.decided_by = Rule::joined;
+  if (carries) candidate.decided_by = Rule::carries_full;
   candidate.mesh = mesh;
   if (budgeted()) candidate.cost = costs_->cost_of(does, costs_->full_share(mesh));
   if (budgeted() && open.one() && open.has(Rung::full) && !level.newcomer)

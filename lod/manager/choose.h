@@ -12,6 +12,7 @@
 #include "lod/manager/choose_levels.h"
 #include "lod/manager/cost_model.h"
 #include "lod/manager/far_bodies.h"
+#include "lod/manager/full_carriers.h"
 #include "lod/manager/groups.h"
 #include "lod/manager/levels.h"
 #include "lod/manager/views.h"
@@ -36,7 +37,12 @@ class Choose {
  public:
   /// `model`: that all statistical bodies have which the caller leaves to the manager.
   Choose(Levels& levels, const PolicySettings& policy, std::optional<StatisticalModel> model)
-      : levels_(levels), groups_(levels), policy_(policy), limits_(limits_of(policy)), model_(model) {}
+      : levels_(levels),
+        groups_(levels),
+        carriers_(levels),
+        policy_(policy),
+        limits_(limits_of(policy)),
+        model_(model) {}
 
   Groups& groups() { return groups_; }
   const Groups& groups() const { return groups_; }
@@ -47,7 +53,12 @@ class Choose {
   void set_views(Views views);
   /// The caller, or a change of rung, did something to it: it is looked at in the next step.
   void note(std::uint32_t body) { changed_.push_back(body); }
-  void forget(std::uint32_t body) { far_.forget(body), groups_.forget(body); }
+  void forget(std::uint32_t body) { far_.forget(body), groups_.forget(body), carriers_.forget(body); }
+  /// Kinematic bodies that touched full ones in a step.
+  void note_carriers(std::span<const CarriedFull> touches) {
+    for (const CarriedFull& touch : touches)
+      if (carriers_.take(touch)) note(touch.carrier);
+  }
 
   /// Nothing: all stay as they are. What was decided and not done, because the step threw, is decided anew:
   /// see done().
@@ -73,8 +84,8 @@ class Choose {
 
   /// But for the policy and the ground, which are the reader's.
   void archive(StateArchive& a) {
-    a(groups_, views_, turned_, look_at_all_, wishing_, changed_, support_sleepers_, seen_or_not_, waiting_,
-      next_waiting_, far_, traveled_, counts_);
+    a(groups_, carriers_, views_, turned_, look_at_all_, wishing_, changed_, support_sleepers_, seen_or_not_,
+      waiting_, next_waiting_, far_, traveled_, counts_);
   }
 
  private:
@@ -110,6 +121,7 @@ class Choose {
 
   Levels& levels_;
   Groups groups_;
+  FullCarriers carriers_;
   PolicySettings policy_;
   std::optional<Limits> limits_;  // of the policy, but for a budget
   std::optional<StatisticalModel> model_;

@@ -252,6 +252,7 @@ void Manager::Impl::begin_stages(double dt, WorldStepBy by) {
   // 3 statistical rungs and their contacts with full bodies
   if (levels.statistical) levels.statistical->set_log(events.log());
   step_levels.step_statistical(dt, by, report);
+  if (levels.statistical) choose.note_carriers(levels.statistical->carriers());
   if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::as_it_slept, report);
   add_statistical(levels, laps.lap_ms(), measured);
   // 4 full level

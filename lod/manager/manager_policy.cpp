@@ -141,6 +141,8 @@ std::string_view text_of(Rule rule) {
       return "about to hit a full body";
     case Rule::joined:
       return "joints hold its ODE body";
+    case Rule::carries_full:
+      return "it carries or pushes full bodies";
   }
   return "";
 }

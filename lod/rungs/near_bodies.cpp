@@ -84,6 +84,19 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     neighbors[i].carried = full_[i].carried;
     neighbors[i].end = full_[i].state;
   }
+  find_carriers(step.scene);
+}
+
+void NearBodies::find_carriers(const ContactScene& scene) {
+  carriers_.clear();
+  if (full_.empty() || !settings_.properties || settings_.properties->empty()) return;
+  const auto is_awake = [&](Participant p) {
+    return p.is_full() && !scene.asleep(p) && !scene.properties(p).kinematic;
+  };
+  for (const CrowdContact& c : contacts())
+    for (const auto& [body, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}})
+      if (body.is_statistical() && scene.properties(body).kinematic && is_awake(other))
+        carriers_.push_back({scene.owner(body), scene.owner(other)});
 }
 
 // All islands of one pace, from the step's beginning to its end.

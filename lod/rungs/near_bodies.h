@@ -50,7 +50,9 @@ class NearBodies {
   void set_gravity(const Vec3& gravity) { settings_.gravity = gravity; }
   void set_log(ContactLog* log) { log_ = log; }  ///< null: none
   /// In place of a step, where nothing moves that could be near another.
-  void forget_pairs() { pairs_.clear(); }
+  void forget_pairs() { pairs_.clear(), carriers_.clear(); }
+  /// Of the last step, each perhaps more than once.
+  std::span<const CarriedFull> carriers() const { return carriers_; }
   /// Between bodies, found in the last substep of each island.
   std::span<const CrowdContact> contacts() const { return pairs_.all_contacts(); }
 
@@ -83,6 +85,7 @@ class NearBodies {
   void move_crowded(const Step& step, Pace pace, int substep);
   void take_crowded(const Step& step);
   void move_full_on(double time, int substep);
+  void find_carriers(const ContactScene& scene);
 
   StatisticalSettings settings_;
   const Ground& ground_;
@@ -106,6 +109,7 @@ class NearBodies {
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
   std::vector<SolidContact> solid_contacts_;
   FacesBelow faces_;
+  std::vector<CarriedFull> carriers_;
   std::vector<ContactTally> tallies_;
 };
 

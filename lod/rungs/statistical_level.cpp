@@ -286,6 +286,8 @@ void StatisticalLevel::archive(
   s.near_bodies.make_room(std::size_t(s.support.size()));
 }
 
+std::span<const CarriedFull> StatisticalLevel::carriers() const { return impl_->near_bodies.carriers(); }
+
 void StatisticalLevel::find_contacts(std::vector<PairContact>& contacts) const {
   for (const CrowdContact& contact : impl_->near_bodies.contacts()) contacts.push_back(contact.contact);
 }

@@ -104,6 +104,8 @@ class StatisticalLevel {
   /// Appends the owners of sleepers whose bounding sphere meets this one, and perhaps others; `reach` in m.
   void find_sleepers(const Vec3& center, double reach, std::vector<std::uint32_t>& owners) const;
 
+  /// Of the last step, each perhaps more than once.
+  std::span<const CarriedFull> carriers() const;
   /// Appends the contacts of the last step in which one of the two bodies met as a hull.
   void find_contacts(std::vector<PairContact>& contacts) const;
 

@@ -38,6 +38,11 @@ struct FullNeighbor {
   bool is_touched() const { return !hit.is_zero() || !push.is_zero(); }  ///< by a statistical body
 };
 
+/// A kinematic statistical body that touched a full neighbour which is awake and not kinematic.
+struct CarriedFull {
+  std::uint32_t carrier = 0, full = 0;  ///< owners
+};
+
 /// Of one that is not asleep, what ODE's step of `dt` seconds, in `substeps`, is to begin with, its push
 /// given as a force. `gravity` in m/s², as it acts on the body.
 RigidState find_start(const FullNeighbor& neighbor, const Vec3& gravity, double dt, int substeps);

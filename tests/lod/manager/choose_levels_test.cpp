@@ -226,7 +226,8 @@ TEST(BudgetPolicy, T11EveryBodyHasItsTurnAsTheViewpointMoves) {
 }
 
 TEST(Policy, EveryReasonHasWords) {
-  for (int reason = 0; reason <= int(Rule::joined); ++reason) EXPECT_FALSE(text_of(Rule(reason)).empty());
+  for (int reason = 0; reason <= int(Rule::carries_full); ++reason)
+    EXPECT_FALSE(text_of(Rule(reason)).empty());
 }
 
 TEST(DistancePolicy, EachRungHasItsDistanceAndItsHysteresis) {
