@@ -492,29 +492,35 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
                ? Vec3(Vec3::Zero())
                : Vec3(solver_bodies_[index].velocity + solver_bodies_[index].angular_velocity.cross(arm));
   };
+  const auto can_move = [&](std::int32_t index) {
+    return index >= 0 && solver_bodies_[index].inverse_mass > 0.0;
+  };
   const auto move = [&](std::int32_t index, const Vec3& by) {
-    if (index < 0 || solver_bodies_[index].inverse_mass == 0.0) return;
+    if (!can_move(index)) return;
     const Participant p = participants_[index];
     scene.position(p) += by;
     shifts_[std::size_t(index)] += by;
     if (p.is_full()) scene.neighbor(p).shift += by;
   };
   shifts_.assign(solver_bodies_.size(), Vec3::Zero());
-  partners_.assign(solver_bodies_.size(), 0);
-  for (const CrowdManifold& m : manifolds_) {
-    ++partners_[std::size_t(m.first)];
-    if (m.second >= 0) ++partners_[std::size_t(m.second)];
-  }
+  partings_.clear();
+  parting_of_.assign(solver_bodies_.size(), -1);
+  const auto part_slowly = [&](std::int32_t index, const Vec3& by, double farthest) {
+    if (!can_move(index)) return;
+    std::int32_t& place = parting_of_[std::size_t(index)];
+    if (place < 0) {
+      place = std::int32_t(partings_.size());
+      partings_.push_back({index, Vec3::Zero(), farthest});
+    }
+    Parting& parting = partings_[std::size_t(place)];
+    parting.by += by, parting.farthest = std::min(parting.farthest, farthest);
+  };
   for (const CrowdManifold& m : manifolds_) {
     const Participant one = participants_[std::size_t(m.first)],
                       other = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
     if (!one.is_statistical() && !other.is_statistical()) continue;
     const double radius = radius_of_pair(scene, one, other);
     const bool eased = is_eased(scene, one) || is_eased(scene, other);
-    const int partners =
-        std::max(partners_[std::size_t(m.first)], m.second < 0 ? 0 : partners_[std::size_t(m.second)]);
-    const double farthest =
-        eased ? parting_speed(radius, scene.world.gravity_strength()) * touch.time / partners : 1e300;
     const double first = solver_bodies_[m.first].inverse_mass,
                  second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
     if (first + second == 0.0) continue;
@@ -532,11 +538,22 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
           (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
       const double overlap =
           point.gap + std::max(0.0, parting) * touch.time;  // the rest is undone by the motion itself
-      const double distance =
-          std::min(touch.parting * push_out_overlap(overlap, radius), farthest) / double(m.count);
-      move(m.first, distance * first / (first + second) * m.normal);
-      move(m.second, -distance * second / (first + second) * m.normal);
+      const double distance = touch.parting * push_out_overlap(overlap, radius) / double(m.count);
+      const Vec3 of_first = distance * first / (first + second) * m.normal,
+                 of_second = -distance * second / (first + second) * m.normal;
+      if (eased) {
+        const double farthest = 0.5 * parting_speed(radius, scene.world.gravity_strength()) * touch.time;
+        part_slowly(m.first, of_first, farthest), part_slowly(m.second, of_second, farthest);
+      } else {
+        move(m.first, of_first), move(m.second, of_second);
+      }
     }
+  }
+  // What the overlaps of a body that came with some ask for together, not each of them, is slow: the greatest
+  // prevails over those that others keep up.
+  for (const auto& [body, by, farthest] : partings_) {
+    const double length = by.norm();
+    move(body, length > farthest ? Vec3(farthest / length * by) : by);
   }
   keep_full_apart(scene);
 }

@@ -74,6 +74,13 @@ class Crowd {
     Vec3 now = Vec3::Zero(), before = Vec3::Zero();
   };
 
+  /// How overlaps that came from another rung move a body out of them, m.
+  struct Parting {
+    std::int32_t body = 0;
+    Vec3 by = Vec3::Zero();
+    double farthest = 0.0;
+  };
+
   void gather(const ContactScene& scene, const CrowdTouch& touch);
   int solver_index(Participant participant);
   std::int32_t solver_index(const GroundPart& part);
@@ -128,9 +135,10 @@ class Crowd {
   GroundMeetings meetings_;
   std::size_t noted_ = 0;  // contacts in the log before those at hand
   std::vector<Participant> pressed_;
-  std::vector<Push> pushes_;   // on each solver body
-  std::vector<int> partners_;  // manifolds of each solver body
-  std::vector<Vec3> shifts_;   // m: of each solver body, out of overlaps in this substep
+  std::vector<Push> pushes_;              // on each solver body
+  std::vector<Parting> partings_;         // in this substep
+  std::vector<std::int32_t> parting_of_;  // of each solver body; −1: none
+  std::vector<Vec3> shifts_;              // m: of each solver body, out of overlaps in this substep
   CrowdSolver solver_;
   ContactMemory memory_;
   BorneWeights borne_weights_;

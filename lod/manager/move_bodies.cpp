@@ -98,7 +98,8 @@ void MoveBodies::promote(const RungChanges::Change& change, bool blocked, StepRe
   const auto [body, wanted, open, together] = change;
   const BodyLevel& level = levels_.bodies.level(body);
   // Spheres overlap where hulls do not yet: `support` parts them.
-  const Rung to = blocked && !level.newcomer && level.rung == Rung::tables && open.has(Rung::support)
+  const bool may_wait_at_support = open.has(Rung::support) || level.choice == LevelChoice::full;
+  const Rung to = blocked && !level.newcomer && level.rung == Rung::tables && may_wait_at_support
                       ? Rung::support
                       : wanted;
   if (blocked && to == Rung::full) {

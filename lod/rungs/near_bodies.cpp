@@ -240,9 +240,14 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
            (std::ranges::find(inside_, c.first) != inside_.end() ||
             std::ranges::find(inside_, c.second) != inside_.end());
   };
+  // Nor are those that came from another rung with overlaps, which they would else keep for good.
+  const auto is_parting = [&](Participant p) {
+    return p.is_statistical() && !scene.asleep(p) && !scene.body(p).is_sphere() &&
+           scene.body(p).eased == kEasedTime && scene.body(p).quiet_time == 0.0f;
+  };
   for (const CrowdContact& c : pairs_.contacts())
     for (const auto& [touched, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
-      const bool carried = carried_.contains(touched);
+      const bool carried = carried_.contains(touched) || is_parting(other);
       if (carried) keep_awake(step, touched);
       if (!scene.asleep(touched)) continue;
       const double speed = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point).norm();

@@ -122,9 +122,12 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
   const BodyKind& kind = kind_of(body);
   const bool among_others = body.crowded || double(body.since_crowded) < RestLaw::kLeaningTime;
   body.since_crowded = body.crowded ? 0.0f : body.since_crowded + float(time);
-  const bool parts =
-      body.eased ==
-      kEasedTime;  // from what it overlaps since it came: it is not at rest, though it has no velocity
+  // From what it overlaps since it came: it is not at rest, though it has no velocity, unless what moves it
+  // out is kept up by what moves it in.
+  constexpr double kStuck = 0.05;
+  const double way = (body.position - last_places_[std::size_t(slot)]).norm();
+  const bool parts = body.eased == kEasedTime &&
+                     way > kStuck * parting_speed(kind.shape->radius, settings_.gravity.norm()) * time;
   body.eased = std::max(0.0f, body.eased - float(time));
   const BodyProperties& own = properties_of(body);
   govern(body, own, time);

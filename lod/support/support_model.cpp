@@ -310,8 +310,9 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
 
 }  // namespace
 
-ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
-                               double time, const SupportSettings& settings) {
+[[gnu::flatten]] ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind,
+                                                const StepWorld& world, double time,
+                                                const SupportSettings& settings) {
   ContactTally tally;
   double left = time;
   for (int hit = 0; hit < settings.max_impacts && left > 0.0; ++hit) {
