@@ -487,6 +487,7 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) con
 // Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's
 // matter.
 void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
+  constexpr double kOfOne = 0.4;  // of the speed at which two come apart
   const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
     return index < 0
                ? Vec3(Vec3::Zero())
@@ -542,7 +543,7 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
       const Vec3 of_first = distance * first / (first + second) * m.normal,
                  of_second = -distance * second / (first + second) * m.normal;
       if (eased) {
-        const double farthest = 0.5 * parting_speed(radius, scene.world.gravity_strength()) * touch.time;
+        const double farthest = kOfOne * parting_speed(radius, scene.world.gravity_strength()) * touch.time;
         part_slowly(m.first, of_first, farthest), part_slowly(m.second, of_second, farthest);
       } else {
         move(m.first, of_first), move(m.second, of_second);
