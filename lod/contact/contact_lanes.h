@@ -33,7 +33,11 @@ inline double unit_mass_of(const CrowdContacts& contacts, const CrowdManifold& m
     return inverse > 0.0 ? 1.0 / inverse : 0.0;
   };
   const double heavier = std::max(mass_of(m.first), mass_of(m.second));
-  return heavier > 0.0 ? heavier : 1.0;
+  if (heavier > 0.0) return heavier;
+  double greatest = 1.0;  // of two that nothing moves, so that floats hold what they begin with
+  for (const CrowdPoint& point : contacts.points.subspan(m.begin, m.count))
+    greatest = std::max(greatest, point.guess.norm());
+  return greatest;
 }
 
 namespace lane {
@@ -421,8 +425,9 @@ void ContactLanes<L>::fill(BatchLanes<L>& batch, const CrowdContacts& contacts) 
     batch.first[lane] = m.first;
     set_lane(batch.normal, lane, m.normal);
     batch.friction[lane] = R(std::min(m.law.friction, kMostFriction));
+    constexpr auto greatest = double(std::numeric_limits<R>::max());
     batch.most_impulse[lane] =
-        m.most_impulse < kUnbounded ? R(m.most_impulse * inverse_unit) : std::numeric_limits<R>::max();
+        R(m.most_impulse < kUnbounded ? std::min(m.most_impulse * inverse_unit, greatest) : greatest);
     batch.inverse_mass_first[lane] = R(unit * first.inverse_mass);
     set_lane(batch.inertia_first, lane, first.inverse_inertia, unit);
     if (m.second >= 0) {

@@ -91,7 +91,7 @@ void CrowdLanes<L>::make_batches(const CrowdContacts& contacts, std::span<const 
   for (std::size_t i = 0; i < which.size(); ++i) {
     const CrowdManifold& m = manifolds[which[i]];
     const auto used_of = [&](std::int32_t body, std::uint64_t& none) -> std::uint64_t& {
-      const bool moves = body >= 0 && bodies[std::size_t(body)].inverse_mass > 0.0;
+      const bool moves = body >= 0 && contacts.bodies[std::size_t(body)].inverse_mass > 0.0;
       return moves ? used_[std::size_t(body)] : none;
     };
     std::uint64_t none[2] = {0, 0};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -18,6 +19,8 @@ constexpr std::size_t kWidth = kLanes<L>;
 constexpr int kMostIslandSweeps = 40;  // of few points: a body on two edges asks for many
 constexpr int kIslandRelaxations =
     400;  // of points, in as many sweeps as that is, but never fewer than a crowd's
+
+constexpr auto kMostRemembered = double(std::numeric_limits<float>::max());  // N s
 
 /// A manifold, by its island.
 struct Own {
@@ -195,7 +198,8 @@ void SmallIslands::Work::solve_group(const Group& group, const CrowdContacts& co
   each_point(group, [&](const BatchLanes<L>& batch, PointLanes<L>& p, StartLanes& start, std::uint32_t k) {
     for (int lane = 0; lane < batch.lanes; ++lane)
       if (const CrowdManifold& m = contacts.manifolds[batch.manifold[lane]]; k < m.count)
-        contacts.points[m.begin + k].frictionless = float(double(p.impulse[0][lane]) * batch.unit_mass[lane]);
+        contacts.points[m.begin + k].frictionless =
+            float(std::min(double(p.impulse[0][lane]) * batch.unit_mass[lane], kMostRemembered));
     start.bound = batch.friction * p.impulse[0];
     p.impulse[0] = start.guess[0];
     for (int t = 1; t < 3; ++t) p.impulse[t] = most(-start.bound, least(start.guess[t], start.bound));
