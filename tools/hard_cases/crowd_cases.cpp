@@ -337,7 +337,7 @@ Count count_under(StatisticalModel model, const std::shared_ptr<const Shape>& sh
 }
 
 std::vector<HardCaseRow> measure_case(const HardCaseSettings& settings) {
-  const std::uint32_t clouds = settings.quick ? 3 : 12;
+  const std::uint32_t clouds = settings.quick ? 3 : 48;
   const auto l = share(make_shape("l", make_l(0.3, 0.2, 0.08, 0.1)));
   const Count ode = count_under_ode(l, clouds);
   // A short run counts a handful of frames: their difference from twice ODE's is a sum of rare events,
