@@ -159,7 +159,7 @@ void FullLevel::archive(StateArchive& a) {
   if (has_world)
     world_->archive(a);
   else if (world_)
-    while (!members_.empty()) remove(members_.back().id, true);
+    world_->begin_anew();
   a(members_, touching_);
   if (!a.reading()) return;
   index_of_id_.clear();

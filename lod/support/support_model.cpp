@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "lod/contact/contact_impulse.h"
 #include "lod/contact/ground_solver.h"
@@ -95,24 +96,41 @@ class EnergyBound {
       : body_(body), shape_(shape), gravity_(gravity), bounded_(bounded && body.eased <= 0.0f) {
     if (bounded_) kinetic_ = kinetic_energy(body, shape), position_ = body.position;
   }
-  /// Takes from the motion by what kinetic and potential energy exceed what they were.
-  void keep() {
+  /// Takes from the motion by what kinetic and potential energy exceed what they were. Where the ground has
+  /// no friction, its `normal` given, not from what nothing there can change: the motion along it, the spin
+  /// about the normal.
+  void keep(const std::optional<Vec3>& normal = {}) {
     if (!bounded_) return;
-    const double kinetic = kinetic_energy(body_, shape_),
-                 gain = kinetic - kinetic_ - gravity_.dot(body_.position - position_);
-    if (!(gain > 0.0 && kinetic > 0.0)) return;
-    const double share = std::sqrt(1.0 - std::min(0.5, gain / kinetic));
-    body_.velocity *= share;
-    body_.spin *= share;
+    const double now = kinetic_energy(body_, shape_),
+                 gain = now - kinetic_ - gravity_.dot(body_.position - position_);
+    if (!(gain > 0.0 && now > 0.0)) return;
+    if (!normal) {
+      const double share = share_left(gain, now);
+      body_.velocity *= share;
+      body_.spin *= share;
+      return;
+    }
+    const Vec3 rising = body_.velocity.dot(*normal) * *normal,
+               rocking = body_.spin - body_.spin.dot(*normal) * *normal;
+    const double taken =
+        1.0 - share_left(gain, 0.5 * (rising.squaredNorm() +
+                                      rocking.dot(angular_velocity(body_.orientation, rocking, shape_))));
+    body_.velocity -= taken * rising;
+    body_.spin -= taken * rocking;
   }
 
  private:
+  /// Of a motion of the energy `kinetic`, both over mass.
+  static double share_left(double gain, double kinetic) {
+    return kinetic > 0.0 ? std::sqrt(1.0 - std::min(0.5, gain / kinetic)) : 1.0;
+  }
+
   StatisticalBody& body_;
   const Shape& shape_;
   const Vec3& gravity_;
   bool bounded_;
-  double kinetic_ = 0.0;  // J/kg, before
-  Vec3 position_;         // m, before
+  double kinetic_ = 0.0;          // J/kg, before
+  Vec3 position_ = Vec3::Zero();  // m, before
 };
 
 // One vertex strikes, all in body axes: respond_contact's impulse, less of it where that would add energy. Of
@@ -292,7 +310,9 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
   }
   held.count = int(found.count);
   body.position += body.velocity * time;
-  energy.keep();
+  energy.keep(found.count > 0 && found.contact[0].law.friction == 0.0
+                  ? std::optional(world.planes[std::size_t(tally.touched_plane)].normal)
+                  : std::nullopt);
   if (found.deepest < 0.0 && body.eased <= 0.0f)
     body.position +=
         push_out_overlap(found.deepest, shape.radius) * world.planes[std::size_t(tally.touched_plane)].normal;
@@ -305,7 +325,7 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
   const Shape& shape = *kind.shape;
   EnergyBound energy(body, shape, world.gravity, settings.energy_bounded);
   lift_out(body, shape, plane, lift_of(body, shape, world.gravity_strength(), time));
-  energy.keep();
+  energy.keep(world.law(kind, plane).friction == 0.0 ? std::optional(plane.normal) : std::nullopt);
 }
 
 }  // namespace

@@ -152,6 +152,8 @@ void Bodies::clear() {
   slots_.clear();
   free_.clear();
   count_ = 0;
+  births_ = 0;
+  greatest_reach_ = 0.0;
 }
 
 OdeBodyId Bodies::add(dWorldID world, const OdeBodyDefinition& definition, const OdeSettings& settings,

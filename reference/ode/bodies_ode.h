@@ -72,7 +72,7 @@ class Bodies {
   /// Where it reads, bodies are kept if the writer had the very same ones; else all are made anew. Throws
   /// InputError, and nothing has changed, where one of those has a joint.
   void archive(StateArchive& a, dWorldID world, const OdeSettings& settings, TrimeshCache& cache);
-  void clear();
+  void clear();  ///< as if there had never been any
   Body& find(OdeBodyId id);
   const Body& find(OdeBodyId id) const;
 

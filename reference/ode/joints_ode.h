@@ -73,6 +73,7 @@ class ContactJoints {
   std::span<const dBodyID> carried() const { return carried_; }
   std::int64_t made() const { return made_; }
   void archive(StateArchive& a) { a(contacts_); }
+  void forget() { contacts_.clear(); }
 
  private:
   void add_joint(const ContactSide& first, const ContactSide& second, const ContactPoint& point);

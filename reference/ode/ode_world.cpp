@@ -211,6 +211,17 @@ void OdeWorld::archive(StateArchive& a) {
   if (impl.own_world) dWorldSetCFM(impl.world, cfm);
 }
 
+void OdeWorld::begin_anew() {
+  prepare();
+  Impl& impl = *impl_;
+  for (const Body& body : impl.bodies.slots())
+    if (body.body) impl.collision.broad_phase().forget(body);
+  impl.bodies.clear();
+  impl.joints.forget();
+  impl.vacated.clear();
+  impl.quick_steps = 0;
+}
+
 std::span<const OdeContact> OdeWorld::contacts() const { return impl_->joints.contacts(); }
 
 void OdeWorld::record_touches(bool on) { impl_->records_touches = on; }

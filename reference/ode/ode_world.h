@@ -234,6 +234,8 @@ class OdeWorld {
   /// writer had the very same ones; else all are made anew, with another dBodyID. Throws InputError, and
   /// nothing has changed, where one of those has a joint.
   void archive(StateArchive& a);
+  /// As if it had never had a body, or made a step.
+  void begin_anew();
 
   std::span<const OdeContact> contacts() const;  ///< of the last substep
   /// From the next step on; costs a little for each contact.

@@ -139,7 +139,7 @@ TEST(CrowdSolver, FindsWhatThePlainSolverFinds) {
   };
   SolverCrowd of_floats = crowd;
   solve(of_floats, find_simd(), 1, settings);
-  expect_same(of_floats, 1e-3);
+  expect_same(of_floats, 2e-3);  // of 2 m/s: 2e-4 as g++ orders the sums, 1.2e-3 as clang does
   std::vector<std::uint32_t> all(crowd.manifolds.size());
   std::iota(all.begin(), all.end(), 0U);
   const CrowdContacts given{crowd.bodies, crowd.manifolds, crowd.points, kStep, settings};

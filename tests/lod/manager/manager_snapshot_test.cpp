@@ -66,6 +66,29 @@ TEST(ManagerSnapshot, WhoeverReadsItGoesOnToTheBit) {
   }
 }
 
+// By then the manager's world has had bodies, and steps whose solver draws random numbers.
+TEST(ManagerSnapshot, OneFromBeforeTheFirstFullBodyIsGoneBackTo) {
+  Manager manager = on_floor();
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 64; ++i) {  // each layer half a box aside
+    const int layer = i / 16;
+    const Vec3 position(0.205 * (i % 4) + 0.1 * (layer % 2), 0.255 * (i / 4 % 4) + 0.12 * (layer % 2),
+                        0.152 + 0.305 * layer);
+    bodies.push_back(add(manager, SavedWorld::box, testing::at(position), LevelChoice::support));
+  }
+  run(manager, 0.1);
+  const Bytes snapshot = manager.snapshot();
+  const auto go_on = [&] {
+    for (const BodyId body : bodies) manager.set_level(body, LevelChoice::full);
+    run(manager, 1.5);
+    return manager.state_hash();
+  };
+  const std::uint64_t once = go_on();
+  EXPECT_GT(manager.report().counters.full_quick_steps, 0);
+  manager.restore(snapshot);
+  EXPECT_EQ(go_on(), once);
+}
+
 TEST(ManagerSnapshot, ThreadsOfTheReaderDoNotMatter) {
   SavedWorld writer;
   writer.fill();

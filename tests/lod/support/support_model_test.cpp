@@ -126,6 +126,21 @@ TEST_F(SupportModel, RockingGainsNoEnergy) {
   EXPECT_LT(gain / kFalls, 4e-3);  // J/kg; .0013 found
 }
 
+// Nothing there acts along the ground, nor about its normal.
+TEST_F(SupportModel, WithoutFrictionMotionAlongTheGroundIsKept) {
+  make_ground(0.0, 0.0);
+  for (std::uint32_t fall = 0; fall < 20; ++fall) {
+    RandomStream random(12, fall, 0);
+    StatisticalBody body = body_at({0, 0, kSide}, {1.0, -0.5, 0});
+    body.orientation = random.orientation();
+    body.spin = spin_of(body.orientation, 5.0 * random.uniform() * random.direction(), *kind_.shape);
+    const double about_normal = body.spin.z();
+    for (int i = 0; i < 240; ++i) step(body);
+    EXPECT_LT((body.velocity.head<2>() - Eigen::Vector2d(1.0, -0.5)).norm(), 1e-9);
+    EXPECT_NEAR(body.spin.z(), about_normal, 1e-9);
+  }
+}
+
 TEST_F(SupportModel, ItStaysWhereItLies) {
   make_ground(0.4, 0.5);
   StatisticalBody body = body_at({0, 0, 0.5 * kSide});
