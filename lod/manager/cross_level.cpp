@@ -89,6 +89,7 @@ void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, dou
   if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
   OdeWorld& world = *levels.full.world();
   if (world.asleep(body) || neighbor.carried) world.set_asleep(body, false);  // ODE's clock begins anew
+  if (neighbor.carried) world.keep_awake(body);
   if (!neighbor.push.is_zero()) world.add_force(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
   const BodyProperties& own = levels.bodies.properties(neighbor.owner);
   if (own.kinematic || (!neighbor.is_touched() && neighbor.shift.isZero(0.0))) return;

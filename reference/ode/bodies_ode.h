@@ -33,6 +33,7 @@ struct Body {
   double to_sleep_s = 0.0;   ///< how much longer it has to be still to fall asleep
   bool was_enabled = true;   ///< after the last substep
   bool fell_asleep = false;  ///< in this substep
+  bool kept_awake = false;   ///< in this step, with what it touches
   bool disturbed = false;    ///< since: what it may lie on came, went or was moved
   bool damped = false;       ///< ODE was told of its damping
   OdeGeometry geometry = OdeGeometry::trimesh;

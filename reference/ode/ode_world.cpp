@@ -190,6 +190,7 @@ void OdeWorld::set_properties(OdeBodyId body, const BodyProperties& properties) 
 void OdeWorld::set_pair_filter(std::function<bool(OdeBodyId, OdeBodyId)> filter) {
   impl_->collision.broad_phase().set_pair_filter(std::move(filter));
 }
+void OdeWorld::keep_awake(OdeBodyId body) { impl_->bodies.find(body).kept_awake = true; }
 void OdeWorld::set_sleep_law(const SleepLaw& law) { impl_->sleep.set_law(law); }
 
 dxBody* OdeWorld::ode_body(OdeBodyId body) const { return impl_->bodies.find(body).body; }

@@ -125,8 +125,8 @@ struct OdeTimes {
 /// caller's).
 struct OdeContact {
   OdeBodyId first, second;
-  Vec3 point, normal;  ///< world; the normal points from `second` into `first`
-  double depth;        ///< m, ≥ 0
+  Vec3 point, normal;            ///< world; the normal points from `second` into `first`
+  double depth;                  ///< m, ≥ 0
   Vec3 velocity = Vec3::Zero();  ///< m/s, at the point, of what is no body of this world's
 };
 
@@ -229,6 +229,9 @@ class OdeWorld {
   /// substep of each two that come near each other.
   void set_pair_filter(std::function<bool(OdeBodyId, OdeBodyId)> filter);
   dxBody* ode_body(OdeBodyId body) const;  ///< dBodyID, for joints and the like
+
+  /// In the next step neither it nor what hangs together with it falls asleep: something moves it on.
+  void keep_awake(OdeBodyId body);
 
   /// All that the next steps depend on, save ground and settings. Where it reads, bodies are kept if the
   /// writer had the very same ones; else all are made anew, with another dBodyID. Throws InputError, and

@@ -17,7 +17,7 @@ void put_to_rest(dBodyID body) {
 }  // namespace
 
 void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
-  if (on_) find_carried(carried);
+  if (on_) find_carried(bodies, carried);
   for (Body& body : bodies.slots()) {
     body.fell_asleep = false;
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
@@ -40,9 +40,11 @@ bool Sleep::is_still(const Body& body) const {
          squared_norm(dBodyGetAngularVel(body.body)) <= square(law_.turning_speed / body.reach);
 }
 
-void Sleep::find_carried(std::span<const dBodyID> carried) {
+void Sleep::find_carried(Bodies& bodies, std::span<const dBodyID> carried) {
   carried_.clear();
   waiting_.assign(carried.begin(), carried.end());
+  for (const Body& body : bodies.slots())
+    if (body.body && body.kept_awake) waiting_.push_back(body.body);
   while (!waiting_.empty()) {
     const dBodyID body = waiting_.back();
     waiting_.pop_back();

@@ -21,7 +21,7 @@ class Sleep {
   void run(Bodies& bodies, std::span<const dBodyID> carried, double h);
 
  private:
-  void find_carried(std::span<const dBodyID> carried);
+  void find_carried(Bodies& bodies, std::span<const dBodyID> carried);
   bool is_still(const Body& body) const;
 
   SleepLaw law_;

@@ -91,7 +91,7 @@ void OdeWorld::Impl::begin_step(double h) {
 }
 
 void OdeWorld::Impl::end_step() {
-  for (Body& body : bodies.slots()) body.force = body.torque = Vec3::Zero();
+  for (Body& body : bodies.slots()) body.force = body.torque = Vec3::Zero(), body.kept_awake = false;
   collision.end_step();
   has_looked = false;
 }
