@@ -18,7 +18,7 @@ void FullCarriers::forget(std::uint32_t body) {
 
 bool FullCarriers::contains(std::uint32_t body) {
   if (!std::ranges::binary_search(bodies_, body)) return false;
-  if (levels_.bodies.level(body).rung != Rung::full || is_near_full(body)) return true;
+  if (is_near_full(body)) return true;
   forget(body);
   return false;
 }

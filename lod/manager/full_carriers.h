@@ -18,8 +18,7 @@ class FullCarriers {
 
   /// Whether the full body is a manager's own: then its carrier is one from now on.
   bool take(const CarriedFull& touch);
-  /// Whether it was taken, and some full body that is not kinematic has been near it in each step since it
-  /// became full.
+  /// Whether it was taken, and some full body that is not kinematic is near it still.
   bool contains(std::uint32_t body);
   void forget(std::uint32_t body);
   void archive(StateArchive& a) { a(bodies_); }

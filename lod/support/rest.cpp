@@ -125,9 +125,9 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
   // From what it overlaps since it came: it is not at rest, though it has no velocity, unless what moves it
   // out is kept up by what moves it in.
   constexpr double kStuck = 0.05;
-  const double way = (body.position - last_places_[std::size_t(slot)]).norm();
   const bool parts = body.eased == kEasedTime &&
-                     way > kStuck * parting_speed(kind.shape->radius, settings_.gravity.norm()) * time;
+                     (body.position - last_places_[std::size_t(slot)]).norm() >
+                         kStuck * parting_speed(kind.shape->radius, settings_.gravity.norm()) * time;
   body.eased = std::max(0.0f, body.eased - float(time));
   const BodyProperties& own = properties_of(body);
   govern(body, own, time);

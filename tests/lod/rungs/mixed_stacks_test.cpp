@@ -137,17 +137,17 @@ TEST(MixedStacks, FullOnesOnAStatisticalOneGoAlongWithASlowTruck) {
     const auto place_of = [&](BodyId body) {
       return Vec3(manager.state(body).position - manager.state(truck).position);
     };
-    run(manager, 1.0);
     std::vector<Vec3> before;
-    for (const BodyId body : cubes) before.push_back(place_of(body));
-    for (int i = 0; i < 300; ++i) {
-      RigidState state = manager.state(truck);
-      state.velocity.x() = 0.1 * i * kFrame;  // .1 m/s²
+    for (int i = 0; i < 360; ++i) {
+      if (i == 50)
+        for (const BodyId body : cubes) before.push_back(place_of(body));
+      RigidState state = manager.state(truck);  // .6 m/s² at most, after 2 s
+      state.velocity.x() = 0.75 * (1.0 - std::cos(0.8 * std::max(0.0, i * kFrame - 1.0)));
       manager.set_state(truck, state);
       manager.step(kFrame);
     }
     for (std::size_t i = 0; i < cubes.size(); ++i)
-      EXPECT_LT((place_of(cubes[i]) - before[i]).norm(), 0.02) << levels << ", cube " << i;
+      EXPECT_LT((place_of(cubes[i]) - before[i]).norm(), 0.03) << levels << ", cube " << i;
   }
 }
 
