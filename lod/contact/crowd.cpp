@@ -53,6 +53,13 @@ double radius_of_pair(const ContactScene& scene, Participant one, Participant ot
   return other.is_ground() ? radius : std::min(radius, scene.shape(other).radius);
 }
 
+// m: deeper overlaps are a good part of the thinner one's thickness.
+double deep_overlap_of(const ContactScene& scene, Participant one, Participant other) {
+  constexpr double kDeep = 0.25;  // over its inner radius
+  const double inner = scene.shape(one).inner_radius;
+  return kDeep * (other.is_ground() ? inner : std::min(inner, scene.shape(other).inner_radius));
+}
+
 bool is_eased(const ContactScene& scene, Participant p) {
   return p.is_statistical() && scene.body(p).eased > 0.0f;
 }
@@ -525,6 +532,7 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
     const double first = solver_bodies_[m.first].inverse_mass,
                  second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
     if (first + second == 0.0) continue;
+    const double deep = deep_overlap_of(scene, one, other);
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
       const bool inside =
@@ -537,8 +545,11 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
       }
       const double parting =
           (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
-      const double overlap =
+      double overlap =
           point.gap + std::max(0.0, parting) * touch.time;  // the rest is undone by the motion itself
+      // Up through a column of thin bodies one after the other: all at once, those in its midst, pushed from
+      // both sides, would hardly move. Of shallower ones it would raise heaps, by 5 % for plates.
+      if (point.gap < -deep) overlap += (shift_of(m.first) - shift_of(m.second)).dot(m.normal);
       const double distance = touch.parting * push_out_overlap(overlap, radius) / double(m.count);
       const Vec3 of_first = distance * first / (first + second) * m.normal,
                  of_second = -distance * second / (first + second) * m.normal;
@@ -565,9 +576,6 @@ void Crowd::keep_full_apart(const ContactScene& scene) {
   constexpr int kRounds = 4;
   constexpr double kMost = 0.99;
   if (scene.neighbors.empty()) return;
-  const auto shift_of = [&](std::int32_t index) {
-    return index < 0 ? Vec3(Vec3::Zero()) : shifts_[std::size_t(index)];
-  };
   const auto move = [&](std::int32_t index, const Vec3& by) {
     if (index < 0 || solver_bodies_[std::size_t(index)].inverse_mass == 0.0) return;
     FullNeighbor& body = scene.neighbor(participants_[std::size_t(index)]);

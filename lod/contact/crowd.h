@@ -111,6 +111,9 @@ class Crowd {
   bool is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const;
   void give_to_full(const ContactScene& scene, const CrowdTouch& touch) const;
   void move_apart(const ContactScene& scene, const CrowdTouch& touch);
+  Vec3 shift_of(std::int32_t solver_body) const {
+    return solver_body < 0 ? Vec3(Vec3::Zero()) : shifts_[std::size_t(solver_body)];
+  }
   void keep_full_apart(const ContactScene& scene);
   void lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) const;
 

@@ -21,6 +21,9 @@ namespace {
 // not those of its other side.
 constexpr double kFeatureMargin = 0.01;
 
+// Cosine, between a face that may come to lie and the touching plane.
+constexpr double kLying = 0.9;
+
 PlacedHull place(const PairBody& body) { return {*body.shape, body.position, body.orientation}; }
 
 // The vertices that lie within `hair` m of the touching plane, as arms from `origin`.
@@ -34,21 +37,62 @@ HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t
   return feature;
 }
 
+// The face around a vertex that lies most nearly in the touching plane, its normal outward, in the body's
+// axes.
+Vec3 find_flattest_face(const Hull& hull, std::int32_t vertex, const Vec3& down) {
+  Vec3 flattest = Vec3::Zero();
+  for (const std::int32_t face : hull.faces_of(vertex))
+    if (const Vec3 outward = hull.face_normal(face).normalized(); outward.dot(down) > flattest.dot(down))
+      flattest = outward;
+  return flattest;
+}
+
+// Where a body comes down on an edge or a corner of a wide face that is about to lie, the whole face: the
+// impulse at the edge turns the others down within the same step, the faster the thinner the body is.
+// Without, plates that land strike with alternate edges, deeper with each. `ahead`, m: how much farther than
+// the nearest vertex those corners may be.
+void extend_to_face(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin,
+                    double hair, double ahead, HullContacts& feature) {
+  if (vertex < 0 || feature.count > 2) return;
+  const Vec3 down = body.orientation.conjugate() * -normal,
+             flattest = find_flattest_face(body.shape->hull, vertex, down);
+  if (flattest.dot(down) < kLying) return;
+  const HullContacts face = find_feature(body, body.orientation * -flattest, vertex, origin, hair);
+  const Vec3 nearest = feature.contact[0].arm;
+  double width = 0.0, farthest = 0.0;
+  for (int i = 0; i < face.count; ++i) {
+    const Vec3& corner = face.contact[std::size_t(i)].arm;
+    width = std::max(width, (corner - face.contact[0].arm).norm());
+    farthest = std::max(farthest, (corner - nearest).dot(normal));
+  }
+  if (face.count > 2 && width >= body.shape->radius && farthest <= ahead) feature = face;
+}
+
 Vec3 middle_of(const HullContacts& feature) {
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i < feature.count; ++i) sum += feature.contact[i].arm;
   return sum / feature.count;
 }
 
-Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, double ahead,
+/// m: how much farther than the nearest vertex, beyond a hair, others of a touching feature are.
+struct Ahead {
+  double first = 0.0;  ///< of the first body
+  double lying = 0.0;  ///< of a wide face that is about to lie
+};
+
+Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, const Ahead& ahead,
                        HullContacts& upper, HullContacts& lower) {
   const double hair = kFeatureMargin * std::min(first.shape->radius, second.shape->radius);
-  upper = find_feature(first, best.normal, best.vertex_first, second.position, hair + ahead);
+  upper = find_feature(first, best.normal, best.vertex_first, second.position, hair + ahead.first);
   lower = find_feature(second, -best.normal, best.vertex_second, second.position, hair);
+  if (ahead.lying > 0.0) {
+    extend_to_face(first, best.normal, best.vertex_first, second.position, hair, ahead.lying, upper);
+    extend_to_face(second, -best.normal, best.vertex_second, second.position, hair, ahead.lying, lower);
+  }
   return find_manifold(upper, lower, best.normal, best.gap);
 }
 
-Manifold find_points(const PairBody& first, const PairBody& second, const HullGap& best, double ahead) {
+Manifold find_points(const PairBody& first, const PairBody& second, const HullGap& best, const Ahead& ahead) {
   HullContacts upper, lower;
   Manifold manifold = clip_features(first, second, best, ahead, upper, lower);
   if (manifold.count == 0) {  // the axis is not quite that of the nearest features
@@ -60,8 +104,15 @@ Manifold find_points(const PairBody& first, const PairBody& second, const HullGa
 }
 
 PairContact contact_along(const PairBody& first, const PairBody& second, const HullGap& best,
-                          double ahead = 0.0) {
+                          const Ahead& ahead) {
   return {best.normal, best.gap, find_points(first, second, best, ahead)};
+}
+
+// Closer than `margin`, m, one that its bodies take along for a while.
+PairContact contact_to_hold(const PairBody& first, const PairBody& second, const HullGap& best,
+                            double margin) {
+  return contact_along(first, second, best,
+                       {.lying = margin + kTakenAlong * std::min(first.shape->radius, second.shape->radius)});
 }
 
 int count_pieces(const PairBody& body) { return std::max<int>(1, int(body.shape->pieces.size())); }
@@ -134,7 +185,7 @@ void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std:
       const double gap = gap_of_pieces(a, b, of_pieces, margin, search.exact);
       search.gap = std::min(search.gap, gap);
       if (gap > margin) continue;
-      PairContact contact = contact_along(a, b, of_pieces.axis);
+      PairContact contact = contact_to_hold(a, b, of_pieces.axis, margin);
       drop_internal_points(first, i, second, k, contact);
       if (contact.manifold.count > 0)
         add_contact(contact, kWithin * std::min(a.shape->radius, b.shape->radius), search.contacts);
@@ -148,7 +199,7 @@ void search_relative(const PairBody& first, const PairBody& second, HullGap& who
     whole = find_hull_gap(place(first), place(second), whole, margin, search.exact);
     search.gap = whole.gap;
     if (search.gap <= margin.along(whole.normal))
-      search.contacts.push_back(contact_along(first, second, whole));
+      search.contacts.push_back(contact_to_hold(first, second, whole, margin.along(whole.normal)));
     return;
   }
   const bool apart = are_apart(place(first), place(second), margin, whole);
@@ -288,7 +339,7 @@ std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBo
   const auto [a, b] = relative_to_second(first, second);
   const HullGap best = find_hull_gap(place(a), place(b), {.normal = axis}, margin);
   if (best.gap > margin) return {};
-  PairContact contact = contact_along(a, b, best, ahead);
+  PairContact contact = contact_along(a, b, best, {.first = ahead});
   shift(contact, second.position);
   return contact;
 }
@@ -298,7 +349,7 @@ std::optional<PairContact> find_contact_along(const PairBody& first, const PairB
   const HullGap along = measure_hull_gap(place(first), place(second), normal);
   if (along.gap > margin) return {};
   HullContacts upper, lower;
-  PairContact contact{normal, along.gap, clip_features(first, second, along, ahead, upper, lower)};
+  PairContact contact{normal, along.gap, clip_features(first, second, along, {.first = ahead}, upper, lower)};
   if (contact.manifold.count == 0) return {};
   for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
   return contact;

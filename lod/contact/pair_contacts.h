@@ -31,6 +31,8 @@ struct PairContact {
 /// `tables`: the two spheres. None where the gap is above `margin`.
 std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin);
 
+inline constexpr double kTakenAlong = 0.02;  // over the lesser R: so far bodies take a contact along
+
 /// A contact that its bodies take along, until they have moved so far that it must be looked for anew. Kept
 /// for every pair that touches: floats, which are fine enough for arms.
 struct HeldContact {

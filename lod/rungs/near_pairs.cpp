@@ -165,9 +165,9 @@ bool NearPairs::stay_apart(const FoundPair& pair, const PairBody& first, const P
 }
 
 void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, FoundPair& pair) const {
-  // Over R: so far bodies take a contact along. A sphere's orientation is coarse anyway, and spheres among
-  // others may overlap deeply, where a search is dear.
-  constexpr double kHeld = 0.02, kHeldBySphere = 0.1, kOfTurning = 0.3;
+  // A sphere's orientation is coarse anyway, and spheres among others may overlap deeply, where a search is
+  // dear.
+  constexpr double kHeldBySphere = 0.1, kOfTurning = 0.3;
   const PairBody a = scene.pair_body(pair.first), b = scene.pair_body(pair.second);
   const double least_radius = std::min(a.shape->radius, b.shape->radius), touching = kTouching * least_radius;
   const Enough reach = find_reach(scene, time, pair);
@@ -183,7 +183,7 @@ void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, 
   }
   const auto is_sphere = [&](Participant p) { return p.is_statistical() && scene.body(p).is_sphere(); };
   const auto is_eased = [&](Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; };
-  const double held = is_sphere(pair.first) || is_sphere(pair.second) ? kHeldBySphere : kHeld;
+  const double held = is_sphere(pair.first) || is_sphere(pair.second) ? kHeldBySphere : kTakenAlong;
   if (!pair.contacts.empty() && find_motion_since(*pair.when, a, b) < held * least_radius) return;
   const Vec3 closing = scene.velocity(pair.first) - scene.velocity(pair.second);
   thread_local HullContactSearch search;

@@ -84,6 +84,28 @@ TEST(PairContacts, AGreatSlabIsTouchedOnOneSide) {
 
 // What was found once bounds what is there later, however they have moved and turned, up to a full turn; and
 // a look along the axis says what is left along it.
+// Of a plate that comes down on an edge all four corners, those in the air, too, with their own gaps: but
+// only where it is about to lie.
+TEST(PairContacts, APlateThatIsAboutToLieIsTouchedByItsWholeFace) {
+  const Shape plate = make_shape("plate", make_box({0.3, 0.3, 0.05}));
+  const auto tilted_by = [&](double angle) {
+    const Quat tilt(Eigen::AngleAxisd(angle, Vec3::UnitY()));
+    const double half = 0.15 * std::sin(angle) + 0.025 * std::cos(angle);
+    const auto contacts =
+        search_afresh(at(plate, {0.01, 0.02, 0.025 + half}, tilt), at(plate, Vec3::Zero())).contacts;
+    return contacts.empty() ? Manifold{} : contacts[0].manifold;
+  };
+  const Manifold lying = tilted_by(0.015), leaning = tilted_by(0.2);
+  ASSERT_EQ(lying.count, 4);
+  EXPECT_EQ(leaning.count, 2);
+  int in_the_air = 0;
+  for (const ManifoldPoint& p : lying.points) {
+    EXPECT_GE(p.gap, -1e-6);
+    in_the_air += p.gap > 0.003;
+  }
+  EXPECT_EQ(in_the_air, 2);
+}
+
 TEST(PairContacts, AGapThatWasFoundIsNeverThoughtWiderThanItIs) {
   const Shape crate = make_shape("crate", make_box({0.2, 0.3, 0.4}));
   RandomStream random(47, 0, 0);
