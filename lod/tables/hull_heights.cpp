@@ -39,6 +39,29 @@ double volume_of(const Hull& hull) {
   return six_volumes / 6.0;
 }
 
+SupportPatch find_patch_of(const Hull& hull, const Vec3& direction, int start) {
+  constexpr int kAlong = 5;  // looks along each of two directions aside
+  const Vec3 u = direction.unitOrthogonal(), v = direction.cross(u);
+  Vec3 mean = Vec3::Zero();
+  Mat3 square = Mat3::Zero();
+  for (int i = 0; i < kAlong; ++i)
+    for (int k = 0; k < kAlong; ++k) {
+      const double by_u = 2.0 * (i + 0.5) / kAlong - 1.0, by_v = 2.0 * (k + 0.5) / kAlong - 1.0;
+      const Vec3 aside = double(kPatchAngle) * (by_u * u + by_v * v);
+      const Vec3& point = hull.vertices[std::size_t(find_support(hull, direction + aside, start))];
+      mean += point / (kAlong * kAlong);
+      square += point * point.transpose() / (kAlong * kAlong);
+    }
+  square -= mean * mean.transpose();
+  return {{float(mean.x()), float(mean.y()), float(mean.z())},
+          float(square(0, 0)),
+          float(square(1, 1)),
+          float(square(2, 2)),
+          float(square(0, 1)),
+          float(square(0, 2)),
+          float(square(1, 2))};
+}
+
 }  // namespace
 
 double find_rolling_lever(const Shape& shape) {
@@ -69,11 +92,13 @@ void sample_hull(const Shape& shape, const HullMaps& maps) {
         maps.height[at] = float(*shape.sphere_radius);
         face = {float(direction.x()), float(direction.y()), float(direction.z()),
                 float(*shape.sphere_radius)};
+        maps.patch[at].mean = maps.height[at] * lane::F3{face.x, face.y, face.z};
       } else {
         vertex = find_support(shape.hull, direction, vertex);
         maps.height[at] = float(shape.hull.vertices[std::size_t(vertex)].dot(direction));
         face = find_way_out(shape.hull, direction);
         face.w = float(solid * double(face.w));
+        maps.patch[at] = find_patch_of(shape.hull, direction, vertex);
       }
       maps.pair_height[at] = float(solid * double(maps.height[at]));
     }

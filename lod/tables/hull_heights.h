@@ -14,11 +14,24 @@ namespace lodestone {
 inline constexpr int kHullHeightSide = 24;  // cells along an edge of the map: 5° apart on average
 inline constexpr int kHullHeights = (kHullHeightSide + 1) * (kHullHeightSide + 1);
 
+/// The points of a hull that are farthest within kPatchAngle of a direction: a corner, an edge or a face.
+struct SupportPatch {
+  lane::F3 mean{};                                                         ///< m, body axes
+  float xx = 0.0f, yy = 0.0f, zz = 0.0f, xy = 0.0f, xz = 0.0f, yz = 0.0f;  ///< m²: how they spread about it
+  /// Along one direction and another.
+  LODESTONE_INLINE float spread(lane::F3 a, lane::F3 b) const {
+    return a.x * (xx * b.x + xy * b.y + xz * b.z) + a.y * (xy * b.x + yy * b.y + yz * b.z) +
+           a.z * (xz * b.x + yz * b.y + zz * b.z);
+  }
+};
+inline constexpr float kPatchAngle = 0.13f;  // rad: of what may be told apart in the maps, the least
+
 /// Of kHullHeights directions, body axes. What others meet is smaller, by the same factor all over, where the
 /// mesh does not fill its hull.
 struct HullMaps {
-  std::span<float> height;         ///< m: how far the hull reaches, as the ground meets it
-  std::span<float> pair_height;    ///< m, as others meet it
+  std::span<float> height;       ///< m: how far the hull reaches, as the ground meets it
+  std::span<float> pair_height;  ///< m, as others meet it
+  std::span<SupportPatch> patch;
   std::span<lane::Row> pair_face;  ///< the face through which the direction leaves it: its normal, and in w
                                    ///< its distance, m
 };
@@ -67,6 +80,22 @@ LODESTONE_INLINE float read_map(const float* heights, int map, const MapPlace& p
 /// m, along `direction` (body axes, of any length but 0), of the map that begins at `heights[first]`.
 LODESTONE_INLINE float read_hull_height(const float* heights, int first, lane::F3 direction) {
   return lane::read_map(heights, first, lane::place_in_map(direction));
+}
+
+/// Linear between the four samples about a place.
+inline SupportPatch read_patch(const SupportPatch* patches, const lane::MapPlace& place) {
+  const auto between = [](const SupportPatch& a, const SupportPatch& b, float t) {
+    const auto mix = [t](float from, float to) { return from + t * (to - from); };
+    return SupportPatch{a.mean + t * (b.mean - a.mean),
+                        mix(a.xx, b.xx),
+                        mix(a.yy, b.yy),
+                        mix(a.zz, b.zz),
+                        mix(a.xy, b.xy),
+                        mix(a.xz, b.xz),
+                        mix(a.yz, b.yz)};
+  };
+  const SupportPatch *low = patches + place.first, *high = low + kHullHeightSide + 1;
+  return between(between(low[0], low[1], place.s), between(high[0], high[1], place.s), place.t);
 }
 
 }  // namespace lodestone

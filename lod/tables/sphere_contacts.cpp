@@ -135,16 +135,6 @@ void SphereContacts::add_ground(const Spheres& spheres, std::span<const PlaneTou
   put_back(c);
 }
 
-template <class Task>
-void SphereContacts::run_by_colour(const JobRunner& jobs, const Task& task) {
-  for (const auto& colour : of_colour_)
-    if (!colour.empty())
-      jobs(std::int64_t(colour.size()), TaskRef([&](std::int64_t i) {
-             Part& part = parts_[colour[std::size_t(i)]];
-             if (part.run.size() > 0) task(part);
-           }));
-}
-
 float SphereContacts::find_known_force(const Spheres& spheres, std::uint32_t at, std::uint32_t other) const {
   const std::uint32_t begin = spheres.known_begin[at], end = begin + spheres.known_count[at];
   for (std::uint32_t i = begin; i < end; ++i)

@@ -118,6 +118,12 @@ class SphereContacts {
              float bounce_velocity, const StepConstants& constants, bool last, bool eased, Simd simd,
              SphereStep& step, const JobRunner& jobs);
 
+  /// Calls `visit(run)` with runs of contacts that no other thread has bodies of at that time.
+  template <class Visit>
+  void each_run(const JobRunner& jobs, const Visit& visit) {
+    run_by_colour(jobs, [&](const Part& part) { visit(part.run); });
+  }
+
   void archive(StateArchive& a) { a(known_, known_apart_); }
   const SphereContactSettings& settings() const { return settings_; }
   std::int64_t count() const;
@@ -146,7 +152,14 @@ class SphereContacts {
     return (c.impulse[i] > 0.0f) & (c.closing[i] >= -bounce_velocity);
   }
   template <class Task>
-  void run_by_colour(const JobRunner& jobs, const Task& task);
+  void run_by_colour(const JobRunner& jobs, const Task& task) {
+    for (const auto& colour : of_colour_)
+      if (!colour.empty())
+        jobs(std::int64_t(colour.size()), TaskRef([&](std::int64_t i) {
+               Part& part = parts_[colour[std::size_t(i)]];
+               if (part.run.size() > 0) task(part);
+             }));
+  }
   ContactArrays& take_arrays();
   void put_back(ContactArrays& arrays);
   void set_laws(const ContactRun& run, const Spheres& spheres, const SphereKinds& kinds,

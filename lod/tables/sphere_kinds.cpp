@@ -1,5 +1,6 @@
 #include "lod/tables/sphere_kinds.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,6 +8,13 @@
 #include "lod/tables/tables_model.h"
 
 namespace lodestone {
+namespace {
+
+// How far a hull reaches over how thick it is: a cube, 1.7, a box of 2 : 3 : 4 and a bunny, 2.7, are round
+// enough for spheres to heap up as they do; a regular tetrahedron, 3, a coin and a beam, 10, are not.
+constexpr float kStays = 2.75f, kTips = 3.0f;
+
+}  // namespace
 
 void SphereKinds::take(const Kinds& kinds, std::uint32_t kind, double gravity) {
   if (size() < kinds.size()) resize(kinds.size());
@@ -16,12 +24,16 @@ void SphereKinds::take(const Kinds& kinds, std::uint32_t kind, double gravity) {
 }
 
 void SphereKinds::resize(std::size_t size) {
-  for (auto* array : {&radius, &ixx, &iyy, &izz, &ixy, &ixz, &iyz, &jxx, &jyy, &jzz, &jxy, &jxz, &jyz,
-                      &softest, &farthest_reach, &rolling_lever, &blend_time})
+  for (auto* array : {&radius,        &ixx,       &iyy, &izz, &ixy, &ixz, &iyz,
+                      &jxx,           &jyy,       &jzz, &jxy, &jxz, &jyz, &softest,
+                      &gxx,           &gyy,       &gzz, &gxy, &gxz, &gyz, &farthest_reach,
+                      &rolling_lever, &blend_time})
     array->resize(size, 1.0f);
+  tips.resize(size, 0.0f), thickness.resize(size);
   height.resize(size * (kHeightSamples + 1));
   pair_height.resize(size * std::size_t(kHullHeights));
   pair_face.resize(size * std::size_t(kHullHeights));
+  patch.resize(size * std::size_t(kHullHeights));
   hull_height.resize(size * std::size_t(kHullHeights));
   material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size),
       is_slender_.resize(size);
@@ -51,7 +63,15 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   const auto map_of = [&](auto& maps) {
     return std::span(maps).subspan(k * std::size_t(kHullHeights), kHullHeights);
   };
-  sample_hull(shape, {map_of(hull_height), map_of(pair_height), map_of(pair_face)});
+  sample_hull(shape, {map_of(hull_height), map_of(pair_height), map_of(patch), map_of(pair_face)});
+  const Mat3 give = Eigen::SelfAdjointEigenSolver<Mat3>(3.0 * inertia).operatorInverseSqrt();
+  gxx[k] = float(give(0, 0)), gyy[k] = float(give(1, 1)), gzz[k] = float(give(2, 2));
+  gxy[k] = float(give(0, 1)), gxz[k] = float(give(0, 2)), gyz[k] = float(give(1, 2));
+  const auto [thin, far] = std::ranges::minmax(map_of(hull_height));
+  tipping_ -= tips[k] > 0.0f;
+  tips[k] = shape.sphere_radius ? 0.0f : std::clamp((far / thin - kStays) / (kTips - kStays), 0.0f, 1.0f);
+  thickness[k] = thin / far;
+  tipping_ += tips[k] > 0.0f;
   farthest_reach[k] = std::ranges::max(map_of(pair_height));
   rolling_lever[k] = float(find_rolling_lever(shape));
   blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));

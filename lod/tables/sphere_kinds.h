@@ -17,12 +17,17 @@ struct SphereKinds {
   std::vector<float> jxx, jyy, jzz, jxy, jxz, jyz;  // inertia over mass, m²
   std::vector<float> softest;                       // its greatest eigenvalue, 1/m²
   std::vector<float> height;  // kHeightSamples + 1 a kind, m, one more to read beyond the end
-  std::vector<float> hull_height, pair_height;             // kHullHeights a kind, m: HullMaps
-  std::vector<lane::Row> pair_face;                        // as many
-  std::vector<float> farthest_reach;                       // m, of pair_height
-  std::vector<float> rolling_lever;                        // m, of rolling resistance
-  std::vector<float> blend_time;                           // s, of the approach to a rest pose
-  std::vector<std::int32_t> first_pose;                    // of the kind's rest poses in the next ones
+  std::vector<float> hull_height, pair_height;      // kHullHeights a kind, m: HullMaps
+  std::vector<lane::Row> pair_face;                 // as many
+  std::vector<SupportPatch> patch;                  // as many
+  std::vector<float> tips;                          // 0 to 1: whether it tips over (tipping.h)
+  std::vector<float> thickness;                     // over its reach, of the hull where it is thinnest
+  std::vector<float> gxx, gyy, gzz, gxy, gxz, gyz;  // 1/m, body axes: one over how far it reaches beside an
+                                                    // axis, as a rod with its inertia would
+  std::vector<float> farthest_reach;                // m, of pair_height
+  std::vector<float> rolling_lever;                 // m, of rolling resistance
+  std::vector<float> blend_time;                    // s, of the approach to a rest pose
+  std::vector<std::int32_t> first_pose;             // of the kind's rest poses in the next ones
   std::vector<float> pose_height, pose_x, pose_y, pose_z;  // m; normal in body axes; at least one pose a kind
 
   /// Whether the midpoint rule would feed energy into its spin.
@@ -32,6 +37,8 @@ struct SphereKinds {
   /// Takes in a kind, unless it is known; m/s².
   void take(const Kinds& kinds, std::uint32_t kind, double gravity);
   std::size_t size() const { return radius.size(); }
+  /// Whether there are kinds that tip over.
+  bool any_tips() const { return tipping_ > 0; }
   /// Whether there are kinds whose free rotation takes more than the loops' midpoint rule.
   bool any_slender() const { return slender_ > 0; }
 
@@ -43,7 +50,7 @@ struct SphereKinds {
   std::vector<std::uint64_t> birth_;     // of the kind that has the number; 0: of none yet
   std::vector<std::int32_t> pose_room_;  // poses that fit where its own are
   std::vector<std::uint8_t> is_slender_;
-  std::size_t slender_ = 0;
+  std::size_t slender_ = 0, tipping_ = 0;
 };
 
 }  // namespace lodestone

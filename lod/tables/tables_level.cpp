@@ -231,7 +231,7 @@ std::size_t TablesLevel::bytes() const {
   std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) +
                       held(tallies_) + held(clips_) + held(plane_touches_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
-  return bytes + step_.bytes() + contacts_.bytes();
+  return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes();
 }
 
 void TablesLevel::describe(Guest& guest) const {

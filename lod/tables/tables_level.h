@@ -24,6 +24,7 @@
 #include "lod/tables/guest.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_ground.h"
+#include "lod/tables/tipping.h"
 #include "reference/disjoint_sets.h"
 #include "reference/state_archive.h"
 
@@ -229,6 +230,8 @@ class TablesLevel {
   SphereContacts contacts_;
   SphereGround planes_;
   SphereStep step_;
+  TippingStep tipping_;
+  bool tips_ = false;                   // whether anybody may tip over in this step
   std::vector<HalfSpace> faces_;        // of this step: of the ground's parts, each for the sphere near it
   std::vector<NearFaces> near_faces_;   // by place
   std::vector<std::int32_t> cornered_;  // slots

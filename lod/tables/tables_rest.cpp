@@ -75,8 +75,10 @@ void TablesLevel::rest() {
     // While it is still being taken out of an overlap its time hardly counts; one that is pressed in again as
     // far as it is taken out stays where it is. In a wedge it may go to and fro for ever.
     const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
-    const bool parts =
-        spheres_.on_hull[i] == HullStand::rises || (step_.touches(i) && out >= rest_law_.sleep_speed(radius));
+    const bool tips = tips_ && double(tipping_.turned[std::size_t(i)]) * radius >=
+                                   rest_law_.sleep_speed(radius) * constants_.wide_time;
+    const bool parts = tips || spheres_.on_hull[i] == HullStand::rises ||
+                       (step_.touches(i) && out >= rest_law_.sleep_speed(radius));
     if (rides(i)) {
       spheres_.quiet[i] = 0.0f;
       continue;

@@ -461,6 +461,13 @@ void TablesLevel::finish(ContactTally& tally) {
   const bool ground = has_planes();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
   joined_.resize(std::max(joined_.size(), tallies_.size()));
+  tips_ = constants_.hulls && kinds_.any_tips() && contacts_.count() > 0;
+  if (tips_) {
+    tipping_.clear(std::size_t(spheres_.awake));
+    contacts_.each_run(jobs_, [&](const ContactRun& run) {
+      add_torques(run, spheres_, kinds_, bounce_velocity(), tipping_);
+    });
+  }
   each_block([&](std::int64_t begin, std::int64_t end) {
     ContactTally& own = tallies_[std::size_t(begin / kBlock)];
     std::vector<PlayingClip>& joined = joined_[std::size_t(begin / kBlock)];
@@ -474,6 +481,7 @@ void TablesLevel::finish(ContactTally& tally) {
                     [&](std::int64_t i) { move_alone(i, own, joined); });
     }
     end_block(begin, end);
+    if (tips_) tip(spheres_, kinds_, planes_, constants_, step_, begin, end, tipping_);
     each_marked(step_.on_ground, std::uint8_t(GroundState::unsound), begin, end,
                 [&](std::int64_t i) { recover(i, own); });
   });

@@ -1,0 +1,175 @@
+#include "lod/tables/tipping.h"
+
+namespace lodestone {
+namespace {
+
+using namespace lane;
+
+// Of torques over those that the impulses could have at most: what friction in the touching faces and edges
+// holds, so that heaps come to rest.
+constexpr float kHeldTorque = 0.15f;
+constexpr float kTippingRate = 2.0f;  // √(g/R), of what is pressed at its end
+// rad a step, of what is pressed at its end: in kPatchAngle its torque is gone where a face comes to lie; by
+// half as much again it comes there sooner, and does not go to and fro.
+constexpr float kFlush = 1.5f * kPatchAngle;
+// Tipping does work: its torque, over its weight, times its angle, m. That must come from its fall, so that a
+// heap does not work for ever against what holds it, but for a credit of kTippingCredit R, which only flight
+// or being woken gives anew. What sinks more slowly than kCreep √(gR) creeps, and has nothing of it.
+constexpr float kTippingCredit = 0.6f, kCreep = 0.03f;
+// Variance over the squared radius: of where two corners touch.
+constexpr float kSharpest = 1e-5f;
+
+Turn turn_of(const Spheres& spheres, std::size_t i) {
+  return {spheres.qw[i], {spheres.qx[i], spheres.qy[i], spheres.qz[i]}};
+}
+
+// The farthest points of a body in a direction: their mean, from its centre, and their spread in the plane of
+// two directions beside that one.
+struct TurnedPatch {
+  F3 mean;
+  float uu, vv, uv;
+};
+
+SupportPatch patch_of(const SphereKinds& kinds, int kind, const Turn& turn, F3 direction) {
+  return read_patch(kinds.patch.data() + std::size_t(kind) * std::size_t(kHullHeights),
+                    place_in_map(turned(back(turn), direction)));
+}
+
+TurnedPatch find_patch(const SphereKinds& kinds, int kind, const Turn& turn, F3 direction, F3 u, F3 v) {
+  const SupportPatch patch = patch_of(kinds, kind, turn, direction);
+  const F3 own_u = turned(back(turn), u), own_v = turned(back(turn), v);
+  return {turned(turn, patch.mean), patch.spread(own_u, own_u), patch.spread(own_v, own_v),
+          patch.spread(own_u, own_v)};
+}
+
+// Where two hulls touch, from the centre of the first: the means of both, `between` apart from first to
+// second, each weighted by the inverse of its spread, beside the normal.
+F3 join_patches(const TurnedPatch& first, const TurnedPatch& second, F3 between, F3 u, F3 v, float sharpest) {
+  const float x = dot(between, u), y = dot(between, v);
+  const float uu = first.uu + second.uu + sharpest, vv = first.vv + second.vv + sharpest,
+              uv = first.uv + second.uv, scale = 1.0f / (uu * vv - uv * uv);
+  const float by_u = scale * (vv * x - uv * y), by_v = scale * (uu * y - uv * x), half = 0.5f * sharpest;
+  return first.mean + ((first.uu + half) * by_u + first.uv * by_v) * u +
+         (first.uv * by_u + (first.vv + half) * by_v) * v;
+}
+
+Tensors ends_of(const SphereKinds& k) {
+  return {k.gxx.data(), k.gyy.data(), k.gzz.data(), k.gxy.data(), k.gxz.data(), k.gyz.data()};
+}
+
+// m, in this step.
+float fall_of(const Spheres& spheres, const SphereStep& step, const StepConstants& c, std::size_t i) {
+  const Row& out = step.d[i];
+  const F3 way{float(spheres.vx[i]) * c.time + out.x, float(spheres.vy[i]) * c.time + out.y,
+               float(spheres.vz[i]) * c.time + out.z};
+  return dot(way, {c.gx, c.gy, c.gz}) / most(c.gravity, 1e-9f);
+}
+
+float creep_of(const SphereKinds& kinds, const StepConstants& c, std::size_t kind) {
+  return kCreep * square_root(c.gravity * kinds.radius[kind]) * c.time;
+}
+
+// Over the mass: of all that presses on a body.
+struct PressingLoad {
+  F3 torque;       // m²/s
+  float impulses;  // m/s
+};
+PressingLoad load_of(const Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
+                     const SphereStep& step, const TippingStep& tipping, std::size_t i, const Turn& turn) {
+  const Row& others = tipping.torque[i];
+  PressingLoad load{{others.x, others.y, others.z}, others.w};
+  const std::uint8_t state = step.on_ground[i];
+  const bool lies = state == std::uint8_t(GroundState::lies) || state == std::uint8_t(GroundState::settles);
+  if (!lies || spheres.held[i] <= 0.0f) return load;
+  const auto plane = std::size_t(step.plane[i]);
+  const F3 n{ground.nx[plane], ground.ny[plane], ground.nz[plane]};
+  const F3 arm = patch_of(kinds, int(spheres.kind[i]), turn, -1.0f * n).mean;
+  load.torque = load.torque + spheres.held[i] * cross(turned(turn, arm), n);
+  load.impulses += spheres.held[i];
+  return load;
+}
+
+// Its spin turns with it: so its energy stays, where its inertia differs from axis to axis.
+void turn_body(Spheres& spheres, std::size_t i, const Turn& by) {
+  const Turn to = product(by, turn_of(spheres, i));
+  const float scale = 1.5f - 0.5f * (to.w * to.w + dot(to.v, to.v));  // as in EndLoop
+  spheres.qw[i] = scale * to.w, spheres.qx[i] = scale * to.v.x, spheres.qy[i] = scale * to.v.y,
+  spheres.qz[i] = scale * to.v.z;
+  const F3 spin = turned(by, {float(spheres.lx[i]), float(spheres.ly[i]), float(spheres.lz[i])});
+  spheres.lx[i] = double(spin.x), spheres.ly[i] = double(spin.y), spheres.lz[i] = double(spin.z);
+}
+
+}  // namespace
+
+void TippingStep::clear(std::size_t awake) {
+  torque.assign(awake + 1, {});
+  turned.assign(awake, 0.0f);
+}
+
+void add_torques(const ContactRun& contacts, const Spheres& spheres, const SphereKinds& kinds,
+                 float bounce_velocity, TippingStep& tipping) {
+  const ContactArrays& c = *contacts.arrays;
+  const auto awake = std::uint32_t(spheres.awake);
+  for (std::size_t i = contacts.begin; i < contacts.end; ++i) {
+    const std::uint32_t a = c.first[i], b = c.second[i];
+    const bool on_plane = b >= kGroundPlace;
+    const int first_kind = int(spheres.kind[a]), second_kind = on_plane ? first_kind : int(spheres.kind[b]);
+    if (c.impulse[i] <= 0.0f || c.closing[i] < -bounce_velocity) continue;
+    if (kinds.tips[std::size_t(first_kind)] + kinds.tips[std::size_t(second_kind)] <= 0.0f) continue;
+    const F3 n{c.nx[i], c.ny[i], c.nz[i]};
+    const F3 aside = absolute(n.x) < 0.6f ? F3{1.0f, 0.0f, 0.0f} : F3{0.0f, 1.0f, 0.0f},
+             along = cross(n, aside);
+    const F3 u = (1.0f / length(along)) * along, v = cross(n, u);
+    const TurnedPatch first = find_patch(kinds, first_kind, turn_of(spheres, a), -1.0f * n, u, v);
+    const auto add = [&](std::uint32_t place, F3 arm, F3 impulse) {
+      const F3 torque = cross(arm, impulse);
+      const float weight = c.impulse[i] * float(spheres.inverse_mass[place]);
+      add_to(tipping.torque[place], weight * RowLanes{torque.x, torque.y, torque.z, 1.0f});
+    };
+    if (on_plane) {
+      add(a, first.mean, n);
+      continue;
+    }
+    const TurnedPatch second = find_patch(kinds, second_kind, turn_of(spheres, b), n, u, v);
+    const F3 centres{float(spheres.x[b] - spheres.x[a]), float(spheres.y[b] - spheres.y[a]),
+                     float(spheres.z[b] - spheres.z[a])};
+    const float size = least(kinds.radius[std::size_t(first_kind)], kinds.radius[std::size_t(second_kind)]);
+    const F3 point =
+        join_patches(first, second, centres + second.mean - first.mean, u, v, kSharpest * size * size);
+    add(a, point, n);
+    if (b < awake) add(b, point - centres, -1.0f * n);
+  }
+}
+
+void tip(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
+         const StepConstants& constants, const SphereStep& step, std::int64_t begin, std::int64_t end,
+         TippingStep& tipping) {
+  for (std::int64_t at = begin; at < end; ++at) {
+    const auto i = std::size_t(at);
+    const auto kind = std::size_t(spheres.kind[i]);
+    if (kinds.tips[kind] <= 0.0f) continue;
+    if (!step.touches(at)) spheres.tipping_credit[i] = 1.0f;
+    if (!step.touches(at) || step.on_ground[i] == std::uint8_t(GroundState::moved)) continue;
+    const float whole = kTippingCredit * kinds.radius[kind];  // m
+    float& credit = spheres.tipping_credit[i];
+    const float fallen = fall_of(spheres, step, constants, i) - creep_of(kinds, constants, kind);
+    credit = least(1.0f, most(0.0f, credit + fallen / whole));
+    const Turn turn = turn_of(spheres, i);
+    const PressingLoad load = load_of(spheres, kinds, ground, step, tipping, i, turn);
+    // Over what the impulses would do at the ends of the body: at most about 1.
+    const float pressed = most(load.impulses, constants.gravity * constants.time);
+    const F3 given = in_world(ends_of(kinds), int(kind), turn, (1.0f / pressed) * load.torque);
+    const float size = length(given), beyond = least(1.0f, size - kHeldTorque);
+    if (beyond <= 0.0f || credit <= 0.0f) continue;
+    // No end goes farther in a step than the hull is thick: it would be through what it strikes.
+    const float rate = kTippingRate * square_root(constants.gravity / kinds.radius[kind]) * constants.time,
+                willing = kinds.tips[kind] * least(beyond * least(rate, kFlush), kinds.thickness[kind]),
+                work = length(load.torque) / pressed;  // m a rad
+    const float angle = least(willing, credit * whole / work);
+    credit -= angle * work / whole;
+    turn_body(spheres, i, turn_by((angle / size) * given, 1.0f));
+    tipping.turned[i] = angle;
+  }
+}
+
+}  // namespace lodestone
