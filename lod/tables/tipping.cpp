@@ -13,8 +13,8 @@ constexpr float kTippingRate = 2.0f;  // √(g/R), of what is pressed at its end
 // half as much again it comes there sooner, and does not go to and fro.
 constexpr float kFlush = 1.5f * kPatchAngle;
 // Tipping does work: its torque, over its weight, times its angle, m. That must come from its fall, so that a
-// heap does not work for ever against what holds it, but for a credit of kTippingCredit R, which only flight
-// or being woken gives anew. What sinks more slowly than kCreep √(gR) creeps, and has nothing of it.
+// heap does not work for ever against what holds it, but for a credit of kTippingCredit R, which flight
+// gives anew. What sinks more slowly than kCreep √(gR) creeps, and has nothing of it.
 constexpr float kTippingCredit = 0.6f, kCreep = 0.03f;
 // Variance over the squared radius: of where two corners touch.
 constexpr float kSharpest = 1e-5f;
