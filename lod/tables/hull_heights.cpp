@@ -40,7 +40,9 @@ double volume_of(const Hull& hull) {
 }
 
 SupportPatch find_patch_of(const Hull& hull, const Vec3& direction, int start) {
-  constexpr int kAlong = 5;  // looks along each of two directions aside
+  // Looks along each of two directions aside: an even number, so that none is along the direction itself, for
+  // which all corners of a face are equally far.
+  constexpr int kAlong = 6;
   const Vec3 u = direction.unitOrthogonal(), v = direction.cross(u);
   Vec3 mean = Vec3::Zero();
   Mat3 square = Mat3::Zero();

@@ -144,6 +144,7 @@ void add_torques(const ContactRun& contacts, const Spheres& spheres, const Spher
 void tip(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
          const StepConstants& constants, const SphereStep& step, std::int64_t begin, std::int64_t end,
          TippingStep& tipping) {
+  if (constants.gravity <= 0.0f) return;  // nothing falls
   for (std::int64_t at = begin; at < end; ++at) {
     const auto i = std::size_t(at);
     const auto kind = std::size_t(spheres.kind[i]);

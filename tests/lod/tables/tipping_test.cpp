@@ -1,0 +1,142 @@
+// What is long or flat tips over among others of `tables`, and by that gains no energy.
+#include "lod/tables/tipping.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "lod/tables/hull_heights.h"
+#include "reference/random.h"
+#include "reference/shape.h"
+#include "tests/lod/manager/manager_fixture.h"
+#include "tests/lod/tables/hull_maps.h"
+
+namespace lodestone {
+namespace {
+
+using testing::box_shape, testing::Maps;
+
+// Things of one shape that fall into a bin of 1 m, turned anyhow.
+struct Bin {
+  Manager manager;
+  std::vector<BodyId> bodies;
+
+  Bin(const std::shared_ptr<const Shape>& shape, int count, LevelChoice level, std::uint64_t seed)
+      : manager({.signatures = testing::coarse_signature}) {
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    for (const Vec3& inward :
+         {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(-Vec3::UnitY())})
+      manager.add_plane(inward, -0.5);
+    for (int i = 0; i < count; ++i) {
+      RandomStream random(seed, std::uint64_t(i), 0);
+      RigidState state;
+      state.position = {0.0, 0.0, 0.5 + 0.4 * i};
+      state.orientation = random.orientation();
+      bodies.push_back(testing::add(manager, shape, state, level));
+    }
+  }
+  double mean_height() const {  // m
+    double sum = 0.0;
+    for (const BodyId body : bodies) sum += manager.state(body).position.z();
+    return sum / double(bodies.size());
+  }
+  double energy() const {  // J
+    double sum = 0.0;
+    for (const BodyId body : bodies) sum += testing::energy(manager, body);
+    return sum;
+  }
+};
+
+// Without a torque they stay as they fell: at 1.8 to 2.7 times the height.
+TEST(Tipping, HeapsOfWhatIsLongOrFlatAreAboutAsHighAsThoseOfHulls) {
+  for (const Vec3& sides : {Vec3(0.8, 0.08, 0.08), Vec3(0.5, 0.3, 0.04)}) {
+    const auto shape = box_shape(sides);
+    double tables = 0.0, support = 0.0;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      for (const LevelChoice level : {LevelChoice::tables, LevelChoice::support}) {
+        Bin bin(shape, 30, level, seed);
+        testing::run(bin.manager, 14.0);
+        (level == LevelChoice::tables ? tables : support) += bin.mean_height();
+      }
+    }
+    EXPECT_LT(tables, 1.4 * support) << sides.transpose();
+    EXPECT_GT(tables, 0.7 * support) << sides.transpose();
+  }
+}
+
+// It takes potential energy away, which spheres among others may gain a little of as they part.
+TEST(Tipping, AddsNoEnergy) {
+  Bin bin(box_shape({0.5, 0.3, 0.04}), 30, LevelChoice::tables, 3);
+  const double whole = bin.energy();
+  double least = whole, rise = 0.0;
+  for (int i = 0; i < 600; ++i) {
+    bin.manager.step(testing::kFrame);
+    const double now = bin.energy();
+    least = std::min(least, now), rise = std::max(rise, now - least);
+  }
+  EXPECT_LT(rise, 2e-3 * whole);
+}
+
+// Without gravity nothing falls, and nothing pays for a turn: who meets others there goes on as spheres do.
+TEST(Tipping, LeavesMomentumAsItIsWithoutGravity) {
+  Manager manager({.gravity = Vec3::Zero(), .sleeping = false, .signatures = testing::coarse_signature});
+  const auto beam = box_shape({0.8, 0.08, 0.08});
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 12; ++i) {
+    RandomStream random(7, std::uint64_t(i), 0);
+    RigidState state;
+    state.position = 1.5 * random.direction();
+    state.velocity = -2.0 * state.position;
+    state.orientation = random.orientation();
+    bodies.push_back(testing::add(manager, beam, state, LevelChoice::tables));
+  }
+  const auto momentum = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (const BodyId body : bodies) sum += manager.mass(body) * manager.state(body).velocity;
+    return sum;
+  };
+  const Vec3 before = momentum();
+  testing::run(manager, 2.0);
+  EXPECT_LT((momentum() - before).norm(), 1e-5 * 3.0 * manager.mass(bodies[0]) * 12);
+  EXPECT_EQ(manager.report().counters.states_recovered, 0);
+}
+
+TEST(Tipping, IsForWhatReachesThreeTimesAsFarAsItIsThick) {
+  const auto tips = [](const std::shared_ptr<const Shape>& shape) {
+    Kinds kinds;
+    SphereKinds dense;
+    const std::uint32_t k =
+        kinds.take(StatisticalModel::tables, shape, 0, std::make_shared<const Signature>());
+    dense.take(kinds, k, testing::kGravity);
+    return dense.tips[k];
+  };
+  EXPECT_EQ(tips(box_shape({1, 1, 1})), 0.0f);
+  EXPECT_EQ(tips(box_shape({0.2, 0.3, 0.4})), 0.0f);
+  EXPECT_EQ(tips(std::make_shared<const Shape>(make_sphere_shape(0.2))), 0.0f);
+  EXPECT_EQ(tips(box_shape({0.8, 0.08, 0.08})), 1.0f);
+  EXPECT_EQ(tips(box_shape({0.5, 0.3, 0.04})), 1.0f);
+}
+
+// Over a face its corners, at a corner that one alone.
+TEST(Tipping, PatchesAreFacesEdgesAndCorners) {
+  const Maps maps(*box_shape({0.4, 0.6, 1.0}));
+  const auto patch_at = [&](const Vec3& n) {
+    return read_patch(maps.patches.data(), lane::place_in_map({float(n.x()), float(n.y()), float(n.z())}));
+  };
+  const SupportPatch face = patch_at(Vec3::UnitZ());
+  EXPECT_NEAR(face.mean.x, 0.0, 0.05);
+  EXPECT_NEAR(face.mean.y, 0.0, 0.07);
+  EXPECT_NEAR(face.mean.z, 0.5, 1e-6);
+  EXPECT_NEAR(face.zz, 0.0, 1e-6);
+  EXPECT_NEAR(face.xx, 0.04, 1e-3);  // corners alone: ± half a side
+  EXPECT_NEAR(face.yy, 0.09, 2e-3);
+  EXPECT_NEAR(face.xy, 0.0, 1e-3);
+  const SupportPatch corner = patch_at(Vec3(1, 1, 1).normalized());
+  EXPECT_NEAR(corner.mean.x, 0.2, 1e-6);
+  EXPECT_NEAR(corner.mean.y, 0.3, 1e-6);
+  EXPECT_NEAR(corner.mean.z, 0.5, 1e-6);
+  EXPECT_NEAR(corner.xx + corner.yy + corner.zz, 0.0, 1e-7);
+}
+
+}  // namespace
+}  // namespace lodestone
