@@ -1,13 +1,14 @@
 #include "lod/contact/contact_manifold.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lodestone {
 namespace {
 
 /// A point by its place in the touching plane and its height along the normal.
 struct Point {
-  double x = 0.0, y = 0.0, height = 0.0;
+  double x, y, height;
 };
 
 double cross(const Point& o, const Point& a, const Point& b) {
@@ -20,11 +21,18 @@ Point between(const Point& a, const Point& b, double t) {
   return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.height + t * (b.height - a.height)};
 }
 
-/// A corner, an edge or a convex polygon, counter-clockwise. Two quadrilaterals overlap in at most eight
-/// corners.
+/// A corner, an edge or a convex polygon, counter-clockwise. Two polygons overlap in at most as many corners
+/// as both have. What lies beyond `count` is never read: to clear and to copy it would cost more than all
+/// else.
 struct Feature {
-  std::array<Point, 8> at;
+  std::array<Point, 2 * kMostCorners> at;
   int count = 0;
+  Feature() {}  // NOLINT: leaves the points as they are
+  Feature(const Feature& other) : count(other.count) { std::copy_n(other.at.begin(), count, at.begin()); }
+  Feature& operator=(const Feature& other) {
+    std::copy_n(other.at.begin(), count = other.count, at.begin());
+    return *this;
+  }
   void add(const Point& p) {
     if (count < int(at.size())) at[count++] = p;
   }
@@ -56,17 +64,18 @@ void thin_to_edge(Feature& f) {
 }
 
 // Convex hull in the plane (Andrew's monotone chain); points on a line leave its two ends.
-Feature find_outline(const HullContacts& contacts, const Plane& plane) {
+Feature find_outline(std::span<const Vec3> corners, const Plane& plane) {
   const auto before = [](const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
-  std::array<Point, kMaxGroundContacts> sorted;
-  for (int i = 0; i < contacts.count; ++i) {
+  const int count = std::min(int(corners.size()), kMostCorners);
+  std::array<Point, kMostCorners> sorted;
+  for (int i = 0; i < count; ++i) {
+    const Point corner = plane.to_plane(corners[std::size_t(i)]);
     int place = i;
-    for (sorted[i] = plane.to_plane(contacts.contact[i].arm);
-         place > 0 && before(sorted[place], sorted[place - 1]); --place)
-      std::swap(sorted[place], sorted[place - 1]);
+    for (; place > 0 && before(corner, sorted[place - 1]); --place) sorted[place] = sorted[place - 1];
+    sorted[place] = corner;
   }
   Feature outline;
-  if (contacts.count == 1) {
+  if (count == 1) {
     outline.add(sorted[0]);
     return outline;
   }
@@ -76,32 +85,36 @@ Feature find_outline(const HullContacts& contacts, const Plane& plane) {
       --outline.count;
     outline.add(p);
   };
-  for (int i = 0; i < contacts.count; ++i) extend(sorted[i], 1);
+  for (int i = 0; i < count; ++i) extend(sorted[i], 1);
   const int lower = outline.count;
-  for (int i = contacts.count - 2; i >= 0; --i) extend(sorted[i], lower);
+  for (int i = count - 2; i >= 0; --i) extend(sorted[i], lower);
   --outline.count;  // the first point again
   thin_to_edge(outline);
   return outline;
 }
 
 // What of `subject` lies to the left of the edge from a to b.
-Feature cut(const Feature& subject, const Point& a, const Point& b) {
-  Feature left;
-  const double edge = std::sqrt(squared_distance(a, b)), slack = 1e-6 * edge * edge;
+void cut(const Feature& subject, const Point& a, const Point& b, Feature& left) {
+  const double slack = 1e-6 * squared_distance(a, b);
+  left.count = 0;
+  double q_side = cross(a, b, subject.at[0]) + slack;
   for (int i = 0; i < subject.count; ++i) {
-    const Point &p = subject.at[i], &q = subject.at[(i + 1) % subject.count];
-    const double p_side = cross(a, b, p) + slack, q_side = cross(a, b, q) + slack;
+    const Point &p = subject.at[i], &q = subject.at[i + 1 < subject.count ? i + 1 : 0];
+    const double p_side = q_side;
+    q_side = cross(a, b, q) + slack;
     if (p_side >= 0.0) left.add(p);
     const bool has_edge = subject.count > 2 || (subject.count == 2 && i == 0);
     if (has_edge && (p_side < 0.0) != (q_side < 0.0)) left.add(between(p, q, p_side / (p_side - q_side)));
   }
-  return left;
 }
 
-Feature clip(Feature subject, const Feature& polygon) {
-  for (int i = 0; i < polygon.count && subject.count > 0; ++i)
-    subject = cut(subject, polygon.at[i], polygon.at[(i + 1) % polygon.count]);
-  return subject;
+Feature clip(const Feature& subject, const Feature& polygon) {
+  Feature clipped = subject, next;
+  for (int i = 0; i < polygon.count && clipped.count > 0; ++i) {
+    cut(clipped, polygon.at[i], polygon.at[i + 1 < polygon.count ? i + 1 : 0], next);
+    clipped = next;
+  }
+  return clipped;
 }
 
 // Where two edges cross, if they do; a corner with an edge or a corner touches in the corner.
@@ -121,7 +134,7 @@ Feature cross_thin(const Feature& a, const Feature& b) {
 // polygon.
 class Surface {
  public:
-  explicit Surface(const Feature& f) : count_(f.count), first_(f.at[0]) {
+  explicit Surface(const Feature& f) : count_(f.count), first_(f.at[0]), second_(f.at[0]) {
     if (f.count == 2) {
       second_ = f.at[1];
       x_ = second_.x - first_.x, y_ = second_.y - first_.y;
@@ -162,22 +175,21 @@ class Surface {
 // Keeps the first point and those that span the widest area with it.
 void keep_four(Feature& f) {
   if (f.count <= 4) return;
-  const Feature all = f;
-  const auto greatest = [&all](const auto& measure) {
-    return *std::max_element(all.at.begin(), all.at.begin() + all.count,
+  const auto greatest = [&f](const auto& measure) {
+    return *std::max_element(f.at.begin(), f.at.begin() + f.count,
                              [&](const Point& a, const Point& b) { return measure(a) < measure(b); });
   };
-  const Point first = all.at[0];
+  const Point first = f.at[0];
   const Point second = greatest([&](const Point& p) { return squared_distance(first, p); });
-  f.at[1] = second;
-  f.at[2] = greatest([&](const Point& p) { return cross(first, second, p); });
-  f.at[3] = greatest([&](const Point& p) { return -cross(first, second, p); });
+  const Point left = greatest([&](const Point& p) { return cross(first, second, p); });
+  const Point right = greatest([&](const Point& p) { return -cross(first, second, p); });
+  f.at[1] = second, f.at[2] = left, f.at[3] = right;
   f.count = 4;
 }
 
 }  // namespace
 
-Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, const Vec3& normal,
+Manifold find_manifold(std::span<const Vec3> upper, std::span<const Vec3> lower, const Vec3& normal,
                        double least_gap) {
   const Plane plane(normal);
   const Feature above = find_outline(upper, plane), below = find_outline(lower, plane);

@@ -4,8 +4,9 @@
 #pragma once
 
 #include <array>
+#include <span>
 
-#include "lod/contact/hull_contacts.h"
+#include "reference/geometry.h"
 
 namespace lodestone {
 
@@ -19,10 +20,13 @@ struct Manifold {
   int count = 0;
 };
 
+/// Of a touching feature, at most: a face of more corners loses little where it is one of so many.
+inline constexpr int kMostCorners = 64;
+
 /// `upper` and `lower`: the points of the upper body nearest to the lower one along `normal` (unit, from
-/// lower to upper) and the other way round, as arms from a common origin; at most four each. No point has a
-/// gap below `least_gap`. Empty where the features do not overlap.
-Manifold find_manifold(const HullContacts& upper, const HullContacts& lower, const Vec3& normal,
+/// lower to upper) and the other way round, as arms from a common origin; at most kMostCorners each, in any
+/// order. No point has a gap below `least_gap`. Empty where the features do not overlap.
+Manifold find_manifold(std::span<const Vec3> upper, std::span<const Vec3> lower, const Vec3& normal,
                        double least_gap);
 
 /// Of two patches of one contact, which may overlap: four points of the widest support.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "lod/statistical/parting.h"
 
@@ -78,6 +80,18 @@ double find_depth(double lowest, double margin, const GapChange& change, double 
   return margin - lowest + std::max(0.0, change.of_arm.norm() * radius - change.of_center) + 1e-5 * radius;
 }
 
+// Of all vertices, the lowest of which has the gap `lowest`.
+void look_below(const Shape& shape, const Vec3& normal_in_body, double height, double lowest, double margin,
+                const GapChange& change, Below& below) {
+  std::span<const std::uint16_t> tips;
+  if (find_depth(lowest, margin, change, shape.radius) < TipMap::kDepth * shape.radius)
+    tips = shape.tips.find(-normal_in_body);
+  if (tips.empty())
+    find_below(shape.hull, normal_in_body, height, margin, change, below);
+  else
+    find_below_among(tips, shape.hull, normal_in_body, height, margin, change, below);
+}
+
 // Below a plane vertices are connected by edges.
 bool is_lowest_alone(const Hull& hull, std::int32_t lowest, const Vec3& normal_in_body, double height,
                      double margin) {
@@ -141,13 +155,7 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   const Vec3 normal_in_body = orientation.conjugate() * normal;
   if (change.is_none() && is_lowest_alone(shape.hull, lowest, normal_in_body, height, margin)) return result;
   Below below;
-  std::span<const std::uint16_t> tips;
-  if (find_depth(result.contact[0].gap, margin, change, shape.radius) < TipMap::kDepth * shape.radius)
-    tips = shape.tips.find(-normal_in_body);
-  if (tips.empty())
-    find_below(shape.hull, normal_in_body, height, margin, change, below);
-  else
-    find_below_among(tips, shape.hull, normal_in_body, height, margin, change, below);
+  look_below(shape, normal_in_body, height, result.contact[0].gap, margin, change, below);
   if (below.count == 0) return result;  // as it is in single precision
   const auto keep = [&](std::int32_t vertex) {
     const Vec3 arm = orientation * shape.hull.vertices[std::size_t(vertex)];
@@ -166,6 +174,30 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   for (const std::int32_t vertex : find_ends(below, side.cast<float>()))
     if (vertex != lowest && vertex != second) keep(vertex);
   return result;
+}
+
+int find_vertices_below(const Shape& shape, const Vec3& normal, double height, double margin,
+                        std::int32_t lowest, std::span<std::int32_t> found) {
+  found[0] = lowest;
+  if (is_lowest_alone(shape.hull, lowest, normal, height, margin)) return 1;
+  Below below;
+  const double gap = height + shape.hull.vertices[std::size_t(lowest)].dot(normal);
+  look_below(shape, normal, height, gap, margin, {}, below);
+  std::size_t count = 1;
+  if (below.count < found.size()) {
+    for (std::size_t i = 0; i < below.count; ++i)
+      if (below.vertex[i] != lowest) found[count++] = below.vertex[i];
+    return int(count);
+  }
+  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+  for (std::array<float, Below::kCapacity> along; count < found.size(); ++count) {
+    const double angle = 2.0 * std::numbers::pi * double(count) / double(found.size() - 1);
+    const Eigen::Vector3f way = (std::cos(angle) * u + std::sin(angle) * v).cast<float>();
+    for (std::size_t i = 0; i < below.count; ++i)
+      along[i] = below.x[i] * way[0] + below.y[i] * way[1] + below.z[i] * way[2];
+    found[count] = find_greatest(below, along);
+  }
+  return int(count);
 }
 
 double lift_of(const StatisticalBody& body, const Shape& shape, double gravity, double time) {

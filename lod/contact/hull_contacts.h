@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "lod/ground/ground.h"
 #include "lod/statistical/statistical_body.h"
@@ -44,6 +45,11 @@ struct GapChange {
 HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal,
                                 double height, double margin, std::int32_t& hint,
                                 const GapChange& change = {});
+
+/// The lowest vertex of a hull, whose number is `lowest`, and all others with a gap below `margin`, at most
+/// as many as `found` holds: of more, those that lie outermost. Returns how many. `normal`: in body axes.
+int find_vertices_below(const Shape& shape, const Vec3& normal, double height, double margin,
+                        std::int32_t lowest, std::span<std::int32_t> found);
 
 /// m: how far a body may be lifted out of the ground in `time` seconds; no bound unless it brought the
 /// overlap from another rung.

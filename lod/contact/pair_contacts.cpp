@@ -26,15 +26,39 @@ constexpr double kLying = 0.9;
 
 PlacedHull place(const PairBody& body) { return {*body.shape, body.position, body.orientation}; }
 
+/// Points of a body that lie nearest to the touching plane, arms from an origin that both bodies share: the
+/// nearest of all, then others, but for what they hold together, in no order.
+struct TouchingFeature {
+  std::array<Vec3, kMostCorners> corner;
+  int count = 0;
+  std::span<const Vec3> corners() const { return std::span(corner).first(std::size_t(count)); }
+};
+
+// m, from its nearest corner.
+double width_of(const TouchingFeature& feature) {
+  double width = 0.0;
+  for (const Vec3& corner : feature.corners()) width = std::max(width, (corner - feature.corner[0]).norm());
+  return width;
+}
+
 // The vertices that lie within `hair` m of the touching plane, as arms from `origin`.
-HullContacts find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin,
-                          double hair) {
-  const double lowest =
-      vertex < 0 ? 0.0 : normal.dot(body.orientation * body.shape->hull.vertices[std::size_t(vertex)]);
-  HullContacts feature =
-      find_hull_contacts(*body.shape, body.orientation, normal, 0.0, lowest + hair, vertex);
-  for (int i = 0; i < feature.count; ++i) feature.contact[i].arm += body.position - origin;
-  return feature;
+void find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin,
+                  double hair, TouchingFeature& feature) {
+  const Vec3 arm = body.position - origin;
+  if (body.shape->sphere_radius) {
+    feature.corner[0] = arm - *body.shape->sphere_radius * normal;
+    feature.count = 1;
+    return;
+  }
+  const Hull& hull = body.shape->hull;
+  const Vec3 own = body.orientation.conjugate() * normal;
+  vertex = find_support(hull, -own, std::max(vertex, 0));
+  std::array<std::int32_t, kMostCorners> vertices;
+  feature.count = find_vertices_below(*body.shape, own, 0.0,
+                                      own.dot(hull.vertices[std::size_t(vertex)]) + hair, vertex, vertices);
+  const Mat3 turn = body.orientation.toRotationMatrix();
+  for (int i = 0; i < feature.count; ++i)
+    feature.corner[std::size_t(i)] = arm + turn * hull.vertices[std::size_t(vertices[std::size_t(i)])];
 }
 
 // The face around a vertex that lies most nearly in the touching plane, its normal outward, in the body's
@@ -52,26 +76,17 @@ Vec3 find_flattest_face(const Hull& hull, std::int32_t vertex, const Vec3& down)
 // Without, plates that land strike with alternate edges, deeper with each. `ahead`, m: how much farther than
 // the nearest vertex those corners may be.
 void extend_to_face(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin,
-                    double hair, double ahead, HullContacts& feature) {
+                    double hair, double ahead, TouchingFeature& feature) {
   if (vertex < 0 || feature.count > 2) return;
   const Vec3 down = body.orientation.conjugate() * -normal,
              flattest = find_flattest_face(body.shape->hull, vertex, down);
   if (flattest.dot(down) < kLying) return;
-  const HullContacts face = find_feature(body, body.orientation * -flattest, vertex, origin, hair);
-  const Vec3 nearest = feature.contact[0].arm;
-  double width = 0.0, farthest = 0.0;
-  for (int i = 0; i < face.count; ++i) {
-    const Vec3& corner = face.contact[std::size_t(i)].arm;
-    width = std::max(width, (corner - face.contact[0].arm).norm());
-    farthest = std::max(farthest, (corner - nearest).dot(normal));
-  }
-  if (face.count > 2 && width >= body.shape->radius && farthest <= ahead) feature = face;
-}
-
-Vec3 middle_of(const HullContacts& feature) {
-  Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < feature.count; ++i) sum += feature.contact[i].arm;
-  return sum / feature.count;
+  TouchingFeature face;
+  find_feature(body, body.orientation * -flattest, vertex, origin, hair, face);
+  double farthest = 0.0;
+  for (const Vec3& corner : face.corners())
+    farthest = std::max(farthest, (corner - feature.corner[0]).dot(normal));
+  if (face.count > 2 && width_of(face) >= body.shape->radius && farthest <= ahead) feature = face;
 }
 
 /// m: how much farther than the nearest vertex, beyond a hair, others of a touching feature are.
@@ -81,22 +96,26 @@ struct Ahead {
 };
 
 Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, const Ahead& ahead,
-                       HullContacts& upper, HullContacts& lower) {
+                       TouchingFeature& upper, TouchingFeature& lower) {
   const double hair = kFeatureMargin * std::min(first.shape->radius, second.shape->radius);
-  upper = find_feature(first, best.normal, best.vertex_first, second.position, hair + ahead.first);
-  lower = find_feature(second, -best.normal, best.vertex_second, second.position, hair);
+  find_feature(first, best.normal, best.vertex_first, second.position, hair + ahead.first, upper);
+  find_feature(second, -best.normal, best.vertex_second, second.position, hair, lower);
   if (ahead.lying > 0.0) {
     extend_to_face(first, best.normal, best.vertex_first, second.position, hair, ahead.lying, upper);
     extend_to_face(second, -best.normal, best.vertex_second, second.position, hair, ahead.lying, lower);
   }
-  return find_manifold(upper, lower, best.normal, best.gap);
+  return find_manifold(upper.corners(), lower.corners(), best.normal, best.gap);
 }
 
 Manifold find_points(const PairBody& first, const PairBody& second, const HullGap& best, const Ahead& ahead) {
-  HullContacts upper, lower;
+  TouchingFeature upper, lower;
   Manifold manifold = clip_features(first, second, best, ahead, upper, lower);
   if (manifold.count == 0) {  // the axis is not quite that of the nearest features
-    manifold.points[0] = {0.5 * (middle_of(upper) + middle_of(lower)), best.gap};
+    // The nearest corner of the smaller one: a point between both may be off it.
+    const bool upper_is_smaller = width_of(upper) <= width_of(lower);
+    manifold.points[0] = {upper_is_smaller ? Vec3(upper.corner[0] - 0.5 * best.gap * best.normal)
+                                           : Vec3(lower.corner[0] + 0.5 * best.gap * best.normal),
+                          best.gap};
     manifold.count = 1;
   }
   for (ManifoldPoint& p : manifold.points) p.point += second.position;
@@ -348,7 +367,7 @@ std::optional<PairContact> find_contact_along(const PairBody& first, const PairB
                                               const Vec3& normal, double margin, double ahead) {
   const HullGap along = measure_hull_gap(place(first), place(second), normal);
   if (along.gap > margin) return {};
-  HullContacts upper, lower;
+  TouchingFeature upper, lower;
   PairContact contact{normal, along.gap, clip_features(first, second, along, {.first = ahead}, upper, lower)};
   if (contact.manifold.count == 0) return {};
   for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;

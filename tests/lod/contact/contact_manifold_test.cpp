@@ -3,22 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 namespace lodestone {
 namespace {
 
-HullContacts contacts_at(const std::vector<Vec3>& arms) {
-  HullContacts contacts;
-  for (const Vec3& arm : arms) contacts.contact[std::size_t(contacts.count++)].arm = arm;
-  return contacts;
-}
+using Corners = std::vector<Vec3>;
 
 // A square of side 2 about (x, y) at height z; turned by 45 degrees where `turned`.
-HullContacts square_at(double x, double y, double z, bool turned = false) {
+Corners square_at(double x, double y, double z, bool turned = false) {
   const double r = std::sqrt(2.0);
-  if (turned) return contacts_at({{x + r, y, z}, {x, y + r, z}, {x - r, y, z}, {x, y - r, z}});
-  return contacts_at({{x - 1, y - 1, z}, {x + 1, y - 1, z}, {x - 1, y + 1, z}, {x + 1, y + 1, z}});
+  if (turned) return Corners({{x + r, y, z}, {x, y + r, z}, {x - r, y, z}, {x, y - r, z}});
+  return Corners({{x - 1, y - 1, z}, {x + 1, y - 1, z}, {x - 1, y + 1, z}, {x + 1, y + 1, z}});
 }
 
 std::vector<Vec3> points_of(const Manifold& manifold) {
@@ -54,7 +51,7 @@ TEST(ContactManifold, KeepsFourPointsOfWideSupport) {
 }
 
 TEST(ContactManifold, AnEdgeOnAFaceTouchesInTwoPointsWithTheirOwnGaps) {
-  const HullContacts edge = contacts_at({{-0.5, 0, 0.0}, {0.5, 0, 0.2}});
+  const Corners edge = Corners({{-0.5, 0, 0.0}, {0.5, 0, 0.2}});
   const Manifold m = find_manifold(edge, square_at(0, 0, 0), Vec3::UnitZ(), kAnyGap);
   ASSERT_EQ(m.count, 2);
   EXPECT_TRUE(has_point(m, {-0.5, 0, 0.0}));
@@ -63,8 +60,7 @@ TEST(ContactManifold, AnEdgeOnAFaceTouchesInTwoPointsWithTheirOwnGaps) {
 }
 
 TEST(ContactManifold, CrossingEdgesTouchInOnePoint) {
-  const HullContacts along_x = contacts_at({{-1, 0.25, 0.3}, {1, 0.25, 0.3}}),
-                     along_y = contacts_at({{0.5, -1, 0}, {0.5, 1, 0}});
+  const Corners along_x = {{-1, 0.25, 0.3}, {1, 0.25, 0.3}}, along_y = {{0.5, -1, 0}, {0.5, 1, 0}};
   const Manifold m = find_manifold(along_x, along_y, Vec3::UnitZ(), kAnyGap);
   ASSERT_EQ(m.count, 1);
   EXPECT_LT((m.points[0].point - Vec3(0.5, 0.25, 0.15)).norm(), 1e-9);
@@ -73,7 +69,7 @@ TEST(ContactManifold, CrossingEdgesTouchInOnePoint) {
 
 TEST(ContactManifold, WhatDoesNotOverlapTouchesNowhere) {
   EXPECT_EQ(find_manifold(square_at(5, 0, 0), square_at(0, 0, 0), Vec3::UnitZ(), kAnyGap).count, 0);
-  EXPECT_EQ(find_manifold(contacts_at({{3, 0, 0}}), square_at(0, 0, 0), Vec3::UnitZ(), kAnyGap).count, 0);
+  EXPECT_EQ(find_manifold(Corners({{3, 0, 0}}), square_at(0, 0, 0), Vec3::UnitZ(), kAnyGap).count, 0);
 }
 
 TEST(ContactManifold, GapsAreNoLessThanTheLeast) {
@@ -82,12 +78,33 @@ TEST(ContactManifold, GapsAreNoLessThanTheLeast) {
   for (int i = 0; i < m.count; ++i) EXPECT_EQ(m.points[std::size_t(i)].gap, -0.1);
 }
 
+// Of a round plate's four widest corners alone the square would be wholly outside.
+TEST(ContactManifold, AFaceOfManyCornersHoldsWhatIsNearItsRim) {
+  for (const int sides : {5, 6, 8, 24, kMostCorners}) {
+    Corners plate, cup;
+    for (int i = 0; i < sides; ++i) {
+      const double angle = 2.0 * std::numbers::pi * (i + 0.5) / sides;
+      plate.push_back(4.0 * Vec3(std::cos(angle), std::sin(angle), 0.0));
+    }
+    const double rim = 4.0 * std::cos(std::numbers::pi / sides) - 0.3;  // of the middle of a side
+    for (int i = 0; i < sides; ++i) {
+      const Quat turn(Eigen::AngleAxisd(2.0 * std::numbers::pi * (i + 1) / sides, Vec3::UnitZ()));
+      cup.clear();
+      for (const Vec3& corner : square_at(0, 0, 0.1))
+        cup.push_back(turn * (0.25 * corner + rim * Vec3::UnitX()));
+      const Manifold m = find_manifold(cup, plate, Vec3::UnitZ(), kAnyGap);
+      ASSERT_EQ(m.count, 4) << sides;
+      for (const Vec3& corner : cup) EXPECT_TRUE(has_point(m, {corner.x(), corner.y(), 0.0125})) << sides;
+    }
+  }
+}
+
 // The same picture, whichever way the normal looks.
 TEST(ContactManifold, TurnsWithTheNormal) {
   const Quat turn = Quat(Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()));
-  HullContacts upper = square_at(1, 1, 0.2), lower = square_at(0, 0, 0.1);
-  for (HullContact& c : upper.contact) c.arm = turn * c.arm;
-  for (HullContact& c : lower.contact) c.arm = turn * c.arm;
+  Corners upper = square_at(1, 1, 0.2), lower = square_at(0, 0, 0.1);
+  for (Corners* corners : {&upper, &lower})
+    for (Vec3& corner : *corners) corner = turn * corner;
   const Manifold m = find_manifold(upper, lower, turn * Vec3::UnitZ(), kAnyGap);
   ASSERT_EQ(m.count, 4);
   for (const Vec3& corner : {Vec3(0, 0, 0.15), Vec3(1, 0, 0.15), Vec3(1, 1, 0.15), Vec3(0, 1, 0.15)})
