@@ -94,7 +94,7 @@ void sample_hull(const Shape& shape, const HullMaps& maps) {
         maps.height[at] = float(*shape.sphere_radius);
         face = {float(direction.x()), float(direction.y()), float(direction.z()),
                 float(*shape.sphere_radius)};
-        maps.patch[at].mean = maps.height[at] * lane::F3{face.x, face.y, face.z};
+        maps.patch[at] = {.mean = maps.height[at] * lane::F3{face.x, face.y, face.z}};
       } else {
         vertex = find_support(shape.hull, direction, vertex);
         maps.height[at] = float(shape.hull.vertices[std::size_t(vertex)].dot(direction));

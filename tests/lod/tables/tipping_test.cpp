@@ -138,5 +138,15 @@ TEST(Tipping, PatchesAreFacesEdgesAndCorners) {
   EXPECT_NEAR(corner.xx + corner.yy + corner.zz, 0.0, 1e-7);
 }
 
+// A kind takes the place of one that nobody has any more.
+TEST(Tipping, PatchesOfABallArePointsWhateverWasThereBefore) {
+  Maps maps(*box_shape({0.4, 0.6, 1.0}));
+  sample_hull(make_sphere_shape(0.3), {maps.heights, maps.pair_heights, maps.patches, maps.faces});
+  for (const SupportPatch& patch : maps.patches) {
+    EXPECT_FLOAT_EQ(length(patch.mean), 0.3f);
+    EXPECT_EQ(patch.xx + patch.yy + patch.zz, 0.0f);
+  }
+}
+
 }  // namespace
 }  // namespace lodestone
