@@ -231,8 +231,9 @@ class Manager {
   std::size_t statistical_bytes()
       const;  ///< held by the statistical level's arrays; 0 where that is not counted: under `support`
   /// All that its next steps depend on, as bytes for restore(): the bodies with their ids, what is remembered
-  /// of contacts, sleepers, random draws, what the policy has learnt and put off. Not the policy itself,
-  /// hooks, ground and materials, nor the caller's own bodies. Only the same build reads it.
+  /// of contacts, sleepers, random draws, what the policy has learnt and put off, and the gravity of a world
+  /// of the manager's own. Not the policy itself, hooks, ground and materials, nor the caller's own bodies.
+  /// Only the same build reads it.
   std::vector<std::byte> snapshot() const;
   /// From then on steps give the same states, to the bit, as they gave the manager that the snapshot is of,
   /// on any number of threads, if the same is done to it and, in a caller's world, his own geoms and bodies
@@ -241,8 +242,8 @@ class Manager {
   /// the bodies here. Ids of bodies are those of the snapshot; one given since may be given again. Where the
   /// full bodies are not those that the snapshot has, all ODE bodies of the manager are made anew, in a
   /// caller's world after his own. Throws InputError, and nothing has changed, where the snapshot is damaged
-  /// or of another build, seed, material table or set of planes, where a shape is missing, or a body that is
-  /// made anew hangs on a joint.
+  /// or of another build, seed, material table or set of planes, in a caller's world of another gravity than
+  /// it has now, where a shape is missing, or a body that is made anew hangs on a joint.
   void restore(std::span<const std::byte> snapshot,
                std::span<const std::shared_ptr<const Shape>> shapes = {});
 

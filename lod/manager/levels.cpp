@@ -78,10 +78,14 @@ void Levels::put_to_sleep(std::uint32_t body) {
 }
 
 void Levels::set_gravity(const Vec3& gravity) {
+  use_gravity(gravity);
+  wake_all();
+}
+
+void Levels::use_gravity(const Vec3& gravity) {
   statistical_settings.gravity = gravity;
   full.set_gravity(gravity);
   if (statistical) statistical->set_gravity(gravity);
-  wake_all();
 }
 
 void Levels::wake_all() {

@@ -71,6 +71,8 @@ struct Levels {
   void wake_all();
   /// m/s², from now on; wakes all.
   void set_gravity(const Vec3& gravity);
+  /// The same, of bodies that are about to be put as they were under it: wakes none.
+  void use_gravity(const Vec3& gravity);
   /// Brings ground and bodies to what the caller's space holds now, before a step of `dt` s; what lay on
   /// ground that came, went or moved wakes.
   void follow_callers_space(double dt);

@@ -28,7 +28,7 @@ struct Circumstances {
 
 struct Header {
   std::array<char, 8> magic = {'L', 'O', 'D', 'E', 'S', 'N', 'A', 'P'};
-  std::uint32_t format = 8, version = LODESTONE_VERSION;
+  std::uint32_t format = 9, version = LODESTONE_VERSION;
   // Sizes of what goes as it lies in memory: a build with other ones is no reader.
   std::array<std::uint16_t, 8> layout = {sizeof(void*),           sizeof(BodyRecord),   sizeof(BodyLevel),
                                          sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport),
@@ -46,13 +46,15 @@ Circumstances circumstances_of(const Levels& levels, bool callers_world) {
   Circumstances found{.seed = levels.statistical_settings.seed,
                       .sleeping = levels.statistical_settings.sleeping,
                       .callers_world = callers_world};
-  for (const double part : levels.statistical_settings.gravity) found.gravity = mix(found.gravity, part);
   const MaterialTable& materials = levels.materials;
   for (MaterialId i = 0; i < materials.size(); ++i)
     for (MaterialId j = 0; j < materials.size(); ++j)
       found.materials =
           mix(mix(found.materials, materials.law(i, j).restitution), materials.law(i, j).friction);
-  if (callers_world) return found;  // his ground is his
+  if (callers_world) {  // his ground is his, and his gravity, which is not ours to set
+    for (const double part : levels.statistical_settings.gravity) found.gravity = mix(found.gravity, part);
+    return found;
+  }
   found.parts = levels.ground.parts();
   for (const HalfSpace& plane : levels.ground.planes()) {
     for (const double part :
@@ -123,8 +125,12 @@ void append(std::vector<std::byte>& bytes, const void* from, std::size_t count) 
 
 // The full level first: it refuses what does not fit before anything has changed.
 void Manager::Impl::archive(StateArchive& a) {
-  a(levels.full, levels.ground, levels.callers.bodies, levels.bodies, levels.now, levels.woken, levels.eased,
-    report, costs, choose, move_bodies, step_levels, changes, left_places, events);
+  a(levels.full);
+  Vec3 gravity = levels.statistical_settings.gravity;
+  a(gravity);
+  if (a.reading() && !callers_world) levels.use_gravity(gravity);
+  a(levels.ground, levels.callers.bodies, levels.bodies, levels.now, levels.woken, levels.eased, report,
+    costs, choose, move_bodies, step_levels, changes, left_places, events);
   if (a.reading()) queries.forget_all(), levels.forget_places(), audit.forget_watched();
   bool has_statistical = levels.statistical != nullptr;
   a(has_statistical);

@@ -19,6 +19,7 @@ class RestLaw {
       0.19;  // s: a body that touched another so lately still leans on it, though a hair apart
   static constexpr double kWakeFactor =
       2.0;  // a sleeper wakes when touched faster than this times its sleeping speed
+  static constexpr double kSettingOut = 0.01;  // of the gravity: what gains speed faster than so sets out
 
   explicit RestLaw(const SleepThresholds& thresholds = {})
       : speed_(thresholds.speed),
@@ -34,6 +35,13 @@ class RestLaw {
   double still_energy(bool among_others, double radius, double gravity) const {
     const double speed = sleep_speed(radius);
     return among_others ? 0.5 * speed * speed : alone_energy_ * gravity * radius;
+  }
+
+  /// Whether a body sets out rather than comes to rest: a stack that begins to slide is as slow as one that
+  /// ceases to. It does if it has gained `gain`, m/s, without a break over the last `rising` seconds, most of
+  /// the `still_time` after which it would sleep. `gravity` in m/s².
+  static bool sets_out(float gain, float rising, float still_time, double gravity) {
+    return rising >= 0.5f * still_time && double(gain) > kSettingOut * gravity * double(rising);
   }
 
   /// s: so long it must have been still.

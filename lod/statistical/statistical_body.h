@@ -46,6 +46,9 @@ struct StatisticalBody {
   double mass = 1.0;           ///< kg
   float sphere_radius = 0.0f;  ///< m, `tables`: of the colliding sphere; 0 for a body of `support`
   float quiet_time = 0.0f;     ///< s spent below the sleeping threshold
+  float speed = 0.0f;          ///< m/s, `support`: √(2 kinetic energy over mass) after the last step
+  float rising_from = 0.0f;    ///< m/s, `support`: that speed where it last began to rise without a break
+  float rising_time = 0.0f;    ///< s since then
   std::int32_t support_hint = 0;  ///< hull vertex last found lowest: where the next climb starts
   std::int32_t settling = -1;     ///< index of the settling record (clip or rest pose) while Motion::settling
   std::uint32_t owner = 0;

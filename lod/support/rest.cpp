@@ -14,6 +14,14 @@ namespace {
 // J/kg: with less kinetic energy no body moves or spins too fast for a level to hold it.
 constexpr double kSurelySound = 1e3;
 
+/// Its speed of motion and spin, m/s, and how long it has risen in each step of the `time`, s.
+void follow_speed(StatisticalBody& body, double speed, double time) {
+  const bool rises = body.quiet_time > 0.0f && float(speed) > body.speed;
+  body.rising_time = rises ? body.rising_time + float(time) : 0.0f;
+  if (!rises) body.rising_from = float(speed);
+  body.speed = float(speed);
+}
+
 }  // namespace
 
 void SupportLevel::wake(int slot) {
@@ -141,6 +149,7 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
   const double energy = kinetic_energy(body, *kind.shape);
   if (!is_sound(body, energy)) recover(body, last_places_[std::size_t(slot)], tally);
   const bool still = !parts && energy < still_energy;
+  follow_speed(body, std::sqrt(2.0 * energy), time);
   body.quiet_time = still ? body.quiet_time + float(time) : 0.0f;
   if (own.kinematic) {  // moved by nothing else: without a velocity it is at rest
     if (settings_.sleeping && own.allow_sleep && energy == 0.0) put_to_sleep(body);
@@ -148,6 +157,11 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
   }
   const float still_time = rest_law_.still_time(among_others && !body.on_edge);
   if (!settings_.sleeping || !own.allow_sleep || body.quiet_time < still_time) return;
+  if (rest_law_.sets_out(body.speed - body.rising_from, body.rising_time, still_time,
+                         settings_.gravity.norm())) {
+    body.quiet_time = 0.0f;
+    return;
+  }
   if (among_others || body.on_solid || stands_firmly(body, *kind.shape, join_planes(ground_.planes(), faces)))
     put_to_sleep(body);
 }

@@ -161,6 +161,32 @@ TEST(ManagerSnapshot, OfAnotherSceneIsRefused) {
   EXPECT_NE(fault(plain, [](Manager& m) { m.materials().add({.friction = 0.1}); }), kNothingThrown);
 }
 
+// Turned since, or turned when the reader knows nothing of it: it is the snapshot's again, and who slept
+// sleeps.
+TEST(ManagerSnapshot, GravityIsPartOfIt) {
+  const ManagerSettings all_rungs = {
+      .policy = {.policy = DistancePolicy{.full_within = 1.0, .support_within = 1.5}},
+      .signatures = coarse_signature,
+      .signature_timing = SignatureTiming::in_step};
+  SavedWorld writer(all_rungs), reader(all_rungs);
+  writer.fill();
+  writer.manager.set_gravity({0, 1, -7});
+  writer.step(30);
+  const Bytes snapshot = writer.manager.snapshot();
+  const auto go_on = [](SavedWorld& world) {
+    world.step(200);
+    return world.manager.state_hash();
+  };
+  const std::uint64_t expected = go_on(writer);
+  writer.manager.set_gravity({0, 0, -3});
+  writer.step(5);
+  for (SavedWorld* world : {&writer, &reader}) {
+    world->manager.restore(snapshot, kShapes);
+    EXPECT_EQ(world->manager.gravity(), Vec3(0, 1, -7));
+    EXPECT_EQ(go_on(*world), expected);
+  }
+}
+
 // Forces that wait for a step, bodies that wait for their first, and sleepers are part of it.
 TEST(ManagerSnapshot, WhatWaitsIsPartOfIt) {
   SavedWorld world;
@@ -225,6 +251,18 @@ TEST(ManagerSnapshot, InACallersWorldANewManagerGoesOnToTheBit) {
     reader.run(50, 110);
     EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash()) << steps_before;
   }
+}
+
+TEST(ManagerSnapshot, InACallersWorldGravityIsHisToPutBack) {
+  SavedCallersWorld writer;
+  writer.run(0, 20);
+  const Bytes snapshot = writer.manager.snapshot();
+  dVector3 his;
+  dWorldGetGravity(writer.his.world, his);
+  dWorldSetGravity(writer.his.world, 1, 0, -5);
+  EXPECT_NE(message_of([&] { writer.manager.restore(snapshot); }).find("gravity"), std::string::npos);
+  dWorldSetGravity(writer.his.world, his[0], his[1], his[2]);
+  EXPECT_EQ(message_of([&] { writer.manager.restore(snapshot); }), kNothingThrown);
 }
 
 // Contacts with his bodies are remembered by numbers of theirs, and his shapes by how they stand to their

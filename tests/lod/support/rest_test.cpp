@@ -115,6 +115,30 @@ TEST(SupportRest, TheGreatestTurningSpeedIsKept) {
   EXPECT_EQ(manager.state(body).velocity, Vec3(1, 0, 0));
 }
 
+// Just beyond the angle of friction a stack sets out so slowly that for a while it is as slow as one that
+// comes to rest.
+TEST(SupportRest, AStackThatBeginsToSlideDoesNotSleep) {
+  constexpr double kFriction = 0.5, kTime = 4.0;
+  for (const double beyond : {1.05, 1.1})
+    for (const double still_time : {0.1, 0.3}) {
+      ManagerSettings settings = unmeasured();
+      settings.sleep.time = still_time;
+      Manager manager(settings);
+      manager.materials().set_law(0, 0, {.restitution = 0.2, .friction = kFriction});
+      const double slope = std::atan(kFriction * beyond);
+      const Quat along(Eigen::AngleAxisd(-slope, Vec3::UnitY()));
+      manager.add_plane(along * Vec3::UnitZ(), 0.0);
+      std::vector<BodyId> stack;
+      for (const int i : {0, 1})
+        stack.push_back(add(manager, box_shape({0.4, 0.4, 0.2}),
+                            {.position = along * Vec3(0, 0, 0.1005 + 0.201 * i), .orientation = along}));
+      const Vec3 start = manager.state(stack[0]).position;
+      run(manager, kTime);
+      const double way = 0.5 * 9.81 * (std::sin(slope) - kFriction * std::cos(slope)) * kTime * kTime;
+      EXPECT_NEAR((manager.state(stack[0]).position - start).norm(), way, 0.1 * way) << beyond;
+    }
+}
+
 // Balanced on an edge it may stand for a while; it does not fall asleep there.
 TEST(SupportRest, OnAnEdgeNobodySleeps) {
   Manager manager = on_floor();
