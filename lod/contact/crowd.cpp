@@ -266,6 +266,29 @@ void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
       add_ground_contacts(scene, std::int32_t(i));
   }
   take_bodies(scene, taken, touch.time);
+  turn_carriers_half(touch.time);
+}
+
+// What nothing stops and turns carries its riders along the chord of their arc, not along the tangent at its
+// beginning, on which they would walk outward by ω² h² r / 2 in each substep: its arms are those of half-way.
+void Crowd::turn_carriers_half(double time) {
+  const auto turns = [this](std::int32_t index) {
+    return index >= 0 && solver_bodies_[std::size_t(index)].inverse_mass == 0.0 &&
+           !solver_bodies_[std::size_t(index)].angular_velocity.isZero(0.0);
+  };
+  bool any = false;
+  for (std::int32_t i = 0; i < std::int32_t(solver_bodies_.size()) && !any; ++i) any = turns(i);
+  if (!any) return;
+  for (const CrowdManifold& m : manifolds_) {
+    const auto turn = [&](std::int32_t index, Vec3 CrowdPoint::*arm) {
+      if (!turns(index)) return;
+      const Vec3 half = 0.5 * time * solver_bodies_[std::size_t(index)].angular_velocity;
+      for (CrowdPoint& point : std::span(points_).subspan(m.begin, m.count))
+        point.*arm += half.cross(point.*arm);
+    };
+    turn(m.first, &CrowdPoint::arm_first);
+    turn(m.second, &CrowdPoint::arm_second);
+  }
 }
 
 void Crowd::solve_gathered(const ContactScene& scene, const CrowdTouch& touch) {

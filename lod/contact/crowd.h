@@ -82,6 +82,7 @@ class Crowd {
   };
 
   void gather(const ContactScene& scene, const CrowdTouch& touch);
+  void turn_carriers_half(double time);
   int solver_index(Participant participant);
   std::int32_t solver_index(const GroundPart& part);
   std::int32_t solver_index_of_ground(const Vec3& velocity);

@@ -104,6 +104,43 @@ void drive(Manager& manager, BodyId wall, double speed) {
 
 double face_of(const Manager& manager, BodyId wall) { return manager.state(wall).position.x() + kHalfWall; }
 
+// Friction holds it on its circle, round after round: the ground turns on while it goes.
+TEST(CarriedBodies, ARiderOfATurntableStaysWhereItIs) {
+  constexpr double kRadius = 1.5, kTurning = 0.9, kFaster = 0.3, kSeconds = 15.0;  // m, rad/s, rad/s², s
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const bool is_ground : {false, true}) {
+      Manager manager({.signatures = coarse_signature});
+      const RigidState table_at = testing::at({0, 0, -0.1});
+      GroundId ground{};
+      BodyId table{};
+      if (is_ground)
+        ground = manager.add_static_box({4, 4, 0.2}, table_at.position, Quat::Identity());
+      else
+        table = manager.add_body({.shape = box_shape({4, 4, 0.2}),
+                                  .state = table_at,
+                                  .level = level,
+                                  .properties = {.kinematic = true}});
+      const BodyId rider = add(manager, crate(), testing::at({kRadius, 0, 0.5 * kCrate + 1e-4}), level);
+      run(manager, 1.0);
+      double angle = 0.0;
+      for (int i = 0; i < int(kSeconds / kFrame); ++i) {
+        RigidState now = table_at;
+        now.angular_velocity = {0, 0, std::min(kTurning, kFaster * i * kFrame)};
+        now.orientation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ()));
+        if (is_ground)
+          manager.move_ground(ground, now);
+        else
+          manager.set_state(table, now);
+        manager.step(kFrame);
+        angle += now.angular_velocity.z() * kFrame;
+      }
+      const Vec3 place = manager.state(rider).position;
+      EXPECT_NEAR(place.head<2>().norm(), kRadius, 0.006) << int(level) << is_ground;
+      EXPECT_NEAR(std::remainder(std::atan2(place.y(), place.x()) - angle, 2.0 * M_PI), 0.0, 0.01)
+          << int(level) << is_ground;
+    }
+}
+
 // A wall, kinematic, of either rung, that pushes a row. At `tables` among others its bodies give way a
 // little, and as nothing turns them back they leave it sideways after a while.
 TEST(CarriedBodies, AKinematicBodyPushesARow) {
