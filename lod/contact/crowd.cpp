@@ -632,7 +632,8 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
     if (body.is_sphere())
       lift_sphere_out(body, plane);
     else
-      lift_out(body, shape, plane, lift_of(body, shape, scene.world.gravity_strength(), touch.time));
+      lift_out(body, shape, plane, scene.gravity(p),
+               lift_of(body, shape, scene.world.gravity_strength(), touch.time));
   };
   each_participant([&](std::size_t i) {
     const Participant p = participants_[i];

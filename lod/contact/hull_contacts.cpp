@@ -204,13 +204,21 @@ double lift_of(const StatisticalBody& body, const Shape& shape, double gravity, 
   return body.eased > 0.0f ? parting_speed(shape.radius, gravity) * time : 1e300;
 }
 
-void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane, double farthest) {
+void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane, const Vec3& gravity,
+              double farthest) {
   const double height = plane.height_of(body.position);
   if (height > shape.radius) return;
-  const double gap = find_lowest_point(shape, body.orientation, plane.normal, height, body.support_hint).gap;
-  if (gap >= 0.0) return;
-  body.position += std::min(-gap, farthest) * plane.normal;
-  body.velocity -= std::min(0.0, body.velocity.dot(plane.normal)) * plane.normal;
+  const HullContact lowest =
+      find_lowest_point(shape, body.orientation, plane.normal, height, body.support_hint);
+  if (lowest.gap >= 0.0) return;
+  const double lift = std::min(-lowest.gap, farthest), falling = -body.velocity.dot(plane.normal);
+  body.position += lift * plane.normal;
+  if (falling <= 0.0) return;
+  const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
+  const double sinking = falling - omega.cross(lowest.arm).dot(plane.normal),
+               work = std::max(0.0, -gravity.dot(plane.normal)) * lift,  // J/kg
+      raised = falling - std::sqrt(std::max(0.0, falling * falling - 2.0 * work));
+  body.velocity += std::max(raised, std::min(falling, sinking)) * plane.normal;
 }
 
 }  // namespace lodestone

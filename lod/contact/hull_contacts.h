@@ -55,8 +55,10 @@ int find_vertices_below(const Shape& shape, const Vec3& normal, double height, d
 /// overlap from another rung.
 double lift_of(const StatisticalBody& body, const Shape& shape, double gravity, double time);
 
-/// Lifts a body that has sunk into `plane` out of it, by `farthest` m at most, and stops it from sinking
-/// further.
-void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane, double farthest);
+/// Lifts a body that has sunk into `plane` out of it, by `farthest` m at most. Its fall becomes slower by
+/// what its lowest point sinks further, or by the work of the lift under `gravity`, m/s²: what only turns
+/// over an edge falls on.
+void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane, const Vec3& gravity,
+              double farthest);
 
 }  // namespace lodestone

@@ -324,7 +324,7 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
               double time, const SupportSettings& settings) {
   const Shape& shape = *kind.shape;
   EnergyBound energy(body, shape, world.gravity, settings.energy_bounded);
-  lift_out(body, shape, plane, lift_of(body, shape, world.gravity_strength(), time));
+  lift_out(body, shape, plane, world.gravity, lift_of(body, shape, world.gravity_strength(), time));
   energy.keep(world.law(kind, plane).friction == 0.0 ? std::optional(plane.normal) : std::nullopt);
 }
 
