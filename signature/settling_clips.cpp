@@ -136,10 +136,12 @@ ClipIndex::ClipIndex(const Signature& signature, const Mat3& inertia_per_mass) {
     for (std::size_t i = 0; i < kCoordinates; ++i) coordinates_[i].push_back(coordinates_of(p.key)[i]);
     ++start_[p.cell + 1];
   }
+  energy_.resize(energy_.size() + kEight - 1);
+  for (std::vector<float>& along : coordinates_) along.resize(energy_.size());
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
 }
 
-// Of entries [begin, end), several at a time.
+// Of entries [begin, end), eight at a time; past the end there are others, or none.
 void ClipIndex::search(std::size_t begin, std::size_t end, const SettlingKey& key, float greatest_energy,
                        Nearest& nearest) const {
   constexpr std::size_t kBlock = 64;
@@ -149,7 +151,12 @@ void ClipIndex::search(std::size_t begin, std::size_t end, const SettlingKey& ke
     const std::size_t count = std::min(kBlock, end - from);
     for (std::size_t i = 0; i < kCoordinates; ++i) loop.at[i] = coordinates_[i].data() + from;
     loop.energy = energy_.data() + from;
-    loop(count, distance.data());
+    const std::size_t eights = (count + kEight - 1) / kEight * kEight;
+    loop(eights, distance.data());
+    const float limit = nearest.distance;
+    int nearer = 0;  // mostly none is
+    for (std::size_t i = 0; i < eights; ++i) nearer += distance[i] < limit;
+    if (nearer == 0) continue;
     for (std::size_t i = 0; i < count; ++i)
       if (distance[i] < nearest.distance) nearest = {distance[i], std::int64_t(from + i)};
   }
@@ -158,16 +165,24 @@ void ClipIndex::search(std::size_t begin, std::size_t end, const SettlingKey& ke
 std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float energy_slack,
                                                  float distance_limit) const {
   if (empty()) return {};
-  const float reach = 0.5f * std::sqrt(distance_limit);
-  std::array<int, 3> first, last;
-  for (int axis = 0; axis < 3; ++axis) {
-    first[std::size_t(axis)] = cell_along(key.normal[axis] - reach);
-    last[std::size_t(axis)] = cell_along(key.normal[axis] + reach);
-  }
+  // Normals farther off than this are too far by themselves: of each row of cells those within it count.
+  const float reach = 0.5f * std::sqrt(distance_limit) + kRounding, square = reach * reach;
+  const auto first_of = [&](int axis, float way) { return cell_along(key.normal[axis] - way); };
+  const auto last_of = [&](int axis, float way) { return cell_along(key.normal[axis] + way); };
+  const auto square_to = [&](int axis, int cell) {
+    const float low = float(cell) * (2.0f / float(kSide)) - 1.0f, at = key.normal[axis];
+    const float way = std::max({0.0f, low - at - kRounding, at - low - 2.0f / float(kSide) - kRounding});
+    return way * way;
+  };
   Nearest nearest{distance_limit};
-  for (int x = first[0]; x <= last[0]; ++x)
-    for (int y = first[1]; y <= last[1]; ++y) {
-      const std::size_t begin = cell_of({x, y, first[2]}), end = cell_of({x, y, last[2]}) + 1;
+  const int first_x = first_of(0, reach), last_x = last_of(0, reach), first_y = first_of(1, reach),
+            last_y = last_of(1, reach);
+  for (int x = first_x; x <= last_x; ++x)
+    for (int y = first_y; y <= last_y; ++y) {
+      const float left = square - square_to(0, x) - square_to(1, y);
+      if (left < 0.0f) continue;
+      const float way = std::sqrt(left) + kRounding;
+      const std::size_t begin = cell_of({x, y, first_of(2, way)}), end = cell_of({x, y, last_of(2, way)}) + 1;
       if (start_[begin] == start_[end]) continue;  // most lie off the sphere
       search(start_[begin], start_[end], key, key.energy + energy_slack, nearest);
     }

@@ -55,13 +55,16 @@ class ClipIndex {
     std::int64_t entry = -1;
   };
   static constexpr int kSide = 24;  // cells along an edge of the cube that holds the sphere of normals
+  static constexpr float kRounding = 1e-5f;  // of a normal's coordinates, and more
+  static constexpr std::size_t kEight = 8;
   static int cell_along(float coordinate);
   static std::size_t cell_of(const std::array<int, 3>& place);
   void search(std::size_t begin, std::size_t end, const SettlingKey& key, float greatest_energy,
               Nearest& nearest) const;
   std::vector<std::uint32_t> start_;  // of each cell's run of `entries_`
   std::vector<ClipEntry> entries_;    // by cell, in a cell of least energy first
-  // Of each entry's key: normal, velocity and angular velocity, energy.
+  // Of each entry's key: normal, velocity and angular velocity, energy; and of seven more that are none, so
+  // that eight can be looked at from each on.
   static constexpr std::size_t kCoordinates = 9;
   std::array<std::vector<float>, kCoordinates> coordinates_;
   std::vector<float> energy_;

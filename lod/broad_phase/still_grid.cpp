@@ -40,7 +40,7 @@ void StillGrid::insert(std::uint32_t body, const Vec3& position, double radius) 
   if (cell.head == kNone) mark(cell.key);
   next_[body] = cell.head;
   cell.head = body;
-  ++bodies_;
+  ++bodies_, ++insertions_;
   ++of_level_[level + 64];
   lowest_level_ = std::min(lowest_level_, level);
   highest_level_ = std::max(highest_level_, level);

@@ -21,6 +21,7 @@ class StillGrid {
   /// With what it was inserted with.
   void remove(std::uint32_t body, const Vec3& position, double radius);
   bool empty() const { return bodies_ == 0; }
+  std::uint64_t insertions() const { return insertions_; }  ///< ever; no part of the state
   void archive(StateArchive& a) {
     a(cells_, used_, bodies_, next_, of_level_);
     if (a.reading()) count_groups(), find_levels();
@@ -78,6 +79,7 @@ class StillGrid {
 
   std::vector<Cell> cells_;  // a power of two
   std::size_t used_ = 0, bodies_ = 0;
+  std::uint64_t insertions_ = 0;
   // By a group's hash, four cells wide along each axis: cells of it, and of others with that hash, that are
   // lived in; kMany for as many or more.
   std::vector<std::uint8_t> groups_;

@@ -109,6 +109,10 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
   const Spheres& s = tables.spheres();
   spheres_ = std::size_t(s.awake);
   own_bodies_ = std::size_t(support.size());
+  rooms_.make_place(own_bodies_);
+  const bool hulls_alone = spheres_ == 0 && neighbors.empty();
+  apart_ = hulls_alone && stay_apart(dt, support);
+  if (!hulls_alone) rooms_.give_up();
   take_movers(support);
   mixed_ = spheres_ > 0 && movers_.size() + neighbors.size() > 0;
   x_.clear(), y_.clear(), z_.clear(), reach_.clear();
@@ -120,9 +124,14 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
          std::span<const double>(z).first(reach.size()), reach},
         jobs_, std::min(threads_, kSharesMost), lent);
   };
+  if (apart_) return;
   if (spheres_ > 0 && !mixed_) return cells_of_spheres(s.x, s.y, s.z, tables.reach(), tables.free_rows());
 
   sort_movers(support.bodies());
+  if (hulls_alone && pairs_.empty() && rooms_.are_due() && find_rooms(dt, support)) {
+    apart_ = true;
+    return;
+  }
   if (!mixed_) {
     add_hull_balls(dt, support.bodies(), support, neighbors);
     return cells_.fill({x_, y_, z_, reach_});
@@ -143,6 +152,61 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
     reach_[i] += float(std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i])));
   cells_of_spheres(x_, y_, z_, drawn_reach_, {});
   note_order(spheres_);
+}
+
+// Whoever moves does so within his room; whoever fell asleep since the last step did so there, and nobody
+// else was laid to sleep.
+bool NearSearch::stay_apart(double dt, const SupportLevel& support) {
+  if (!rooms_.stand()) return false;
+  const std::span<const StatisticalBody> bodies = support.bodies();
+  const auto radius = [&](const StatisticalBody& body) { return support.kind_of(body).shape->radius; };
+  bool hold = true;
+  for (const std::int32_t index : movers_) {
+    if (index >= support.size() || support.is_among_awake(index)) continue;
+    const StatisticalBody& body = bodies[std::size_t(index)];
+    hold = hold && rooms_.holds(index, body.position, kBall * radius(body));
+    ++rooms_.laid;
+  }
+  hold = hold && rooms_.laid == sleepers_.insertions();
+  for (const std::int32_t index : support.awake()) {
+    if (!hold) break;
+    const StatisticalBody& body = bodies[std::size_t(index)];
+    const Ball ball = ball_of(body.position, body.velocity, radius(body), dt);
+    hold = rooms_.holds(index, ball.center, double(ball.reach));
+  }
+  if (!hold) rooms_.give_up();
+  return hold;
+}
+
+// Rooms for the next steps, for all movers: whether each has one to himself.
+bool NearSearch::find_rooms(double dt, const SupportLevel& support) {
+  constexpr double kSpare = 0.25;  // over R: for what an impact gives
+  const std::span<const StatisticalBody> bodies = support.bodies();
+  const double time = rooms_.time(dt), fall = 0.5 * gravity_.norm() * time * time;
+  rooms_.begin();
+  for (const std::int32_t index : movers_) {
+    const StatisticalBody& body = bodies[std::size_t(index)];
+    const Ball room{body.position, float((kBall + kSpare) * support.kind_of(body).shape->radius +
+                                         body.velocity.norm() * time + fall)};
+    add_ball(room);
+    rooms_.give(index, room.center, (1.0 - 1e-3) * double(room.reach));
+  }
+  cells_.fill({x_, y_, z_, reach_});
+  find_hull_pairs();
+  bool apart = ball_pairs_.size() == 0;
+  for (std::size_t i = 0; apart && i < x_.size(); ++i) {
+    const Vec3 center(x_[i], y_[i], z_[i]);
+    const auto reach = double(reach_[i]);
+    sleepers_.of(StatisticalModel::support).find_near(center, reach, [&](std::uint32_t slot) {
+      const double limit = reach + kBall * support.kind_of(bodies[slot]).shape->radius;
+      apart = apart && (bodies[slot].position - center).squaredNorm() >= limit * limit;
+    });
+    sleepers_.of(StatisticalModel::tables).find_near(center, reach, [&](std::uint32_t) { apart = false; });
+  }
+  rooms_.laid = sleepers_.insertions();
+  rooms_.end(apart);
+  x_.clear(), y_.clear(), z_.clear(), reach_.clear();
+  return apart;
 }
 
 void NearSearch::note_order(std::size_t spheres) {
@@ -205,6 +269,7 @@ void NearSearch::filter_pairs(std::size_t from, const Owner& owner) {
 void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
   pairs_.clear();
   forget_guests();
+  if (apart_) return tables.forget_contacts();
   const bool hulls =
       movers_.size() + neighbors.size() > 0 || !sleepers_.of(StatisticalModel::support).empty();
   if (hulls) guest_of_slot_.resize(std::size_t(tables.size()), -1);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lod/broad_phase/cell_grid.h"
+#include "lod/rungs/lone_rooms.h"
 #include "lod/rungs/near_pairs.h"
 #include "lod/statistical/full_neighbor.h"
 #include "lod/statistical/sleepers.h"
@@ -57,6 +58,7 @@ class NearSearch {
     if (!a.reading()) order_.assign(order_of_spheres().begin(), order_of_spheres().end());
     mixed_ = true;
     a(order_);
+    if (a.reading()) rooms_.give_up();
   }
 
  private:
@@ -82,6 +84,8 @@ class NearSearch {
   void take_movers(const SupportLevel& support);
   void sort_movers(std::span<const StatisticalBody> bodies);
   void sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const;
+  bool stay_apart(double dt, const SupportLevel& support);
+  bool find_rooms(double dt, const SupportLevel& support);
   void note_order(std::size_t spheres);
   void find_hull_pairs();
   void add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables);
@@ -114,8 +118,10 @@ class NearSearch {
   std::vector<std::int32_t> movers_;  // indices of bodies that move, by place
   std::vector<Placed> placed_;        // the same
   std::vector<char> kept_;            // of those awake: whether they moved before
-  bool mixed_ = false;                // spheres and others
-  std::vector<BallPairs> others_;     // of parts of the cells: pairs that are not of two spheres
+  LoneRooms rooms_;
+  bool apart_ = false;             // in this step no mover is near anybody, by rooms_
+  bool mixed_ = false;             // spheres and others
+  std::vector<BallPairs> others_;  // of parts of the cells: pairs that are not of two spheres
   BallPairs ball_pairs_;
   std::vector<std::uint32_t> order_;
   std::vector<NearPair> pairs_;

@@ -15,6 +15,7 @@ class Sleepers {
   StillGrid& of(StatisticalModel model) { return grids_[std::size_t(model)]; }
   const StillGrid& of(StatisticalModel model) const { return grids_[std::size_t(model)]; }
   bool empty() const { return grids_[0].empty() && grids_[1].empty(); }
+  std::uint64_t insertions() const { return grids_[0].insertions() + grids_[1].insertions(); }
   void archive(StateArchive& a) { a(grids_[0], grids_[1]); }
   std::size_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
 
