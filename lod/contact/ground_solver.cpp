@@ -12,14 +12,36 @@ Vec3 velocity_at(const GroundMotion& motion, const Vec3& arm) {
   return motion.velocity + motion.angular_velocity.cross(arm);
 }
 
-double velocity_along(const GroundMotion& motion, const GroundContact::Row& row) {
-  return motion.velocity.dot(row.axis) + motion.angular_velocity.dot(row.lever);
-}
+// A motion as the sweeps hold it, two numbers side by side: of v and ω, x and y of v, its z and x of ω, y and
+// z of ω.
+class PairedMotion {
+ public:
+  explicit PairedMotion(const GroundMotion& m)
+      : first_{m.velocity[0], m.velocity[1]},
+        middle_{m.velocity[2], m.angular_velocity[0]},
+        last_{m.angular_velocity[1], m.angular_velocity[2]} {}
+  GroundMotion motion() const {
+    return {Vec3(first_[0], first_[1], middle_[0]), Vec3(middle_[1], last_[0], last_[1])};
+  }
+  /// velocity·axis + ω·lever, each summed from its first part on.
+  double along(const GroundContact::Row& row) const {
+    const Pair v = first_ * Pair{row.axis[0], row.axis[1]},
+               of_both = middle_ * Pair{row.axis[2], row.lever[0]},
+               w = last_ * Pair{row.lever[1], row.lever[2]};
+    const Pair sum = Pair{v[0], of_both[1]} + Pair{v[1], w[0]} + Pair{of_both[0], w[1]};
+    return sum[0] + sum[1];
+  }
+  void apply(const GroundContact::Row& row, double change) {
+    const Pair both{change, change};
+    first_ += both * Pair{row.axis[0], row.axis[1]};
+    middle_ += both * Pair{row.axis[2], row.turning[0]};
+    last_ += both * Pair{row.turning[1], row.turning[2]};
+  }
 
-void apply(GroundMotion& motion, const GroundContact::Row& row, double change) {
-  motion.velocity += change * row.axis;
-  motion.angular_velocity += change * row.turning;
-}
+ private:
+  using Pair = double __attribute__((vector_size(16)));
+  Pair first_, middle_, last_;
+};
 
 /// The contacts of one solution, and what they begin with.
 class GroundSolver {
@@ -49,7 +71,7 @@ class GroundSolver {
   }
   void prepare(GroundContact& c, double step) const;
   void find_tangents(GroundContact& c) const;
-  double relax(GroundContact& c);
+  double relax(GroundContact& c, PairedMotion& motion);
   void start_from_guess(GroundContact& c);
   void sweep();
   void bound_friction();
@@ -83,22 +105,22 @@ double friction_bound(const GroundContact& c) {
 }
 
 // Returns the size of the change, N s over mass.
-double GroundSolver::relax(GroundContact& c) {
-  const GroundMotion now = motion_;
+inline double GroundSolver::relax(GroundContact& c, PairedMotion& motion) {
+  const PairedMotion now = motion;
   const auto change_to = [&](GroundContact::Row& row, double impulse) {
     const double change = impulse - row.impulse;
     row.impulse = impulse;
-    apply(motion_, row, change);
+    motion.apply(row, change);
     return std::abs(change);
   };
   GroundContact::Row& normal = c.rows[0];
-  const double closing = velocity_along(now, normal),
-               impulse = std::max(0.0, normal.impulse + normal.effective_mass * (c.target - closing));
+  const double impulse =
+      std::max(0.0, normal.impulse + normal.effective_mass * (c.target - now.along(normal)));
   double changed = impulse == normal.impulse ? 0.0 : change_to(normal, impulse);
   const double bound = friction_bound(c);
   if (bound == 0.0 && c.rows[1].impulse == 0.0 && c.rows[2].impulse == 0.0) return changed;
   find_tangents(c);
-  const double slip[2] = {velocity_along(now, c.rows[1]), velocity_along(now, c.rows[2])};
+  const double slip[2] = {now.along(c.rows[1]), now.along(c.rows[2])};
   for (std::size_t t = 0; t < 2; ++t) {
     GroundContact::Row& row = c.rows[t + 1];
     changed += change_to(row, std::clamp(row.impulse - row.effective_mass * slip[t], -bound, bound));
@@ -113,18 +135,22 @@ void GroundSolver::start_from_guess(GroundContact& c) {
   if (bound > 0.0) find_tangents(c);
   for (std::size_t t = 1; t < 3; ++t)
     c.rows[t].impulse = std::clamp(c.guess.dot(c.rows[t].axis), -bound, bound);
-  for (const GroundContact::Row& row : c.rows) apply(motion_, row, row.impulse);
+  PairedMotion motion(motion_);
+  for (const GroundContact::Row& row : c.rows) motion.apply(row, row.impulse);
+  motion_ = motion.motion();
 }
 
 void GroundSolver::sweep() {
+  PairedMotion motion(motion_);
   for (int i = 0; i < settings_.sweeps; ++i) {
     double changed = 0.0, greatest = 0.0;
     for (GroundContact& c : contacts_) {
-      changed = std::max(changed, relax(c));
+      changed = std::max(changed, relax(c, motion));
       greatest = std::max(greatest, c.rows[0].impulse);
     }
-    if (changed <= settings_.tolerance * greatest) return;
+    if (changed <= settings_.tolerance * greatest) break;
   }
+  motion_ = motion.motion();
 }
 
 // What the normal impulses are without friction bounds it.

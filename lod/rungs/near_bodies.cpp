@@ -1,8 +1,11 @@
 #include "lod/rungs/near_bodies.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "lod/statistical/parting.h"
+#include "lod/statistical/turn_lanes.h"
 #include "lod/timing/stage_timer.h"
 
 namespace lodestone {
@@ -180,20 +183,39 @@ void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32
 void NearBodies::move_alone(const Step& step, double time) {
   const auto count = std::int64_t(movers_.size());
   tallies_.assign(std::size_t(count), {});
-  run_in_pieces(jobs_, count, 256, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      const std::int32_t index = movers_[std::size_t(i)];
-      const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-      if (body.motion != Motion::asleep && !body.is_solved_in_crowd())
-        move_alone(step.support, step.guests, index, time, tallies_[std::size_t(i)]);
+  constexpr std::int64_t kBlock = TurnLanes::kBodies;
+  const auto moves = [](const StatisticalBody& body) {
+    return body.motion != Motion::asleep && !body.is_solved_in_crowd();
+  };
+  run_in_pieces(jobs_, count, 8 * kBlock, [&](std::int64_t begin, std::int64_t end) {
+    TurnLanes turns(settings_.simd);
+    std::array<int, kBlock> lane;  // −1: none
+    for (; begin < end; begin += kBlock) {
+      const auto block =
+          std::span(movers_).subspan(std::size_t(begin), std::size_t(std::min(kBlock, end - begin)));
+      int turning = 0;
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        const StatisticalBody& body = step.scene.bodies[std::size_t(block[i])];
+        const bool flies = moves(body) && body.motion == Motion::dynamic &&
+                           !step.support.is_guest(block[i]) && !kinds_[body.kind].isotropic;
+        lane[i] = flies ? turning++ : -1;
+        if (flies) turns.put(lane[i], body, kinds_[body.kind]);
+      }
+      turns.turn(time, turning);
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        if (!moves(step.scene.bodies[std::size_t(block[i])])) continue;
+        const std::optional<Quat> turned = lane[i] < 0 ? std::nullopt : turns.orientation(lane[i]);
+        move_alone(step.support, step.guests, block[i], time, tallies_[std::size_t(begin) + i],
+                   turned ? &*turned : nullptr);
+      }
     }
   });
   for (const ContactTally& own : tallies_) step.tally += own;
 }
 
 void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
-                            ContactTally& tally) const {
-  if (!support.is_guest(index)) return support.move_alone(index, faces_.of(index), time, tally);
+                            ContactTally& tally, const Quat* turned) const {
+  if (!support.is_guest(index)) return support.move_alone(index, faces_.of(index), time, tally, turned);
   StatisticalBody& body = support.bodies()[std::size_t(index)];
   StepWorld around = world();
   around.planes = join_planes(ground_.planes(), faces_.of(index));

@@ -77,7 +77,7 @@ class NearBodies {
   void find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after, double time);
   void move_alone(const Step& step, double time);
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
-                  ContactTally& tally) const;
+                  ContactTally& tally, const Quat* turned) const;
   static void keep_awake(const Step& step, Participant p);
   void wake(const Step& step, Participant p, Pace pace);
   void wake_touched(const Step& step, Pace pace);

@@ -70,6 +70,15 @@ inline Vec3 turn_to_energy(const Vec3& own, const Vec3& inverse_moments, double 
   return half_tangent(own, to);
 }
 
+/// `axes` (principal axes to world) after what turns the angular momentum in them by `half`, as half_tangent
+/// gives it.
+inline Quat turned_back(const Quat& axes, const Vec3& half) {
+  const double square = half.squaredNorm();
+  Quat turned = axes * Quat(1.0, -half.x(), -half.y(), -half.z());
+  turned.coeffs() *= square < 1e-5 ? 1.0 - square * (0.5 - 0.375 * square) : 1.0 / std::sqrt(1.0 + square);
+  return turned;
+}
+
 /// Angle (rad) by which the other two axes' parts may turn a body in one round of the splitting, and the
 /// rounds at most.
 inline constexpr double kTurnOfRound = 0.5;
@@ -102,13 +111,8 @@ inline Quat advance_orientation(const Quat& orientation, const Vec3& spin, const
     turn_about_own<2>((inverse[2] - inverse[1]) * own[2] * part, axes, own);
     turn_about_own<0>((inverse[0] - inverse[1]) * own[0] * (0.5 * part), axes, own);
   }
-  if (twice_energy || angle_squared > kNoTurn * kNoTurn) {
-    const Vec3 half = turn_to_energy(own, inverse, asked);
-    const Quat back(1.0, -half.x(), -half.y(), -half.z());
-    const double square = half.squaredNorm();
-    axes = axes * back;
-    axes.coeffs() *= square < 1e-5 ? 1.0 - square * (0.5 - 0.375 * square) : 1.0 / std::sqrt(1.0 + square);
-  }
+  if (twice_energy || angle_squared > kNoTurn * kNoTurn)
+    axes = turned_back(axes, turn_to_energy(own, inverse, asked));
   return of_ball * (kind.along_principal_axes ? axes : Quat(axes * kind.principal_axes.conjugate()));
 }
 

@@ -8,7 +8,7 @@
 namespace lodestone {
 
 void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> faces, double time,
-                              ContactTally& tally) {
+                              ContactTally& tally, const Quat* turned) {
   StatisticalBody& body = bodies_[std::size_t(slot)];
   const BodyKind& kind = kind_of(body);
   StepWorld step_world = world();
@@ -22,7 +22,7 @@ void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> face
   if (!meets_ground(own)) step_world.planes = {};
   static const HullMotionSettings settings;
   const HullMotion moved = move_on_hull(body, clips_[std::size_t(slot)], kind, step_world, settings_.gravity,
-                                        time, moves_by_itself(own), settings);
+                                        time, moves_by_itself(own), settings, turned);
   tally += moved.tally;
   if (moved.plays_clip) {
     if (moved.clip_over && settings_.sleeping) put_to_sleep(body);

@@ -43,9 +43,11 @@ class HullFlight {
       : body_(body), kind_(kind), world_(world) {}
 
   /// `time`: s from the step's start.
+  Vec3 position_at(double time) const {
+    return body_.position + (body_.velocity + world_.gravity * (0.5 * time)) * time;
+  }
   HullPose pose_at(double time) const {
-    HullPose pose{body_.position + (body_.velocity + world_.gravity * (0.5 * time)) * time,
-                  advance_orientation(body_.orientation, body_.spin, kind_, time)};
+    HullPose pose{position_at(time), advance_orientation(body_.orientation, body_.spin, kind_, time)};
     // Renormalising without a square root: one Newton step is exact to rounding for a norm already within
     // 1e-8 of 1.
     pose.orientation.coeffs() *= 1.5 - 0.5 * pose.orientation.squaredNorm();

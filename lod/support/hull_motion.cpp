@@ -20,7 +20,7 @@ ContactRecord touch_of_clip(const StatisticalBody& body, const HalfSpace& ground
 
 HullMotion move_on_hull(StatisticalBody& body, ClipPlayback& clip, const BodyKind& kind,
                         const StepWorld& world, const Vec3& clip_gravity, double time, bool may_settle,
-                        const HullMotionSettings& settings) {
+                        const HullMotionSettings& settings, const Quat* turned) {
   const double gravity = clip_gravity.norm();
   // A clip plays on its own ground only: that of a static solid ends at an edge. The triangles of a level
   // floor are one, up to rounding.
@@ -37,7 +37,7 @@ HullMotion move_on_hull(StatisticalBody& body, ClipPlayback& clip, const BodyKin
     if (world.log) world.log->add(touch_of_clip(body, clip.ground));
     return {.plays_clip = true, .clip_over = advance_clip(clip, body, kind, gravity, time, settings.clips)};
   }
-  const ContactTally tally = step_support_body(body, kind, world, time, settings.support);
+  const ContactTally tally = step_support_body(body, kind, world, time, settings.support, turned);
   if (tally.touched_plane < 0 || !may_settle || !kind.clips || kind.clips->empty()) return {.tally = tally};
   const HalfSpace& plane = world.planes[std::size_t(tally.touched_plane)];
   if (!world.is_horizontal(plane)) return {.tally = tally};

@@ -22,7 +22,7 @@ struct HullMotion {
 /// world), which need not be the gravity that the body feels.
 HullMotion move_on_hull(StatisticalBody& body, ClipPlayback& clip, const BodyKind& kind,
                         const StepWorld& world, const Vec3& clip_gravity, double time, bool may_settle,
-                        const HullMotionSettings& settings);
+                        const HullMotionSettings& settings, const Quat* turned = nullptr);
 
 /// Whether it stands on three vertices at least: on an edge a body may balance for a while, but not for good.
 bool stands_firmly(const StatisticalBody& body, const Shape& shape, std::span<const HalfSpace> planes);

@@ -332,13 +332,14 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
 
 [[gnu::flatten]] ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind,
                                                 const StepWorld& world, double time,
-                                                const SupportSettings& settings) {
+                                                const SupportSettings& settings, const Quat* turned) {
   ContactTally tally;
   double left = time;
   for (int hit = 0; hit < settings.max_impacts && left > 0.0; ++hit) {
     const HullFlight flight(body, kind, world);
     std::int32_t hint = body.support_hint;
-    Impact end{left, flight.pose_at(left), {}};
+    Impact end{
+        left, hit == 0 && turned ? HullPose{flight.position_at(left), *turned} : flight.pose_at(left), {}};
     end.lowest = flight.find_lowest(end.pose, hint);
     if (end.lowest.plane < 0 || end.lowest.gap >= 0.0) {
       body.position = end.pose.position;

@@ -28,8 +28,9 @@ struct SupportSettings {
   ContactSolverSettings impact_solver{.sweeps = 40, .frictionless_bound = true};
 };
 
-/// Moves a body that touches no other by `time` seconds over the ground's planes.
+/// Moves a body that touches no other by `time` seconds over the ground's planes. `turned`: how it is turned
+/// after them if it flies so long, where that is known (TurnLanes).
 ContactTally step_support_body(StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
-                               double time, const SupportSettings& settings);
+                               double time, const SupportSettings& settings, const Quat* turned = nullptr);
 
 }  // namespace lodestone
