@@ -246,6 +246,50 @@ TEST(NearSearch, DoesNotHangOnTheOrderOfAdding) {
   }
 }
 
+// A few that fly about in much space, fall asleep, are woken, laid down elsewhere and joined by others: step
+// after step the pairs are those of a search that knows of no step before.
+TEST(NearSearch, WhoWasFarApartIsFoundOnceHeIsNear) {
+  std::size_t steps_with_pairs = 0, steps_without = 0;
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    Crowd3 crowd;
+    scatter(crowd, seed, 14, {Rung::support}, 5.0);
+    RandomStream random(93, seed, 0);
+    for (int step = 0; step < 300; ++step) {
+      for (int slot = 0; slot < crowd.support.size(); ++slot) {
+        Crowd3::Place& place = crowd.places[crowd.support.body(slot).owner];
+        const double draw = random.uniform();
+        if (place.asleep) {
+          if (draw > 0.01) continue;
+          place.asleep = false, place.state.velocity = random.uniform(0.0, 6.0) * random.direction();
+          crowd.support.set_state(slot, place.state);
+          continue;
+        }
+        place.state.position += kSearchStep * place.state.velocity;
+        if (place.state.position.norm() > 5.0)
+          place.state.velocity = -2.0 * place.state.position.normalized();
+        if (draw < 0.002) place.state.position = 4.0 * random.direction();
+        crowd.support.set_state(slot, place.state);
+        if (draw > 0.001 && draw < 0.006) crowd.support.put_to_sleep(slot), place.asleep = true;
+      }
+      if (step % 100 == 50) {
+        const RigidState state = testing::at(4.0 * random.direction());
+        crowd.add(Rung::support, std::uint32_t(crowd.places.size()), state, step == 150);
+      }
+      crowd.search_pairs();
+      Crowd3 anew;
+      for (std::uint32_t owner = 0; owner < crowd.places.size(); ++owner) {
+        const Crowd3::Place& place = crowd.places[owner];
+        anew.add(Rung::support, owner, place.state, place.asleep);
+      }
+      anew.search_pairs();
+      ASSERT_EQ(crowd.pairs(), anew.pairs()) << seed << ' ' << step;
+      ++(crowd.search.pairs().empty() ? steps_without : steps_with_pairs);
+    }
+  }
+  EXPECT_GT(steps_with_pairs, 200u);
+  EXPECT_GT(steps_without, 200u);
+}
+
 TEST(NearSearch, AFilterIsAskedAboutOwners) {
   StatisticalSettings odd_with_odd;
   odd_with_odd.pair_filter = [](std::uint32_t a, std::uint32_t b) { return a % 2 == b % 2; };
