@@ -7,6 +7,8 @@
 namespace lodestone {
 namespace {
 
+constexpr double kSlides = 0.01;  // of its kinetic energy: with less it does not rock
+
 // The part of `rotation` about `axis` (swing–twist decomposition).
 Quat twist_about(const Quat& rotation, const Vec3& axis) {
   const double along = rotation.vec().dot(axis);
@@ -52,7 +54,13 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
   const SettlingKey key{
       (to_body * ground.normal).cast<float>(), (to_body * (body.velocity / speed_unit)).cast<float>(),
       (omega * (radius / speed_unit)).cast<float>(), float(kinetic / (gravity * radius) + height / radius)};
-  const auto energy = float(kinetic / (gravity * radius));
+  // What slides and turns flat on the ground comes to rest by friction alone; of others, that part of their
+  // motion is none that a clip may be off by.
+  const Vec3 normal = to_body * ground.normal, tilting = omega - omega.dot(normal) * normal;
+  const double rising = body.velocity.dot(ground.normal),
+               rocking = 0.5 * (rising * rising + tilting.dot(shape.inertia_per_mass * tilting));
+  if (rocking < kSlides * kinetic) return {};
+  const auto energy = float(rocking / (gravity * radius));
   const float distance =
       std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);
   const std::optional<ClipEntry> entry = kind.clips->find_nearest(key, settings.energy_slack, distance);

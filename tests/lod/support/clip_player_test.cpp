@@ -13,7 +13,8 @@ namespace {
 constexpr double kGravity = 9.81, kSide = 0.2;
 const HalfSpace kFloor{.normal = Vec3::UnitZ(), .offset = 0.3};
 
-// A cube that slides to rest along x: its lower side stays on the plane. Lengths over R, speeds over √(gR).
+// A cube that slides to rest along x, its lower side on the plane, and turns a little as one that rocks.
+// Lengths over R, speeds over √(gR).
 class ClipPlayer : public ::testing::Test {
  protected:
   static constexpr int kFrames = 5;
@@ -25,14 +26,17 @@ class ClipPlayer : public ::testing::Test {
     const double places[kFrames] = {0.0, 0.02, 0.035, 0.045, 0.05},
                  speeds[kFrames] = {0.2, 0.15, 0.1, 0.05, 0.0};
     for (int i = 0; i < kFrames; ++i)
-      signature->clip_frames.push_back(
-          encode_frame({{places[i], 0, kHeight}, Quat::Identity(), {speeds[i], 0, 0}, Vec3::Zero()}, 1.0f));
+      signature->clip_frames.push_back(encode_frame({{places[i], 0, kHeight},
+                                                     Quat::Identity(),
+                                                     {speeds[i], 0, 0},
+                                                     {0, kTurning * speeds[i] / speeds[0], 0}},
+                                                    1.0f));
     signature->clip_entries = {{.clip = 0, .frame = 0}};
     kind_ = make_body_kind(std::make_shared<const Shape>(make_shape("cube", make_box({kSide, kSide, kSide}))),
                            signature);
     const double radius = kind_.shape->radius;
-    kind_.clips = std::make_shared<const ClipIndex>(
-        *signature, kind_.shape->inertia_per_mass / (radius * radius));
+    kind_.clips =
+        std::make_shared<const ClipIndex>(*signature, kind_.shape->inertia_per_mass / (radius * radius));
   }
 
   double radius() const { return kind_.shape->radius; }
@@ -52,6 +56,8 @@ class ClipPlayer : public ::testing::Test {
     body.position = {3, -2, kFloor.offset + 0.5 * kSide};
     body.position.z() -= lowest_gap(body);
     body.velocity = Quat(Eigen::AngleAxisd(yaw, Vec3::UnitZ())) * Vec3(0.2 * speed_unit(), 0, 0);
+    body.spin =
+        spin_of(body.orientation, body.orientation * Vec3(0, kTurning / time_unit(), 0), *kind_.shape);
     return body;
   }
   std::optional<ClipPlayback> find(const StatisticalBody& body) const {
@@ -61,6 +67,7 @@ class ClipPlayer : public ::testing::Test {
     return advance_clip(playback, body, kind_, kGravity, time, settings_);
   }
 
+  static constexpr double kTurning = 0.1;                     // rad, in √(R/g): how fast the clip begins
   static inline const double kHeight = 1.0 / std::sqrt(3.0);  // of a cube's middle, over R
   BodyKind kind_;
   ClipSettings settings_;
@@ -77,6 +84,14 @@ TEST_F(ClipPlayer, ABodyJoinsWithoutAJump) {
     EXPECT_LT(body.orientation.angularDistance(before.orientation), 1e-7) << tilt;
     EXPECT_LT((body.velocity - before.velocity).norm(), 1e-3 * speed_unit()) << tilt;  // 16 bits
   }
+}
+
+// Nothing recorded is as it goes on, and friction alone brings it to rest.
+TEST_F(ClipPlayer, WhatSlidesFlatJoinsNone) {
+  StatisticalBody body = body_like_clip(0.7);
+  ASSERT_TRUE(find(body));
+  body.spin.setZero();
+  EXPECT_FALSE(find(body));
 }
 
 TEST_F(ClipPlayer, ItFollowsTheClipInItsOwnYawAndEndsAtRest) {

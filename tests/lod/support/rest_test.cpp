@@ -139,6 +139,29 @@ TEST(SupportRest, AStackThatBeginsToSlideDoesNotSleep) {
     }
 }
 
+// Where nothing but friction acts it loses just that in each step, to the end: settling clips are of drops.
+TEST(SupportRest, ABoxThatSlidesFlatDoesNotJolt) {
+  constexpr double kFriction = 0.5, kSpeed = 3.0;  // m/s
+  for (const Vec3& sides : {Vec3(1.2, 0.8, 0.6), Vec3(0.4, 0.3, 0.2)})
+    for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+      Manager manager =
+          on_floor({.signatures = coarse_signature, .signature_timing = SignatureTiming::in_step});
+      manager.materials().set_law(0, 0, {.restitution = 0.2, .friction = kFriction});
+      const BodyId body =
+          add(manager, box_shape(sides), testing::at({0, 0, 0.5 * sides.z() + 1e-3}, {kSpeed, 0, 0}), level);
+      run(manager, 0.1);
+      double speed = manager.state(body).velocity.norm(), worst = 0.0;  // m/s
+      for (int i = 0; i < 60; ++i) {
+        manager.step(kFrame);
+        const double now = manager.state(body).velocity.norm();
+        worst = std::max(worst, speed - now - kFriction * 9.81 * kFrame);
+        speed = now;
+      }
+      EXPECT_LT(worst, 0.01) << sides.transpose() << " at " << int(level);
+      EXPECT_NEAR(manager.state(body).position.x(), 0.5 * kSpeed * kSpeed / (kFriction * 9.81), 0.02);
+    }
+}
+
 // Balanced on an edge it may stand for a while; it does not fall asleep there.
 TEST(SupportRest, OnAnEdgeNobodySleeps) {
   Manager manager = on_floor();
