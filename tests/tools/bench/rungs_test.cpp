@@ -30,7 +30,7 @@ TEST(RungsBench, TakesEveryBodyThroughEveryRung) {
       EXPECT_EQ(row_of(heap, change).changes, 50) << change;
     EXPECT_EQ(row_of(heap, "tables to full").changes, 20);  // one slice a round
     EXPECT_EQ(row_of(heap, "none").put_off, 0);
-    EXPECT_TRUE(is_unseen(row_of(heap, "none"))) << row_of(heap, "none").max_mm;
+    EXPECT_LT(row_of(heap, "none").unexplained_max_mm, 1.0);  // who still falls over goes by his velocities
     for (const RungsRow& row : heap.rows) {
       EXPECT_LE(row.p50_mm, row.p99_mm);
       EXPECT_LE(row.p999_mm, row.max_mm);
