@@ -302,6 +302,7 @@ void Crowd::solve_gathered(const ContactScene& scene, const CrowdTouch& touch) {
   borne_weights_.guess(solver_bodies_, manifolds_, points_, settings.fall, time);
   noted_ = scene.world.log ? note_approaches(scene, time) : 0;
   solver_.solve(solver_bodies_, manifolds_, points_, time, settings, jobs_);
+  for (const std::uint32_t struck : solver_.struck()) manifolds_[struck].to_forget = true;
 }
 
 // What touches, but for two full bodies. The impulses follow, in the same order.

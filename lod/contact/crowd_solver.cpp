@@ -4,6 +4,7 @@
 
 #include "lod/contact/crowd_islands.h"
 #include "lod/contact/crowd_lanes.h"
+#include "lod/contact/impact_waves.h"
 #include "lod/contact/small_islands.h"
 #include "lod/contact/uneven_islands.h"
 
@@ -14,6 +15,7 @@ using namespace lane;
 struct CrowdSolver::Work {
   explicit Work(Simd simd) : small_islands(simd), uneven_islands(simd), great_islands(simd) {}
 
+  ImpactWaves waves;
   CrowdIslands islands;
   SmallIslands small_islands;
   UnevenIslands uneven_islands;
@@ -55,13 +57,17 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
                         const JobRunner& jobs) {
   Work& work = *work_;
   const CrowdContacts contacts{bodies, manifolds, points, step, settings};
+  work.waves.pass_on(bodies, manifolds, points, step, settings);
   work.islands.find(bodies, manifolds);
   work.sort_manifolds(manifolds.size());
   work.small_islands.solve(contacts, work.islands, jobs);
   work.uneven_islands.solve(contacts, work.uneven, work.islands.most_uneven(), jobs);
   work.solve_great_islands(contacts, jobs);
+  work.waves.add_impulses(points);
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].inverse_mass > 0.0) bodies[i].in_great_heap = work.islands.in_great_heap(std::int32_t(i));
 }
+
+std::span<const std::uint32_t> CrowdSolver::struck() const { return work_->waves.struck(); }
 
 }  // namespace lodestone

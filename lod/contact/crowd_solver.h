@@ -22,6 +22,8 @@ class CrowdSolver {
   void solve(std::span<SolverBody> bodies, std::span<const CrowdManifold> manifolds,
              std::span<CrowdPoint> points, double step, const ContactSolverSettings& settings,
              const JobRunner& jobs);
+  /// Of the last call: manifolds through which a blow went on (ImpactWaves). What they gave is no support.
+  std::span<const std::uint32_t> struck() const;
 
  private:
   struct Work;  // arrays that are kept between steps

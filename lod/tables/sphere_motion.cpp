@@ -73,8 +73,10 @@ struct EndLoop {
       // What has just been struck is not near-still.
       const float leaves = 0.5f * float(solved_x * solved_x + solved_y * solved_y + solved_z * solved_z);
       const bool lies = touches & (crowded > kLying) & (published | (leaves < kStruck * c.gravity * size[k]));
-      const bool calms = lies & (s[i].w < c.resting_energy * c.gravity * size[k]);
-      const bool stops = lies & (s[i].w < least_energy * size[k]);
+      // What rolls as it likes rests on the ground only where that holds it.
+      const bool rolls = slides & (lever[k] == 0.0f);
+      const bool calms = lies & !rolls & (s[i].w < c.resting_energy * c.gravity * size[k]);
+      const bool stops = lies & !rolls & (s[i].w < least_energy * size[k]);
       crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
       const double stopping = select(-std::int64_t(stops), stop, 1.0);
       const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};

@@ -9,6 +9,7 @@ namespace {
 
 constexpr float kPartingTime = 0.05f;      // of the time
 constexpr double kFallingInterval = 0.05;  // s; less than anybody must lie still for
+constexpr double kRounding = 1e-6;         // s: of times that add up, by far not that much
 
 }  // namespace
 
@@ -27,7 +28,7 @@ bool TablesLevel::find_riders() {
 
 // What falls with all that it touches does not lie on it, however long they touch.
 void TablesLevel::note_who_falls() {
-  const auto intervals = [](double time) { return std::floor(time / kFallingInterval); };
+  const auto intervals = [](double time) { return std::floor((time + kRounding) / kFallingInterval); };
   const bool is_due = intervals(elapsed_) != intervals(elapsed_ - constants_.wide_time);
   if (!is_due || !constants_.hulls || contacts_.count() == 0) return;
   const auto carries = std::int32_t(spheres_.awake);
@@ -41,6 +42,13 @@ void TablesLevel::note_who_falls() {
   for (std::int64_t i = 0; i < spheres_.awake; ++i)
     if (riders_.root_of(std::int32_t(i)) != riders_.root_of(carries))
       spheres_.crowded_for[std::size_t(i)] = 0, spheres_.quiet[std::size_t(i)] = 0.0f;
+}
+
+// A ball, which others beside it do not hold: it may just be setting out down a slope.
+bool TablesLevel::rolls_on_ground(std::int64_t place) const {
+  const std::uint8_t state = step_.on_ground[std::size_t(place)];
+  return constants_.hulls && kind_of(place).shape->sphere_radius &&
+         state != std::uint8_t(GroundState::free) && state != std::uint8_t(GroundState::within);
 }
 
 void TablesLevel::rest() {
@@ -84,7 +92,8 @@ void TablesLevel::rest() {
       continue;
     }
     spheres_.quiet[i] = still ? spheres_.quiet[i] + (parts ? kPartingTime : 1.0f) * constants_.time : 0.0f;
-    if (spheres_.quiet[i] < rest_law_.still_time(among_others) || (!among_others && !stands(i))) continue;
+    const bool waits_less = among_others && !rolls_on_ground(i);
+    if (spheres_.quiet[i] < rest_law_.still_time(waits_less) || (!among_others && !stands(i))) continue;
     fell_asleep_.push_back(spheres_.owner[std::size_t(i)]);
     lay_still(i);
   }
