@@ -7,9 +7,9 @@
 namespace lodestone {
 namespace {
 
-constexpr int kFarthestPassed = 512;  // a row's blow goes on by one body in each
-constexpr int kMostRoundSweeps = 40;  // over the contacts of a round
-constexpr double kAnswered = 1e-6;    // of the greatest impulse: a smaller change is none
+constexpr int kFarthestPassed = 32;   // a row's blow goes on by one body in each
+constexpr int kMostRoundSweeps = 10;  // over the contacts of a round
+constexpr double kAnswered = 1e-3;    // of the greatest impulse: a smaller change is none
 constexpr double kAsFast = 0.99;      // of the fastest on its bodies: is answered with it
 constexpr double kAtOnce = 0.01;      // of the step: blows as close in time are ordered by their speed
 constexpr std::uint8_t kOpen = 1, kBlow = 2, kStruck = 4;  // of a manifold
@@ -66,26 +66,38 @@ struct ImpactWaves::Scene {
   }
 };
 
-// Manifolds that bounce if anything, and whether they are open to pass something on.
+// Manifolds that bounce if anything, whether they are open to pass something on, and who bears or lies on
+// another body: heaps take blows as a whole.
 void ImpactWaves::find_blows(const Scene& scene) {
   blows_.clear();
   state_.assign(scene.manifolds.size(), 0);
+  in_heap_.assign(scene.bodies.size(), 0);
   for (std::uint32_t i = 0; i < scene.manifolds.size(); ++i) {
     const CrowdManifold& m = scene.manifolds[i];
-    if (m.law.restitution <= 0.0 || m.most_impulse < kUnbounded) continue;
     if (!scene.moves(m.first) && !scene.moves(m.second)) continue;
-    if (scene.strikes(m)) {
-      state_[i] = kOpen | kBlow;
-      blows_.push_back(i);
-      continue;
-    }
     double carried = 0.0;  // N s
     for (const CrowdPoint& point : scene.points.subspan(m.begin, m.count))
       carried += std::abs(point.guess.dot(m.normal));
     const double inverse_mass = scene.bodies[std::size_t(m.first)].inverse_mass +
                                 (m.second < 0 ? 0.0 : scene.bodies[std::size_t(m.second)].inverse_mass);
-    if (carried * inverse_mass <= kUnloaded * scene.bounce_velocity) state_[i] = kOpen;
+    if (carried * inverse_mass > kUnloaded * scene.bounce_velocity) {
+      if (m.second >= 0) in_heap_[std::size_t(m.first)] = in_heap_[std::size_t(m.second)] = 1;
+      continue;
+    }
+    if (m.law.restitution <= 0.0 || m.most_impulse < kUnbounded) continue;
+    state_[i] = kOpen;
+    if (!scene.strikes(m)) continue;
+    state_[i] |= kBlow;
+    blows_.push_back(i);
   }
+  const auto is_in_heap = [&](std::int32_t body) { return body >= 0 && in_heap_[std::size_t(body)] != 0; };
+  const auto is_of_heap = [&](std::uint32_t i) {
+    return is_in_heap(scene.manifolds[i].first) || is_in_heap(scene.manifolds[i].second);
+  };
+  std::erase_if(blows_, is_of_heap);
+  if (blows_.empty()) return;
+  for (std::uint32_t i = 0; i < scene.manifolds.size(); ++i)
+    if (is_of_heap(i)) state_[i] = 0;
 }
 
 void ImpactWaves::link(const Scene& scene) {

@@ -54,9 +54,9 @@ class ImpactWaves {
   void find_foremost(const Scene& scene);
 
   std::vector<std::uint32_t> blows_, active_, foremost_, struck_;
-  std::vector<std::uint8_t> state_;         // of each manifold
-  std::vector<std::int32_t> first_of_;      // of each body, its link of those that are open
-  std::vector<std::int32_t> next_;          // of each manifold's two links
+  std::vector<std::uint8_t> state_, in_heap_;  // of each manifold; of each body
+  std::vector<std::int32_t> first_of_;         // of each body, its link of those that are open
+  std::vector<std::int32_t> next_;             // of each manifold's two links
   std::vector<Blow> blow_on_, blow_sizes_;  // the first and the fastest on each body; of each that is active
   std::vector<Answer> answers_;
   struct Given {

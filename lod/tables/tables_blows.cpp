@@ -4,6 +4,11 @@
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
+namespace {
+
+constexpr std::uint8_t kStruck = 1, kInHeap = 2;  // of a body
+
+}  // namespace
 
 // Whether a contact that carries so much, N s, carries nothing to a blow.
 bool TablesLevel::is_unloaded(std::uint32_t first, std::uint32_t second, float impulse) const {
@@ -24,13 +29,20 @@ bool TablesLevel::find_blows() {
   struck_.assign(std::size_t(awake), 0);
   contacts_.each([&](const SphereContact& c) {
     if (c.closing >= -bounce) return;
-    struck_[c.first] = 1;
-    if (c.second < awake) struck_[c.second] = 1;
+    struck_[c.first] = kStruck;
+    if (c.second < awake) struck_[c.second] = kStruck;
+  });
+  // Heaps, whose bodies bear each other, take blows as a whole.
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second >= kGroundPlace || c.closing < -bounce || is_unloaded(c.first, c.second, c.impulse)) return;
+    struck_[c.first] = kInHeap;
+    if (c.second < awake) struck_[c.second] = kInHeap;
   });
   bool goes_on = false;
   contacts_.each([&](const SphereContact& c) {
-    const bool is_struck = struck_[c.first] != 0 || (c.second < awake && struck_[c.second] != 0);
-    goes_on |= is_struck && c.closing >= -bounce && is_unloaded(c.first, c.second, c.impulse);
+    const int first = struck_[c.first], second = c.second < awake ? struck_[c.second] : 0;
+    if (c.closing < -bounce || first == kInHeap || second == kInHeap) return;
+    goes_on |= (first == kStruck || second == kStruck) && is_unloaded(c.first, c.second, c.impulse);
   });
   return goes_on;
 }
@@ -62,6 +74,7 @@ void TablesLevel::gather_open_contacts() {
   contacts_.each_place([&](ContactArrays& c, std::size_t i, bool of_ground) {
     const bool has_own_law = of_ground || !constants_.one_kind;
     const std::uint32_t a = c.first[i], b = c.second[i];
+    if (struck_[a] == kInHeap || (b < awake && struck_[b] == kInHeap)) return;
     if (c.closing[i] >= -bounce && !is_unloaded(a, b, c.impulse[i])) return;
     CrowdManifold& m = blow_manifolds_.emplace_back();
     m.normal = Vec3(double(c.nx[i]), double(c.ny[i]), double(c.nz[i]));

@@ -1,0 +1,77 @@
+// Balls that touch at tables: they roll down a slope like one by itself, and hand a blow on; and what falls
+// slowly falls on.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "lod/lodestone.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kFrame = 1.0 / 60, kGravity = 9.81, kRadius = 0.1;
+
+std::shared_ptr<const Shape> ball() {
+  static const auto shape = std::make_shared<const Shape>(make_sphere_shape(kRadius));
+  return shape;
+}
+
+BodyId add_ball(Manager& manager, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  return manager.add_body(
+      {.shape = ball(), .state = {.position = position, .velocity = velocity}, .level = LevelChoice::tables});
+}
+
+void run(Manager& manager, int steps) {
+  for (int i = 0; i < steps; ++i) manager.step(kFrame);
+}
+
+TEST(RollingRows, BallsThatTouchRollDownASlope) {
+  for (const double degrees : {1.0, 2.0, 5.0}) {
+    Manager manager({.signature_timing = SignatureTiming::in_step});
+    const double angle = degrees * std::numbers::pi / 180.0;
+    const Vec3 up(std::sin(angle), 0, std::cos(angle)), down(std::cos(angle), 0, -std::sin(angle));
+    manager.add_plane(up, 0.0);
+    std::vector<BodyId> balls;
+    for (int i = 0; i < 3; ++i) balls.push_back(add_ball(manager, kRadius * up + 2 * kRadius * i * down));
+    const Vec3 start = manager.state(balls[2]).position;
+    run(manager, 120);
+    const double way = 0.5 * 4.0 * kGravity * std::sin(angle) * 5.0 / 7.0;
+    EXPECT_NEAR((manager.state(balls[2]).position - start).norm(), way, 0.03 * way) << degrees;
+  }
+}
+
+TEST(RollingRows, ARowKeepsItsMomentumAndDoesNotThrowTheStrikerBack) {
+  for (const double restitution : {0.2, 0.5, 0.8}) {
+    Manager manager({.signature_timing = SignatureTiming::in_step});
+    manager.materials().set_law(0, 0, {.restitution = restitution, .friction = 0.0});
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    std::vector<BodyId> balls = {add_ball(manager, {-0.8, 0, kRadius}, {4, 0, 0})};
+    for (int i = 0; i < 5; ++i) balls.push_back(add_ball(manager, {0.2 * i, 0, kRadius}));
+    run(manager, 24);
+    double momentum = 0.0;
+    for (const BodyId id : balls) momentum += manager.state(id).velocity.x();
+    EXPECT_NEAR(momentum, 4.0, 1e-4) << restitution;
+    EXPECT_GE(manager.state(balls.front()).velocity.x(), 0.0) << restitution;
+    EXPECT_GE(manager.state(balls.back()).velocity.x(), 4.0 * std::pow(0.5 * (1 + restitution), 5) - 1e-3)
+        << restitution;
+  }
+}
+
+TEST(RollingRows, WhatTouchesInTheAirFallsOnHoweverSlowly) {
+  Manager manager({.gravity = Vec3(0, 0, -0.1), .signature_timing = SignatureTiming::in_step});
+  manager.add_plane(Vec3::UnitZ(), 0.0);
+  const auto box = std::make_shared<const Shape>(make_shape("box", make_box({0.3, 0.3, 0.3})));
+  std::vector<BodyId> boxes;
+  for (int i = 0; i < 4; ++i)
+    boxes.push_back(manager.add_body({.shape = box,
+                                      .state = {.position = Vec3(0.301 * (i % 2), 0, 3 + 0.301 * (i / 2))},
+                                      .level = LevelChoice::tables}));
+  run(manager, 60);
+  for (const BodyId id : boxes) {
+    EXPECT_FALSE(manager.asleep(id));
+    EXPECT_NEAR(manager.state(id).velocity.z(), -0.1, 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
