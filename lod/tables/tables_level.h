@@ -186,9 +186,7 @@ class TablesLevel {
   const Load* load_of(std::int64_t place) const;
   void keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after);
   bool touches_further_planes(std::int64_t place) const;
-  int sweeps() const {
-    return constants_.hulls ? contacts_.settings().hull_sweeps : contacts_.settings().sweeps;
-  }
+  int sweeps() const;
   float ground_height(std::int64_t place, const Vec3& direction) const;
   double exit_distance(std::int64_t place, const Vec3& direction) const;
   Vec3 meeting_point(std::int64_t first, std::int64_t second) const;

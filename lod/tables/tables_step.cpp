@@ -13,6 +13,7 @@ namespace lodestone {
 namespace {
 
 constexpr std::int64_t kBlock = 1024;  // bodies of a job
+constexpr double kMostUneven = 12.0;   // times the rounds of contacts of like bodies
 constexpr int kOrderInterval = 16;     // steps between looks at how far bodies have moved from their places
 
 // Calls visit(i) for the elements of [begin, end) that hold `mark`: mostly few or none.
@@ -331,6 +332,23 @@ void TablesLevel::press() {
   }
 }
 
+// A round passes on to a light body a share of what a heavy one on top of it weighs: the more unlike they
+// are, the more rounds, as UnevenIslands.
+int TablesLevel::sweeps() const {
+  if (!constants_.hulls) return contacts_.settings().sweeps;
+  const int usual = contacts_.settings().hull_sweeps;
+  if (one_mass_) return usual;
+  double ratio = 1.0;
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second >= std::uint32_t(spheres_.awake)) return;
+    const double up = -(double(c.nx) * constants_.wide_gx + double(c.ny) * constants_.wide_gy +
+                        double(c.nz) * constants_.wide_gz);
+    const double first = spheres_.inverse_mass[c.first], second = spheres_.inverse_mass[c.second];
+    ratio = std::max(ratio, up > 0.0 ? second / first : first / second);
+  });
+  return int(usual * std::min(kMostUneven, 1.0 + std::sqrt(0.5 * (ratio - 1.0))));
+}
+
 void TablesLevel::respond(ContactTally& tally) {
   tally.contacts += contacts_.count();
   if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
@@ -340,8 +358,9 @@ void TablesLevel::respond(ContactTally& tally) {
   sort_ground();
   if (!crowd) return;
   pass_blows_on();
-  for (int sweep = 1; sweep <= sweeps(); ++sweep) {
-    const bool last = sweep == sweeps();
+  const int rounds = sweeps();
+  for (int sweep = 1; sweep <= rounds; ++sweep) {
+    const bool last = sweep == rounds;
     contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, last, eased_ > 0, simd_,
                     step_, jobs_);
     if (!last)

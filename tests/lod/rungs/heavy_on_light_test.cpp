@@ -1,4 +1,4 @@
-// Great weights on light bodies at `support`, beside what the full level makes of them.
+// Great weights on light bodies at `support`, beside what the full level makes of them, and at `tables`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,6 +67,24 @@ TEST(HeavyOnLight, ASlabOfAHundredTonsOnColumnsOfTenKilograms) {
   std::ranges::sort(farthest);
   EXPECT_LT(farthest[kFalls / 2], 0.012);
   EXPECT_LT(farthest.back(), 0.03);
+}
+
+// Three cubes and one of fifty times their mass on top, which sank through two of them.
+TEST(HeavyOnLight, AColumnOfTablesBearsAHeavyTop) {
+  constexpr int kCubes = 4;
+  constexpr double kSide = 0.3, kMass = 10.0, kHeavy = 50.0;  // m, kg, times that
+  ManagerSettings settings = unmeasured();
+  settings.signatures = coarse_signature;
+  settings.signature_timing = SignatureTiming::in_step;
+  Manager manager = on_floor(settings);
+  BodyId top;
+  for (int i = 0; i < kCubes; ++i)
+    top = manager.add_body({.shape = box_shape({kSide, kSide, kSide}),
+                            .state = at({0, 0, kSide * (i + 0.5) + 1e-3 * i}),
+                            .mass = i + 1 < kCubes ? kMass : kHeavy * kMass,
+                            .level = LevelChoice::tables});
+  run(manager, 4.0);
+  EXPECT_NEAR(manager.state(top).position.z(), kSide * (kCubes - 0.5), 0.1 * kSide);
 }
 
 }  // namespace
