@@ -9,7 +9,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kStep = 1.0 / 180.0, kSpeed = 4.0, kRadius = 0.1;
+constexpr double kWaveStep = 1.0 / 180.0, kSpeed = 4.0, kRadius = 0.1;
 
 // Equal balls along x without a gap, the first of which comes at the others.
 struct Row {
@@ -34,7 +34,7 @@ struct Row {
   }
   void solve() {
     CrowdSolver(Simd::portable)
-        .solve(bodies, manifolds, points, kStep, {.sweeps = 40}, [](std::int64_t tasks, TaskRef task) {
+        .solve(bodies, manifolds, points, kWaveStep, {.sweeps = 40}, [](std::int64_t tasks, TaskRef task) {
           for (std::int64_t i = 0; i < tasks; ++i) task(i);
         });
   }
@@ -86,7 +86,7 @@ TEST(ImpactWaves, LeaveAloneWhatNothingPassesOn) {
   for (Row row : {Row(2, 0.5), Row(4, 0.5, 1.0)}) {
     const std::vector<SolverBody> before = row.bodies;
     ImpactWaves waves;
-    waves.pass_on(row.bodies, row.manifolds, row.points, kStep, {});
+    waves.pass_on(row.bodies, row.manifolds, row.points, kWaveStep, {});
     EXPECT_TRUE(waves.struck().empty());
     for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(row.bodies[i].velocity, before[i].velocity);
   }

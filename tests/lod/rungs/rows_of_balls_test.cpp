@@ -1,5 +1,5 @@
-// Balls that touch at tables: they roll down a slope like one by itself, and hand a blow on; and what falls
-// slowly falls on.
+// Balls that touch: at tables they roll down a slope like one by itself, at support they hand a blow on; and
+// what falls slowly falls on.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -9,45 +9,47 @@
 namespace lodestone {
 namespace {
 
-constexpr double kFrame = 1.0 / 60, kGravity = 9.81, kRadius = 0.1;
+constexpr double kBallFrame = 1.0 / 60, kStrength = 9.81, kBall = 0.1;  // s, m/s², m
 
 std::shared_ptr<const Shape> ball() {
-  static const auto shape = std::make_shared<const Shape>(make_sphere_shape(kRadius));
+  static const auto shape = std::make_shared<const Shape>(make_sphere_shape(kBall));
   return shape;
 }
 
-BodyId add_ball(Manager& manager, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+BodyId add_ball(Manager& manager, LevelChoice level, const Vec3& position,
+                const Vec3& velocity = Vec3::Zero()) {
   return manager.add_body(
-      {.shape = ball(), .state = {.position = position, .velocity = velocity}, .level = LevelChoice::tables});
+      {.shape = ball(), .state = {.position = position, .velocity = velocity}, .level = level});
 }
 
-void run(Manager& manager, int steps) {
-  for (int i = 0; i < steps; ++i) manager.step(kFrame);
+void step_on(Manager& manager, int steps) {
+  for (int i = 0; i < steps; ++i) manager.step(kBallFrame);
 }
 
-TEST(RollingRows, BallsThatTouchRollDownASlope) {
+TEST(RowsOfBalls, BallsThatTouchRollDownASlope) {
   for (const double degrees : {1.0, 2.0, 5.0}) {
     Manager manager({.signature_timing = SignatureTiming::in_step});
     const double angle = degrees * std::numbers::pi / 180.0;
     const Vec3 up(std::sin(angle), 0, std::cos(angle)), down(std::cos(angle), 0, -std::sin(angle));
     manager.add_plane(up, 0.0);
     std::vector<BodyId> balls;
-    for (int i = 0; i < 3; ++i) balls.push_back(add_ball(manager, kRadius * up + 2 * kRadius * i * down));
+    for (int i = 0; i < 3; ++i)
+      balls.push_back(add_ball(manager, LevelChoice::tables, kBall * up + 2 * kBall * i * down));
     const Vec3 start = manager.state(balls[2]).position;
-    run(manager, 120);
-    const double way = 0.5 * 4.0 * kGravity * std::sin(angle) * 5.0 / 7.0;
+    step_on(manager, 120);
+    const double way = 0.5 * 4.0 * kStrength * std::sin(angle) * 5.0 / 7.0;
     EXPECT_NEAR((manager.state(balls[2]).position - start).norm(), way, 0.03 * way) << degrees;
   }
 }
 
-TEST(RollingRows, ARowKeepsItsMomentumAndDoesNotThrowTheStrikerBack) {
+TEST(RowsOfBalls, ARowKeepsItsMomentumAndDoesNotThrowTheStrikerBack) {
   for (const double restitution : {0.2, 0.5, 0.8}) {
     Manager manager({.signature_timing = SignatureTiming::in_step});
     manager.materials().set_law(0, 0, {.restitution = restitution, .friction = 0.0});
     manager.add_plane(Vec3::UnitZ(), 0.0);
-    std::vector<BodyId> balls = {add_ball(manager, {-0.8, 0, kRadius}, {4, 0, 0})};
-    for (int i = 0; i < 5; ++i) balls.push_back(add_ball(manager, {0.2 * i, 0, kRadius}));
-    run(manager, 24);
+    std::vector<BodyId> balls = {add_ball(manager, LevelChoice::support, {-0.8, 0, kBall}, {4, 0, 0})};
+    for (int i = 0; i < 5; ++i) balls.push_back(add_ball(manager, LevelChoice::support, {0.2 * i, 0, kBall}));
+    step_on(manager, 24);
     double momentum = 0.0;
     for (const BodyId id : balls) momentum += manager.state(id).velocity.x();
     EXPECT_NEAR(momentum, 4.0, 1e-4) << restitution;
@@ -57,7 +59,7 @@ TEST(RollingRows, ARowKeepsItsMomentumAndDoesNotThrowTheStrikerBack) {
   }
 }
 
-TEST(RollingRows, WhatTouchesInTheAirFallsOnHoweverSlowly) {
+TEST(RowsOfBalls, WhatTouchesInTheAirFallsOnHoweverSlowly) {
   Manager manager({.gravity = Vec3(0, 0, -0.1), .signature_timing = SignatureTiming::in_step});
   manager.add_plane(Vec3::UnitZ(), 0.0);
   const auto box = std::make_shared<const Shape>(make_shape("box", make_box({0.3, 0.3, 0.3})));
@@ -66,7 +68,7 @@ TEST(RollingRows, WhatTouchesInTheAirFallsOnHoweverSlowly) {
     boxes.push_back(manager.add_body({.shape = box,
                                       .state = {.position = Vec3(0.301 * (i % 2), 0, 3 + 0.301 * (i / 2))},
                                       .level = LevelChoice::tables}));
-  run(manager, 60);
+  step_on(manager, 60);
   for (const BodyId id : boxes) {
     EXPECT_FALSE(manager.asleep(id));
     EXPECT_NEAR(manager.state(id).velocity.z(), -0.1, 1e-3);
