@@ -6,6 +6,7 @@ namespace lodestone {
 namespace {
 
 constexpr double kRounding = 1e-9;  // × size
+constexpr double kSteep = 1e-9;     // of a normal along the contact's: a face that stands along that
 constexpr int kMostCorners = 64;    // of a hull; beyond it those nearest to the deepest one, by edges
 
 /// In the frame of the contact: z along the way out of the upper body, or against it for the lower one, so
@@ -38,15 +39,16 @@ class Tip {
   const std::vector<Edge>& edges() const { return edges_; }
 
   /// How far below `point`, a corner of the other's tip, this hull's surface is; negative where the point is
-  /// outside.
+  /// outside. One that came out above, through a thin hull's back, has the whole way to go.
   double depth_below(const Vec3& point, double rounding) const {
-    double least = 1e300;
+    double least = 1e300, to_top = 1e300;  // m, to the surfaces below and, negative beyond it, above
     for (const Face& face : faces_) {
-      const double inside = face.normal.dot(face.point - point);
-      if (inside < -rounding) return -1.0;
-      if (face.normal.z() < -1e-9) least = std::min(least, inside / -face.normal.z());
+      const double inside = face.normal.dot(face.point - point), up = face.normal.z();
+      if (inside < -rounding && up < kSteep) return -1.0;
+      if (inside < -rounding) to_top = std::min(to_top, inside / up);
+      if (up < -kSteep) least = std::min(least, inside / -up);
     }
-    return least;
+    return least + to_top < 0.0 ? -1.0 : least;
   }
 
  private:

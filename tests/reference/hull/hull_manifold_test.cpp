@@ -66,6 +66,32 @@ TEST(HullManifold, OfCrossedEdgesIsOnePoint) {
   }
 }
 
+// What came out behind a thin plate is as deep as the way back through it.
+TEST(HullManifold, OfACornerThatPiercesAPlateIsThatCorner) {
+  const auto cube = box_shape({0.2, 0.2, 0.2}), plate = box_shape({2, 2, 0.02});
+  const Quat on_corner = Quat::FromTwoVectors(Vec3(1, 1, 1), -Vec3::UnitZ());
+  const RigidState above = at({0.3, 0.4, 0.1 * std::sqrt(3.0) - 0.05}, {}, {}, on_corner),
+                   stands = at({0, 0, 0});
+  const auto contacts = find_contacts(*cube, above, *plate, stands);
+  EXPECT_TRUE(holds(contacts, {0.3, 0.4, -0.02}));
+  const auto back = find_contacts(*plate, stands, *cube, above);
+  EXPECT_TRUE(holds(back, {0.3, 0.4, -0.02}));
+  for (const auto& [found, up] : {std::pair(contacts, 1.0), std::pair(back, -1.0)}) {
+    ASSERT_FALSE(found.empty());
+    EXPECT_NEAR(std::ranges::max(found, {}, &ContactPoint::depth).depth, 0.06, 1e-9);
+    for (const ContactPoint& contact : found) EXPECT_NEAR(contact.normal.z(), up, 1e-9);
+  }
+}
+
+// Seen along the way out it passes beside the plate, though it is lower than its top.
+TEST(HullManifold, OfACornerBesideAPlateIsNone) {
+  const auto cube = box_shape({0.2, 0.2, 0.2}), plate = box_shape({2, 2, 0.02});
+  const Quat on_edge(Eigen::AngleAxisd(0.3, Vec3::UnitY()));
+  const auto contacts = find_contacts(*cube, at({1.03, 0, 0.1}, {}, {}, on_edge), *plate, at({0, 0, 0}));
+  ASSERT_FALSE(contacts.empty());
+  for (const ContactPoint& contact : contacts) EXPECT_LT(contact.point.x(), 1.01);
+}
+
 TEST(HullManifold, RolesSwappedMirrorTheContacts) {
   const auto box = box_shape({0.2, 0.3, 0.4});
   for (std::uint32_t pose = 0; pose < 200; ++pose) {
