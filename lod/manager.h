@@ -97,8 +97,10 @@ class Manager {
   GroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
                           MaterialId material = 0);  ///< full sides, m
   /// Puts a box or mesh elsewhere (a mesh was made at the origin, unturned) and wakes what is near. With a
-  /// velocity it carries what lies on it, on every rung, but goes on only as it is moved: each time before a
-  /// step, and once without a velocity at the end. A plane is removed and added anew.
+  /// velocity it carries what lies on it, on every rung: `state` is that at the beginning of the step to
+  /// come, within which it goes on from there; after it it stands where it was put again, as queries see it,
+  /// until it is moved: each time before a step, and once without a velocity at the end. Who only gives it a
+  /// velocity has a belt. A plane is removed and added anew.
   void move_ground(GroundId ground, const RigidState& state);
   void remove_ground(GroundId ground);  ///< wakes what lies on it; its id is never valid again
   bool valid(GroundId ground) const;

@@ -133,6 +133,17 @@ void Ground::move_part(GroundId id, const GroundPose& pose) {
   if (!stays) hold(index);
 }
 
+void Ground::begin_step(double dt) {
+  if (moving_ == 0) return;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (!parts_[i] || !parts_[i]->pose.comes_back || !parts_[i]->moves()) continue;
+    if (parts_[i]->pose.goes_on_s == dt) continue;
+    let_go(std::int32_t(i));
+    parts_[i]->pose.goes_on_s = dt;
+    hold(std::int32_t(i));
+  }
+}
+
 Box Ground::bounds(GroundId id) const { return bounds_[std::size_t(entries_[id.index].part)]; }
 
 void Ground::hold(std::int32_t part) {

@@ -41,6 +41,7 @@ struct GroundPose {
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< m/s, rad/s: what lies on it feels this
   double goes_on_s =
       0.0;  ///< for so long it moves on from there: the next step; 0: it stands where it was put already
+  bool comes_back = false;  ///< after each step it stands where it was put again
 };
 
 struct GroundPart {
@@ -91,6 +92,8 @@ class Ground {
   void remove(GroundId id);
   void move_plane(GroundId id, const HalfSpace& plane);
   void move_part(GroundId id, const GroundPose& pose);
+  /// Parts that come back move on in the next step, of `dt` s.
+  void begin_step(double dt);
   const GroundPart& part(GroundId id) const { return *parts_[std::size_t(entries_[id.index].part)]; }
   const HalfSpace& plane(GroundId id) const { return planes_[std::size_t(entries_[id.index].plane)]; }
   /// Of a part, where it stands now.

@@ -237,6 +237,7 @@ void Manager::Impl::begin_stages(double dt, WorldStepBy by) {
   auto& [_, laps, measured] = *underway;
   const StageTimer timer(report.times.total_ms);
   levels.follow_callers_space(dt);
+  levels.ground.begin_step(dt);
   left_places.wake(levels);
   audit.begin_step();
   // 1 choose rungs

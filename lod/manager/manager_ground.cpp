@@ -70,7 +70,8 @@ void Manager::move_ground(GroundId id, const RigidState& state) {
   levels.ground.move_part(id, {.position = sound.position,
                                .orientation = sound.orientation,
                                .velocity = sound.velocity,
-                               .angular_velocity = sound.angular_velocity});
+                               .angular_velocity = sound.angular_velocity,
+                               .comes_back = true});
   levels.full.move_ground(id, sound);
   impl_->disturb(levels.ground.bounds(id));
   impl_->recorder.note(Call::move_ground, id, state);

@@ -109,7 +109,7 @@ std::vector<PlacedSolid> QueryGround::find_near(const Vec3& center, double reach
   ground_.find_parts(center, reach, parts);
   for (const GroundPart* part : parts) {
     if (part->shape.make)
-      find_solids(*part, center, reach, part->pose.goes_on_s, solids);
+      find_solids(*part, center, reach, part->pose.comes_back ? 0.0 : part->pose.goes_on_s, solids);
     else if (part->shape.probe)
       probed.push_back(part);
   }

@@ -30,6 +30,12 @@ void place(dGeomID geom, const RigidState& state) {
   dGeomSetQuaternion(geom, q);
 }
 
+RigidState moved_on(RigidState state, double time) {
+  state.position += state.velocity * time;
+  state.orientation = (rotation_from_vector(state.angular_velocity * time) * state.orientation).normalized();
+  return state;
+}
+
 /// Whether two meshes whose surfaces do not cross are one inside the other.
 bool is_inside_other(const Body& first, const Body& second) {
   const auto& [inner, outer] = first.reach < second.reach ? std::tie(first, second) : std::tie(second, first);
@@ -96,15 +102,19 @@ OdeGroundId Collision::add_box(const Vec3& sides, const Vec3& position, const Qu
     throw InputError("a static box: expected positive sides and a finite pose, below 1e8 m");
   const dGeomID box = dCreateBox(nullptr, sides.x(), sides.y(), sides.z());
   place(box, state);
-  return add_ground(
-      {{}, box, material, std::make_shared<const Shape>(make_shape("static box", make_box(sides))), state});
+  return add_ground({{},
+                     box,
+                     material,
+                     std::make_shared<const Shape>(make_shape("static box", make_box(sides))),
+                     state,
+                     state});
 }
 
 OdeGroundId Collision::add_mesh(const Mesh& mesh, MaterialId material) {
   auto data = std::make_unique<TrimeshData>(mesh.vertices, mesh.faces);
   const dGeomID geom = dCreateTriMesh(nullptr, data->id(), nullptr, nullptr, nullptr);
   ++ground_meshes_;
-  return add_ground({{}, geom, material, nullptr, {}, std::move(data)});
+  return add_ground({{}, geom, material, nullptr, {}, {}, std::move(data)});
 }
 
 OdeGroundId Collision::add_ground(Ground ground) {
@@ -135,11 +145,9 @@ void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bod
     throw InputError(
         "a pose of ground: expected finite, below 1e8 in each part, the orientation of unit norm");
   const Eigen::AlignedBox3d before = bounds_of(ground.geom);
-  place(ground.geom, state);
-  ground.state = state;
+  put(ground, ground.put = state);
   ground.moved = true;
   ground.moves = !state.velocity.isZero(0.0) || !state.angular_velocity.isZero(0.0);
-  broad_phase_.follow_ground(ground.geom, before);
   broad_phase_.wake_ours(bodies, before);
   broad_phase_.wake_ours(bodies, bounds_of(ground.geom));
 }
@@ -160,6 +168,28 @@ void Collision::remove_ground(OdeGroundId id, Bodies& bodies) {
   dGeomDestroy(ground.geom);
   free_ground_.push_back(std::uint32_t(&ground - ground_.data()));
   ground = {};
+}
+
+void Collision::put(Ground& ground, const RigidState& state) {
+  const Eigen::AlignedBox3d before = bounds_of(ground.geom);
+  place(ground.geom, state);
+  ground.state = state;
+  broad_phase_.follow_ground(ground.geom, before);
+}
+
+void Collision::begin_step(Bodies& bodies, double dt) {
+  for (Ground& ground : ground_) {
+    if (!ground.id || !ground.moves || !ground.moved) continue;
+    const Eigen::AlignedBox3d before = bounds_of(ground.geom);
+    put(ground, moved_on(ground.put, dt));
+    broad_phase_.wake_ours(bodies, before.merged(bounds_of(ground.geom)));
+    put(ground, ground.put);
+  }
+}
+
+void Collision::move_on(double after) {
+  for (Ground& ground : ground_)
+    if (ground.id && ground.moves) put(ground, after > 0.0 ? moved_on(ground.put, after) : ground.put);
 }
 
 void Collision::end_step() {

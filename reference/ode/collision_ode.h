@@ -22,7 +22,8 @@ struct Ground {
   dGeomID geom = nullptr;
   MaterialId material = 0;
   std::shared_ptr<const Shape> box = {};  ///< null for a mesh
-  RigidState state = {};
+  RigidState put = {};                    ///< where it was put, and how it moves
+  RigidState state = {};                  ///< the same in this substep: where it has moved to from there
   std::unique_ptr<TrimeshData> mesh = {};
   bool moved = false;  ///< before this step
   bool moves = false;  ///< its state has a velocity
@@ -44,7 +45,11 @@ class Collision {
 
   /// After the mirror was refreshed: wakes what the caller disturbed.
   void note_changes(Bodies& bodies);
-  /// Ground that is not moved again stands.
+  /// Wakes what ground that was moved comes to within a step of `dt` s.
+  void begin_step(Bodies& bodies, double dt);
+  /// Puts ground that moves where it is `after` s from the step's beginning.
+  void move_on(double after);
+  /// Ground that is not moved again stands where it was put.
   void end_step();
   /// Finds the contacts of every awake body and gives them to `joints`; `h` is the step to come, s.
   void collide(Bodies& bodies, ContactJoints& joints, double h);
@@ -55,6 +60,7 @@ class Collision {
   std::int64_t ground_trimeshes() const { return ground_meshes_; }
 
  private:
+  void put(Ground& ground, const RigidState& state);
   void mark_company(Bodies& bodies, std::span<const Candidate> candidates);
   void note_callers_planes();
   void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);

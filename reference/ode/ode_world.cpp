@@ -114,9 +114,14 @@ void OdeWorld::step(double dt, int substeps) {
   prepare();
   const std::int64_t messages_before = messages_of_this_thread();
   impl_->begin_step(dt / substeps);
+  impl_->collision.begin_step(impl_->bodies, dt);
   if (impl_->has_work()) {
     const SharedErrorReduction shared(impl_->own_world ? nullptr : impl_->world, substeps);
-    for (int i = 0; i < substeps; ++i) impl_->substep(dt / substeps);
+    for (int i = 0; i < substeps; ++i) {
+      if (i > 0) impl_->collision.move_on(i * (dt / substeps));
+      impl_->substep(dt / substeps);
+    }
+    if (substeps > 1) impl_->collision.move_on(0.0);
   } else {
     impl_->joints.begin(dt, 0);  // no contacts
   }

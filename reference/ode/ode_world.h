@@ -174,8 +174,9 @@ class OdeWorld {
                              MaterialId material);
   OdeGroundId add_static_mesh(const Mesh& mesh, MaterialId material);
   /// A box's or mesh's (which begins at the origin, unturned); wakes what is near where it was and where it
-  /// is. With a velocity (m/s and rad/s, world) it carries what touches it, but goes on only as it is moved,
-  /// by the caller, before each step. A plane cannot be moved.
+  /// is. With a velocity (m/s and rad/s, world) it carries what touches it: it goes on from there through the
+  /// substeps of each step, and after it stands where it was put again, until the caller moves it, before the
+  /// next. A plane cannot be moved.
   void move_ground(OdeGroundId ground, const RigidState& state);
   void remove_ground(OdeGroundId ground);  ///< wakes what is near it
 

@@ -57,6 +57,25 @@ TEST(CarriedBodies, ALiftCarriesAStack) {
       EXPECT_LT(OnLift(level, 3).move({0, 0, speed}), shrinks) << int(level) << " at " << speed << " m/s";
 }
 
+// Ground goes on through a step from where it was put: else what lies on it hovers and sinks by what it goes
+// in a step, 13 mm here.
+TEST(CarriedBodies, WhoLiesOnAShakenTrayStaysOnIt) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const double pulse : {2.0 * M_PI, 12.0 * M_PI}) {  // 1/s
+      OnLift on(level, 1);
+      const double amplitude = 0.5 * 9.81 / (pulse * pulse);  // m: half of gravity at most
+      const auto height = [&](int frame) { return amplitude * (1.0 - std::cos(pulse * frame * kFrame)); };
+      for (int i = 0; i < 120; ++i) {
+        RigidState state = testing::at({0, 0, height(i) - 0.1});
+        state.velocity.z() = (height(i + 1) - height(i)) / kFrame;
+        on.manager.move_ground(on.lift, state);
+        on.manager.step(kFrame);
+        ASSERT_NEAR(on.z(on.stack.front()) - height(i + 1), 0.5 * kCrate, 1e-3)
+            << int(level) << ", " << pulse << "/s, frame " << i;
+      }
+    }
+}
+
 TEST(CarriedBodies, APlatformCarriesAStackAlong) {
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support})
     for (const double speed : kSpeeds) {

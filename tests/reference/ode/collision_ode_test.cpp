@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 
 #include "reference/error.h"
 #include "tests/message_of.h"
@@ -87,6 +88,50 @@ TEST(OdeGroundKinds, WhatMovesCarries) {
   }
   EXPECT_NEAR(scene.height(body), 0.2 + 0.5, 0.02);
   EXPECT_NEAR(scene.world.state(body).position.x(), 0.3, 0.05);
+}
+
+// It is where its velocity says in every substep, so that what lies on it neither sinks in nor is thrown.
+TEST(OdeGroundKinds, ALiftThatGoesUpAndDownThrowsNothing) {
+  constexpr double kFrame = 1.0 / 60, kAmplitude = 0.12;  // s, m: half of gravity at most
+  const auto height = [](int frame) {
+    return kAmplitude * (1.0 - std::cos(2.0 * std::numbers::pi * frame * kFrame));
+  };
+  for (const int substeps : {4, 16}) {
+    OdeScene scene;
+    const OdeGroundId lift = scene.world.add_static_box({2, 2, 0.2}, {0, 0, -0.1}, Quat::Identity(), 0);
+    const OdeBodyId body = scene.box({0, 0, 0.1});
+    for (int i = 0; i < 120; ++i) {
+      const double speed = (height(i + 1) - height(i)) / kFrame;
+      scene.world.move_ground(lift, at({0, 0, height(i) - 0.1}, {0, 0, speed}));
+      scene.world.step(kFrame, substeps);
+      ASSERT_NEAR(scene.height(body) - height(i + 1), 0.1, 1e-3) << substeps << ", frame " << i;
+      ASSERT_LT(scene.world.state(body).angular_velocity.norm(), 0.05) << substeps << ", frame " << i;
+    }
+  }
+}
+
+// An arm strikes what it turns into within a step; that it did not touch where it was put.
+TEST(OdeGroundKinds, WhatTurnsDoesSoWithinAStep) {
+  constexpr double kFrame = 1.0 / 60, kTurning = 4.0;  // s, rad/s
+  const MaterialTable materials = material(0.0, 0.5);
+  OdeWorld world({.gravity = Vec3::Zero()}, materials);
+  const OdeGroundId arm = world.add_static_box({4, 0.1, 1}, Vec3::Zero(), Quat::Identity(), 0);
+  const OdeBodyId body =
+      world.add_body({.shape = box_shape(Vec3::Constant(0.4)), .state = at({1.5, 0.26, 0})});
+  world.move_ground(arm, at(Vec3::Zero(), Vec3::Zero(), {0, 0, kTurning}));
+  world.step(kFrame, 16);
+  const Quat turned(Eigen::AngleAxisd(kTurning * kFrame, Vec3::UnitZ()));
+  EXPECT_GT((turned.conjugate() * world.state(body).position).y(), 0.24);
+}
+
+// Given a velocity once, it begins each step from where it was put.
+TEST(OdeGroundKinds, WhatIsNotMovedAgainStaysWhereItWasPut) {
+  OdeScene scene;
+  const OdeGroundId belt = scene.world.add_static_box({4, 2, 0.2}, {0, 0, -0.1}, Quat::Identity(), 0);
+  const OdeBodyId body = scene.box({0, 0, 0.1});
+  scene.world.move_ground(belt, at({0, 0, -0.1}, {1.0, 0, 0}));
+  for (int i = 0; i < 240 && scene.height(body) > 0.05; ++i) scene.world.step(1.0 / 60, 4);
+  EXPECT_NEAR(scene.world.state(body).position.x(), 2.15, 0.1);  // where it fell off
 }
 
 TEST(OdeGroundKinds, WhatCannotBeIsRefused) {
