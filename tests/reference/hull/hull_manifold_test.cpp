@@ -70,7 +70,7 @@ TEST(HullManifold, OfCrossedEdgesIsOnePoint) {
 TEST(HullManifold, OfACornerThatPiercesAPlateIsThatCorner) {
   const auto cube = box_shape({0.2, 0.2, 0.2}), plate = box_shape({2, 2, 0.02});
   const Quat on_corner = Quat::FromTwoVectors(Vec3(1, 1, 1), -Vec3::UnitZ());
-  const RigidState above = at({0.3, 0.4, 0.1 * std::sqrt(3.0) - 0.05}, {}, {}, on_corner),
+  const RigidState above = at({0.3, 0.4, 0.1 * std::sqrt(3.0) - 0.05}, Vec3::Zero(), Vec3::Zero(), on_corner),
                    stands = at({0, 0, 0});
   const auto contacts = find_contacts(*cube, above, *plate, stands);
   EXPECT_TRUE(holds(contacts, {0.3, 0.4, -0.02}));
@@ -87,7 +87,8 @@ TEST(HullManifold, OfACornerThatPiercesAPlateIsThatCorner) {
 TEST(HullManifold, OfACornerBesideAPlateIsNone) {
   const auto cube = box_shape({0.2, 0.2, 0.2}), plate = box_shape({2, 2, 0.02});
   const Quat on_edge(Eigen::AngleAxisd(0.3, Vec3::UnitY()));
-  const auto contacts = find_contacts(*cube, at({1.03, 0, 0.1}, {}, {}, on_edge), *plate, at({0, 0, 0}));
+  const auto contacts =
+      find_contacts(*cube, at({1.03, 0, 0.1}, Vec3::Zero(), Vec3::Zero(), on_edge), *plate, at({0, 0, 0}));
   ASSERT_FALSE(contacts.empty());
   for (const ContactPoint& contact : contacts) EXPECT_LT(contact.point.x(), 1.01);
 }

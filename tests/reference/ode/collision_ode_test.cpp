@@ -92,18 +92,18 @@ TEST(OdeGroundKinds, WhatMovesCarries) {
 
 // It is where its velocity says in every substep, so that what lies on it neither sinks in nor is thrown.
 TEST(OdeGroundKinds, ALiftThatGoesUpAndDownThrowsNothing) {
-  constexpr double kFrame = 1.0 / 60, kAmplitude = 0.12;  // s, m: half of gravity at most
+  constexpr double kGameStep = 1.0 / 60, kAmplitude = 0.12;  // s, m: half of gravity at most
   const auto height = [](int frame) {
-    return kAmplitude * (1.0 - std::cos(2.0 * std::numbers::pi * frame * kFrame));
+    return kAmplitude * (1.0 - std::cos(2.0 * std::numbers::pi * frame * kGameStep));
   };
   for (const int substeps : {4, 16}) {
     OdeScene scene;
     const OdeGroundId lift = scene.world.add_static_box({2, 2, 0.2}, {0, 0, -0.1}, Quat::Identity(), 0);
     const OdeBodyId body = scene.box({0, 0, 0.1});
     for (int i = 0; i < 120; ++i) {
-      const double speed = (height(i + 1) - height(i)) / kFrame;
+      const double speed = (height(i + 1) - height(i)) / kGameStep;
       scene.world.move_ground(lift, at({0, 0, height(i) - 0.1}, {0, 0, speed}));
-      scene.world.step(kFrame, substeps);
+      scene.world.step(kGameStep, substeps);
       ASSERT_NEAR(scene.height(body) - height(i + 1), 0.1, 1e-3) << substeps << ", frame " << i;
       ASSERT_LT(scene.world.state(body).angular_velocity.norm(), 0.05) << substeps << ", frame " << i;
     }
@@ -112,15 +112,15 @@ TEST(OdeGroundKinds, ALiftThatGoesUpAndDownThrowsNothing) {
 
 // An arm strikes what it turns into within a step; that it did not touch where it was put.
 TEST(OdeGroundKinds, WhatTurnsDoesSoWithinAStep) {
-  constexpr double kFrame = 1.0 / 60, kTurning = 4.0;  // s, rad/s
+  constexpr double kGameStep = 1.0 / 60, kTurning = 4.0;  // s, rad/s
   const MaterialTable materials = material(0.0, 0.5);
   OdeWorld world({.gravity = Vec3::Zero()}, materials);
   const OdeGroundId arm = world.add_static_box({4, 0.1, 1}, Vec3::Zero(), Quat::Identity(), 0);
   const OdeBodyId body =
       world.add_body({.shape = box_shape(Vec3::Constant(0.4)), .state = at({1.5, 0.26, 0})});
   world.move_ground(arm, at(Vec3::Zero(), Vec3::Zero(), {0, 0, kTurning}));
-  world.step(kFrame, 16);
-  const Quat turned(Eigen::AngleAxisd(kTurning * kFrame, Vec3::UnitZ()));
+  world.step(kGameStep, 16);
+  const Quat turned(Eigen::AngleAxisd(kTurning * kGameStep, Vec3::UnitZ()));
   EXPECT_GT((turned.conjugate() * world.state(body).position).y(), 0.24);
 }
 
