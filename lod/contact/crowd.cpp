@@ -356,11 +356,11 @@ void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
 
 // A sleeper stands like ground, and what is between it and the ground is held as in a vice: by impulses that
 // need no weight, and are the next step's guesses. Who is pushed up by more than before and than it weighs,
-// or along by more than friction holds, is to wake, and of what held it nothing is remembered. (What lies on
-// it is not known: by how much it was pushed before was no blow.)
+// or along by more than friction under what is left of its weight holds, is to wake, and of what held it
+// nothing is remembered. (What lies on it is not known: by how much it was pushed before was no blow.) One
+// that bore more than that took a good part of a blow to those that it lies on.
 void Crowd::find_pressed(const ContactScene& scene, double time) {
-  constexpr double kHeld = 2.0;    // times as much
-  constexpr double kStirs = 0.03;  // over √(g R): slower it would hardly move
+  constexpr double kStirs = 0.01;  // over √(g R): slower it would hardly move
   pressed_.clear();
   const double strength = scene.world.gravity_strength();
   if (strength == 0.0) return;
@@ -391,8 +391,8 @@ void Crowd::find_pressed(const ContactScene& scene, double time) {
     const Vec3 more = now - before;
     const double rise = now.dot(up), along = (now - rise * up).norm(), more_rise = more.dot(up),
                  more_along = (more - more_rise * up).norm();
-    const double holds = kHeld * friction * (weight + std::max(0.0, -rise));
-    return std::min(rise, more_rise) > std::max(kHeld * weight, stirs) ||
+    const double holds = friction * std::max(0.0, weight - rise);
+    return std::min(rise, more_rise) > std::max(weight, stirs) ||
            std::min(along, more_along) > std::max(holds, stirs);
   };
   for (CrowdManifold& m : manifolds)
