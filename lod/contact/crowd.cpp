@@ -360,7 +360,7 @@ void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
 // nothing is remembered. (What lies on it is not known: by how much it was pushed before was no blow.) One
 // that bore more than that took a good part of a blow to those that it lies on.
 void Crowd::find_pressed(const ContactScene& scene, double time) {
-  constexpr double kStirs = 0.01;  // over √(g R): slower it would hardly move
+  constexpr double kStirs = 0.02;  // over √(g R): slower it would hardly move
   pressed_.clear();
   const double strength = scene.world.gravity_strength();
   if (strength == 0.0) return;

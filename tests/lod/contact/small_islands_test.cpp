@@ -70,6 +70,10 @@ TEST(SmallIslands, FrictionIsBoundedAsInOde) {
   islands.touch(sleeper, on_sleeper, -Vec3::UnitZ(), {{0, 0, 0.1}});
   std::vector<SolverBody> plain = islands.bodies;
   std::vector<PlainContact> contacts = islands.contacts();
+  // What lies on the ground carries its weight to it already: no blow goes on through it (ImpactWaves).
+  for (const CrowdManifold& m : islands.manifolds)
+    for (CrowdPoint& p : std::span(islands.points).subspan(m.begin, m.first == pair ? m.count : 0))
+      p.guess = Vec3(0, 0, 2.0 * 9.81 * kIslandStep / m.count);
   solve_plainly(plain, contacts, kIslandStep, {.sweeps = 500, .tolerance = 1e-9, .frictionless_bound = true});
   islands.solve();
   for (const std::int32_t i : {body, sleeper, on_sleeper, pair, pair + 1}) {
