@@ -9,7 +9,6 @@ namespace {
 
 constexpr float kPartingTime = 0.05f;      // of the time
 constexpr double kFallingInterval = 0.05;  // s; less than anybody must lie still for
-constexpr double kRounding = 1e-6;         // s: of times that add up, by far not that much
 
 }  // namespace
 
@@ -28,7 +27,7 @@ bool TablesLevel::find_riders() {
 
 // What falls with all that it touches does not lie on it, however long they touch.
 void TablesLevel::note_who_falls() {
-  const auto intervals = [](double time) { return std::floor((time + kRounding) / kFallingInterval); };
+  const auto intervals = [](double time) { return std::floor(time / kFallingInterval); };
   const bool is_due = intervals(elapsed_) != intervals(elapsed_ - constants_.wide_time);
   if (!is_due || !constants_.hulls || contacts_.count() == 0) return;
   const auto carries = std::int32_t(spheres_.awake);

@@ -1,5 +1,4 @@
-// Balls that touch: at tables they roll down a slope like one by itself, at support they hand a blow on; and
-// what falls slowly falls on.
+// Balls that touch: at tables they roll down a slope like one by itself, at support they hand a blow on.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -56,22 +55,6 @@ TEST(RowsOfBalls, ARowKeepsItsMomentumAndDoesNotThrowTheStrikerBack) {
     EXPECT_GE(manager.state(balls.front()).velocity.x(), 0.0) << restitution;
     EXPECT_GE(manager.state(balls.back()).velocity.x(), 4.0 * std::pow(0.5 * (1 + restitution), 5) - 1e-3)
         << restitution;
-  }
-}
-
-TEST(RowsOfBalls, WhatTouchesInTheAirFallsOnHoweverSlowly) {
-  Manager manager({.gravity = Vec3(0, 0, -0.1), .signature_timing = SignatureTiming::in_step});
-  manager.add_plane(Vec3::UnitZ(), 0.0);
-  const auto box = std::make_shared<const Shape>(make_shape("box", make_box({0.3, 0.3, 0.3})));
-  std::vector<BodyId> boxes;
-  for (int i = 0; i < 4; ++i)
-    boxes.push_back(manager.add_body({.shape = box,
-                                      .state = {.position = Vec3(0.301 * (i % 2), 0, 3 + 0.301 * (i / 2))},
-                                      .level = LevelChoice::tables}));
-  step_on(manager, 60);
-  for (const BodyId id : boxes) {
-    EXPECT_FALSE(manager.asleep(id));
-    EXPECT_NEAR(manager.state(id).velocity.z(), -0.1, 1e-3);
   }
 }
 
