@@ -38,8 +38,8 @@ class RestLaw {
   }
 
   /// Whether a body sets out rather than comes to rest: a stack that begins to slide is as slow as one that
-  /// ceases to. It does if it has gained `gain`, m/s, without a break over the last `rising` seconds, most of
-  /// the `still_time` after which it would sleep. `gravity` in m/s².
+  /// ceases to. It does if it has gained `gain`, m/s, without a break over the last `rising` seconds, at
+  /// least half of the `still_time` after which it would sleep. `gravity` in m/s².
   static bool sets_out(float gain, float rising, float still_time, double gravity) {
     return rising >= 0.5f * still_time && double(gain) > kSettingOut * gravity * double(rising);
   }
