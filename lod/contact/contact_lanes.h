@@ -459,9 +459,15 @@ void ContactLanes<L>::hand_out(const BatchLanes<L>& batch, const CrowdContacts& 
   for (int lane = 0; lane < batch.lanes; ++lane) {
     const CrowdManifold& m = contacts.manifolds[batch.manifold[lane]];
     Vec3 sum = Vec3::Zero(), turn_first = Vec3::Zero(), turn_second = Vec3::Zero();
+    bool carries = false;  // most contacts of a heap do not: they touch no body
     for (std::uint32_t k = 0; k < m.count; ++k) {
       const PointLanes<L>& p = points_[batch.begin + k];
       CrowdPoint& point = contacts.points[m.begin + k];
+      if (std::ranges::all_of(p.impulse, [&](const L& part) { return part[lane] == Real<L>(0); })) {
+        point.impulse = Vec3::Zero();
+        continue;
+      }
+      carries = true;
       const Vec3 along = lane_of(p.tangent, lane);
       point.impulse = batch.unit_mass[lane] *
                       (double(p.impulse[0][lane]) * m.normal + double(p.impulse[1][lane]) * along +
@@ -470,6 +476,7 @@ void ContactLanes<L>::hand_out(const BatchLanes<L>& batch, const CrowdContacts& 
       turn_first += point.arm_first.cross(point.impulse),
           turn_second += point.arm_second.cross(point.impulse);
     }
+    if (!carries) continue;
     const auto give = [](SolverBody& body, const Vec3& impulse, const Vec3& turn) {
       if (body.inverse_mass == 0.0) return;
       body.velocity += body.inverse_mass * impulse;

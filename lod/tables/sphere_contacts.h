@@ -136,6 +136,13 @@ class SphereContacts {
       for (std::size_t i = parts_[p].run.begin; i < parts_[p].run.end; ++i)
         visit(contact_of(*parts_[p].run.arrays, i));
   }
+  /// Calls `visit(arrays, i, of_ground)` with where each contact is.
+  template <class Visit>
+  void each_place(const Visit& visit) {
+    for (std::size_t p = 0; p < used_parts_; ++p)
+      for (std::size_t i = parts_[p].run.begin; i < parts_[p].run.end; ++i)
+        visit(*parts_[p].run.arrays, i, parts_[p].colour == kGroundColour);
+  }
   void clear();
 
  private:

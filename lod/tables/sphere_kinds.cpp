@@ -36,7 +36,7 @@ void SphereKinds::resize(std::size_t size) {
   patch.resize(size * std::size_t(kHullHeights));
   hull_height.resize(size * std::size_t(kHullHeights));
   material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size),
-      is_slender_.resize(size);
+      is_slender_.resize(size), is_ball_.resize(size);
 }
 
 void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
@@ -46,6 +46,9 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   slender_ -= is_slender_[k];
   is_slender_[k] = is_slender(kind);
   slender_ += is_slender_[k];
+  balls_ -= is_ball_[k];
+  is_ball_[k] = kind.shape->sphere_radius.has_value();
+  balls_ += is_ball_[k];
   material[k] = kind.material;
   radius[k] = float(shape.radius);
   ixx[k] = float(inverse(0, 0)), iyy[k] = float(inverse(1, 1)), izz[k] = float(inverse(2, 2));

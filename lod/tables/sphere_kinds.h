@@ -39,6 +39,9 @@ struct SphereKinds {
   std::size_t size() const { return radius.size(); }
   /// Whether there are kinds that tip over.
   bool any_tips() const { return tipping_ > 0; }
+  /// Whether there are balls, which are spheres to each other and in truth.
+  bool any_balls() const { return balls_ > 0; }
+  bool is_ball(std::uint32_t kind) const { return is_ball_[kind] != 0; }
   /// Whether there are kinds whose free rotation takes more than the loops' midpoint rule.
   bool any_slender() const { return slender_ > 0; }
 
@@ -49,8 +52,8 @@ struct SphereKinds {
 
   std::vector<std::uint64_t> birth_;     // of the kind that has the number; 0: of none yet
   std::vector<std::int32_t> pose_room_;  // poses that fit where its own are
-  std::vector<std::uint8_t> is_slender_;
-  std::size_t slender_ = 0, tipping_ = 0;
+  std::vector<std::uint8_t> is_slender_, is_ball_;
+  std::size_t slender_ = 0, tipping_ = 0, balls_ = 0;
 };
 
 }  // namespace lodestone

@@ -208,7 +208,7 @@ void TablesLevel::ease() {
 
 void TablesLevel::forget_all_given() {
   if (given_.size() > 64)
-    given_ = {};  // of a whole scene that was added
+    given_ = decltype(given_)();  // of a whole scene that was added: its buckets, too, are given back
   else if (!given_.empty())
     given_.clear();
 }

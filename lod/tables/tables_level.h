@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lod/broad_phase/cell_grid.h"
+#include "lod/contact/impact_waves.h"
 #include "lod/contact/solid_contacts.h"
 #include "lod/ground/ground.h"
 #include "lod/jobs.h"
@@ -142,6 +143,7 @@ class TablesLevel {
     return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, nullptr, log_};
   }
   void write_contacts();
+  void write_contact(const SphereContact& contact);
   void write_ground();
   std::size_t place_of(int slot) const { return spheres_.place_of_slot[std::size_t(slot)]; }
   bool has_planes() const { return !ground_.planes().empty() || !faces_.empty(); }
@@ -174,6 +176,10 @@ class TablesLevel {
   void update_radii_one_by_one();
   void find_still_contacts();
   void wake_struck();
+  bool is_unloaded(std::uint32_t first, std::uint32_t second, float impulse) const;
+  bool find_blows();
+  void gather_open_contacts();
+  void pass_blows_on();
   void note_paired();
   void find_further_planes();
   void press();
@@ -260,6 +266,14 @@ class TablesLevel {
   std::vector<std::int32_t> numbered_;      // of each place awake: its number there; −1: none
   std::vector<std::int64_t> blown_places_;  // of each number
   std::vector<std::uint32_t> struck_slots_;
+  ImpactWaves waves_;
+  std::vector<std::uint8_t> struck_;     // of each place awake
+  std::vector<SolverBody> blow_bodies_,  // what may be struck, in the order of `blown_places_`
+      blow_bodies_before_;               // the blows
+  std::vector<CrowdManifold> blow_manifolds_;
+  std::vector<CrowdPoint> blow_points_;
+  std::vector<std::pair<ContactArrays*, std::size_t>> blow_contacts_;  // where each manifold's contact is
+  std::vector<SphereContact> passed_;  // in this step: those through which a blow went on, with what it gave
   std::vector<PlaneTouch> plane_touches_;  // of this step
   std::vector<char> paired_;               // of each place: whether it has contacts with others
   std::vector<ContactTally> tallies_;

@@ -357,6 +357,7 @@ void TablesLevel::respond(ContactTally& tally) {
   if (crowd) press();
   sort_ground();
   if (!crowd) return;
+  pass_blows_on();
   const int rounds = sweeps();
   for (int sweep = 1; sweep <= rounds; ++sweep) {
     const bool last = sweep == rounds;
@@ -372,27 +373,29 @@ void TablesLevel::respond(ContactTally& tally) {
 }
 
 void TablesLevel::write_contacts() {
-  contacts_.each([&](const SphereContact& c) {
-    if (c.impulse <= 0.0f) return;
-    const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
-    if (c.second >= kGroundPlace) {
-      const HalfSpace& under = plane(std::int32_t(c.second - kGroundPlace));
-      return log_->add(
-          {.first = spheres_.owner[c.first],
-           .ground = under.id,
-           .ground_material = under.material,
-           .point = spheres_.position(c.first) - double(ground_height(c.first, -normal)) * normal,
-           .normal = normal,
-           .impulse = double(c.impulse),
-           .approach = std::max(0.0, -double(c.closing))});
-    }
-    log_->add({.first = spheres_.owner[c.first],
-               .second = spheres_.owner[c.second],
-               .point = meeting_point(c.first, c.second),
-               .normal = normal,
-               .impulse = double(c.impulse),
-               .approach = std::max(0.0, -double(c.closing))});
-  });
+  contacts_.each([&](const SphereContact& c) { write_contact(c); });
+  for (const SphereContact& c : passed_) write_contact(c);
+}
+
+void TablesLevel::write_contact(const SphereContact& c) {
+  if (c.impulse <= 0.0f) return;
+  const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
+  if (c.second >= kGroundPlace) {
+    const HalfSpace& under = plane(std::int32_t(c.second - kGroundPlace));
+    return log_->add({.first = spheres_.owner[c.first],
+                      .ground = under.id,
+                      .ground_material = under.material,
+                      .point = spheres_.position(c.first) - double(ground_height(c.first, -normal)) * normal,
+                      .normal = normal,
+                      .impulse = double(c.impulse),
+                      .approach = std::max(0.0, -double(c.closing))});
+  }
+  log_->add({.first = spheres_.owner[c.first],
+             .second = spheres_.owner[c.second],
+             .point = meeting_point(c.first, c.second),
+             .normal = normal,
+             .impulse = double(c.impulse),
+             .approach = std::max(0.0, -double(c.closing))});
 }
 
 // Of those that lie on it; impacts are written where they are answered.

@@ -1,0 +1,141 @@
+// Of TablesLevel: blows that go on through balls which touch. (What is a sphere for lack of a hull takes them
+// as a whole: passed on, they made poured boxes overlap by half of their size and rest a fifth later.)
+#include <algorithm>
+
+#include "lod/tables/tables_level.h"
+
+namespace lodestone {
+namespace {
+
+constexpr std::uint8_t kStruck = 1, kHeld = 2;  // of a body: in a heap, or no ball
+
+}  // namespace
+
+// Whether a contact that carries so much, N s, carries nothing to a blow.
+bool TablesLevel::is_unloaded(std::uint32_t first, std::uint32_t second, float impulse) const {
+  const auto inverse_mass = [&](std::uint32_t place) {
+    return std::int64_t(place) < spheres_.awake ? float(spheres_.inverse_mass[place]) : 0.0f;
+  };
+  return impulse * (inverse_mass(first) + inverse_mass(second)) <=
+         float(ImpactWaves::kUnloaded) * bounce_velocity();
+}
+
+// Whether a ball that is struck touches another with nothing between them yet.
+bool TablesLevel::find_blows() {
+  const auto awake = std::uint32_t(spheres_.awake);
+  const float bounce = bounce_velocity();
+  const auto is_ball = [&](std::uint32_t place) {
+    return place >= awake || kinds_.is_ball(spheres_.kind[place]);
+  };
+  bool any = false;
+  contacts_.each([&](const SphereContact& c) {
+    any |= c.closing < -bounce && c.second < awake && is_ball(c.first) && is_ball(c.second);
+  });
+  if (!any) return false;
+  struck_.resize(std::size_t(awake));
+  for (std::uint32_t i = 0; i < awake; ++i) struck_[i] = is_ball(i) ? 0 : kHeld;
+  contacts_.each([&](const SphereContact& c) {
+    if (c.closing >= -bounce) return;
+    for (const std::uint32_t place : {c.first, c.second})
+      if (place < awake && struck_[place] != kHeld) struck_[place] = kStruck;
+  });
+  // Heaps, whose bodies bear each other, take blows as a whole.
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second >= kGroundPlace || c.closing < -bounce || is_unloaded(c.first, c.second, c.impulse)) return;
+    struck_[c.first] = kHeld;
+    if (c.second < awake) struck_[c.second] = kHeld;
+  });
+  bool goes_on = false;
+  contacts_.each([&](const SphereContact& c) {
+    const int first = struck_[c.first], second = c.second < awake ? struck_[c.second] : 0;
+    if (c.closing < -bounce || first == kHeld || second == kHeld) return;
+    goes_on |= (first == kStruck || second == kStruck) && is_unloaded(c.first, c.second, c.impulse);
+  });
+  return goes_on;
+}
+
+// Contacts that strike or carry nothing, between spheres with the inertia under which an impulse at their
+// surface changes most (as in contact_loops.h).
+void TablesLevel::gather_open_contacts() {
+  const auto awake = std::uint32_t(spheres_.awake);
+  const float bounce = bounce_velocity();
+  const ContactLaw only_law = materials_.law(kinds_.material[0], kinds_.material[0]);
+  blow_bodies_.clear(), blow_manifolds_.clear(), blow_points_.clear();
+  blow_contacts_.clear(), blown_places_.clear();
+  numbered_.assign(std::size_t(awake), -1);
+  const auto number_of = [&](std::uint32_t place) {
+    if (place >= awake) return std::int32_t(-1);
+    std::int32_t& number = numbered_[place];
+    if (number >= 0) return number;
+    number = std::int32_t(blow_bodies_.size());
+    blown_places_.push_back(std::int64_t(place));
+    const lane::Row &p = step_.p[place], &u = step_.u[place];
+    const double radius = double(spheres_.radius[place]);
+    SolverBody& body = blow_bodies_.emplace_back();
+    body.velocity = Vec3(double(p.x), double(p.y), double(p.z));
+    body.angular_velocity = Vec3(double(u.x), double(u.y), double(u.z)) / radius;
+    body.inverse_mass = spheres_.inverse_mass[place];
+    body.inverse_inertia = body.inverse_mass * (double(u.w) - 1.0) / (radius * radius) * Mat3::Identity();
+    return number;
+  };
+  contacts_.each_place([&](ContactArrays& c, std::size_t i, bool of_ground) {
+    const bool has_own_law = of_ground || !constants_.one_kind;
+    const std::uint32_t a = c.first[i], b = c.second[i];
+    if (struck_[a] == kHeld || (b < awake && struck_[b] == kHeld)) return;
+    if (c.closing[i] >= -bounce && !is_unloaded(a, b, c.impulse[i])) return;
+    CrowdManifold& m = blow_manifolds_.emplace_back();
+    m.normal = Vec3(double(c.nx[i]), double(c.ny[i]), double(c.nz[i]));
+    m.law = has_own_law
+                ? ContactLaw{.restitution = double(c.restitution[i]), .friction = double(c.friction[i])}
+                : only_law;
+    m.begin = std::uint32_t(blow_points_.size()), m.count = 1;
+    m.first = number_of(a), m.second = number_of(b);
+    CrowdPoint& point = blow_points_.emplace_back();
+    point.arm_first = -double(spheres_.radius[a]) * m.normal;
+    if (m.second >= 0) point.arm_second = double(spheres_.radius[b]) * m.normal;
+    // Contacts that a blow closes but for what is a touch bounce, too.
+    const float size = m.second < 0
+                           ? kinds_.radius[spheres_.kind[a]]
+                           : std::min(kinds_.radius[spheres_.kind[a]], kinds_.radius[spheres_.kind[b]]);
+    point.gap = double(c.gap[i] - contacts_.settings().touching * size);
+    blow_contacts_.emplace_back(&c, i);
+  });
+}
+
+// What the contacts are answered with next knows of these blows no more.
+void TablesLevel::pass_blows_on() {
+  passed_.clear();
+  if (!constants_.hulls || !kinds_.any_balls() || !find_blows()) return;
+  gather_open_contacts();
+  blow_bodies_before_ = blow_bodies_;
+  waves_.pass_on(blow_bodies_, blow_manifolds_, blow_points_, constants_.wide_time,
+                 {.bounce_velocity = double(bounce_velocity())});
+  if (waves_.struck().empty()) return;
+  waves_.add_impulses(blow_points_);
+  for (std::size_t k = 0; k < blow_bodies_.size(); ++k) {
+    const auto i = std::size_t(blown_places_[k]);
+    const double radius = double(spheres_.radius[i]), softness = double(step_.u[i].w) - 1.0;
+    const Vec3 by = blow_bodies_[k].velocity - blow_bodies_before_[k].velocity,
+               turns = radius * (blow_bodies_[k].angular_velocity - blow_bodies_before_[k].angular_velocity);
+    const auto add = [](lane::Row& row, const Vec3& v) {
+      row.x += float(v.x()), row.y += float(v.y()), row.z += float(v.z());
+    };
+    add(step_.p[i], by), add(step_.u[i], turns);
+    if (softness > 0.0) add(step_.s[i], radius / softness * turns);
+  }
+  for (const std::uint32_t k : waves_.struck()) {
+    const auto [c, i] = blow_contacts_[k];
+    passed_.push_back({c->first[i], c->second[i], c->nx[i], c->ny[i], c->nz[i], c->gap[i], c->closing[i],
+                       float(blow_points_[k].impulse.dot(blow_manifolds_[k].normal))});
+  }
+  for (std::size_t k = 0; k < blow_contacts_.size(); ++k) {
+    const CrowdManifold& m = blow_manifolds_[k];
+    const auto velocity_of = [&](std::int32_t body) {
+      return body < 0 ? Vec3(Vec3::Zero()) : blow_bodies_[std::size_t(body)].velocity;
+    };
+    const auto [c, i] = blow_contacts_[k];
+    c->closing[i] = float((velocity_of(m.first) - velocity_of(m.second)).dot(m.normal));
+  }
+}
+
+}  // namespace lodestone
