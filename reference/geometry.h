@@ -35,14 +35,17 @@ inline bool is_within_limit(const Vec3& v) {
 
 /// Below it (rad) Taylor series serve, exact to rounding and without a division.
 inline constexpr double kSmallAngle = 0.25;
-/// sin x / x and cos x for x² = `square`, |x| below kSmallAngle.
-inline double small_sine_over_angle(double square) {
+/// sin x / x and cos x for x² = `square`, |x| below kSmallAngle; of several side by side, too, so inlined
+/// where these are compiled for wider registers.
+template <class Numbers>
+[[gnu::always_inline]] inline Numbers small_sine_over_angle(const Numbers& square) {
   return 1.0 - square * (1.0 / 6.0) *
                    (1.0 - square * (1.0 / 20.0) *
                               (1.0 - square * (1.0 / 42.0) *
                                          (1.0 - square * (1.0 / 72.0) * (1.0 - square * (1.0 / 110.0)))));
 }
-inline double small_cosine(double square) {
+template <class Numbers>
+[[gnu::always_inline]] inline Numbers small_cosine(const Numbers& square) {
   return 1.0 - square * 0.5 *
                    (1.0 - square * (1.0 / 12.0) *
                               (1.0 - square * (1.0 / 30.0) *

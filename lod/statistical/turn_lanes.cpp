@@ -21,20 +21,6 @@ LODESTONE_INLINE void store(const Lanes& lanes, Value* to) {
   std::memcpy(to, &lanes, sizeof lanes);
 }
 
-// geometry.h's series.
-LODESTONE_INLINE D4 sine_over_angle(const D4& square) {
-  return 1.0 - square * (1.0 / 6.0) *
-                   (1.0 - square * (1.0 / 20.0) *
-                              (1.0 - square * (1.0 / 42.0) *
-                                         (1.0 - square * (1.0 / 72.0) * (1.0 - square * (1.0 / 110.0)))));
-}
-LODESTONE_INLINE D4 cosine_of(const D4& square) {
-  return 1.0 - square * 0.5 *
-                   (1.0 - square * (1.0 / 12.0) *
-                              (1.0 - square * (1.0 / 30.0) *
-                                         (1.0 - square * (1.0 / 56.0) * (1.0 - square * (1.0 / 90.0)))));
-}
-
 struct QuatLanes {
   D4 w, x, y, z;
 };
@@ -65,7 +51,7 @@ LODESTONE_INLINE void turn_about(const D4& angle, Turning& t) {
   constexpr int kNext = (Axis + 1) % 3, kLast = (Axis + 2) % 3;
   const D4 half = 0.5 * angle, square = half * half;
   t.known &= lane::absolute(half) < kSmallAngle;
-  const D4 sine = half * sine_over_angle(square), cosine = cosine_of(square);
+  const D4 sine = half * small_sine_over_angle(square), cosine = small_cosine(square);
   const D4 w = t.w, own = t.v[Axis], next = t.v[kNext], last = t.v[kLast];
   t.w = w * cosine - own * sine;
   t.v[Axis] = own * cosine + w * sine;
@@ -124,8 +110,8 @@ LODESTONE_INLINE void TurnLanes::Loop::turn_four(std::size_t first) const {
 
   // rotation_from_vector
   const V4 v = (inverse.y * time) * spin;
-  const D4 square = 0.25 * dot(v, v), half_sine = 0.5 * sine_over_angle(square);
-  const QuatLanes of_ball{cosine_of(square), half_sine * v.x, half_sine * v.y, half_sine * v.z};
+  const D4 square = 0.25 * dot(v, v), half_sine = 0.5 * small_sine_over_angle(square);
+  const QuatLanes of_ball{small_cosine(square), half_sine * v.x, half_sine * v.y, half_sine * v.z};
 
   // into principal axes, as Eigen turns a vector
   const V4 back{-axes[1], -axes[2], -axes[3]};
