@@ -376,6 +376,7 @@ struct ContactLanes<L>::PrepareLoop {
           const CrowdManifold& m = contacts.manifolds[batch.manifold[lane]];
           CrowdPoint& point = contacts.points[m.begin + std::uint32_t(k)];
           point.bounces = true;
+          point.blow = -float(approach[lane]);
           point.impact_time = float(std::max(0.0, point.gap) / -double(approach[lane]));
           const bool on_still = batch.inverse_mass_second[lane] == R(0);
           const double fall = on_still ? std::min(0.0, settings.fall.dot(m.normal)) : 0.0;

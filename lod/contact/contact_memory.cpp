@@ -56,9 +56,11 @@ void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const C
   begun_ = true;
   last_substep_.clear();
   last_substep_.loads.reserve(points.size());
-  for (const CrowdPoint& point : points)
-    last_substep_.loads.push_back({(point.impulse / step).cast<float>(), point.arm_first.cast<float>(),
-                                   point.frictionless / float(step)});
+  for (const CrowdPoint& point : points) {
+    const Vec3& bears = point.in_blow ? point.guess : point.impulse;
+    last_substep_.loads.push_back({(bears / step).cast<float>(), point.arm_first.cast<float>(),
+                                   point.in_blow ? -1.0F : point.frictionless / float(step)});
+  }
   for (const CrowdManifold& m : manifolds)
     if (m.to_forget)
       for (Load& load : std::span(last_substep_.loads).subspan(m.begin, m.count))

@@ -29,9 +29,12 @@ struct CrowdPoint {
   float frictionless = -1.0F;      ///< N s, normal impulse that there was without friction; below zero: not
                                    ///< known. Filled anew by the solver where friction is bounded by it
   // Filled by the solver:
+  float blow = 0.0f;            ///< m/s at which one that bounces strikes
   Vec3 impulse = Vec3::Zero();  ///< N s, on `first`
   bool bounces = false;         ///< an impact, fast enough for restitution
-  float impact_time = 0.0f;     ///< s, of one that bounces: when in the step its gap is closed
+  bool in_blow = false;  ///< of a few bodies one of whose contacts bounces: what it began with, not what it
+                         ///< gave, is what it bears
+  float impact_time = 0.0f;  ///< s, of one that bounces: when in the step its gap is closed
 };
 
 }  // namespace lodestone

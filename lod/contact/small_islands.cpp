@@ -20,6 +20,12 @@ constexpr int kMostIslandSweeps = 40;  // of few points: a body on two edges ask
 constexpr int kIslandRelaxations =
     400;  // of points, in as many sweeps as that is, but never fewer than a crowd's
 
+// A blow at which sweeps are led, over √(g d), d being how far from its body's centre it strikes: slower ones
+// throw nothing aside that anybody would see.
+constexpr double kStrongBlow = 0.3;
+constexpr int kMostLedSweeps = 60;
+constexpr float kLedTolerance = 3e-4F;  // of it
+
 constexpr auto kMostRemembered = double(std::numeric_limits<float>::max());  // N s
 
 /// A manifold, by its island.
@@ -44,6 +50,12 @@ struct Group {
 /// More of a point: its friction's bound, and what its impulses begin with.
 struct alignas(64) StartLanes {
   L bound, guess[3];
+};
+
+/// More of a point that is led: what a sweep changed, on which way it is, and what a change of its impulse
+/// changes of its velocity, over the unit of mass.
+struct alignas(64) LedLanes {
+  L change[3], way[3], inverse_mass[3];
 };
 
 struct FrictionlessRelaxation {
@@ -72,6 +84,50 @@ struct BoundedRelaxation {
   }
 };
 
+/// How much a sweep changed in each lane: Σ J² over the masses, and the velocity of a point, m/s.
+struct SweepSize {
+  L sum{}, fastest{};
+};
+
+/// Notes what an answer changes.
+template <class Answer>
+struct Noted {
+  const Answer& answer;
+  LedLanes* led;
+  SweepSize& size;
+
+  LODESTONE_INLINE bool operator()(const PointAtHand<L>& at, Vec3Lanes<L>& impulse) const {
+    const L* now = at.point.impulse;
+    const L before[3] = {now[0], now[1], now[2]};
+    const bool answered = answer(at, impulse);
+    LedLanes& own = led[at.index];
+    for (int axis = 0; axis < 3; ++axis) {
+      own.change[axis] = now[axis] - before[axis];
+      const L change = absolute(own.change[axis]), speed = change * own.inverse_mass[axis];
+      size.sum = size.sum + change * speed, size.fastest = most(size.fastest, speed);
+    }
+    return answered;
+  }
+};
+
+/// Goes on by a part of the way, which the last change is then added to.
+struct Leading {
+  LedLanes* led;
+  const L& part;
+
+  LODESTONE_INLINE bool operator()(const PointAtHand<L>& at, Vec3Lanes<L>& impulse) const {
+    LedLanes& own = led[at.index];
+    L further[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      further[axis] = part * own.way[axis];
+      at.point.impulse[axis] = at.point.impulse[axis] + further[axis];
+      own.way[axis] = further[axis] + own.change[axis];
+    }
+    impulse = at.along_axes(further);
+    return true;
+  }
+};
+
 }  // namespace
 
 struct SmallIslands::Work {
@@ -82,6 +138,7 @@ struct SmallIslands::Work {
   std::vector<Island> islands;
   std::vector<Group> groups;
   std::vector<StartLanes> starts;  // beside the points
+  std::vector<LedLanes> led;       // likewise
 
   void find(const CrowdContacts& contacts, const CrowdIslands& kinds);
   void make_groups(const CrowdContacts& contacts);
@@ -91,12 +148,14 @@ struct SmallIslands::Work {
     for (std::uint32_t round = 0; round < group.manifolds.front(); ++round) {
       const BatchLanes<L>& batch = lanes.batches()[std::size_t(group.begin) + round];
       for (std::uint32_t k = 0; k < std::uint32_t(batch.count); ++k)
-        visit(batch, lanes.points()[batch.begin + k], starts[batch.begin + k], k);
+        visit(batch, lanes.points()[batch.begin + k], batch.begin + k, k);
     }
   }
   void take_motions_back(const Group& group, const CrowdContacts& contacts);
   template <class Answer>
-  void sweep(const Group& group, const Answer& answer, L& live, double tolerance);
+  void sweep(const Group& group, const Answer& answer, L& live, const L& struck, double tolerance);
+  template <class Answer>
+  void sweep_led(const Group& group, const Answer& answer, L& live, const L& struck);
 };
 
 // The islands with most manifolds first, so that those side by side are alike.
@@ -141,7 +200,7 @@ void SmallIslands::Work::make_groups(const CrowdContacts& contacts) {
     }
   }
   lanes.end();
-  starts.resize(lanes.points().size());
+  starts.resize(lanes.points().size()), led.resize(lanes.points().size());
 }
 
 void SmallIslands::Work::take_motions_back(const Group& group, const CrowdContacts& contacts) {
@@ -159,10 +218,12 @@ void SmallIslands::Work::take_motions_back(const Group& group, const CrowdContac
   }
 }
 
-// Each lane until nothing changes in it any more.
+// Each lane that was not struck, until nothing changes in it any more.
 template <class Answer>
-void SmallIslands::Work::sweep(const Group& group, const Answer& answer, L& live, double tolerance) {
-  for (std::size_t i = 0; i < kWidth; ++i) live[i] = group.manifolds[i] > 0 ? 1.0F : 0.0F;
+void SmallIslands::Work::sweep(const Group& group, const Answer& answer, L& live, const L& struck,
+                               double tolerance) {
+  for (std::size_t i = 0; i < kWidth; ++i)
+    live[i] = group.manifolds[i] > 0 && struck[i] == 0.0F ? 1.0F : 0.0F;
   for (int done = 1;; ++done) {
     std::uint32_t rounds = 0;
     for (std::size_t i = 0; i < kWidth; ++i)
@@ -175,37 +236,86 @@ void SmallIslands::Work::sweep(const Group& group, const Answer& answer, L& live
   }
 }
 
+// Those lanes that were struck, each led on along the way of the sweeps before, as conjugate gradients are
+// (Silcowitz, Niebe and Erleben, A nonsmooth nonlinear conjugate gradient method for interactive contact
+// force problems, 2010): by themselves sweeps carry a blow through a stack by one body in each, and what is
+// left of it throws the bodies aside.
+template <class Answer>
+void SmallIslands::Work::sweep_led(const Group& group, const Answer& answer, L& live, const L& struck) {
+  live = struck > L{} ? all<L>(1) : L{};
+  if (!any(live > L{})) return;
+  each_point(group, [&](const BatchLanes<L>&, const PointLanes<L>& p, std::uint32_t at, std::uint32_t) {
+    for (int axis = 0; axis < 3; ++axis) {
+      led[at].way[axis] = L{};
+      led[at].inverse_mass[axis] = p.effective_mass[axis] > L{} ? 1.0F / p.effective_mass[axis] : L{};
+    }
+  });
+  L last{};
+  for (int i = 1;; ++i) {
+    std::uint32_t rounds = 0;
+    for (std::size_t lane = 0; lane < kWidth; ++lane)
+      if (live[lane] > 0.0F) rounds = std::max(rounds, group.manifolds[lane]);
+    SweepSize size;
+    lanes.sweep(Noted<Answer>{answer, led.data(), size}, group.begin, group.begin + rounds);
+    live = size.fastest > kLedTolerance * struck ? live : L{};
+    if (i == kMostLedSweeps || !any(live > L{})) return;  // within its bounds
+    const Mask<L> nears = (live > L{}) & (last > L{}) & (size.sum <= last);
+    const L part = nears ? size.sum / (nears ? last : all<L>(1)) : L{};
+    lanes.sweep(Leading{led.data(), part}, group.begin, group.begin + rounds);
+    last = size.sum;
+  }
+}
+
 // Twice: what the normal impulses are without friction bounds it.
 void SmallIslands::Work::solve_group(const Group& group, const CrowdContacts& contacts) {
   const std::int64_t end = group.begin + group.manifolds.front();
   lanes.prepare(contacts, group.begin, end);
-  each_point(group, [&](const BatchLanes<L>& batch, PointLanes<L>& p, StartLanes& start, std::uint32_t k) {
-    std::ranges::copy(p.impulse, start.guess);
+  const double gravity = contacts.settings.fall.norm() / contacts.step;  // m/s²
+  const auto is_strong = [&](const CrowdPoint& point) {
+    return double(point.blow) * double(point.blow) >
+           kStrongBlow * kStrongBlow * gravity * point.arm_first.norm();
+  };
+  // m/s, of each lane: its fastest blow; 0: none that is strong, or of one manifold alone, or with a motor,
+  // whose pushes it goes on with.
+  L struck{}, driven{};
+  each_point(group, [&](const BatchLanes<L>& batch, PointLanes<L>& p, std::uint32_t at, std::uint32_t k) {
+    std::ranges::copy(p.impulse, starts[at].guess);
     for (int lane = 0; lane < batch.lanes; ++lane) {
       const CrowdManifold& m = contacts.manifolds[batch.manifold[lane]];
       if (k >= m.count) continue;
       const CrowdPoint& point = contacts.points[m.begin + k];
+      if (point.bounces && group.manifolds[std::size_t(lane)] > 1 && is_strong(point))
+        struck[lane] = std::max(struck[lane], point.blow);
+      if (m.most_impulse < kUnbounded) driven[lane] = 1.0F;
       if (point.frictionless >= 0.0F && !point.bounces)
         p.impulse[0][lane] =
             std::min(float(double(point.frictionless) / batch.unit_mass[lane]), batch.most_impulse[lane]);
     }
     p.impulse[1] = p.impulse[2] = L{};
   });
+  struck = driven > L{} ? L{} : struck;
   L live;
-  lanes.sweep(GuessesGiven<L>{}, group.begin, end);
-  sweep(group, FrictionlessRelaxation{live}, live, contacts.settings.tolerance);
+  const auto solve = [&](const auto& answer) {
+    lanes.sweep(GuessesGiven<L>{}, group.begin, end);
+    sweep(group, answer, live, struck, contacts.settings.tolerance);
+    sweep_led(group, answer, live, struck);
+  };
+  solve(FrictionlessRelaxation{live});
   take_motions_back(group, contacts);
-  each_point(group, [&](const BatchLanes<L>& batch, PointLanes<L>& p, StartLanes& start, std::uint32_t k) {
+  each_point(group, [&](const BatchLanes<L>& batch, PointLanes<L>& p, std::uint32_t at, std::uint32_t k) {
     for (int lane = 0; lane < batch.lanes; ++lane)
-      if (const CrowdManifold& m = contacts.manifolds[batch.manifold[lane]]; k < m.count)
-        contacts.points[m.begin + k].frictionless =
+      if (const CrowdManifold& m = contacts.manifolds[batch.manifold[lane]]; k < m.count) {
+        CrowdPoint& point = contacts.points[m.begin + k];
+        point.frictionless =
             float(std::min(double(p.impulse[0][lane]) * batch.unit_mass[lane], kMostRemembered));
+        point.in_blow = struck[lane] > 0.0F;
+      }
+    StartLanes& start = starts[at];
     start.bound = batch.friction * p.impulse[0];
-    p.impulse[0] = start.guess[0];
+    p.impulse[0] = struck > L{} ? p.impulse[0] : start.guess[0];
     for (int t = 1; t < 3; ++t) p.impulse[t] = most(-start.bound, least(start.guess[t], start.bound));
   });
-  lanes.sweep(GuessesGiven<L>{}, group.begin, end);
-  sweep(group, BoundedRelaxation{starts.data(), live}, live, contacts.settings.tolerance);
+  solve(BoundedRelaxation{starts.data(), live});
   lanes.hand_out(contacts, group.begin, end);
 }
 

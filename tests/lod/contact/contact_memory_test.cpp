@@ -95,6 +95,17 @@ TEST(ContactMemory, SaysWhichManifoldsItKnows) {
   EXPECT_TRUE(now.manifolds[1].known);
 }
 
+// A blow's impulse is no force that goes on.
+TEST(ContactMemory, OfABlowRecallsWhatThePointBoreBefore) {
+  Touching before = touching();
+  before.points[0].in_blow = true, before.points[0].guess = Vec3(0, 0, 0.25);
+  ContactMemory memory = memory_of(before, 0.01);
+  Touching now = touching();
+  memory.recall(now.keys, now.manifolds, now.points, 0.01, make_job_runner(1));
+  EXPECT_EQ(now.points[0].guess, Vec3(0, 0, 0.25));
+  EXPECT_EQ(now.points[1].guess, before.points[1].impulse);
+}
+
 TEST(ContactMemory, LeavesWhatIsNewAsItIs) {
   ContactMemory memory = memory_of(touching(), 0.01);
   Touching now;
