@@ -81,7 +81,7 @@ void add(const LevelCandidate& member, const Views& views, Measure measure, Leve
     unit.rung = member.rung;
   unit.newcomer &= member.newcomer;
   if (member.decided() && !unit.decided()) unit.decided_by = member.decided_by;
-  unit.open = unit.open.within(member.open);
+  unit.open = unit.open.together_with(member.open);
   unit.put_off |= member.put_off;
   unit.hits_full |= member.hits_full;
   ++unit.bodies;
@@ -136,7 +136,8 @@ LevelDecision Choose::decide() {
   return unit_of_.empty() ? decision : tell_members(decision);
 }
 
-// A member that is not where the others are, since it has just come to them, follows in any case.
+// A member that is not where the others are, since it has just come to them, follows in any case, as far as
+// its own level, range and properties let it.
 LevelDecision Choose::tell_members(const LevelDecision& of_units) {
   std::vector<std::vector<std::int32_t>> members(units_.size());
   LevelDecision decision;
@@ -145,13 +146,15 @@ LevelDecision Choose::tell_members(const LevelDecision& of_units) {
     members[unit].push_back(std::int32_t(i));
     decision.reasons.push_back(of_units.reasons[unit]);
     if (units_[unit].bodies > 1)
-      candidates_[i].open = units_[unit].open, candidates_[i].decided_by = units_[unit].decided_by;
+      candidates_[i].open = units_[unit].open.within(candidates_[i].open),
+      candidates_[i].decided_by = units_[unit].decided_by;
   }
   std::vector<bool> told(units_.size(), false);
-  const auto tell = [&](std::size_t unit, Rung to) {
+  const auto tell = [&](std::size_t unit, Rung to_all) {
     told[unit] = true;
     for (const std::int32_t i : members[unit]) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
+      const Rung to = c.open.at_most(to_all);
       if (c.newcomer ? to > c.open.lowest() || c.decided() : to > c.rung)
         decision.promote.push_back({i, to});
       else if (!c.newcomer && to < c.rung)

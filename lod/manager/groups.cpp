@@ -110,6 +110,7 @@ bool Groups::pinned(std::uint32_t body) const {
 bool Groups::release(GroupId id) {
   Group& group = groups_[id.index];
   if (!joined(group)) return true;
+  if (!group.joints.before_demotion || !group.joints.after_promotion) return false;
   std::vector<RigidState> poses;
   for (const std::uint32_t body : group.members) poses.push_back(levels_.state(body));
   group.joints.before_demotion(id);

@@ -64,8 +64,10 @@ void MoveBodies::run(const RungChanges& changes, StepReport& report) {
 }
 
 void MoveBodies::demote(Run run, StepReport& report) {
-  if (const GroupId group = choose_.groups().of(run.front().body); group && !choose_.groups().release(group))
-    return;
+  Groups& groups = choose_.groups();
+  const bool on_joints =
+      std::ranges::any_of(run, [&](const RungChanges::Change& change) { return groups.joined(change.body); });
+  if (const GroupId group = groups.of(run.front().body); on_joints && group && !groups.release(group)) return;
   for (const RungChanges::Change& change : run) {
     const bool audited = audit_.on() && levels_.bodies[change.body].ode && !levels_.asleep(change.body);
     transfer(levels_, change.body, change.to);

@@ -33,6 +33,11 @@ class RungSet {
     if (both) other.bits_ = both;
     return other;
   }
+  /// Of bodies that change rung together: those that are in both; where none are, the one that asks for more.
+  constexpr RungSet together_with(RungSet other) const {
+    if (bits_ & other.bits_) return within(other);
+    return lowest() > other.lowest() ? *this : other;
+  }
   /// For a body that `tables` cannot hold.
   constexpr RungSet with_support_for_tables() const {
     RungSet set = *this;

@@ -1,5 +1,6 @@
 // Bodies that change rung together; joints are tested from outside (tests/install/groups.cpp).
 #include <gtest/gtest.h>
+#include <ode/ode.h>
 
 #include "reference/error.h"
 #include "tests/lod/manager/manager_fixture.h"
@@ -55,6 +56,51 @@ TEST(Groups, WhatWakesOneWakesAll) {
   manager.step(kFrame);
   for (const BodyId body : row) EXPECT_FALSE(manager.asleep(body));
   EXPECT_TRUE(manager.asleep(other));
+}
+
+// Properties that a sphere cannot have keep a member off `tables`, a range of rungs in it, whatever the
+// others were told.
+TEST(Groups, AMemberKeepsToItsOwnRungs) {
+  Manager manager = on_floor({.signatures = coarse_signature});
+  const auto cube = box_shape({0.3, 0.3, 0.3});
+  const auto at_height = [](double x) { return testing::at({x, 0, 2}); };
+  const BodyId floats =
+                   manager.add_body({.shape = cube, .state = at_height(0), .properties = {.gravity = false}}),
+               full = manager.add_body({.shape = cube, .state = at_height(2), .least_rung = Rung::full}),
+               sphere = add(manager, cube, at_height(4), LevelChoice::tables);
+  const BodyId all[] = {floats, full, sphere};
+  manager.make_group(all);
+  run(manager, 0.5);
+  EXPECT_NE(manager.rung(floats), Rung::tables);
+  EXPECT_EQ(manager.state(floats).position.z(), 2.0);
+  EXPECT_EQ(manager.rung(full), Rung::full);
+  EXPECT_EQ(manager.rung(sphere), Rung::tables);
+}
+
+// Without GroupJoints a joined member stays full; another one that is told to leave may.
+TEST(Groups, AMemberLeavesThoughAnotherIsOnJoints) {
+  dWorldID world = dWorldCreate();
+  dSpaceID space = dHashSpaceCreate(nullptr);
+  dWorldSetGravity(world, 0, 0, -9.81);
+  {
+    Manager manager(world, space, {.signatures = coarse_signature});
+    const auto cube = box_shape({0.3, 0.3, 0.3});
+    const BodyId hangs = add(manager, cube, testing::at({0, 0, 2}), LevelChoice::full),
+                 other = add(manager, cube, testing::at({2, 0, 2}), LevelChoice::support);
+    manager.step(kFrame);
+    const dJointID joint = dJointCreateBall(world, nullptr);
+    dJointAttach(joint, manager.ode_body(hangs), nullptr);
+    dJointSetBallAnchor(joint, 0, 0, 2.3);
+    const BodyId both[] = {hangs, other};
+    manager.make_group(both);
+    run(manager, 0.5);
+    EXPECT_EQ(manager.rung(hangs), Rung::full);
+    EXPECT_NEAR(manager.state(hangs).position.z(), 2.0, 0.01);
+    EXPECT_EQ(manager.rung(other), Rung::support);
+    dJointDestroy(joint);
+  }
+  dSpaceDestroy(space);
+  dWorldDestroy(world);
 }
 
 TEST(Groups, ARemovedMemberLeaves) {
