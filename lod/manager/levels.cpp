@@ -38,6 +38,8 @@ void Levels::set_state(std::uint32_t body, const RigidState& state) {
   wake_near(body, Level::full);
   wake_near(body, Level::statistical);
   set_motion(body, state);
+  wake_near(body, Level::full);  // and what it is put onto, or into
+  wake_near(body, Level::statistical);
 }
 
 void Levels::set_motion(std::uint32_t body, const RigidState& state) {

@@ -72,6 +72,24 @@ TEST(ManagerBodies, AForceMovesWhatIsAtRest) {
     }
 }
 
+TEST(ManagerBodies, SetStateWakesWhatTheBodyIsPutInto) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+    Manager manager = on_floor({.signatures = coarse_signature});
+    const auto cube = box_shape({0.3, 0.3, 0.3});
+    const BodyId sleeper = add(manager, cube, testing::at({0, 0, 0.15}), level);
+    const BodyId wall = manager.add_body({.shape = cube,
+                                          .state = testing::at({3, 0, 0.15}),
+                                          .level = level,
+                                          .properties = {.kinematic = true}});
+    run(manager, 2.0);
+    ASSERT_TRUE(manager.asleep(sleeper));
+    manager.set_state(wall, testing::at({0.28, 0, 0.15}));
+    EXPECT_FALSE(manager.asleep(sleeper)) << int(level);
+    run(manager, 2.0);
+    EXPECT_LT(manager.state(sleeper).position.x(), -0.015) << int(level);
+  }
+}
+
 // One that bears its weight holds a body where it is; what moves by itself alone no force moves.
 TEST(ManagerBodies, AForceInTheAirActsThroughTheWholeStep) {
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
