@@ -137,13 +137,13 @@ void OdeWorld::begin_callers_step(double dt) {
   impl_->callers_step_s = dt;
   impl_->begin_step(dt);
   impl_->sweep.begin(impl_->bodies);
-  impl_->begin_substep(dt);
+  impl_->begin_callers_substep(dt);
 }
 
 void OdeWorld::end_callers_step() {
   if (!(impl_->callers_step_s > 0.0)) throw InputError("end_callers_step without begin_callers_step");
   prepare();
-  impl_->end_substep(std::exchange(impl_->callers_step_s, 0.0));
+  impl_->end_callers_substep(std::exchange(impl_->callers_step_s, 0.0));
   impl_->end_step();
 }
 
@@ -211,7 +211,7 @@ void OdeWorld::archive(StateArchive& a) {
     for (const Body& body : impl.bodies.slots())
       if (body.body) impl.collision.broad_phase().note_sleep(body);
   if (a.reading()) impl.vacated.clear();
-  a(impl.joints, impl.quick_steps);
+  a(impl.joints, impl.quick_steps, impl.callers_attempt, impl.callers_calm);
   double cfm = dWorldGetCFM(impl.world);
   a(cfm);
   if (impl.own_world) dWorldSetCFM(impl.world, cfm);
@@ -226,6 +226,7 @@ void OdeWorld::begin_anew() {
   impl.joints.forget();
   impl.vacated.clear();
   impl.quick_steps = 0;
+  impl.callers_attempt = impl.callers_calm = 0;
 }
 
 std::span<const OdeContact> OdeWorld::contacts() const { return impl_->joints.contacts(); }

@@ -90,6 +90,12 @@ void prepare() {
 
 std::int64_t messages_of_this_thread() { return messages; }
 
+void count_messages() {
+  if (dGetMessageHandler() == count_message) return;
+  callers_message_handler = dGetMessageHandler();
+  dSetMessageHandler(count_message);
+}
+
 std::mutex& trimesh_mutex() {
   static std::mutex mutex;
   return mutex;

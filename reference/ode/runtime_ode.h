@@ -19,6 +19,8 @@ void prepare();
 /// Messages that ODE raised on the calling thread since the process began. A world steps on its caller's
 /// thread alone, so the difference over a step is that world's own.
 std::int64_t messages_of_this_thread();
+/// Also where the caller has set a handler of his own since: that goes on to be told.
+void count_messages();
 
 /// Debian's ODE keeps one process-wide cache for its trimesh colliders (ODE_EXT_mt_collisions is off): hold
 /// this around every dCollide that involves a trimesh, with a plane too, whose collider notes there which

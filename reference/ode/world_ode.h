@@ -30,8 +30,10 @@ struct OdeWorld::Impl {
   // A substep: contacts, ODE's own step (or the caller's), and putting right what came of it.
   bool try_substep(double h);
   bool retry_substep(double h, int attempt, bool by_quick_step);
-  void begin_substep(double h);
+  void begin_substep(double h, int attempt = 0);
   void find_contacts(double h, int attempt);
+  void begin_callers_substep(double h);
+  void end_callers_substep(double h);
   bool advance(double h, bool by_quick_step);
   [[noreturn]] void fail(const std::string& message);
   void end_substep(double h);
@@ -61,6 +63,11 @@ struct OdeWorld::Impl {
   OdeCounters counters;
   OdeTimes times;
   std::uint64_t quick_steps = 0;
+  // Of a caller's steps: what contacts their solver is given, since one of the last kCalm was given up on,
+  // and how many were not since.
+  static constexpr std::int32_t kCalm = 600;
+  std::int32_t callers_attempt = 0, callers_calm = 0;
+  std::int64_t callers_messages = 0;         // a caller's step
   bool has_looked = false;                   // for the step to come
   std::string failure = {};                  // why ODE gave up; empty: it has not
   double callers_step_s = 0.0;               // between begin_callers_step and end_callers_step; else 0

@@ -96,6 +96,23 @@ void OdeWorld::Impl::end_step() {
   has_looked = false;
 }
 
+// What a caller's own step was given up on cannot be repeated; but it would be met again with the same
+// contacts in the next one, and its bodies go on falling. So these begin as a repeated substep's do, the
+// softer the more often.
+void OdeWorld::Impl::begin_callers_substep(double h) {
+  count_messages();
+  callers_messages = messages_of_this_thread();
+  begin_substep(h, callers_attempt);
+}
+
+void OdeWorld::Impl::end_callers_substep(double h) {
+  if (messages_of_this_thread() != callers_messages)
+    callers_attempt = std::min(callers_attempt + 1, ContactJoints::kMostAttempts - 1), callers_calm = 0;
+  else if (++callers_calm >= kCalm)
+    callers_attempt = callers_calm = 0;
+  end_substep(h);
+}
+
 // ODE's solver gives up on some degenerate systems (two bodies falling freely in full contact), saying so in
 // a message and leaving the bodies without their contact forces. Such a substep is taken back and repeated
 // with contacts a little softer and more uneven, and at last by QuickStep, which has nothing to give up on:
@@ -127,8 +144,8 @@ bool OdeWorld::Impl::retry_substep(double h, int attempt, bool by_quick_step) {
   return advance(h, by_quick_step);
 }
 
-void OdeWorld::Impl::begin_substep(double h) {
-  find_contacts(h, 0);
+void OdeWorld::Impl::begin_substep(double h, int attempt) {
+  find_contacts(h, attempt);
   sleep.run(bodies, joints.carried(), h);
 }
 

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
+#include <cstdarg>
 #include <limits>
 
+#include "reference/random.h"
 #include "reference/simulation_error.h"
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/message_of.h"
@@ -146,6 +148,55 @@ TEST(Recovery, WhatTheSolverGivesUpOnIsDoneAgainInACallersWorld) {
       EXPECT_NEAR(manager.state(stack[std::size_t(i)]).position.z(), height + 0.25 + 0.3 * i, 0.05);
     EXPECT_NEAR(dBodyGetPosition(flies)[0], 5.0 + 2.0 * 5.0, 1e-9);
   }
+  dSpaceDestroy(space);
+  dWorldDestroy(world);
+}
+
+int callers_messages = 0;
+void count_callers_message(int, const char*, va_list) { ++callers_messages; }
+
+// In a caller's own loop nothing can be done again: but it must not be given up on in frame after frame, in
+// which its bodies fall through the ground.
+TEST(Recovery, WhatACallersStepGaveUpOnIsSolvedInTheNextOnes) {
+  dInitODE2(0);
+  const dWorldID world = dWorldCreate();
+  const dSpaceID space = dHashSpaceCreate(nullptr);
+  dWorldSetGravity(world, 0, 0, -9.81);
+  dWorldSetERP(world, 0.2);
+  dWorldSetCFM(world, 1e-10);
+  dCreatePlane(space, 0, 0, 1, 0);
+  dMessageFunction* const before = dGetMessageHandler();
+  {
+    Manager manager(world, space, unmeasured());
+    dSetMessageHandler(count_callers_message);  // the caller's, later than ours: it is told all the same
+    callers_messages = 0;
+    std::vector<BodyId> pyramid;
+    for (int row = 0; row < 6; ++row)
+      for (int i = 0; i < 6 - row; ++i)
+        pyramid.push_back(add(manager, box_shape({0.3, 0.3, 0.3}),
+                              testing::at({0.31 * (i + 0.5 * row), 0, 0.151 + 0.302 * row}),
+                              LevelChoice::full));
+    RandomStream random(5, 0, 0);
+    int with_messages = 0, longest = 0;  // frames in a row
+    for (int frame = 0; frame < 400; ++frame) {
+      if (frame > 60 && frame % 20 == 0) {
+        const BodyId body = pyramid[std::size_t(random.uniform() * double(pyramid.size()))];
+        const Vec3 kick(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), random.uniform());
+        manager.add_impulse(body, manager.mass(body) * kick, manager.state(body).position);
+      }
+      const int known = callers_messages;
+      manager.before_world_step(kFrame);
+      dWorldStep(world, kFrame);
+      manager.after_world_step();
+      with_messages = callers_messages > known ? with_messages + 1 : 0;
+      longest = std::max(longest, with_messages);
+      for (const BodyId body : pyramid) ASSERT_GT(manager.state(body).position.z(), 0.0) << frame;
+    }
+    EXPECT_GT(callers_messages, 0);  // else nothing was tried here
+    EXPECT_LE(callers_messages, 20);
+    EXPECT_LE(longest, 4);
+  }
+  dSetMessageHandler(before);
   dSpaceDestroy(space);
   dWorldDestroy(world);
 }
