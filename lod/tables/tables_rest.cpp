@@ -9,6 +9,7 @@ namespace {
 
 constexpr float kPartingTime = 0.05f;      // of the time
 constexpr double kFallingInterval = 0.05;  // s; less than anybody must lie still for
+constexpr double kCarries = 0.05;  // sine of a plane's angle to the vertical: a steeper one carries nobody
 
 }  // namespace
 
@@ -31,13 +32,21 @@ void TablesLevel::note_who_falls() {
   const bool is_due = intervals(elapsed_) != intervals(elapsed_ - constants_.wide_time);
   if (!is_due || !constants_.hulls || contacts_.count() == 0) return;
   const auto carries = std::int32_t(spheres_.awake);
+  const double strength = settings_.gravity.norm();
+  const Vec3 up = strength > 0.0 ? Vec3(-settings_.gravity / strength) : Vec3(Vec3::Zero());
+  const auto is_below = [&](const Vec3& normal) { return strength == 0.0 || normal.dot(up) >= kCarries; };
   riders_.set_all_apart(std::size_t(spheres_.awake) + 1);
   contacts_.each([&](const SphereContact& c) {
+    const bool stands = c.second >= std::uint32_t(carries);  // asleep, or the ground
+    if (stands && !is_below(Vec3(double(c.nx), double(c.ny), double(c.nz)))) return;
     riders_.join(std::int32_t(c.first), std::int32_t(std::min(c.second, std::uint32_t(carries))));
   });
-  for (std::int64_t i = 0; i < spheres_.awake; ++i)
-    if (step_.on_ground[std::size_t(i)] != std::uint8_t(GroundState::free))
+  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
+    const auto state = GroundState(step_.on_ground[std::size_t(i)]);
+    const bool alone = state == GroundState::moved;  // on its hull
+    if (alone || (state != GroundState::free && is_below(plane(step_.plane[std::size_t(i)]).normal)))
       riders_.join(std::int32_t(i), carries);
+  }
   for (std::int64_t i = 0; i < spheres_.awake; ++i)
     if (riders_.root_of(std::int32_t(i)) != riders_.root_of(carries))
       spheres_.crowded_for[std::size_t(i)] = 0, spheres_.quiet[std::size_t(i)] = 0.0f;

@@ -119,6 +119,30 @@ TEST(MixedStacks, WhatFallsTogetherDoesNotComeToRestInTheAir) {
     }
 }
 
+// A wall carries nobody.
+TEST(MixedStacks, WhatTouchesAWallAndLosesItsGroundFalls) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const double gravity : {9.81, 1.62}) {
+      Manager manager = on_floor({.signatures = coarse_signature});
+      manager.set_gravity({0, 0, -gravity});
+      manager.add_plane(Vec3::UnitX(), 0.0);
+      const GroundId shelf = manager.add_static_box({1, 1, 0.1}, {0.5, 0, 4.95}, Quat::Identity());
+      std::vector<BodyId> cubes;
+      for (int i = 0; i < 9; ++i)
+        cubes.push_back(
+            add(manager, box_shape({kStackedSide, kStackedSide, kStackedSide}),
+                testing::at({kStackedSide * (i % 3 + 0.5), 0, 5.0 + kStackedSide * (i / 3 + 0.5)}), level));
+      run(manager, 2.0);
+      manager.remove_ground(shelf);
+      const double time = gravity > 5.0 ? 0.75 : 1.5, way = 0.5 * gravity * time * time;
+      const double before = manager.state(cubes.front()).position.z();
+      run(manager, time);
+      for (const BodyId body : cubes) EXPECT_FALSE(manager.asleep(body)) << int(level);
+      EXPECT_GT(before - manager.state(cubes.front()).position.z(), 0.5 * way)
+          << int(level) << " at " << gravity;
+    }
+}
+
 // Slower than what ODE takes for rest, the upper one was laid to sleep in each substep, and held the lower
 // one back.
 TEST(MixedStacks, FullOnesOnAStatisticalOneGoAlongWithASlowTruck) {
