@@ -35,7 +35,7 @@ void PlanePhase::find(Body& body, const Plane& plane, const ContactLaw& law, con
   else if (body.spheres.empty())
     find_hull_points(body, plane, law, step, points);
   else
-    find_sphere_points(body, plane, points);
+    find_sphere_points(body, plane, law, step, points);
   keep_deepest(points);
 }
 
@@ -95,15 +95,24 @@ void PlanePhase::append_early_and_deep(const Body& body, const Plane& plane, con
       points.push_back({position + near.arm, plane.normal, std::max(near.depth, 0.0)});
 }
 
-void PlanePhase::find_sphere_points(const Body& body, const Plane& plane,
-                                    std::vector<ContactPoint>& points) const {
+// A ball is met as hulls are: at its own time within the step, and before it would be far inside. Spheres
+// that stand for a mesh (Body::spheres) are what a user of ODE would have.
+void PlanePhase::find_sphere_points(Body& body, const Plane& plane, const ContactLaw& law,
+                                    const PlaneStep& step, std::vector<ContactPoint>& points) {
   const Vec3 position = to_vec3(dBodyGetPosition(body.body));
   const Quat orientation = to_quat(dBodyGetQuaternion(body.body));
+  const bool is_ball = body.shape->sphere_radius.has_value();
+  const bool timed = is_ball && is_timed(body, step);
+  const double margin = is_ball ? nearing(body, plane, step) : 0.0;
+  near_.clear();
   for (const Sphere& sphere : body.spheres) {
-    const Vec3 center = position + orientation * sphere.center;
-    const double depth = sphere.radius - (plane.normal.dot(center) - plane.offset);
-    if (depth > 0.0) points.push_back({center - sphere.radius * plane.normal, plane.normal, depth});
+    const Vec3 center = orientation * sphere.center;
+    const double depth = sphere.radius - height_of(body, plane) - plane.normal.dot(center);
+    if (depth > -margin) near_.push_back({center - sphere.radius * plane.normal, depth});
   }
+  if (timed) return append_timed(body, plane, law, step, points);
+  if (is_ball) return append_early_and_deep(body, plane, step, points);
+  for (const NearPoint& near : near_) points.push_back({position + near.arm, plane.normal, near.depth});
 }
 
 // As plain ODE does it: wherever the body is, for a plane's box has no end; and the first contacts that it

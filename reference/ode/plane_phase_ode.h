@@ -45,7 +45,8 @@ class PlanePhase {
                              std::vector<ContactPoint>& points) const;
   void append_timed(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step,
                     std::vector<ContactPoint>& points) const;
-  void find_sphere_points(const Body& body, const Plane& plane, std::vector<ContactPoint>& points) const;
+  void find_sphere_points(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step,
+                          std::vector<ContactPoint>& points);
   void find_mesh_points(const Body& body, const Plane& plane, std::vector<ContactPoint>& points) const;
   double nearing(const Body& body, const Plane& plane, const PlaneStep& step) const;
   bool is_timed(const Body& body, const PlaneStep& step) const;

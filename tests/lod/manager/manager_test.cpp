@@ -405,5 +405,26 @@ TEST_F(CallersWorld, IsLeftAsItWas) {
   EXPECT_EQ(dSpaceGetNumGeoms(space), geoms);
 }
 
+// A ball that goes farther in a step than it is wide stops at a plane as a box does.
+TEST(Manager, AFastFullBallDoesNotGoThroughThePlane) {
+  constexpr double kRadius = 0.15;  // m
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kRadius));
+  for (const double speed : {10.0, 20.0})
+    for (const double frame : {1.0 / 60, 1.0 / 30}) {
+      ManagerSettings settings = unmeasured();
+      settings.full_substeps = 1;
+      Manager manager = on_floor(settings);
+      std::vector<BodyId> balls;
+      for (int i = 0; i < 8; ++i)
+        balls.push_back(add(manager, ball, testing::at({double(i), 0, 1.0 + 0.04 * i}, {0, 0, -speed}),
+                            LevelChoice::full));
+      for (int i = 0; i < int(2.0 / frame); ++i) {
+        manager.step(frame);
+        for (const BodyId body : balls)
+          ASSERT_GT(manager.state(body).position.z(), 0.5 * kRadius) << speed << " m/s, " << frame << " s";
+      }
+    }
+}
+
 }  // namespace
 }  // namespace lodestone
