@@ -86,6 +86,19 @@ void find_probed_contacts(const Seeker& s, const GroundPart& part, double time,
   }
 }
 
+// m; see meet_solid.
+double find_height_over_triangles(std::span<const PlacedSolid> near, const Vec3& center) {
+  double least = 1e300;
+  for (const PlacedSolid& placed : near) {
+    if (!placed.solid->surface) continue;
+    const SurfaceTriangle& t = *placed.solid->surface;
+    const Vec3 at = in_part(placed, center);
+    const double height = t.normal.dot(at - t.corner[0]);
+    if (height >= 0.0 && height < least && is_over(t, at)) least = height;
+  }
+  return least;
+}
+
 }  // namespace
 
 void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after,
@@ -228,8 +241,9 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
       return planes.push_back(*mean);
   const PairBody self{&shape, body.position, body.orientation};
   thread_local HullContactSearch search;
+  const double over = shape.sphere_radius ? find_height_over_triangles(near, body.position) : 1e300;
   for (const PlacedSolid& solid : near) {
-    meet_solid(self, solid, seeker.touching + seeker.way, search);
+    meet_solid(self, solid, seeker.touching + seeker.way, search, over);
     for (const PairContact& contact : search.contacts)
       if (closes(contact, *solid.part, body, seeker.omega, seeker.touching, time))
         found.push_back({slot, solid.number, solid.part->material, solid.part, contact});

@@ -126,7 +126,8 @@ Vec3 find_start_axis(const PairBody& body, const PlacedSolid& placed) {
   return placed.orientation * find_farthest_apart(body, placed, *nearest).normal;
 }
 
-std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin) {
+std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin,
+                                double ball_is_over) {
   const PairBody ground = pair_body(placed);
   // Not those of a thin body's other side.
   const double ahead = std::min(margin, kAhead * body.shape->inner_radius);
@@ -149,8 +150,10 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   if (over_ridge) return contact;
   std::optional<PairContact> flat = find_contact_along(body, ground, normal, margin, ahead);
   // What straddles a hill top is lowest, along each triangle's normal, over another: its own features hold
-  // it.
-  if (!flat && along > kSteepestFeature) return contact;
+  // it. Not so a ball in a hollow, which lies over a triangle that is nearer.
+  const bool in_hollow =
+      body.shape->sphere_radius && ball_is_over <= contact->gap + *body.shape->sphere_radius;
+  if (!flat && along > kSteepestFeature && !in_hollow) return contact;
   return flat;
 }
 
@@ -209,10 +212,11 @@ void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const 
                      contact.gap - find_farthest_arm(body, -contact.normal).dot(contact.normal), true});
 }
 
-void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search) {
+void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search,
+                double ball_is_over) {
   search.contacts.clear();
   if (body.shape->pieces.empty() || placed.solid->surface) {
-    if (const auto contact = meet(body, placed, margin)) search.contacts.push_back(*contact);
+    if (const auto contact = meet(body, placed, margin, ball_is_over)) search.contacts.push_back(*contact);
     return;
   }
   HullGap whole = {.normal = find_start_axis(body, placed)};

@@ -29,7 +29,10 @@ void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const 
 
 /// Those contacts of the body with a gap of at most `margin` m: one of its hull, or, as find_pair_contacts
 /// has it, those of its convex pieces. A triangle is met along its normal but for where an edge of it stands
-/// out, by the hull. What `search` held before is gone.
-void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search);
+/// out, by the hull. What `search` held before is gone. `ball_is_over`, m: how far below the centre of a ball
+/// the nearest triangle is of those that this lies over: across an edge that does not stand out it meets none
+/// that is farther.
+void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search,
+                double ball_is_over = 1e300);
 
 }  // namespace lodestone

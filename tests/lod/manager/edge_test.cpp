@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
@@ -108,6 +109,71 @@ TEST(Edge, NothingFallsThroughTheCornersOfHills) {
     for (const BodyId body : cubes) {
       const Vec3 at = manager.state(body).position;
       EXPECT_GT(at.z(), height(at.x(), at.y()) + 0.1) << int(level);
+    }
+  }
+}
+
+/// A hollow (of radius 1 m about (0, 0, 1)) or a hill of triangles, `rings` of them; height: of a ring's
+/// corners, m.
+template <class Height>
+Mesh round_mesh(int rings, double radius, const Height& height) {
+  Mesh mesh;
+  const int sectors = 3 * rings;
+  mesh.vertices.push_back({0, 0, height(0.0)});
+  for (int i = 1; i <= rings; ++i)
+    for (int k = 0; k < sectors; ++k) {
+      const double out = radius * i / rings, angle = 2.0 * std::numbers::pi * k / sectors;
+      mesh.vertices.push_back({out * std::cos(angle), out * std::sin(angle), height(out)});
+    }
+  const auto corner = [&](int i, int k) { return i == 0 ? 0 : 1 + (i - 1) * sectors + k % sectors; };
+  for (int k = 0; k < sectors; ++k) {
+    mesh.faces.push_back({0, corner(1, k), corner(1, k + 1)});
+    for (int i = 1; i < rings; ++i) {
+      mesh.faces.push_back({corner(i, k), corner(i + 1, k), corner(i + 1, k + 1)});
+      mesh.faces.push_back({corner(i, k), corner(i + 1, k + 1), corner(i, k + 1)});
+    }
+  }
+  return mesh;
+}
+
+// Edges of a hollow, which no ball meets, stopped it: it lost half of its energy in a second.
+TEST(Edge, ABallRollsThroughAHollow) {
+  constexpr double kBall = 0.1, kOut = 0.7;  // m
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kBall));
+  const double start = 1.0 - std::sqrt((1.0 - kBall) * (1.0 - kBall) - kOut * kOut);
+  for (const int rings : {16, 40}) {
+    Manager manager({.signatures = testing::coarse_signature});
+    manager.materials().replace(0, {.restitution = 0.0, .friction = 0.6});
+    manager.add_static_mesh(
+        round_mesh(rings, 0.95, [](double out) { return 1.0 - std::sqrt(1.0 - out * out); }));
+    const BodyId body = testing::add(manager, ball, testing::at({kOut, 0, start}), LevelChoice::support);
+    double highest = 0.0;  // on the other side
+    for (int i = 0; i < 100; ++i) {
+      manager.step(testing::kFrame);
+      if (const Vec3 at = manager.state(body).position; at.x() < 0.0) highest = std::max(highest, at.z());
+    }
+    EXPECT_GT(highest - kBall, 0.85 * (start - kBall)) << rings;
+    EXPECT_LT(highest - kBall, start - kBall) << rings;
+  }
+}
+
+// Over its top a ball lies over none of the triangles.
+TEST(Edge, ABallOnAGentleHillTopDoesNotFallThrough) {
+  constexpr double kBall = 0.1;  // m
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kBall));
+  for (const double slope : {0.03, 0.1, 0.3}) {
+    const auto height = [slope](double out) { return 1.0 - slope * out; };
+    const Mesh hill = round_mesh(8, 3.0, height);
+    for (int i = 0; i < 9; ++i) {
+      Manager manager({.signatures = testing::coarse_signature});
+      manager.add_static_mesh(hill);
+      const BodyId body = testing::add(manager, ball, testing::at({0.02 * (i - 4), 0.01 * (i % 3), 1.2}),
+                                       LevelChoice::support);
+      for (int frame = 0; frame < 90; ++frame) {
+        manager.step(testing::kFrame);
+        const Vec3 at = manager.state(body).position;
+        ASSERT_GT(at.z(), height(at.head<2>().norm()) + 0.9 * kBall) << slope << " in frame " << frame;
+      }
     }
   }
 }
