@@ -172,7 +172,7 @@ ReplayResult Manager::replay(std::span<const std::byte> recording,
     StateArchive chunk = chunks.chunk();
     Call call = Call::begin;
     chunk(call);
-    if (call > kLastCall || begun == (call == Call::begin)) throw InputError("the recording is damaged");
+    if (call > kLastCall || (!begun && call != Call::begin)) throw InputError("the recording is damaged");
     begun = true;
     if (call != Call::step) {
       impl_->do_call(*this, call, chunk, shapes);

@@ -180,6 +180,8 @@ void Manager::restore(std::span<const std::byte> snapshot,
   levels.look_away();
   impl_->archive(state);
   check_that(state.at_end(), "a snapshot is read to its end");
+  if (impl_->recorder.on())
+    impl_->recorder.note(Call::begin, std::vector<std::byte>(snapshot.begin(), snapshot.end()));
 }
 
 }  // namespace lodestone

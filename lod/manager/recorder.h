@@ -15,7 +15,7 @@
 namespace lodestone {
 
 enum class Call : std::uint8_t {
-  begin,  ///< a snapshot
+  begin,  ///< a snapshot: of the beginning, or one that was restored
   step,
   add_plane,
   add_static_mesh,

@@ -131,6 +131,27 @@ TEST(Recording, CallsOfEveryKindComeOutTheSame) {
   EXPECT_EQ(noticed, calls);
 }
 
+TEST(Recording, WhatIsRestoredMeanwhileIsRestoredAgain) {
+  using namespace testing;
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  Tape tape;
+  Manager manager = on_floor();
+  const BodyId body = add(manager, box, at({0, 0, 1}));
+  manager.set_record(tape.write);
+  run(manager, 0.1);
+  const Bytes before = manager.snapshot();
+  run(manager, 0.1);
+  manager.restore(before);
+  run(manager, 0.1);
+  manager.set_record({});
+  Manager other = on_floor();
+  const std::vector shapes{std::shared_ptr<const Shape>(box)};
+  const ReplayResult result = other.replay(tape.bytes, shapes);
+  EXPECT_TRUE(result.same) << result.text;
+  EXPECT_EQ(result.steps, 18);
+  EXPECT_EQ(other.state(body).position, manager.state(body).position);
+}
+
 TEST(Recording, EveryTruncationIsRefusedOrEndsAtAStep) {
   using namespace testing;
   const auto box = box_shape({0.2, 0.2, 0.2});
