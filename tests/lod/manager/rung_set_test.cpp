@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace lodestone {
@@ -49,6 +50,16 @@ TEST(RungSet, WithinAnotherItIsNeverEmpty) {
   EXPECT_EQ((RungSet{kTables, kSupport}.within({kSupport, kFull})), RungSet{kSupport});
   EXPECT_EQ(RungSet{kTables}.within({kSupport, kFull}), (RungSet{kSupport, kFull}));
   EXPECT_EQ(kEveryRung.within({kFull}), RungSet{kFull});
+}
+
+TEST(RungSet, OfTwoWithNothingInCommonTheHigherPrevails) {
+  EXPECT_EQ((RungSet{kTables, kSupport}.together_with({kSupport, kFull})), RungSet{kSupport});
+  for (const auto& [one, other] : {std::pair{RungSet{kFull}, RungSet{kTables}},
+                                   {RungSet{kFull}, RungSet{kTables, kSupport}},
+                                   {RungSet{kSupport, kFull}, RungSet{kTables}}}) {
+    EXPECT_EQ(one.together_with(other), one);
+    EXPECT_EQ(other.together_with(one), one);
+  }
 }
 
 TEST(RungSet, WhatTablesCannotHoldIsAtSupport) {
