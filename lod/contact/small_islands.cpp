@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "lod/contact/contact_lanes.h"
+#include "lod/contact/led_sweeps.h"
 
 namespace lodestone {
 
@@ -107,24 +107,6 @@ struct Noted {
       size.sum = size.sum + change * speed, size.fastest = most(size.fastest, speed);
     }
     return answered;
-  }
-};
-
-/// Goes on by a part of the way, which the last change is then added to.
-struct Leading {
-  LedLanes* led;
-  const L& part;
-
-  LODESTONE_INLINE bool operator()(const PointAtHand<L>& at, Vec3Lanes<L>& impulse) const {
-    LedLanes& own = led[at.index];
-    L further[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      further[axis] = part * own.way[axis];
-      at.point.impulse[axis] = at.point.impulse[axis] + further[axis];
-      own.way[axis] = further[axis] + own.change[axis];
-    }
-    impulse = at.along_axes(further);
-    return true;
   }
 };
 
@@ -236,10 +218,7 @@ void SmallIslands::Work::sweep(const Group& group, const Answer& answer, L& live
   }
 }
 
-// Those lanes that were struck, each led on along the way of the sweeps before, as conjugate gradients are
-// (Silcowitz, Niebe and Erleben, A nonsmooth nonlinear conjugate gradient method for interactive contact
-// force problems, 2010): by themselves sweeps carry a blow through a stack by one body in each, and what is
-// left of it throws the bodies aside.
+// Those lanes that were struck: what sweeps by themselves had left of a blow would throw the bodies aside.
 template <class Answer>
 void SmallIslands::Work::sweep_led(const Group& group, const Answer& answer, L& live, const L& struck) {
   live = struck > L{} ? all<L>(1) : L{};
@@ -261,7 +240,7 @@ void SmallIslands::Work::sweep_led(const Group& group, const Answer& answer, L& 
     if (i == kMostLedSweeps || !any(live > L{})) return;  // within its bounds
     const Mask<L> nears = (live > L{}) & (last > L{}) & (size.sum <= last);
     const L part = nears ? size.sum / (nears ? last : all<L>(1)) : L{};
-    lanes.sweep(Leading{led.data(), part}, group.begin, group.begin + rounds);
+    lanes.sweep(Leading<L, LedLanes>{led.data(), part}, group.begin, group.begin + rounds);
     last = size.sum;
   }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lod/contact/crowd_lanes.h"
+#include "lod/contact/led_sweeps.h"
 
 namespace lodestone {
 
@@ -21,9 +22,9 @@ constexpr double kMostUnevenSweeps =
 constexpr std::size_t kFewPoints = 12, kRelaxations = 16'000;
 constexpr double kUnevenTolerance = 1e-4;  // of what gravity adds to a velocity in the step
 
-/// More of a point: its friction's bound; where the impulses are led, and what they were.
+/// More of a point: its friction's bound; the way on which the impulses are led, and what a sweep changed.
 struct alignas(64) LedPoint {
-  D4 bound, step[3], before[3];
+  D4 bound, way[3], change[3];
 };
 
 struct BoundedRelaxation {
@@ -33,20 +34,6 @@ struct BoundedRelaxation {
     const V4 velocity = at.velocity();
     const D4 asked = at.point.effective_mass[0] * (at.point.target - dot(velocity, at.batch.normal));
     impulse = relax(at, velocity, asked, all<D4>(1.0), FrictionWithin<D4>{led[at.index].bound});
-    return true;
-  }
-};
-
-/// Adds a part of `step` to the impulses.
-struct Leading {
-  const LedPoint* led;
-  double part;
-
-  LODESTONE_INLINE bool operator()(const PointAtHand<D4>& at, V4& impulse) const {
-    const D4* way = led[at.index].step;
-    const D4 change[3] = {part * way[0], part * way[1], part * way[2]};
-    for (int i = 0; i < 3; ++i) at.point.impulse[i] = at.point.impulse[i] + change[i];
-    impulse = at.along_axes(change);
     return true;
   }
 };
@@ -72,40 +59,34 @@ struct UnevenIslands::Work {
   void sweep_led(int sweeps, double enough, const JobRunner& jobs);
 };
 
-// Sweeps by themselves carry a weight through a light body as many of them as the one is heavier: each is led
-// on along the way of the ones before, as conjugate gradients are (Silcowitz, Niebe and Erleben, A nonsmooth
-// nonlinear conjugate gradient method for interactive contact force problems, 2010). They end with the
-// velocities that are left to be mended: of a great weight's impulses a small part is much for a light body.
+// Sweeps by themselves carry a weight through a light body as many of them as the one is heavier. Those that
+// are led end with the velocities that are left to be mended: of a great weight's impulses a small part is
+// much for a light body.
 void UnevenIslands::Work::sweep_led(int sweeps, double enough, const JobRunner& jobs) {
   double last = 0.0;
   for (int i = 0; i < sweeps; ++i) {
-    each_point([&](const BatchLanes<D4>&, PointLanes<D4>& p, std::uint32_t at) {
-      std::ranges::copy(p.impulse, led[at].before);
+    each_point([&](const BatchLanes<D4>&, const PointLanes<D4>& p, std::uint32_t at) {
+      std::ranges::copy(p.impulse, led[at].change);
+      if (i == 0) std::ranges::fill(led[at].way, D4{});
     });
     crowd.sweep(BoundedRelaxation{led.data()}, jobs);
     if (i + 1 == sweeps) return;       // within its bounds
     double size = 0.0, fastest = 0.0;  // of the change: J over the unit of mass; m/s
     each_point([&](const BatchLanes<D4>& batch, const PointLanes<D4>& p, std::uint32_t at) {
-      for (int axis = 0; axis < 3; ++axis)
+      for (int axis = 0; axis < 3; ++axis) {
+        D4& of_axis = led[at].change[axis];
+        of_axis = p.impulse[axis] - of_axis;
         for (int lane = 0; lane < batch.lanes; ++lane) {
-          const double mass = p.effective_mass[axis][lane],
-                       change = p.impulse[axis][lane] - led[at].before[axis][lane];
+          const double mass = p.effective_mass[axis][lane], change = of_axis[lane];
           if (mass <= 0.0) continue;
           size += change * change / mass;
           fastest = std::max(fastest, std::abs(change) / mass);
         }
+      }
     });
     if (fastest <= enough) return;
-    const double part = i > 0 && size <= last ? (last > 0.0 ? size / last : 0.0) : 0.0;
-    each_point([&](const BatchLanes<D4>&, PointLanes<D4>& p, std::uint32_t at) {
-      for (int axis = 0; axis < 3; ++axis) led[at].before[axis] = p.impulse[axis] - led[at].before[axis];
-    });
-    if (part > 0.0) crowd.sweep(Leading{led.data(), part}, jobs);
-    each_point([&](const BatchLanes<D4>&, const PointLanes<D4>&, std::uint32_t at) {
-      for (int axis = 0; axis < 3; ++axis)
-        led[at].step[axis] =
-            i == 0 || part == 0.0 ? led[at].before[axis] : part * led[at].step[axis] + led[at].before[axis];
-    });
+    const D4 part = all<D4>(size <= last && last > 0.0 ? size / last : 0.0);
+    crowd.sweep(Leading<D4, LedPoint>{led.data(), part}, jobs);
     last = size;
   }
 }

@@ -35,11 +35,13 @@ bool Levels::asleep(std::uint32_t body) const {
 }
 
 void Levels::set_state(std::uint32_t body, const RigidState& state) {
-  wake_near(body, Level::full);
-  wake_near(body, Level::statistical);
+  const auto wake_around = [&] {
+    wake_near(body, Level::full);
+    wake_near(body, Level::statistical);
+  };
+  wake_around();
   set_motion(body, state);
-  wake_near(body, Level::full);  // and what it is put onto, or into
-  wake_near(body, Level::statistical);
+  wake_around();  // what it is put onto, or into
 }
 
 void Levels::set_motion(std::uint32_t body, const RigidState& state) {

@@ -136,7 +136,7 @@ Mesh round_mesh(int rings, double radius, const Height& height) {
   return mesh;
 }
 
-// Edges of a hollow, which no ball meets, stopped it: it lost half of its energy in a second.
+// Edges of a hollow, which no ball meets, stopped it: it lost two fifths of its energy in a second.
 TEST(Edge, ABallRollsThroughAHollow) {
   constexpr double kBall = 0.1, kOut = 0.7;  // m
   const auto ball = std::make_shared<const Shape>(make_sphere_shape(kBall));
