@@ -364,8 +364,12 @@ struct ContactLanes<L>::PrepareLoop {
         const Mask<L> drives = batch.most_impulse < std::numeric_limits<R>::max();
         const L gap = p.target, approach = dot(velocity, n), asked = -gap / step,
                 closing = drives ? asked : least(none, asked);
-        const Mask<L> bounces =
-            used & ~drives & (approach < -bounce_velocity) & (gap + approach * step < none);
+        Mask<L> bounces = used & ~drives & (approach < -bounce_velocity) & (gap + approach * step < none);
+        if (any(bounces)) {
+          for (int lane = 0; lane < batch.lanes; ++lane)
+            if (approach[lane] >= -bounce_velocity - R(contacts.manifolds[batch.manifold[lane]].pressed))
+              bounces[lane] = 0;
+        }
         p.target = closing;
         p.impulse[0] = bounces ? none : least(batch.most_impulse, most(none, dot(guess, n)));
         const L bound = batch.friction * p.impulse[0];

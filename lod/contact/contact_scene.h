@@ -47,6 +47,12 @@ struct ContactScene {
   const BodyProperties& properties(Participant p) const { return world.properties_of(owner(p)); }
   /// m/s², as it acts on the body.
   Vec3 gravity(Participant p) const { return properties(p).gravity ? world.gravity : Vec3(Vec3::Zero()); }
+  /// m/s², of forces; those on bodies of `tables` are in their velocities.
+  Vec3 pushed(Participant p) const {
+    if (p.is_full()) return neighbor(p).force / neighbor(p).mass;
+    return p.is_statistical() ? world.force_on(std::int32_t(p.index())).acceleration : Vec3(Vec3::Zero());
+  }
+  Vec3 acceleration(Participant p) const { return gravity(p) + pushed(p); }
   PairBody pair_body(Participant p) const { return {&shape(p), position(p), orientation(p)}; }
   ContactLaw law(Participant a, Participant b) const {
     return world.materials->law(material(a), material(b));

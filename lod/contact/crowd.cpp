@@ -25,11 +25,11 @@ SolverBody solver_body_of(const ContactScene& scene, Participant p, double time)
     return solver;
   }
   const bool moved = !scene.properties(p).kinematic;  // by what it meets
-  const Vec3 gravity = moved ? scene.gravity(p) : Vec3(Vec3::Zero());
+  const Vec3 acceleration = moved ? scene.acceleration(p) : Vec3(Vec3::Zero());
   if (p.is_statistical()) {
     const StatisticalBody& body = scene.body(p);
     const BodyKind& kind = scene.kind_of(body);
-    solver.velocity = body.velocity + gravity * time;
+    solver.velocity = body.velocity + acceleration * time;
     solver.angular_velocity = angular_velocity(body.orientation, body.spin, *kind.shape);
     if (!moved) return solver;
     solver.inverse_mass = 1.0 / body.mass;
@@ -39,12 +39,20 @@ SolverBody solver_body_of(const ContactScene& scene, Participant p, double time)
     solver.velocity = body.state.velocity;
     solver.angular_velocity = body.state.angular_velocity;
     if (!moved) return solver;
-    solver.velocity += (gravity + body.force / body.mass) * time;
+    solver.velocity += acceleration * time;
     solver.inverse_mass = 1.0 / body.mass;
     solver.inverse_inertia = inverse_inertia_world(body.state.orientation, *body.shape) / body.mass;
     solver.angular_velocity += solver.inverse_inertia * (body.torque * time);
   }
   return solver;
+}
+
+// Of a body of this level; full ones are turned by ODE.
+void turn_by_torque(const ContactScene& scene, Participant p, double time, SolverBody& solver) {
+  if (!p.is_statistical() || solver.inverse_mass == 0.0) return;
+  const Vec3& turning = scene.world.force_on(std::int32_t(p.index())).turning;
+  if (!turning.isZero(0.0))
+    solver.angular_velocity += solver.inverse_inertia * (scene.mass(p) * time * turning);
 }
 
 // m: by which overlaps of two bodies, or of one and the ground, are judged: that of the smaller.
@@ -92,6 +100,7 @@ void Crowd::take_bodies(const ContactScene& scene, std::size_t from, double time
                     if (participants_[i].is_ground()) continue;
                     solver_bodies_[i] = solver_body_of(scene, participants_[i], time);
                     angular_before_[i] = solver_bodies_[i].angular_velocity;
+                    turn_by_torque(scene, participants_[i], time, solver_bodies_[i]);
                   }
                 });
   for (const auto& [part, index] : moving_parts_) {
@@ -163,7 +172,7 @@ void Crowd::add_pair_contacts(const ContactScene& scene, std::span<const CrowdCo
       CrowdManifold& m = manifolds_[i];
       keys_[i] = contact_key(scene.owner(first), scene.owner(second));
       m.normal = contact.normal, m.law = scene.law(first, second);
-      m.known = m.to_forget = false, m.most_impulse = kUnbounded;
+      m.known = m.to_forget = false, m.pressed = 0.0f, m.most_impulse = kUnbounded;
       if (is_borne_up(scene, first) || is_borne_up(scene, second)) m.law.restitution = 0.0;
       m.count = std::uint32_t(contact.manifold.count);
       for (std::uint32_t k = 0; k < m.count; ++k) {
@@ -291,8 +300,24 @@ void Crowd::turn_carriers_half(double time) {
   }
 }
 
+// What forces press together does not strike.
+void Crowd::note_presses(const ContactScene& scene, double time) {
+  const auto is_pushed = [&](const FullNeighbor& body) { return !body.force.isZero(0.0); };
+  const bool any =
+      (scene.world.forces && !scene.world.forces->empty()) || std::ranges::any_of(scene.neighbors, is_pushed);
+  if (!any) return;
+  const auto pushed = [&](std::int32_t index) {
+    return index < 0 || solver_bodies_[std::size_t(index)].inverse_mass == 0.0
+               ? Vec3(Vec3::Zero())
+               : scene.pushed(participants_[std::size_t(index)]);
+  };
+  for (CrowdManifold& m : manifolds_)
+    m.pressed = float(std::max(0.0, (pushed(m.second) - pushed(m.first)).dot(m.normal) * time));
+}
+
 void Crowd::solve_gathered(const ContactScene& scene, const CrowdTouch& touch) {
   const double time = touch.time;
+  note_presses(scene, time);
   ContactSolverSettings settings{.sweeps = touch.sweeps, .tolerance = settings_.tolerance};
   settings.bounce_velocity =
       scene.world.bounce_velocity +
@@ -312,8 +337,9 @@ std::size_t Crowd::note_approaches(const ContactScene& scene, double time) const
   const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
     if (index < 0) return Vec3(Vec3::Zero());
     const SolverBody& body = solver_bodies_[std::size_t(index)];
-    const Vec3 fall = body.inverse_mass > 0.0 ? Vec3(scene.gravity(participants_[std::size_t(index)]) * time)
-                                              : Vec3(Vec3::Zero());
+    const Vec3 fall = body.inverse_mass > 0.0
+                          ? Vec3(scene.acceleration(participants_[std::size_t(index)]) * time)
+                          : Vec3(Vec3::Zero());
     return Vec3(body.velocity - fall + body.angular_velocity.cross(arm));
   };
   for (std::size_t i = 0; i < manifolds_.size(); ++i) {
@@ -460,14 +486,14 @@ void Crowd::move_bodies(const ContactScene& scene, double time) {
     const Vec3 added = spin_of(body.orientation, solved.angular_velocity - angular_before_[i], *kind.shape);
     const double until = double(impact_time_[i]), left = until < time ? time - until : time;
     if (until < time) {
-      body.position += (body.velocity + 0.5 * until * scene.gravity(p)) * until;
+      body.position += (body.velocity + 0.5 * until * scene.acceleration(p)) * until;
       body.orientation = advance_orientation(body.orientation, body.spin, kind, until);
     }
     // What falls with all that it touches is at no rest, however slow. (Spheres that are guests here are
     // carried by others that this solver knows nothing of.)
-    const Vec3 gravity = scene.gravity(p);
+    const Vec3 falls = scene.acceleration(p);
     if (!body.is_sphere() && !body.borne_up &&
-        (solved.velocity - body.velocity).dot(gravity) > kFalling * gravity.squaredNorm() * time)
+        (solved.velocity - body.velocity).dot(falls) > kFalling * falls.squaredNorm() * time)
       body.quiet_time = std::max(0.0f, body.quiet_time - 2.0f * float(time));
     body.in_great_heap = solved.in_great_heap;
     body.velocity = solved.velocity;

@@ -96,6 +96,7 @@ class Crowd {
   void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
   void add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch);
   void solve_gathered(const ContactScene& scene, const CrowdTouch& touch);
+  void note_presses(const ContactScene& scene, double time);
   std::size_t note_approaches(const ContactScene& scene, double time) const;
   void note_impulses(ContactLog& log, std::size_t known) const;
   template <class Visit>

@@ -16,9 +16,10 @@ struct CrowdManifold {
   std::uint32_t begin = 0, count = 0;  ///< its points
   bool known = false;                  ///< from the last step, which gives the guesses of its points
   bool to_forget = false;              ///< the next step knows nothing of it
-  double most_impulse = kUnbounded;    ///< N s, of each point along the normal; a bounded one is a
-                                       ///< motor's, which closes or opens the gap, however wide, just within
-                                       ///< the step
+  float pressed = 0.0f;  ///< m/s: what forces add to its approach in the step, beyond gravity: no impact
+  double most_impulse = kUnbounded;  ///< N s, of each point along the normal; a bounded one is a
+                                     ///< motor's, which closes or opens the gap, however wide, just within
+                                     ///< the step
 };
 
 struct CrowdPoint {

@@ -32,14 +32,14 @@ struct ImpactWaves::Scene {
     return v - second.velocity - second.angular_velocity.cross(point.arm_second);
   }
   // m/s along the normal, negative where they close in.
-  bool strikes(const CrowdPoint& point, double approach) const {
-    return approach < -bounce_velocity && point.gap + approach * step < 0.0;
+  bool strikes(const CrowdManifold& m, const CrowdPoint& point, double approach) const {
+    return approach < -bounce_velocity - double(m.pressed) && point.gap + approach * step < 0.0;
   }
   Blow blow_of(const CrowdManifold& m) const {
     Blow blow;
     for (const CrowdPoint& point : points.subspan(m.begin, m.count)) {
       const double approach = velocity(m, point).dot(m.normal);
-      if (!strikes(point, approach)) continue;
+      if (!strikes(m, point, approach)) continue;
       blow.speed = std::max(blow.speed, -approach);
       blow.time = std::min(blow.time, std::max(0.0, point.gap) / -approach);
     }
@@ -150,7 +150,7 @@ void ImpactWaves::answer(const Scene& scene, std::span<const std::uint32_t> mani
       const double approach = scene.velocity(m, point).dot(m.normal),
                    closing = std::min(0.0, -point.gap / scene.step);
       const double target =
-          scene.strikes(point, approach) ? std::max(-m.law.restitution * approach, closing) : closing;
+          scene.strikes(m, point, approach) ? std::max(-m.law.restitution * approach, closing) : closing;
       answers_.push_back(
           {i, k, target, 1.0 / scene.inverse_mass_along(m, point, m.normal), 0.0, Vec3::Zero()});
     }
@@ -241,7 +241,7 @@ void ImpactWaves::pass_on(std::span<SolverBody> bodies, std::span<const CrowdMan
       for (CrowdPoint& point : points.subspan(manifolds[i].begin, manifolds[i].count)) {
         const Vec3& n = manifolds[i].normal;
         const double approach = scene.velocity(manifolds[i], point).dot(n);
-        if (!scene.strikes(point, approach) || point.bounces) continue;
+        if (!scene.strikes(manifolds[i], point, approach) || point.bounces) continue;
         point.bounces = true, point.impact_time = float(std::max(0.0, point.gap) / -approach);
       }
     answer(scene, foremost_);

@@ -44,7 +44,8 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
                       std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts,
                       StageTimes& times, ContactTally& tally) {
   full_.assign(neighbors.begin(), neighbors.end());
-  const StepWorld step_world = world();
+  StepWorld step_world = world();
+  step_world.forces = &support.forces();
   const Step step{
       .dt = dt,
       .scene = {support.bodies(), full_, kinds_, step_world},
@@ -71,6 +72,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     find_ground_solids(step, awake, 0.0, dt);
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
     plan_.make(step.scene, pairs_, solid_contacts_, dt, near_);
+    support.end_search();
     choose_movers(support, 0);
     std::erase_if(movers_,
                   [&](std::int32_t index) { return step.scene.bodies[std::size_t(index)].is_sphere(); });
@@ -272,7 +274,9 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
       const bool carried = carried_.contains(touched) || is_parting(other);
       if (carried) keep_awake(step, touched);
       if (!scene.asleep(touched)) continue;
-      const double speed = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point).norm();
+      Vec3 velocity = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point);
+      if (other.is_statistical()) velocity += step.dt * scene.pushed(other);  // what would move, too
+      const double speed = velocity.norm();
       if (carried || speed > rest_law_.wake_speed(scene.shape(touched).radius) || are_to_part(c))
         wake(step, touched, pace);
     }
@@ -290,7 +294,7 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   const ContactScene& scene = step.scene;
   const double time = step.dt / pace;
   if (pairs_.contacts().empty() && solid_contacts_.empty()) return;
-  StepWorld crowd_world = world();
+  StepWorld crowd_world = scene.world;
   // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
   if (!full_.empty()) crowd_world.bounce_velocity += settings_.gravity.norm() * (step.dt - time);
   const float still_time = settings_.sleeping ? rest_law_.still_time(true) : 1e30f;  // s

@@ -151,7 +151,9 @@ Vec3 NearPairs::point_velocity(const ContactScene& scene, Participant p, const V
 // How the two may close in within `time` seconds.
 Enough NearPairs::find_reach(const ContactScene& scene, double time, const FoundPair& pair) const {
   return {kTouching * least_radius(scene, pair) + find_approach_by_turning(scene, pair, time),
-          (scene.velocity(pair.first) - scene.velocity(pair.second)) * time};
+          (scene.velocity(pair.first) - scene.velocity(pair.second) +
+           time * (scene.pushed(pair.first) - scene.pushed(pair.second))) *
+              time};
 }
 
 // For all that is known of the two.
@@ -204,10 +206,11 @@ void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, 
 bool NearPairs::closes(const ContactScene& scene, const FoundPair& pair, const PairContact& contact,
                        double time) const {
   const double touching = kTouching * least_radius(scene, pair);
+  const Vec3 given = time * (scene.pushed(pair.first) - scene.pushed(pair.second));
   return std::ranges::any_of(std::span(contact.manifold.points).first(std::size_t(contact.manifold.count)),
                              [&](const ManifoldPoint& p) {
                                const Vec3 velocity = point_velocity(scene, pair.first, p.point) -
-                                                     point_velocity(scene, pair.second, p.point);
+                                                     point_velocity(scene, pair.second, p.point) + given;
                                return p.gap + velocity.dot(contact.normal) * time <= touching;
                              });
 }

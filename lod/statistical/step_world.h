@@ -5,6 +5,7 @@
 #include <span>
 
 #include "lod/ground/half_space.h"
+#include "lod/statistical/acting_forces.h"
 #include "lod/statistical/contact_log.h"
 #include "lod/statistical/own_properties.h"
 #include "lod/statistical/statistical_body.h"
@@ -20,12 +21,19 @@ struct StepWorld {
   const OwnProperties* properties = nullptr;  ///< null: nobody has any
   ContactLog* log = nullptr;                  ///< null: nobody asked
   double bounce_velocity = 0.05;              ///< m/s, ODE's: slower contacts do not bounce
+  const ActingForces* forces = nullptr;       ///< on bodies of `support`; null: none
+  Vec3 turning = Vec3::Zero();  ///< m²/s²: what a torque adds to the spin of a body that moves
+                                ///< alone. (A force is a part of its gravity.)
 
   const BodyProperties& properties_of(std::uint32_t owner) const {
     static const BodyProperties usual;
     return properties ? properties->of(owner) : usual;
   }
 
+  const ActingForce& force_on(std::int32_t slot) const {
+    static const ActingForce none;
+    return forces ? forces->of(slot) : none;
+  }
   ContactLaw law(const BodyKind& kind, const HalfSpace& plane) const {
     return materials->law(kind.material, plane.material);
   }

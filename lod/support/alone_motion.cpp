@@ -1,6 +1,4 @@
 // How a body moves that touches no other: flight and impacts, or a settling clip.
-#include <algorithm>
-
 #include "lod/statistical/flight.h"
 #include "lod/support/hull_motion.h"
 #include "lod/support/support_level.h"
@@ -19,24 +17,19 @@ void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> face
     return update_quiet(slot, faces, time, tally);
   }
   if (!own.gravity) step_world.gravity.setZero();
+  const ActingForce& force = acting_.of(slot);  // for what moves alone, as good as a gravity of its own
+  step_world.gravity += force.acceleration;
+  step_world.turning = force.turning;
   if (!meets_ground(own)) step_world.planes = {};
   static const HullMotionSettings settings;
   const HullMotion moved = move_on_hull(body, clips_[std::size_t(slot)], kind, step_world, settings_.gravity,
-                                        time, moves_by_itself(own), settings, turned);
+                                        time, moves_by_itself(own) && force.is_none(), settings, turned);
   tally += moved.tally;
   if (moved.plays_clip) {
     if (moved.clip_over && settings_.sleeping) put_to_sleep(body);
     return;
   }
-  if (moved.tally.touched_plane < 0) take_back_excess(slot, time);
   update_quiet(slot, faces, time, tally);
-}
-
-// Of a body that flew through the whole step.
-void SupportLevel::take_back_excess(std::int32_t slot, double time) {
-  const auto acting = std::ranges::lower_bound(acting_, slot, {}, &Acting::slot);
-  if (acting != acting_.end() && acting->slot == slot && acting->step == time)
-    bodies_[std::size_t(slot)].position -= acting->too_far;
 }
 
 }  // namespace lodestone

@@ -133,21 +133,33 @@ void SupportLevel::begin_step(double dt, ContactTally& tally) {
   fell_asleep_.clear();
   put_awake_in_order();
   acting_.clear();
+  before_forces_.clear();
   for (const auto& [slot, force, torque] : pushes_) {
     StatisticalBody& body = bodies_[std::size_t(slot)];
-    const double impulse = properties_of(body).kinematic ? 0.0 : dt / body.mass;
-    body.velocity += impulse * force;
-    body.spin += impulse * torque;
     body.motion = Motion::dynamic;  // a settling clip knows no force but gravity
-    if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape)))
+    before_forces_.push_back({slot, body.velocity, body.spin});
+    const double share = properties_of(body).kinematic ? 0.0 : 1.0 / body.mass;
+    const ActingForce acting{slot, share * force, share * torque};
+    body.velocity += dt * acting.acceleration;
+    body.spin += dt * acting.turning;
+    if (is_sound(body, kinetic_energy(body, *kind_of(body).shape))) {
+      if (!acting.is_none()) acting_.add(acting);
+    } else {
       recover(body, last_places_[std::size_t(slot)], tally);
-    else
-      acting_.push_back({slot, dt, 0.5 * dt * impulse * force});
+      before_forces_.back() = {slot, body.velocity, body.spin};
+    }
   }
   pushes_.clear();
-  std::ranges::sort(acting_, {}, &Acting::slot);
+  acting_.put_in_order();
   for (const std::int32_t slot : awake_)
     last_places_[std::size_t(slot)] = bodies_[std::size_t(slot)].position;
+}
+
+void SupportLevel::end_search() {
+  for (auto before = before_forces_.rbegin(); before != before_forces_.rend(); ++before) {
+    StatisticalBody& body = bodies_[std::size_t(before->slot)];
+    body.velocity = before->velocity, body.spin = before->spin;
+  }
 }
 
 void SupportLevel::admit_guests(std::span<const StatisticalBody> guests) {

@@ -61,7 +61,11 @@ class SupportLevel {
   void add_force(int slot, const Vec3& force, const Vec3& torque);  ///< over the next step; wakes it
 
   // A step, in this order.
+  /// Until end_search(), for whom the near are searched, bodies have what forces will have given them by the
+  /// step's end.
   void begin_step(double dt, ContactTally& tally);
+  void end_search();
+  const ActingForces& forces() const { return acting_; }  ///< of this step
   /// Bodies of `tables` that are near others in this step follow in bodies(), until dismiss_guests(). They
   /// are among those awake, unless they sleep.
   void admit_guests(std::span<const StatisticalBody> guests);
@@ -89,12 +93,9 @@ class SupportLevel {
     Vec3 force, torque;
   };
 
-  /// A force that gave its whole impulse at the step's beginning: where nothing is touched meanwhile it has
-  /// moved its body too far.
-  struct Acting {
+  struct Before {
     std::int32_t slot;
-    double step;   // s
-    Vec3 too_far;  // m
+    Vec3 velocity, spin;
   };
 
   StepWorld world() const {
@@ -112,7 +113,6 @@ class SupportLevel {
   void drop_awake(std::int32_t slot);
   void put_awake_in_order();
   void note_given(std::int32_t slot);
-  void take_back_excess(std::int32_t slot, double time);
   bool surely_moves_on(const StatisticalBody& body, const BodyKind& kind, double still_energy) const;
   bool is_sound(const StatisticalBody& body, double energy) const;
   void recover(StatisticalBody& body, const Vec3& last_place, ContactTally& tally) const;
@@ -138,7 +138,8 @@ class SupportLevel {
   std::vector<std::int32_t>
       given_;                 // slots whose angular velocity was given, and some for which that is so no more
   std::vector<Push> pushes_;  // of the next step
-  std::vector<Acting> acting_;              // in this step, by slot
+  ActingForces acting_;       // in this step
+  std::vector<Before> before_forces_;       // what bodies had before forces gave them anything
   std::vector<std::uint32_t> fell_asleep_;  // owners
   std::vector<std::uint32_t> woke_;         // owners
 };

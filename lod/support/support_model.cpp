@@ -14,7 +14,7 @@ namespace lodestone {
 namespace {
 
 // Whether the vertex that is lowest at the step's end touches already: then nothing strikes, the body only
-// leans on.
+// leans on. The flight of `body` is that before a torque has given it anything.
 bool touches_already(const HullFlight& flight, const StatisticalBody& body, const Shape& shape,
                      const HalfSpace& plane, LowestPoint lowest, double bounce_velocity) {
   const HullPose now{body.position, body.orientation};
@@ -275,6 +275,7 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
   EnergyBound energy(body, shape, world.gravity, settings.energy_bounded);
   const Vec3 fallen = world.gravity * time;
   body.velocity += fallen;
+  body.spin += world.turning * time;
   OnGround on(body, shape);
   // Kept from step to step, since to make all of them takes longer than to solve a few.
   thread_local StepContacts found;
@@ -335,6 +336,10 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
                                                 const SupportSettings& settings, const Quat* turned) {
   ContactTally tally;
   double left = time;
+  // A torque acts at once on what flies, step by step on what touches the ground.
+  const bool is_turned = !world.turning.isZero(0.0);
+  const StatisticalBody before = is_turned ? body : StatisticalBody();
+  body.spin += world.turning * time;
   for (int hit = 0; hit < settings.max_impacts && left > 0.0; ++hit) {
     const HullFlight flight(body, kind, world);
     std::int32_t hint = body.support_hint;
@@ -348,8 +353,8 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
       body.support_hint = hint;
       return tally;
     }
-    if (touches_already(flight, body, *kind.shape, world.planes[std::size_t(end.lowest.plane)], end.lowest,
-                        world.bounce_velocity)) {
+    if (touches_already(is_turned && hit == 0 ? HullFlight(before, kind, world) : flight, body, *kind.shape,
+                        world.planes[std::size_t(end.lowest.plane)], end.lowest, world.bounce_velocity)) {
       body.support_hint = hint;
       break;
     }
@@ -376,6 +381,7 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
         settings.contact_step * std::sqrt(kind.shape->radius / std::max(1e-9, world.gravity_strength()));
     const int steps = std::clamp(int(std::ceil(left / longest)), 1, 32);
     HeldVertices held;
+    body.spin -= world.turning * left;
     for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, held, tally);
     if (tally.touched_plane >= 0)
       lift_off(body, kind, world, world.planes[tally.touched_plane], left, settings);

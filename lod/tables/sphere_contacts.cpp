@@ -164,6 +164,15 @@ float SphereContacts::known_force(const Spheres& spheres, std::uint32_t first, s
   return force != 0.0f ? force : find_known_apart(spheres.owner[second], spheres.owner[first]);
 }
 
+// m/s: by how much forces press the two together, which is no impact.
+float SphereContacts::pressed(const ContactArrays& c, std::size_t i) const {
+  const Eigen::Vector3f normal(c.nx[i], c.ny[i], c.nz[i]);
+  const auto push_on = [&](std::uint32_t place) {
+    return place < pushes_.size() ? pushes_[place].dot(normal) : 0.0f;
+  };
+  return std::max(0.0f, push_on(c.second[i]) - push_on(c.first[i]));
+}
+
 void SphereContacts::recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants,
                             const ContactRun& run) const {
   ContactArrays& c = *run.arrays;
@@ -172,6 +181,7 @@ void SphereContacts::recall(const Spheres& spheres, float bounce_velocity, const
   for (std::size_t i = run.begin; i < run.end; ++i) {
     nth = c.first[i] == last ? nth + 1 : 0;
     last = c.first[i];
+    if (!pushes_.empty()) c.closing[i] += pressed(c, i);
     const bool impact = c.closing[i] < -bounce_velocity;  // is no support
     c.impulse[i] = impact || none ? 0.0f
                                   : constants.remembered * constants.time *

@@ -97,6 +97,9 @@ class SphereContacts {
   void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity,
             const StepConstants& constants, Simd simd, const JobRunner& jobs, std::vector<BallPairs>* others);
   /// Of two owners: whether they may meet; empty: all. Called from several threads.
+  /// m/s, by place awake: what forces add to velocities in the next step, of which these have it already;
+  /// none where no force acts. Refers to it until the next call.
+  void set_pushes(std::span<const Eigen::Vector3f> by_place) { pushes_ = by_place; }
   void set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter) {
     pair_filter_ = std::move(filter);
   }
@@ -175,6 +178,7 @@ class SphereContacts {
                     std::uint32_t nth) const;
   float find_known_force(const Spheres& spheres, std::uint32_t at, std::uint32_t other) const;
   float find_known_apart(std::uint32_t owner, std::uint32_t other) const;
+  float pressed(const ContactArrays& c, std::size_t i) const;
   void recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants,
               const ContactRun& run) const;
   void make_room_to_remember(Spheres& spheres);
@@ -191,6 +195,7 @@ class SphereContacts {
   }
 
   SphereContactSettings settings_;
+  std::span<const Eigen::Vector3f> pushes_;
   std::function<bool(std::uint32_t, std::uint32_t)> pair_filter_;
   std::vector<Part> parts_;  // the grid's, one for contacts that were added, and one for those with planes
   // As many arrays as parts were searched at once: room for the contacts of all parts together, not for as

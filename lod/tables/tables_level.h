@@ -134,10 +134,6 @@ class TablesLevel {
     std::int32_t slot;
     Vec3 force, torque;
   };
-  struct Acting {
-    std::int32_t slot;
-    Vec3 too_far;  // m: where a push at the step's beginning takes it, less where the force does
-  };
 
   StepWorld world() const {
     return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, nullptr, log_};
@@ -168,7 +164,9 @@ class TablesLevel {
   bool rolls_on_ground(std::int64_t place) const;
 
   void apply_pushes(double dt, ContactTally& tally);
+  void note_pushes();
   void take_back_excess();
+  void give_pushes(double share);
   void start(double dt, std::span<const std::uint32_t> order);
   void find_near_faces(std::int64_t begin, std::int64_t end);
   bool find_planes_of(std::int64_t place);
@@ -256,7 +254,8 @@ class TablesLevel {
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
   std::vector<Load> loads_, new_loads_;                  // of the last step's guests, by slot; of this one's
   std::vector<Push> pushes_;
-  std::vector<Acting> acting_;                    // in this step
+  ActingForces acting_;                           // in this step; bodies begin it with what they give in all
+  std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::pair<std::uint32_t, std::uint32_t>>

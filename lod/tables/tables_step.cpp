@@ -56,9 +56,10 @@ void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
     if (!is_within_limit(body.velocity) || !is_within_limit(body.spin))
       recover(place, tally);
     else
-      acting_.push_back({push.slot, 0.5 * dt * impulse * push.force});
+      acting_.add({push.slot, (impulse / dt) * push.force, (impulse / dt) * push.torque});
   }
   pushes_.clear();
+  acting_.put_in_order();
 }
 
 void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
@@ -200,6 +201,8 @@ void TablesLevel::update_radii_one_by_one() {
 
 void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
   const std::int64_t were_awake = spheres_.awake;
+  note_pushes();
+  contacts_.set_pushes(pushes_by_place_);
   contacts_.find(spheres_, kinds_, cells, bounce_velocity(), constants_, simd_, jobs_, others);
   find_still_contacts();
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
@@ -355,7 +358,9 @@ void TablesLevel::respond(ContactTally& tally) {
   const bool crowd = contacts_.count() > 0;
   if (crowd) contacts_.begin(spheres_, kinds_, materials_, constants_, step_, jobs_);
   if (crowd) press();
+  give_pushes(-1.0);  // what presses a body to the ground does not throw it there
   sort_ground();
+  give_pushes(1.0);
   if (!crowd) return;
   pass_blows_on();
   const int rounds = sweeps();
@@ -515,10 +520,30 @@ void TablesLevel::finish(ContactTally& tally) {
 
 // Of bodies that flew through the whole step: a force acted through it, not at its beginning.
 void TablesLevel::take_back_excess() {
-  for (const auto& [slot, too_far] : acting_) {
-    const std::size_t i = place_of(slot);
+  for (const ActingForce& force : acting_.all()) {
+    const std::size_t i = place_of(force.slot);
     if (step_.on_ground[i] != std::uint8_t(GroundState::free) || step_.touches(std::int64_t(i))) continue;
+    const Vec3 too_far = 0.5 * constants_.wide_time * constants_.wide_time * force.acceleration;
     spheres_.x[i] -= too_far.x(), spheres_.y[i] -= too_far.y(), spheres_.z[i] -= too_far.z();
+  }
+}
+
+// For contacts(): what presses together does not strike.
+void TablesLevel::note_pushes() {
+  pushes_by_place_.clear();
+  if (acting_.empty()) return;
+  pushes_by_place_.assign(std::size_t(spheres_.awake), Eigen::Vector3f::Zero());
+  for (const ActingForce& force : acting_.all()) {
+    pushes_by_place_[place_of(force.slot)] = (constants_.wide_time * force.acceleration).cast<float>();
+  }
+}
+
+// m/s, times `share`.
+void TablesLevel::give_pushes(double share) {
+  for (const ActingForce& force : acting_.all()) {
+    const std::size_t i = place_of(force.slot);
+    const Vec3 push = share * constants_.wide_time * force.acceleration;
+    spheres_.vx[i] += push.x(), spheres_.vy[i] += push.y(), spheres_.vz[i] += push.z();
   }
 }
 
@@ -563,6 +588,13 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Pl
   const auto carried = std::ranges::lower_bound(carried_, i, {}, &Carried::place);
   const bool rides = carried != carried_.end() && carried->place == i;
   if (rides) body.velocity -= carried->velocity;
+  if (!step_.touches(i) && constants_.hulls) {
+    const ActingForce& force = acting_.of(std::int32_t(spheres_.slot[i]));
+    body.velocity -= constants_.wide_time * force.acceleration;
+    body.spin -= constants_.wide_time * force.turning;
+    around.gravity += force.acceleration;  // for what moves alone, as good as a gravity of its own
+    around.turning = force.turning;
+  }
   if (step_.on_ground[i] == std::uint8_t(GroundState::stands)) {
     tally += move_over_ground(i, body, around, rides, joined);
   } else {

@@ -23,6 +23,7 @@ struct OneSupportLevel {
   }
   void step(double dt = kSupportStep) {
     level.begin_step(dt, tally);
+    level.end_search();
     const std::vector<std::int32_t> awake(level.awake().begin(), level.awake().end());
     for (const std::int32_t slot : awake) {
       ContactTally own;

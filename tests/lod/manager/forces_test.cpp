@@ -1,0 +1,114 @@
+// Forces that go on, on bodies that touch something: they act through the step, and what they press together
+// does not strike.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+constexpr double kCubeSide = 0.4, kMu = 0.6, kG = 9.81;  // m, –, m/s²
+constexpr LevelChoice kPushedRungs[] = {LevelChoice::support, LevelChoice::tables};
+
+Manager on_rough_floor() {
+  Manager manager = on_floor({.signatures = coarse_signature});
+  manager.materials().replace(0, {.restitution = 0.4, .friction = kMu});
+  return manager;
+}
+
+/// Their forces in weights, by body.
+void run_pushed(Manager& manager, std::span<const BodyId> bodies,
+                const std::function<Vec3(std::size_t)>& push, double seconds) {
+  for (int i = 0; i < int(seconds / kFrame); ++i) {
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      manager.add_force(bodies[k], push(k) * manager.mass(bodies[k]) * kG);
+    manager.step(kFrame);
+  }
+}
+
+TEST(Forces, WhatIsPressedToTheGroundLiesThere) {
+  for (const LevelChoice level : kPushedRungs)
+    for (const double down : {0.0, 1.0, 4.0}) {
+      Manager manager = on_rough_floor();
+      const BodyId cube = add(manager, box_shape({kCubeSide, kCubeSide, kCubeSide}),
+                              testing::at({0, 0, 0.5 * kCubeSide}), level);
+      run_pushed(
+          manager, {&cube, 1}, [&](std::size_t) { return Vec3(0.5, 0, -down); }, 5.0);
+      const RigidState end = manager.state(cube);
+      EXPECT_LT(end.position.head<2>().norm(), 0.01) << int(level) << " under " << down;
+      EXPECT_NEAR(end.position.z(), 0.5 * kCubeSide, 5e-4) << int(level) << " under " << down;
+      EXPECT_LT(end.velocity.norm() + kCubeSide * end.angular_velocity.norm(), 0.01)
+          << int(level) << " under " << down;
+    }
+}
+
+TEST(Forces, WhatIsPressedToAWallHangsThere) {
+  for (const LevelChoice level : kPushedRungs) {
+    Manager manager = on_rough_floor();
+    manager.add_plane(-Vec3::UnitX(), -0.5 * kCubeSide);
+    const BodyId cube =
+        add(manager, box_shape({kCubeSide, kCubeSide, kCubeSide}), testing::at({0, 0, 2}), level);
+    run_pushed(
+        manager, {&cube, 1}, [](std::size_t) { return Vec3(2, 0, 0); }, 5.0);
+    EXPECT_NEAR(manager.state(cube).position.z(), 2.0, 0.02) << int(level);
+  }
+}
+
+TEST(Forces, AStackUnderAPressHolds) {
+  Manager manager = on_rough_floor();
+  std::vector<BodyId> stack;
+  for (int i = 0; i < 3; ++i)
+    stack.push_back(add(manager, box_shape({kCubeSide, kCubeSide, kCubeSide}),
+                        testing::at({0, 0, (i + 0.5) * kCubeSide}), LevelChoice::support));
+  run_pushed(
+      manager, stack, [](std::size_t k) { return k == 2 ? Vec3(0.5, 0, -4) : Vec3(Vec3::Zero()); }, 5.0);
+  for (int i = 0; i < 3; ++i) {
+    const RigidState end = manager.state(stack[std::size_t(i)]);
+    EXPECT_LT((end.position - Vec3(0, 0, (i + 0.5) * kCubeSide)).norm(), 0.005) << i;
+    EXPECT_LT(end.velocity.norm() + kCubeSide * end.angular_velocity.norm(), 0.01) << i;
+  }
+}
+
+// A world's gravity that its caller gives body by body.
+TEST(Forces, AGravityOfItsOwnIsAsGoodAsTheWorlds) {
+  Manager manager = on_rough_floor();
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 4; ++i)
+    bodies.push_back(manager.add_body(
+        {.shape = box_shape({kCubeSide, kCubeSide, kCubeSide}),
+         .state = testing::at(i < 3 ? Vec3(0, 0, 0.1 + (i + 0.5) * kCubeSide) : Vec3(3, 0, 1.0)),
+         .level = LevelChoice::support,
+         .properties = {.gravity = false}}));
+  run_pushed(
+      manager, bodies, [](std::size_t) { return Vec3(0, 0, -1); }, 5.0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const RigidState end = manager.state(bodies[i]);
+    EXPECT_NEAR(end.position.z(), (i < 3 ? double(i) + 0.5 : 0.5) * kCubeSide, 0.002) << i;
+    EXPECT_LT(end.velocity.norm() + kCubeSide * end.angular_velocity.norm(), 0.02) << i;
+  }
+}
+
+// What presses only holds: a torque too small to tip the cube leaves it where it is.
+TEST(Forces, ATorqueTooSmallToTipLeavesItLying) {
+  for (const LevelChoice level : kPushedRungs) {
+    Manager manager = on_rough_floor();
+    const BodyId cube = add(manager, box_shape({kCubeSide, kCubeSide, kCubeSide}),
+                            testing::at({0, 0, 0.5 * kCubeSide}), level);
+    const double tips = manager.mass(cube) * kG * 0.5 * kCubeSide;  // N m
+    double fastest = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      manager.add_force(cube, Vec3::Zero(), Vec3(0, 0.8 * tips, 0));
+      manager.step(kFrame);
+      if (i > 60) fastest = std::max(fastest, manager.state(cube).angular_velocity.norm());
+    }
+    EXPECT_LT(fastest, 0.05) << int(level);
+    EXPECT_LT(manager.state(cube).position.head<2>().norm(), 0.01) << int(level);
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
