@@ -4,6 +4,8 @@
 #include <limits>
 #include <mutex>
 
+#include "reference/ode/contact_filter.h"
+
 namespace lodestone::ode {
 namespace {
 
@@ -17,6 +19,13 @@ double height_of(const Body& body, const Plane& plane) {
 double approach_of(const Body& body, const Vec3& arm, const Vec3& normal) {
   return -normal.dot(to_vec3(dBodyGetLinearVel(body.body)) +
                      to_vec3(dBodyGetAngularVel(body.body)).cross(arm));
+}
+
+/// m/s², by gravity and by what else acts on it in the substep.
+double pressing(const Body& body, const Vec3& normal, const Vec3& gravity) {
+  dMass mass;
+  dBodyGetMass(body.body, &mass);
+  return -normal.dot(gravity + to_vec3(dBodyGetForce(body.body)) / mass.mass);
 }
 
 Mat3 rotation_of(const Body& body) {
@@ -36,7 +45,7 @@ void PlanePhase::find(Body& body, const Plane& plane, const ContactLaw& law, con
     find_hull_points(body, plane, law, step, points);
   else
     find_sphere_points(body, plane, law, step, points);
-  keep_deepest(points);
+  keep_widest(body, points);
 }
 
 // How far below the plane vertices are of interest, m: what may come down to it within the step, where
@@ -44,7 +53,7 @@ void PlanePhase::find(Body& body, const Plane& plane, const ContactLaw& law, con
 double PlanePhase::nearing(const Body& body, const Plane& plane, const PlaneStep& step) const {
   const bool timed = is_timed(body, step);
   if (!timed && settings_.plane_depth_max > 1.0) return 0.0;
-  const double fall = timed ? std::max(0.0, -plane.normal.dot(step.gravity)) * step.duration : 0.0;
+  const double fall = timed ? std::max(0.0, pressing(body, plane.normal, step.gravity)) * step.duration : 0.0;
   const double approach = approach_of(body, Vec3::Zero(), plane.normal) +
                           to_vec3(dBodyGetAngularVel(body.body)).norm() * body.reach;
   return (std::max(0.0, approach) + fall) * step.duration;
@@ -79,7 +88,7 @@ void PlanePhase::append_timed(Body& body, const Plane& plane, const ContactLaw& 
   body.impact_time = append_timed_contacts(near_,
                                            {.body = state_of(body.body),
                                             .normal = plane.normal,
-                                            .gravity = -plane.normal.dot(step.gravity),
+                                            .gravity = pressing(body, plane.normal, step.gravity),
                                             .duration = step.duration,
                                             .restitution = law.restitution,
                                             .bounce_velocity = settings_.bounce_velocity},
@@ -128,12 +137,14 @@ void PlanePhase::find_mesh_points(const Body& body, const Plane& plane,
   }
 }
 
-void PlanePhase::keep_deepest(std::vector<ContactPoint>& points) {
+// The deepest and those farthest apart: the deepest alone may all be on one side of a face of many corners,
+// which then rocks for ever.
+void PlanePhase::keep_widest(const Body& body, std::vector<ContactPoint>& points) {
   std::ranges::stable_sort(points, std::ranges::greater{}, &ContactPoint::depth);
-  const auto most = std::size_t(settings_.max_contacts_per_pair);
-  if (points.size() <= most) return;
-  dropped_ += std::int64_t(points.size() - most);
-  points.resize(most);
+  if (int(points.size()) <= settings_.max_contacts_per_pair) return;
+  const int kept = reduce_contacts(points, settings_.max_contacts_per_pair, body.shape->size);
+  dropped_ += std::int64_t(points.size()) - kept;
+  points.resize(std::size_t(kept));
 }
 
 }  // namespace lodestone::ode

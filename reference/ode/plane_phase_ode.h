@@ -50,7 +50,7 @@ class PlanePhase {
   void find_mesh_points(const Body& body, const Plane& plane, std::vector<ContactPoint>& points) const;
   double nearing(const Body& body, const Plane& plane, const PlaneStep& step) const;
   bool is_timed(const Body& body, const PlaneStep& step) const;
-  void keep_deepest(std::vector<ContactPoint>& points);
+  void keep_widest(const Body& body, std::vector<ContactPoint>& points);
 
   OdeSettings settings_;
   PlaneContactFinder plane_contacts_;

@@ -8,8 +8,11 @@ double square(double x) { return x * x; }
 // Summed as ODE does.
 double squared_norm(const dReal* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
+// ODE would keep what acts on it until it wakes, and then give it at once.
 void put_to_rest(dBodyID body) {
   dBodyDisable(body);
+  dBodySetForce(body, 0, 0, 0);
+  dBodySetTorque(body, 0, 0, 0);
   dBodySetLinearVel(body, 0, 0, 0);
   dBodySetAngularVel(body, 0, 0, 0);
 }

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kFastImpact = 3.0;  // × g·h: what comes slower lands as ODE has it; of bodies at rest the
                                      // answers to such would never end
+constexpr double kFreeImpact = 15.0;  // × g·h: what comes slower may rock on its other vertices, which fall
+                                      // by less than g
 constexpr double kTogether = 0.04;   // of a step: vertices that strike within it of the first strike with it
 
 class TimedContacts {
@@ -54,10 +56,12 @@ class TimedContacts {
   /// ODE gives it e times its approach at the start of the step, at the step's end. Gravity speeds it up
   /// until it strikes and pulls it back afterwards; and ODE's velocities are those of the middle of the last
   /// step (it moves a body by the velocity that a step ends with). A bounce that would be over before the end
-  /// is none.
+  /// is none. What may not have fallen freely is given nothing by gravity: at restitution .9 it would never
+  /// come to rest.
   ContactPoint impact(const NearPoint& point) const {
     const double rebound = step_.restitution * approach(point), half = 0.5 * step_.duration;
-    const double lift = step_.gravity * (step_.restitution * (half + first_) - (half - first_));
+    const double fell = step_.gravity * (step_.restitution * (half + first_) - (half - first_));
+    const double lift = approach(point) > kFreeImpact * fall_ ? fell : std::min(fell, 0.0);
     return {at(rotation_from_vector(first_ * step_.body.angular_velocity) * point.arm), step_.normal, 0.0,
             std::max(-rebound, lift)};
   }
