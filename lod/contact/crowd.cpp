@@ -525,9 +525,12 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) con
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       const auto give = [&](Participant to, Participant from, const Vec3& impulse, const Vec3& arm) {
         if (!to.is_full() || scene.neighbor(to).asleep || scene.properties(to).kinematic) return;
-        const bool hits =
-            point.bounces && !is_borne_up(scene, from) && !is_backed(to.index(), impulse, touch);
-        Impulse& share = hits ? scene.neighbor(to).hit : scene.neighbor(to).push;
+        const bool hits = point.bounces && !is_borne_up(scene, from);
+        FullNeighbor& full = scene.neighbor(to);
+        Impulse& share = !hits                                   ? full.push
+                         : is_backed(to.index(), impulse, touch) ? full.backed_hit
+                                                                 : full.hit;
+        if (hits) full.fastest_hit = std::max(full.fastest_hit, double(point.blow));
         const bool moves =
             from.is_statistical() && !scene.asleep(from) && scene.body(from).quiet_time == 0.0f;
         scene.neighbor(to).carried |= moves;
@@ -538,6 +541,17 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) con
                         second = participants_[std::size_t(m.second)];
       give(first, second, point.impulse, point.arm_first);
       give(second, first, -point.impulse, point.arm_second);
+    }
+  for (const CrowdManifold& m : std::span(manifolds_).subspan(pair_manifolds_))
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
+      const auto note = [&](std::int32_t index, const Vec3& impulse, const Vec3& arm) {
+        if (m.second >= 0 || !participants_[std::size_t(index)].is_full()) return;
+        Impulse& backing = scene.neighbor(participants_[std::size_t(index)]).backing;
+        backing.linear += impulse;
+        backing.angular += arm.cross(impulse);
+      };
+      note(m.first, point.impulse, point.arm_first);
+      note(m.second, -point.impulse, point.arm_second);
     }
 }
 

@@ -85,9 +85,13 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     neighbors[i].asleep = full_[i].asleep;
     neighbors[i].hit = full_[i].hit;
     neighbors[i].push = full_[i].push;
+    neighbors[i].backed_hit = full_[i].backed_hit;
+    neighbors[i].fastest_hit = full_[i].fastest_hit;
+    neighbors[i].backing = full_[i].backing;
     neighbors[i].shift = full_[i].shift;
     neighbors[i].carried = full_[i].carried;
     neighbors[i].end = full_[i].state;
+    answer_hit(neighbors[i]);
   }
   find_carriers(step.scene);
 }

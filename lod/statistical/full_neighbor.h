@@ -13,6 +13,7 @@ namespace lodestone {
 struct Impulse {
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
   bool is_zero() const { return linear.isZero(0.0) && angular.isZero(0.0); }
+  Impulse operator+(const Impulse& other) const { return {linear + other.linear, angular + other.angular}; }
 };
 
 /// A body of the full level, as statistical ones meet it: it takes part in this step's contacts with its own
@@ -31,12 +32,21 @@ struct FullNeighbor {
   bool carried = false;        ///< out: by what nothing stops (CarriedBodies), or touched by a statistical
                                ///< body that moves: it must not sleep
   Impulse hit;                 ///< out: of impacts, to be given to the body before the full level's step
-  Impulse push;  ///< out: of resting, sliding and rolling, to be given as a force spread over that step
+  Impulse push;        ///< out: of resting, sliding and rolling, to be given as a force spread over that step
+  Impulse backed_hit;  ///< out: of impacts against what of ODE's stands behind it
+  double fastest_hit = 0.0;   ///< out: m/s, of all of them
+  Impulse backing;            ///< out: of what else of ODE's it touches, as the statistical level reckoned it
   Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
   RigidState end;             ///< out: at the end of the step, where nothing else touches it
 
   bool is_touched() const { return !hit.is_zero() || !push.is_zero(); }  ///< by a statistical body
 };
+
+/// Of one that is not asleep, once a step is reckoned: what of its hits it begins ODE's step with. Where push
+/// takes back what a hit gives, in terms of kinetic energy, that part of the hit is a push, too. And of a
+/// body that is struck again and again between others and the ground, by impulses that all but cancel, only
+/// what is left of all of them is a hit: ODE would not answer each with the same opposite, and throw it out.
+void answer_hit(FullNeighbor& neighbor);
 
 /// A kinematic statistical body that touched a full neighbour which is awake and not kinematic.
 struct CarriedFull {

@@ -60,8 +60,8 @@ TEST(JointForces, APistonPushesARow) {
   EXPECT_NEAR(manager.state(row.front()).position.x(), 0.59, 0.02);
 }
 
-// In steps of the caller's, as long as those for which he made the spring. Nothing sleeps, which would end the
-// swing where it is slow.
+// In steps of the caller's, as long as those for which he made the spring. Nothing sleeps, which would end
+// the swing where it is slow.
 TEST(JointForces, ASpringBearsWhatLiesOnIt) {
   constexpr double kStiffness = 3000.0, kDamping = 200.0, kPlate = 5.0, kCrateMass = 10.0;  // N/m, N s/m, kg
   JointedWorld theirs;

@@ -6,31 +6,17 @@
 #include <vector>
 
 #include "reference/random.h"
-#include "reference/shape.h"
 #include "tests/lod/manager/manager_fixture.h"
+#include "tests/prism.h"
 
 namespace lodestone {
 namespace {
-
-std::shared_ptr<const Shape> make_prism(int sides, double radius, double thickness) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < sides; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / sides;
-    for (const double z : {-0.5, 0.5})
-      corners.push_back({radius * std::cos(angle), radius * std::sin(angle), z * thickness});
-  }
-  const Hull hull = make_hull(corners);
-  Mesh mesh;
-  mesh.vertices = hull.vertices;
-  mesh.faces = hull.faces;
-  return std::make_shared<const Shape>(make_shape("prism", mesh));
-}
 
 TEST(RoundPlates, HoldWhatStandsOnThem) {
   constexpr double kRadius = 2.0, kThickness = 0.2, kCrate = 0.3;  // m
   const auto crate = testing::box_shape({kCrate, kCrate, kCrate});
   for (const int sides : {5, 8, 24, 100}) {
-    const auto plate = make_prism(sides, kRadius, kThickness);
+    const auto plate = testing::make_prism(sides, kRadius, kThickness);
     Manager manager = testing::on_floor();
     RigidState lies;
     lies.position = {0.0, 0.0, 0.5 * kThickness};

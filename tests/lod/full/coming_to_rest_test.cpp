@@ -1,0 +1,40 @@
+// Full bodies on a plane come to rest.
+#include <gtest/gtest.h>
+
+#include "reference/random.h"
+#include "tests/lod/manager/manager_fixture.h"
+#include "tests/prism.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+// More corners lie on the ground than a contact has points.
+TEST(FullComesToRest, ACoinOfManyCornersLiesStill) {
+  for (const int sides : {20, 32, 64}) {
+    Manager manager = on_floor();
+    const BodyId coin =
+        add(manager, make_prism(sides, 0.1, 0.03), testing::at({0, 0, 0.016}), LevelChoice::full);
+    run(manager, 2.0);
+    EXPECT_TRUE(manager.asleep(coin)) << sides;
+  }
+}
+
+// Restitution gives back no more than a vertex brought, however slow.
+TEST(FullComesToRest, AtRestitutionPointNine) {
+  RandomStream random(3, 0, 0);
+  Manager manager = on_floor();
+  manager.materials().replace(0, {.restitution = 0.9, .friction = 0.5});
+  const auto prism = make_prism(3, 0.06, 0.5);
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 20; ++i)
+    bodies.push_back(add(manager, prism,
+                         {.position = Vec3(2.0 * i, 0, 1), .orientation = random.orientation()},
+                         LevelChoice::full));
+  run(manager, 12.0);
+  EXPECT_LE(std::ranges::count_if(bodies, [&](BodyId body) { return !manager.asleep(body); }), 1);
+}
+
+}  // namespace
+}  // namespace lodestone

@@ -1,0 +1,102 @@
+// Light full bodies between heavy ones of other rungs: struck many times in a step, they must not be thrown
+// out.
+#include <gtest/gtest.h>
+
+#include "lod/statistical/full_neighbor.h"
+#include "reference/mesh/mesh.h"
+#include "reference/random.h"
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+std::shared_ptr<const Shape> l_shape() {
+  return std::make_shared<const Shape>(make_shape("l", make_l(0.3, 0.2, 0.08, 0.1)));
+}
+
+TEST(Squeezed, BetweenTwoThatCloseInNoEnergyIsMade) {
+  const auto l = l_shape(), cube = box_shape({0.5, 0.5, 0.5});
+  constexpr double kSqueezedMass = 4.0, kPressing = 30.0 * kSqueezedMass, kClosing = 2.0;  // kg, m/s
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    RandomStream random(seed, 0, 0);
+    ManagerSettings settings = unmeasured();
+    settings.gravity = Vec3::Zero();
+    Manager manager(settings);
+    std::vector<BodyId> bodies{manager.add_body({.shape = l,
+                                                 .state = {.orientation = random.orientation()},
+                                                 .mass = kSqueezedMass,
+                                                 .level = LevelChoice::full})};
+    for (const double side : {-1.0, 1.0})
+      bodies.push_back(manager.add_body(
+          {.shape = cube,
+           .state = testing::at({side * 0.55, random.uniform(-0.1, 0.1), 0.0}, {-side * kClosing, 0, 0}),
+           .mass = kPressing,
+           .level = LevelChoice::support}));
+    const auto sum = [&] {
+      double all = 0.0;
+      for (const BodyId body : bodies)
+        all += energy(manager, body) - manager.mass(body) * kGravity * manager.state(body).position.z();
+      return all;
+    };
+    const double before = sum();
+    for (int i = 0; i < 40; ++i) {
+      manager.step(kFrame);
+      ASSERT_LT(sum(), 1.02 * before) << seed << " at step " << i;
+    }
+  }
+}
+
+TEST(Squeezed, OnTheGroundItIsNotThrownOut) {
+  const auto l = l_shape(), crate = box_shape({0.3, 0.45, 0.6});
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    RandomStream random(seed, 0, 0);
+    Manager manager = on_floor(unmeasured());
+    const BodyId light = add(manager, l, testing::at({0, 0, 0.05}), LevelChoice::full);
+    run(manager, 0.5);
+    const BodyId heavy = manager.add_body(
+        {.shape = crate,
+         .state = {.position = Vec3(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1.2),
+                   .orientation = random.orientation(),
+                   .velocity = Vec3(0, 0, -3)},
+         .mass = 300.0,
+         .level = LevelChoice::support});
+    const auto sum = [&] {
+      double all = 0.0;
+      for (const BodyId body : {light, heavy}) all += energy(manager, body);
+      return all;
+    };
+    const double before = sum();
+    for (int i = 0; i < 90; ++i) {
+      manager.step(kFrame);
+      ASSERT_LT(sum(), 1.2 * before) << seed << " at step " << i;
+    }
+  }
+}
+
+TEST(Squeezed, WhatIsLeftOfAHitIsItsSum) {
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  FullNeighbor neighbor;
+  neighbor.shape = cube.get(), neighbor.mass = 2.0;
+  neighbor.fastest_hit = 3.0;
+  // Once, and nothing is behind it: all of it.
+  neighbor.hit.linear = Vec3(0, 0, -8);
+  answer_hit(neighbor);
+  EXPECT_EQ(neighbor.hit.linear, Vec3(0, 0, -8));
+  EXPECT_TRUE(neighbor.push.is_zero());
+  // What a push takes back is a push.
+  neighbor.push.linear = Vec3(1, 0, 6);
+  answer_hit(neighbor);
+  EXPECT_LT((neighbor.hit.linear - Vec3(0, 0, -2)).norm(), 1e-12);
+  EXPECT_LT((neighbor.push.linear - Vec3(1, 0, 0)).norm(), 1e-12);
+  // Against the ground, many times: what is left.
+  neighbor.hit = {}, neighbor.push = {};
+  neighbor.backed_hit.linear = Vec3(4, 0, -200), neighbor.backing.linear = Vec3(-3, 0, 201);
+  answer_hit(neighbor);
+  EXPECT_LT((neighbor.hit.linear - Vec3(1, 0, 1)).norm(), 1e-12);
+  EXPECT_TRUE(neighbor.push.is_zero());
+}
+
+}  // namespace
+}  // namespace lodestone
