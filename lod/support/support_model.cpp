@@ -87,9 +87,10 @@ void clamp_energy(const Vec3& velocity_before, const Vec3& spin_before, Statisti
   ++tally.energy_clamps;
 }
 
-// What moves a body up slows it down, if by no more than half of its kinetic energy: what is next to balanced
-// on an edge falls over nevertheless. One that parts from what it overlapped when it came is moved by no
-// motion of its own.
+// What moves a body up that rolls onto vertices that did not carry it slows it down, if by no more than half
+// of its kinetic energy. (On an edge or a face it turns about what carries it: there ODE's law has all of it,
+// and what is taken for nothing but rounding keeps a pillar next to balance from falling.) One that parts
+// from what it overlapped when it came is moved by no motion of its own.
 class EnergyBound {
  public:
   EnergyBound(StatisticalBody& body, const Shape& shape, const Vec3& gravity, bool bounded)
@@ -174,6 +175,7 @@ void respond(StatisticalBody& body, const BodyKind& kind, const LowestPoint& low
 struct HeldVertices {
   std::array<std::pair<std::int32_t, Vec3>, 3 * kMaxGroundContacts> impulse;  // by vertex, N s over mass
   int count = 0;
+  bool rolls = false;  // onto a vertex that was none of these
   Vec3 find(std::int32_t vertex) const {
     for (int i = 0; i < count; ++i)
       if (impulse[i].first == vertex) return impulse[i].second;
@@ -290,7 +292,9 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
     if (settings.timed_bounces) solver.fall = on.rotation.transpose() * fallen;
     const GroundMotion before = on.motion;
     solve_ground_contacts(on.motion, shape.inverse_inertia_per_mass, found.contacts(), time, solver);
-    if (add_sinking(body, kind, world, on, time, found)) {
+    const bool sinks = add_sinking(body, kind, world, on, time, found);
+    held.rolls |= sinks;
+    if (sinks) {
       on.motion = before;
       solve_ground_contacts(on.motion, shape.inverse_inertia_per_mass, found.contacts(), time, solver);
     }
@@ -311,9 +315,10 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
   }
   held.count = int(found.count);
   body.position += body.velocity * time;
-  energy.keep(found.count > 0 && found.contact[0].law.friction == 0.0
-                  ? std::optional(world.planes[std::size_t(tally.touched_plane)].normal)
-                  : std::nullopt);
+  if (held.rolls)
+    energy.keep(found.count > 0 && found.contact[0].law.friction == 0.0
+                    ? std::optional(world.planes[std::size_t(tally.touched_plane)].normal)
+                    : std::nullopt);
   if (found.deepest < 0.0 && body.eased <= 0.0f)
     body.position +=
         push_out_overlap(found.deepest, shape.radius) * world.planes[std::size_t(tally.touched_plane)].normal;
@@ -322,9 +327,9 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
 
 // The ground has the last word.
 void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, const HalfSpace& plane,
-              double time, const SupportSettings& settings) {
+              double time, bool rolls, const SupportSettings& settings) {
   const Shape& shape = *kind.shape;
-  EnergyBound energy(body, shape, world.gravity, settings.energy_bounded);
+  EnergyBound energy(body, shape, world.gravity, settings.energy_bounded && rolls);
   lift_out(body, shape, plane, world.gravity, lift_of(body, shape, world.gravity_strength(), time));
   energy.keep(world.law(kind, plane).friction == 0.0 ? std::optional(plane.normal) : std::nullopt);
 }
@@ -384,7 +389,7 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
     body.spin -= world.turning * left;
     for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, held, tally);
     if (tally.touched_plane >= 0)
-      lift_off(body, kind, world, world.planes[tally.touched_plane], left, settings);
+      lift_off(body, kind, world, world.planes[tally.touched_plane], left, held.rolls, settings);
   }
   return tally;
 }
