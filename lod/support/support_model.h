@@ -13,7 +13,7 @@ struct SupportSettings {
   int max_impacts = 4;            ///< exact impacts a step; what is left of the step is done in contact steps
   double contact_step = 0.05;     ///< longest contact step over √(R/g)
   double contact_margin = 0.002;  ///< over R: vertices this near the ground can carry
-  ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2};
+  ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2, .frictionless_bound = true};
   bool timed_bounces =
       true;  ///< what strikes within a contact step leaves as fast as it would at its own time
   bool energy_bounded = true;  ///< no contact step, and no lift out of the ground, adds energy: without, a

@@ -56,5 +56,29 @@ TEST(Leaning, WhatIsPastBalanceFallsAndWhatIsNotFallsBack) {
     }
 }
 
+// m: how far along the ground a cube ends from where it was let go, on an edge.
+double slip(double friction, double tilt, LevelChoice level) {
+  constexpr double kEdge = 0.2;  // m
+  ManagerSettings settings = unmeasured();
+  settings.full_substeps = 16;
+  Manager manager = on_floor(settings);
+  manager.materials().replace(0, {.restitution = 0.3, .friction = friction});
+  RigidState state{.orientation = Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY()))};
+  state.position.z() = 0.5 * kEdge * (std::sin(tilt) + std::cos(tilt));
+  const BodyId cube = add(manager, box_shape({kEdge, kEdge, kEdge}), state, level);
+  run(manager, 2.0);
+  return manager.state(cube).position.x() - state.position.x();
+}
+
+// dWorldStep bounds friction by what the normal impulses were without any.
+TEST(Leaning, TheEdgeSlipsAsInOde) {
+  for (const double friction : {0.3, 0.4, 0.6, 0.8})
+    for (const double tilt : {0.35, 0.6}) {
+      const double expected = slip(friction, tilt, LevelChoice::full);
+      EXPECT_NEAR(slip(friction, tilt, LevelChoice::support), expected, 0.15 * std::abs(expected) + 0.002)
+          << friction << " from " << tilt;
+    }
+}
+
 }  // namespace
 }  // namespace lodestone
