@@ -22,7 +22,8 @@ constexpr double kShareOfRing = 0.25;
 struct Target {
   Rung rung = Rung::support;
   Rule reason = Rule::far;
-  bool at_once = false;  // neither dwell nor cap may hold it up while too much or too many are there
+  bool at_once = false;  // neither dwell nor cap may hold it up while too much or too many are there; nor
+                         // what must leave a rung that it may not be on
 };
 
 Target target_by_limits(const LevelCandidate& c, double distance, const Limits& limits, double hysteresis) {
@@ -294,7 +295,7 @@ class Chooser {
       reason = Rule::overlap_put_off;
     } else if (c.decided()) {
       (up ? decision_.promote : decision_.demote).push_back({wish.index, wish.to});
-    } else if (c.newcomer || (target.at_once && !up)) {
+    } else if (c.newcomer || !c.open.has(c.present()) || (target.at_once && !up)) {
       (up ? promote_at_once_ : demote_at_once_).push_back(wish);
     } else {
       hold_or_queue(wish, up ? promote_ : demote_);
@@ -317,7 +318,8 @@ class Chooser {
       return sleeps != other_sleeps ? other_sleeps : farther(a, b);
     });
     for (Ranked& wish : demote_at_once_) {
-      if (room_ >= 0.0 && places_[std::size_t(candidate(wish).rung)] >= 0) {  // enough went down
+      const LevelCandidate& c = candidate(wish);
+      if (c.open.has(c.present()) && room_ >= 0.0 && places_[std::size_t(c.rung)] >= 0) {  // enough went down
         hold_or_queue(wish, demote_);
         continue;
       }

@@ -136,6 +136,22 @@ std::vector<PlacedSolid> QueryGround::find_along(const Sweep& sweep, std::vector
   return all;
 }
 
+// A part is met once, where it is met first: it may be of many solids.
+void QueryGround::meet_parts(std::span<const PlacedSolid> solids,
+                             const std::function<std::optional<SurfaceHit>(const PosedSurface&)>& meet_one,
+                             const Found& found) {
+  std::vector<std::pair<const GroundPart*, SurfaceHit>> hits;
+  for (const PlacedSolid& solid : solids)
+    if (const auto hit = meet_one(surface_of(solid))) hits.emplace_back(solid.part, *hit);
+  std::ranges::stable_sort(hits, [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first->id.index < b.first->id.index : a.second.distance < b.second.distance;
+  });
+  const GroundPart* last = nullptr;
+  for (const auto& [part, hit] : hits)
+    if (std::exchange(last, part) != part)
+      found({side_of(part->id, part->material), hit.point, hit.normal, hit.distance});
+}
+
 void QueryGround::meet(const Sweep& sweep, const Found& found) {
   const auto meet_plane = [&](const HalfSpace& plane) {
     const double height = plane.height_of(sweep.from), falling = -plane.normal.dot(sweep.direction);
@@ -150,9 +166,9 @@ void QueryGround::meet(const Sweep& sweep, const Found& found) {
   for (const HalfSpace& plane : ground_.planes()) meet_plane(plane);
   if (!ground_.has_parts()) return;
   std::vector<const GroundPart*> probed;
-  for (const PlacedSolid& solid : find_along(sweep, probed))
-    if (const auto hit = lodestone::meet(surface_of(solid), sweep))
-      found({side_of(solid.part->id, solid.part->material), hit->point, hit->normal, hit->distance});
+  meet_parts(
+      find_along(sweep, probed), [&](const PosedSurface& surface) { return lodestone::meet(surface, sweep); },
+      found);
   for (const GroundPart* part : probed) {
     const std::lock_guard lock(access_);
     const auto hit = part->shape.probe(sweep.from, sweep.direction, std::min(sweep.length, kFarthestPiece));
@@ -173,9 +189,9 @@ void QueryGround::overlap(const Volume& volume, const Found& found) {
   for (const HalfSpace& plane : ground_.planes()) overlap_plane(plane);
   if (!ground_.has_parts()) return;
   std::vector<const GroundPart*> probed;
-  for (const PlacedSolid& solid : find_near(volume.center, volume.reach, probed))
-    if (const auto hit = lodestone::overlap(surface_of(solid), volume))
-      found({side_of(solid.part->id, solid.part->material), hit->point, hit->normal, 0.0});
+  meet_parts(
+      find_near(volume.center, volume.reach, probed),
+      [&](const PosedSurface& surface) { return lodestone::overlap(surface, volume); }, found);
   for (const GroundPart* part : probed) {
     const std::lock_guard lock(access_);
     if (const auto below = probe_below(*part, volume.center, volume.reach)) overlap_plane(*below);

@@ -62,6 +62,9 @@ class QueryGround {
 
  private:
   ContactSide side_of(GroundId id, MaterialId material) const;
+  void meet_parts(std::span<const PlacedSolid> solids,
+                  const std::function<std::optional<SurfaceHit>(const PosedSurface&)>& meet_one,
+                  const Found& found);
   std::vector<PlacedSolid> find_along(const Sweep& sweep, std::vector<const GroundPart*>& probed);
   std::vector<PlacedSolid> find_near(const Vec3& center, double reach,
                                      std::vector<const GroundPart*>& probed);

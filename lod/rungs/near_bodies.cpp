@@ -226,7 +226,7 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
   StepWorld around = world();
   around.planes = join_planes(ground_.planes(), faces_.of(index));
   if (!body.is_sphere()) {
-    tally = step_support_body(body, kinds_[body.kind], around, time, SupportSettings{});
+    tally = step_support_body(body, kinds_[body.kind], around, time, SupportSettings::of_tables());
     return;
   }
   around.log = nullptr;  // where it touches nobody in the end, the tables level moves it once more

@@ -26,6 +26,15 @@ struct SupportSettings {
              ///< then .13 off instead of .17. More is worse for the armadillo's dense points.
   double greatest_impact_margin = 0.01;  ///< over R
   ContactSolverSettings impact_solver{.sweeps = 40, .frictionless_bound = true};
+
+  /// Of bodies of `tables` that move on their hulls and must come to rest by themselves. Friction is bounded
+  /// by each impulse as it is: with `support`'s bound two of two hundred rocked for ten seconds and more,
+  /// since in longer steps, while they are less slow, they lose less.
+  static SupportSettings of_tables() {
+    SupportSettings settings;
+    settings.solver.frictionless_bound = false;
+    return settings;
+  }
 };
 
 /// Moves a body that touches no other by `time` seconds over the ground's planes. `turned`: how it is turned

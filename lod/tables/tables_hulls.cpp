@@ -95,9 +95,7 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
                   .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
                   .impact_tolerance = 2e-4,
                   .impact_solver = {.sweeps = 6, .tolerance = 1e-2, .frictionless_bound = true}}};
-  // As `support`: where no clip takes over, it must come to rest by itself. With friction bounded as there it
-  // may be kept rocking by what `level` gives it as soon as it is less slow.
-  static const HullMotionSettings fine{.support = {.solver = {.sweeps = 8, .tolerance = 1e-2}}};
+  static const HullMotionSettings fine{.support = SupportSettings::of_tables()};
   const auto i = std::size_t(place);
   const Shape& shape = *kind_of(place).shape;
   const double radius = shape.radius;

@@ -88,6 +88,32 @@ TEST(Explain, CostsRiseWithTheRung) {
   EXPECT_GT(manager.explain(full).predicted_error, 0.0);
 }
 
+// Neither the dwell nor the cap on changes keeps a body on a rung that its caller has closed.
+TEST(LevelChoices, WhatIsNotToBeFullLeavesInTheNextStep) {
+  const auto refused = [](Manager& manager, BodyId body, bool range) {
+    if (range)
+      manager.set_rung_range(body, Rung::tables, Rung::support);
+    else
+      manager.set_level(body, LevelChoice::statistical);
+  };
+  for (const bool range : {false, true}) {
+    Manager manager =
+        on_floor({.policy = {.policy = DistancePolicy{.full_within = 4.0, .support_within = 10.0},
+                             .max_transitions_per_frame = 1},
+                  .signatures = coarse_signature});
+    view_from(manager, {0, 0, 1});
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 10; ++i)
+      bodies.push_back(
+          add(manager, box_shape({0.3, 0.3, 0.3}), testing::at({0.5 * (i % 5), 0.5 * (i / 5), 0.2})));
+    manager.step(kFrame);
+    for (const BodyId body : bodies) ASSERT_EQ(manager.level(body), Level::full);
+    for (const BodyId body : bodies) refused(manager, body, range);
+    manager.step(kFrame);
+    for (const BodyId body : bodies) EXPECT_EQ(manager.level(body), Level::statistical) << range;
+  }
+}
+
 TEST(RuleTexts, EachIsItsOwn) {
   std::set<std::string_view> texts;
   for (int rule = 0; rule <= int(Rule::carries_full); ++rule) {

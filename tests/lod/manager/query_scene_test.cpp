@@ -247,5 +247,31 @@ TEST_F(QueryBodies, AnswersFollowTheBodies) {
   }
 }
 
+// However many of its triangles are met.
+TEST(QueryScene, AMeshOfTheGroundIsMetOnce) {
+  constexpr int kTiles = 6;  // each way from the middle, of 1 m
+  Mesh floor;
+  for (int x = -kTiles; x <= kTiles; ++x)
+    for (int y = -kTiles; y <= kTiles; ++y) floor.vertices.push_back(Vec3(x, y, 0.1 * (x == y)));
+  const int row = 2 * kTiles + 1;
+  for (int x = 0; x + 1 < row; ++x)
+    for (int y = 0; y + 1 < row; ++y) {
+      const int a = x * row + y, b = a + row;
+      floor.faces.push_back({a, b, b + 1}), floor.faces.push_back({a, b + 1, a + 1});
+    }
+  Manager manager(testing::unmeasured());
+  manager.add_static_mesh(floor);
+  manager.add_static_box({0.5, 0.5, 0.5}, {0, 0.6, 0.25}, Quat::Identity());
+  std::vector<std::vector<QueryHit>> hits(1);
+  const SphereVolume sphere{Vec3(0, 0, 0.1), 0.5};
+  manager.overlap_spheres({&sphere, 1}, hits);
+  EXPECT_EQ(hits[0].size(), 2U);
+  const SphereSweep sweep{.ray = {.from = Vec3(0, 0, 3), .direction = -Vec3::UnitZ(), .length = 5.0},
+                          .radius = 0.5};
+  manager.sweep_spheres_through({&sweep, 1}, hits);
+  ASSERT_EQ(hits[0].size(), 2U);
+  EXPECT_LE(hits[0][0].distance, hits[0][1].distance);
+}
+
 }  // namespace
 }  // namespace lodestone
