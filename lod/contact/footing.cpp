@@ -8,7 +8,9 @@ namespace lodestone {
 namespace {
 
 constexpr double kBears = 0.2;      // cosine: so far up a normal bears
-constexpr double kTouches = 0.005;  // over R: gaps of points that it stands on
+constexpr double kTouches = 0.005;  // over R, and over the width of the area that it would stand on, so that
+                                    // it is tilted by no more (rad): gaps of points that it stands on
+constexpr double kLevel = 1e-4;     // over R: what is raised by no more is not
 constexpr double kBeyond = 0.005;   // over R: so far the area reaches beyond the place below its centre
 
 bool is_free(std::span<const SolverBody> bodies, std::int32_t body) {
@@ -45,8 +47,28 @@ void Footing::find(std::span<const SolverBody> bodies, std::span<const double> r
     carries_[i] = std::ranges::any_of(own, [](const CrowdPoint& p) { return !p.impulse.isZero(0.0); });
     if (!carries_[i]) continue;
     const std::int32_t body = bears_first ? m.first : m.second;
-    for (const CrowdPoint& p : own)
-      if (p.gap < kTouches * radii[std::size_t(body)]) stand(body, bears_first ? p.arm_first : p.arm_second);
+    const auto arm_of = [&](const CrowdPoint& p) { return bears_first ? p.arm_first : p.arm_second; };
+    const auto find_width = [&] {  // m
+      double width = 1e300;
+      for (const auto& [x, y] : ways) {
+        double from = 1e300, to = -1e300;
+        for (const CrowdPoint& p : own) {
+          const double at = arm_of(p).dot(double(x) * along + double(y) * across);
+          from = std::min(from, at), to = std::max(to, at);
+        }
+        width = std::min(width, to - from);
+      }
+      return width;
+    };
+    const double radius = radii[std::size_t(body)],
+                 nearest = std::max(0.0, std::ranges::min(own, {}, &CrowdPoint::gap).gap),
+                 level = nearest + kLevel * radius;
+    double raised = -1.0;  // m, once it is asked for
+    for (const CrowdPoint& p : own) {
+      if (p.gap >= kTouches * radius) continue;
+      if (p.gap > level && raised < 0.0) raised = nearest + kTouches * find_width();
+      if (p.gap <= std::max(level, raised)) stand(body, arm_of(p));
+    }
   }
   tips_.assign(bodies.size(), 0);
   for (std::size_t i = 0; i < bodies.size(); ++i)
