@@ -15,9 +15,9 @@ namespace lodestone {
 
 class CarriedBodies {
  public:
-  /// From the contacts of a substep.
+  /// From the contacts of a substep, and those that full bodies had in ODE's last one.
   void find(const ContactScene& scene, std::span<const CrowdContact> contacts,
-            std::span<const SolidContact> solid_contacts);
+            std::span<const SolidContact> solid_contacts, std::span<const FullContact> full_contacts = {});
   bool none() const { return !any_; }
   /// Of one that has a contact of those given to find().
   bool contains(Participant p) { return any_ && sets_.root_of(node_of(p)) == sets_.root_of(0); }

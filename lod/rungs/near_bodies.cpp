@@ -258,7 +258,7 @@ void NearBodies::wake(const Step& step, Participant p, Pace pace) {
 void NearBodies::wake_touched(const Step& step, Pace pace) {
   const ContactScene& scene = step.scene;
   woken_.clear();
-  carried_.find(scene, pairs_.contacts(), solid_contacts_);
+  carried_.find(scene, pairs_.contacts(), solid_contacts_, step.full_contacts);
   // Two hulls, one of which was put where the other is, are to part; no sleeper is to hold them together.
   inside_.clear();
   for (const CrowdContact& c : pairs_.contacts())

@@ -205,5 +205,39 @@ TEST(CarriedBodies, ACrateOfTablesStaysFlatBeforeAKinematicBody) {
     }
 }
 
+// Through full bodies, too, whose contacts are ODE's.
+TEST(CarriedBodies, WhatLiesOnAFullOneOnASlowLiftGoesAlong) {
+  constexpr double kLift = 1.0, kSinking = 0.05;  // m, m/s
+  for (const LevelChoice above : {LevelChoice::support, LevelChoice::tables})
+    for (const bool is_ground : {false, true}) {
+      Manager manager = on_floor({.signatures = coarse_signature});
+      const Vec3 at(0, 0, 2);
+      BodyId body;
+      GroundId ground;
+      if (is_ground)
+        ground = manager.add_static_box({kLift, kLift, kLift}, at, Quat::Identity());
+      else
+        body = manager.add_body({.shape = box_shape({kLift, kLift, kLift}),
+                                 .state = testing::at(at),
+                                 .properties = {.kinematic = true}});
+      std::vector<BodyId> stack;
+      for (int i = 0; i < 3; ++i)
+        stack.push_back(add(manager, crate(), testing::at(at + Vec3(0, 0, 0.5 * kLift + kCrate * (i + 0.5))),
+                            i == 0 ? LevelChoice::full : above));
+      run(manager, 2.0);
+      const RigidState sinks = testing::at(at, {0, 0, -kSinking});
+      if (!is_ground) manager.set_state(body, sinks);
+      for (int i = 0; i < 200; ++i) {
+        if (is_ground)
+          manager.move_ground(ground, testing::at(at - Vec3(0, 0, kSinking * kFrame * i), {0, 0, -kSinking}));
+        manager.step(kFrame);
+        for (std::size_t k = 0; k < stack.size(); ++k)
+          ASSERT_NEAR(manager.state(stack[k]).position.z(),
+                      at.z() - kSinking * kFrame * (i + 1) + 0.5 * kLift + kCrate * (double(k) + 0.5), 0.008)
+              << int(above) << ' ' << is_ground << ' ' << k << " at step " << i;
+      }
+    }
+}
+
 }  // namespace
 }  // namespace lodestone
