@@ -56,6 +56,8 @@ void check_policy(const PolicySettings& policy) {
   check_number(policy.hysteresis, 0.0, "hysteresis");
   check_number(policy.min_dwell_frames, 0.0, "min_dwell_frames");
   check_number(policy.max_transitions_per_frame, 0.0, "max_transitions_per_frame");
+  check_number(policy.most_full, 0.0, "most_full");
+  check_number(policy.most_support, 0.0, "most_support");
   if (const auto* distance = std::get_if<DistancePolicy>(&policy.policy)) {
     check_number(distance->full_within, 0.0, "full_within");
     check_number(distance->support_within, 0.0, "support_within");

@@ -163,6 +163,11 @@ TEST(BadInput, SettingsAndGround) {
   PolicySettings policy;
   policy.hysteresis = kNan;
   scene.refuses([&] { manager.set_policy(policy); }, "nan", "0 or more");
+  for (int PolicySettings::*const most : {&PolicySettings::most_full, &PolicySettings::most_support}) {
+    PolicySettings none;
+    none.*most = -1;
+    scene.refuses([&] { manager.set_policy(none); }, "-1", "0 or more");
+  }
   const Vec3 nowhere(0, kNan, 0);
   scene.refuses([&] { manager.set_viewpoints({&nowhere, 1}); }, "(0, nan, 0)", "finite");
   for (const double far : {1e300, -1e300}) {
