@@ -542,17 +542,15 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) con
       give(first, second, point.impulse, point.arm_first);
       give(second, first, -point.impulse, point.arm_second);
     }
-  for (const CrowdManifold& m : std::span(manifolds_).subspan(pair_manifolds_))
+  for (const CrowdManifold& m : std::span(manifolds_).subspan(pair_manifolds_)) {
+    const Participant first = participants_[std::size_t(m.first)];
+    if (!first.is_full() || (m.second >= 0 && !participants_[std::size_t(m.second)].is_ground())) continue;
+    Impulse& backing = scene.neighbor(first).backing;
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
-      const auto note = [&](std::int32_t index, const Vec3& impulse, const Vec3& arm) {
-        if (m.second >= 0 || !participants_[std::size_t(index)].is_full()) return;
-        Impulse& backing = scene.neighbor(participants_[std::size_t(index)]).backing;
-        backing.linear += impulse;
-        backing.angular += arm.cross(impulse);
-      };
-      note(m.first, point.impulse, point.arm_first);
-      note(m.second, -point.impulse, point.arm_second);
+      backing.linear += point.impulse;
+      backing.angular += point.arm_first.cross(point.impulse);
     }
+  }
 }
 
 // Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's

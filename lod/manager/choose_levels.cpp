@@ -22,8 +22,7 @@ constexpr double kShareOfRing = 0.25;
 struct Target {
   Rung rung = Rung::support;
   Rule reason = Rule::far;
-  bool at_once = false;  // neither dwell nor cap may hold it up while too much or too many are there; nor
-                         // what must leave a rung that it may not be on
+  bool at_once = false;  // neither dwell nor cap may hold it up while too much or too many are there
 };
 
 Target target_by_limits(const LevelCandidate& c, double distance, const Limits& limits, double hysteresis) {
@@ -295,12 +294,15 @@ class Chooser {
       reason = Rule::overlap_put_off;
     } else if (c.decided()) {
       (up ? decision_.promote : decision_.demote).push_back({wish.index, wish.to});
-    } else if (c.newcomer || !c.open.has(c.present()) || (target.at_once && !up)) {
+    } else if (c.newcomer || must_leave(c) || (target.at_once && !up)) {
       (up ? promote_at_once_ : demote_at_once_).push_back(wish);
     } else {
       hold_or_queue(wish, up ? promote_ : demote_);
     }
   }
+
+  /// Whether its caller has closed the rung that it is on.
+  static bool must_leave(const LevelCandidate& c) { return !c.open.has(c.present()); }
 
   void hold_or_queue(const Ranked& wish, std::vector<Ranked>& queue) {
     if (candidate(wish).frames_since_change < settings_.min_dwell_frames)
@@ -319,7 +321,7 @@ class Chooser {
     });
     for (Ranked& wish : demote_at_once_) {
       const LevelCandidate& c = candidate(wish);
-      if (c.open.has(c.present()) && room_ >= 0.0 && places_[std::size_t(c.rung)] >= 0) {  // enough went down
+      if (!must_leave(c) && room_ >= 0.0 && places_[std::size_t(c.rung)] >= 0) {  // enough went down
         hold_or_queue(wish, demote_);
         continue;
       }

@@ -279,7 +279,7 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
       if (carried) keep_awake(step, touched);
       if (!scene.asleep(touched)) continue;
       Vec3 velocity = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point);
-      if (other.is_statistical()) velocity += step.dt * scene.pushed(other);  // what would move, too
+      if (other.is_statistical()) velocity += step.dt * scene.pushed(other);  // as it will be
       const double speed = velocity.norm();
       if (carried || speed > rest_law_.wake_speed(scene.shape(touched).radius) || are_to_part(c))
         wake(step, touched, pace);

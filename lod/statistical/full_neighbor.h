@@ -35,7 +35,7 @@ struct FullNeighbor {
   Impulse push;        ///< out: of resting, sliding and rolling, to be given as a force spread over that step
   Impulse backed_hit;  ///< out: of impacts against what of ODE's stands behind it
   double fastest_hit = 0.0;   ///< out: m/s, of all of them
-  Impulse backing;            ///< out: of what else of ODE's it touches, as the statistical level reckoned it
+  Impulse backing;            ///< out: of the ground, as the statistical level reckoned it
   Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
   RigidState end;             ///< out: at the end of the step, where nothing else touches it
 

@@ -96,10 +96,10 @@ class SphereContacts {
   /// those go to `others`, part by part.
   void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity,
             const StepConstants& constants, Simd simd, const JobRunner& jobs, std::vector<BallPairs>* others);
-  /// Of two owners: whether they may meet; empty: all. Called from several threads.
-  /// m/s, by place awake: what forces add to velocities in the next step, of which these have it already;
-  /// none where no force acts. Refers to it until the next call.
+  /// m/s, by place awake: what forces give in the step to come, which velocities have already; none where no
+  /// force acts. Before find(); refers to it until the next call.
   void set_pushes(std::span<const Eigen::Vector3f> by_place) { pushes_ = by_place; }
+  /// Of two owners: whether they may meet; empty: all. Called from several threads.
   void set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter) {
     pair_filter_ = std::move(filter);
   }
