@@ -49,6 +49,10 @@ struct SphereStep {
     return vector_of(lane::row_of(lane::lanes_of(p[std::size_t(i)]) + lane::lanes_of(a[std::size_t(i)]) -
                                   lane::lanes_of(without)));
   }
+  void add_velocity(std::int64_t i, const Vec3& by) {
+    lane::Row& row = p[std::size_t(i)];
+    row.x += float(by.x()), row.y += float(by.y()), row.z += float(by.z());
+  }
   Vec3 added_spin(std::int64_t i) const { return vector_of(s[std::size_t(i)]); }
   Vec3 push_out(std::int64_t i) const { return vector_of(d[std::size_t(i)]); }
 

@@ -269,8 +269,8 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
   return body;
 }
 
-// What is there in two steps running; and where the hulls press less than was expected, what bore the body
-// must not fling it up.
+// What is there in two steps running; and where the hulls press up or down less than was expected, what bore
+// the body must not fling it. Along the ground, and where nothing weighs anything, momentum is kept.
 void TablesLevel::keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after) {
   const Load* known = load_of(place);
   const Vec3 last = (after.velocity - before) / constants_.wide_time - settings_.gravity,
@@ -282,10 +282,10 @@ void TablesLevel::keep_load(std::int64_t place, const Vec3& before, StatisticalB
       steady[axis] = std::abs(last[axis]) < std::abs(earlier[axis]) ? last[axis] : earlier[axis];
   new_loads_.push_back(
       {std::uint32_t(spheres_.slot[std::size_t(place)]), spheres_.owner[std::size_t(place)], last, steady});
-  const double length = expected.norm();
-  if (length > 0.0)
-    after.velocity +=
-        std::max(0.0, (expected - last).dot(expected) / (length * length)) * expected * constants_.wide_time;
+  const Vec3 up = -settings_.gravity.normalized();
+  const double borne = expected.dot(up);
+  if (borne != 0.0)
+    after.velocity += std::max(0.0, 1.0 - last.dot(up) / borne) * borne * constants_.wide_time * up;
 }
 
 void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> before,

@@ -180,7 +180,10 @@ class TablesLevel {
   void pass_blows_on();
   void note_paired();
   void find_further_planes();
+  template <class Visit>
+  void each_pressed(const Visit& visit);
   void press();
+  void take_back_pressing();
   const Load* load_of(std::int64_t place) const;
   void keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after);
   bool touches_further_planes(std::int64_t place) const;

@@ -321,18 +321,31 @@ const TablesLevel::Load* TablesLevel::load_of(std::int64_t place) const {
   return known ? &*load : nullptr;
 }
 
-// Contacts with hulls are answered after those of spheres: what hulls pressed with in the last step these are
-// to bear now, else what lies on a heap sinks into it at the speed that gravity gives it in a step.
-void TablesLevel::press() {
+template <class Visit>
+void TablesLevel::each_pressed(const Visit& visit) {
   for (const Load& load : loads_) {
     if (load.slot >= spheres_.place_of_slot.size()) continue;
     const std::size_t i = spheres_.place_of_slot[load.slot];
-    if (std::int64_t(i) >= spheres_.awake || !step_.touches(std::int64_t(i)) ||
-        load_of(std::int64_t(i)) != &load)
-      continue;
-    const Vec3 by = load.steady * constants_.wide_time;
-    step_.p[i].x += float(by.x()), step_.p[i].y += float(by.y()), step_.p[i].z += float(by.z());
+    if (std::int64_t(i) < spheres_.awake && step_.touches(std::int64_t(i)) &&
+        load_of(std::int64_t(i)) == &load)
+      visit(i, Vec3(load.steady * constants_.wide_time));
   }
+}
+
+// Contacts with hulls are answered after those of spheres: what hulls pressed with in the last step these are
+// to bear now, else what lies on a heap sinks into it at the speed that gravity gives it in a step.
+void TablesLevel::press() {
+  each_pressed([&](std::size_t i, const Vec3& by) { step_.add_velocity(std::int64_t(i), by); });
+}
+
+// From whom no hull has moved after all, so that momentum is kept. What goes up or down stays: the ground
+// bore it, and who bore it last must not be flung.
+void TablesLevel::take_back_pressing() {
+  const Vec3 up = -settings_.gravity.normalized();
+  each_pressed([&](std::size_t i, const Vec3& by) {
+    if (step_.on_ground[i] != std::uint8_t(GroundState::moved))
+      step_.add_velocity(std::int64_t(i), by.dot(up) * up - by);
+  });
 }
 
 // A round passes on to a light body a share of what a heavy one on top of it weighs: the more unlike they
@@ -486,6 +499,7 @@ void TablesLevel::choose_rest_pose(std::int64_t i) {
 // motion.
 void TablesLevel::finish(ContactTally& tally) {
   const bool ground = has_planes();
+  take_back_pressing();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
   joined_.resize(std::max(joined_.size(), tallies_.size()));
   tips_ = constants_.hulls && kinds_.any_tips() && contacts_.count() > 0;

@@ -183,6 +183,38 @@ TEST(CrossLevel, T10MomentumIsKept) {
   }
 }
 
+// A cube of a higher rung and three of `tables` that fly into each other, so that spheres among them lie
+// between a hull and a sphere for several frames.
+TEST(CrossLevel, T10AHullAmongSpheresKeepsMomentum) {
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  const auto signature = coarse_signature(*cube, {});
+  for (const auto hull : {LevelChoice::support, kFull})
+    for (std::uint32_t trial = 0; trial < 30; ++trial) {
+      RandomStream random(12, trial, 0);
+      ManagerSettings settings = unmeasured();
+      settings.signatures = [&](const Shape&, const ContactLaw&) { return signature; };
+      settings.gravity.setZero();
+      Manager manager(settings);
+      std::vector<BodyId> bodies;
+      double scale = 0.0;  // kg m/s
+      for (int k = 0; k < 4; ++k) {
+        const Vec3 aside = 0.04 * random.direction(), place(0.3 * k + aside.x(), aside.y(), aside.z());
+        const Vec3 inward(-1.5 * (place.x() - 0.45), 0.0, 0.0);
+        bodies.push_back(
+            manager.add_body({.shape = cube,
+                              .state = {place, random.orientation(), inward + 0.2 * random.direction()},
+                              .level = k == 0 ? hull : LevelChoice::tables}));
+        scale += manager.mass(bodies.back()) * manager.state(bodies.back()).velocity.norm();
+      }
+      const Vec3 before = momentum_of(manager, bodies).linear;
+      for (int i = 0; i < 40; ++i) {
+        manager.step(kFrame);
+        ASSERT_LT((momentum_of(manager, bodies).linear - before).norm(), 1e-6 * scale)
+            << "trial " << trial << " frame " << i;
+      }
+    }
+}
+
 TEST(CrossLevel, T10SameOutcomeWithTheRolesSwapped) {
   constexpr int kTrials = 50;
   int same = 0;
