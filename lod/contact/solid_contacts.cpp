@@ -14,6 +14,7 @@ constexpr double kTouching = 0.01;  // over R: near enough to carry, as between 
 // Cosines, of 3 and 15°: so far triangles may turn from the mean slope that stands for them. What hulls rest
 // on is off by a few millimetres then, and by some centimetres.
 constexpr double kGentle = 0.999, kGentleToTables = 0.966;
+constexpr std::size_t kMostProbed = 32;  // vertices of a body, by a ray each
 
 // Whether the contact closes within `time`.
 bool closes(const PairContact& contact, const GroundPart& part, const StatisticalBody& body,
@@ -45,6 +46,19 @@ Seeker seeker_of(const StatisticalBody& body, const Shape& shape, std::int32_t s
           slot};
 }
 
+// Over uneven ground: the vertices of a hull that are less than `margin` over the plane below its centre, m,
+// as any of them may be what touches. Of more than there is room for the lower ones.
+std::span<const std::int32_t> find_low_vertices(const Seeker& s, const Vec3& normal, double height,
+                                                double margin, std::int32_t lowest,
+                                                std::span<std::int32_t> found) {
+  const Vec3 own = s.body.orientation.conjugate() * normal;
+  const double least = height + s.shape.hull.vertices[std::size_t(lowest)].dot(own);
+  for (;; margin = least + 0.5 * (margin - least)) {
+    const auto count = std::size_t(find_vertices_below(s.shape, own, height, margin, lowest, found));
+    if (count < found.size() || margin - least < 1e-3 * s.shape.radius) return found.first(count);
+  }
+}
+
 // Of a part that is known by rays alone: one from above each of the body's vertices that may carry it. Where
 // they all meet one plane, it is that plane.
 void find_probed_contacts(const Seeker& s, const GroundPart& part, double time,
@@ -71,18 +85,27 @@ void find_probed_contacts(const Seeker& s, const GroundPart& part, double time,
   }
   if (even && !part.moves())
     return planes.push_back({normal, normal.dot(below->point), part.material, part.id});
-  for (int i = 0; i < low.count; ++i) {
-    const auto& hit = hits[std::size_t(i)];
-    if (!hit) continue;
-    const Vec3 point = s.body.position + low.contact[std::size_t(i)].arm;
+  const auto add = [&](const Vec3& arm, std::int32_t vertex, const std::optional<GroundHit>& hit) {
+    if (!hit) return;
+    const Vec3 point = s.body.position + arm;
     PairContact contact;
     contact.normal = hit->normal;
     contact.gap = hit->normal.dot(point - hit->point);
     contact.manifold.count = 1;
     contact.manifold.points[0] = {point, contact.gap};
     if (contact.gap > -s.shape.radius && closes(contact, part, s.body, s.omega, s.touching, time))
-      found.push_back(
-          {s.slot, std::uint32_t(low.contact[std::size_t(i)].vertex + 1), part.material, &part, contact});
+      found.push_back({s.slot, std::uint32_t(vertex + 1), part.material, &part, contact});
+  };
+  for (int i = 0; i < low.count; ++i)
+    add(low.contact[std::size_t(i)].arm, low.contact[std::size_t(i)].vertex, hits[std::size_t(i)]);
+  if (even || !below || low.count < 3) return;  // of two there are no more
+  std::array<std::int32_t, kMostProbed> room;
+  for (const std::int32_t vertex :
+       find_low_vertices(s, normal, height, s.touching + s.way + slack, low.contact[0].vertex, room)) {
+    const auto is_known = [&](const HullContact& c) { return c.vertex == vertex; };
+    if (std::any_of(low.contact.begin(), low.contact.begin() + low.count, is_known)) continue;
+    const Vec3 arm = s.body.orientation * s.shape.hull.vertices[std::size_t(vertex)];
+    add(arm, vertex, hit_below(s.body.position + arm));
   }
 }
 

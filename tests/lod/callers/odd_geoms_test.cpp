@@ -8,7 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "lod/manager.h"
+#include "tests/lod/manager/manager_fixture.h"
+#include "tests/prism.h"
 
 namespace lodestone {
 namespace {
@@ -63,6 +64,31 @@ TEST_F(OddGeoms, AHeightFieldThatRepeatsItselfIsGroundFarOutToo) {
   for (int i = 0; i < 240; ++i) manager.step(kFrame);
   for (const BodyId body : boxes) EXPECT_NEAR(manager.state(body).position.z(), 0.15, 0.01);
   manager_.reset();
+  dGeomHeightfieldDataDestroy(data);
+}
+
+// m, of a bowl about the middle of 81 × 81 samples that are .1 m apart.
+dReal bowl(void*, int x, int z) { return 2e-4 * ((x - 40) * (x - 40) + (z - 40) * (z - 40)); }
+
+// Any of its many corners may be what touches there.
+TEST_F(OddGeoms, ARoundBodyComesToRestInABowlOfAHeightField) {
+  const dHeightfieldDataID data = dGeomHeightfieldDataCreate();
+  dGeomHeightfieldDataBuildCallback(data, nullptr, bowl, 8, 8, 81, 81, 1, 0, 1, 0);
+  const dQuaternion up = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
+  dGeomSetQuaternion(dCreateHeightfield(space_, data, 1), up);
+  for (const int sides : {12, 24}) {
+    Manager manager(world_, space_, {.signatures = testing::no_signature});
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 4; ++i) {
+      RigidState s;
+      s.position = {i % 2 - 0.6, i / 2 - 0.4, 0.6};
+      s.orientation = Quat(Eigen::AngleAxisd(0.5 + i, Vec3(1.0, 0.3 * i, 0.2).normalized()));
+      bodies.push_back(manager.add_body(
+          {.shape = testing::make_prism(sides, 0.15, 0.5), .state = s, .level = LevelChoice::support}));
+    }
+    for (int i = 0; i < 720; ++i) manager.step(kFrame);
+    for (const BodyId body : bodies) EXPECT_TRUE(manager.asleep(body)) << sides;
+  }
   dGeomHeightfieldDataDestroy(data);
 }
 
