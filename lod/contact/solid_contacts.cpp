@@ -6,6 +6,7 @@
 #include "lod/contact/faces_below.h"
 #include "lod/contact/hull_contacts.h"
 #include "lod/contact/solid_meeting.h"
+#include "lod/contact/triangle_sieve.h"
 
 namespace lodestone {
 namespace {
@@ -240,7 +241,7 @@ bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const 
 
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
-                         std::vector<HalfSpace>& planes) {
+                         std::vector<HalfSpace>& planes, SolidSearch wanted) {
   const Shape& shape = *kind.shape;
   const Seeker seeker = seeker_of(body, shape, slot, time);
   const double reach = seeker.reach();
@@ -265,7 +266,15 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
   const PairBody self{&shape, body.position, body.orientation};
   thread_local HullContactSearch search;
   const double over = shape.sphere_radius ? find_height_over_triangles(near, body.position) : 1e300;
+  std::optional<TriangleSieve> sieve;
+  if (!shape.sphere_radius)
+    sieve.emplace(self, seeker.touching + seeker.way, kDeepestBelow * shape.inner_radius);
+  const std::size_t before = found.size();
   for (const PlacedSolid& solid : near) {
+    // Those of one part stand together.
+    if (wanted == SolidSearch::one_of_a_part && found.size() > before && found.back().part == solid.part)
+      continue;
+    if (sieve && solid.solid->surface && sieve->is_beyond(solid)) continue;
     meet_solid(self, solid, seeker.touching + seeker.way, search, over);
     for (const PairContact& contact : search.contacts)
       if (closes(contact, *solid.part, body, seeker.omega, seeker.touching, time))

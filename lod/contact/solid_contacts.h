@@ -18,12 +18,15 @@ struct SolidContact {
   PairContact contact;  ///< the normal points into the body
 };
 
+/// Which contacts are looked for: all, or one of each part, which tells whether the body meets it.
+enum class SolidSearch : std::uint8_t { all, one_of_a_part };
+
 /// Contacts of the body in `slot` that may close within `time` seconds, `after` so many of the step, appended
 /// to `found`. Where the body lies over faces only, away from their edges, or over very gentle ground of
 /// triangles, there are none but the planes that these are, appended to `planes`.
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
-                         std::vector<HalfSpace>& planes);
+                         std::vector<HalfSpace>& planes, SolidSearch search = SolidSearch::all);
 
 /// Appends the planes that stand for what the body may meet of the ground's parts within `time` seconds:
 /// faces, and for gentle ground of triangles one of its mean slope. False, and none, where there is more,

@@ -22,6 +22,11 @@ Vec3 middle_of(const Manifold& manifold) {
   return sum / manifold.count;
 }
 
+bool has_point_within(const Manifold& manifold, double gap) {
+  return std::any_of(manifold.points.begin(), manifold.points.begin() + manifold.count,
+                     [&](const ManifoldPoint& p) { return p.gap <= gap; });
+}
+
 // The edge of the triangle that `point` is nearest to, or farthest beyond.
 std::size_t nearest_edge(const SurfaceTriangle& t, const Vec3& point) {
   std::size_t nearest = 0;
@@ -140,15 +145,24 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   const LowestPoint lowest = find_lowest_over(body, placed, normal);
   if (lowest.gap > margin) return {};
   // What is over the triangle is nearest to it along its normal.
-  if (lowest.is_over && lowest.gap > -kAhead * body.shape->inner_radius)
+  if (lowest.is_over && lowest.gap > -kDeepestBelow * body.shape->inner_radius)
     return find_contact_along(body, ground, normal, margin, ahead);
+  std::optional<PairContact> flat;
+  const auto find_flat = [&] { flat = find_contact_along(body, ground, normal, margin, ahead); };
+  const bool any_ridge = std::ranges::find(t.ridge, true) != t.ridge.end();
+  if (!any_ridge) {
+    // Most of a fine surface: nearer than `margin` along the normal they are nearer anyhow, so that what they
+    // meet along as hulls, which takes longest to find, does not matter.
+    find_flat();
+    if (flat && has_point_within(flat->manifold, margin)) return flat;
+  }
   const std::optional<PairContact> contact = meet_as_hulls();
   if (!contact) return {};
   const double along = contact->normal.dot(normal);
   const bool over_ridge =
       along > 0.0 && along < 0.999 && t.ridge[nearest_edge(t, in_part(placed, middle_of(contact->manifold)))];
   if (over_ridge) return contact;
-  std::optional<PairContact> flat = find_contact_along(body, ground, normal, margin, ahead);
+  if (any_ridge) find_flat();
   // What straddles a hill top is lowest, along each triangle's normal, over another: its own features hold
   // it. Not so a ball in a hollow, which lies over a triangle that is nearer.
   const bool in_hollow =

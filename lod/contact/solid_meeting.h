@@ -27,6 +27,9 @@ std::optional<Nearest> find_nearest_beyond(const GroundSolid& solid, const Vec3&
 void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest,
                          std::vector<Nearest>& found);
 
+/// Over the inner radius: so deep below a triangle's surface what is over it meets it along its normal.
+inline constexpr double kDeepestBelow = 0.25;
+
 /// Those contacts of the body with a gap of at most `margin` m: one of its hull, or, as find_pair_contacts
 /// has it, those of its convex pieces. A triangle is met along its normal but for where an edge of it stands
 /// out, by the hull. What `search` held before is gone. `ball_is_over`, m: how far below the centre of a ball

@@ -142,7 +142,7 @@ void GroundSolids::add_surface(const Mesh& mesh) {
     const Vec3 normal = across.normalized(), below = -depth * normal;
     add_hull(std::array<Vec3, 6>{corner[0], corner[0] + below, corner[1], corner[1] + below, corner[2],
                                  corner[2] + below});
-    solids_.back().surface = SurfaceTriangle{normal, corner, ridge[i]};
+    solids_.back().surface = SurfaceTriangle{normal, corner, ridge[i], depth};
   }
 }
 

@@ -19,7 +19,8 @@ struct SurfaceTriangle {
   Vec3 normal = Vec3::UnitZ();
   std::array<Vec3, 3> corner;  ///< m, in the part's frame
   std::array<bool, 3>
-      ridge{};  ///< whether the edge from corner i to the next stands out, or is the surface's border
+      ridge{};         ///< whether the edge from corner i to the next stands out, or is the surface's border
+  double depth = 0.0;  ///< m: so far below its surface it is solid
 };
 
 /// All of the solid has normal·x ≤ offset, in its shape's frame.

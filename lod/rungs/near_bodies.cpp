@@ -69,7 +69,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
       StatisticalBody& body = step.scene.bodies[std::size_t(index)];
       body.crowded = body.on_solid = body.in_great_heap = body.on_edge = false;
     }
-    find_ground_solids(step, awake, 0.0, dt);
+    find_ground_solids(step, awake, 0.0, dt, SolidSearch::one_of_a_part);
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
     plan_.make(step.scene, pairs_, solid_contacts_, dt, near_);
     support.end_search();
@@ -167,22 +167,28 @@ void NearBodies::choose_movers(const SupportLevel& support, Pace pace) {
 
 // Parts of the ground that the bodies near: what nears an edge is solved with all that it touches.
 void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after,
-                                    double time) {
+                                    double time, SolidSearch search) {
   solid_contacts_.clear();
   faces_.faces.clear();
   if (!ground_.has_parts()) return faces_.run.clear();
+  faces_.run.resize(step.scene.bodies.size());  // nobody asks about others
+  for (const std::int32_t index : bodies) find_ground_solids_of(step, index, after, time, search);
+}
+
+void NearBodies::find_ground_solids_of(const Step& step, std::int32_t index, double after, double time,
+                                       SolidSearch search) {
   const ContactScene& scene = step.scene;
-  faces_.run.resize(scene.bodies.size());  // nobody asks about others
-  for (const std::int32_t index : bodies) {
-    StatisticalBody& body = scene.bodies[std::size_t(index)];
-    const std::size_t before = solid_contacts_.size(), faces = faces_.faces.size();
-    if (meets_solids(scene.world.properties_of(body.owner))) {
-      const auto find = body.is_sphere() ? find_sphere_contacts : find_solid_contacts;
-      find(body, scene.kind_of(body), index, ground_, after, time, solid_contacts_, faces_.faces);
-    }
-    faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
-    body.on_solid = solid_contacts_.size() > before;
+  StatisticalBody& body = scene.bodies[std::size_t(index)];
+  const std::size_t before = solid_contacts_.size(), faces = faces_.faces.size();
+  if (meets_solids(scene.world.properties_of(body.owner))) {
+    const BodyKind& kind = scene.kind_of(body);
+    if (body.is_sphere())
+      find_sphere_contacts(body, kind, index, ground_, after, time, solid_contacts_, faces_.faces);
+    else
+      find_solid_contacts(body, kind, index, ground_, after, time, solid_contacts_, faces_.faces, search);
   }
+  faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
+  body.on_solid = solid_contacts_.size() > before;
 }
 
 // The movers that touch nobody.

@@ -74,7 +74,10 @@ class NearBodies {
   void move_islands(const Step& step, Pace pace);
   void find_touching(const Step& step, Pace pace, int substep);
   void choose_movers(const SupportLevel& support, Pace pace);
-  void find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after, double time);
+  void find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after, double time,
+                          SolidSearch search = SolidSearch::all);
+  void find_ground_solids_of(const Step& step, std::int32_t index, double after, double time,
+                             SolidSearch search);
   void move_alone(const Step& step, double time);
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                   ContactTally& tally, const Quat* turned) const;
