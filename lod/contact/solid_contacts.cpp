@@ -268,7 +268,12 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
   const double over = shape.sphere_radius ? find_height_over_triangles(near, body.position) : 1e300;
   std::optional<TriangleSieve> sieve;
   if (!shape.sphere_radius)
-    sieve.emplace(self, seeker.touching + seeker.way, kDeepestBelow * shape.inner_radius);
+    sieve.emplace(self, SieveMotion{.velocity = body.velocity,
+                                    .omega = seeker.omega,
+                                    .touching = seeker.touching,
+                                    .time = time,
+                                    .margin = seeker.touching + seeker.way,
+                                    .deepest = kDeepestBelow * shape.inner_radius});
   const std::size_t before = found.size();
   for (const PlacedSolid& solid : near) {
     // Those of one part stand together.

@@ -6,8 +6,7 @@
 
 namespace lodestone {
 
-TriangleSieve::TriangleSieve(const PairBody& body, double margin, double deepest)
-    : body_(body), margin_(margin), deepest_(deepest) {
+TriangleSieve::TriangleSieve(const PairBody& body, const SieveMotion& motion) : body_(body), motion_(motion) {
   const VertexLanes& lanes = body.shape->hull.lanes;
   const auto measure = [&](const std::vector<float>& along, int axis) {
     const auto [least, greatest] = std::ranges::minmax(along);
@@ -22,15 +21,29 @@ void TriangleSieve::see_from(const PlacedSolid& triangle) {
   part_ = triangle.part;
   axes_ = (triangle.orientation.conjugate() * body_.orientation).toRotationMatrix();
   sides_ = axes_ * half_.asDiagonal();
-  middle_ = in_part(triangle, body_.position) + axes_ * middle_of_box_;
+  arm_ = axes_ * middle_of_box_;
+  middle_ = in_part(triangle, body_.position) + arm_;
+  velocity_ = triangle.orientation.conjugate() * motion_.velocity;
+  omega_ = triangle.orientation.conjugate() * motion_.omega;
+}
+
+// m/s, of the box's points and of those half a margin beside it.
+double TriangleSieve::least_velocity_along(const Vec3& normal) const {
+  const Vec3 by_arm = normal.cross(omega_);
+  return normal.dot(velocity_) + by_arm.dot(arm_) - extent_along(by_arm) -
+         0.5 * motion_.margin * by_arm.norm();
 }
 
 bool TriangleSieve::is_beyond(const PlacedSolid& triangle) {
   if (triangle.part != part_) see_from(triangle);
   const SurfaceTriangle& t = *triangle.solid->surface;
   const Vec3 from[3] = {t.corner[0] - middle_, t.corner[1] - middle_, t.corner[2] - middle_};
-  if (-t.normal.dot(from[0]) - extent_along(t.normal) > margin_) return true;
-  const double margin = margin_ + std::max(0.0, deepest_ - t.depth);
+  const double height = -t.normal.dot(from[0]) - extent_along(t.normal);
+  if (height > motion_.margin) return true;
+  if (height > motion_.touching && !part_->moves() &&
+      height + least_velocity_along(t.normal) * motion_.time > motion_.touching)
+    return true;
+  const double margin = motion_.margin + std::max(0.0, motion_.deepest - t.depth);
   const Vec3 a = axes_.transpose() * from[0], b = axes_.transpose() * from[1],
              c = axes_.transpose() * from[2], down = -t.depth * (axes_.transpose() * t.normal);
   const Vec3 least = a.cwiseMin(b).cwiseMin(c) + down.cwiseMin(0.0),

@@ -152,10 +152,11 @@ void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
 void NearBodies::meet_woken(const Step& step, Pace pace, int substep) {
   const double time = step.dt / pace;
   for (; !woken_.empty(); wake_touched(step, pace)) {
+    known_movers_ = movers_;
     choose_movers(step.support, pace);
     pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
     pairs_.find_more_contacts(step.scene, time, near_, pace);
-    find_ground_solids(step, movers_, substep * time, time);
+    find_more_ground_solids(step, known_movers_, substep * time, time);
   }
 }
 
@@ -173,6 +174,40 @@ void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32
   if (!ground_.has_parts()) return faces_.run.clear();
   faces_.run.resize(step.scene.bodies.size());  // nobody asks about others
   for (const std::int32_t index : bodies) find_ground_solids_of(step, index, after, time, search);
+}
+
+// Of the movers, more than the `known` ones of whom they were found. What was found of these holds, though
+// who touched nothing has moved alone since then: to find a contact of his now would move him once more.
+void NearBodies::find_more_ground_solids(const Step& step, std::span<const std::int32_t> known, double after,
+                                         double time) {
+  if (!ground_.has_parts()) return;
+  std::swap(solid_contacts_, known_contacts_);
+  std::swap(faces_, known_faces_);
+  solid_contacts_.clear();
+  faces_.faces.clear();
+  faces_.run.resize(step.scene.bodies.size());
+  place_of_known_.resize(step.scene.bodies.size(), -1);
+  std::int32_t place = 0;
+  const auto end = std::int32_t(known_contacts_.size());
+  const auto is_of = [&](std::int32_t i, std::int32_t body) {
+    return i < end && known_contacts_[std::size_t(i)].slot == body;
+  };
+  for (const std::int32_t body : known)
+    for (place_of_known_[std::size_t(body)] = place; is_of(place, body);) ++place;
+  for (const std::int32_t body : movers_) {
+    const std::int32_t first = place_of_known_[std::size_t(body)];
+    if (first < 0) {
+      find_ground_solids_of(step, body, after, time, SolidSearch::all);
+      continue;
+    }
+    for (std::int32_t i = first; is_of(i, body); ++i)
+      solid_contacts_.push_back(known_contacts_[std::size_t(i)]);
+    const std::span<const HalfSpace> faces = known_faces_.of(body);
+    const auto begin = std::int32_t(faces_.faces.size());
+    faces_.faces.insert(faces_.faces.end(), faces.begin(), faces.end());
+    faces_.run[std::size_t(body)] = {begin, begin + std::int32_t(faces.size())};
+  }
+  for (const std::int32_t body : known) place_of_known_[std::size_t(body)] = -1;
 }
 
 void NearBodies::find_ground_solids_of(const Step& step, std::int32_t index, double after, double time,

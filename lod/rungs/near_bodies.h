@@ -78,6 +78,8 @@ class NearBodies {
                           SolidSearch search = SolidSearch::all);
   void find_ground_solids_of(const Step& step, std::int32_t index, double after, double time,
                              SolidSearch search);
+  void find_more_ground_solids(const Step& step, std::span<const std::int32_t> known, double after,
+                               double time);
   void move_alone(const Step& step, double time);
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                   ContactTally& tally, const Quat* turned) const;
@@ -110,8 +112,11 @@ class NearBodies {
   std::vector<Participant> struck_;               // of these, those that blows reach through others
   std::vector<Participant> inside_;               // others, so deep that these were added there
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
-  std::vector<SolidContact> solid_contacts_;
-  FacesBelow faces_;
+  std::vector<SolidContact> solid_contacts_, known_contacts_;
+  FacesBelow faces_, known_faces_;
+  std::vector<std::int32_t> known_movers_;
+  std::vector<std::int32_t> place_of_known_;  // of each slot in `known_contacts_`, −1 else: but while more
+                                              // bodies are added
   std::vector<CarriedFull> carriers_;
   std::vector<ContactTally> tallies_;
 };
