@@ -595,6 +595,8 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
                  second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
     if (first + second == 0.0) continue;
     const double deep = deep_overlap_of(scene, one, other);
+    // A face of the ground has a contact of each triangle: together they push it out once.
+    const double by_others = m.second < 0 ? std::max(0.0, shift_of(m.first).dot(m.normal)) : 0.0;
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
       const bool inside =
@@ -611,7 +613,10 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
           point.gap + std::max(0.0, parting) * touch.time;  // the rest is undone by the motion itself
       // Up through a column of thin bodies one after the other: all at once, those in its midst, pushed from
       // both sides, would hardly move. Of shallower ones it would raise heaps, by 5 % for plates.
-      if (point.gap < -deep) overlap += (shift_of(m.first) - shift_of(m.second)).dot(m.normal);
+      if (point.gap < -deep)
+        overlap += (shift_of(m.first) - shift_of(m.second)).dot(m.normal);
+      else
+        overlap += by_others;
       const double distance = touch.parting * push_out_overlap(overlap, radius) / double(m.count);
       const Vec3 of_first = distance * first / (first + second) * m.normal,
                  of_second = -distance * second / (first + second) * m.normal;

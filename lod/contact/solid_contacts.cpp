@@ -110,6 +110,16 @@ void find_probed_contacts(const Seeker& s, const GroundPart& part, double time,
   }
 }
 
+// Whether two of them look against each other, so that what is between them is wedged in. A body that is
+// moved over planes is lifted off one of them: there, into the other.
+bool are_wedge(std::span<const HalfSpace> planes) {
+  constexpr double kAgainst = 0.0;  // cosine, of a wedge of less than 90°
+  for (std::size_t i = 0; i < planes.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (planes[i].normal.dot(planes[k].normal) < kAgainst) return true;
+  return false;
+}
+
 // m; see meet_solid.
 double find_height_over_triangles(std::span<const PlacedSolid> near, const Vec3& center) {
   double least = 1e300;
@@ -233,7 +243,9 @@ bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const 
   if (std::ranges::all_of(parts, is_planes)) {
     const std::optional<HalfSpace> mean = find_mean_plane(near, body.position, reach, kGentleToTables);
     if (mean) planes.push_back(*mean);
-    if (mean || find_faces_below(near, body.position, kind.shape->radius, reach, planes)) return true;
+    if (mean || (find_faces_below(near, body.position, kind.shape->radius, reach, planes) &&
+                 !are_wedge(std::span(planes).subspan(before))))
+      return true;
   }
   planes.resize(before);
   return false;
@@ -259,7 +271,11 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
     else
       find_solids(*part, body.position, reach, after, near);
   }
-  if (!any_moves && find_faces_below(near, body.position, shape.radius, reach, planes)) return;
+  const std::size_t planes_before = planes.size();
+  if (!any_moves && find_faces_below(near, body.position, shape.radius, reach, planes)) {
+    if (!are_wedge(std::span(planes).subspan(planes_before))) return;
+    planes.resize(planes_before);
+  }
   if (!any_moves && is_smooth(near, body.position, reach))
     if (const auto mean = find_mean_plane(near, body.position, reach, kGentle))
       return planes.push_back(*mean);

@@ -22,8 +22,8 @@ struct SolidContact {
 enum class SolidSearch : std::uint8_t { all, one_of_a_part };
 
 /// Contacts of the body in `slot` that may close within `time` seconds, `after` so many of the step, appended
-/// to `found`. Where the body lies over faces only, away from their edges, or over very gentle ground of
-/// triangles, there are none but the planes that these are, appended to `planes`.
+/// to `found`. Where the body lies over faces only, away from their edges and not wedged in between them, or
+/// over very gentle ground of triangles, there are none but the planes that these are, appended to `planes`.
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
                          std::vector<HalfSpace>& planes, SolidSearch search = SolidSearch::all);
