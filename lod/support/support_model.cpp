@@ -175,7 +175,8 @@ void respond(StatisticalBody& body, const BodyKind& kind, const LowestPoint& low
 struct HeldVertices {
   std::array<std::pair<std::int32_t, Vec3>, 3 * kMaxGroundContacts> impulse;  // by vertex, N s over mass
   int count = 0;
-  bool rolls = false;  // onto a vertex that was none of these
+  bool rolls = false;   // onto a vertex that was none of these
+  bool wedged = false;  // between planes that look against each other
   Vec3 find(std::int32_t vertex) const {
     for (int i = 0; i < count; ++i)
       if (impulse[i].first == vertex) return impulse[i].second;
@@ -204,6 +205,7 @@ struct StepContacts {
   std::array<int, kCapacity> plane;
   std::size_t count = 0;
   double deepest = 0.0;  // m, 0 or less
+  int deepest_plane = -1;
   std::span<GroundContact> contacts() { return std::span(contact).first(count); }
 };
 
@@ -234,7 +236,7 @@ void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepW
                                     .guess = on.rotation.transpose() * held.find(point.vertex)};
       found.vertex[found.count] = point.vertex;
       found.plane[found.count++] = int(i);
-      found.deepest = std::min(found.deepest, point.gap);
+      if (point.gap < found.deepest) found.deepest = point.gap, found.deepest_plane = int(i);
     }
   }
 }
@@ -314,6 +316,9 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
     tally.contacts += std::int64_t(found.count);
   }
   held.count = int(found.count);
+  held.wedged = false;
+  for (std::size_t k = 1; k < found.count; ++k)
+    held.wedged |= found.contact[k].normal.dot(found.contact[0].normal) < 0.0;
   body.position += body.velocity * time;
   if (held.rolls)
     energy.keep(found.count > 0 && found.contact[0].law.friction == 0.0
@@ -321,7 +326,7 @@ void contact_step(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
                     : std::nullopt);
   if (found.deepest < 0.0 && body.eased <= 0.0f)
     body.position +=
-        push_out_overlap(found.deepest, shape.radius) * world.planes[std::size_t(tally.touched_plane)].normal;
+        push_out_overlap(found.deepest, shape.radius) * world.planes[std::size_t(found.deepest_plane)].normal;
   body.orientation = advance_orientation(body.orientation, body.spin, kind, time).normalized();
 }
 
@@ -388,7 +393,8 @@ void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& worl
     HeldVertices held;
     body.spin -= world.turning * left;
     for (int i = 0; i < steps; ++i) contact_step(body, kind, world, left / steps, settings, held, tally);
-    if (tally.touched_plane >= 0)
+    // Off one of two walls that lean against each other it would be lifted into the other.
+    if (tally.touched_plane >= 0 && !held.wedged)
       lift_off(body, kind, world, world.planes[tally.touched_plane], left, held.rolls, settings);
   }
   return tally;

@@ -40,6 +40,14 @@ void add_slot_of_boxes(Manager& manager) {
   }
 }
 
+void add_slot_of_planes(Manager& manager) {
+  const double lean = std::atan2(kWideTop - kWideBottom, kSlotDepth);
+  for (const double side : {-1.0, 1.0}) {
+    const Vec3 inward(-side * std::cos(lean), 0.0, std::sin(lean));
+    manager.add_plane(inward, inward.x() * side * kWideTop);
+  }
+}
+
 // m, negative where a corner is in a wall.
 double least_gap_in_slot(const RigidState& s) {
   double least = 1.0;
@@ -53,10 +61,13 @@ double least_gap_in_slot(const RigidState& s) {
 
 // As planes they pushed it from one into the other, and each triangle of a wall pushed it anew.
 TEST(Wedge, CratesSleepBetweenWallsThatLeanAgainstEachOther) {
-  for (const bool of_triangles : {false, true})
+  for (const auto add_slot : {add_slot_of_boxes, add_slot_of_triangles, add_slot_of_planes})
     for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
       Manager manager({.signatures = coarse_signature});
-      of_triangles ? add_slot_of_triangles(manager) : add_slot_of_boxes(manager);
+      const char* name = add_slot == add_slot_of_boxes    ? "boxes"
+                         : add_slot == add_slot_of_planes ? "planes"
+                                                          : "triangles";
+      add_slot(manager);
       std::vector<BodyId> crates;
       for (const Vec3& start :
            {Vec3(-0.0129, -0.0827, 0.5), Vec3(0.0401, 0.9525, 0.5), Vec3(0.031, -0.9655, 0.5)})
@@ -73,11 +84,10 @@ TEST(Wedge, CratesSleepBetweenWallsThatLeanAgainstEachOther) {
           before[k] = now;
         }
       }
-      EXPECT_LT(gained, 1e-3) << of_triangles << ' ' << int(level);
+      EXPECT_LT(gained, 1e-3) << name << ' ' << int(level);
       for (const BodyId crate : crates) {
-        EXPECT_TRUE(manager.asleep(crate)) << of_triangles << ' ' << int(level);
-        EXPECT_GT(least_gap_in_slot(manager.state(crate)), -0.01 * kCrate)
-            << of_triangles << ' ' << int(level);
+        EXPECT_TRUE(manager.asleep(crate)) << name << ' ' << int(level);
+        EXPECT_GT(least_gap_in_slot(manager.state(crate)), -0.01 * kCrate) << name << ' ' << int(level);
       }
     }
 }
