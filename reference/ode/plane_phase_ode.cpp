@@ -74,7 +74,7 @@ void PlanePhase::find_hull_points(Body& body, const Plane& plane, const ContactL
   near_.clear();
   for (const PlaneContact& contact : plane_contacts_.find(
            body.shape->hull, rotation.transpose() * plane.normal, margin - height_of(body, plane),
-           timed ? kAll : settings_.max_contacts_per_pair, body.last_support, &dropped))
+           timed || body.in_company ? kAll : settings_.max_contacts_per_pair, body.last_support, &dropped))
     near_.push_back({rotation * body.shape->hull.vertices[contact.vertex], contact.depth - margin});
   dropped_ += dropped;
   if (timed)

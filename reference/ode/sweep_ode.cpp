@@ -26,6 +26,18 @@ bool comes_near(const Vec3& from, const Vec3& direction, double length, const Ve
   return (from + along * direction - center).squaredNorm() <= reach * reach;
 }
 
+/// m, of a point, negative outside. Of what can stand for a body.
+double depth_inside(dGeomID geom, const Vec3& point) {
+  switch (dGeomGetClass(geom)) {
+    case dBoxClass:
+      return dGeomBoxPointDepth(geom, point.x(), point.y(), point.z());
+    case dSphereClass:
+      return dGeomSpherePointDepth(geom, point.x(), point.y(), point.z());
+    default:
+      return -1.0;
+  }
+}
+
 bool touch(std::span<const OdeContact> contacts, OdeBodyId a, OdeBodyId b) {
   return std::ranges::any_of(contacts, [&](const OdeContact& c) {
     return (c.first == a && c.second == b) || (c.first == b && c.second == a);
@@ -96,7 +108,8 @@ double Sweep::free_part(Body& body, BroadPhase& broad_phase, std::span<const Ode
       part = std::min(part, free_part(body, *it->body, contacts));
 
   const Vec3 end = position_of(body), whole = end - body.before;
-  const Way way{body.before, whole.normalized(), whole.norm(), body.thickness, touch(contacts, body.id, {})};
+  const Way way{body.before,    whole.normalized(),           whole.norm(),
+                body.thickness, touch(contacts, body.id, {}), false};
   Eigen::AlignedBox3d swept(body.before.cwiseMin(end), body.before.cwiseMax(end));
   swept.extend(swept.min() - Vec3::Constant(way.thickness))
       .extend(swept.max() + Vec3::Constant(way.thickness));
@@ -112,7 +125,7 @@ double Sweep::free_part(const Body& body, const Body& other, std::span<const Ode
   if (length <= body.thickness) return 1.0;
   const Vec3 from = end - relative, direction = relative / length;
   if (!comes_near(from, direction, length, center, other.reach + body.thickness)) return 1.0;
-  const Way way{from, direction, length, body.thickness, touch(contacts, body.id, other.id)};
+  const Way way{from, direction, length, body.thickness, touch(contacts, body.id, other.id), true};
   double part = 1.0;
   for (dGeomID geom = dBodyGetFirstGeom(other.body); geom; geom = dBodyGetNextGeom(geom))
     part = std::min(part, free_part(way, geom));
@@ -123,7 +136,7 @@ double Sweep::free_part(const Way& way, dGeomID geom) {
   const Vec3 side = way.direction.unitOrthogonal(), up = way.direction.cross(side);
   double free = way.length;
   const auto look = [&](const Vec3& offset, double lead) {
-    const auto distance = distance_to(geom, way.from + offset, way.direction, way.length);
+    const auto distance = distance_to(geom, way.from + offset, way);
     if (!distance) return;
     const double left = *distance - lead * way.thickness;
     // What is nearer without touching stands in a hollow of the body: were it held there, no contact would
@@ -138,11 +151,13 @@ double Sweep::free_part(const Way& way, dGeomID geom) {
   return free / way.length;
 }
 
-std::optional<double> Sweep::distance_to(dGeomID geom, const Vec3& from, const Vec3& direction,
-                                         double length) {
-  dGeomRaySetLength(ray_, length);
-  if (dGeomGetClass(geom) == dTriMeshClass) return distance_to_mesh(geom, from, direction);
-  dGeomRaySet(ray_, from.x(), from.y(), from.z(), direction.x(), direction.y(), direction.z());
+// Out of a solid the way is free: who got into it would else be held there, its speed growing.
+std::optional<double> Sweep::distance_to(dGeomID geom, const Vec3& from, const Way& way) {
+  dGeomRaySetLength(ray_, way.length);
+  dGeomRaySetBackfaceCull(ray_, way.past_solid);
+  if (dGeomGetClass(geom) == dTriMeshClass) return distance_to_mesh(geom, from, way.direction);
+  if (way.past_solid && depth_inside(geom, from) > 0.0) return {};
+  dGeomRaySet(ray_, from.x(), from.y(), from.z(), way.direction.x(), way.direction.y(), way.direction.z());
   dContactGeom hit;
   return dCollide(ray_, geom, 1, &hit, sizeof hit) > 0 ? std::optional(hit.depth) : std::nullopt;
 }

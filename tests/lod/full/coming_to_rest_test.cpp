@@ -21,6 +21,27 @@ TEST(FullComesToRest, ACoinOfManyCornersLiesStill) {
   }
 }
 
+// Who has company is met by the substep, not at its own time within it.
+TEST(FullComesToRest, ACoinBesideAnother) {
+  for (const int sides : {20, 24}) {
+    RandomStream random(4, std::uint32_t(sides), 0);
+    const auto prism = make_prism(sides, 0.12, 0.02);
+    const auto turned = [](double angle, const Vec3& axis) { return Quat(Eigen::AngleAxisd(angle, axis)); };
+    Manager manager = on_floor();
+    manager.materials().replace(0, {.restitution = 0.2, .friction = 0.5});
+    std::vector<BodyId> coins;
+    for (int i = 0; i < 12; ++i)
+      coins.push_back(
+          add(manager, prism,
+              {.position = Vec3(i % 2 * 0.2424, 2.0 * (i / 2), 0.05),
+               .orientation = turned(6.0 * random.uniform(), Vec3::UnitZ()) * turned(0.17, Vec3::UnitX()) *
+                              turned(6.0 * random.uniform(), Vec3::UnitZ())},
+              LevelChoice::full));
+    run(manager, 8.0);
+    EXPECT_TRUE(std::ranges::all_of(coins, [&](BodyId coin) { return manager.asleep(coin); })) << sides;
+  }
+}
+
 // Restitution gives back no more than a vertex brought, however slow.
 TEST(FullComesToRest, AtRestitutionPointNine) {
   RandomStream random(3, 0, 0);

@@ -167,6 +167,26 @@ TEST(Sweep, HollowsLetGo) {
       << end.position.transpose() << " / " << end.velocity.transpose();
 }
 
+// Put into another body, with a corner out of it, it must not be held there while gravity goes on giving it
+// speed.
+TEST(Sweep, WhoIsInsideABodyMayLeaveIt) {
+  const MaterialTable materials = material(0.2, 0.5);
+  OdeWorld world({.gravity = Vec3(0, 0, -9.81)}, materials);
+  world.add_static_box({4, 4, 0.2}, {0, 0, -0.1}, Quat::Identity(), 0);
+  const auto cube = [](double side) {
+    return std::make_shared<const Shape>(make_shape("cube", make_box({side, side, side})));
+  };
+  world.add_body({.shape = cube(0.4), .mass = 64.0, .state = at({0, 0, 0.2})});
+  const OdeBodyId small =
+      world.add_body({.shape = cube(0.05),
+                      .mass = 0.125,
+                      .state = at({-0.186, -0.123, 0.23}, Vec3(-4.6, 7.9, -13.0), Vec3(20, 20, 10))});
+  for (int i = 0; i < 480; ++i) world.step(kStep);
+  const RigidState end = world.state(small);
+  EXPECT_LT(end.velocity.norm(), 1.0);
+  EXPECT_GT((end.position - Vec3(0, 0, 0.2)).cwiseAbs().maxCoeff(), 0.22);
+}
+
 TEST(OdeWorld, QuickStepCountsUnevenContacts) {
   const MaterialTable materials = material(0.0, 0.5);
   for (const bool quick : {false, true})
