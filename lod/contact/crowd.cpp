@@ -519,7 +519,7 @@ bool Crowd::is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouc
   });
 }
 
-void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) const {
+void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) {
   if (scene.neighbors.empty()) return;
   for (const CrowdManifold& m : std::span(manifolds_).first(pair_manifolds_))
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
@@ -544,12 +544,17 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) con
     }
   for (const CrowdManifold& m : std::span(manifolds_).subspan(pair_manifolds_)) {
     const Participant first = participants_[std::size_t(m.first)];
-    if (!first.is_full() || (m.second >= 0 && !participants_[std::size_t(m.second)].is_ground())) continue;
-    Impulse& backing = scene.neighbor(first).backing;
+    if (!first.is_full()) continue;
+    const Participant second = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
+    Impulse on_first, on_second;
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
-      backing.linear += point.impulse;
-      backing.angular += point.arm_first.cross(point.impulse);
+      on_first = on_first + Impulse{point.impulse, point.arm_first.cross(point.impulse)};
+      on_second = on_second + Impulse{-point.impulse, -point.arm_second.cross(point.impulse)};
     }
+    if (second.is_full())
+      exchanges_.push_back({std::int32_t(first.index()), std::int32_t(second.index()), on_first, on_second});
+    else if (second.is_ground())
+      scene.neighbor(first).backing = scene.neighbor(first).backing + on_first;
   }
 }
 

@@ -59,10 +59,12 @@ class Crowd {
   ContactTally move(const ContactScene& scene, const CrowdTouch& touch);
   /// Of a step in which sets of islands take their substeps one after the other, each between begin_islands()
   /// and end_islands(): the impulses of its first substep begin with those of the last step.
-  void begin_step() { memory_.begin_step(); }
+  void begin_step() { memory_.begin_step(), exchanges_.clear(); }
   void begin_islands() { memory_.begin_islands(); }
   void end_islands() { memory_.end_islands(); }
   void end_step() { memory_.end_step(); }
+  /// Since begin_step(), of full neighbours with each other.
+  std::span<const FullExchange> exchanges() const { return exchanges_; }
   void archive(StateArchive& a) { a(memory_); }
   void make_room(std::size_t bodies) { index_of_body_.resize(std::max(index_of_body_.size(), bodies), -1); }
 
@@ -111,7 +113,7 @@ class Crowd {
   void find_impacts();
   void move_bodies(const ContactScene& scene, double time);
   bool is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const;
-  void give_to_full(const ContactScene& scene, const CrowdTouch& touch) const;
+  void give_to_full(const ContactScene& scene, const CrowdTouch& touch);
   void move_apart(const ContactScene& scene, const CrowdTouch& touch);
   Vec3 shift_of(std::int32_t solver_body) const {
     return solver_body < 0 ? Vec3(Vec3::Zero()) : shifts_[std::size_t(solver_body)];
@@ -140,6 +142,7 @@ class Crowd {
   GroundMeetings meetings_;
   std::size_t noted_ = 0;  // contacts in the log before those at hand
   std::vector<Participant> pressed_;
+  std::vector<FullExchange> exchanges_;
   std::vector<Push> pushes_;              // on each solver body
   std::vector<Parting> partings_;         // in this substep
   std::vector<std::int32_t> parting_of_;  // of each solver body; −1: none

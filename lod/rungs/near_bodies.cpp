@@ -91,8 +91,8 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     neighbors[i].shift = full_[i].shift;
     neighbors[i].carried = full_[i].carried;
     neighbors[i].end = full_[i].state;
-    answer_hit(neighbors[i]);
   }
+  answer_hits(neighbors, crowd_.exchanges());
   find_carriers(step.scene);
 }
 

@@ -1,6 +1,7 @@
 #include "lod/statistical/full_neighbor.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace lodestone {
 namespace {
@@ -15,20 +16,22 @@ double product(const FullNeighbor& body, const Impulse& a, const Impulse& b) {
   return a.linear.dot(b.linear) / body.mass + a.angular.dot(angular_velocity_change(body, b.angular));
 }
 
-// Over the fastest hit of a step. A single one throws a body at up to four times that (at restitution 1, by
-// a much heavier one); in stacks that are set down all together come to almost eight.
-constexpr double kSqueezed = 8.0;
+// Over the fastest hit of a step, what the body's speed is changed by (its turning counted): a single one, by
+// whatever mass, does it by 1 + e of its approach at most.
+constexpr double kSqueezed = 2.0;
 
 double square(double x) { return x * x; }
 
-}  // namespace
+bool is_squeezed(const FullNeighbor& neighbor) {
+  const Impulse struck = neighbor.hit + neighbor.backed_hit;
+  return neighbor.fastest_hit > 0.0 &&
+         product(neighbor, struck, struck) > square(kSqueezed * neighbor.fastest_hit) * neighbor.mass;
+}
 
 void answer_hit(FullNeighbor& neighbor) {
   Impulse &hit = neighbor.hit, &push = neighbor.push;
-  const Impulse struck = hit + neighbor.backed_hit;
-  if (neighbor.fastest_hit > 0.0 &&
-      product(neighbor, struck, struck) > square(kSqueezed * neighbor.fastest_hit) * neighbor.mass) {
-    hit = struck + push + neighbor.backing, push = {};
+  if (is_squeezed(neighbor)) {
+    hit = hit + neighbor.backed_hit + push + neighbor.backing, push = {};
     return;
   }
   push = push + neighbor.backed_hit;
@@ -38,6 +41,27 @@ void answer_hit(FullNeighbor& neighbor) {
   const double share = std::min(1.0, against / energy);
   push.linear += share * hit.linear, push.angular += share * hit.angular;
   hit.linear *= 1.0 - share, hit.angular *= 1.0 - share;
+}
+
+}  // namespace
+
+void answer_hits(std::span<FullNeighbor> neighbors, std::span<const FullExchange> exchanges) {
+  struct Given {
+    FullNeighbor* to;
+    const Impulse* impulse;
+  };
+  std::vector<Given> given;  // by the squeezed to those that are not
+  for (const FullExchange& exchange : exchanges) {
+    FullNeighbor &first = neighbors[std::size_t(exchange.first)],
+                 &second = neighbors[std::size_t(exchange.second)];
+    const bool squeezed = is_squeezed(first), other_squeezed = is_squeezed(second);
+    if (squeezed && !other_squeezed) given.push_back({&second, &exchange.on_second});
+    if (other_squeezed && !squeezed) given.push_back({&first, &exchange.on_first});
+    first.backing = first.backing + exchange.on_first;
+    second.backing = second.backing + exchange.on_second;
+  }
+  for (FullNeighbor& neighbor : neighbors) answer_hit(neighbor);
+  for (const auto& [to, impulse] : given) to->hit = to->hit + *impulse;
 }
 
 // A hit changes the velocity before the first substep. Support is a force over the whole step: it then

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "reference/material.h"
 #include "reference/shape.h"
@@ -34,19 +35,26 @@ struct FullNeighbor {
   Impulse hit;                 ///< out: of impacts, to be given to the body before the full level's step
   Impulse push;        ///< out: of resting, sliding and rolling, to be given as a force spread over that step
   Impulse backed_hit;  ///< out: of impacts against what of ODE's stands behind it
-  double fastest_hit = 0.0;   ///< out: m/s, of all of them
-  Impulse backing;            ///< out: of the ground, as the statistical level reckoned it
+  double fastest_hit = 0.0;  ///< out: m/s, of all of them
+  Impulse backing;  ///< out: of the ground and other full bodies, as the statistical level reckoned it
   Vec3 shift = Vec3::Zero();  ///< out: m, to be moved by, so that an overlap shrinks
   RigidState end;             ///< out: at the end of the step, where nothing else touches it
 
   bool is_touched() const { return !hit.is_zero() || !push.is_zero(); }  ///< by a statistical body
 };
 
-/// Of one that is not asleep, once a step is reckoned: what of its hits it begins ODE's step with. Where push
-/// takes back what a hit gives, in terms of kinetic energy, that part of the hit is a push, too. And of a
-/// body that is struck again and again between others and the ground, by impulses that all but cancel, only
-/// what is left of all of them is a hit: ODE would not answer each with the same opposite, and throw it out.
-void answer_hit(FullNeighbor& neighbor);
+/// What two full neighbours gave each other in a substep, as the statistical level reckoned it.
+struct FullExchange {
+  std::int32_t first = 0, second = 0;  ///< indices of neighbours
+  Impulse on_first, on_second;
+};
+
+/// Of those that are not asleep, once a step is reckoned: what of their hits they begin ODE's step with.
+/// Where push takes back what a hit gives, in terms of kinetic energy, that part of the hit is a push, too.
+/// And of a body that is struck again and again between others and what backs it, by impulses that all but
+/// cancel, only what is left of all of them is a hit: ODE would not answer each with the same opposite, and
+/// throw it out. Full bodies that back it have their part then, so that momentum is kept.
+void answer_hits(std::span<FullNeighbor> neighbors, std::span<const FullExchange> exchanges);
 
 /// A kinematic statistical body that touched a full neighbour which is awake and not kinematic.
 struct CarriedFull {
