@@ -42,6 +42,40 @@ TEST(FullComesToRest, ACoinBesideAnother) {
   }
 }
 
+/// A ditch along y, 1 m deep, .4 m wide above and .2 m below, in level ground; an open sheet.
+Mesh make_ditch() {
+  Mesh ditch;
+  const double x[] = {-3.0, -0.2, -0.1, 0.1, 0.2, 3.0}, z[] = {0.0, 0.0, -1.0, -1.0, 0.0, 0.0};
+  for (const double y : {-2.0, 2.0})
+    for (int i = 0; i < 6; ++i) ditch.vertices.push_back({x[i], y, z[i]});
+  for (int i = 0; i < 5; ++i) {
+    ditch.faces.push_back({i, i + 1, i + 6});
+    ditch.faces.push_back({i + 1, i + 7, i + 6});
+  }
+  return ditch;
+}
+
+// Both walls press, against each other: neither says the way out for both.
+TEST(FullComesToRest, BetweenTheWallsOfAMesh) {
+  const auto crate = box_shape({0.3, 0.3, 0.3});
+  for (int k = 0; k < 8; ++k) {
+    Manager manager(unmeasured());
+    manager.add_static_mesh(make_ditch());
+    const Quat yaw(Eigen::AngleAxisd(k < 4 ? 0.0 : 0.3, Vec3::UnitZ()));
+    const BodyId body = add(manager, crate, {.position = Vec3(0.02 * (k % 4), 0.0, 0.5), .orientation = yaw},
+                            LevelChoice::full);
+    const double mass = manager.mass(body);
+    double before = 1e9;  // J/kg
+    for (int i = 0; i < 360; ++i) {
+      manager.step(kFrame);
+      const double now = energy(manager, body) / mass;
+      ASSERT_LT(now - before, 0.2) << k << ", step " << i;
+      before = now;
+    }
+    EXPECT_TRUE(manager.asleep(body)) << k;
+  }
+}
+
 // Restitution gives back no more than a vertex brought, however slow.
 TEST(FullComesToRest, AtRestitutionPointNine) {
   RandomStream random(3, 0, 0);
