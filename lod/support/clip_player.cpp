@@ -7,9 +7,6 @@
 namespace lodestone {
 namespace {
 
-// s since it last touched another body: what is torn from its clips again and again by a neighbour must not
-// gain a little energy with each.
-constexpr float kUndisturbed = 0.25f;
 constexpr double kSlides = 0.01;  // of its kinetic energy: with less it does not rock
 
 // The part of `rotation` about `axis` (swing–twist decomposition).
@@ -66,8 +63,7 @@ std::optional<ClipPlayback> find_clip(const StatisticalBody& body, const BodyKin
   const auto energy = float(rocking / (gravity * radius));
   const float distance =
       std::clamp(settings.distance_over_energy * energy, settings.least_distance, settings.greatest_distance);
-  const float slack = body.since_crowded < kUndisturbed ? 0.0f : settings.energy_slack;
-  const std::optional<ClipEntry> entry = kind.clips->find_nearest(key, slack, distance);
+  const std::optional<ClipEntry> entry = kind.clips->find_nearest(key, settings.energy_slack, distance);
   if (!entry) return {};
 
   ClipPlayback p;

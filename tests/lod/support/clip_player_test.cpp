@@ -94,17 +94,6 @@ TEST_F(ClipPlayer, WhatSlidesFlatJoinsNone) {
   EXPECT_FALSE(find(body));
 }
 
-// One that is torn from its clips by a neighbour would else rock for ever.
-TEST_F(ClipPlayer, WhoTouchedAnotherLatelyGainsNoEnergy) {
-  StatisticalBody body = body_like_clip(0.7);
-  body.velocity *= 0.98;
-  ASSERT_TRUE(find(body));
-  body.since_crowded = 0.1f;
-  EXPECT_FALSE(find(body));
-  body.velocity *= 1.03;
-  EXPECT_TRUE(find(body));
-}
-
 TEST_F(ClipPlayer, ItFollowsTheClipInItsOwnYawAndEndsAtRest) {
   const double yaw = 0.7;
   StatisticalBody body = body_like_clip(yaw);
