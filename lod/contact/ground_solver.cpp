@@ -52,8 +52,9 @@ class GroundSolver {
         before_(motion),
         inverse_inertia_(inverse_inertia),
         contacts_(contacts),
+        step_(step),
         settings_(settings) {
-    for (GroundContact& c : contacts_) prepare(c, step);
+    for (GroundContact& c : contacts_) prepare(c);
   }
   void solve() {
     if (settings_.frictionless_bound) bound_friction();
@@ -62,14 +63,23 @@ class GroundSolver {
   }
 
  private:
+  /// m/s along `axis`, of the point at `arm`: −½ h ω × (ω × r), with which it stays in its place while the
+  /// body turns about it. A velocity at right angles to the arm alone would carry the body along the tangent
+  /// of its arc, and the next step take from it what of its velocity is not along the next tangent.
+  double chord(const Vec3& axis, const Vec3& arm) const {
+    if (!settings_.along_chords) return 0.0;
+    const Vec3& omega = before_.angular_velocity;
+    return 0.5 * step_ * (omega.squaredNorm() * arm.dot(axis) - omega.dot(arm) * omega.dot(axis));
+  }
   void set_row(GroundContact::Row& row, const Vec3& axis, const Vec3& arm) const {
     row.axis = axis;
     row.lever = arm.cross(axis);
     row.turning = inverse_inertia_ * row.lever;
     row.effective_mass = 1.0 / (1.0 + row.lever.dot(row.turning));
     row.impulse = 0.0;
+    row.target = chord(axis, arm);
   }
-  void prepare(GroundContact& c, double step) const;
+  void prepare(GroundContact& c) const;
   void find_tangents(GroundContact& c) const;
   double relax(GroundContact& c, PairedMotion& motion);
   void start_from_guess(GroundContact& c);
@@ -80,17 +90,19 @@ class GroundSolver {
   GroundMotion before_;
   const Mat3& inverse_inertia_;
   std::span<GroundContact> contacts_;
+  double step_;  // s
   const ContactSolverSettings& settings_;
 };
 
-void GroundSolver::prepare(GroundContact& c, double step) const {
+void GroundSolver::prepare(GroundContact& c) const {
   set_row(c.rows[0], c.normal, c.arm);
   c.rows[1] = c.rows[2] = {};
-  const double approach = velocity_at(before_, c.arm).dot(c.normal), closing = std::min(0.0, -c.gap / step),
+  const double approach = velocity_at(before_, c.arm).dot(c.normal), closing = std::min(0.0, -c.gap / step_),
                fall = std::min(0.0, settings_.fall.dot(c.normal));
-  c.bounces = approach < -settings_.bounce_velocity && c.gap + approach * step < 0.0;
-  c.target =
-      c.bounces ? std::max(bounce_in_fall(c.law.restitution, c.gap, approach, fall, step), closing) : closing;
+  c.bounces = approach < -settings_.bounce_velocity && c.gap + approach * step_ < 0.0;
+  c.rows[0].target += c.bounces
+                          ? std::max(bounce_in_fall(c.law.restitution, c.gap, approach, fall, step_), closing)
+                          : closing;
 }
 
 // Once it carries something: most of the points that may touch never do.
@@ -115,12 +127,12 @@ inline double GroundSolver::relax(GroundContact& c, PairedMotion& motion) {
   };
   GroundContact::Row& normal = c.rows[0];
   const double impulse =
-      std::max(0.0, normal.impulse + normal.effective_mass * (c.target - now.along(normal)));
+      std::max(0.0, normal.impulse + normal.effective_mass * (normal.target - now.along(normal)));
   double changed = impulse == normal.impulse ? 0.0 : change_to(normal, impulse);
   const double bound = friction_bound(c);
   if (bound == 0.0 && c.rows[1].impulse == 0.0 && c.rows[2].impulse == 0.0) return changed;
   find_tangents(c);
-  const double slip[2] = {now.along(c.rows[1]), now.along(c.rows[2])};
+  const double slip[2] = {now.along(c.rows[1]) - c.rows[1].target, now.along(c.rows[2]) - c.rows[2].target};
   for (std::size_t t = 0; t < 2; ++t) {
     GroundContact::Row& row = c.rows[t + 1];
     changed += change_to(row, std::clamp(row.impulse - row.effective_mass * slip[t], -bound, bound));

@@ -24,9 +24,9 @@ struct GroundContact {
   struct Row {
     Vec3 axis = Vec3::Zero(), lever = Vec3::Zero(), turning = Vec3::Zero();  ///< arm × axis, I⁻¹ of that
     double effective_mass = 0.0, impulse = 0.0;
+    double target = 0.0;  ///< m/s, asked for along the axis
   };
   std::array<Row, 3> rows = {};
-  double target = 0.0;           ///< m/s, normal velocity asked for
   double friction_bound = -1.0;  ///< N s over mass; negative: μ times the normal impulse as it is
   bool bounces = false;          ///< an impact, fast enough for restitution
   Vec3 impulse() const {

@@ -91,7 +91,6 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   static const HullMotionSettings level{
       .support = {.contact_step = 0.1,
                   .solver = {.sweeps = 4, .tolerance = 1e-2},
-                  .timed_bounces = false,   // as the bounds of heaps were measured
                   .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
                   .impact_tolerance = 2e-4,
                   .impact_solver = {.sweeps = 6, .tolerance = 1e-2, .frictionless_bound = true}}};

@@ -62,5 +62,25 @@ TEST(GroundSolver, InTheBodysAxesItDoesWhatTheOtherDoesInTheWorlds) {
     }
 }
 
+// A cube that turns about its lowest corner, gravity pressing it down, in axes that are its own where the
+// step begins.
+TEST(GroundSolver, AlongChordsAContactKeepsItsPlace) {
+  const Shape cube = make_shape("cube", make_box({0.2, 0.2, 0.2}));
+  const Vec3 arm(-0.03, 0.02, -0.15), omega(2.0, 7.0, -3.0);  // m, 1/s
+  constexpr double kTime = 0.01;                              // s
+  for (const bool along_chords : {false, true}) {
+    GroundMotion motion{-omega.cross(arm) - Vec3(0, 0, 9.81 * kTime), omega};
+    std::array<GroundContact, 1> contact{{{.arm = arm, .law = {.restitution = 0.0, .friction = 10.0}}}};
+    solve_ground_contacts(motion, cube.inverse_inertia_per_mass, contact, kTime,
+                          {.sweeps = 100, .tolerance = 1e-12, .along_chords = along_chords});
+    const Quat turned = rotation_from_vector(motion.angular_velocity * kTime);
+    const double moved = (motion.velocity * kTime + turned * arm - arm).norm();
+    if (along_chords)
+      EXPECT_LT(moved, 2e-5);
+    else
+      EXPECT_GT(moved, 2e-4);
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -1,0 +1,346 @@
+#include "lod/support/contact_steps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "lod/contact/ground_solver.h"
+#include "lod/support/energy_bound.h"
+#include "lod/support/hull_impacts.h"
+#include "lod/support/step_contacts.h"
+
+namespace lodestone {
+namespace {
+
+// Gravity, every vertex near the ground held, then motion. A step ends where a vertex strikes, and the next
+// begins with that impact. Between, velocities are half a step behind places, as in the leapfrog rule: held
+// along the chords of its arc (GroundSolver) by impulses along its arms where each step begins, a body that
+// turns about an edge keeps its energy (SHAKE; Ryckaert, Ciccotti and Berendsen, 1977), however long the
+// steps. Before an impact and at the end they catch up, as far as what holds the body lets them (RATTLE;
+// Andersen, 1983).
+class ContactSteps {
+ public:
+  ContactSteps(StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+               const SupportSettings& settings, ContactTally& tally)
+      : body_(body),
+        kind_(kind),
+        shape_(*kind.shape),
+        world_(world),
+        settings_(settings),
+        tally_(tally),
+        fall_time_(std::sqrt(shape_.radius / std::max(1e-9, world.gravity_strength()))),
+        touching_(kTouching * shape_.radius) {}
+
+  void run(double time);
+  const HeldVertices& held() const { return held_; }
+
+ private:
+  double step(double time, bool divided);
+  void kick_to(double time);
+  GroundMotion unkicked(const Mat3& rotation, const GroundMotion& kicked) const;
+  void find_contacts(const OnGround& on, double time);
+  bool strikes_now(std::size_t contact, const GroundMotion& unkicked) const;
+  bool is_struck(const GroundMotion& unkicked) const;
+  void strike(const OnGround& lagging);
+  void catch_up();
+  double time_to_strike(const GroundContact& c, const GroundMotion& unkicked, const GroundMotion& held,
+                        double within) const;
+  double find_strike(const Mat3& rotation, const GroundMotion& kicked, bool sinks, double time);
+  double hold(OnGround& on, double time, bool divided);
+  void take_held(const OnGround& on, const GroundMotion& unkicked);
+  ContactSolverSettings solver(const Mat3& rotation, double time, bool divided) const;
+
+  // Kept from step to step, since to make all of them takes longer than to solve a few.
+  static StepContacts& kept() {
+    thread_local StepContacts contacts;
+    return contacts;
+  }
+  static std::array<GroundContact, StepContacts::kCapacity>& some_kept() {
+    thread_local std::array<GroundContact, StepContacts::kCapacity> contacts;
+    return contacts;
+  }
+
+  StatisticalBody& body_;
+  const BodyKind& kind_;
+  const Shape& shape_;
+  const StepWorld& world_;
+  const SupportSettings& settings_;
+  ContactTally& tally_;
+  StepContacts& found_ = kept();
+  double fall_time_;     // s, √(R/g)
+  double touching_;      // m: no farther from the ground
+  double behind_ = 0.0;  // s: how much older than the place the velocity is
+  double kicked_ = 0.0;  // s: how much of gravity it has been given in this step
+  HeldVertices held_;
+  std::int32_t due_ = -1;  // the vertex that strikes where this step ends
+  int due_plane_ = -1;
+};
+
+// m/s, against the ground.
+double approach_of(const GroundMotion& motion, const GroundContact& c) {
+  return -(motion.velocity + motion.angular_velocity.cross(c.arm)).dot(c.normal);
+}
+
+void ContactSteps::run(double time) {
+  constexpr int kMostSteps = 32;
+  const int steps = std::clamp(int(std::ceil(time / (settings_.contact_step * fall_time_))), 1, kMostSteps);
+  const double usual = time / steps;
+  int divisions = 2 * steps;
+  for (double left = time; left > 1e-6 * time;)
+    left -= step(left / std::ceil(left / usual - 1e-9), divisions-- > 0);
+  catch_up();
+}
+
+// Returns how long it was, s: if it is divided until something strikes, else `time`, what strikes bouncing at
+// once.
+double ContactSteps::step(double time, bool divided) {
+  std::optional<EnergyBound> energy(std::in_place, body_, shape_, world_.gravity, settings_.energy_bounded);
+  kick_to(behind_ + 0.5 * time);
+  OnGround on(body_, shape_);
+  find_contacts(on, time);
+  if (found_.count > 0) {
+    tally_.touched_plane = found_.plane[found_.count - 1];
+    if (divided && is_struck(unkicked(on.rotation, on.motion))) {
+      kick_to(0.0);
+      strike(OnGround(body_, shape_));
+      energy.emplace(body_, shape_, world_.gravity, settings_.energy_bounded);
+      kick_to(0.5 * time);
+      on = OnGround(body_, shape_);
+    }
+    time = hold(on, time, divided);
+  }
+  behind_ = 0.5 * time;
+  kicked_ = 0.0;
+  held_.count = int(found_.count);
+  held_.wedged = false;
+  for (std::size_t k = 1; k < found_.count; ++k)
+    held_.wedged |= found_.contact[k].normal.dot(found_.contact[0].normal) < 0.0;
+  body_.position += body_.velocity * time;
+  if (held_.rolls)
+    energy->keep(found_.count > 0 && found_.contact[0].law.friction == 0.0
+                     ? std::optional(world_.planes[std::size_t(tally_.touched_plane)].normal)
+                     : std::nullopt);
+  if (found_.deepest < 0.0 && body_.eased <= 0.0f)
+    body_.position += push_out_overlap(found_.deepest, shape_.radius) *
+                      world_.planes[std::size_t(found_.deepest_plane)].normal;
+  body_.orientation = advance_orientation(body_.orientation, body_.spin, kind_, time).normalized();
+  return time;
+}
+
+void ContactSteps::kick_to(double time) {
+  body_.velocity += world_.gravity * (time - kicked_);
+  body_.spin += world_.turning * (time - kicked_);
+  kicked_ = time;
+}
+
+// The motion before the kick.
+GroundMotion ContactSteps::unkicked(const Mat3& rotation, const GroundMotion& kicked) const {
+  return {kicked.velocity - rotation.transpose() * (kicked_ * world_.gravity),
+          kicked.angular_velocity -
+              shape_.inverse_inertia_per_mass * (rotation.transpose() * (kicked_ * world_.turning))};
+}
+
+// With the vertex that strikes now, which of many near the ground may be none of those found.
+void ContactSteps::find_contacts(const OnGround& on, double time) {
+  find_step_contacts(body_, kind_, world_, on, time, settings_.contact_margin * shape_.radius, held_, found_);
+  found_.due = -1;
+  if (due_ < 0) return;
+  for (std::size_t i = 0; i < found_.count; ++i)
+    if (found_.vertex[i] == due_ && found_.plane[i] == due_plane_) found_.due = int(i);
+  if (found_.due < 0 && found_.count < StepContacts::kCapacity) {
+    found_.due = int(found_.count);
+    found_.add(vertex_contact(body_, kind_, world_, on.rotation, due_, due_plane_), due_, due_plane_);
+  }
+  due_ = -1;
+}
+
+bool ContactSteps::strikes_now(std::size_t contact, const GroundMotion& unkicked) const {
+  constexpr double kNear = 0.002;  // over R: what was to strike and is no nearer does not
+  const GroundContact& c = found_.contact[contact];
+  const double approach = approach_of(unkicked, c);
+  if (int(contact) == found_.due) return c.gap <= kNear * shape_.radius && approach > 0.0;
+  return c.gap <= touching_ && approach > world_.bounce_velocity;
+}
+
+bool ContactSteps::is_struck(const GroundMotion& unkicked) const {
+  for (std::size_t i = 0; i < found_.count; ++i)
+    if (strikes_now(i, unkicked)) return true;
+  return false;
+}
+
+// What strikes now does so with all else that touches, or is about to.
+void ContactSteps::strike(const OnGround& lagging) {
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < found_.count; ++i)
+    if (strikes_now(i, lagging.motion))
+      fastest = std::max(fastest, approach_of(lagging.motion, found_.contact[i]));
+  const double margin = std::max(touching_, std::min(settings_.impact_lag * fall_time_ * fastest,
+                                                     settings_.greatest_impact_margin * shape_.radius));
+  auto& contact = some_kept();
+  std::array<int, StepContacts::kCapacity> plane;
+  std::size_t count = 0, holding = 0;
+  for (const bool now : {false, true}) {
+    for (std::size_t i = 0; i < found_.count; ++i) {
+      const GroundContact& c = found_.contact[i];
+      if (strikes_now(i, lagging.motion) != now || (!now && c.gap > margin)) continue;
+      plane[count] = found_.plane[i];
+      contact[count++] = {.normal = c.normal, .arm = c.arm, .law = c.law};
+    }
+    if (!now) holding = count;
+  }
+  const auto contacts = std::span(contact).first(count);
+  kick_to(behind_);
+  OnGround on(body_, shape_);
+  if (behind_ > 0.0 && holding > 0) hold_together(body_, shape_, on, contacts.first(holding), settings_);
+  behind_ = kicked_ = 0.0;
+  const GroundMotion before = on.motion;
+  respond_together(body_, shape_, world_, on, contacts, settings_, tally_);
+  for (std::size_t i = 0; world_.log && i < count; ++i)
+    if (contacts[i].rows[0].impulse > 0.0)
+      write_touch(body_, world_, plane[i], on.rotation * contacts[i].arm, approach_of(before, contacts[i]),
+                  contacts[i].rows[0].impulse);
+}
+
+// By what has held the body last.
+void ContactSteps::catch_up() {
+  kick_to(behind_);
+  OnGround on(body_, shape_);
+  auto& contact = some_kept();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < found_.count; ++i) {
+    const GroundContact& c = found_.contact[i];
+    if (c.rows[0].impulse <= 0.0) continue;
+    const Vec3 normal = on.rotation.transpose() * world_.planes[std::size_t(found_.plane[i])].normal;
+    contact[count++] = {.normal = normal,
+                        .arm = shape_.sphere_radius ? Vec3(-*shape_.sphere_radius * normal) : c.arm,
+                        .law = c.law,
+                        .guess = 0.5 * c.impulse()};
+  }
+  if (count > 0) hold_together(body_, shape_, on, std::span(contact).first(count), settings_);
+}
+
+// s; `within`: not so soon, or too slowly. The point gains speed as it does while the others hold the body,
+// in the middle of the step, and is drawn towards the centre that it turns about.
+double ContactSteps::time_to_strike(const GroundContact& c, const GroundMotion& unkicked,
+                                    const GroundMotion& held, double within) const {
+  const Vec3& omega = held.angular_velocity;
+  const double most = 2.0 * world_.gravity_strength(), approach = approach_of(held, c);
+  const double gained = std::clamp((approach - approach_of(unkicked, c)) / kicked_, -most, most),  // m/s²
+      drawn = omega.squaredNorm() * c.arm.dot(c.normal) - omega.dot(c.arm) * omega.dot(c.normal);
+  const double first = approach - 0.5 * within * gained,
+               last_square = first * first + 2.0 * (gained + drawn) * c.gap;
+  if (last_square <= world_.bounce_velocity * world_.bounce_velocity) return within;
+  const double both = first + std::sqrt(last_square);
+  return both * within > 2.0 * c.gap ? 2.0 * c.gap / both : within;
+}
+
+// s, `time` at most: when the first of the vertices strikes that do not touch yet but would carry within the
+// step, while the others hold the body. Those that strike then no longer hold it. `sinks`: the last does
+// that.
+double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicked, bool sinks, double time) {
+  const auto may_strike = [&](const GroundContact& c) {
+    return c.gap > touching_ &&
+           (c.rows[0].impulse > 0.0 || (sinks && &c == &found_.contact[found_.count - 1]));
+  };
+  if (std::ranges::none_of(found_.contacts(), may_strike)) return time;
+  auto& holding = some_kept();
+  const auto end = std::ranges::remove_copy_if(found_.contacts(), holding.begin(), may_strike).out;
+  GroundMotion held = kicked;
+  solve_ground_contacts(held, shape_.inverse_inertia_per_mass, {holding.begin(), end}, time,
+                        solver(rotation, time, true));
+  const GroundMotion before = unkicked(rotation, kicked);
+  std::array<double, StepContacts::kCapacity> until;
+  double first = time;
+  for (std::size_t i = 0; i < found_.count; ++i) {
+    until[i] = may_strike(found_.contact[i]) ? time_to_strike(found_.contact[i], before, held, time) : time;
+    if (until[i] < first) first = until[i], due_ = found_.vertex[i], due_plane_ = found_.plane[i];
+  }
+  constexpr double kTogether = 1.1;
+  for (std::size_t i = 0; i < found_.count; ++i)
+    if (until[i] < std::min(time, kTogether * first))
+      found_.contact[i].gap = kUnbounded, found_.contact[i].guess = Vec3::Zero();
+  return first;
+}
+
+// In a step that is divided at strikes nothing bounces; else what strikes within it leaves as fast as at its
+// own time.
+ContactSolverSettings ContactSteps::solver(const Mat3& rotation, double time, bool divided) const {
+  ContactSolverSettings solver = settings_.solver;
+  solver.along_chords = !shape_.sphere_radius;  // whose lowest point is never the same
+  if (divided) {
+    solver.bounce_velocity = kUnbounded;
+    return solver;
+  }
+  // What gravity adds in a step is no impact.
+  solver.bounce_velocity = world_.bounce_velocity + world_.gravity_strength() * time;
+  solver.fall = rotation.transpose() * (kicked_ * world_.gravity);
+  return solver;
+}
+
+// The contacts give what keeps the body out of the ground for `time` seconds, or until one strikes. Returns
+// which, s.
+double ContactSteps::hold(OnGround& on, double time, bool divided) {
+  GroundMotion kicked = on.motion;
+  const auto solve = [&] {
+    on.motion = kicked;
+    solve_ground_contacts(on.motion, shape_.inverse_inertia_per_mass, found_.contacts(), time,
+                          solver(on.rotation, time, divided));
+  };
+  solve();
+  bool sinks = add_sinking(body_, kind_, world_, on, time, found_);
+  if (divided) {
+    if (const double until = find_strike(on.rotation, kicked, sinks, time); until < time) {
+      time = until;
+      kick_to(behind_ + 0.5 * time);
+      kicked = OnGround(body_, shape_).motion;
+      solve();
+      sinks = add_sinking(body_, kind_, world_, on, time, found_);
+    }
+  }
+  if (sinks) {
+    held_.rolls = true;
+    solve();
+  }
+  take_held(on, unkicked(on.rotation, kicked));
+  return time;
+}
+
+void ContactSteps::take_held(const OnGround& on, const GroundMotion& unkicked) {
+  const Vec3 velocity = body_.velocity, spin = body_.spin;
+  take_impulses(body_, on, found_.contacts());
+  for (std::size_t k = 0; k < found_.count; ++k) {
+    const GroundContact& c = found_.contact[k];
+    held_.impulse[k] = {found_.vertex[k], c.bounces ? Vec3(Vec3::Zero()) : Vec3(on.rotation * c.impulse())};
+    if (c.rows[0].impulse <= 0.0) continue;
+    if (world_.log)
+      write_touch(body_, world_, found_.plane[k], on.rotation * c.arm, approach_of(unkicked, c),
+                  c.rows[0].impulse);
+  }
+  if (std::ranges::any_of(found_.contacts(), &GroundContact::bounces))
+    clamp_energy(velocity, spin, body_, shape_, tally_);
+  tally_.contacts += std::int64_t(found_.count);
+}
+
+// The ground has the last word.
+void lift_off(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, const HalfSpace& plane,
+              double time, bool rolls, const SupportSettings& settings) {
+  const Shape& shape = *kind.shape;
+  EnergyBound energy(body, shape, world.gravity, settings.energy_bounded && rolls);
+  lift_out(body, shape, plane, world.gravity, lift_of(body, shape, world.gravity_strength(), time));
+  energy.keep(world.law(kind, plane).friction == 0.0 ? std::optional(plane.normal) : std::nullopt);
+}
+
+}  // namespace
+
+void move_on_ground(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time,
+                    const SupportSettings& settings, ContactTally& tally) {
+  ContactSteps steps(body, kind, world, settings, tally);
+  steps.run(time);
+  // Off one of two walls that lean against each other it would be lifted into the other.
+  if (tally.touched_plane >= 0 && !steps.held().wedged)
+    lift_off(body, kind, world, world.planes[tally.touched_plane], time, steps.held().rolls, settings);
+}
+
+}  // namespace lodestone

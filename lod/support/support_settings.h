@@ -1,0 +1,34 @@
+// What the `support` model is set to: how far its impacts and contact steps may be from exact.
+#pragma once
+
+#include "lod/contact/contact_solver.h"
+
+namespace lodestone {
+
+struct SupportSettings {
+  int max_impacts = 4;            ///< exact impacts a step; what is left of the step is done in contact steps
+  double contact_step = 0.07;     ///< longest contact step over √(R/g)
+  double contact_margin = 0.002;  ///< over R: vertices this near the ground can carry
+  ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2, .frictionless_bound = true};
+  bool energy_bounded = true;  ///< no contact step, and no lift out of the ground, adds energy: without, a
+                               ///< body of many vertices that rocks is kept rocking by those that sink in
+  double impact_tolerance = 1e-4;  ///< over R: how far off the ground an impact may be taken
+  double impact_margin = 1e-6;     ///< over R: vertices this near the one that strikes strike with it
+  double impact_lag =
+      7e-4;  ///< over √(R/g): so do those that it would take so long to strike. In ODE, the truth, a curved
+             ///< surface strikes with all that has sunk in within a step (4e-3): the bunny's first rebound is
+             ///< then .13 off instead of .17. More is worse for the armadillo's dense points.
+  double greatest_impact_margin = 0.01;  ///< over R
+  ContactSolverSettings impact_solver{.sweeps = 40, .frictionless_bound = true};
+
+  /// Of bodies of `tables` that move on their hulls and must come to rest by themselves. Friction is bounded
+  /// by each impulse as it is: with `support`'s bound two of two hundred rocked for ten seconds and more,
+  /// since in longer steps, while they are less slow, they lose less.
+  static SupportSettings of_tables() {
+    SupportSettings settings;
+    settings.solver.frictionless_bound = false;
+    return settings;
+  }
+};
+
+}  // namespace lodestone

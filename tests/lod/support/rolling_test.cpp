@@ -1,0 +1,83 @@
+// What turns about an edge of itself or rolls from one onto the next loses what the impacts take, and nothing
+// between them, whatever its frames.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lod/statistical/flight.h"
+#include "lod/support/support_model.h"
+#include "tests/prism.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kEarthGravity = 9.81;  // m/s²
+
+// One body over the plane through the origin.
+class Rolling : public ::testing::Test {
+ protected:
+  void put(std::shared_ptr<const Shape> shape, double restitution) {
+    kind_ = make_body_kind(std::move(shape));
+    materials_.replace(0, {.restitution = restitution, .friction = 0.8});
+    world_.planes = planes_;
+    world_.materials = &materials_;
+  }
+  void step(double frame) { step_support_body(body_, kind_, world_, frame, {}); }
+  // J/kg, over that of rest on a face.
+  double energy(double height_of_face) const {
+    return kinetic_energy(body_, *kind_.shape) + kEarthGravity * (body_.position.z() - height_of_face);
+  }
+
+  BodyKind kind_;
+  StatisticalBody body_;
+  MaterialTable materials_;
+  std::vector<HalfSpace> planes_{{.normal = Vec3::UnitZ(), .offset = 0.0}};
+  StepWorld world_;
+};
+
+TEST_F(Rolling, AboutAnEdgeItKeepsItsEnergy) {
+  constexpr double kWidth = 0.2, kHeight = 0.6, kTilt = 0.4;  // m, rad: past balance
+  put(std::make_shared<const Shape>(make_shape("pillar", make_box({kWidth, kWidth, kHeight}))), 0.3);
+  for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+    body_ = {};
+    body_.orientation = Eigen::AngleAxisd(kTilt, Vec3::UnitY());
+    body_.position.z() = 0.5 * (kWidth * std::sin(kTilt) + kHeight * std::cos(kTilt));
+    const double before = energy(0.5 * kWidth);
+    int frames = 0;
+    // Until it is about to strike: its side would in the next frame.
+    for (; body_.position.z() + 2.0 * frame * body_.velocity.z() > 0.5 * kWidth; ++frames) step(frame);
+    ASSERT_GT(frames * frame, 0.3);
+    EXPECT_NEAR(energy(0.5 * kWidth), before, 0.003 * before) << frame;
+  }
+}
+
+// Of 24 sides. At each the new edge stops, and the body turns on with its angular momentum about it: of the
+// energy ((I + r² cos α) / (I + r²))² is left, I over mass.
+TEST_F(Rolling, APrismLosesAtEachSideWhatTheImpactTakes) {
+  constexpr int kSides = 24, kRolled = 10;
+  constexpr double kRadius = 0.12, kSpeed = 0.9;  // m, m/s
+  const auto shape = testing::make_prism(kSides, kRadius, 0.3);
+  put(shape, 0.0);
+  const double corner = 2.0 * std::numbers::pi / kSides, square = kRadius * kRadius,
+               inertia = shape->inertia_per_mass(2, 2), side = 2.0 * kRadius * std::sin(0.5 * corner),
+               on_face = kRadius * std::cos(0.5 * corner),
+               left = std::pow((inertia + square * std::cos(corner)) / (inertia + square), 2);
+  for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+    body_ = {};
+    // It begins over an edge, turning about it.
+    body_.orientation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX())) *
+                        Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ()));
+    body_.position.z() = kRadius;
+    body_.velocity.x() = kSpeed;
+    body_.spin.y() = inertia * kSpeed / kRadius;
+    const double before = energy(on_face);
+    // It is over an edge again, which is as far from impacts as it comes.
+    while (body_.position.x() < kRolled * side) step(frame);
+    const double after = energy(on_face);
+    EXPECT_NEAR(std::pow(after / before, 1.0 / kRolled), left, 0.006) << frame;
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
