@@ -31,7 +31,8 @@ class ContactSteps {
         settings_(settings),
         tally_(tally),
         fall_time_(std::sqrt(shape_.radius / std::max(1e-9, world.gravity_strength()))),
-        touching_(kTouching * shape_.radius) {}
+        touching_(kTouching * shape_.radius),
+        slowest_((shape_.hull.vertices.size() > kFew ? kSlow : 1.0) * world.bounce_velocity) {}
 
   void run(double time);
   const HeldVertices& held() const { return held_; }
@@ -47,10 +48,15 @@ class ContactSteps {
   void catch_up();
   double time_to_strike(const GroundContact& c, const GroundMotion& unkicked, const GroundMotion& held,
                         double within) const;
-  double find_strike(const Mat3& rotation, const GroundMotion& kicked, bool sinks, double time);
+  double find_strike(const Mat3& rotation, const GroundMotion& kicked, int sinks, double time);
   double hold(OnGround& on, double time, bool divided);
   void take_held(const OnGround& on, const GroundMotion& unkicked);
   ContactSolverSettings solver(const Mat3& rotation, double time, bool divided) const;
+
+  // What rolls over many corners would lose energy by each that stops it a little too soon; on the few of a
+  // box, slow ones save nothing that counts.
+  static constexpr std::size_t kFew = 24;
+  static constexpr double kSlow = 0.5;  // over bounce_velocity
 
   // Kept from step to step, since to make all of them takes longer than to solve a few.
   static StepContacts& kept() {
@@ -71,11 +77,16 @@ class ContactSteps {
   StepContacts& found_ = kept();
   double fall_time_;     // s, √(R/g)
   double touching_;      // m: no farther from the ground
+  double slowest_;       // m/s: what ends a step by striking
   double behind_ = 0.0;  // s: how much older than the place the velocity is
   double kicked_ = 0.0;  // s: how much of gravity it has been given in this step
   HeldVertices held_;
-  std::int32_t due_ = -1;  // the vertex that strikes where this step ends
-  int due_plane_ = -1;
+  struct Due {
+    std::int32_t vertex;
+    int plane;
+  };
+  std::array<Due, StepContacts::kCapacity> due_;  // what strikes where this step ends
+  std::size_t due_count_ = 0;
 };
 
 // m/s, against the ground.
@@ -142,25 +153,26 @@ GroundMotion ContactSteps::unkicked(const Mat3& rotation, const GroundMotion& ki
               shape_.inverse_inertia_per_mass * (rotation.transpose() * (kicked_ * world_.turning))};
 }
 
-// With the vertex that strikes now, which of many near the ground may be none of those found.
+// With the vertices that strike now, which of many near the ground may be none of those found.
 void ContactSteps::find_contacts(const OnGround& on, double time) {
   find_step_contacts(body_, kind_, world_, on, time, settings_.contact_margin * shape_.radius, held_, found_);
-  found_.due = -1;
-  if (due_ < 0) return;
-  for (std::size_t i = 0; i < found_.count; ++i)
-    if (found_.vertex[i] == due_ && found_.plane[i] == due_plane_) found_.due = int(i);
-  if (found_.due < 0 && found_.count < StepContacts::kCapacity) {
-    found_.due = int(found_.count);
-    found_.add(vertex_contact(body_, kind_, world_, on.rotation, due_, due_plane_), due_, due_plane_);
+  for (const Due& due : std::span(due_).first(due_count_)) {
+    std::size_t i = 0;
+    while (i < found_.count && (found_.vertex[i] != due.vertex || found_.plane[i] != due.plane)) ++i;
+    if (i == StepContacts::kCapacity) break;
+    if (i == found_.count)
+      found_.add(vertex_contact(body_, kind_, world_, on.rotation, due.vertex, due.plane), due.vertex,
+                 due.plane);
+    found_.due[i] = true;
   }
-  due_ = -1;
+  due_count_ = 0;
 }
 
 bool ContactSteps::strikes_now(std::size_t contact, const GroundMotion& unkicked) const {
   constexpr double kNear = 0.002;  // over R: what was to strike and is no nearer does not
   const GroundContact& c = found_.contact[contact];
   const double approach = approach_of(unkicked, c);
-  if (int(contact) == found_.due) return c.gap <= kNear * shape_.radius && approach > 0.0;
+  if (found_.due[contact]) return c.gap <= kNear * shape_.radius && approach > 0.0;
   return c.gap <= touching_ && approach > world_.bounce_velocity;
 }
 
@@ -231,18 +243,18 @@ double ContactSteps::time_to_strike(const GroundContact& c, const GroundMotion& 
       drawn = omega.squaredNorm() * c.arm.dot(c.normal) - omega.dot(c.arm) * omega.dot(c.normal);
   const double first = approach - 0.5 * within * gained,
                last_square = first * first + 2.0 * (gained + drawn) * c.gap;
-  if (last_square <= world_.bounce_velocity * world_.bounce_velocity) return within;
+  if (last_square <= slowest_ * slowest_) return within;
   const double both = first + std::sqrt(last_square);
   return both * within > 2.0 * c.gap ? 2.0 * c.gap / both : within;
 }
 
 // s, `time` at most: when the first of the vertices strikes that do not touch yet but would carry within the
-// step, while the others hold the body. Those that strike then no longer hold it. `sinks`: the last does
-// that.
-double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicked, bool sinks, double time) {
+// step, while the others hold the body. Those that strike then no longer hold it. `sinks`: how many of the
+// last do.
+double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicked, int sinks, double time) {
   const auto may_strike = [&](const GroundContact& c) {
     return c.gap > touching_ &&
-           (c.rows[0].impulse > 0.0 || (sinks && &c == &found_.contact[found_.count - 1]));
+           (c.rows[0].impulse > 0.0 || &c >= found_.contact.data() + found_.count - std::size_t(sinks));
   };
   if (std::ranges::none_of(found_.contacts(), may_strike)) return time;
   auto& holding = some_kept();
@@ -255,12 +267,14 @@ double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicke
   double first = time;
   for (std::size_t i = 0; i < found_.count; ++i) {
     until[i] = may_strike(found_.contact[i]) ? time_to_strike(found_.contact[i], before, held, time) : time;
-    if (until[i] < first) first = until[i], due_ = found_.vertex[i], due_plane_ = found_.plane[i];
+    first = std::min(first, until[i]);
   }
   constexpr double kTogether = 1.1;
-  for (std::size_t i = 0; i < found_.count; ++i)
-    if (until[i] < std::min(time, kTogether * first))
-      found_.contact[i].gap = kUnbounded, found_.contact[i].guess = Vec3::Zero();
+  for (std::size_t i = 0; i < found_.count; ++i) {
+    if (until[i] >= std::min(time, kTogether * first)) continue;
+    due_[due_count_++] = {found_.vertex[i], found_.plane[i]};
+    found_.contact[i].gap = kUnbounded, found_.contact[i].guess = Vec3::Zero();
+  }
   return first;
 }
 
@@ -289,7 +303,7 @@ double ContactSteps::hold(OnGround& on, double time, bool divided) {
                           solver(on.rotation, time, divided));
   };
   solve();
-  bool sinks = add_sinking(body_, kind_, world_, on, time, found_);
+  int sinks = add_sinking(body_, kind_, world_, on, time, found_);
   if (divided) {
     if (const double until = find_strike(on.rotation, kicked, sinks, time); until < time) {
       time = until;
@@ -299,7 +313,7 @@ double ContactSteps::hold(OnGround& on, double time, bool divided) {
       sinks = add_sinking(body_, kind_, world_, on, time, found_);
     }
   }
-  if (sinks) {
+  if (sinks > 0) {
     held_.rolls = true;
     solve();
   }

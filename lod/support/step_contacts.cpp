@@ -47,25 +47,32 @@ void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepW
   }
 }
 
-bool add_sinking(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
-                 const OnGround& on, double time, StepContacts& found) {
+int add_sinking(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world, const OnGround& on,
+                double time, StepContacts& found) {
   const Shape& shape = *kind.shape;
-  if (shape.sphere_radius || found.count == StepContacts::kCapacity) return false;
+  if (shape.sphere_radius) return 0;
   const int plane_index = found.plane[found.count - 1];
   const HalfSpace& plane = world.planes[std::size_t(plane_index)];
-  const Vec3 position = body.position + on.rotation * on.motion.velocity * time;
+  const double height = plane.height_of(body.position + on.rotation * on.motion.velocity * time),
+               deep = -kTouching * shape.radius;
   const Quat orientation =
       rotation_from_vector(on.rotation * on.motion.angular_velocity * time) * body.orientation;
-  std::int32_t vertex = body.support_hint;
-  const HullContact lowest =
-      find_lowest_point(shape, orientation, plane.normal, plane.height_of(position), vertex);
-  const auto known = std::span(found.vertex).first(found.count);
-  if (lowest.gap > -kTouching * shape.radius || std::ranges::find(known, lowest.vertex) != known.end())
-    return false;
-  for (GroundContact& c : found.contacts()) c.guess = c.impulse();
-  found.add(vertex_contact(body, kind, world, on.rotation, lowest.vertex, plane_index), lowest.vertex,
-            plane_index);
-  return true;
+  std::int32_t lowest = body.support_hint;
+  const double lowest_gap = find_lowest_point(shape, orientation, plane.normal, height, lowest).gap;
+  const std::size_t known = found.count;
+  const auto add = [&](std::int32_t vertex) {
+    const auto vertices = std::span(found.vertex).first(known);
+    if (found.count == StepContacts::kCapacity || std::ranges::find(vertices, vertex) != vertices.end())
+      return false;
+    found.add(vertex_contact(body, kind, world, on.rotation, vertex, plane_index), vertex, plane_index);
+    return true;
+  };
+  if (lowest_gap > deep || !add(lowest)) return 0;
+  for (GroundContact& c : std::span(found.contact).first(known)) c.guess = c.impulse();
+  const Vec3 normal = orientation.conjugate() * plane.normal;
+  for (const std::int32_t next : shape.hull.neighbors(lowest))
+    if (height + shape.hull.vertices[std::size_t(next)].dot(normal) < deep) add(next);
+  return int(found.count - known);
 }
 
 }  // namespace lodestone

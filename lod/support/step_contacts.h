@@ -34,11 +34,12 @@ struct StepContacts {
   std::size_t count = 0;
   double deepest = 0.0;  ///< m, 0 or less
   int deepest_plane = -1;
-  int due = -1;  ///< the one that was to strike where the step begins
+  std::array<bool, kCapacity> due;  ///< it was to strike where the step begins
   std::span<GroundContact> contacts() { return std::span(contact).first(count); }
   void add(const GroundContact& c, std::int32_t of_vertex, int of_plane) {
     contact[count] = c;
     vertex[count] = of_vertex;
+    due[count] = false;
     plane[count++] = of_plane;
   }
 };
@@ -53,9 +54,10 @@ void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepW
                         StepContacts& found);
 
 /// With what the contacts gave, `on` being the motion then: the vertex that has sunk in deepest by the step's
-/// end, if it is none of those found. A round surface rolls onto it: held as they are, it raises the body by
-/// its motion, where a lift out of the ground would add energy. False: there is none.
-bool add_sinking(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
-                 const OnGround& on, double time, StepContacts& found);
+/// end, if it is none of those found, and those next to it on the hull that have, too. A round surface rolls
+/// onto them: held as they are, they raise the body by its motion, where a lift out of the ground would add
+/// energy. Returns how many.
+int add_sinking(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world, const OnGround& on,
+                double time, StepContacts& found);
 
 }  // namespace lodestone
