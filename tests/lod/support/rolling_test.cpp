@@ -52,31 +52,37 @@ TEST_F(Rolling, AboutAnEdgeItKeepsItsEnergy) {
   }
 }
 
-// Of 24 sides. At each the new edge stops, and the body turns on with its angular momentum about it: of the
-// energy ((I + r² cos α) / (I + r²))² is left, I over mass.
+// At each side the new edge stops, and the body turns on with its angular momentum about it: of the energy
+// ((I + r² cos α) / (I + r²))² is left, I over mass. Of 48 sides, so slowly, edges strike at .046 m/s, too
+// slowly for a bounce.
 TEST_F(Rolling, APrismLosesAtEachSideWhatTheImpactTakes) {
-  constexpr int kSides = 24, kRolled = 10;
-  constexpr double kRadius = 0.12, kSpeed = 0.9;  // m, m/s
-  const auto shape = testing::make_prism(kSides, kRadius, 0.3);
-  put(shape, 0.0);
-  const double corner = 2.0 * std::numbers::pi / kSides, square = kRadius * kRadius,
-               inertia = shape->inertia_per_mass(2, 2), side = 2.0 * kRadius * std::sin(0.5 * corner),
-               on_face = kRadius * std::cos(0.5 * corner),
-               left = std::pow((inertia + square * std::cos(corner)) / (inertia + square), 2);
-  for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
-    body_ = {};
-    // It begins over an edge, turning about it.
-    body_.orientation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX())) *
-                        Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ()));
-    body_.position.z() = kRadius;
-    body_.velocity.x() = kSpeed;
-    body_.spin.y() = inertia * kSpeed / kRadius;
-    const double before = energy(on_face);
-    // It is over an edge again, which is as far from impacts as it comes.
-    while (body_.position.x() < kRolled * side) step(frame);
-    const double after = energy(on_face);
-    EXPECT_NEAR(std::pow(after / before, 1.0 / kRolled), left, 0.006) << frame;
-  }
+  constexpr int kRolled = 10;
+  constexpr double kRadius = 0.12;  // m
+  struct Prism {
+    int sides;
+    double speed;  // m/s
+  };
+  for (const auto& [sides, speed] : {Prism{24, 0.9}, Prism{24, 0.5}, Prism{48, 0.35}})
+    for (const double frame : {1.0 / 60, 1.0 / 240}) {
+      const auto shape = testing::make_prism(sides, kRadius, 0.3);
+      put(shape, 0.0);
+      const double corner = 2.0 * std::numbers::pi / sides, square = kRadius * kRadius,
+                   inertia = shape->inertia_per_mass(2, 2), side = 2.0 * kRadius * std::sin(0.5 * corner),
+                   on_face = kRadius * std::cos(0.5 * corner),
+                   left = std::pow((inertia + square * std::cos(corner)) / (inertia + square), 2);
+      body_ = {};
+      // It begins over an edge, turning about it.
+      body_.orientation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX())) *
+                          Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ()));
+      body_.position.z() = kRadius;
+      body_.velocity.x() = speed;
+      body_.spin.y() = inertia * speed / kRadius;
+      const double before = energy(on_face);
+      // It is over an edge again, which is as far from impacts as it comes.
+      for (int i = 0; body_.position.x() < kRolled * side && i * frame < 10.0; ++i) step(frame);
+      const double lost = 1.0 - std::pow(energy(on_face) / before, 1.0 / kRolled);
+      EXPECT_NEAR(lost, 1.0 - left, 0.12 * (1.0 - left)) << sides << ", " << speed << ", " << frame;
+    }
 }
 
 }  // namespace
