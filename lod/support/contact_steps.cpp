@@ -51,6 +51,8 @@ class ContactSteps {
   double find_strike(const Mat3& rotation, const GroundMotion& kicked, int sinks, double time);
   double hold(OnGround& on, double time, bool divided);
   void take_held(const OnGround& on, const GroundMotion& unkicked);
+  void log(const OnGround& on, std::span<const GroundContact> contacts, std::span<const int> planes,
+           const GroundMotion& before) const;
   ContactSolverSettings solver(const Mat3& rotation, double time, bool divided) const;
 
   // What rolls over many corners would lose energy by each that stops it a little too soon; on the few of a
@@ -205,32 +207,46 @@ void ContactSteps::strike(const OnGround& lagging) {
   const auto contacts = std::span(contact).first(count);
   kick_to(behind_);
   OnGround on(body_, shape_);
-  if (behind_ > 0.0 && holding > 0) hold_together(body_, shape_, on, contacts.first(holding), settings_);
+  if (behind_ > 0.0 && holding > 0) {
+    hold_together(body_, shape_, on, contacts.first(holding), settings_);
+    log(on, contacts.first(holding), plane, lagging.motion);
+  }
   behind_ = kicked_ = 0.0;
   const GroundMotion before = on.motion;
   respond_together(body_, shape_, world_, on, contacts, settings_, tally_);
-  for (std::size_t i = 0; world_.log && i < count; ++i)
-    if (contacts[i].rows[0].impulse > 0.0)
-      write_touch(body_, world_, plane[i], on.rotation * contacts[i].arm, approach_of(before, contacts[i]),
-                  contacts[i].rows[0].impulse);
+  log(on, contacts, plane, before);
 }
 
 // By what has held the body last.
 void ContactSteps::catch_up() {
+  const GroundMotion lagging = OnGround(body_, shape_).motion;
   kick_to(behind_);
   OnGround on(body_, shape_);
   auto& contact = some_kept();
+  std::array<int, StepContacts::kCapacity> plane;
   std::size_t count = 0;
   for (std::size_t i = 0; i < found_.count; ++i) {
     const GroundContact& c = found_.contact[i];
     if (c.rows[0].impulse <= 0.0) continue;
-    const Vec3 normal = on.rotation.transpose() * world_.planes[std::size_t(found_.plane[i])].normal;
+    plane[count] = found_.plane[i];
+    const Vec3 normal = on.rotation.transpose() * world_.planes[std::size_t(plane[count])].normal;
     contact[count++] = {.normal = normal,
                         .arm = shape_.sphere_radius ? Vec3(-*shape_.sphere_radius * normal) : c.arm,
                         .law = c.law,
                         .guess = 0.5 * c.impulse()};
   }
-  if (count > 0) hold_together(body_, shape_, on, std::span(contact).first(count), settings_);
+  if (count == 0) return;
+  const auto contacts = std::span(contact).first(count);
+  hold_together(body_, shape_, on, contacts, settings_);
+  log(on, contacts, plane, lagging);
+}
+
+// What each has carried.
+void ContactSteps::log(const OnGround& on, std::span<const GroundContact> contacts,
+                       std::span<const int> planes, const GroundMotion& before) const {
+  for (std::size_t i = 0; world_.log && i < contacts.size(); ++i)
+    if (const GroundContact& c = contacts[i]; c.rows[0].impulse > 0.0)
+      write_touch(body_, world_, planes[i], on.rotation * c.arm, approach_of(before, c), c.rows[0].impulse);
 }
 
 // s; `within`: not so soon, or too slowly. The point gains speed as it does while the others hold the body,
@@ -327,11 +343,8 @@ void ContactSteps::take_held(const OnGround& on, const GroundMotion& unkicked) {
   for (std::size_t k = 0; k < found_.count; ++k) {
     const GroundContact& c = found_.contact[k];
     held_.impulse[k] = {found_.vertex[k], c.bounces ? Vec3(Vec3::Zero()) : Vec3(on.rotation * c.impulse())};
-    if (c.rows[0].impulse <= 0.0) continue;
-    if (world_.log)
-      write_touch(body_, world_, found_.plane[k], on.rotation * c.arm, approach_of(unkicked, c),
-                  c.rows[0].impulse);
   }
+  log(on, found_.contacts(), found_.plane, unkicked);
   if (std::ranges::any_of(found_.contacts(), &GroundContact::bounces))
     clamp_energy(velocity, spin, body_, shape_, tally_);
   tally_.contacts += std::int64_t(found_.count);

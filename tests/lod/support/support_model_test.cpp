@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "lod/statistical/contact_log.h"
 #include "lod/statistical/flight.h"
 #include "reference/random.h"
 
@@ -163,6 +164,21 @@ TEST_F(SupportModel, FrictionHoldsItOnASlopeOrLetsItSlide) {
         std::max(0.0, kGravity * (std::sin(tilt) - friction * std::cos(tilt)));  // after a second
     EXPECT_NEAR(body.velocity.dot(down), expected, 0.02 * expected + 1e-4) << friction;
     EXPECT_NEAR(body.position.dot(normal), 0.5 * kSide, 1e-3) << friction;
+  }
+}
+
+// In each frame what is logged of a box that slides is its weight.
+TEST_F(SupportModel, WhatIsLoggedOfASlidingBoxIsItsWeight) {
+  make_ground(0.0, 0.1);
+  ContactLog log;
+  world_.log = &log;
+  StatisticalBody body = body_at({0, 0, 0.5 * kSide}, {2, 0, 0});
+  for (int i = 0; i < 30; ++i) {
+    log.records().clear();
+    step(body);
+    double impulse = 0.0;
+    for (const ContactRecord& touch : log.records()) impulse += touch.impulse;
+    EXPECT_NEAR(impulse, body.mass * kGravity * kStep, 0.01 * body.mass * kGravity * kStep) << i;
   }
 }
 
