@@ -132,10 +132,10 @@ Vec3 find_start_axis(const PairBody& body, const PlacedSolid& placed) {
 }
 
 std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin,
-                                double ball_is_over) {
+                                double ball_is_over, MeetAhead how_far) {
   const PairBody ground = pair_body(placed);
   // Not those of a thin body's other side.
-  const double ahead = std::min(margin, kAhead * body.shape->inner_radius);
+  const double ahead = how_far == MeetAhead::near ? std::min(margin, kAhead * body.shape->inner_radius) : 0.0;
   const auto meet_as_hulls = [&] {
     return find_hull_contact(body, ground, margin, ahead, find_start_axis(body, placed));
   };
@@ -227,10 +227,11 @@ void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const 
 }
 
 void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search,
-                double ball_is_over) {
+                double ball_is_over, MeetAhead ahead) {
   search.contacts.clear();
   if (body.shape->pieces.empty() || placed.solid->surface) {
-    if (const auto contact = meet(body, placed, margin, ball_is_over)) search.contacts.push_back(*contact);
+    if (const auto contact = meet(body, placed, margin, ball_is_over, ahead))
+      search.contacts.push_back(*contact);
     return;
   }
   HullGap whole = {.normal = find_start_axis(body, placed)};

@@ -1,6 +1,7 @@
 // How a body meets one convex solid of the ground, or one triangle of a surface.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -30,12 +31,15 @@ void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const 
 /// Over the inner radius: so deep below a triangle's surface what is over it meets it along its normal.
 inline constexpr double kDeepestBelow = 0.25;
 
+/// Which vertices of the hull a contact has: those that touch, or others that are near, too.
+enum class MeetAhead : std::uint8_t { nothing, near };
+
 /// Those contacts of the body with a gap of at most `margin` m: one of its hull, or, as find_pair_contacts
 /// has it, those of its convex pieces. A triangle is met along its normal but for where an edge of it stands
 /// out, by the hull. What `search` held before is gone. `ball_is_over`, m: how far below the centre of a ball
 /// the nearest triangle is of those that this lies over: across an edge that does not stand out it meets none
 /// that is farther.
 void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search,
-                double ball_is_over = 1e300);
+                double ball_is_over = 1e300, MeetAhead ahead = MeetAhead::near);
 
 }  // namespace lodestone

@@ -1,7 +1,8 @@
 #include "lod/ground/ground.h"
 
 #include <algorithm>
-#include <unsupported/Eigen/BVH>
+
+#include "lod/ground/box_tree.h"
 
 namespace lodestone {
 namespace {
@@ -25,8 +26,8 @@ GroundPose pose_after(const GroundPose& pose, double after) {
 
 }  // namespace
 
-struct Ground::Tree : Eigen::KdBVH<double, 3, int> {
-  using Eigen::KdBVH<double, 3, int>::KdBVH;
+struct Ground::Tree : BoxTree {
+  using BoxTree::BoxTree;
 };
 
 double GroundPart::greatest_speed() const {
@@ -184,23 +185,14 @@ void Ground::find_parts(const Vec3& center, double reach, std::vector<const Grou
   if (loose_.size() > kFewLoose + tree_size_ / 8) rebuild();
   thread_local std::vector<int> near;
   near.clear();
-  struct Search {
-    const Ground& ground;
-    const Vec3& center;
-    double reach_squared;
-    bool intersectVolume(const Box& box) const {
-      return box.squaredExteriorDistance(center) <= reach_squared;
-    }
-    bool intersectObject(int i) const {
-      if (ground.in_tree_[std::size_t(i)] && intersectVolume(ground.bounds_[std::size_t(i)]))
-        near.push_back(i);
-      return false;  // go on
-    }
+  const auto add = [&](int i) {
+    if (bounds_[std::size_t(i)].squaredExteriorDistance(center) <= reach * reach) near.push_back(i);
   };
-  Search search{*this, center, reach * reach};
-  if (tree_) Eigen::BVIntersect(*tree_, search);
-  for (const std::int32_t i : loose_)
-    if (search.intersectVolume(bounds_[std::size_t(i)])) near.push_back(i);
+  if (tree_)
+    tree_->visit_near(center, reach, [&](int i) {
+      if (in_tree_[std::size_t(i)]) add(i);
+    });
+  for (const std::int32_t i : loose_) add(i);
   std::ranges::sort(near);
   for (const int i : near) {
     if (parts_[std::size_t(i)]->shape.make) solids_of(i);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 #include <span>
-#include <unsupported/Eigen/BVH>
 
+#include "lod/ground/box_tree.h"
 #include "reference/hull/convex_pieces.h"
 #include "reference/mesh/mesh_edges.h"
 
@@ -146,8 +146,8 @@ void GroundSolids::add_surface(const Mesh& mesh) {
   }
 }
 
-struct GroundSolids::Tree : Eigen::KdBVH<double, 3, int> {
-  using Eigen::KdBVH<double, 3, int>::KdBVH;
+struct GroundSolids::Tree : BoxTree {
+  using BoxTree::BoxTree;
 };
 
 void GroundSolids::prepare() {
@@ -158,24 +158,13 @@ void GroundSolids::prepare() {
 }
 
 void GroundSolids::find_near(const Vec3& center, double reach, std::vector<int>& found) const {
-  struct Search {
-    const std::vector<Box>& bounds;
-    const Vec3& center;
-    double reach_squared;
-    std::vector<int>& found;
-    bool intersectVolume(const Box& box) const {
-      return box.squaredExteriorDistance(center) <= reach_squared;
-    }
-    bool intersectObject(int i) const {
-      if (intersectVolume(bounds[std::size_t(i)])) found.push_back(i);
-      return false;  // go on
-    }
+  const auto add = [&](int i) {
+    if (bounds_[std::size_t(i)].squaredExteriorDistance(center) <= reach * reach) found.push_back(i);
   };
-  Search search{bounds_, center, reach * reach, found};
   if (tree_)
-    Eigen::BVIntersect(*tree_, search);
+    tree_->visit_near(center, reach, add);
   else if (solids_.size() == 1)
-    search.intersectObject(0);
+    add(0);
 }
 
 }  // namespace lodestone

@@ -67,13 +67,17 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     const std::span<const std::int32_t> awake = support.awake_with_guests();
     for (const std::int32_t index : awake) {
       StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-      body.crowded = body.on_solid = body.in_great_heap = body.on_edge = false;
+      body.crowded = body.on_solid = body.alone_on_solid = body.in_great_heap = body.on_edge = false;
     }
     find_ground_solids(step, awake, 0.0, dt, SolidSearch::one_of_a_part);
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
-    plan_.make(step.scene, pairs_, solid_contacts_, dt, near_);
+    plan_.make(step.scene, pairs_, solid_contacts_, dt, support.size(), near_);
     support.end_search();
     choose_movers(support, 0);
+    for (const std::int32_t index : movers_) {
+      StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+      body.alone_on_solid = body.on_solid;
+    }
     std::erase_if(movers_,
                   [&](std::int32_t index) { return step.scene.bodies[std::size_t(index)].is_sphere(); });
     move_alone(step, dt);
@@ -217,10 +221,14 @@ void NearBodies::find_ground_solids_of(const Step& step, std::int32_t index, dou
   const std::size_t before = solid_contacts_.size(), faces = faces_.faces.size();
   if (meets_solids(scene.world.properties_of(body.owner))) {
     const BodyKind& kind = scene.kind_of(body);
+    const Vec3 velocity = body.velocity;
+    if (search == SolidSearch::one_of_a_part)  // of the whole step
+      body.velocity += time * scene.gravity(Participant::statistical(std::size_t(index)));
     if (body.is_sphere())
       find_sphere_contacts(body, kind, index, ground_, after, time, solid_contacts_, faces_.faces);
     else
       find_solid_contacts(body, kind, index, ground_, after, time, solid_contacts_, faces_.faces, search);
+    body.velocity = velocity;
   }
   faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
   body.on_solid = solid_contacts_.size() > before;
@@ -232,7 +240,7 @@ void NearBodies::move_alone(const Step& step, double time) {
   tallies_.assign(std::size_t(count), {});
   constexpr std::int64_t kBlock = TurnLanes::kBodies;
   const auto moves = [](const StatisticalBody& body) {
-    return body.motion != Motion::asleep && !body.is_solved_in_crowd();
+    return body.motion != Motion::asleep && !body.is_solved_in_crowd() && !body.alone_on_solid;
   };
   run_in_pieces(jobs_, count, 8 * kBlock, [&](std::int64_t begin, std::int64_t end) {
     TurnLanes turns(settings_.simd);
@@ -258,6 +266,14 @@ void NearBodies::move_alone(const Step& step, double time) {
     }
   });
   for (const ContactTally& own : tallies_) step.tally += own;
+  // One after the other, as that makes the ground's solids.
+  for (const std::int32_t index : movers_) {
+    const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+    if (!body.alone_on_solid || body.motion == Motion::asleep) continue;
+    ContactTally tally;
+    move_alone(step.support, step.guests, index, time, tally, nullptr);
+    step.tally += tally;
+  }
 }
 
 void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,

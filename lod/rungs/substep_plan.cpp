@@ -118,10 +118,10 @@ void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs
 
 // Of the islands that touch them.
 void SubstepPlan::find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts,
-                                      double dt) {
+                                      double dt, const NearMarks& near) {
   for (const SolidContact& contact : solid_contacts) {
     const StatisticalBody& body = scene.bodies[std::size_t(contact.slot)];
-    if (body.motion == Motion::asleep) continue;
+    if (body.motion == Motion::asleep || !near[std::size_t(contact.slot)]) continue;
     const Vec3 velocity = body.velocity - contact.part->velocity_at(body.position);
     Island& island = island_of(contact.slot);
     island.longest = std::max(island.longest, velocity.norm() * dt / scene.kind_of(body).shape->radius);
@@ -130,7 +130,8 @@ void SubstepPlan::find_ways_to_solids(const ContactScene& scene, std::span<const
 }
 
 void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
-                       std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
+                       std::span<const SolidContact> solid_contacts, double dt, std::int32_t own,
+                       NearMarks& near) {
   find_ways(scene, pairs, dt);
   following_.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -139,10 +140,11 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
   }
   mark_followers(scene, pairs, dt, near);
   for (const SolidContact& contact : solid_contacts)
-    near.mark(Participant::statistical(std::size_t(contact.slot)));
+    if (contact.slot >= own || contact.part->moves())
+      near.mark(Participant::statistical(std::size_t(contact.slot)));
 
   find_islands(scene, pairs, dt, near);
-  find_ways_to_solids(scene, solid_contacts, dt);
+  find_ways_to_solids(scene, solid_contacts, dt, near);
   std::array<bool, kMostSubsteps + 1> any = {};
   const double least = std::max(1.0, dt / kLongest - 1e-6);
   const auto pace_of = [&](std::int32_t node) {

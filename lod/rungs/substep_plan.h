@@ -30,9 +30,10 @@ class SubstepPlan {
   explicit SubstepPlan(JobRunner jobs) : jobs_(std::move(jobs)) {}
 
   /// For a step of `dt` seconds: marks those that may touch another, or a solid of the ground, and gives them
-  /// the pace of their island.
+  /// the pace of their island. Of the bodies the first `own` are no guests: where such a one touches nothing
+  /// but ground that stands still, it is not marked.
   void make(const ContactScene& scene, const NearPairs& pairs, std::span<const SolidContact> solid_contacts,
-            double dt, NearMarks& near);
+            double dt, std::int32_t own, NearMarks& near);
   /// That any island has, in ascending order.
   std::span<const Pace> paces() const { return paces_; }
 
@@ -47,8 +48,8 @@ class SubstepPlan {
   void find_ways(const ContactScene& scene, const NearPairs& pairs, double dt);
   void mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt, NearMarks& near);
   void find_islands(const ContactScene& scene, const NearPairs& pairs, double dt, const NearMarks& near);
-  void find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts,
-                           double dt);
+  void find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts, double dt,
+                           const NearMarks& near);
   Island& island_of(std::int32_t node) { return island_of_root_[std::size_t(islands_.root_of(node))]; }
 
   static constexpr double kApart = -1.0, kFollowing = -2.0;

@@ -55,16 +55,17 @@ struct StatisticalBody {
   std::uint32_t events = 0;  ///< collisions so far: keys the random draws
   std::uint32_t kind = 0;
   Motion motion = Motion::dynamic;
-  bool crowded = false;        ///< touches another body in this step
-  bool on_solid = false;       ///< touches parts of the ground in this step, where these are no planes to it
-  bool borne_up = false;       ///< of a guest of `support`: what bears it was reckoned with a load to come
+  bool crowded = false;         ///< touches another body in this step
+  bool on_solid = false;        ///< touches parts of the ground in this step, where these are no planes to it
+  bool alone_on_solid = false;  ///< and nothing that moves: moved by itself
+  bool borne_up = false;        ///< of a guest of `support`: what bears it was reckoned with a load to come
   bool in_great_heap = false;  ///< many bodies hang together with it (IslandKind::great); asleep: did so last
   bool on_edge = false;        ///< slow and in a crowd, but not over an area of what it stands on (Footing)
   float since_crowded = 1e9f;  ///< s since it last did
   float eased = 0.0f;  ///< s left in which overlaps that it brought from another rung are undone slowly
 
   bool is_sphere() const { return sphere_radius > 0.0f; }
-  bool is_solved_in_crowd() const { return crowded || on_solid; }
+  bool is_solved_in_crowd() const { return crowded || (on_solid && !alone_on_solid); }
 };
 
 /// Kinetic energy over mass, J/kg, with the true inertia.

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "lod/ground/half_space.h"
+#include "lod/ground/ground.h"
 #include "lod/statistical/acting_forces.h"
 #include "lod/statistical/contact_log.h"
 #include "lod/statistical/own_properties.h"
@@ -22,8 +22,9 @@ struct StepWorld {
   ContactLog* log = nullptr;                  ///< null: nobody asked
   double bounce_velocity = 0.05;              ///< m/s, ODE's: slower contacts do not bounce
   const ActingForces* forces = nullptr;       ///< on bodies of `support`; null: none
-  Vec3 turning = Vec3::Zero();  ///< m²/s²: what a torque adds to the spin of a body that moves
-                                ///< alone. (A force is a part of its gravity.)
+  Vec3 turning = Vec3::Zero();     ///< m²/s²: what a torque adds to the spin of a body that moves
+                                   ///< alone. (A force is a part of its gravity.)
+  const Ground* solids = nullptr;  ///< parts of which are no planes to the body that moves; null: none
 
   const BodyProperties& properties_of(std::uint32_t owner) const {
     static const BodyProperties usual;

@@ -11,6 +11,10 @@ void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> face
   const BodyKind& kind = kind_of(body);
   StepWorld step_world = world();
   step_world.planes = join_planes(ground_.planes(), faces);
+  if (body.alone_on_solid) {
+    step_world.solids = &ground_;
+    body.motion = Motion::dynamic;  // a clip plays on planes
+  }
   const BodyProperties& own = properties_of(body);
   if (own.kinematic) {
     advance_kinematic(body, kind, time);

@@ -35,11 +35,14 @@ class ContactSteps {
         slowest_((shape_.hull.vertices.size() > kFew ? kSlow : 1.0) * world.bounce_velocity) {}
 
   void run(double time);
-  const HeldVertices& held() const { return held_; }
+  const HeldPoints& held() const { return held_; }
 
  private:
   double step(double time, bool divided);
   void kick_to(double time);
+  void note_touched(const HalfSpace& plane);
+  void push_out(double time);
+  const HalfSpace* plane_of(const HalfSpace& plane);
   GroundMotion unkicked(const Mat3& rotation, const GroundMotion& kicked) const;
   void find_contacts(const OnGround& on, double time);
   bool strikes_now(std::size_t contact, const GroundMotion& unkicked) const;
@@ -51,9 +54,11 @@ class ContactSteps {
   double find_strike(const Mat3& rotation, const GroundMotion& kicked, int sinks, double time);
   double hold(OnGround& on, double time, bool divided);
   void take_held(const OnGround& on, const GroundMotion& unkicked);
-  void log(const OnGround& on, std::span<const GroundContact> contacts, std::span<const int> planes,
-           const GroundMotion& before) const;
+  void log(const OnGround& on, std::span<const GroundContact> contacts,
+           std::span<const HalfSpace* const> planes, const GroundMotion& before) const;
   ContactSolverSettings solver(const Mat3& rotation, double time, bool divided) const;
+
+  static constexpr double kShortest = 0.25;  // of a step that ends where an edge may be struck
 
   // What rolls over many corners would lose energy by each that stops it a little too soon; on the few of a
   // box, slow ones save nothing that counts.
@@ -82,14 +87,19 @@ class ContactSteps {
   double slowest_;       // m/s: what ends a step by striking
   double behind_ = 0.0;  // s: how much older than the place the velocity is
   double kicked_ = 0.0;  // s: how much of gravity it has been given in this step
-  HeldVertices held_;
+  HeldPoints held_;
   struct Due {
-    std::int32_t vertex;
-    int plane;
+    TouchingPoint point;
+    HalfSpace plane;
   };
   std::array<Due, StepContacts::kCapacity> due_;  // what strikes where this step ends
   std::size_t due_count_ = 0;
 };
+
+bool is_same(const HalfSpace& a, const HalfSpace& b) {
+  constexpr double kSameWay = 0.999;  // cosine
+  return a.id == b.id && a.normal.dot(b.normal) > kSameWay;
+}
 
 // m/s, against the ground.
 double approach_of(const GroundMotion& motion, const GroundContact& c) {
@@ -98,12 +108,19 @@ double approach_of(const GroundMotion& motion, const GroundContact& c) {
 
 void ContactSteps::run(double time) {
   constexpr int kMostSteps = 32;
-  const int steps = std::clamp(int(std::ceil(time / (settings_.contact_step * fall_time_))), 1, kMostSteps);
+  const double longest = (world_.solids ? settings_.uneven_step : settings_.contact_step) * fall_time_;
+  const int steps = std::clamp(int(std::ceil(time / longest)), 1, kMostSteps);
   const double usual = time / steps;
   int divisions = 2 * steps;
+  // On planes each step is bounded where it must be; of steps over ground that is none some gain what others
+  // lose: all of them together gain nothing but a torque's work.
+  std::optional<EnergyBound> energy;
+  if (world_.solids && world_.turning.isZero(0.0))
+    energy.emplace(body_, shape_, world_.gravity, settings_.energy_bounded);
   for (double left = time; left > 1e-6 * time;)
     left -= step(left / std::ceil(left / usual - 1e-9), divisions-- > 0);
   catch_up();
+  if (energy) energy->keep();
 }
 
 // Returns how long it was, s: if it is divided until something strikes, else `time`, what strikes bouncing at
@@ -113,8 +130,13 @@ double ContactSteps::step(double time, bool divided) {
   kick_to(behind_ + 0.5 * time);
   OnGround on(body_, shape_);
   find_contacts(on, time);
+  if (divided && found_.until < time) {
+    time = std::max(found_.until, kShortest * time);
+    kick_to(behind_ + 0.5 * time);
+    on = OnGround(body_, shape_);
+  }
   if (found_.count > 0) {
-    tally_.touched_plane = found_.plane[found_.count - 1];
+    note_touched(*found_.plane[found_.count - 1]);
     if (divided && is_struck(unkicked(on.rotation, on.motion))) {
       kick_to(0.0);
       strike(OnGround(body_, shape_));
@@ -133,11 +155,9 @@ double ContactSteps::step(double time, bool divided) {
   body_.position += body_.velocity * time;
   if (held_.rolls)
     energy->keep(found_.count > 0 && found_.contact[0].law.friction == 0.0
-                     ? std::optional(world_.planes[std::size_t(tally_.touched_plane)].normal)
+                     ? std::optional(found_.plane[found_.count - 1]->normal)
                      : std::nullopt);
-  if (found_.deepest < 0.0 && body_.eased <= 0.0f)
-    body_.position += push_out_overlap(found_.deepest, shape_.radius) *
-                      world_.planes[std::size_t(found_.deepest_plane)].normal;
+  push_out(time);
   body_.orientation = advance_orientation(body_.orientation, body_.spin, kind_, time).normalized();
   return time;
 }
@@ -146,6 +166,27 @@ void ContactSteps::kick_to(double time) {
   body_.velocity += world_.gravity * (time - kicked_);
   body_.spin += world_.turning * (time - kicked_);
   kicked_ = time;
+}
+
+// The last plane of the world's that was.
+void ContactSteps::note_touched(const HalfSpace& plane) {
+  const auto& planes = world_.planes;
+  if (!planes.empty() && &plane >= planes.data() && &plane < planes.data() + planes.size())
+    tally_.touched_plane = int(&plane - planes.data());
+}
+
+void ContactSteps::push_out(double time) {
+  if (found_.deepest >= 0.0 || (body_.eased > 0.0f && !found_.uneven)) return;
+  body_.position += std::min(push_out_overlap(found_.deepest, shape_.radius),
+                             lift_of(body_, shape_, world_.gravity_strength(), time)) *
+                    found_.deepest_plane->normal;
+}
+
+// Null: there is no room for it.
+const HalfSpace* ContactSteps::plane_of(const HalfSpace& plane) {
+  const auto known =
+      std::ranges::find_if(world_.planes, [&](const HalfSpace& p) { return is_same(p, plane); });
+  return known != world_.planes.end() ? &*known : found_.keep(plane);
 }
 
 // The motion before the kick.
@@ -160,11 +201,15 @@ void ContactSteps::find_contacts(const OnGround& on, double time) {
   find_step_contacts(body_, kind_, world_, on, time, settings_.contact_margin * shape_.radius, held_, found_);
   for (const Due& due : std::span(due_).first(due_count_)) {
     std::size_t i = 0;
-    while (i < found_.count && (found_.vertex[i] != due.vertex || found_.plane[i] != due.plane)) ++i;
-    if (i == StepContacts::kCapacity) break;
-    if (i == found_.count)
-      found_.add(vertex_contact(body_, kind_, world_, on.rotation, due.vertex, due.plane), due.vertex,
-                 due.plane);
+    const auto is_it = [&](std::size_t k) {
+      return found_.point[k].stands_for(due.point, shape_.radius) && is_same(*found_.plane[k], due.plane);
+    };
+    while (i < found_.count && !is_it(i)) ++i;
+    if (i == found_.count) {
+      const HalfSpace* plane = found_.is_full() ? nullptr : plane_of(due.plane);
+      if (!plane) break;
+      found_.add(point_contact(body_, kind_, world_, on.rotation, due.point, *plane), due.point, *plane);
+    }
     found_.due[i] = true;
   }
   due_count_ = 0;
@@ -193,7 +238,7 @@ void ContactSteps::strike(const OnGround& lagging) {
   const double margin = std::max(touching_, std::min(settings_.impact_lag * fall_time_ * fastest,
                                                      settings_.greatest_impact_margin * shape_.radius));
   auto& contact = some_kept();
-  std::array<int, StepContacts::kCapacity> plane;
+  std::array<const HalfSpace*, StepContacts::kCapacity> plane;
   std::size_t count = 0, holding = 0;
   for (const bool now : {false, true}) {
     for (std::size_t i = 0; i < found_.count; ++i) {
@@ -223,13 +268,13 @@ void ContactSteps::catch_up() {
   kick_to(behind_);
   OnGround on(body_, shape_);
   auto& contact = some_kept();
-  std::array<int, StepContacts::kCapacity> plane;
+  std::array<const HalfSpace*, StepContacts::kCapacity> plane;
   std::size_t count = 0;
   for (std::size_t i = 0; i < found_.count; ++i) {
     const GroundContact& c = found_.contact[i];
     if (c.rows[0].impulse <= 0.0) continue;
     plane[count] = found_.plane[i];
-    const Vec3 normal = on.rotation.transpose() * world_.planes[std::size_t(plane[count])].normal;
+    const Vec3 normal = on.rotation.transpose() * plane[count]->normal;
     contact[count++] = {.normal = normal,
                         .arm = shape_.sphere_radius ? Vec3(-*shape_.sphere_radius * normal) : c.arm,
                         .law = c.law,
@@ -243,20 +288,23 @@ void ContactSteps::catch_up() {
 
 // What each has carried.
 void ContactSteps::log(const OnGround& on, std::span<const GroundContact> contacts,
-                       std::span<const int> planes, const GroundMotion& before) const {
+                       std::span<const HalfSpace* const> planes, const GroundMotion& before) const {
   for (std::size_t i = 0; world_.log && i < contacts.size(); ++i)
     if (const GroundContact& c = contacts[i]; c.rows[0].impulse > 0.0)
-      write_touch(body_, world_, planes[i], on.rotation * c.arm, approach_of(before, c), c.rows[0].impulse);
+      write_touch(body_, world_, *planes[i], on.rotation * c.arm, approach_of(before, c), c.rows[0].impulse);
 }
 
 // s; `within`: not so soon, or too slowly. The point gains speed as it does while the others hold the body,
-// in the middle of the step, and is drawn towards the centre that it turns about.
+// in the middle of the step, and is drawn towards the centre that it turns about. (Of a sphere it is another
+// point in each moment.)
 double ContactSteps::time_to_strike(const GroundContact& c, const GroundMotion& unkicked,
                                     const GroundMotion& held, double within) const {
   const Vec3& omega = held.angular_velocity;
   const double most = 2.0 * world_.gravity_strength(), approach = approach_of(held, c);
   const double gained = std::clamp((approach - approach_of(unkicked, c)) / kicked_, -most, most),  // m/s²
-      drawn = omega.squaredNorm() * c.arm.dot(c.normal) - omega.dot(c.arm) * omega.dot(c.normal);
+      drawn = shape_.sphere_radius
+                  ? 0.0
+                  : omega.squaredNorm() * c.arm.dot(c.normal) - omega.dot(c.arm) * omega.dot(c.normal);
   const double first = approach - 0.5 * within * gained,
                last_square = first * first + 2.0 * (gained + drawn) * c.gap;
   if (last_square <= slowest_ * slowest_) return within;
@@ -268,11 +316,12 @@ double ContactSteps::time_to_strike(const GroundContact& c, const GroundMotion& 
 // step, while the others hold the body. Those that strike then no longer hold it. `sinks`: how many of the
 // last do.
 double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicked, int sinks, double time) {
-  const auto may_strike = [&](const GroundContact& c) {
-    return c.gap > touching_ &&
+  const auto may_strike = [&](const GroundContact& c) { return c.gap > touching_; };
+  const auto would_carry = [&](const GroundContact& c) {
+    return may_strike(c) &&
            (c.rows[0].impulse > 0.0 || &c >= found_.contact.data() + found_.count - std::size_t(sinks));
   };
-  if (std::ranges::none_of(found_.contacts(), may_strike)) return time;
+  if (std::ranges::none_of(found_.contacts(), would_carry)) return time;
   auto& holding = some_kept();
   const auto end = std::ranges::remove_copy_if(found_.contacts(), holding.begin(), may_strike).out;
   GroundMotion held = kicked;
@@ -288,7 +337,7 @@ double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicke
   constexpr double kTogether = 1.1;
   for (std::size_t i = 0; i < found_.count; ++i) {
     if (until[i] >= std::min(time, kTogether * first)) continue;
-    due_[due_count_++] = {found_.vertex[i], found_.plane[i]};
+    due_[due_count_++] = {found_.point[i], *found_.plane[i]};
     found_.contact[i].gap = kUnbounded, found_.contact[i].guess = Vec3::Zero();
   }
   return first;
@@ -342,7 +391,7 @@ void ContactSteps::take_held(const OnGround& on, const GroundMotion& unkicked) {
   take_impulses(body_, on, found_.contacts());
   for (std::size_t k = 0; k < found_.count; ++k) {
     const GroundContact& c = found_.contact[k];
-    held_.impulse[k] = {found_.vertex[k], c.bounces ? Vec3(Vec3::Zero()) : Vec3(on.rotation * c.impulse())};
+    held_.impulse[k] = {found_.point[k], c.bounces ? Vec3(Vec3::Zero()) : Vec3(on.rotation * c.impulse())};
   }
   log(on, found_.contacts(), found_.plane, unkicked);
   if (std::ranges::any_of(found_.contacts(), &GroundContact::bounces))

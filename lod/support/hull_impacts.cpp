@@ -114,9 +114,8 @@ void respond(StatisticalBody& body, const BodyKind& kind, const LowestPoint& low
   respond_together(body, *kind.shape, world, on, contacts, settings, tally);
 }
 
-void write_touch(const StatisticalBody& body, const StepWorld& world, int plane, const Vec3& arm,
-                 double approach, double impulse) {
-  const HalfSpace& ground = world.planes[std::size_t(plane)];
+void write_touch(const StatisticalBody& body, const StepWorld& world, const HalfSpace& ground,
+                 const Vec3& arm, double approach, double impulse) {
   world.log->add({.first = body.owner,
                   .ground = ground.id,
                   .ground_material = ground.material,

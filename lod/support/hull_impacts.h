@@ -47,7 +47,7 @@ void clamp_energy(const Vec3& velocity_before, const Vec3& spin_before, Statisti
                   const Shape& shape, ContactTally& tally);
 
 /// Into the world's log.
-void write_touch(const StatisticalBody& body, const StepWorld& world, int plane, const Vec3& arm,
-                 double approach, double impulse);
+void write_touch(const StatisticalBody& body, const StepWorld& world, const HalfSpace& ground,
+                 const Vec3& arm, double approach, double impulse);
 
 }  // namespace lodestone

@@ -2,57 +2,119 @@
 
 #include <algorithm>
 
+#include "lod/contact/solid_points.h"
+
 namespace lodestone {
 
-GroundContact vertex_contact(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
-                             const Mat3& rotation, std::int32_t vertex, int plane_index) {
-  const HalfSpace& plane = world.planes[std::size_t(plane_index)];
-  const Vec3 normal = rotation.transpose() * plane.normal,
-             &arm = kind.shape->hull.vertices[std::size_t(vertex)];
+GroundContact point_contact(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                            const Mat3& rotation, const TouchingPoint& point, const HalfSpace& plane) {
+  const Vec3 normal = rotation.transpose() * plane.normal;
   return {.normal = normal,
-          .arm = arm,
-          .gap = plane.height_of(body.position) + arm.dot(normal),
+          .arm = point.arm,
+          .gap = plane.height_of(body.position) + point.arm.dot(normal),
           .law = world.law(kind, plane)};
 }
 
-void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
-                        const OnGround& on, double time, double least_margin, const HeldVertices& held,
-                        StepContacts& found) {
+namespace {
+
+/// A body that looks for the contacts of a step.
+struct Seeker {
+  StatisticalBody& body;
+  const BodyKind& kind;
+  const StepWorld& world;
+  const OnGround& on;
+  double time, least_margin;  // s, m
+  const HeldPoints& held;
+  StepContacts& found;
+
+  void find_on_plane(const HalfSpace& plane);
+  void find_on_solids();
+
+ private:
+  Vec3 guess(const TouchingPoint& point) const {
+    return on.rotation.transpose() * held.find(point, kind.shape->radius);
+  }
+  void add(const GroundContact& contact, const TouchingPoint& point, const HalfSpace& plane) {
+    found.add(contact, point, plane);
+    if (contact.gap < found.deepest) found.deepest = contact.gap, found.deepest_plane = &plane;
+  }
+};
+
+void Seeker::find_on_plane(const HalfSpace& plane) {
+  if (found.count + kMaxGroundContacts > StepContacts::kCapacity) return;
   const Shape& shape = *kind.shape;
+  const double height = plane.height_of(body.position), drop = body.velocity.dot(plane.normal) * time;
+  // What the ground gives one point may turn another down as fast as the body fell.
+  const double fall = std::max(0.0, -drop), margin = least_margin + fall;
+  const Vec3 normal = on.rotation.transpose() * plane.normal;
+  const GapChange change{drop, normal.cross(on.motion.angular_velocity) * time};
+  const double reach = margin + fall + change.of_arm.norm() * shape.radius;
+  if (height > shape.radius + reach) return;
+  const HullContacts low =
+      find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint, change);
+  for (int k = 0; k < low.count; ++k) {
+    const HullContact& contact = low.contact[std::size_t(k)];
+    if (contact.gap > reach) continue;
+    const TouchingPoint point{contact.vertex, arm_of(contact, shape, normal)};
+    add({.normal = normal,
+         .arm = point.arm,
+         .gap = contact.gap,
+         .law = world.law(kind, plane),
+         .guess = guess(point)},
+        point, plane);
+  }
+}
+
+// Of those that many triangles have in common one, and of more than there is room for the nearer ones.
+void Seeker::find_on_solids() {
+  constexpr double kSame = 1e-3;       // over R
+  constexpr double kSameWay = 0.9999;  // cosine
+  thread_local SolidPoints near;
+  const double radius = kind.shape->radius, same = kSame * radius;
+  find_solid_points(body, kind, *world.solids, time, least_margin, near);
+  found.until = near.until;
+  for (const HalfSpace& face : near.planes)
+    if (const HalfSpace* plane = found.keep(face)) find_on_plane(*plane);
+  found.uneven = !near.points.empty();
+  const std::size_t before = found.count;
+  for (const SolidPoint& n : near.points) {
+    const Vec3 arm = on.rotation.transpose() * (n.point - body.position);
+    bool known = false;
+    for (std::size_t i = before; i < found.count && !known; ++i)
+      known = (found.point[i].arm - arm).squaredNorm() < same * same &&
+              found.plane[i]->normal.dot(n.plane.normal) > kSameWay;
+    if (known) continue;
+    const HalfSpace* plane = found.is_full() ? nullptr : found.keep(n.plane);
+    if (!plane) return;
+    const TouchingPoint point{n.vertex, arm};
+    GroundContact contact = point_contact(body, kind, world, on.rotation, point, *plane);
+    contact.guess = guess(point);
+    add(contact, point, *plane);
+  }
+}
+
+}  // namespace
+
+void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                        const OnGround& on, double time, double least_margin, const HeldPoints& held,
+                        StepContacts& found) {
   found.count = 0;
   found.deepest = 0.0;
-  for (std::size_t i = 0; i < world.planes.size(); ++i) {
-    if (found.count + kMaxGroundContacts > StepContacts::kCapacity) return;
-    const HalfSpace& plane = world.planes[i];
-    const double height = plane.height_of(body.position), drop = body.velocity.dot(plane.normal) * time;
-    // What the ground gives one point may turn another down as fast as the body fell.
-    const double fall = std::max(0.0, -drop), margin = least_margin + fall;
-    const Vec3 normal = on.rotation.transpose() * plane.normal;
-    const GapChange change{drop, normal.cross(on.motion.angular_velocity) * time};
-    const double reach = margin + fall + change.of_arm.norm() * shape.radius;
-    if (height > shape.radius + reach) continue;
-    const HullContacts low =
-        find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint, change);
-    for (int k = 0; k < low.count; ++k) {
-      const HullContact& point = low.contact[std::size_t(k)];
-      if (point.gap > reach) continue;
-      found.add({.normal = normal,
-                 .arm = arm_of(point, shape, normal),
-                 .gap = point.gap,
-                 .law = world.law(kind, plane),
-                 .guess = on.rotation.transpose() * held.find(point.vertex)},
-                point.vertex, int(i));
-      if (point.gap < found.deepest) found.deepest = point.gap, found.deepest_plane = int(i);
-    }
-  }
+  found.uneven = false;
+  found.until = time;
+  Seeker seeker{body, kind, world, on, time, least_margin, held, found};
+  for (const HalfSpace& plane : world.planes) seeker.find_on_plane(plane);
+  if (!world.solids) return;
+  found.local.reserve(3 * StepContacts::kCapacity);
+  found.local.clear();
+  seeker.find_on_solids();
 }
 
 int add_sinking(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world, const OnGround& on,
                 double time, StepContacts& found) {
   const Shape& shape = *kind.shape;
-  if (shape.sphere_radius) return 0;
-  const int plane_index = found.plane[found.count - 1];
-  const HalfSpace& plane = world.planes[std::size_t(plane_index)];
+  if (shape.sphere_radius || found.uneven) return 0;
+  const HalfSpace& plane = *found.plane[found.count - 1];
   const double height = plane.height_of(body.position + on.rotation * on.motion.velocity * time),
                deep = -kTouching * shape.radius;
   const Quat orientation =
@@ -61,10 +123,11 @@ int add_sinking(const StatisticalBody& body, const BodyKind& kind, const StepWor
   const double lowest_gap = find_lowest_point(shape, orientation, plane.normal, height, lowest).gap;
   const std::size_t known = found.count;
   const auto add = [&](std::int32_t vertex) {
-    const auto vertices = std::span(found.vertex).first(known);
-    if (found.count == StepContacts::kCapacity || std::ranges::find(vertices, vertex) != vertices.end())
+    const auto points = std::span(found.point).first(known);
+    if (found.is_full() || std::ranges::find(points, vertex, &TouchingPoint::vertex) != points.end())
       return false;
-    found.add(vertex_contact(body, kind, world, on.rotation, vertex, plane_index), vertex, plane_index);
+    const TouchingPoint point{vertex, shape.hull.vertices[std::size_t(vertex)]};
+    found.add(point_contact(body, kind, world, on.rotation, point, plane), point, plane);
     return true;
   };
   if (lowest_gap > deep || !add(lowest)) return 0;

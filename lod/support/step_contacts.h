@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "lod/contact/ground_solver.h"
 #include "lod/contact/hull_contacts.h"
@@ -12,45 +13,69 @@
 
 namespace lodestone {
 
-/// What held a vertex in the contact step before: where the solver begins in the next.
-struct HeldVertices {
-  std::array<std::pair<std::int32_t, Vec3>, 3 * kMaxGroundContacts> impulse;  ///< by vertex, N s over mass
+/// A point of a body that may touch the ground.
+struct TouchingPoint {
+  static constexpr std::int32_t kNoVertex = -1;
+  std::int32_t vertex = kNoVertex;  ///< of the hull; else it is where two faces or edges meet
+  Vec3 arm = Vec3::Zero();          ///< m, from the centre of mass, body axes
+  /// Whether it is the other, or so near that it takes its place: `radius` is that of the body.
+  bool stands_for(const TouchingPoint& other, double radius) const {
+    constexpr double kNear = 0.03;
+    if (vertex != kNoVertex || other.vertex != kNoVertex) return vertex == other.vertex;
+    return (arm - other.arm).squaredNorm() < kNear * kNear * radius * radius;
+  }
+};
+
+/// The contacts of a step: of each plane in reach the vertices that may meet it; of other ground the points
+/// that may, each with the plane through what it meets there.
+struct StepContacts {
+  static constexpr std::size_t kCapacity = 6 * kMaxGroundContacts;
+  std::array<GroundContact, kCapacity> contact;
+  std::array<TouchingPoint, kCapacity> point;
+  std::array<const HalfSpace*, kCapacity> plane;
+  std::array<bool, kCapacity> due;  ///< it was to strike where the step begins
+  std::size_t count = 0;
+  double deepest = 0.0;  ///< m, 0 or less
+  const HalfSpace* deepest_plane = nullptr;
+  bool uneven = false;           ///< some are of ground that is no plane
+  double until = 0.0;            ///< s: nothing else is struck sooner
+  std::vector<HalfSpace> local;  ///< planes of this step alone
+
+  std::span<GroundContact> contacts() { return std::span(contact).first(count); }
+  bool is_full() const { return count == kCapacity; }
+  void add(const GroundContact& c, const TouchingPoint& of, const HalfSpace& with) {
+    contact[count] = c;
+    point[count] = of;
+    due[count] = false;
+    plane[count++] = &with;
+  }
+  /// Where there is no room any more its address would change.
+  const HalfSpace* keep(const HalfSpace& plane_of_step) {
+    if (local.size() == local.capacity()) return nullptr;
+    return &local.emplace_back(plane_of_step);
+  }
+};
+
+/// What held a point in the contact step before: where the solver begins in the next.
+struct HeldPoints {
+  std::array<std::pair<TouchingPoint, Vec3>, StepContacts::kCapacity> impulse;  ///< N s over mass
   int count = 0;
   bool rolls = false;   ///< onto a vertex that was none of these
   bool wedged = false;  ///< between planes that look against each other
-  Vec3 find(std::int32_t vertex) const {
+  Vec3 find(const TouchingPoint& point, double radius) const {
     for (int i = 0; i < count; ++i)
-      if (impulse[i].first == vertex) return impulse[i].second;
+      if (impulse[std::size_t(i)].first.stands_for(point, radius)) return impulse[std::size_t(i)].second;
     return Vec3::Zero();
   }
 };
 
-/// The contacts of a step: of each plane in reach the vertices that may meet it.
-struct StepContacts {
-  static constexpr std::size_t kCapacity = 3 * kMaxGroundContacts;
-  std::array<GroundContact, kCapacity> contact;
-  std::array<std::int32_t, kCapacity> vertex;
-  std::array<int, kCapacity> plane;
-  std::size_t count = 0;
-  double deepest = 0.0;  ///< m, 0 or less
-  int deepest_plane = -1;
-  std::array<bool, kCapacity> due;  ///< it was to strike where the step begins
-  std::span<GroundContact> contacts() { return std::span(contact).first(count); }
-  void add(const GroundContact& c, std::int32_t of_vertex, int of_plane) {
-    contact[count] = c;
-    vertex[count] = of_vertex;
-    due[count] = false;
-    plane[count++] = of_plane;
-  }
-};
-
-/// Of a vertex with a plane. `rotation`: body axes to the world's.
-GroundContact vertex_contact(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
-                             const Mat3& rotation, std::int32_t vertex, int plane_index);
+/// Of a point with a plane. `rotation`: body axes to the world's.
+GroundContact point_contact(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                            const Mat3& rotation, const TouchingPoint& point, const HalfSpace& plane);
 
 /// For a body that gravity has been given to.
 void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
-                        const OnGround& on, double time, double least_margin, const HeldVertices& held,
+                        const OnGround& on, double time, double least_margin, const HeldPoints& held,
                         StepContacts& found);
 
 /// With what the contacts gave, `on` being the motion then: the vertex that has sunk in deepest by the step's

@@ -30,7 +30,8 @@ bool touches_already(const HullFlight& flight, const StatisticalBody& body, cons
   const bool is_turned = !world.turning.isZero(0.0);
   const StatisticalBody before = is_turned ? body : StatisticalBody();
   body.spin += world.turning * time;
-  for (int hit = 0; hit < settings.max_impacts && left > 0.0; ++hit) {
+  const int most_impacts = world.solids ? 0 : settings.max_impacts;
+  for (int hit = 0; hit < most_impacts && left > 0.0; ++hit) {
     const HullFlight flight(body, kind, world);
     std::int32_t hint = body.support_hint;
     Impact end{
@@ -61,7 +62,7 @@ bool touches_already(const HullFlight& flight, const StatisticalBody& body, cons
     respond(body, kind, impact.lowest, approach, world, settings, tally);
     const HalfSpace& plane = world.planes[std::size_t(impact.lowest.plane)];
     if (world.log)
-      write_touch(body, world, impact.lowest.plane, body.orientation * impact.lowest.arm, approach,
+      write_touch(body, world, plane, body.orientation * impact.lowest.arm, approach,
                   (body.velocity - velocity).dot(plane.normal));
     tally.touched_plane = impact.lowest.plane;
     ++tally.contacts;

@@ -94,7 +94,8 @@ TEST_F(TriangleSieveTest, OneContactOfAPartIsFoundWhereThereIsAny) {
     std::vector<HalfSpace> planes;
     find_solid_contacts(body, kind, 5, ground_, 0.0, 1.0 / 60, every, planes);
     find_solid_contacts(body, kind, 5, ground_, 0.0, 1.0 / 60, one, planes, SolidSearch::one_of_a_part);
-    EXPECT_EQ(one.size(), std::min<std::size_t>(1, every.size()));
+    EXPECT_LE(one.size(), 1u);
+    EXPECT_GE(one.size(), std::min<std::size_t>(1, every.size()));
     several += every.size() > 1;
   }
   EXPECT_GT(several, 20u);
