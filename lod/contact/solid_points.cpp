@@ -56,6 +56,7 @@ class PointSearch {
   bool is_out_of(const Vec3& point, std::size_t face) const;
   bool enters_last(const Vec3& point, const Vec3& way, const Face& face) const;
   void find_vertices_over(const PlacedSolid& solid, std::size_t face);
+  void add_features(const PairContact& contact, const PlacedSolid& solid);
   bool is_held(const SolidPoint& crossing) const;
   void find_features(const PlacedSolid& solid, double ball_is_over);
   void add(std::int32_t vertex, const Vec3& point, const Vec3& normal, double gap, double least_gap,
@@ -79,8 +80,8 @@ class PointSearch {
   std::vector<Face>&faces_, &walls_;
   std::vector<bool>& held_;
   SolidPoints& found_;
-  Mat3 turn_;                 // body axes to the world's
-  bool is_over_one_ = false;  // of the faces, all of it
+  Mat3 turn_;          // body axes to the world's
+  double over_ = 0.0;  // m: how far the whole body is over one of the faces
 };
 
 void PointSearch::find_faces(const PlacedSolid& solid) {
@@ -146,7 +147,7 @@ void PointSearch::find_vertices_over(const PlacedSolid& solid, std::size_t face)
     add(vertex, point, plane.normal, gap, least, solid);
   };
   const HullContact lowest = find_lowest_point(shape, body.orientation, plane.normal, height, hint_);
-  is_over_one_ |= lowest.gap >= -seeker_.touching;
+  over_ = std::max(over_, lowest.gap);
   if (lowest.gap > reach) return;
   if (shape.sphere_radius) return look_at(-1, body.position + lowest.arm, lowest.gap);
   std::array<std::int32_t, kMostBelow> below;
@@ -158,35 +159,39 @@ void PointSearch::find_vertices_over(const PlacedSolid& solid, std::size_t face)
   }
 }
 
-// Where its features touch those of the solid. What is over one of its faces wholly passes over edges of
-// that, and across one that it does not touch yet nothing holds it.
+// Where its features touch those of the solid.
 void PointSearch::find_features(const PlacedSolid& solid, double ball_is_over) {
-  constexpr double kSame = 0.999;  // cosine
   thread_local HullContactSearch search;
-  meet_solid(self_, solid, seeker_.touching + seeker_.way, search, ball_is_over, MeetAhead::nothing);
-  for (const PairContact& contact : search.contacts) {
-    const Vec3& normal = contact.normal;
-    const bool along_face =
-        std::ranges::any_of(faces_, [&](const Face& f) { return f.normal.dot(normal) > kSame; });
-    for (int i = 0; i < contact.manifold.count; ++i) {
-      const double gap = contact.manifold.points[std::size_t(i)].gap;
-      const Vec3 point =
-          contact.manifold.points[std::size_t(i)].point + 0.5 * gap * normal;  // the body's own
-      const double then = gap_then(point, normal, gap);
-      if (std::min(gap, then) > seeker_.touching) continue;
-      if (!along_face && is_over_one_) continue;
-      if (along_face || gap <= seeker_.touching)
-        add(-1, point, normal, gap, std::min(gap, then), solid, along_face);
-      else
-        found_.until = std::min(found_.until, time_ * gap / (gap - then));
-    }
+  const double margin = seeker_.touching + seeker_.way;
+  if (over_ > margin) return;
+  meet_solid(self_, solid, margin, search, ball_is_over, MeetAhead::nothing);
+  for (const PairContact& contact : search.contacts) add_features(contact, solid);
+}
+
+// What is over one of the solid's faces wholly meets it along that, and passes over its edges; across one
+// that it does not touch yet nothing holds it.
+void PointSearch::add_features(const PairContact& contact, const PlacedSolid& solid) {
+  constexpr double kSame = 0.999;  // cosine
+  const Vec3& normal = contact.normal;
+  const bool along_face =
+      std::ranges::any_of(faces_, [&](const Face& f) { return f.normal.dot(normal) > kSame; });
+  if (!along_face && over_ >= -seeker_.touching) return;
+  for (int i = 0; i < contact.manifold.count; ++i) {
+    const double gap = contact.manifold.points[std::size_t(i)].gap;
+    const Vec3 point = contact.manifold.points[std::size_t(i)].point + 0.5 * gap * normal;  // the body's own
+    const double then = gap_then(point, normal, gap);
+    if (std::min(gap, then) > seeker_.touching) continue;
+    if (along_face || gap <= seeker_.touching)
+      add(-1, point, normal, gap, std::min(gap, then), solid, along_face);
+    else
+      found_.until = std::min(found_.until, time_ * gap / (gap - then));
   }
 }
 
 void PointSearch::meet(const PlacedSolid& solid, double ball_is_over) {
   if (sieve_ && solid.solid->surface && sieve_->is_beyond(solid)) return;
   find_faces(solid);
-  is_over_one_ = false;
+  over_ = -1e300;
   for (std::size_t face = 0; face < faces_.size(); ++face) find_vertices_over(solid, face);
   find_features(solid, ball_is_over);
 }

@@ -71,12 +71,12 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     }
     find_ground_solids(step, awake, 0.0, dt, SolidSearch::one_of_a_part);
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
-    plan_.make(step.scene, pairs_, solid_contacts_, dt, support.size(), near_);
+    plan_.make(step.scene, pairs_, solid_contacts_, dt, near_);
     support.end_search();
     choose_movers(support, 0);
     for (const std::int32_t index : movers_) {
       StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-      body.alone_on_solid = body.on_solid;
+      body.alone_on_solid = body.on_solid && !body.is_sphere();
     }
     std::erase_if(movers_,
                   [&](std::int32_t index) { return step.scene.bodies[std::size_t(index)].is_sphere(); });
@@ -283,6 +283,7 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
   StepWorld around = world();
   around.planes = join_planes(ground_.planes(), faces_.of(index));
   if (!body.is_sphere()) {
+    if (body.alone_on_solid) around.solids = &ground_;
     tally = step_support_body(body, kinds_[body.kind], around, time, SupportSettings::of_tables());
     return;
   }

@@ -130,8 +130,7 @@ void SubstepPlan::find_ways_to_solids(const ContactScene& scene, std::span<const
 }
 
 void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
-                       std::span<const SolidContact> solid_contacts, double dt, std::int32_t own,
-                       NearMarks& near) {
+                       std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
   find_ways(scene, pairs, dt);
   following_.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -140,7 +139,7 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
   }
   mark_followers(scene, pairs, dt, near);
   for (const SolidContact& contact : solid_contacts)
-    if (contact.slot >= own || contact.part->moves())
+    if (scene.bodies[std::size_t(contact.slot)].is_sphere() || contact.part->moves())
       near.mark(Participant::statistical(std::size_t(contact.slot)));
 
   find_islands(scene, pairs, dt, near);

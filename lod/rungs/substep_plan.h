@@ -30,10 +30,9 @@ class SubstepPlan {
   explicit SubstepPlan(JobRunner jobs) : jobs_(std::move(jobs)) {}
 
   /// For a step of `dt` seconds: marks those that may touch another, or a solid of the ground, and gives them
-  /// the pace of their island. Of the bodies the first `own` are no guests: where such a one touches nothing
-  /// but ground that stands still, it is not marked.
+  /// the pace of their island. A hull that touches nothing but ground that stands still is not marked.
   void make(const ContactScene& scene, const NearPairs& pairs, std::span<const SolidContact> solid_contacts,
-            double dt, std::int32_t own, NearMarks& near);
+            double dt, NearMarks& near);
   /// That any island has, in ascending order.
   std::span<const Pace> paces() const { return paces_; }
 

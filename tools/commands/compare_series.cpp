@@ -164,7 +164,8 @@ void add_compare_materials_command(Command& compare) {
 
 void add_compare_conditions_command(Command& compare) {
   auto [conditions, arguments] = compare.add<ConditionsArguments>(
-      "conditions", "drops of a shape with other materials, speeds, slopes and sizes", compare_conditions);
+      "conditions", "drops of a shape with other materials, speeds, slopes, sizes, ground",
+      compare_conditions);
   arguments.comparison.comparison.trials = 200;
   add_shape_arguments(conditions, arguments.shape);
   add_series_arguments(conditions, arguments, condition_names());

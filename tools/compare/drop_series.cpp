@@ -43,6 +43,8 @@ std::vector<Condition> make_conditions() {
     job.shape = std::make_shared<const Shape>(scale_shape(*job.shape, size / job.shape->size));
     job.material.density = std::max(job.material.density, kLeastMass / job.shape->volume * (1.0 + 1e-9));
   });
+  for (const auto& [ground, name] : kUnevenGrounds)
+    list.push_back({fmt::format("ground={}", name), [ground](DropJob& job) { job.ground = ground; }});
   return list;
 }
 

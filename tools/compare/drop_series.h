@@ -19,7 +19,7 @@ struct DropCase {
 };
 
 /// "usual", then as `restitution=0.9`: other restitutions (0 … .9), frictions (0 … 1), speeds, slopes (to 40
-/// degrees) and sizes (1 mm … 10 m, lengths × λ and times × √λ).
+/// degrees), sizes (1 mm … 10 m, lengths × λ and times × √λ) and grounds.
 std::vector<std::string> condition_names();
 
 /// `usual` itself, then a copy under each of the other conditions; in the order of condition_names().

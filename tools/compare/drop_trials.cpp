@@ -27,8 +27,9 @@ std::uint64_t seed_of_drop(std::uint64_t seed, std::uint32_t trial) {
   return std::uint64_t(random.uniform() * 0x1p53);
 }
 
-WorldSettings over_the_plane(const DropJob& job) {
-  return {.planes = {{drop_plane_normal(job.conditions), 0.0}}};
+WorldSettings over_the_ground(const DropJob& job) {
+  if (job.ground == DropGround::plane) return {.planes = {{drop_plane_normal(job.conditions), 0.0}}};
+  return {.solids = make_drop_ground(job.ground, job.shape->size)};
 }
 
 // Until the horizon or until the body has settled.
@@ -86,7 +87,7 @@ double measure_statistical(const DropJob& job, const Method& method, const DropB
 }  // namespace
 
 DropWorld::DropWorld(const DropJob& job, const Method& method)
-    : job_(job), world_(job, method, over_the_plane(job), {}) {}
+    : job_(job), world_(job, method, over_the_ground(job), {}) {}
 
 MethodWorld& DropWorld::start(std::uint64_t seed, std::uint32_t trial) {
   const RigidState start = drop_state(*job_.shape, job_.conditions, seed, trial);
@@ -104,7 +105,7 @@ MethodWorld make_many_drops(const DropJob& job, const Method& method, std::uint6
     starts.back().position +=
         kFarApart * job.shape->size * ((i % side - side / 2) * across + (i / side - side / 2) * along);
   }
-  WorldSettings settings = over_the_plane(job);
+  WorldSettings settings = over_the_ground(job);
   settings.seed = seed;
   settings.threads = threads;
   return {job, method, settings, starts};
@@ -131,7 +132,9 @@ std::vector<DropObservation> observe_drops(const DropJob& job, const Method& met
 
 double measure_ns_per_body_step(const DropJob& job, const Method& method, const DropBatch& batch,
                                 std::span<const DropObservation> observed) {
-  if (std::holds_alternative<StatisticalMethod>(method.way)) return measure_statistical(job, method, batch);
+  const bool on_plane = job.ground == DropGround::plane;
+  if (on_plane && std::holds_alternative<StatisticalMethod>(method.way))
+    return measure_statistical(job, method, batch);
   return measure_one_by_one(job, method, batch, observed);
 }
 

@@ -11,7 +11,7 @@
 
 namespace lodestone {
 
-/// One body at a time over the plane.
+/// One body at a time over the plane, or what else the job has.
 class DropWorld {
  public:
   /// `job` and `method` must outlive the world.
@@ -25,7 +25,8 @@ class DropWorld {
   MethodWorld world_;
 };
 
-/// Drops 0 … bodies − 1 in one world, too far apart to meet; `threads`: of the statistical level.
+/// Drops 0 … bodies − 1 in one world over the plane, too far apart to meet; `threads`: of the statistical
+/// level.
 MethodWorld make_many_drops(const DropJob& job, const Method& method, std::uint64_t seed, int bodies,
                             int threads = 1);
 
@@ -44,8 +45,8 @@ std::vector<DropObservation> observe_drops(const DropJob& job, const Method& met
 
 /// Processor time of a body's step, ns, over the steps in which it is awake, on one thread. ODE and Bullet:
 /// one body at a time, up to the rest that `observed` found; the median of some of the batch's drops.
-/// Statistical: a thousand bodies in one manager, too far apart to meet, without the phases that look for
-/// pairs.
+/// Statistical, on a plane: a thousand bodies in one manager, too far apart to meet, without the phases that
+/// look for pairs; on other ground as the others.
 double measure_ns_per_body_step(const DropJob& job, const Method& method, const DropBatch& batch,
                                 std::span<const DropObservation> observed);
 

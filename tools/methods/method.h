@@ -12,6 +12,7 @@
 #include "reference/drop_trial.h"
 #include "signature/signature_source.h"
 #include "tools/methods/bullet_world.h"
+#include "tools/methods/drop_ground.h"
 
 namespace lodestone {
 
@@ -19,7 +20,8 @@ namespace lodestone {
 struct DropJob {
   std::shared_ptr<const Shape> shape;
   DropConditions conditions;
-  Material material;  ///< of the body and of the plane
+  Material material;  ///< of the body and of the ground
+  DropGround ground = DropGround::plane;
   ContactLaw law() const { return {material.restitution, material.friction}; }
 };
 

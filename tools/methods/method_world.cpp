@@ -1,5 +1,7 @@
 #include "tools/methods/method_world.h"
 
+#include "reference/error.h"
+
 namespace lodestone {
 namespace {
 
@@ -30,6 +32,9 @@ OdeWorld make_empty(const OdeMethod& way, const WorldSettings& settings, const M
   ode.seed = settings.seed;
   OdeWorld world(ode, materials);
   for (const HalfSpace& plane : settings.planes) world.add_plane(plane.normal, plane.offset, 0);
+  for (const StaticBox& box : settings.solids.boxes)
+    world.add_static_box(box.sides, box.center, Quat::Identity(), 0);
+  for (const Mesh& mesh : settings.solids.meshes) world.add_static_mesh(mesh, 0);
   return world;
 }
 
@@ -42,11 +47,16 @@ Manager make_empty(const StatisticalMethod& way, const WorldSettings& settings,
   Manager world(manager);
   world.materials().replace(0, materials[0]);
   for (const HalfSpace& plane : settings.planes) world.add_plane(plane.normal, plane.offset);
+  for (const StaticBox& box : settings.solids.boxes)
+    world.add_static_box(box.sides, box.center, Quat::Identity());
+  for (const Mesh& mesh : settings.solids.meshes) world.add_static_mesh(mesh);
   return world;
 }
 
 BulletWorld make_empty(const BulletMethod& way, const WorldSettings& settings,
                        const MaterialTable& materials) {
+  if (!settings.solids.empty())
+    throw_input_error("ground of bullet", "boxes or meshes", "planes, all that it is compared on");
   BulletSettings bullet = way.settings;
   bullet.gravity = settings.gravity;
   BulletWorld world(bullet);
@@ -98,14 +108,20 @@ void MethodWorld::fill(std::span<const RigidState> starts) {
     fill_one(std::get<Statistical>(world_), std::get<StatisticalMethod>(method_.way));
 }
 
+bool MethodWorld::empty() {
+  const auto remove_all = [](auto& filled) {
+    for (const auto body : filled.bodies) filled.world.remove_body(body);
+    filled.bodies.clear();
+    return true;
+  };
+  if (auto* ode = std::get_if<Ode>(&world_)) return remove_all(*ode);
+  auto* statistical = std::get_if<Statistical>(&world_);
+  return statistical && !settings_.solids.empty() && remove_all(*statistical);
+}
+
 void MethodWorld::restart(std::uint64_t seed, std::span<const RigidState> starts) {
   settings_.seed = seed;
-  if (auto* ode = std::get_if<Ode>(&world_)) {
-    for (const OdeBodyId body : ode->bodies) ode->world.remove_body(body);
-    ode->bodies.clear();
-  } else {
-    world_ = make_world();  // so that nothing of the last contacts is left
-  }
+  if (!empty()) world_ = make_world();  // so that nothing of the last contacts is left
   fill(starts);
 }
 

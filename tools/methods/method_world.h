@@ -15,6 +15,7 @@ namespace lodestone {
 /// What the bodies are in.
 struct WorldSettings {
   std::vector<HalfSpace> planes = {};  ///< of the job's material
+  GroundSolidsOfWorld solids = {};     ///< likewise; not in Bullet's world
   Vec3 gravity{0, 0, -9.81};           ///< m/s²
   std::uint64_t seed = 1;
   int threads = 1;       ///< of the statistical level
@@ -29,7 +30,8 @@ class MethodWorld {
               std::span<const RigidState> starts);
 
   /// Other bodies in place of these, in the same surroundings, and `seed` for the manager's draws. ODE's
-  /// world stays, with what it built of the shape and the seed that it had; any other is made anew.
+  /// world stays, with what it built of the shape and the seed that it had, and so does any with solids,
+  /// which take long to make; any other is made anew.
   void restart(std::uint64_t seed, std::span<const RigidState> starts);
 
   void step(double dt);
@@ -54,6 +56,7 @@ class MethodWorld {
   using World = std::variant<Ode, Statistical, Bullet>;
   World make_world() const;
   void fill(std::span<const RigidState> starts);
+  bool empty();  ///< removes its bodies; false: it cannot
 
   const DropJob& job_;
   const Method& method_;

@@ -204,7 +204,7 @@ TEST(SubstepPlan, IsByHowFarTheyCloseInOverTheirSize) {
     NearMarks near;
     near.begin(2);
     SubstepPlan plan(make_job_runner(1));
-    plan.make(scene.scene(), pairs, {}, kPairStep, int(scene.scene().bodies.size()), near);
+    plan.make(scene.scene(), pairs, {}, kPairStep, near);
     EXPECT_EQ(near.pace(a), near.pace(b));
     EXPECT_EQ(plan.paces().size(), near[0] ? 1 : 0);
     return int(near.pace(a));
@@ -235,7 +235,7 @@ TEST(SubstepPlan, IsAnIslandsOwn) {
     NearMarks near;
     near.begin(scene.bodies.size());
     SubstepPlan plan(make_job_runner(1));
-    plan.make(scene.scene(), pairs, {}, kPairStep, int(scene.scene().bodies.size()), near);
+    plan.make(scene.scene(), pairs, {}, kPairStep, near);
     EXPECT_EQ(near.pace(fast), near.pace(right));
     EXPECT_TRUE(std::ranges::is_sorted(plan.paces()));
     EXPECT_EQ(plan.paces().size(), beside_sleepers ? 1u : 2u);
@@ -264,7 +264,7 @@ TEST(SubstepPlan, ASlowHeapTakesAStepAtOnce) {
     NearMarks near;
     near.begin(scene.bodies.size());
     SubstepPlan plan(make_job_runner(1));
-    plan.make(scene.scene(), pairs, {}, dt, int(scene.scene().bodies.size()), near);
+    plan.make(scene.scene(), pairs, {}, dt, near);
     EXPECT_EQ(plan.paces().size(), 1U);
     return int(near.pace(Participant::statistical(0)));
   };

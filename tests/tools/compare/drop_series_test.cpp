@@ -34,7 +34,7 @@ TEST(DropConditions, ChangeOneThingEach) {
     const int changes = (job.shape != usual.shape) +
                         (job.material.restitution != usual.material.restitution) +
                         (job.material.friction != usual.material.friction) + (job.conditions.slope != 0.0) +
-                        (job.conditions.speed_scale != 1.0);
+                        (job.conditions.speed_scale != 1.0) + (job.ground != DropGround::plane);
     EXPECT_EQ(changes, i == 0 ? 0 : 1) << names[i];
   }
   EXPECT_EQ(cases[0].name, "usual");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "tests/message_of.h"
 #include "tests/tools/methods/box_job.h"
 
 namespace lodestone {
@@ -76,6 +77,40 @@ TEST(MethodWorld, ShowsTheEngineThatItHas) {
     const MethodWorld world(job, method, on_a_plane(), {&start, 1});
     EXPECT_EQ(world.ode() != nullptr, method.name == "full_1") << method.name;
     EXPECT_EQ(world.manager() != nullptr, method.name == "waiting") << method.name;
+  }
+}
+
+// At its start, and again after others were there.
+TEST(MethodWorld, OnBoxesAndMeshesBodiesRestAsHighAsInOde) {
+  const DropJob job = box_job();
+  const Method ode = make_methods({"full_1"}, job, {}, 1, {})[0],
+               statistical = make_methods({"waiting"}, job, {}, 1, {})[0];
+  for (const auto& [ground, name] : kUnevenGrounds) {
+    const WorldSettings settings{.solids = make_drop_ground(ground, job.shape->size)};
+    RigidState start = above_the_plane(0.9);
+    start.position.x() = -1.5;  // over the landing of the stairs
+    MethodWorld truth(job, ode, settings, {&start, 1}), world(job, statistical, settings, {&start, 1});
+    const auto height = [](MethodWorld& of) {
+      for (int i = 0; i < 240; ++i) of.step(1.0 / 60.0);
+      return of.state().position.z();
+    };
+    const double first = height(world);
+    EXPECT_NEAR(first, height(truth), 0.11) << name;  // it may lie on another of its sides
+    world.restart(1, {&start, 1});
+    ASSERT_EQ(world.bodies(), 1) << name;
+    EXPECT_NEAR(height(world), first, 1e-6) << name;
+  }
+}
+
+TEST(MethodWorld, BulletIsComparedOnPlanesAlone) {
+  const DropJob job = box_job();
+  const RigidState start = above_the_plane(0.5);
+  for (const Method& method : methods_of_every_engine(job)) {
+    if (!std::holds_alternative<BulletMethod>(method.way)) continue;
+    const std::string message = testing::message_of<InputError>([&] {
+      MethodWorld(job, method, {.solids = make_drop_ground(DropGround::tiles, 0.4)}, {&start, 1});
+    });
+    EXPECT_NE(message.find("found boxes or meshes, expected planes"), std::string::npos) << message;
   }
 }
 
