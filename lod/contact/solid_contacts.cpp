@@ -11,9 +11,9 @@
 namespace lodestone {
 namespace {
 
-// Cosine, of 15°: so far triangles may turn from the mean slope that stands for them at `tables`. What hulls
+// Cosine, of 10°: so far triangles may turn from the mean slope that stands for them at `tables`. What hulls
 // rest on is off by some centimetres then.
-constexpr double kGentleToTables = 0.966;
+constexpr double kGentleToTables = 0.985;
 
 // Whichever way it turns and whatever of it comes near then.
 bool may_close(const PairContact& contact, const GroundPart& part, const GroundSeeker& seeker, double time) {
