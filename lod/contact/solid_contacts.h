@@ -18,7 +18,8 @@ struct SolidContact {
   PairContact contact;  ///< the normal points into the body
 };
 
-/// Which contacts are looked for: all, or one of each part, which tells whether the body meets it.
+/// Which contacts are looked for: all, or one of each part, which tells whether the body may meet it,
+/// whichever way it turns.
 enum class SolidSearch : std::uint8_t { all, one_of_a_part };
 
 /// Contacts of the body in `slot` that may close within `time` seconds, `after` so many of the step, appended

@@ -202,7 +202,7 @@ void ContactSteps::find_contacts(const OnGround& on, double time) {
   for (const Due& due : std::span(due_).first(due_count_)) {
     std::size_t i = 0;
     const auto is_it = [&](std::size_t k) {
-      return found_.point[k].stands_for(due.point, shape_.radius) && is_same(*found_.plane[k], due.plane);
+      return found_.point[k].stands_for(due.point, shape_) && is_same(*found_.plane[k], due.plane);
     };
     while (i < found_.count && !is_it(i)) ++i;
     if (i == found_.count) {

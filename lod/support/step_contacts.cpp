@@ -9,9 +9,11 @@ namespace lodestone {
 GroundContact point_contact(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
                             const Mat3& rotation, const TouchingPoint& point, const HalfSpace& plane) {
   const Vec3 normal = rotation.transpose() * plane.normal;
+  const std::optional<double>& ball = kind.shape->sphere_radius;
+  const Vec3 arm = ball ? Vec3(-*ball * normal) : point.arm;
   return {.normal = normal,
-          .arm = point.arm,
-          .gap = plane.height_of(body.position) + point.arm.dot(normal),
+          .arm = arm,
+          .gap = plane.height_of(body.position) + arm.dot(normal),
           .law = world.law(kind, plane)};
 }
 
@@ -32,7 +34,7 @@ struct Seeker {
 
  private:
   Vec3 guess(const TouchingPoint& point) const {
-    return on.rotation.transpose() * held.find(point, kind.shape->radius);
+    return on.rotation.transpose() * held.find(point, *kind.shape);
   }
   void add(const GroundContact& contact, const TouchingPoint& point, const HalfSpace& plane) {
     found.add(contact, point, plane);

@@ -18,11 +18,12 @@ struct TouchingPoint {
   static constexpr std::int32_t kNoVertex = -1;
   std::int32_t vertex = kNoVertex;  ///< of the hull; else it is where two faces or edges meet
   Vec3 arm = Vec3::Zero();          ///< m, from the centre of mass, body axes
-  /// Whether it is the other, or so near that it takes its place: `radius` is that of the body.
-  bool stands_for(const TouchingPoint& other, double radius) const {
-    constexpr double kNear = 0.03;
+  /// Whether it is the other, or so near that it takes its place. (Of a ball that rolls it is never the
+  /// same.)
+  bool stands_for(const TouchingPoint& other, const Shape& shape) const {
     if (vertex != kNoVertex || other.vertex != kNoVertex) return vertex == other.vertex;
-    return (arm - other.arm).squaredNorm() < kNear * kNear * radius * radius;
+    const double near = (shape.sphere_radius ? 0.5 : 0.03) * shape.radius;
+    return (arm - other.arm).squaredNorm() < near * near;
   }
 };
 
@@ -62,9 +63,9 @@ struct HeldPoints {
   int count = 0;
   bool rolls = false;   ///< onto a vertex that was none of these
   bool wedged = false;  ///< between planes that look against each other
-  Vec3 find(const TouchingPoint& point, double radius) const {
+  Vec3 find(const TouchingPoint& point, const Shape& shape) const {
     for (int i = 0; i < count; ++i)
-      if (impulse[std::size_t(i)].first.stands_for(point, radius)) return impulse[std::size_t(i)].second;
+      if (impulse[std::size_t(i)].first.stands_for(point, shape)) return impulse[std::size_t(i)].second;
     return Vec3::Zero();
   }
 };
