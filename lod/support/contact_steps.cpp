@@ -316,12 +316,15 @@ double ContactSteps::time_to_strike(const GroundContact& c, const GroundMotion& 
 // step, while the others hold the body. Those that strike then no longer hold it. `sinks`: how many of the
 // last do.
 double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicked, int sinks, double time) {
-  const auto may_strike = [&](const GroundContact& c) { return c.gap > touching_; };
   const auto would_carry = [&](const GroundContact& c) {
-    return may_strike(c) &&
+    return c.gap > touching_ &&
            (c.rows[0].impulse > 0.0 || &c >= found_.contact.data() + found_.count - std::size_t(sinks));
   };
   if (std::ranges::none_of(found_.contacts(), would_carry)) return time;
+  // Of two that say the same, as where triangles meet, one carries all: neither is to hold the body.
+  const auto may_strike = [&](const GroundContact& c) {
+    return found_.uneven ? c.gap > touching_ : would_carry(c);
+  };
   auto& holding = some_kept();
   const auto end = std::ranges::remove_copy_if(found_.contacts(), holding.begin(), may_strike).out;
   GroundMotion held = kicked;
