@@ -50,9 +50,11 @@ Method make_low(const DropJob& job) {
   return method;
 }
 
-Method make_bullet(std::string name, BulletGeometry geometry) {
+Method make_bullet(std::string name, const DropJob& job, BulletGeometry geometry) {
   return {std::move(name), BulletMethod{geometry},
-          bullet_available() ? "" : "needs a build with Bullet (libbullet-dev)"};
+          !bullet_available()               ? "needs a build with Bullet (libbullet-dev)"
+          : job.ground != DropGround::plane ? "is compared on planes alone"
+                                            : ""};
 }
 
 using Maker = Method (*)(const DropJob&);
@@ -78,9 +80,11 @@ constexpr std::array<NamedMaker, 11> kEngineMethods = {{
      [](const DropJob& job) {
        return make_ode("hull", job, {.settings = plain_settings(), .geometry = OdeGeometry::hull});
      }},
-    {"bullet_hull", [](const DropJob&) { return make_bullet("bullet_hull", BulletGeometry::hull); }},
-    {"bullet_hull40", [](const DropJob&) { return make_bullet("bullet_hull40", BulletGeometry::hull40); }},
-    {"bullet_sphere", [](const DropJob&) { return make_bullet("bullet_sphere", BulletGeometry::sphere); }},
+    {"bullet_hull", [](const DropJob& job) { return make_bullet("bullet_hull", job, BulletGeometry::hull); }},
+    {"bullet_hull40",
+     [](const DropJob& job) { return make_bullet("bullet_hull40", job, BulletGeometry::hull40); }},
+    {"bullet_sphere",
+     [](const DropJob& job) { return make_bullet("bullet_sphere", job, BulletGeometry::sphere); }},
     {"waiting",
      [](const DropJob&) {
        return Method{"waiting", StatisticalMethod{}, ""};

@@ -116,7 +116,8 @@ bool MethodWorld::empty() {
   };
   if (auto* ode = std::get_if<Ode>(&world_)) return remove_all(*ode);
   auto* statistical = std::get_if<Statistical>(&world_);
-  return statistical && !settings_.solids.empty() && remove_all(*statistical);
+  return statistical && !settings_.solids.empty() && !std::get<StatisticalMethod>(method_.way).published &&
+         remove_all(*statistical);
 }
 
 void MethodWorld::restart(std::uint64_t seed, std::span<const RigidState> starts) {
