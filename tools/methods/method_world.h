@@ -30,8 +30,8 @@ class MethodWorld {
               std::span<const RigidState> starts);
 
   /// Other bodies in place of these, in the same surroundings, and `seed` for the manager's draws. ODE's
-  /// world stays, with what it built of the shape and the seed that it had, and so does any with solids,
-  /// which take long to make; any other is made anew.
+  /// world stays, with what it built of the shape and the seed that it had, and so does a manager with
+  /// solids, which take long to make, unless its model draws; any other is made anew.
   void restart(std::uint64_t seed, std::span<const RigidState> starts);
 
   void step(double dt);
