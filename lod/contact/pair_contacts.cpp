@@ -41,14 +41,15 @@ double width_of(const TouchingFeature& feature) {
   return width;
 }
 
-// The vertices that lie within `hair` m of the touching plane, as arms from `origin`.
-void find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin,
-                  double hair, TouchingFeature& feature) {
+// The vertices that lie within `hair` m of the touching plane, as arms from `origin`. Returns the nearest of
+// all; −1 for a sphere.
+std::int32_t find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex, const Vec3& origin,
+                          double hair, TouchingFeature& feature) {
   const Vec3 arm = body.position - origin;
   if (body.shape->sphere_radius) {
     feature.corner[0] = arm - *body.shape->sphere_radius * normal;
     feature.count = 1;
-    return;
+    return -1;
   }
   const Hull& hull = body.shape->hull;
   const Vec3 own = body.orientation.conjugate() * normal;
@@ -59,6 +60,7 @@ void find_feature(const PairBody& body, const Vec3& normal, std::int32_t vertex,
   const Mat3 turn = body.orientation.toRotationMatrix();
   for (int i = 0; i < feature.count; ++i)
     feature.corner[std::size_t(i)] = arm + turn * hull.vertices[std::size_t(vertices[std::size_t(i)])];
+  return vertex;
 }
 
 // The face around a vertex that lies most nearly in the touching plane, its normal outward, in the body's
@@ -89,6 +91,22 @@ void extend_to_face(const PairBody& body, const Vec3& normal, std::int32_t verte
   if (face.count > 2 && width_of(face) >= body.shape->radius && farthest <= ahead) feature = face;
 }
 
+// What is so near of a round body lies on several faces, and the outermost of it would hide the nearest,
+// over which it rolls: then what lies on the face that is most nearly in the touching plane.
+void keep_one_face(const PairBody& body, const Vec3& normal, std::int32_t vertex, double hair,
+                   TouchingFeature& feature) {
+  constexpr double kFlat = 0.1;  // over the hair: how far a face's corners may be off its plane
+  if (feature.count < 3) return;
+  const Vec3 down = body.orientation.conjugate() * -normal,
+             outward = body.orientation * find_flattest_face(body.shape->hull, vertex, down);
+  const double offset = outward.dot(feature.corner[0]) - kFlat * hair;
+  int kept = 0;
+  for (int i = 0; i < feature.count; ++i)
+    if (const Vec3 corner = feature.corner[std::size_t(i)]; outward.dot(corner) >= offset)
+      feature.corner[std::size_t(kept++)] = corner;
+  feature.count = kept;
+}
+
 /// m: how much farther than the nearest vertex, beyond a hair, others of a touching feature are.
 struct Ahead {
   double first = 0.0;  ///< of the first body
@@ -98,8 +116,13 @@ struct Ahead {
 Manifold clip_features(const PairBody& first, const PairBody& second, const HullGap& best, const Ahead& ahead,
                        TouchingFeature& upper, TouchingFeature& lower) {
   const double hair = kFeatureMargin * std::min(first.shape->radius, second.shape->radius);
-  find_feature(first, best.normal, best.vertex_first, second.position, hair + ahead.first, upper);
-  find_feature(second, -best.normal, best.vertex_second, second.position, hair, lower);
+  const auto find = [&](const PairBody& body, const Vec3& normal, std::int32_t near, double within,
+                        TouchingFeature& feature) {
+    const std::int32_t nearest = find_feature(body, normal, near, second.position, within, feature);
+    keep_one_face(body, normal, nearest, hair, feature);
+  };
+  find(first, best.normal, best.vertex_first, hair + ahead.first, upper);
+  find(second, -best.normal, best.vertex_second, hair, lower);
   if (ahead.lying > 0.0) {
     extend_to_face(first, best.normal, best.vertex_first, second.position, hair, ahead.lying, upper);
     extend_to_face(second, -best.normal, best.vertex_second, second.position, hair, ahead.lying, lower);

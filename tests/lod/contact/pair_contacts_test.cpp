@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "reference/random.h"
+#include "tests/prism.h"
 
 namespace lodestone {
 namespace {
@@ -104,6 +105,29 @@ TEST(PairContacts, APlateThatIsAboutToLieIsTouchedByItsWholeFace) {
     in_the_air += p.gap > 0.003;
   }
   EXPECT_EQ(in_the_air, 2);
+}
+
+// All within a hundredth of its size spans three of its edges; in the outermost alone it would stand on a
+// facet that it does not have, the middle one a millimetre inside the slab.
+TEST(PairContacts, ABarrelIsMetInTheEdgeThatItRollsOn) {
+  constexpr int kSides = 48;
+  constexpr double kRadius = 0.12, kGap = 0.001;
+  const auto barrel = testing::make_prism(kSides, kRadius, 0.3);
+  const Shape slab = make_shape("slab", make_box({4, 4, 0.2}));
+  const auto on_edge = [&](double past) {  // rad, from where an edge is lowest
+    const Quat lying(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()) *
+                     Eigen::AngleAxisd(past, Vec3::UnitZ()));
+    return at(*barrel, {0, 0, 0.1 + kRadius + kGap}, lying);
+  };
+  for (const double past : {-0.02, -1e-4, 1e-4, 0.02}) {
+    const HullContactSearch search = search_afresh(on_edge(past), at(slab, Vec3::Zero()));
+    ASSERT_EQ(search.contacts.size(), 1U);
+    const PairContact& contact = search.contacts[0];
+    int of_edge = 0;
+    for (int i = 0; i < contact.manifold.count; ++i)
+      of_edge += contact.manifold.points[std::size_t(i)].gap < contact.gap + 1e-6;
+    EXPECT_EQ(of_edge, 2) << past;
+  }
 }
 
 TEST(PairContacts, AGapThatWasFoundIsNeverThoughtWiderThanItIs) {
