@@ -21,6 +21,7 @@ void add_compare_errors_command(Command& compare);
 void add_compare_shapes_command(Command& compare);
 void add_compare_conditions_command(Command& compare);
 void add_compare_materials_command(Command& compare);
+void add_compare_scores_command(Command& compare);
 
 void add_bench_hard_cases_command(Command& bench);
 void add_bench_full_level_command(Command& bench);

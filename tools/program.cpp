@@ -85,9 +85,10 @@ void check_standard_output() {
 
 void add_compare_commands(Command& program) {
   Command compare = program.add_group("compare", "error against the truth, beside cost");
-  for (const auto add : {add_compare_drop_command, add_compare_pile_command, add_compare_return_command,
-                         add_compare_errors_command, add_compare_shapes_command,
-                         add_compare_conditions_command, add_compare_materials_command})
+  for (const auto add :
+       {add_compare_drop_command, add_compare_pile_command, add_compare_return_command,
+        add_compare_errors_command, add_compare_shapes_command, add_compare_conditions_command,
+        add_compare_materials_command, add_compare_scores_command})
     add(compare);
 }
 
