@@ -113,6 +113,23 @@ void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std
   }
 }
 
+std::span<const SolidContact> first_run_of(std::span<const SolidContact> contacts) {
+  const auto end =
+      std::ranges::find_if(contacts, [&](const SolidContact& c) { return c.slot != contacts.front().slot; });
+  return contacts.first(std::size_t(end - contacts.begin()));
+}
+
+std::optional<Vec3> find_velocity_of_ground(std::span<const SolidContact> of_body, double dt) {
+  const GroundPose& first = of_body.front().part->pose;
+  const bool together = std::ranges::all_of(of_body, [&](const SolidContact& c) {
+    const GroundPart& part = *c.part;
+    if (!part.moves()) return first.velocity.isZero(0.0);
+    return !part.shape.probe && part.pose.angular_velocity.isZero(0.0) && part.pose.goes_on_s >= dt &&
+           part.pose.velocity == first.velocity;
+  });
+  return together ? std::optional(first.velocity) : std::nullopt;
+}
+
 bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const Ground& ground, double slack,
                        double time, std::vector<HalfSpace>& planes) {
   const GroundSeeker seeker = seeker_of(body, *kind.shape, 0, time);

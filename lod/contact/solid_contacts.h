@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lod/contact/pair_contacts.h"
@@ -28,6 +29,14 @@ enum class SolidSearch : std::uint8_t { all, one_of_a_part };
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
                          std::vector<HalfSpace>& planes, SolidSearch search = SolidSearch::all);
+
+/// Of the contacts, those of the body of the first one: they stand together.
+std::span<const SolidContact> first_run_of(std::span<const SolidContact> contacts);
+
+/// m/s: what all parts that one body may meet go on with for the whole step of `dt` seconds, none of them
+/// turning; zero where they stand still. None where they move otherwise: to a body that moves along with them
+/// they do not stand still.
+std::optional<Vec3> find_velocity_of_ground(std::span<const SolidContact> of_body, double dt);
 
 /// Appends the planes that stand for what the body may meet of the ground's parts within `time` seconds:
 /// faces, and for gentle ground of triangles one of its mean slope. False, and none, where there is more,

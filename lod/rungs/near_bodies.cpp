@@ -36,6 +36,12 @@ bool overlap_by(const ContactScene& scene, const CrowdContact& contact, double d
   return contact.contact.gap < -depth * radius && is_hull(contact.first) && is_hull(contact.second);
 }
 
+// From the first contact of the body in `slot` on, which has one.
+std::span<const SolidContact> from_slot(std::span<const SolidContact> contacts, std::int32_t slot) {
+  const auto first = std::ranges::find(contacts, slot, &SolidContact::slot);
+  return contacts.subspan(std::size_t(first - contacts.begin()));
+}
+
 bool meets_solids(const BodyProperties& own) { return !own.kinematic && meets_ground(own); }
 
 }  // namespace
@@ -267,13 +273,31 @@ void NearBodies::move_alone(const Step& step, double time) {
   });
   for (const ContactTally& own : tallies_) step.tally += own;
   // One after the other, as that makes the ground's solids.
+  std::span<const SolidContact> contacts = solid_contacts_;
   for (const std::int32_t index : movers_) {
     const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
     if (!body.alone_on_solid || body.motion == Motion::asleep) continue;
-    ContactTally tally;
-    move_alone(step.support, step.guests, index, time, tally, nullptr);
-    step.tally += tally;
+    contacts = from_slot(contacts, index);
+    move_on_solids(step, index, first_run_of(contacts), time);
   }
+}
+
+// Where the ground goes on, in the frame that goes with it, in which it stands still; nobody sleeps there.
+void NearBodies::move_on_solids(const Step& step, std::int32_t index, std::span<const SolidContact> contacts,
+                                double time) {
+  StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+  const Vec3 along = find_velocity_of_ground(contacts, time).value_or(Vec3(Vec3::Zero()));
+  const bool goes_on = !along.isZero(0.0);
+  if (goes_on) body.velocity -= along;
+  ContactTally tally;
+  move_alone(step.support, step.guests, index, time, tally, nullptr);
+  step.tally += tally;
+  if (!goes_on) return;
+  body.velocity += along;
+  body.position += time * along;
+  const Participant p = Participant::statistical(std::size_t(index));
+  if (body.motion == Motion::asleep) step.support.wake(index);
+  keep_awake(step, p);
 }
 
 void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,

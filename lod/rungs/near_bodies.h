@@ -83,6 +83,8 @@ class NearBodies {
   void move_alone(const Step& step, double time);
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                   ContactTally& tally, const Quat* turned) const;
+  void move_on_solids(const Step& step, std::int32_t index, std::span<const SolidContact> contacts,
+                      double time);
   static void keep_awake(const Step& step, Participant p);
   void wake(const Step& step, Participant p, Pace pace);
   void wake_touched(const Step& step, Pace pace);

@@ -138,9 +138,15 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
     if (ways_[i] == kFollowing) following_.push_back(i);
   }
   mark_followers(scene, pairs, dt, near);
-  for (const SolidContact& contact : solid_contacts)
-    if (scene.bodies[std::size_t(contact.slot)].is_sphere() || contact.part->moves())
-      near.mark(Participant::statistical(std::size_t(contact.slot)));
+  for (auto left = solid_contacts; !left.empty();) {
+    const auto of_body = first_run_of(left);
+    left = left.subspan(of_body.size());
+    const auto slot = std::size_t(of_body.front().slot);
+    const StatisticalBody& body = scene.bodies[slot];
+    const std::optional<Vec3> along = find_velocity_of_ground(of_body, dt);
+    const bool moves_along = along && (along->isZero(0.0) || !may_strike_ground(scene, body, dt));
+    if (body.is_sphere() || !moves_along) near.mark(Participant::statistical(slot));
+  }
 
   find_islands(scene, pairs, dt, near);
   find_ways_to_solids(scene, solid_contacts, dt, near);

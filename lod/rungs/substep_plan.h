@@ -30,7 +30,8 @@ class SubstepPlan {
   explicit SubstepPlan(JobRunner jobs) : jobs_(std::move(jobs)) {}
 
   /// For a step of `dt` seconds: marks those that may touch another, or a solid of the ground, and gives them
-  /// the pace of their island. A hull that touches nothing but ground that stands still is not marked.
+  /// the pace of their island. A hull that touches nothing but ground that stands still, or goes on as one
+  /// without turning, is not marked.
   void make(const ContactScene& scene, const NearPairs& pairs, std::span<const SolidContact> solid_contacts,
             double dt, NearMarks& near);
   /// That any island has, in ascending order.
