@@ -20,7 +20,9 @@ struct SupportSettings {
              ///< surface strikes with all that has sunk in within a step (4e-3): the bunny's first rebound is
              ///< then .13 off instead of .17. More is worse for the armadillo's dense points.
   double greatest_impact_margin = 0.01;  ///< over R
-  ContactSolverSettings impact_solver{.sweeps = 40, .frictionless_bound = true};
+  /// Of what strikes at once; a post that comes down upright needs most sweeps, or it is tilted by what is
+  /// left.
+  ContactSolverSettings impact_solver{.sweeps = 200, .frictionless_bound = true};
 
   /// Of bodies of `tables` that move on their hulls and must come to rest by themselves. Friction is bounded
   /// by each impulse as it is: with `support`'s bound two of two hundred rocked for ten seconds and more,

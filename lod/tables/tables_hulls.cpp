@@ -92,8 +92,7 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
       .support = {.contact_step = 0.1,
                   .solver = {.sweeps = 4, .tolerance = 1e-2},
                   .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
-                  .impact_tolerance = 2e-4,
-                  .impact_solver = {.sweeps = 6, .tolerance = 1e-2, .frictionless_bound = true}}};
+                  .impact_tolerance = 2e-4}};
   static const HullMotionSettings fine{.support = SupportSettings::of_tables()};
   const auto i = std::size_t(place);
   const Shape& shape = *kind_of(place).shape;
