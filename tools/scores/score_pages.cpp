@@ -60,7 +60,7 @@ class KeptScores {
     std::vector<std::string> texts = {floor(shape, condition)};
     if (texts.front().empty()) return "";
     for (const char* method : {"support", "tables", "full_1"})
-      texts.push_back(score(shape, condition, method));
+      if (std::string text = score(shape, condition, method); !text.empty()) texts.push_back(std::move(text));
     return join_commas(texts);
   }
   std::string origin() const {
