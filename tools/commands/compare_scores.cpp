@@ -10,6 +10,7 @@
 #include "reference/error.h"
 #include "reference/output_file.h"
 #include "tools/commands.h"
+#include "tools/interrupt.h"
 #include "tools/pages/page_texts.h"
 #include "tools/progress.h"
 #include "tools/report/machine.h"
@@ -51,11 +52,13 @@ std::vector<ScoreRow> kept_scores(const ScoresArguments& arguments) {
 
 std::vector<ScoreRow> measure_chosen(const ScoresArguments& arguments) {
   std::vector<ScoreRow> rows;
-  for (const std::string& series : score_series_names()) {
-    if (!arguments.only.empty() && std::ranges::count(arguments.only, series) == 0) continue;
-    const auto of_series = measure_scores(series, program_commit(), arguments.threads, arguments.progress);
-    rows.insert(rows.end(), of_series.begin(), of_series.end());
-  }
+  until_interrupted([&] {  // the series that are whole
+    for (const std::string& series : score_series_names()) {
+      if (!arguments.only.empty() && std::ranges::count(arguments.only, series) == 0) continue;
+      const auto of_series = measure_scores(series, program_commit(), arguments.threads, arguments.progress);
+      rows.insert(rows.end(), of_series.begin(), of_series.end());
+    }
+  });
   return rows;
 }
 
