@@ -19,30 +19,7 @@ std::string_view take_line(std::string_view& text) {
   return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
 }
 
-// Its text and whether it stood in quotes.
-struct Cell {
-  std::string text;
-  bool quoted = false;
-};
-
-std::vector<Cell> cells_of(std::string_view line) {
-  std::vector<Cell> cells(1);
-  bool inside = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && inside && i + 1 < line.size() && line[i + 1] == '"')
-      cells.back().text += line[++i];  // two of them stand for one
-    else if (c == '"')
-      inside = !inside, cells.back().quoted = true;
-    else if (c == ',' && !inside)
-      cells.emplace_back();
-    else
-      cells.back().text += c;
-  }
-  return cells;
-}
-
-ordered_json value_of(const Cell& cell) {
+ordered_json value_of(const CsvCell& cell) {
   if (cell.quoted) return cell.text;
   if (cell.text.empty()) return nullptr;
   if (cell.text == "true" || cell.text == "false") return cell.text == "true";
@@ -64,14 +41,31 @@ void read_comment(std::string_view line, Provenance& made) {
 
 }  // namespace
 
+std::vector<CsvCell> cells_of(std::string_view line) {
+  std::vector<CsvCell> cells(1);
+  bool inside = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && inside && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back().text += line[++i];  // two of them stand for one
+    else if (c == '"')
+      inside = !inside, cells.back().quoted = true;
+    else if (c == ',' && !inside)
+      cells.emplace_back();
+    else
+      cells.back().text += c;
+  }
+  return cells;
+}
+
 ReportTable parse_report_table(std::string_view name, std::string_view csv) {
   ReportTable table;
   std::string_view line = take_line(csv);
   int number = 1;
   for (; line.starts_with('#'); ++number) read_comment(line, table.made), line = take_line(csv);
-  const std::vector<Cell> keys = cells_of(line);
+  const std::vector<CsvCell> keys = cells_of(line);
   while (!csv.empty()) {
-    const std::vector<Cell> cells = cells_of(take_line(csv));
+    const std::vector<CsvCell> cells = cells_of(take_line(csv));
     ++number;
     if (cells.size() != keys.size())
       throw InputError(

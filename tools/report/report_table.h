@@ -20,6 +20,13 @@ struct ReportTable {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();  ///< objects, all with the same keys
 };
 
+/// Of a line of CSV: the text, and whether it stood in double quotes.
+struct CsvCell {
+  std::string text;
+  bool quoted = false;
+};
+std::vector<CsvCell> cells_of(std::string_view line);
+
 /// Of CSV text whose first lines are comments, `# command: …` (any number), `# commit: …`, `# machine: …`, `#
 /// date: …`, then the keys, then a line a row. A cell is a number where it reads as one, null where it is
 /// empty, text in double quotes or not; `name` heads what InputError says is wrong.

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include "reference/error.h"
+#include "tools/report/report_table.h"
 
 namespace lodestone {
 namespace {
@@ -23,19 +23,6 @@ constexpr std::string_view kAbout =
 // SHAPEs have commas.
 std::string quoted(const std::string& text) { return '"' + text + '"'; }
 
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool inside = false;
-  for (const char c : line)
-    if (c == '"')
-      inside = !inside;
-    else if (c == ',' && !inside)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  return cells;
-}
-
 template <class Number>
 Number number_of(const std::string& where, const std::string& text) {
   Number number{};
@@ -47,15 +34,15 @@ Number number_of(const std::string& where, const std::string& text) {
 }
 
 ScoreRow row_of(const std::string& where, std::string_view line) {
-  const std::vector<std::string> cells = cells_of(line);
+  const std::vector<CsvCell> cells = cells_of(line);
   if (cells.size() != kCells)
     throw InputError(fmt::format("{}: found {} cells, expected {}: {}", where, cells.size(), kCells, kKeys));
-  return {{cells[0], cells[1], cells[2], number_of<int>(where, cells[3]), cells[4],
-           number_of<double>(where, cells[5])},
-          number_of<double>(where, cells[6]),
-          number_of<double>(where, cells[7]),
-          number_of<double>(where, cells[8]),
-          cells[9]};
+  return {{cells[0].text, cells[1].text, cells[2].text, number_of<int>(where, cells[3].text), cells[4].text,
+           number_of<double>(where, cells[5].text)},
+          number_of<double>(where, cells[6].text),
+          number_of<double>(where, cells[7].text),
+          number_of<double>(where, cells[8].text),
+          cells[9].text};
 }
 
 }  // namespace
