@@ -165,8 +165,14 @@ void ClipIndex::search(std::size_t begin, std::size_t end, const SettlingKey& ke
 std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float energy_slack,
                                                  float distance_limit) const {
   if (empty()) return {};
+  Nearest nearest{distance_limit};
+  // Its own cell first: what is near there leaves less to look at.
+  const std::size_t own =
+      cell_of({cell_along(key.normal.x()), cell_along(key.normal.y()), cell_along(key.normal.z())});
+  if (start_[own] != start_[own + 1])
+    search(start_[own], start_[own + 1], key, key.energy + energy_slack, nearest);
   // Normals farther off than this are too far by themselves: of each row of cells those within it count.
-  const float reach = 0.5f * std::sqrt(distance_limit) + kRounding, square = reach * reach;
+  const float reach = 0.5f * std::sqrt(nearest.distance) + kRounding, square = reach * reach;
   const auto first_of = [&](int axis, float way) { return cell_along(key.normal[axis] - way); };
   const auto last_of = [&](int axis, float way) { return cell_along(key.normal[axis] + way); };
   const auto square_to = [&](int axis, int cell) {
@@ -174,7 +180,6 @@ std::optional<ClipEntry> ClipIndex::find_nearest(const SettlingKey& key, float e
     const float way = std::max({0.0f, low - at - kRounding, at - low - 2.0f / float(kSide) - kRounding});
     return way * way;
   };
-  Nearest nearest{distance_limit};
   const int first_x = first_of(0, reach), last_x = last_of(0, reach), first_y = first_of(1, reach),
             last_y = last_of(1, reach);
   for (int x = first_x; x <= last_x; ++x)

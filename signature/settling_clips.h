@@ -54,7 +54,7 @@ class ClipIndex {
     float distance;
     std::int64_t entry = -1;
   };
-  static constexpr int kSide = 24;  // cells along an edge of the cube that holds the sphere of normals
+  static constexpr int kSide = 12;  // cells along an edge of the cube that holds the sphere of normals
   static constexpr float kRounding = 1e-5f;  // of a normal's coordinates, and more
   static constexpr std::size_t kEight = 8;
   static int cell_along(float coordinate);

@@ -8,10 +8,6 @@
 namespace lodestone {
 namespace {
 
-Vec3 velocity_at(const GroundMotion& motion, const Vec3& arm) {
-  return motion.velocity + motion.angular_velocity.cross(arm);
-}
-
 // A motion as the sweeps hold it, two numbers side by side: of v and ω, x and y of v, its z and x of ω, y and
 // z of ω.
 class PairedMotion {
@@ -97,7 +93,7 @@ class GroundSolver {
 void GroundSolver::prepare(GroundContact& c) const {
   set_row(c.rows[0], c.normal, c.arm);
   c.rows[1] = c.rows[2] = {};
-  const double approach = velocity_at(before_, c.arm).dot(c.normal), closing = std::min(0.0, -c.gap / step_),
+  const double approach = before_.velocity_at(c.arm).dot(c.normal), closing = std::min(0.0, -c.gap / step_),
                fall = std::min(0.0, settings_.fall.dot(c.normal));
   c.bounces = approach < -settings_.bounce_velocity && c.gap + approach * step_ < 0.0;
   c.rows[0].target += c.bounces
@@ -108,7 +104,7 @@ void GroundSolver::prepare(GroundContact& c) const {
 // Once it carries something: most of the points that may touch never do.
 void GroundSolver::find_tangents(GroundContact& c) const {
   if (c.rows[1].effective_mass > 0.0) return;
-  const Mat3 frame = contact_frame(c.normal, velocity_at(before_, c.arm));
+  const Mat3 frame = contact_frame(c.normal, before_.velocity_at(c.arm));
   for (int i = 1; i < 3; ++i) set_row(c.rows[std::size_t(i)], frame.col(i), c.arm);
 }
 

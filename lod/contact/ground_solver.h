@@ -12,6 +12,7 @@ namespace lodestone {
 /// In body axes, over the body's mass.
 struct GroundMotion {
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
+  Vec3 velocity_at(const Vec3& arm) const { return velocity + angular_velocity.cross(arm); }
 };
 
 struct GroundContact {

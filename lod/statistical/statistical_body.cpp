@@ -13,6 +13,17 @@ bool is_round(const Shape& shape, const Signature* signature) {
                                  std::ranges::min(signature->collision_heights.mean) > kRound);
 }
 
+// Of a sphere no edge is.
+bool has_long_edges(const Shape& shape) {
+  constexpr double kLong = 0.2;  // over R
+  if (shape.sphere_radius) return false;
+  const Hull& hull = shape.hull;
+  for (std::size_t i = 0; i < hull.vertices.size(); ++i)
+    for (const std::int32_t next : hull.neighbors(int(i)))
+      if ((hull.vertices[std::size_t(next)] - hull.vertices[i]).norm() < kLong * shape.radius) return false;
+  return true;
+}
+
 }  // namespace
 
 BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<const Signature> signature,
@@ -24,6 +35,7 @@ BodyKind make_body_kind(std::shared_ptr<const Shape> shape, std::shared_ptr<cons
   kind.inverse_moments = principal.moments;
   kind.isotropic = kind.inverse_moments[2] - kind.inverse_moments[0] < 1e-9 * kind.inverse_moments[2];
   kind.round = is_round(*shape, signature.get());
+  kind.long_edges = has_long_edges(*shape);
   kind.shape = std::move(shape);
   kind.signature = std::move(signature);
   kind.material = material;

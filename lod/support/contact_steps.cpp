@@ -103,7 +103,7 @@ bool is_same(const HalfSpace& a, const HalfSpace& b) {
 
 // m/s, against the ground.
 double approach_of(const GroundMotion& motion, const GroundContact& c) {
-  return -(motion.velocity + motion.angular_velocity.cross(c.arm)).dot(c.normal);
+  return -motion.velocity_at(c.arm).dot(c.normal);
 }
 
 void ContactSteps::run(double time) {

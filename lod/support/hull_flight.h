@@ -38,16 +38,24 @@ struct Impact {
 
 class HullFlight {
  public:
-  /// Refers to its arguments. `body`: at the step's start.
-  HullFlight(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world)
-      : body_(body), kind_(kind), world_(world) {}
+  /// Refers to its arguments. `body`: at the step's start; `longest`: s, of a step whose turn may be taken to
+  /// second order where it is a small one, 0 for none.
+  HullFlight(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double longest = 0.0)
+      : body_(body), kind_(kind), world_(world) {
+    constexpr double kSmall = 0.5;  // rad
+    if (longest <= 0.0) return;
+    turning_ = find_own_turning(body.orientation, body.spin, *kind.shape);
+    turns_shortly_ = turning_.rate.squaredNorm() * longest * longest < kSmall * kSmall;
+  }
 
   /// `time`: s from the step's start.
   Vec3 position_at(double time) const {
     return body_.position + (body_.velocity + world_.gravity * (0.5 * time)) * time;
   }
   HullPose pose_at(double time) const {
-    HullPose pose{position_at(time), advance_orientation(body_.orientation, body_.spin, kind_, time)};
+    HullPose pose{position_at(time), turns_shortly_
+                                         ? turned_shortly(body_.orientation, turning_, time)
+                                         : advance_orientation(body_.orientation, body_.spin, kind_, time)};
     // Renormalising without a square root: one Newton step is exact to rounding for a norm already within
     // 1e-8 of 1.
     pose.orientation.coeffs() *= 1.5 - 0.5 * pose.orientation.squaredNorm();
@@ -70,6 +78,8 @@ class HullFlight {
   const StatisticalBody& body_;
   const BodyKind& kind_;
   const StepWorld& world_;
+  OwnTurning turning_;
+  bool turns_shortly_ = false;
 };
 
 }  // namespace lodestone

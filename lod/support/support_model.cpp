@@ -1,5 +1,6 @@
 #include "lod/support/support_model.h"
 
+#include "lod/support/contact_at_once.h"
 #include "lod/support/contact_steps.h"
 #include "lod/support/hull_flight.h"
 #include "lod/support/hull_impacts.h"
@@ -32,7 +33,7 @@ bool touches_already(const HullFlight& flight, const StatisticalBody& body, cons
   body.spin += world.turning * time;
   const int most_impacts = world.solids ? 0 : settings.max_impacts;
   for (int hit = 0; hit < most_impacts && left > 0.0; ++hit) {
-    const HullFlight flight(body, kind, world);
+    const HullFlight flight(body, kind, world, settings.coarse ? left : 0.0);
     std::int32_t hint = body.support_hint;
     Impact end{
         left, hit == 0 && turned ? HullPose{flight.position_at(left), *turned} : flight.pose_at(left), {}};
@@ -69,7 +70,8 @@ bool touches_already(const HullFlight& flight, const StatisticalBody& body, cons
   }
   if (left > 0.0) {
     body.spin -= world.turning * left;
-    move_on_ground(body, kind, world, left, settings, tally);
+    const bool at_once = settings.coarse && kind.long_edges && !world.solids;
+    (at_once ? move_on_planes_at_once : move_on_ground)(body, kind, world, left, settings, tally);
   }
   return tally;
 }

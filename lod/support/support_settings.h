@@ -6,9 +6,11 @@
 namespace lodestone {
 
 struct SupportSettings {
-  int max_impacts = 4;            ///< exact impacts a step; what is left of the step is done in contact steps
-  double contact_step = 0.07;     ///< longest contact step over √(R/g)
-  double uneven_step = 0.045;     ///< the same over ground that is no plane
+  int max_impacts = 4;         ///< exact impacts a step; what is left of the step is done in contact steps
+  bool coarse = false;         ///< small turns in flight are taken to second order, and a hull of long edges
+                               ///< moves on planes at once (contact_at_once.h)
+  double contact_step = 0.07;  ///< longest contact step over √(R/g)
+  double uneven_step = 0.045;  ///< the same over ground that is no plane
   double contact_margin = 0.002;  ///< over R: vertices this near the ground can carry
   ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2, .frictionless_bound = true};
   bool energy_bounded = true;  ///< no contact step, and no lift out of the ground, adds energy: without, a

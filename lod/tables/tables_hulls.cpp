@@ -44,8 +44,9 @@ bool TablesLevel::is_at_edge(std::int64_t place) const {
 bool TablesLevel::is_nearly_still(const StatisticalBody& body, const BodyKind& kind,
                                   bool among_others) const {
   constexpr double kNearlyStill = 4.0;  // times what is still
-  return kinetic_energy(body, *kind.shape) <
-         kNearlyStill * rest_law_.still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
+  const double energy =
+      kNearlyStill * rest_law_.still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
+  return 0.5 * body.velocity.squaredNorm() < energy && kinetic_energy(body, *kind.shape) < energy;
 }
 
 // Those that touched no other for a while stand on their hulls; the others are spheres.
@@ -88,11 +89,16 @@ void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
 // The sphere that others would meet is as high as the body stands.
 ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
                                            bool rides, std::vector<PlayingClip>& joined) {
+  // Clips are joined sooner than at `support`, by what is farther from them: they are what is cheap, single
+  // drops score the same, and what the body is turned by meanwhile is not seen from where this rung is.
   static const HullMotionSettings level{
-      .support = {.contact_step = 0.1,
+      .support = {.coarse = true,
+                  .contact_step = 0.1,
                   .solver = {.sweeps = 4, .tolerance = 1e-2},
                   .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
-                  .impact_tolerance = 2e-4}};
+                  .impact_tolerance = 2e-4},
+      .clips = {
+          .energy_limit = .8, .energy_slack = .02f, .distance_over_energy = 1.2f, .greatest_distance = .5f}};
   static const HullMotionSettings fine{.support = SupportSettings::of_tables()};
   const auto i = std::size_t(place);
   const Shape& shape = *kind_of(place).shape;

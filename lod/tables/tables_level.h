@@ -161,6 +161,7 @@ class TablesLevel {
   void ease();
   bool find_riders();
   void note_who_falls();
+  bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
   bool rolls_on_ground(std::int64_t place) const;
 
   void apply_pushes(double dt, ContactTally& tally);

@@ -59,6 +59,11 @@ bool TablesLevel::rolls_on_ground(std::int64_t place) const {
          state != std::uint8_t(GroundState::free) && state != std::uint8_t(GroundState::within);
 }
 
+bool TablesLevel::has_less_energy(std::int64_t place, double energy) const {
+  return 0.5 * spheres_.velocity(place).squaredNorm() < energy &&  // what flies is not asked how it turns
+         kinetic_energy(spheres_.body(place), *kind_of(place).shape) < energy;
+}
+
 void TablesLevel::rest() {
   ++steps_;
   ease();
@@ -85,9 +90,7 @@ void TablesLevel::rest() {
     const double radius = kind_of(i).shape->radius;
     const bool among_others =
         spheres_.since_crowded[i] < kLeaningTicks || std::ranges::binary_search(leaning_, i);
-    const StatisticalBody body = spheres_.body(i);
-    const bool still =
-        kinetic_energy(body, *kind_of(i).shape) < rest_law_.still_energy(among_others, radius, gravity);
+    const bool still = has_less_energy(i, rest_law_.still_energy(among_others, radius, gravity));
     // While it is still being taken out of an overlap its time hardly counts; one that is pressed in again as
     // far as it is taken out stays where it is. In a wedge it may go to and fro for ever.
     const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();

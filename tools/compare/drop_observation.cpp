@@ -9,8 +9,10 @@
 namespace lodestone {
 namespace {
 
-constexpr double kHorizon = 10.0;         // s
-constexpr double kBounceRise = 0.3;       // m/s; a resting contact rises by gΔt = .16 m/s
+constexpr double kHorizon = 10.0;    // s
+constexpr double kBounceRise = 0.3;  // m/s; a resting contact rises by gΔt = .16 m/s …
+constexpr double kRestingRise =
+    1.5;  // … or, between samples farther apart than 1/60 s, by this times gΔt at most
 constexpr double kRestEnergy = 2e-3;      // J/kg
 constexpr double kRestDuration = 0.25;    // s, longer than a rocking body stands still at its turning points
 constexpr double kSettledEnergy = 1e-6;   // J/kg
@@ -34,7 +36,8 @@ DropObserver::DropObserver(const Shape& shape, const Vec3& plane_normal, double 
 
 void DropObserver::sample(double time_s, const RigidState& state) {
   if (samples_++ == 0) start_ = last_ = state;
-  if (rise_above_free_flight(time_s, state) > kBounceRise * std::sqrt(scale_)) {
+  const double resting = kRestingRise * gravity_along_normal_ * (time_s - last_time_);
+  if (rise_above_free_flight(time_s, state) > std::max(kBounceRise * std::sqrt(scale_), resting)) {
     if (++bounces_ == 1)
       first_impact_ =
           FirstImpact{last_.velocity - gravity_ * (time_s - last_time_) * Vec3::UnitZ(), state.velocity};

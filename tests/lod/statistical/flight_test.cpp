@@ -56,6 +56,24 @@ TEST(Flight, AgreesWithSmallStepsOfAnotherRule) {
   EXPECT_LT(body.orientation.angularDistance(small), 1e-4);
 }
 
+// Half the time, an eighth of the error; about an axis of inertia it is exact.
+TEST(Flight, AShortTurnIsOfSecondOrder) {
+  const BodyKind kind = kind_of(make_shape("box", make_box({0.1, 0.2, 0.35})));
+  const Quat from = rotation_from_vector({0.3, -0.7, 0.2});
+  const auto error = [&](const Vec3& rate, double time) {
+    const Vec3 spin = spin_of(from, from * rate, *kind.shape);
+    Quat exact = from;
+    for (int i = 0; i < 1000; ++i)
+      exact = advance_orientation(exact, spin, kind, time / 1000.0).normalized();
+    const OwnTurning turning = find_own_turning(from, spin, *kind.shape);
+    return turned_shortly(from, turning, time).angularDistance(exact);
+  };
+  const Vec3 rate(5.0, -6.0, 4.0);
+  EXPECT_LT(error(rate, 0.04), 0.01);
+  EXPECT_NEAR(error(rate, 0.04) / error(rate, 0.02), 8.0, 1.0);
+  EXPECT_LT(error({0.0, 9.0, 0.0}, 0.04), 1e-9);
+}
+
 // F11's body, turning near its middle axis: the orientation errs with the step's square.
 TEST(Flight, OrientationConvergesAtSecondOrder) {
   const BodyKind kind = kind_of(make_shape("box", make_box({1.0, 2.0, 0.5})));

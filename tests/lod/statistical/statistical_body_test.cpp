@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/random.h"
+#include "tests/prism.h"
 #include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {
@@ -47,6 +48,17 @@ TEST(BodyKind, IsRoundByItsCollisionHeights) {
     EXPECT_EQ(kind.material, 4);
     EXPECT_EQ(kind.signature, signature);
   }
+}
+
+TEST(BodyKind, WhatRollsOverSmallFacetsHasShortEdges) {
+  const auto has_long_edges = [](std::shared_ptr<const Shape> shape) {
+    return make_body_kind(std::move(shape)).long_edges;
+  };
+  EXPECT_TRUE(has_long_edges(testing::box_shape({0.2, 0.3, 0.4})));
+  EXPECT_TRUE(has_long_edges(testing::make_prism(12, 0.12, 0.3)));
+  EXPECT_FALSE(has_long_edges(testing::make_prism(48, 0.12, 0.3)));
+  EXPECT_FALSE(has_long_edges(testing::make_prism(8, 0.01, 0.3)));  // a needle
+  EXPECT_FALSE(has_long_edges(testing::sphere_shape(0.3)));
 }
 
 TEST(StatisticalBody, KineticEnergyIsThatOfThePointsOfTheBody) {

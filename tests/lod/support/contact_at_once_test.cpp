@@ -1,0 +1,99 @@
+#include "lod/support/contact_at_once.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "lod/support/support_model.h"
+#include "reference/random.h"
+
+namespace lodestone {
+namespace {
+
+// A box of .2 × .3 × .4 m and the plane z = 0.
+class ContactAtOnce : public ::testing::Test {
+ protected:
+  static constexpr double kStrength = 9.81, kFrame = 1.0 / 60;
+
+  ContactAtOnce() {
+    materials_.replace(0, {.restitution = 0.4, .friction = 0.5});
+    world_.planes = planes_;
+    world_.materials = &materials_;
+  }
+  StatisticalBody lying() const {
+    StatisticalBody body;
+    body.position = {0, 0, 0.2};
+    return body;
+  }
+  ContactTally step(StatisticalBody& body) const {
+    return step_support_body(body, kind_, world_, kFrame, settings_);
+  }
+  // J/kg
+  double energy(const StatisticalBody& body) const {
+    return kinetic_energy(body, *kind_.shape) + kStrength * body.position.z();
+  }
+  double lowest(const StatisticalBody& body) const {
+    double z = 1e300;
+    for (const Vec3& vertex : kind_.shape->hull.vertices)
+      z = std::min(z, (body.position + body.orientation * vertex).z());
+    return z;
+  }
+
+  const SupportSettings settings_{
+      .coarse = true, .solver = {.sweeps = 4, .tolerance = 1e-2}, .energy_bounded = false};
+  const BodyKind kind_ =
+      make_body_kind(std::make_shared<const Shape>(make_shape("box", make_box({0.2, 0.3, 0.4}))));
+  MaterialTable materials_;
+  const std::vector<HalfSpace> planes_{{.normal = Vec3::UnitZ(), .offset = 0.0}};
+  StepWorld world_;
+};
+
+TEST_F(ContactAtOnce, WhatLiesStaysWhereItIs) {
+  StatisticalBody body = lying();
+  for (int i = 0; i < 600; ++i) step(body);
+  EXPECT_LT((body.position - lying().position).norm(), 1e-9);
+  EXPECT_LT(body.velocity.norm() + body.spin.norm(), 1e-9);
+}
+
+// v² / 2 μ g.
+TEST_F(ContactAtOnce, WhatSlidesStopsWhereFrictionSays) {
+  StatisticalBody body = lying();
+  body.velocity.x() = 1.0;
+  for (int i = 0; i < 60; ++i) EXPECT_GT(step(body).contacts, 0);
+  EXPECT_LT(body.velocity.norm(), 1e-6);
+  EXPECT_NEAR(body.position.x(), 1.0 / (2.0 * 0.5 * kStrength), 0.01);
+}
+
+// However it comes down it ends at rest on the plane, and at no time has more energy than it began with.
+TEST_F(ContactAtOnce, ADropComesToRestOnThePlane) {
+  for (std::uint32_t drop = 0; drop < 100; ++drop) {
+    RandomStream random(83, drop, 0);
+    StatisticalBody body;
+    body.position = {0, 0, 1.0};
+    body.orientation = random.orientation();
+    body.velocity = random.uniform(0, 1) * random.direction();
+    body.spin = spin_of(body.orientation, random.uniform(0, 4) * random.direction(), *kind_.shape);
+    const double before = energy(body);
+    for (int i = 0; i < 600; ++i) {
+      step(body);
+      ASSERT_LT(energy(body), 1.01 * before) << drop << ", step " << i;
+      ASSERT_GT(lowest(body), -1e-4) << drop << ", step " << i;
+    }
+    EXPECT_LT(kinetic_energy(body, *kind_.shape), 2e-3) << drop;
+  }
+}
+
+// Off an edge it tips as far as in steps that are divided, to the face beside it.
+TEST_F(ContactAtOnce, WhatStandsOnAnEdgeTipsToTheSideThatItLeansTo) {
+  for (const double lean : {-0.1, 0.1}) {
+    StatisticalBody body = lying();
+    body.orientation = rotation_from_vector({0, std::atan2(0.1, 0.2) + lean, 0});
+    body.position.z() -= lowest(body);
+    for (int i = 0; i < 240; ++i) step(body);
+    const double up = (body.orientation * Vec3::UnitZ()).z();
+    EXPECT_NEAR(up, lean < 0.0 ? 1.0 : 0.0, 0.05) << lean;
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
