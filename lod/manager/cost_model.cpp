@@ -11,7 +11,7 @@ namespace {
 
 // µs a step of bunnies of 4,698 faces, on one core of the machine that the figures of tools/README.md are
 // from: asleep, alone, in a crowd, arriving, of full bodies, joined.
-constexpr std::array<Charges, kRungs> kWork{{{0.0, 0.05, 0.8, 0.2, 0.0, 0.0},
+constexpr std::array<Charges, kRungs> kWork{{{0.0, 0.4, 0.8, 0.2, 0.0, 0.0},
                                              {0.0, 0.6, 30.0, 100.0, 50.0, 0.0},
                                              {2.0, 10.0, 50.0, 20.0, 500.0, 400.0}}};
 // A change: entries in arrays, for the full level a mesh for ODE and whether it overlaps anything.

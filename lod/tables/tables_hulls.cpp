@@ -97,8 +97,7 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
                   .solver = {.sweeps = 4, .tolerance = 1e-2},
                   .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
                   .impact_tolerance = 2e-4},
-      .clips = {
-          .energy_limit = .8, .energy_slack = .02f, .distance_over_energy = 1.2f, .greatest_distance = .5f}};
+      .clips = {.energy_limit = .8, .distance_over_energy = 1.2f, .greatest_distance = .5f}};
   static const HullMotionSettings fine{.support = SupportSettings::of_tables()};
   const auto i = std::size_t(place);
   const Shape& shape = *kind_of(place).shape;
