@@ -42,7 +42,7 @@ class HullFlight {
   /// second order where it is a small one, 0 for none.
   HullFlight(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double longest = 0.0)
       : body_(body), kind_(kind), world_(world) {
-    constexpr double kSmall = 0.5;  // rad
+    constexpr double kSmall = 0.2;  // rad
     if (longest <= 0.0) return;
     turning_ = find_own_turning(body.orientation, body.spin, *kind.shape);
     turns_shortly_ = turning_.rate.squaredNorm() * longest * longest < kSmall * kSmall;
