@@ -55,7 +55,8 @@ void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
   constexpr auto kWithin = std::uint8_t(GroundState::within);
   for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
     std::uint8_t& state = step_.on_ground[i];
-    if ((state == kWithin || state == kNear) && !step_.touches(std::int64_t(i)) &&
+    const bool hops = state == kFree && spheres_.clip[i] >= 0;  // and goes on in its clip
+    if ((state == kWithin || state == kNear || hops) && !step_.touches(std::int64_t(i)) &&
         stands_when_alone(std::int64_t(i))) {
       state = std::uint8_t(GroundState::stands);
     } else {

@@ -7,6 +7,7 @@
 
 #include "lod/contact/hull_contacts.h"
 #include "reference/random.h"
+#include "signature/settling_clips.h"
 #include "tests/lod/rungs/rung_fixture.h"
 
 namespace lodestone {
@@ -56,6 +57,46 @@ class HullStand : public ::testing::Test {
   Ground ground_;
   MaterialTable materials_;
 };
+
+// A box that bounces without a turn to one and a third of its radius, and stops where it comes down.
+std::shared_ptr<const Signature> hopping_signature(double along, double up) {
+  Signature signature = *box_signature();
+  const double radius = box()->radius, unit = std::sqrt(9.81 * radius), landing = 2.0 * up / 9.81;
+  signature.clip_frame_interval = float(kFrame * unit / radius);
+  const auto extent = float(along * landing / radius);
+  signature.clip_frames.clear();
+  for (int frame = 0; frame < 60; ++frame) {
+    const double t = std::min(frame * kFrame, landing);
+    ClipState state;
+    state.position = Vec3(along * t, 0, 0.2 + up * t - 0.5 * 9.81 * t * t) / radius;
+    if (t < landing) state.velocity = Vec3(along, 0, up - 9.81 * t) / unit;
+    signature.clip_frames.push_back(encode_frame(state, extent));
+  }
+  signature.clips = {{.first_frame = 0, .frames = 60, .extent = extent}};
+  signature.clip_entries = {{.clip = 0, .frame = 0}};
+  return std::make_shared<const Signature>(signature);
+}
+
+// Above its bounding sphere's height, too, the clip goes on: else the box would fly by itself, and be put
+// back once it comes down.
+TEST_F(HullStand, AClipGoesOnHoweverHighItHops) {
+  const double unit = std::sqrt(9.81 * box()->radius), along = 0.5 * unit, up = std::sqrt(1.2) * unit;
+  materials_.replace(0, {.restitution = 1.0, .friction = 0.0});
+  OneRung level = make();
+  RigidState s;
+  s.position = {0, 0, 0.201}, s.velocity = {along, 0, -up};
+  level.add(0, box(), 24.0, 0, s, false, hopping_signature(along, up));
+  double highest = 0.0;
+  for (int step = 0; step < 120; ++step) {
+    const double before = level.state(0).position.x();
+    run(level, 1);
+    EXPECT_GT(level.state(0).position.x(), before - 1e-3) << step;
+    highest = std::max(highest, level.state(0).position.z());
+  }
+  EXPECT_GT(highest, 1.2 * box()->radius);
+  EXPECT_TRUE(level.asleep(0));
+  EXPECT_NEAR(level.state(0).position.x(), along * 2.0 * up / 9.81, 0.05);
+}
 
 // The sphere of the mean height leaves hulls in the ground by a third of R, and over it by as much.
 TEST_F(HullStand, ALoneBodySinksInByNothingAndLiesOnAFace) {
