@@ -4,10 +4,8 @@
 #include <array>
 #include <span>
 
-#include "lod/contact/ground_solver.h"
-#include "lod/contact/hull_contacts.h"
 #include "lod/statistical/flight.h"
-#include "lod/support/hull_impacts.h"
+#include "lod/support/step_contacts.h"
 
 namespace lodestone {
 namespace {
@@ -26,22 +24,16 @@ void find_points_on_planes(StatisticalBody& body, const BodyKind& kind, const St
   const Shape& shape = *kind.shape;
   found.count = 0;
   for (int i = 0; i < int(world.planes.size()); ++i) {
+    if (found.count + kMaxGroundContacts > PointsOnPlanes::kCapacity) return;
     const HalfSpace& plane = world.planes[std::size_t(i)];
-    const double height = plane.height_of(body.position), drop = body.velocity.dot(plane.normal) * time;
-    const Vec3 normal = on.rotation.transpose() * plane.normal;
-    const GapChange change{drop, normal.cross(on.motion.angular_velocity) * time};
-    const double margin = least_margin + std::max(0.0, -drop),
-                 reach = margin + change.of_arm.norm() * shape.radius;
-    if (height > shape.radius + reach || found.count + kMaxGroundContacts > PointsOnPlanes::kCapacity)
-      continue;
-    const HullContacts low =
-        find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint, change);
-    for (const HullContact& c : std::span(low.contact).first(std::size_t(low.count))) {
-      if (c.gap > reach) continue;
-      found.plane[found.count] = i;
-      found.contact[found.count++] = {
-          .normal = normal, .arm = arm_of(c, shape, normal), .gap = c.gap, .law = world.law(kind, plane)};
-    }
+    visit_vertices_near(plane, body, shape, on, time, least_margin,
+                        [&](const HullContact& contact, const Vec3& normal) {
+                          found.plane[found.count] = i;
+                          found.contact[found.count++] = {.normal = normal,
+                                                          .arm = arm_of(contact, shape, normal),
+                                                          .gap = contact.gap,
+                                                          .law = world.law(kind, plane)};
+                        });
   }
 }
 

@@ -45,26 +45,16 @@ struct Seeker {
 void Seeker::find_on_plane(const HalfSpace& plane) {
   if (found.count + kMaxGroundContacts > StepContacts::kCapacity) return;
   const Shape& shape = *kind.shape;
-  const double height = plane.height_of(body.position), drop = body.velocity.dot(plane.normal) * time;
-  // What the ground gives one point may turn another down as fast as the body fell.
-  const double fall = std::max(0.0, -drop), margin = least_margin + fall;
-  const Vec3 normal = on.rotation.transpose() * plane.normal;
-  const GapChange change{drop, normal.cross(on.motion.angular_velocity) * time};
-  const double reach = margin + fall + change.of_arm.norm() * shape.radius;
-  if (height > shape.radius + reach) return;
-  const HullContacts low =
-      find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint, change);
-  for (int k = 0; k < low.count; ++k) {
-    const HullContact& contact = low.contact[std::size_t(k)];
-    if (contact.gap > reach) continue;
-    const TouchingPoint point{contact.vertex, arm_of(contact, shape, normal)};
-    add({.normal = normal,
-         .arm = point.arm,
-         .gap = contact.gap,
-         .law = world.law(kind, plane),
-         .guess = guess(point)},
-        point, plane);
-  }
+  visit_vertices_near(plane, body, shape, on, time, least_margin,
+                      [&](const HullContact& contact, const Vec3& normal) {
+                        const TouchingPoint point{contact.vertex, arm_of(contact, shape, normal)};
+                        add({.normal = normal,
+                             .arm = point.arm,
+                             .gap = contact.gap,
+                             .law = world.law(kind, plane),
+                             .guess = guess(point)},
+                            point, plane);
+                      });
 }
 
 // Of those that many triangles have in common one, and of more than there is room for the nearer ones.

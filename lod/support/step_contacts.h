@@ -1,6 +1,7 @@
 // Which of a hull's vertices meet the ground in a contact step.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -73,6 +74,24 @@ struct HeldPoints {
 /// Of a point with a plane. `rotation`: body axes to the world's.
 GroundContact point_contact(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
                             const Mat3& rotation, const TouchingPoint& point, const HalfSpace& plane);
+
+/// Calls `visit(contact, normal in body axes)` for the vertices of `body` that may meet `plane` within `time`
+/// seconds, and those that are nearer to it than `least_margin` m. Gravity has been given to it.
+template <class Visit>
+void visit_vertices_near(const HalfSpace& plane, StatisticalBody& body, const Shape& shape,
+                         const OnGround& on, double time, double least_margin, const Visit& visit) {
+  const double height = plane.height_of(body.position), drop = body.velocity.dot(plane.normal) * time;
+  // What the ground gives one point may turn another down as fast as the body fell.
+  const double fall = std::max(0.0, -drop), margin = least_margin + fall;
+  const Vec3 normal = on.rotation.transpose() * plane.normal;
+  const GapChange change{drop, normal.cross(on.motion.angular_velocity) * time};
+  const double reach = margin + fall + change.of_arm.norm() * shape.radius;
+  if (height > shape.radius + reach) return;
+  const HullContacts low =
+      find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint, change);
+  for (const HullContact& contact : std::span(low.contact).first(std::size_t(low.count)))
+    if (contact.gap <= reach) visit(contact, normal);
+}
 
 /// For a body that gravity has been given to.
 void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
