@@ -90,15 +90,20 @@ void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
 // The sphere that others would meet is as high as the body stands.
 ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
                                            bool rides, std::vector<PlayingClip>& joined) {
+  static const SupportSettings coarse{
+      .coarse = true,
+      .contact_step = 0.1,
+      .solver = {.sweeps = 4, .tolerance = 1e-2},
+      .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
+      .impact_tolerance = 2e-4};
   // Clips are joined sooner than at `support`, by what is farther from them: they are what is cheap, single
-  // drops score the same, and what the body is turned by meanwhile is not seen from where this rung is.
+  // drops score the same, and what the body is turned by meanwhile is not seen from where this rung is. Not
+  // of lively materials: how often these bounce on hangs on all that was before.
+  constexpr double kLively = 0.65;  // restitution
   static const HullMotionSettings level{
-      .support = {.coarse = true,
-                  .contact_step = 0.1,
-                  .solver = {.sweeps = 4, .tolerance = 1e-2},
-                  .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
-                  .impact_tolerance = 2e-4},
+      .support = coarse,
       .clips = {.energy_limit = .8, .distance_over_energy = 1.2f, .greatest_distance = .5f}};
+  static const HullMotionSettings lively{.support = coarse};
   static const HullMotionSettings fine{.support = SupportSettings::of_tables()};
   const auto i = std::size_t(place);
   const Shape& shape = *kind_of(place).shape;
@@ -118,9 +123,13 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   const bool is_level = std::ranges::all_of(around.planes, [&](const HalfSpace& p) {
     return around.is_horizontal(p) || p.height_of(body.position) > farthest;
   });
-  const HullMotion moved =
-      move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity, constants_.wide_time,
-                   may_settle, is_level && !is_nearly_still(body, kind_of(place), false) ? level : fine);
+  const bool is_lively = std::ranges::any_of(
+      around.planes, [&](const HalfSpace& p) { return around.law(kind_of(place), p).restitution > kLively; });
+  const HullMotionSettings& settings = !is_level || is_nearly_still(body, kind_of(place), false) ? fine
+                                       : is_lively                                               ? lively
+                                                                                                 : level;
+  const HullMotion moved = move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity,
+                                        constants_.wide_time, may_settle, settings);
   body.eased = eased;
   playing.state = !moved.plays_clip ? PlayingClip::ended
                   : moved.clip_over ? PlayingClip::over

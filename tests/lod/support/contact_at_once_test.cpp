@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 #include "lod/support/support_model.h"
@@ -93,7 +94,8 @@ TEST(ContactAtOnceOfAnySize, GainsNoEnergy) {
     const BodyKind kind = make_body_kind(std::make_shared<const Shape>(make_shape("box", make_box(sides))));
     ASSERT_TRUE(kind.long_edges);
     MaterialTable materials;
-    materials.replace(0, {.restitution = drop % 2 ? 1.0 : 0.4, .friction = drop % 3 ? 0.0 : 0.5});
+    materials.replace(0,
+                      {.restitution = drop % 2 ? 1.0 : 0.4, .friction = std::array{0.0, 0.3, 2.0}[drop % 3]});
     const std::vector<HalfSpace> planes{{.normal = Vec3::UnitZ(), .offset = 0.0}};
     StepWorld world;
     world.planes = planes, world.materials = &materials;
