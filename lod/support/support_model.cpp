@@ -11,7 +11,7 @@
 namespace lodestone {
 namespace {
 
-// In longer steps, over √(R/g), what is held at once gains by it: a millimetre's cube at 60 Hz would be
+// In longer steps, over √(R/g), what is held at once gains by it: a box of a millimetre at 60 Hz would be
 // thrown.
 constexpr double kLongestAtOnce = 0.2;
 // On what is more slippery bodies rock on as they slide, and strike a third of a deviation too often.
