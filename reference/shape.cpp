@@ -72,7 +72,7 @@ double greatest_distance(std::span<const Vec3> points) {
 double least_distance_of_faces(const Hull& hull) {
   double least = std::numeric_limits<double>::max();
   for (int face = 0; face < int(hull.faces.size()); ++face)
-    least = std::min(least, hull.face_normal(face).normalized().dot(hull.vertices[hull.faces[face][0]]));
+    least = std::min(least, hull.face_normals[face].dot(hull.vertices[hull.faces[face][0]]));
   return least;
 }
 

@@ -68,7 +68,7 @@ std::int32_t find_feature(const PairBody& body, const Vec3& normal, std::int32_t
 Vec3 find_flattest_face(const Hull& hull, std::int32_t vertex, const Vec3& down) {
   Vec3 flattest = Vec3::Zero();
   for (const std::int32_t face : hull.faces_of(vertex))
-    if (const Vec3 outward = hull.face_normal(face).normalized(); outward.dot(down) > flattest.dot(down))
+    if (const Vec3 outward = hull.face_normals[std::size_t(face)]; outward.dot(down) > flattest.dot(down))
       flattest = outward;
   return flattest;
 }
@@ -168,10 +168,8 @@ bool is_within(const PairBody& piece, const Vec3& point) {
   const double margin = kWithin * piece.shape->radius;
   if (local.squaredNorm() > piece.shape->radius * piece.shape->radius) return false;
   for (int i = 0; i < int(hull.faces.size()); ++i) {
-    const Vec3 normal = hull.face_normal(i);
-    if (normal.dot(local - hull.vertices[std::size_t(hull.faces[std::size_t(i)][0])]) >
-        -margin * normal.norm())
-      return false;
+    const Vec3& corner = hull.vertices[std::size_t(hull.faces[std::size_t(i)][0])];
+    if (hull.face_normals[std::size_t(i)].dot(local - corner) > -margin) return false;
   }
   return true;
 }

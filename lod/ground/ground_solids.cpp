@@ -64,7 +64,7 @@ std::size_t edge_of(const std::array<int, 3>& face, const EdgeUse& use) {
 std::vector<SolidFace> faces_of(const Hull& hull) {
   std::vector<SolidFace> faces;
   for (int face = 0; face < int(hull.faces.size()); ++face) {
-    const Vec3 normal = hull.face_normal(face).normalized();
+    const Vec3 normal = hull.face_normals[std::size_t(face)];
     const auto same = [&](const SolidFace& f) { return (f.normal - normal).squaredNorm() < 1e-12; };
     if (std::ranges::none_of(faces, same))
       faces.push_back({normal, hull.vertices[std::size_t(find_support(hull, normal))].dot(normal)});

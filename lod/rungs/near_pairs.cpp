@@ -27,6 +27,14 @@ bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3
   return true;
 }
 
+// Into the cache, for who reads it soon.
+template <class T>
+void fetch_ahead(const T& value) {
+  constexpr std::size_t kLine = 64;  // bytes
+  for (std::size_t at = 0; at < sizeof value; at += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&value) + at);
+}
+
 bool comes_before(const Vec3& p, const Vec3& q) {
   return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
 }
@@ -123,7 +131,7 @@ void NearPairs::take(const ContactScene& scene, std::span<const NearPair> pairs)
 void NearPairs::put_in_order() {
   std::size_t leaps = 0;
   for (std::size_t i = 0; i < found_.size(); ++i) leaps += found_[i] != (i == 0 ? 0 : found_[i - 1] + 1);
-  if (leaps < found_.size() / 4 + 16) return;
+  if (leaps < found_.size() / 8 + 16) return;
   const std::size_t count = found_.size();
   found_.insert(found_.end(), spare_.begin(), spare_.end());
   for (std::uint32_t i = 0; i < found_.size(); ++i) {
@@ -241,28 +249,38 @@ void NearPairs::find_more_contacts(const ContactScene& scene, double time, NearM
     return is_there(pair.first) && is_there(pair.second) &&
            !(scene.asleep(pair.first) && scene.asleep(pair.second));
   };
+  constexpr std::size_t kAtOnce = 1024;  // so many are still in the cache when they are followed
   const std::span<const std::uint32_t> chosen = std::span(chosen_).subspan(looked_at_);
   looked_at_ = chosen_.size();
-  const auto count = std::int64_t(chosen.size());
-  first_contact_.resize(chosen.size() + 1);
-  run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
-      FoundPair& pair = all_[chosen[i]];
-      const bool looks = looked_at(pair);
-      if (looks) find_contact(scene, time, pace, pair);
-      first_contact_[i + 1] = looks ? std::uint32_t(pair.contacts.size()) : 0;
-    }
-  });
+  for (std::size_t from = 0; from < chosen.size(); from += kAtOnce) {
+    const auto some = chosen.subspan(from, std::min(kAtOnce, chosen.size() - from));
+    first_contact_.resize(some.size() + 1);
+    run_in_pieces(jobs_, std::int64_t(some.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+        FoundPair& pair = all_[some[i]];
+        const bool looks = looked_at(pair);
+        if (looks) find_contact(scene, time, pace, pair);
+        if (looks && !pair.contacts.empty()) fetch_ahead(pair.contacts.front());
+        first_contact_[i + 1] = looks ? std::uint32_t(pair.contacts.size()) : 0;
+      }
+    });
+    follow_contacts(scene, time, some, near, pace);
+  }
+}
+
+// Of these pairs, the first contacts of each but the first of all being how many the one before has.
+void NearPairs::follow_contacts(const ContactScene& scene, double time, std::span<const std::uint32_t> pairs,
+                                NearMarks& near, Pace pace) {
   first_contact_[0] = 0;
-  for (std::size_t i = 0; i < chosen.size(); ++i) first_contact_[i + 1] += first_contact_[i];
+  for (std::size_t i = 0; i < pairs.size(); ++i) first_contact_[i + 1] += first_contact_[i];
   const std::size_t before = contacts_.size();
   contacts_.resize(before + first_contact_.back());
   may_close_.resize(first_contact_.back());
   const auto found = std::span(contacts_).subspan(before);
-  run_in_pieces(jobs_, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+  run_in_pieces(jobs_, std::int64_t(pairs.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (first_contact_[i] == first_contact_[i + 1]) continue;
-      const FoundPair& pair = all_[chosen[i]];
+      const FoundPair& pair = all_[pairs[i]];
       for (std::uint32_t at = first_contact_[i]; at < first_contact_[i + 1]; ++at) {
         const HeldContact& held = pair.contacts[at - first_contact_[i]];
         found[at] = {pair.first, pair.second,

@@ -100,6 +100,8 @@ class NearPairs {
   std::uint32_t take_place();
   void put_in_order();
   void find_contact(const ContactScene& scene, double time, Pace pace, FoundPair& pair) const;
+  void follow_contacts(const ContactScene& scene, double time, std::span<const std::uint32_t> pairs,
+                       NearMarks& near, Pace pace);
   Enough find_reach(const ContactScene& scene, double time, const FoundPair& pair) const;
   static bool stay_apart(const FoundPair& pair, const PairBody& first, const PairBody& second,
                          const Enough& reach);

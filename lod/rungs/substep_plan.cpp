@@ -24,8 +24,6 @@ bool may_strike_ground(const ContactScene& scene, const StatisticalBody& body, d
   });
 }
 
-void mark(const FoundPair& pair, NearMarks& near) { near.mark(pair.first), near.mark(pair.second); }
-
 Pace pace_for(double way, double least) {
   return Pace(std::ceil(std::min(std::max(way / kStride, least), double(kMostSubsteps))));
 }
@@ -39,17 +37,23 @@ bool is_uneven(const ContactScene& scene, const FoundPair& pair) {
 
 void SubstepPlan::find_ways(const ContactScene& scene, const NearPairs& pairs, double dt) {
   constexpr std::int64_t kBlock = 256;  // pairs of a job
+  const auto is_other = [&](Participant p) { return p.is_full() || scene.asleep(p); };
+  const auto is_kinematic = [&](Participant p) { return scene.properties(p).kinematic; };
+  const auto stands = [&](Participant p) { return scene.asleep(p) || is_kinematic(p); };
   ways_.resize(pairs.size());
   run_in_pieces(jobs_, std::int64_t(pairs.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
       const FoundPair& pair = pairs[i];
       const double gap = pairs.gap_left(scene, pair), approach = pairs.find_approach(scene, pair, dt);
       const Vec3 first = scene.velocity(pair.first), second = scene.velocity(pair.second);
-      ways_[i] = kApart;
+      PairWay& way = ways_[i] = {pair.first, pair.second, is_other(pair.first), is_other(pair.second)};
+      way.is_hard = pair.first.is_full() || pair.second.is_full() || is_kinematic(pair.first) ||
+                    is_kinematic(pair.second) ||
+                    (!stands(pair.first) && !stands(pair.second) && is_uneven(scene, pair));
       if (gap <= 2.0 * approach)  // twice, since others may strike them meanwhile
-        ways_[i] = (first - second).norm() * dt / least_radius(scene, pair);
+        way.along = (first - second).norm() * dt / least_radius(scene, pair);
       else if (gap <= approach + (first.norm() + second.norm()) * dt)
-        ways_[i] = kFollowing;
+        way.along = kFollowing;
     }
   });
 }
@@ -66,9 +70,9 @@ void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pai
     std::erase_if(following_, [&](std::size_t i) {
       const FoundPair& pair = pairs[i];
       if (!stops(pair.first) && !stops(pair.second)) return false;
-      mark(pair, near);
+      mark(ways_[i], near);
       const double speed = std::max(scene.velocity(pair.first).norm(), scene.velocity(pair.second).norm());
-      ways_[i] = speed * dt / least_radius(scene, pair);
+      ways_[i].along = speed * dt / least_radius(scene, pair);
       return any = true;
     });
   }
@@ -77,8 +81,7 @@ void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pai
 // Through every pair of two that are near anybody: who is struck may be faster than its way says. What sleeps
 // or is full hangs together with others through contacts that no pair tells of here: all of it is one, in the
 // place after the last body.
-void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs, double dt,
-                               const NearMarks& near) {
+void SubstepPlan::find_islands(const ContactScene& scene, double dt, const NearMarks& near) {
   const auto others = std::int32_t(scene.bodies.size());
   islands_.make_room(scene.bodies.size() + 1);
   island_of_root_.resize(scene.bodies.size() + 1);
@@ -88,23 +91,22 @@ void SubstepPlan::find_islands(const ContactScene& scene, const NearPairs& pairs
   };
   for (const std::int32_t body : near.marked()) begin(body);
   begin(others);
-  const auto node_of = [&](Participant p) {
-    return p.is_full() || scene.asleep(p) ? others : std::int32_t(p.index());
+  const auto first_of = [&](const PairWay& w) {
+    return w.first_is_other ? others : std::int32_t(w.first.index());
   };
-  const auto takes_part = [&](Participant p) { return node_of(p) == others || near[p.index()]; };
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto [first, second] = std::pair(pairs[i].first, pairs[i].second);
-    if (takes_part(first) && takes_part(second)) islands_.join(node_of(first), node_of(second));
-  }
-  const auto stands = [&](Participant p) { return scene.asleep(p) || scene.properties(p).kinematic; };
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const FoundPair& pair = pairs[i];
-    if (!takes_part(pair.first) || !takes_part(pair.second)) continue;
-    Island& island = island_of(node_of(pair.first));
-    island.longest = std::max(island.longest, ways_[i]);
-    island.is_hard |= pair.first.is_full() || pair.second.is_full() ||
-                      scene.properties(pair.first).kinematic || scene.properties(pair.second).kinematic ||
-                      (!stands(pair.first) && !stands(pair.second) && is_uneven(scene, pair));
+  const auto second_of = [&](const PairWay& w) {
+    return w.second_is_other ? others : std::int32_t(w.second.index());
+  };
+  const auto take_part = [&](const PairWay& w) {
+    return (w.first_is_other || near[w.first.index()]) && (w.second_is_other || near[w.second.index()]);
+  };
+  for (const PairWay& w : ways_)
+    if (take_part(w)) islands_.join(first_of(w), second_of(w));
+  for (const PairWay& w : ways_) {
+    if (!take_part(w)) continue;
+    Island& island = island_of(first_of(w));
+    island.longest = std::max(island.longest, w.along);
+    island.is_hard |= w.is_hard;
   }
   for (const std::int32_t i : near.marked()) {
     const StatisticalBody& body = scene.bodies[std::size_t(i)];
@@ -133,9 +135,9 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
                        std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
   find_ways(scene, pairs, dt);
   following_.clear();
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (ways_[i] >= 0.0) mark(pairs[i], near);
-    if (ways_[i] == kFollowing) following_.push_back(i);
+  for (std::size_t i = 0; i < ways_.size(); ++i) {
+    if (ways_[i].along >= 0.0) mark(ways_[i], near);
+    if (ways_[i].along == kFollowing) following_.push_back(i);
   }
   mark_followers(scene, pairs, dt, near);
   for (auto left = solid_contacts; !left.empty();) {
@@ -148,7 +150,7 @@ void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
     if (body.is_sphere() || !moves_along) near.mark(Participant::statistical(slot));
   }
 
-  find_islands(scene, pairs, dt, near);
+  find_islands(scene, dt, near);
   find_ways_to_solids(scene, solid_contacts, dt, near);
   std::array<bool, kMostSubsteps + 1> any = {};
   const double least = std::max(1.0, dt / kLongest - 1e-6);

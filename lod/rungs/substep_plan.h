@@ -38,6 +38,7 @@ class SubstepPlan {
   std::span<const Pace> paces() const { return paces_; }
 
  private:
+  static constexpr double kApart = -1.0, kFollowing = -2.0;
   struct Island {
     double longest = kApart;  // of its ways
     double fall = 0.0;        // over R: what gravity adds to the way of its smallest body in the step
@@ -45,17 +46,25 @@ class SubstepPlan {
     bool is_hard = false;     // sweeps of three substeps are not enough for a step at once
   };
 
+  /// What the plan asks of a pair, side by side: the pairs themselves lie far apart.
+  struct PairWay {
+    Participant first = Participant::ground(), second = Participant::ground();
+    bool first_is_other = false, second_is_other = false;  // full, or asleep
+    bool is_hard = false;                                  // as Island
+    double along = kApart;  // over R: how far it may close in; kApart: it may not touch; kFollowing: only
+                            // once one of the two is stopped
+  };
+  static void mark(const PairWay& way, NearMarks& near) { near.mark(way.first), near.mark(way.second); }
+
   void find_ways(const ContactScene& scene, const NearPairs& pairs, double dt);
   void mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt, NearMarks& near);
-  void find_islands(const ContactScene& scene, const NearPairs& pairs, double dt, const NearMarks& near);
+  void find_islands(const ContactScene& scene, double dt, const NearMarks& near);
   void find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts, double dt,
                            const NearMarks& near);
   Island& island_of(std::int32_t node) { return island_of_root_[std::size_t(islands_.root_of(node))]; }
 
-  static constexpr double kApart = -1.0, kFollowing = -2.0;
   JobRunner jobs_;
-  std::vector<double> ways_;  // of each pair, over R: how far it may close in; kApart: it may not touch;
-                              // kFollowing: only once one of the two is stopped
+  std::vector<PairWay> ways_;           // of each pair
   std::vector<std::size_t> following_;  // pairs of which neither gains on the other
   DisjointSets islands_;                // of bodies
   std::vector<Island> island_of_root_;  // of each body, where it stands for its island

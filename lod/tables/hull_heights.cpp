@@ -24,7 +24,7 @@ lane::Row find_way_out(const Hull& hull, const Vec3& direction) {
   double way = std::numeric_limits<double>::infinity(), distance = 0.0;
   Vec3 out = direction;
   for (std::size_t face = 0; face < hull.faces.size(); ++face) {
-    const Vec3 normal = hull.face_normal(int(face)).normalized();
+    const Vec3 normal = hull.face_normals[face];
     const double along = normal.dot(direction),
                  offset = normal.dot(hull.vertices[std::size_t(hull.faces[face][0])]);
     if (along > 0.0 && offset / along < way) way = offset / along, distance = offset, out = normal;
@@ -35,7 +35,7 @@ lane::Row find_way_out(const Hull& hull, const Vec3& direction) {
 double volume_of(const Hull& hull) {
   double six_volumes = 0.0;
   for (std::size_t face = 0; face < hull.faces.size(); ++face)
-    six_volumes += hull.face_normal(int(face)).dot(hull.vertices[std::size_t(hull.faces[face][0])]);
+    six_volumes += hull.area_vector(int(face)).dot(hull.vertices[std::size_t(hull.faces[face][0])]);
   return six_volumes / 6.0;
 }
 

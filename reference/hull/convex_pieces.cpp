@@ -60,7 +60,7 @@ class Decomposition {
   bool find_planes() {
     std::vector<Plane> outer;
     for (int i = 0; i < int(hull_.faces.size()); ++i)
-      add_plane(outer, hull_.face_normal(i), hull_.vertices[hull_.faces[i][0]]);
+      add_plane(outer, hull_.area_vector(i), hull_.vertices[hull_.faces[i][0]]);
     std::vector<Plane> all = outer;
     for (const auto& [a, b, c] : mesh_.faces) {
       const Vec3 corner = mesh_.vertices[a];

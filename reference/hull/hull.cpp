@@ -167,7 +167,11 @@ std::vector<Vec3> drop_flat_vertices(const Hull& hull) {
   return kept;
 }
 
-void fill_lanes(Hull& hull) {
+// What follows from the vertices.
+void derive(Hull& hull) {
+  hull.face_normals.clear();
+  for (int face = 0; face < int(hull.faces.size()); ++face)
+    hull.face_normals.push_back(hull.area_vector(face).normalized());
   hull.lanes = {};
   for (const Vec3& vertex : hull.vertices) {
     hull.lanes.x.push_back(float(vertex.x()));
@@ -180,7 +184,7 @@ void fill_lanes(Hull& hull) {
 
 void transform_hull(Hull& hull, const Vec3& origin, double factor) {
   for (Vec3& vertex : hull.vertices) vertex = factor * (vertex - origin);
-  fill_lanes(hull);
+  derive(hull);
 }
 
 Hull make_hull(std::span<const Vec3> points) {
@@ -195,7 +199,7 @@ Hull make_hull(std::span<const Vec3> points) {
       throw InputError("hull: found points that lie in a plane, expected a solid's corners");
     hull = make_raw_hull(corners);
   }
-  fill_lanes(hull);
+  derive(hull);
   return hull;
 }
 

@@ -24,6 +24,7 @@ struct Hull {
   std::vector<Vec3> vertices;             ///< m, hull corners only
   VertexLanes lanes;                      ///< of `vertices`
   std::vector<std::array<int, 3>> faces;  ///< triangulated, counter-clockwise seen from outside
+  std::vector<Vec3> face_normals;         ///< unit, outward, of each of `faces`
   std::vector<std::int32_t>
       neighbor_start;  ///< size vertices + 1: where each vertex's run of `neighbor` begins
   std::vector<std::int32_t> neighbor;
@@ -37,8 +38,8 @@ struct Hull {
   std::span<const std::int32_t> faces_of(int vertex) const {
     return {incident_face.data() + face_start[vertex], incident_face.data() + face_start[vertex + 1]};
   }
-  /// Outward, of any length (twice the face's area).
-  Vec3 face_normal(int face) const {
+  /// Outward, twice the face's area long, m².
+  Vec3 area_vector(int face) const {
     const auto& [a, b, c] = faces[face];
     return (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
   }

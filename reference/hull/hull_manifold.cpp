@@ -68,7 +68,7 @@ class Tip {
         std::unique(faces.begin(), faces.end()),
         faces.end());  // here as elsewhere not std::ranges', whose subranges clang 14 does not compile
     for (const int face : faces)
-      faces_.push_back({rotation_ * hull_.face_normal(face).normalized(), place(hull_.faces[face][0])});
+      faces_.push_back({rotation_ * hull_.face_normals[face], place(hull_.faces[face][0])});
   }
   void collect_edges() {
     for (std::size_t i = 0; i < corners_.size(); ++i)

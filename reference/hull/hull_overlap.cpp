@@ -57,7 +57,7 @@ struct Corner {
     if (body.shape->sphere_radius) return;
     const Hull& hull = body.shape->hull;
     const int vertex = body.farthest_vertex(direction);
-    for (const int face : hull.faces_of(vertex)) normals.push_back(body.axes * hull.face_normal(face));
+    for (const int face : hull.faces_of(vertex)) normals.push_back(body.axes * hull.area_vector(face));
     for (const int other : hull.neighbors(vertex))
       edges.push_back(body.axes * (hull.vertices[other] - hull.vertices[vertex]));
   }

@@ -17,7 +17,7 @@ RigidState state_of(const Pieces& body, const Piece& piece) {
 
 bool is_within(const Hull& hull, const Vec3& point, double margin) {
   for (int i = 0; i < int(hull.faces.size()); ++i)
-    if (hull.face_normal(i).normalized().dot(point - hull.vertices[hull.faces[i][0]]) > -margin) return false;
+    if (hull.face_normals[i].dot(point - hull.vertices[hull.faces[i][0]]) > -margin) return false;
   return true;
 }
 

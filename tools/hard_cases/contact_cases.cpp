@@ -46,7 +46,7 @@ double depth_along(const Pair& pair, const Vec3& direction) {
 std::vector<Vec3> face_normals(const Shape& shape, const Quat& orientation) {
   std::vector<Vec3> normals;
   for (int i = 0; i < int(shape.hull.faces.size()); ++i)
-    normals.push_back(orientation * shape.hull.face_normal(i).normalized());
+    normals.push_back(orientation * shape.hull.face_normals[std::size_t(i)]);
   return normals;
 }
 

@@ -76,7 +76,7 @@ TEST(HullHeights, ConcaveShapesLetOthersNearer) {
   const Maps maps(l);
   double six_volumes = 0.0;
   for (std::size_t face = 0; face < l.hull.faces.size(); ++face)
-    six_volumes += l.hull.face_normal(int(face)).dot(l.hull.vertices[std::size_t(l.hull.faces[face][0])]);
+    six_volumes += l.hull.area_vector(int(face)).dot(l.hull.vertices[std::size_t(l.hull.faces[face][0])]);
   const double solid = std::pow(6.0 * l.volume / six_volumes, 1.0 / 3.0);
   ASSERT_LT(solid, 0.95);
   EXPECT_NEAR(Maps::read(maps.heights, Vec3::UnitZ()), 0.05, 1e-3);

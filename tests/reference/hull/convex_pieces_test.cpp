@@ -14,7 +14,7 @@ double volume_of(const Hull& hull) { return measure_mass_properties({hull.vertic
 
 bool is_inside(const Hull& hull, const Vec3& point) {
   for (int i = 0; i < int(hull.faces.size()); ++i)
-    if (hull.face_normal(i).dot(point - hull.vertices[hull.faces[i][0]]) > 0.0) return false;
+    if (hull.face_normals[i].dot(point - hull.vertices[hull.faces[i][0]]) > 0.0) return false;
   return true;
 }
 

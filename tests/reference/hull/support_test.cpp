@@ -52,7 +52,7 @@ TEST(FindSupport, TiesAreAsFarAsAny) {
   for (std::uint32_t number = 0; number < 12; ++number) {
     const Hull hull = draw_hull(number);
     for (int face = 0; face < int(hull.faces.size()); ++face) {
-      const Vec3 normal = hull.face_normal(face).normalized();
+      const Vec3 normal = hull.face_normals[face];
       for (int start = 0; start < int(hull.vertices.size()); start += 3)
         EXPECT_NEAR(hull.vertices[std::size_t(find_support(hull, normal, start))].dot(normal),
                     hull.vertices[std::size_t(hull.faces[std::size_t(face)][0])].dot(normal), 1e-11);
