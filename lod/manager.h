@@ -130,7 +130,8 @@ class Manager {
   void set_user_data(BodyId body, std::uintptr_t user_data);
   void set_events(BodyId body,
                   bool events);  ///< whether its contacts make events, see BodyDefinition::events
-  /// Kept on every rung; wakes it. A body whose properties are not all default is never at `tables`, whose
+  /// Kept on every rung; wakes it, and what it touches where it is to meet others, or to be met by them,
+  /// otherwise. A body whose properties are not all default is never at `tables`, whose
   /// loops know none of them, but at `support` instead, whatever was asked for. A kinematic body moves as its
   /// velocity says (set_state), through whatever it meets, and carries and pushes the others.
   void set_properties(BodyId body, const BodyProperties& properties);

@@ -52,6 +52,11 @@ struct ContactScene {
     if (p.is_full()) return neighbor(p).force / neighbor(p).mass;
     return p.is_statistical() ? world.force_on(std::int32_t(p.index())).acceleration : Vec3(Vec3::Zero());
   }
+  /// Whether any force or torque but gravity acts on it.
+  bool is_forced(Participant p) const {
+    if (p.is_full()) return !neighbor(p).force.isZero(0.0) || !neighbor(p).torque.isZero(0.0);
+    return p.is_statistical() && !world.force_on(std::int32_t(p.index())).is_none();
+  }
   Vec3 acceleration(Participant p) const { return gravity(p) + pushed(p); }
   PairBody pair_body(Participant p) const { return {&shape(p), position(p), orientation(p)}; }
   ContactLaw law(Participant a, Participant b) const {

@@ -384,9 +384,11 @@ void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
 // need no weight, and are the next step's guesses. Who is pushed up by more than before and than it weighs,
 // or along by more than friction under what is left of its weight holds, is to wake, and of what held it
 // nothing is remembered. (What lies on it is not known: by how much it was pushed before was no blow.) One
-// that bore more than that took a good part of a blow to those that it lies on.
+// that bore more than that took a good part of a blow to those that it lies on. Next to a body that a force
+// acts on the first of these hold in each substep, however little of it passes in one.
 void Crowd::find_pressed(const ContactScene& scene, double time) {
-  constexpr double kStirs = 0.02;  // over √(g R): slower it would hardly move
+  constexpr double kStirs = 0.02;   // over √(g R): slower it would hardly move
+  constexpr double kForced = 0.05;  // over g: what is forced along by less hardly moves
   pressed_.clear();
   const double strength = scene.world.gravity_strength();
   if (strength == 0.0) return;
@@ -407,17 +409,25 @@ void Crowd::find_pressed(const ContactScene& scene, double time) {
       first.now += point.impulse, first.before += point.guess;
       second.now -= point.impulse, second.before -= point.guess;
     }
+  const auto is_forced = [&](std::int32_t body) {
+    return body >= 0 && !sleeps(body) && scene.is_forced(participants_[std::size_t(body)]);
+  };
+  for (const CrowdManifold& m : manifolds) {
+    pushes_[std::size_t(m.first)].forced |= is_forced(m.second);
+    if (m.second >= 0) pushes_[std::size_t(m.second)].forced |= is_forced(m.first);
+  }
   const auto is_pressed = [&](std::int32_t body, double friction) {
     if (!sleeps(body)) return false;
     const Participant p = participants_[std::size_t(body)];
     const double mass = p.is_statistical() ? scene.body(p).mass : scene.neighbor(p).mass,
                  weight = mass * strength * time,  // N s
         stirs = mass * kStirs * std::sqrt(strength * scene.shape(p).radius);
-    const auto [now, before] = pushes_[std::size_t(body)];
+    const auto [now, before, forced] = pushes_[std::size_t(body)];
     const Vec3 more = now - before;
     const double rise = now.dot(up), along = (now - rise * up).norm(), more_rise = more.dot(up),
                  more_along = (more - more_rise * up).norm();
     const double holds = friction * std::max(0.0, weight - rise);
+    if (forced && std::max(rise - weight, along - holds) > kForced * weight) return true;
     return std::min(rise, more_rise) > std::max(weight, stirs) ||
            std::min(along, more_along) > std::max(holds, stirs);
   };

@@ -74,6 +74,7 @@ class Crowd {
   /// What all its contacts give a body, and what the solver started from, N s.
   struct Push {
     Vec3 now = Vec3::Zero(), before = Vec3::Zero();
+    bool forced = false;  ///< a force acts on one that it touches
   };
 
   /// How overlaps that came from another rung move a body out of them, m.

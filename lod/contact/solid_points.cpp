@@ -52,7 +52,8 @@ class PointSearch {
 
  private:
   void find_faces(const PlacedSolid& solid);
-  bool is_over(const Vec3& point, const Face& face) const;
+  bool is_over(const Vec3& point, const Face& face, double rounding = 1e-3) const;
+  bool passes_its_end(const Vec3& point, double gap, const Vec3& way, const Face& face) const;
   bool is_out_of(const Vec3& point, std::size_t face) const;
   bool enters_last(const Vec3& point, const Vec3& way, const Face& face) const;
   void find_vertices_over(const PlacedSolid& solid, std::size_t face);
@@ -101,9 +102,9 @@ void PointSearch::find_faces(const PlacedSolid& solid) {
     add(faces_, solid.solid->faces[i].normal, solid.solid->faces[i].offset);
 }
 
-// Along the face's normal.
-bool PointSearch::is_over(const Vec3& point, const Face& face) const {
-  const double rounding = 1e-3 * seeker_.shape.radius;
+// Along the face's normal. `rounding`: over R.
+bool PointSearch::is_over(const Vec3& point, const Face& face, double rounding) const {
+  rounding *= seeker_.shape.radius;
   const auto is_within = [&](const Vec3& at) {
     return [&, rounding](const Face& f) { return f.height_of(at) <= rounding; };
   };
@@ -128,6 +129,14 @@ bool PointSearch::enters_last(const Vec3& point, const Vec3& way, const Face& fa
   });
 }
 
+// Over the face now, but where it comes down no more: a corner that slides off an edge goes along the body's
+// own face, which the edge is on, and would strike nothing.
+bool PointSearch::passes_its_end(const Vec3& point, double gap, const Vec3& way, const Face& face) const {
+  constexpr double kRounding = 1e-6;  // over R
+  const double fall = -way.dot(face.normal);
+  return gap > 0.0 && fall > gap && !is_over(point + gap / fall * way, face, kRounding);
+}
+
 // Vertices that lie over the face, now or at the step's end, and meet its plane.
 void PointSearch::find_vertices_over(const PlacedSolid& solid, std::size_t face) {
   const Face& plane = faces_[face];
@@ -143,7 +152,9 @@ void PointSearch::find_vertices_over(const PlacedSolid& solid, std::size_t face)
     const Vec3 way = (shape.sphere_radius ? body.velocity : seeker_.velocity_at(point)) * time_;
     const double least = std::min(gap, gap + way.dot(plane.normal));
     if (least > near || gap < -deepest || !is_out_of(point, face)) return;
-    if (!is_over(point, plane) && !(is_over(point + way, plane) && enters_last(point, way, plane))) return;
+    const bool meets = is_over(point, plane) ? !passes_its_end(point, gap, way, plane)
+                                             : is_over(point + way, plane) && enters_last(point, way, plane);
+    if (!meets) return;
     add(vertex, point, plane.normal, gap, least, solid);
   };
   const HullContact lowest = find_lowest_point(shape, body.orientation, plane.normal, height, hint_);

@@ -64,12 +64,19 @@ void Manager::set_properties(BodyId body, const BodyProperties& properties) {
   const std::uint32_t index = impl_->index_of(body);
   check_properties(properties);
   Levels& levels = impl_->levels;
+  const BodyProperties before = levels.bodies.properties(index);
+  const bool shows_to_others = before.category != properties.category ||
+                               before.collide != properties.collide ||
+                               before.kinematic != properties.kinematic;
   levels.bodies.set_properties(index, properties);
   if (levels.bodies[index].statistical && levels.bodies.level(index).rung == Rung::tables &&
       levels.bodies.level(index).own_properties)
     transfer(levels, index, Rung::support);
   if (levels.bodies[index].ode) levels.full.world()->set_properties(levels.bodies[index].ode, properties);
-  levels.set_motion(index, levels.state(index));
+  if (shows_to_others)
+    levels.set_state(index, levels.state(index));
+  else
+    levels.set_motion(index, levels.state(index));
   impl_->choose.note(index);
   impl_->recorder.note(Call::set_properties, body, properties);
 }

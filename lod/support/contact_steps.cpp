@@ -45,6 +45,8 @@ class ContactSteps {
   const HalfSpace* plane_of(const HalfSpace& plane);
   GroundMotion unkicked(const Mat3& rotation, const GroundMotion& kicked) const;
   void find_contacts(const OnGround& on, double time);
+  bool ends_somewhere(const HalfSpace& plane) const;
+  std::size_t find_moved(const TouchingPoint& point, const OnGround& on) const;
   bool strikes_now(std::size_t contact, const GroundMotion& unkicked) const;
   bool is_struck(const GroundMotion& unkicked) const;
   void strike(const OnGround& lagging);
@@ -196,7 +198,8 @@ GroundMotion ContactSteps::unkicked(const Mat3& rotation, const GroundMotion& ki
               shape_.inverse_inertia_per_mass * (rotation.transpose() * (kicked_ * world_.turning))};
 }
 
-// With the vertices that strike now, which of many near the ground may be none of those found.
+// With the vertices that strike now, which of many near the ground may be none of those found. Who was to
+// strike what ends somewhere may have passed its end.
 void ContactSteps::find_contacts(const OnGround& on, double time) {
   find_step_contacts(body_, kind_, world_, on, time, settings_.contact_margin * shape_.radius, held_, found_);
   for (const Due& due : std::span(due_).first(due_count_)) {
@@ -205,6 +208,10 @@ void ContactSteps::find_contacts(const OnGround& on, double time) {
       return found_.point[k].stands_for(due.point, shape_) && is_same(*found_.plane[k], due.plane);
     };
     while (i < found_.count && !is_it(i)) ++i;
+    if (i == found_.count && ends_somewhere(due.plane)) {
+      i = find_moved(due.point, on);
+      if (i == found_.count) continue;
+    }
     if (i == found_.count) {
       const HalfSpace* plane = found_.is_full() ? nullptr : plane_of(due.plane);
       if (!plane) break;
@@ -213,6 +220,30 @@ void ContactSteps::find_contacts(const OnGround& on, double time) {
     found_.due[i] = true;
   }
   due_count_ = 0;
+}
+
+// Unless it is under the whole body.
+bool ContactSteps::ends_somewhere(const HalfSpace& plane) const {
+  const auto same = [&](const HalfSpace& p) { return is_same(p, plane); };
+  return world_.solids && std::ranges::none_of(world_.planes, same) &&
+         std::ranges::none_of(found_.local.begin(), found_.local.begin() + std::ptrdiff_t(found_.under),
+                              same);
+}
+
+// Over whichever face it is now: a vertex, or where features cross, which goes along the body as far as that
+// has moved. The number of those found: none.
+std::size_t ContactSteps::find_moved(const TouchingPoint& point, const OnGround& on) const {
+  constexpr double kSame = 1e-3;  // over R
+  const double way = kSame * shape_.radius + 2.0 * behind_ * on.motion.velocity_at(point.arm).norm();
+  std::size_t nearest = found_.count;
+  double least = way * way;
+  for (std::size_t i = 0; i < found_.count; ++i) {
+    if (found_.point[i].vertex != point.vertex) continue;
+    if (point.vertex >= 0) return i;
+    if (const double square = (found_.point[i].arm - point.arm).squaredNorm(); square < least)
+      least = square, nearest = i;
+  }
+  return nearest;
 }
 
 bool ContactSteps::strikes_now(std::size_t contact, const GroundMotion& unkicked) const {

@@ -66,7 +66,7 @@ void Seeker::find_on_solids() {
   find_solid_points(body, kind, *world.solids, time, least_margin, near);
   found.until = near.until;
   for (const HalfSpace& face : near.planes)
-    if (const HalfSpace* plane = found.keep(face)) find_on_plane(*plane);
+    if (const HalfSpace* plane = found.keep(face)) ++found.under, find_on_plane(*plane);
   found.uneven = !near.points.empty();
   const std::size_t before = found.count;
   for (const SolidPoint& n : near.points) {
@@ -93,6 +93,7 @@ void find_step_contacts(StatisticalBody& body, const BodyKind& kind, const StepW
   found.count = 0;
   found.deepest = 0.0;
   found.uneven = false;
+  found.under = 0;
   found.until = time;
   Seeker seeker{body, kind, world, on, time, least_margin, held, found};
   for (const HalfSpace& plane : world.planes) seeker.find_on_plane(plane);

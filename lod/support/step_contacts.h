@@ -42,6 +42,7 @@ struct StepContacts {
   bool uneven = false;           ///< some are of ground that is no plane
   double until = 0.0;            ///< s: nothing else is struck sooner
   std::vector<HalfSpace> local;  ///< planes of this step alone
+  std::size_t under = 0;         ///< the first of them: under the whole body
 
   std::span<GroundContact> contacts() { return std::span(contact).first(count); }
   bool is_full() const { return count == kCapacity; }

@@ -53,6 +53,8 @@ void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
     body.spin += impulse * push.torque;
     body.motion = Motion::dynamic;
     spheres_.put(place, body);
+    if (body.velocity.dot(push.force) > impulse * push.force.squaredNorm())  // it gives way: at no rest
+      spheres_.crowded_for[std::size_t(place)] = 0, spheres_.quiet[std::size_t(place)] = 0.0f;
     if (!is_within_limit(body.velocity) || !is_within_limit(body.spin))
       recover(place, tally);
     else

@@ -3,6 +3,8 @@
 namespace lodestone::ode {
 namespace {
 
+constexpr double kDrawn = 0.2;  // of the law's time: for so long who was drawn along stays awake
+
 double square(double x) { return x * x; }
 
 // Summed as ODE does.
@@ -32,6 +34,7 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
         body.properties.kinematic)
       continue;
     body.to_sleep_s = is_still(body) ? body.to_sleep_s - h : law_.time;
+    if (body.to_sleep_s <= 0.0 && is_drawn(body)) body.to_sleep_s = kDrawn * law_.time;
     body.fell_asleep = body.to_sleep_s <= 0.0;
     if (body.fell_asleep) put_to_rest(body.body);
   }
@@ -41,6 +44,27 @@ bool Sleep::is_still(const Body& body) const {
   if (carried_.contains(body.body)) return false;
   return squared_norm(dBodyGetLinearVel(body.body)) <= square(law_.speed) &&
          squared_norm(dBodyGetAngularVel(body.body)) <= square(law_.turning_speed / body.reach);
+}
+
+// Whether what it touches moves, or gives way to a force: put to rest again in each step, it would hold that
+// back, and of what the two exchange its share be lost. (What jitters in a heap moves nobody.)
+bool Sleep::is_drawn(const Body& body) const {
+  constexpr double kMoves = 4.0, kGivesWay = 0.02;  // times the speed
+  const Vec3 center = to_vec3(dBodyGetPosition(body.body));
+  const auto draws = [&](dBodyID other) {
+    if (!other || other == body.body || !dBodyIsEnabled(other)) return false;
+    const Vec3 velocity = to_vec3(dBodyGetLinearVel(other)), turning = to_vec3(dBodyGetAngularVel(other)),
+               force = to_vec3(dBodyGetForce(other)), torque = to_vec3(dBodyGetTorque(other)),
+               arm = center - to_vec3(dBodyGetPosition(other));
+    return (velocity + turning.cross(arm)).norm() > kMoves * law_.speed ||
+           velocity.dot(force) > kGivesWay * law_.speed * force.norm() ||
+           turning.dot(torque) * arm.norm() > kGivesWay * law_.speed * torque.norm();
+  };
+  for (int i = 0; i < dBodyGetNumJoints(body.body); ++i) {
+    const dJointID joint = dBodyGetJoint(body.body, i);
+    if (draws(dJointGetBody(joint, 0)) || draws(dJointGetBody(joint, 1))) return true;
+  }
+  return false;
 }
 
 void Sleep::find_carried(Bodies& bodies, std::span<const dBodyID> carried) {

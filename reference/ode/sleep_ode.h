@@ -1,6 +1,7 @@
 // When this world's bodies fall asleep: ODE's own law (dInternalHandleAutoDisabling), before each step of
-// ODE's, in our hands, so that it can be saved and set, and so that what a moving surface carries stays
-// awake: ODE would stop a body at rest in each step that friction moves it by less than the threshold.
+// ODE's, in our hands, so that it can be saved and set, and so that what a moving surface carries, or a body
+// that moves draws along, stays awake: ODE would stop a body at rest in each step that friction moves it by
+// less than the threshold.
 #pragma once
 
 #include <unordered_set>
@@ -23,6 +24,7 @@ class Sleep {
  private:
   void find_carried(Bodies& bodies, std::span<const dBodyID> carried);
   bool is_still(const Body& body) const;
+  bool is_drawn(const Body& body) const;
 
   SleepLaw law_;
   bool on_;

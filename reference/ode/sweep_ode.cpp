@@ -26,16 +26,10 @@ bool comes_near(const Vec3& from, const Vec3& direction, double length, const Ve
   return (from + along * direction - center).squaredNorm() <= reach * reach;
 }
 
-/// m, of a point, negative outside. Of what can stand for a body.
-double depth_inside(dGeomID geom, const Vec3& point) {
-  switch (dGeomGetClass(geom)) {
-    case dBoxClass:
-      return dGeomBoxPointDepth(geom, point.x(), point.y(), point.z());
-    case dSphereClass:
-      return dGeomSpherePointDepth(geom, point.x(), point.y(), point.z());
-    default:
-      return -1.0;
-  }
+bool is_convex(dGeomID geom) {
+  const int kind = dGeomGetClass(geom);
+  return kind == dBoxClass || kind == dSphereClass || kind == dCapsuleClass || kind == dCylinderClass ||
+         kind == dConvexClass;
 }
 
 bool touch(std::span<const OdeContact> contacts, OdeBodyId a, OdeBodyId b) {
@@ -49,6 +43,7 @@ bool touch(std::span<const OdeContact> contacts, OdeBodyId a, OdeBodyId b) {
 Sweep::Sweep()
     : ray_(dCreateRay(nullptr, 1.0)), mesh_(dCreateTriMesh(nullptr, nullptr, nullptr, nullptr, nullptr)) {
   dGeomRaySetClosestHit(ray_, 1);
+  dGeomRaySetBackfaceCull(ray_, 1);
 }
 
 Sweep::~Sweep() {
@@ -108,8 +103,7 @@ double Sweep::free_part(Body& body, BroadPhase& broad_phase, std::span<const Ode
       part = std::min(part, free_part(body, *it->body, contacts));
 
   const Vec3 end = position_of(body), whole = end - body.before;
-  const Way way{body.before,    whole.normalized(),           whole.norm(),
-                body.thickness, touch(contacts, body.id, {}), false};
+  const Way way{body.before, whole.normalized(), whole.norm(), body.thickness, touch(contacts, body.id, {})};
   Eigen::AlignedBox3d swept(body.before.cwiseMin(end), body.before.cwiseMax(end));
   swept.extend(swept.min() - Vec3::Constant(way.thickness))
       .extend(swept.max() + Vec3::Constant(way.thickness));
@@ -125,7 +119,7 @@ double Sweep::free_part(const Body& body, const Body& other, std::span<const Ode
   if (length <= body.thickness) return 1.0;
   const Vec3 from = end - relative, direction = relative / length;
   if (!comes_near(from, direction, length, center, other.reach + body.thickness)) return 1.0;
-  const Way way{from, direction, length, body.thickness, touch(contacts, body.id, other.id), true};
+  const Way way{from, direction, length, body.thickness, touch(contacts, body.id, other.id)};
   double part = 1.0;
   for (dGeomID geom = dBodyGetFirstGeom(other.body); geom; geom = dBodyGetNextGeom(geom))
     part = std::min(part, free_part(way, geom));
@@ -151,28 +145,39 @@ double Sweep::free_part(const Way& way, dGeomID geom) {
   return free / way.length;
 }
 
-// Out of a solid the way is free: who got into it would else be held there, its speed growing.
+// Out of a solid the way is free, through the back of a mesh, too, where no contact holds anybody: who got
+// into it would else be held there, its speed growing.
 std::optional<double> Sweep::distance_to(dGeomID geom, const Vec3& from, const Way& way) {
-  dGeomRaySetLength(ray_, way.length);
-  dGeomRaySetBackfaceCull(ray_, way.past_solid);
-  if (dGeomGetClass(geom) == dTriMeshClass) return distance_to_mesh(geom, from, way.direction);
-  if (way.past_solid && depth_inside(geom, from) > 0.0) return {};
-  dGeomRaySet(ray_, from.x(), from.y(), from.z(), way.direction.x(), way.direction.y(), way.direction.z());
+  if (dGeomGetClass(geom) == dTriMeshClass) return distance_to_mesh(geom, from, way);
+  if (is_inside(geom, from, way.direction)) return {};
+  return cast(geom, from, way.direction, way.length);
+}
+
+// Both ways it meets it.
+bool Sweep::is_inside(dGeomID geom, const Vec3& point, const Vec3& direction) {
+  if (!is_convex(geom)) return false;
+  dReal box[6];
+  dGeomGetAABB(geom, box);
+  const double across = Vec3(box[1] - box[0], box[3] - box[2], box[5] - box[4]).norm();
+  return cast(geom, point, direction, across) && cast(geom, point, -direction, across);
+}
+
+std::optional<double> Sweep::cast(dGeomID geom, const Vec3& from, const Vec3& direction, double length) {
+  dGeomRaySetLength(ray_, length);
+  dGeomRaySet(ray_, from.x(), from.y(), from.z(), direction.x(), direction.y(), direction.z());
   dContactGeom hit;
   return dCollide(ray_, geom, 1, &hit, sizeof hit) > 0 ? std::optional(hit.depth) : std::nullopt;
 }
 
 // OPCODE computes in float: about the start of the ray it is as precise far from the world's origin as near
 // it.
-std::optional<double> Sweep::distance_to_mesh(dGeomID mesh, const Vec3& from, const Vec3& direction) {
+std::optional<double> Sweep::distance_to_mesh(dGeomID mesh, const Vec3& from, const Way& way) {
   const Vec3 place = to_vec3(dGeomGetPosition(mesh)) - from;
   dGeomTriMeshSetData(mesh_, dGeomTriMeshGetData(mesh));
   dGeomSetPosition(mesh_, place.x(), place.y(), place.z());
   dGeomSetRotation(mesh_, dGeomGetRotation(mesh));
-  dGeomRaySet(ray_, 0, 0, 0, direction.x(), direction.y(), direction.z());
   const std::scoped_lock lock(trimesh_mutex());
-  dContactGeom hit;
-  return dCollide(ray_, mesh_, 1, &hit, sizeof hit) > 0 ? std::optional(hit.depth) : std::nullopt;
+  return cast(mesh_, Vec3::Zero(), way.direction, way.length);
 }
 
 }  // namespace lodestone::ode

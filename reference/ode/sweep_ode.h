@@ -33,7 +33,6 @@ class Sweep {
     Vec3 from, direction;
     double length, thickness;  // m
     bool touches;              // what may be in the way, at the start
-    bool past_solid;           // it has an inside, which can be left
   };
 
   /// What a body covers in the substep along the axis on which bodies are farthest apart, m.
@@ -48,7 +47,9 @@ class Sweep {
   double free_part(const Body& body, const Body& other, std::span<const OdeContact> contacts);
   double free_part(const Way& way, dGeomID geom);
   std::optional<double> distance_to(dGeomID geom, const Vec3& from, const Way& way);
-  std::optional<double> distance_to_mesh(dGeomID mesh, const Vec3& from, const Vec3& direction);
+  std::optional<double> distance_to_mesh(dGeomID mesh, const Vec3& from, const Way& way);
+  bool is_inside(dGeomID geom, const Vec3& point, const Vec3& direction);
+  std::optional<double> cast(dGeomID geom, const Vec3& from, const Vec3& direction, double length);
 
   dGeomID ray_, mesh_;
   int axis_ = 0;

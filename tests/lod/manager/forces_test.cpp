@@ -110,5 +110,46 @@ TEST(Forces, ATorqueTooSmallToTipLeavesItLying) {
   }
 }
 
+/// m/s: a board of 20 kg and a cube of 5 kg on it, after the board was drawn for a second with what gives
+/// both `pull` m/s².
+struct Drawn {
+  double board = 0.0, load = 0.0;
+};
+
+Drawn draw_a_board(LevelChoice level, double pull, double dt, double rest) {
+  Manager manager = on_rough_floor();
+  const auto add_at = [&](const Vec3& sides, double height, double mass) {
+    return manager.add_body({.shape = box_shape(sides),
+                             .state = testing::at({0.02, 0.01, height}),
+                             .mass = mass,
+                             .level = level});
+  };
+  const BodyId board = add_at({1, 1, 0.1}, 0.05, 20.0), load = add_at({0.3, 0.3, 0.3}, 0.25, 5.0);
+  for (double t = 0.0; t < rest; t += dt) manager.step(dt);
+  for (double t = 0.0; t < 1.0 - 0.5 * dt; t += dt) {
+    manager.add_force(board, {25.0 * (pull + kMu * kG), 0, 0});
+    manager.step(dt);
+  }
+  return {manager.state(board).velocity.x(), manager.state(load).velocity.x()};
+}
+
+// At any rate: of a force little passes in a short substep, and a sleeper that stands like ground would hold
+// it for ever.
+TEST(Forces, ASleeperGoesWithTheBoardThatIsDrawnUnderIt) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support})
+    for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 144, 1.0 / 240}) {
+      const double pull = 1.0;
+      const Drawn drawn = draw_a_board(level, pull, dt, 2.0);
+      EXPECT_NEAR(drawn.board, pull, 0.05 * pull) << dt;
+      EXPECT_NEAR(drawn.load, pull, 0.05 * pull) << dt;
+    }
+}
+
+// At `tables` the load turns on it; but the board itself gives way, though it is slow at first.
+TEST(Forces, ABoardAtTablesGivesWayUnderItsLoad) {
+  for (const double rest : {0.1, 2.0})
+    EXPECT_NEAR(draw_a_board(LevelChoice::tables, 2.5, 1.0 / 60, rest).board, 2.5, 0.5) << rest;
+}
+
 }  // namespace
 }  // namespace lodestone

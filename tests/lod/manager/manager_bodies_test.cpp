@@ -90,6 +90,39 @@ TEST(ManagerBodies, SetStateWakesWhatTheBodyIsPutInto) {
   }
 }
 
+// A sleeper falls when what bears it meets it no more, or bears it no more: at once, not when somebody else
+// wakes it.
+TEST(ManagerBodies, PropertiesOfWhatBearsASleeperWakeIt) {
+  ManagerSettings settings = unmeasured();
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  std::map<double, std::shared_ptr<const Signature>> known;  // by volume
+  settings.signatures = [&](const Shape& shape, const ContactLaw& law) {
+    auto& signature = known[shape.volume];
+    if (!signature) signature = coarse_signature(shape, law);
+    return signature;
+  };
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const bool released : {false, true})
+      for (const double dt : {1.0 / 30, 1.0 / 75}) {
+        Manager manager(settings);
+        const LevelChoice shelf_level = level == LevelChoice::full ? level : LevelChoice::support;
+        BodyProperties held;
+        held.kinematic = true;
+        const BodyId shelf = add(manager, box_shape({1, 1, 0.1}), at({0, 0, 1}), shelf_level),
+                     sleeper = add(manager, cube, at({0.1, 0, 1.15}), level);
+        manager.set_properties(shelf, held);
+        for (double t = 0.0; t < 2.0; t += dt) manager.step(dt);
+        ASSERT_TRUE(manager.asleep(sleeper));
+        BodyProperties changed;
+        if (!released) changed = held, changed.category = changed.collide = 0;
+        manager.set_properties(shelf, changed);
+        const int steps = int(0.2 / dt);
+        for (int i = 0; i < steps; ++i) manager.step(dt);
+        const double t = steps * dt;
+        EXPECT_LT(manager.state(sleeper).position.z(), 1.15 - 0.8 * 0.5 * 9.81 * t * t) << released << dt;
+      }
+}
+
 // One that bears its weight holds a body where it is; what moves by itself alone no force moves.
 TEST(ManagerBodies, AForceInTheAirActsThroughTheWholeStep) {
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {

@@ -88,6 +88,29 @@ TEST(OdeSleep, WokenItTakesItsTimeAgain) {
   EXPECT_NEAR(bed.time_to_sleep(box), 0.5, 0.05);
 }
 
+// A plank that is drawn away under a load asleep, each at what friction lets it have; together they keep what
+// momentum they are given.
+TEST(OdeSleep, ALoadGoesWithWhatIsDrawnAwayUnderIt) {
+  for (const double pull : {1.0, 4.0}) {  // m/s²: less than friction holds
+    for (const int substeps : {1, 4, 16}) {
+      Bed bed({});
+      const OdeBodyId plank = bed.world.add_body(
+                          {.shape = box_shape({4, 1, 0.1}), .mass = 20.0, .state = at({0, 0, 0.05})}),
+                      load = bed.world.add_body(
+                          {.shape = box_shape({0.3, 0.3, 0.3}), .mass = 5.0, .state = at({0, 0, 0.25})});
+      bed.time_to_sleep(load);
+      ASSERT_TRUE(bed.world.asleep(load) && bed.world.asleep(plank));
+      bed.world.set_asleep(plank, false);
+      for (int i = 0; i < 60; ++i) {
+        bed.world.add_force(plank, {25.0 * (pull + 0.5 * 9.81), 0, 0}, Vec3::Zero());
+        bed.world.step(1.0 / 60, substeps);
+      }
+      EXPECT_NEAR(bed.world.state(plank).velocity.x(), pull, 0.03 * pull) << substeps;
+      EXPECT_NEAR(bed.world.state(load).velocity.x(), pull, 0.03 * pull) << substeps;
+    }
+  }
+}
+
 // At rest it is at rest: no speed is left that a wake would bring back.
 TEST(OdeSleep, PutsAnEndToAllMotion) {
   Bed bed({.speed = 0.5, .turning_speed = 0.5, .time = 0.05});
