@@ -416,9 +416,19 @@ void Crowd::find_pressed(const ContactScene& scene, double time) {
     pushes_[std::size_t(m.first)].forced |= is_forced(m.second);
     if (m.second >= 0) pushes_[std::size_t(m.second)].forced |= is_forced(m.first);
   }
+  const auto friction_under = [&](Participant p) {  // of planes that it may lie on
+    double least = kUnbounded;
+    if (!p.is_statistical()) return least;
+    const BodyKind& kind = scene.kind_of(scene.body(p));
+    for (const HalfSpace& plane : scene.world.planes)
+      if (plane.normal.dot(up) > 0.0 && plane.height_of(scene.position(p)) < kind.shape->radius)
+        least = std::min(least, scene.world.law(kind, plane).friction);
+    return least;
+  };
   const auto is_pressed = [&](std::int32_t body, double friction) {
     if (!sleeps(body)) return false;
     const Participant p = participants_[std::size_t(body)];
+    friction = std::min(friction, friction_under(p));
     const double mass = p.is_statistical() ? scene.body(p).mass : scene.neighbor(p).mass,
                  weight = mass * strength * time,  // N s
         stirs = mass * kStirs * std::sqrt(strength * scene.shape(p).radius);

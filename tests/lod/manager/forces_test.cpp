@@ -145,6 +145,34 @@ TEST(Forces, ASleeperGoesWithTheBoardThatIsDrawnUnderIt) {
     }
 }
 
+// A ball that is spun on a board asleep on ice pushes it back as it rolls off: no momentum comes from
+// nowhere.
+TEST(Forces, ABallSpunOnASleepingBoardPushesItBack) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support})
+    for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+      ManagerSettings settings = unmeasured();
+      Manager manager(settings);
+      const MaterialId ice = manager.materials().add({.restitution = 0.2, .friction = 0.0});
+      manager.add_plane(Vec3::UnitZ(), 0.0, ice);
+      const auto add_at = [&](const std::shared_ptr<const Shape>& shape, double height, double mass) {
+        return manager.add_body(
+            {.shape = shape, .state = testing::at({0, 0, height}), .mass = mass, .level = level});
+      };
+      const BodyId board = add_at(box_shape({4, 1, 0.1}), 0.05, 5.0),
+                   ball = add_at(std::make_shared<const Shape>(make_sphere_shape(0.2)), 0.3, 8.0);
+      for (double t = 0.0; t < 2.0; t += dt) manager.step(dt);
+      ASSERT_TRUE(manager.asleep(board) && manager.asleep(ball));
+      for (double t = 0.0; t < 0.5; t += dt) {
+        manager.add_force(ball, Vec3::Zero(), {0, 3.2, 0});
+        manager.step(dt);
+      }
+      const double forth = 8.0 * manager.state(ball).velocity.x(),
+                   back = 5.0 * manager.state(board).velocity.x();
+      EXPECT_GT(forth, 3.0) << dt;
+      EXPECT_NEAR(forth, -back, 0.02 * forth) << dt;
+    }
+}
+
 // At `tables` the load turns on it; but the board itself gives way, though it is slow at first.
 TEST(Forces, ABoardAtTablesGivesWayUnderItsLoad) {
   for (const double rest : {0.1, 2.0})
