@@ -194,7 +194,8 @@ class Manager {
   // What the last step did, in an order that is the same in every run. Each list costs in proportion to what
   // it holds, never to all bodies, and is good until the next step; ids of bodies that were removed since are
   // in it still.
-  std::span<const BodyId> moved() const;        ///< that were awake; the others are where they were
+  std::span<const BodyId> moved() const;  ///< that were awake; the others are where they were, a sleeper
+                                          ///< that went to `tables` to 1e-7 of a turn (see rung_changes)
   std::span<const BodyId> fell_asleep() const;  ///< asleep now, and not after the step before
   std::span<const BodyId> woke() const;         ///< awake now, and asleep after the step before
   std::span<const RungChange> rung_changes()
