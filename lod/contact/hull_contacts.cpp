@@ -213,7 +213,11 @@ void lift_out(StatisticalBody& body, const Shape& shape, const HalfSpace& plane,
   if (lowest.gap >= 0.0) return;
   const double lift = std::min(-lowest.gap, farthest), falling = -body.velocity.dot(plane.normal);
   body.position += lift * plane.normal;
-  if (falling <= 0.0) return;
+  // No deeper than a hair and fast, it has just arrived: it bounces in the next step.
+  constexpr double kHair = 1e-5, kFast = 0.1;  // over R, √(g R)
+  const bool arrives =
+      lift < kHair * shape.radius && falling * falling > kFast * kFast * gravity.norm() * shape.radius;
+  if (falling <= 0.0 || arrives) return;
   const Vec3 omega = angular_velocity(body.orientation, body.spin, shape);
   const double sinking = falling - omega.cross(lowest.arm).dot(plane.normal),
                work = std::max(0.0, -gravity.dot(plane.normal)) * lift,  // J/kg

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
@@ -52,6 +53,32 @@ double momentum_of_struck_pyramid(bool sleeping) {
 
 TEST(BlowsThrough, SleepersSwallowNothingOfABlowAtTheFootOfAPyramid) {
   EXPECT_NEAR(momentum_of_struck_pyramid(true) / momentum_of_struck_pyramid(false), 1.0, 0.05);
+}
+
+// It lands at the very end of a step, on the ground to rounding, while another strikes it from the side: it
+// bounces all the same.
+TEST(BlowsThrough, WhoLandsAsItIsStruckBounces) {
+  constexpr double kBallRadius = 0.15;  // m
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kBallRadius));
+  for (const double dt : {1.0 / 60, 1.0 / 240})
+    for (std::uint32_t i = 0; i < 60; ++i) {
+      RandomStream random(4, i, 0);
+      ManagerSettings settings = unmeasured();
+      settings.gravity = Vec3::Zero();
+      Manager manager(settings);
+      manager.materials().replace(0, {.restitution = 1.0, .friction = 0.0});
+      manager.add_plane(Vec3::UnitZ(), 0.0);
+      const double lands = 0.1, late = random.uniform(-0.008, 0.008), falls = random.uniform(2, 4),
+                   comes = random.uniform(2, 4), height = kBallRadius + falls * lands;
+      const BodyId first =
+          add(manager, ball, testing::at({0, 0, height}, {0, 0, -falls}), LevelChoice::support);
+      add(manager, ball,
+          testing::at({-2.0 * kBallRadius - comes * (lands + late), random.uniform(-0.05, 0.05), height},
+                      {comes, 0, -0.999 * falls}),
+          LevelChoice::support);
+      for (double t = 0.0; t < 0.4; t += dt) manager.step(dt);
+      EXPECT_GT(manager.state(first).velocity.z(), 0.5 * falls) << dt << ' ' << i;
+    }
 }
 
 }  // namespace
