@@ -149,17 +149,17 @@ double Sweep::free_part(const Way& way, dGeomID geom) {
 // into it would else be held there, its speed growing.
 std::optional<double> Sweep::distance_to(dGeomID geom, const Vec3& from, const Way& way) {
   if (dGeomGetClass(geom) == dTriMeshClass) return distance_to_mesh(geom, from, way);
-  if (is_inside(geom, from, way.direction)) return {};
-  return cast(geom, from, way.direction, way.length);
+  const auto distance = cast(geom, from, way.direction, way.length);
+  return distance && is_behind(geom, from, way.direction) ? std::nullopt : distance;
 }
 
-// Both ways it meets it.
-bool Sweep::is_inside(dGeomID geom, const Vec3& point, const Vec3& direction) {
+// Of a convex one that a ray from `point` meets: then the ray begins within it.
+bool Sweep::is_behind(dGeomID geom, const Vec3& point, const Vec3& direction) {
   if (!is_convex(geom)) return false;
   dReal box[6];
   dGeomGetAABB(geom, box);
   const double across = Vec3(box[1] - box[0], box[3] - box[2], box[5] - box[4]).norm();
-  return cast(geom, point, direction, across) && cast(geom, point, -direction, across);
+  return cast(geom, point, -direction, across).has_value();
 }
 
 std::optional<double> Sweep::cast(dGeomID geom, const Vec3& from, const Vec3& direction, double length) {

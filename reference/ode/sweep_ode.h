@@ -48,7 +48,7 @@ class Sweep {
   double free_part(const Way& way, dGeomID geom);
   std::optional<double> distance_to(dGeomID geom, const Vec3& from, const Way& way);
   std::optional<double> distance_to_mesh(dGeomID mesh, const Vec3& from, const Way& way);
-  bool is_inside(dGeomID geom, const Vec3& point, const Vec3& direction);
+  bool is_behind(dGeomID geom, const Vec3& point, const Vec3& direction);
   std::optional<double> cast(dGeomID geom, const Vec3& from, const Vec3& direction, double length);
 
   dGeomID ray_, mesh_;
