@@ -136,7 +136,7 @@ ordered_json headline_section(const ordered_json& data) {
   const ordered_json& cases = data["hard_cases"];
   facts.push_back(fact(fmt::format("{} of {}", cases["kept"].get<int>(), cases["figures"].get<int>()),
                        fmt::format("figures of set-ups on which engines are known to fail keep their bound; "
-                                   "{} fail as ODE itself does, {} are ours.",
+                                   "{} fail as ODE itself does, {} by our own doing.",
                                    cases["odes_own"].get<int>(), cases["failed"].get<int>())));
   return facts;
 }
