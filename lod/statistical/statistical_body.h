@@ -23,7 +23,7 @@ struct BodyKind {
   MaterialId material = 0;
   bool isotropic = false;                  ///< a sphere or a cube: rotates steadily
   bool round = false;                      ///< a sphere or nearly one: rolls down a slope (tables model)
-  bool long_edges = false;                 ///< all of them: it does not roll over small facets
+  bool angular = false;                    ///< of long and sharp edges: it does not roll over small facets
   Quat principal_axes = Quat::Identity();  ///< take principal axes of inertia to body axes
   bool along_principal_axes = true;        ///< body axes are these very axes
   Vec3 inverse_moments = Vec3::Ones();     ///< along them, over mass, 1/m²: ascending

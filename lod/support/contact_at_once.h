@@ -1,5 +1,6 @@
-// How a hull of long edges slides and rocks on planes where little hangs on it: as in contact_steps.h, but
-// in one step, whatever strikes within it.
+// How an angular hull slides and rocks on planes: by the leapfrog rule of contact_steps.h, but in equal
+// steps, whatever strikes within one bouncing at once. Of what rolls over small sides that takes too much
+// energy; here nothing hangs on it, at half the price.
 #pragma once
 
 #include "lod/statistical/step_world.h"
@@ -7,7 +8,7 @@
 
 namespace lodestone {
 
-/// Moves a body that touches a plane by `time` seconds.
+/// Moves a body that touches a plane by `time` seconds, in steps of at most SupportSettings::step_at_once.
 void move_on_planes_at_once(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time,
                             const SupportSettings& settings, ContactTally& tally);
 

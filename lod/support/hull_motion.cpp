@@ -7,13 +7,15 @@
 namespace lodestone {
 namespace {
 
-// It rocks on the ground for as long as the clip plays.
-ContactRecord touch_of_clip(const StatisticalBody& body, const HalfSpace& ground) {
+// It rocks on the ground for as long as the clip plays, which gives it what changes its motion but for
+// gravity.
+ContactRecord touch_of_clip(const StatisticalBody& body, const HalfSpace& ground, const Vec3& given) {
   return {.first = body.owner,
           .ground = ground.id,
           .ground_material = ground.material,
           .point = body.position - ground.height_of(body.position) * ground.normal,
-          .normal = ground.normal};
+          .normal = ground.normal,
+          .impulse = body.mass * std::max(0.0, given.dot(ground.normal))};
 }
 
 }  // namespace
@@ -34,8 +36,10 @@ HullMotion move_on_hull(StatisticalBody& body, ClipPlayback& clip, const BodyKin
   if (body.motion == Motion::settling && std::ranges::none_of(world.planes, same))
     body.motion = Motion::dynamic;
   if (body.motion == Motion::settling) {
-    if (world.log) world.log->add(touch_of_clip(body, clip.ground));
-    return {.plays_clip = true, .clip_over = advance_clip(clip, body, kind, gravity, time, settings.clips)};
+    const Vec3 falling = body.velocity + world.gravity * time;
+    const bool over = advance_clip(clip, body, kind, gravity, time, settings.clips);
+    if (world.log) world.log->add(touch_of_clip(body, clip.ground, body.velocity - falling));
+    return {.plays_clip = true, .clip_over = over};
   }
   const ContactTally tally = step_support_body(body, kind, world, time, settings.support, turned);
   if (tally.touched_plane < 0 || !may_settle || !kind.clips || kind.clips->empty()) return {.tally = tally};

@@ -11,19 +11,26 @@
 namespace lodestone {
 namespace {
 
-// In longer steps, over √(R/g), what is held at once gains by it: a box of a millimetre at 60 Hz would be
-// thrown.
-constexpr double kLongestAtOnce = 0.2;
 // On what is more slippery bodies rock on as they slide, and strike a third of a deviation too often.
 constexpr double kLeastFrictionAtOnce = 0.3;
 
-bool may_move_at_once(const BodyKind& kind, const StepWorld& world, double time) {
-  const double gravity = std::max(1e-9, world.gravity_strength());
-  return kind.long_edges && !world.solids &&
-         time < kLongestAtOnce * std::sqrt(kind.shape->radius / gravity) &&
-         std::ranges::all_of(world.planes, [&](const HalfSpace& plane) {
-           return world.law(kind, plane).friction >= kLeastFrictionAtOnce;
-         });
+// Off one of two walls that lean against each other a body that is lifted goes into the other.
+bool is_wedged(const Vec3& position, double radius, std::span<const HalfSpace> planes) {
+  constexpr double kWithinReach = 1.2;  // over R
+  const auto is_near = [&](const HalfSpace& p) { return p.height_of(position) < kWithinReach * radius; };
+  for (std::size_t i = 1; i < planes.size(); ++i)
+    for (std::size_t j = 0; j < i && is_near(planes[i]); ++j)
+      if (planes[i].normal.dot(planes[j].normal) < 0.0 && is_near(planes[j])) return true;
+  return false;
+}
+
+bool may_move_at_once(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world) {
+  return kind.angular && !world.solids &&
+         std::ranges::all_of(world.planes,
+                             [&](const HalfSpace& plane) {
+                               return world.law(kind, plane).friction >= kLeastFrictionAtOnce;
+                             }) &&
+         !is_wedged(body.position, kind.shape->radius, world.planes);
 }
 
 // Whether the vertex that is lowest at the step's end touches already: then nothing strikes, the body only
@@ -88,7 +95,7 @@ bool touches_already(const HullFlight& flight, const StatisticalBody& body, cons
   }
   if (left > 0.0) {
     body.spin -= world.turning * left;
-    const bool at_once = settings.coarse && may_move_at_once(kind, world, left);
+    const bool at_once = may_move_at_once(body, kind, world);
     (at_once ? move_on_planes_at_once : move_on_ground)(body, kind, world, left, settings, tally);
   }
   return tally;

@@ -6,11 +6,12 @@
 namespace lodestone {
 
 struct SupportSettings {
-  int max_impacts = 4;         ///< exact impacts a step; what is left of the step is done in contact steps
-  bool coarse = false;         ///< small turns in flight are taken to second order, and a hull of long edges
-                               ///< moves on planes at once (contact_at_once.h)
-  double contact_step = 0.07;  ///< longest contact step over √(R/g)
-  double uneven_step = 0.045;  ///< the same over ground that is no plane
+  int max_impacts = 4;  ///< exact impacts a step; what is left of the step is done in contact steps
+  bool coarse =
+      false;  ///< small turns are taken to second order, velocities at once are those of a step's end
+  double contact_step = 0.07;     ///< longest contact step over √(R/g)
+  double uneven_step = 0.045;     ///< the same over ground that is no plane
+  double step_at_once = 0.07;     ///< the same of an angular hull on planes (contact_at_once.h)
   double contact_margin = 0.002;  ///< over R: vertices this near the ground can carry
   ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2, .frictionless_bound = true};
   bool energy_bounded = true;  ///< no contact step, and no lift out of the ground, adds energy: without, a

@@ -93,6 +93,7 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   static const SupportSettings coarse{
       .coarse = true,
       .contact_step = 0.1,
+      .step_at_once = 0.2,
       .solver = {.sweeps = 4, .tolerance = 1e-2},
       .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
       .impact_tolerance = 2e-4};

@@ -110,6 +110,7 @@ class TablesLevel {
     std::int32_t begin = 0, end = 0;  // in faces_
     bool even = false;                // planes stand for all that its hull may meet of the ground's parts
     bool cornered = false;            // planes do not tell how it goes on
+    bool above = false;               // its centre was, of all of them, where the step began
   };
   /// What hulls press onto a body that touches its own rung, too.
   struct Load {
@@ -167,6 +168,7 @@ class TablesLevel {
   void apply_pushes(double dt, ContactTally& tally);
   void note_pushes();
   void take_back_excess();
+  void keep_above_ground();
   void give_pushes(double share);
   void start(double dt, std::span<const std::uint32_t> order);
   void find_near_faces(std::int64_t begin, std::int64_t end);

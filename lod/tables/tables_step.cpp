@@ -146,7 +146,10 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
     }
     const double margin = 0.01 * size + way;
     const bool cornered = (alone && !only_planes) || is_cornered(i, near, margin);
-    near_faces_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered});
+    const bool above = std::all_of(faces_.begin() + std::ptrdiff_t(first), faces_.end(),
+                                   [&](const HalfSpace& face) { return face.height_of(center) >= 0.0; });
+    near_faces_.push_back(
+        {i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered, above});
     const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
       return n.part->moves() && n.height < double(spheres_.radius[i]) + margin;
     });
@@ -530,6 +533,7 @@ void TablesLevel::finish(ContactTally& tally) {
   });
   for (const ContactTally& t : tallies_) tally += t;
   take_back_excess();
+  keep_above_ground();
   update_clips();
   if (log_ && ground) write_ground();
 }
@@ -541,6 +545,27 @@ void TablesLevel::take_back_excess() {
     if (step_.on_ground[i] != std::uint8_t(GroundState::free) || step_.touches(std::int64_t(i))) continue;
     const Vec3 too_far = 0.5 * constants_.wide_time * constants_.wide_time * force.acceleration;
     spheres_.x[i] -= too_far.x(), spheres_.y[i] -= too_far.y(), spheres_.z[i] -= too_far.z();
+  }
+}
+
+// Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way:
+// of what is solid on one side only none comes back from that, of a slab none whose centre is nearer to its
+// other side.
+void TablesLevel::keep_above_ground() {
+  constexpr double kLeast = 0.02;  // over R
+  for (const NearFaces& near : near_faces_) {
+    const auto i = std::size_t(near.place);
+    if (!near.above || near.place >= spheres_.awake || !step_.touches(near.place)) continue;
+    for (std::int32_t face = near.begin; face < near.end; ++face) {
+      const HalfSpace& plane = faces_[std::size_t(face)];
+      const double lift =
+          kLeast * double(kinds_.radius[spheres_.kind[i]]) - plane.height_of(spheres_.position(near.place));
+      if (lift <= 0.0) continue;
+      const Vec3 out = lift * plane.normal,
+                 stop = std::max(0.0, -spheres_.velocity(near.place).dot(plane.normal)) * plane.normal;
+      spheres_.x[i] += out.x(), spheres_.y[i] += out.y(), spheres_.z[i] += out.z();
+      spheres_.vx[i] += stop.x(), spheres_.vy[i] += stop.y(), spheres_.vz[i] += stop.z();
+    }
   }
 }
 

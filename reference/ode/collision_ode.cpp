@@ -8,6 +8,7 @@
 #include "reference/error.h"
 #include "reference/hull/hull_manifold.h"
 #include "reference/mesh/inside.h"
+#include "reference/ode/exact_solid.h"
 #include "reference/ode/piece_contacts.h"
 
 namespace lodestone::ode {
@@ -114,7 +115,7 @@ OdeGroundId Collision::add_mesh(const Mesh& mesh, MaterialId material) {
   auto data = std::make_unique<TrimeshData>(mesh.vertices, mesh.faces);
   const dGeomID geom = dCreateTriMesh(nullptr, data->id(), nullptr, nullptr, nullptr);
   ++ground_meshes_;
-  return add_ground({{}, geom, material, nullptr, {}, {}, std::move(data)});
+  return add_ground({{}, geom, material, find_exact_solid("static mesh", mesh), {}, {}, std::move(data)});
 }
 
 OdeGroundId Collision::add_ground(Ground ground) {
@@ -317,13 +318,13 @@ Pieces Collision::pieces_of_other(const Candidate& candidate, const Body* other)
   if (other) return pieces_of(*other);
   if (candidate.with_ground()) {
     const Ground& ground = ground_[candidate.second_number()];
-    return ground.box ? Pieces{{{ground.box.get()}}, ground.state} : Pieces{};
+    return ground.solid ? Pieces{pieces_in_mesh(*ground.solid), ground.state} : Pieces{};
   }
-  const CallersShape* shape = callers_shapes_.find(*callers_, candidate.second_number());
+  const Shape* shape = callers_shapes_.find(*callers_, candidate.second_number());
   if (!shape) return {};
   dQuaternion q;
   dGeomGetQuaternion(candidate.second, q);
-  return {{{shape->shape.get(), shape->center}},
+  return {pieces_in_mesh(*shape),
           {to_vec3(dGeomGetPosition(candidate.second)), to_quat(q), Vec3::Zero(), Vec3::Zero()}};
 }
 

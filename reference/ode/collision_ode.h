@@ -21,9 +21,9 @@ struct Ground {
   OdeGroundId id{};  ///< null: removed
   dGeomID geom = nullptr;
   MaterialId material = 0;
-  std::shared_ptr<const Shape> box = {};  ///< null for a mesh
-  RigidState put = {};                    ///< where it was put, and how it moves
-  RigidState state = {};                  ///< the same in this substep: where it has moved to from there
+  std::shared_ptr<const Shape> solid = {};  ///< null for a mesh that is none (exact_solid.h)
+  RigidState put = {};                      ///< where it was put, and how it moves
+  RigidState state = {};                    ///< the same in this substep: where it has moved to from there
   std::unique_ptr<TrimeshData> mesh = {};
   bool moved = false;  ///< before this step
   bool moves = false;  ///< its state has a velocity

@@ -82,6 +82,32 @@ TEST_P(ContactEventsOnRungs, PileSleepsWakesAndIsTakenApart) {
 INSTANTIATE_TEST_SUITE_P(Rungs, ContactEventsOnRungs,
                          ::testing::Values(LevelChoice::full, LevelChoice::support));
 
+// A crate that tumbles and settles, from its first touch until it sleeps: in impacts, contact steps and
+// clips.
+TEST(ContactEvents, ImpulsesAreWhatChangesItsMotion) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+    ManagerSettings settings{.signatures = coarse_signature};
+    settings.events = {.all_bodies = true, .least_speed = 0.0};
+    Manager manager = on_floor(settings);
+    const BodyId crate = add(manager, box_shape({0.2, 0.3, 0.4}),
+                             {.position = {0, 0, 0.6},
+                              .orientation = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 0).normalized())),
+                              .angular_velocity = {1, 3, 2}},
+                             level);
+    double given = 0.0, fallen = 0.0;  // N s
+    for (int i = 0; i < 600 && !manager.asleep(crate); ++i) {
+      const double before = manager.state(crate).velocity.z();
+      manager.step(kFrame);
+      if (manager.asleep(crate)) break;
+      fallen += manager.mass(crate) * (manager.state(crate).velocity.z() - before + kGravity * kFrame);
+      for (const ContactEvent& event : manager.contact_events())
+        if (event.phase == ContactPhase::hit) given += event.impulse;
+    }
+    ASSERT_TRUE(manager.asleep(crate)) << int(level);
+    EXPECT_NEAR(given, fallen, 0.02 * fallen) << int(level);
+  }
+}
+
 // The camera comes and goes: nobody begins to touch what he lay on all along.
 TEST(ContactEvents, ChangesOfRungAreNoEvents) {
   Manager manager = on_floor(telling({.policy = DistancePolicy{.full_within = 2.0}, .min_dwell_frames = 5}));

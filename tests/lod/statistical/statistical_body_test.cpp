@@ -50,15 +50,16 @@ TEST(BodyKind, IsRoundByItsCollisionHeights) {
   }
 }
 
-TEST(BodyKind, WhatRollsOverSmallFacetsHasShortEdges) {
-  const auto has_long_edges = [](std::shared_ptr<const Shape> shape) {
-    return make_body_kind(std::move(shape)).long_edges;
+TEST(BodyKind, WhatRollsOverSmallSidesIsNotAngular) {
+  const auto is_angular = [](std::shared_ptr<const Shape> shape) {
+    return make_body_kind(std::move(shape)).angular;
   };
-  EXPECT_TRUE(has_long_edges(testing::box_shape({0.2, 0.3, 0.4})));
-  EXPECT_TRUE(has_long_edges(testing::make_prism(12, 0.12, 0.3)));
-  EXPECT_FALSE(has_long_edges(testing::make_prism(48, 0.12, 0.3)));
-  EXPECT_FALSE(has_long_edges(testing::make_prism(8, 0.01, 0.3)));  // a needle
-  EXPECT_FALSE(has_long_edges(testing::sphere_shape(0.3)));
+  EXPECT_TRUE(is_angular(testing::box_shape({0.2, 0.3, 0.4})));
+  EXPECT_TRUE(is_angular(testing::make_prism(8, 0.12, 0.3)));
+  EXPECT_FALSE(is_angular(testing::make_prism(12, 0.12, 0.06)));  // a coin, whose edges are long
+  EXPECT_FALSE(is_angular(testing::make_prism(48, 0.12, 0.3)));
+  EXPECT_FALSE(is_angular(testing::make_prism(8, 0.01, 0.3)));  // a needle
+  EXPECT_FALSE(is_angular(testing::sphere_shape(0.3)));
 }
 
 TEST(StatisticalBody, KineticEnergyIsThatOfThePointsOfTheBody) {

@@ -1,0 +1,39 @@
+// Bodies of `tables` that others press into a slab stay on the side that they came from.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "reference/random.h"
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+TEST(ThinSlab, NobodyOfAColumnThatLandsIsPressedThrough) {
+  constexpr double kSide = 0.1, kThickness = 0.02, kHeight = 2.0;  // m
+  const auto cube = box_shape({kSide, kSide, kSide});
+  const auto signature = coarse_signature(*cube, {.restitution = 0.4, .friction = 0.5});
+  for (std::uint32_t column = 0; column < 20; ++column) {
+    RandomStream random(93, column, 0);
+    Manager manager({.signatures = [&](const Shape&, const ContactLaw&) { return signature; }});
+    manager.add_static_box({8, 8, kThickness}, {0, 0, -0.5 * kThickness}, Quat::Identity());
+    std::vector<BodyId> cubes;
+    for (int i = 0; i < 5; ++i)
+      cubes.push_back(
+          add(manager, cube,
+              {.position = {0.03 * random.uniform(-1, 1), 0.03 * random.uniform(-1, 1),
+                            kHeight + 1.1 * kSide * i},
+               .orientation = Quat(Eigen::AngleAxisd(random.uniform(-0.3, 0.3), random.direction()))},
+              LevelChoice::tables));
+    for (int step = 0; step < 180; ++step) {
+      manager.step(kFrame);
+      for (const BodyId body : cubes)
+        ASSERT_GT(manager.state(body).position.z(), 0.0) << "column " << column << ", step " << step;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
