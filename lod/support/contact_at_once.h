@@ -1,6 +1,6 @@
 // How an angular hull slides and rocks on planes: by the leapfrog rule of contact_steps.h, but in equal
-// steps, whatever strikes within one bouncing at once. Of what rolls over small sides that takes too much
-// energy; here nothing hangs on it, at half the price.
+// steps, whatever strikes within one bouncing at once. What rolls over small sides would lose too much energy
+// by it; here nothing hangs on it, and it is cheaper.
 #pragma once
 
 #include "lod/statistical/step_world.h"
