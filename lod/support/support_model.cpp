@@ -24,8 +24,9 @@ bool is_wedged(const Vec3& position, double radius, std::span<const HalfSpace> p
   return false;
 }
 
-bool may_move_at_once(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world) {
-  return kind.angular && !world.solids &&
+bool may_move_at_once(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+                      const SupportSettings& settings) {
+  return settings.step_at_once > 0.0 && kind.angular && !world.solids &&
          std::ranges::all_of(world.planes,
                              [&](const HalfSpace& plane) {
                                return world.law(kind, plane).friction >= kLeastFrictionAtOnce;
@@ -95,7 +96,7 @@ bool touches_already(const HullFlight& flight, const StatisticalBody& body, cons
   }
   if (left > 0.0) {
     body.spin -= world.turning * left;
-    const bool at_once = may_move_at_once(body, kind, world);
+    const bool at_once = may_move_at_once(body, kind, world, settings);
     (at_once ? move_on_planes_at_once : move_on_ground)(body, kind, world, left, settings, tally);
   }
   return tally;
