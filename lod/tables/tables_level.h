@@ -110,7 +110,7 @@ class TablesLevel {
     std::int32_t begin = 0, end = 0;  // in faces_
     bool even = false;                // planes stand for all that its hull may meet of the ground's parts
     bool cornered = false;            // planes do not tell how it goes on
-    bool above = false;               // its centre was, of all of them, where the step began
+    bool above = false;               // its centre was, of all, where the step began, and none moves
   };
   /// What hulls press onto a body that touches its own rung, too.
   struct Load {

@@ -146,7 +146,8 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
     }
     const double margin = 0.01 * size + way;
     const bool cornered = (alone && !only_planes) || is_cornered(i, near, margin);
-    const bool above = std::all_of(faces_.begin() + std::ptrdiff_t(first), faces_.end(),
+    const bool above = std::ranges::none_of(near, [](const GroundNear& n) { return n.part->moves(); }) &&
+                       std::all_of(faces_.begin() + std::ptrdiff_t(first), faces_.end(),
                                    [&](const HalfSpace& face) { return face.height_of(center) >= 0.0; });
     near_faces_.push_back(
         {i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered, above});
@@ -548,9 +549,9 @@ void TablesLevel::take_back_excess() {
   }
 }
 
-// Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way:
-// of what is solid on one side only none comes back from that, of a slab none whose centre is nearer to its
-// other side.
+// Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way.
+// Out of ground without an underside it comes back; beyond the middle of a slab it would leave by the other
+// side.
 void TablesLevel::keep_above_ground() {
   constexpr double kLeast = 0.02;  // over R
   for (const NearFaces& near : near_faces_) {
