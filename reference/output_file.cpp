@@ -40,6 +40,21 @@ std::string find_reading_fault(const std::filesystem::path& file) {
   return is_folder ? words_for(EISDIR) : "";
 }
 
+std::string find_writing_fault(const std::filesystem::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) return words_for(EISDIR);
+    return ::access(file.c_str(), W_OK) == 0 ? "" : words_for(errno);
+  }
+  if (errno != ENOENT) return words_for(errno);
+  std::filesystem::path folder = file;
+  do {
+    folder = folder.has_parent_path() && folder.parent_path() != folder ? folder.parent_path() : ".";
+  } while (::stat(folder.c_str(), &status) != 0 && errno == ENOENT && folder != ".");
+  if (!S_ISDIR(status.st_mode)) return words_for(ENOTDIR);
+  return ::access(folder.c_str(), W_OK | X_OK) == 0 ? "" : words_for(errno);
+}
+
 OutputFile::OutputFile(const std::filesystem::path& file, std::string expected)
     : file_(file), expected_(std::move(expected)) {
   std::error_code error;  // what it is shows when the file is opened

@@ -18,6 +18,10 @@ namespace lodestone {
 /// opened.
 std::string find_reading_fault(const std::filesystem::path& file);
 
+/// What the system says will be in the way of writing `file`, as far as it can say so beforehand; empty where
+/// nothing is. The folders on the way may be missing.
+std::string find_writing_fault(const std::filesystem::path& file);
+
 /// Records (lines, mostly) in a file that is begun anew. Where the place is full, the records that are there
 /// whole stay, the one that was cut is taken back, and the write or close() that met it throws InputError
 /// with the system's reason. The folder of the file is made where it is missing.

@@ -1,6 +1,10 @@
 // The `materials:` and `contacts:` of a scene.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <set>
+#include <utility>
+
 #include "scenes/scene_sections.h"
 
 namespace lodestone {
@@ -16,11 +20,15 @@ Material load_material(const YamlCursor& place, Material material) {
   return material;
 }
 
-void load_contact(const YamlCursor& place, Scene& scene) {
+using MaterialPairs = std::set<std::pair<MaterialId, MaterialId>>;
+
+void load_contact(const YamlCursor& place, Scene& scene, MaterialPairs& known) {
   place.expect_keys({"between", "restitution", "friction"});
   const std::vector<YamlCursor> pair = place.at("between").items(2);
   const MaterialId a = int(pair[0].choice(scene.material_names)),
                    b = int(pair[1].choice(scene.material_names));
+  if (!known.insert(std::minmax(a, b)).second)
+    place.at("between").fail("a pair that has a law already", "each pair once");
   ContactLaw law = scene.materials.law(a, b);
   if (auto key = place.find("restitution")) law.restitution = key->number(kFraction);
   if (auto key = place.find("friction")) law.friction = key->number(kNotNegative);
@@ -41,8 +49,9 @@ void load_materials(const YamlCursor& root, Scene& scene) {
       scene.material_names.push_back(name);
     }
   }
+  MaterialPairs pairs;
   if (auto section = root.find("contacts"))
-    for (const YamlCursor& place : section->items()) load_contact(place, scene);
+    for (const YamlCursor& place : section->items()) load_contact(place, scene, pairs);
 }
 
 MaterialId load_material_id(const YamlCursor& place, const Scene& scene, MaterialId otherwise) {

@@ -112,10 +112,11 @@ RecordFunction open_recording(const fs::path& file) {
 }
 
 std::vector<std::byte> bytes_of(const fs::path& file) {
+  if (const std::string fault = find_reading_fault(file); !fault.empty())
+    throw_input_error(file.string(), fault, "a recording");
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (const std::string fault = find_reading_fault(file); !fault.empty() || in.bad())
-    throw_input_error(file.string(), fault.empty() ? "an error of reading" : fault, "a recording");
+  if (in.bad()) throw_input_error(file.string(), "an error of reading", "a recording");
   const auto bytes = std::as_bytes(std::span(text));
   return {bytes.begin(), bytes.end()};
 }

@@ -14,6 +14,7 @@
 
 #include "reference/error.h"
 #include "reference/output_file.h"
+#include "reference/utf8.h"
 
 namespace lodestone {
 namespace {
@@ -198,18 +199,22 @@ std::string read_text(const fs::path& file, const YamlLimits& limits) {
   return text;
 }
 
-// A message that quotes one would end there; and no YAML in UTF-8 has one.
-void refuse_zero_bytes(const std::string& text, const std::string& name) {
-  const auto zero = std::ranges::find(text, '\0');
-  if (zero == text.end()) return;
-  throw InputError(fmt::format("{}:{}: text: found a zero byte, expected UTF-8 without any", name,
-                               1 + std::count(text.begin(), zero, '\n')));
+// A message that quotes a zero byte would end there; and names go into files that are UTF-8, too.
+void refuse_other_text(const std::string& text, const std::string& name) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t count = text[at] == '\0' ? 0 : count_character_bytes(text, at);
+    if (count == 0)
+      throw InputError(fmt::format("{}:{}: text: found {}, expected UTF-8 without any", name,
+                                   1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n'),
+                                   text[at] == '\0' ? "a zero byte" : "bytes that are no character"));
+    at += count;
+  }
 }
 
 }  // namespace
 
 YamlValue make_yaml(const std::string& text, const std::string& name, const YamlLimits& limits) {
-  refuse_zero_bytes(text, name);
+  refuse_other_text(text, name);
   TreeBuilder builder(name, limits);
   std::istringstream in(text);
   try {

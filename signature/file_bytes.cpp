@@ -32,8 +32,10 @@ void check_is_file(const std::filesystem::path& file, const std::string& what) {
   std::error_code error;
   if (std::filesystem::is_regular_file(file, error)) return;
   const bool is_missing =
-      !error || error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
-  throw_input_error(file.string(), is_missing ? "no such file" : find_reading_fault(file), what);
+      !std::filesystem::exists(file, error) &&
+      (!error || error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory);
+  const std::string fault = is_missing ? "no such file" : find_reading_fault(file);
+  throw_input_error(file.string(), fault.empty() ? "a special file" : fault, what);
 }
 
 // Something that bytes go through, such as a pipe or /dev/stdout: nothing may be put in its place.

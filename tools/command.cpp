@@ -10,10 +10,44 @@
 #include <optional>
 #include <string_view>
 
+#include "reference/error.h"
+#include "reference/output_file.h"
 #include "tools/interrupt.h"
 
 namespace lodestone {
 namespace {
+
+constexpr const char* kWritten = "written";  // the name of a validator
+
+bool is_written(CLI::Option& option) {
+  try {
+    option.get_validator(kWritten);
+    return true;
+  } catch (const CLI::OptionNotFound&) {
+    return false;
+  }
+}
+
+void check_written(CLI::App& command) {
+  const auto given = [](const CLI::Option& option) {  // its default counts, too
+    return option.count() > 0 ? option.results() : std::vector{option.get_default_str()};
+  };
+  const std::vector<CLI::Option*> options = command.get_options();
+  for (CLI::Option* option : options) {
+    if (!is_written(*option)) continue;
+    const std::string file = given(*option).front();
+    if (file.empty()) continue;
+    if (const std::string fault = find_writing_fault(file); !fault.empty())
+      throw_input_error(file, fault, "a file that can be written");
+    for (const CLI::Option* other : options) {
+      std::error_code error;  // there is none of that name
+      for (const std::string& text : other->results())
+        if (other != option && std::filesystem::equivalent(text, file, error))
+          throw_input_error(file, fmt::format("the file that {} reads", other->get_name()),
+                            fmt::format("another one for {}", option->get_name()));
+    }
+  }
+}
 
 /// Whether --help has a default to show.
 template <class Value>
@@ -143,6 +177,11 @@ Option& Option::words(int least, int most) {
   return *this;
 }
 
+Option& Option::written() {
+  option_->check(CLI::Validator([](std::string&) { return std::string(); }, "", kWritten));
+  return *this;
+}
+
 Option& Option::required() {
   option_->required();
   return *this;
@@ -183,7 +222,10 @@ Command Command::add_group(const std::string& name, const std::string& what) {
 Command Command::add_command(const std::string& name, const std::string& what,
                              std::function<ExitCode()> run) {
   CLI::App* command = app_->add_subcommand(name, what);
-  command->callback([run = std::move(run), exit_code = exit_code_] { *exit_code = run(); });
+  command->callback([run = std::move(run), exit_code = exit_code_, command] {
+    check_written(*command);
+    *exit_code = run();
+  });
   return {*command, *exit_code_};
 }
 

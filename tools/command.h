@@ -53,6 +53,9 @@ class Option {
   Option& several(char separator = ',');
   /// How many words it takes.
   Option& words(int least, int most);
+  /// A file that the command writes when it is done. What cannot be written, or is among the files that it
+  /// reads, is refused (InputError) before anything else is done.
+  Option& written();
   Option& required();
   Option& needs(const Option& other);
   Option& excludes(const Option& other);

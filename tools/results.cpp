@@ -36,7 +36,7 @@ void add_json_argument(Command& command, ResultArguments& arguments) {
 }
 
 void add_table_arguments(Command& command, ResultArguments& arguments, const std::string& csv_what) {
-  command.add_option("--csv", arguments.csv, csv_what);
+  command.add_option("--csv", arguments.csv, csv_what).written();
   add_json_argument(command, arguments);
 }
 
@@ -77,8 +77,8 @@ void print_results(const ResultArguments& arguments, const ordered_json& json, c
 
 void print_table(const ResultArguments& arguments, const ordered_json& json, const ordered_json& example,
                  const std::string& text) {
-  if (!arguments.csv.empty()) save_csv(json["rows"], example, arguments.csv);
   print_results(arguments, json, text);
+  if (!arguments.csv.empty()) save_csv(json["rows"], example, arguments.csv);
 }
 
 }  // namespace lodestone

@@ -29,8 +29,8 @@ std::optional<double> parse_step(std::string_view text) {
 
 std::string find_step_fault(const std::string& text) {
   const auto step = parse_step(text);
-  if (step && *step > 0.0 && *step <= 0.1) return "";
-  return fmt::format("found '{}', expected seconds above 0 and up to 0.1, such as 0.01 or 1/60", text);
+  if (step && *step >= 1e-9 && *step <= 0.1) return "";
+  return fmt::format("found '{}', expected seconds from 1e-9 to 0.1, such as 0.01 or 1/60", text);
 }
 
 double step_of(const std::string& text) { return parse_step(text).value(); }

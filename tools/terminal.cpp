@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "reference/utf8.h"
+
 namespace lodestone {
 namespace {
 
@@ -15,22 +17,6 @@ constexpr std::size_t kLongest = 1000,
 
 unsigned char byte_at(std::string_view text, std::size_t i) {
   return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
-}
-
-// Bytes of the UTF-8 character that begins at `i`, or 0 where none does (RFC 3629: no overlong form, no
-// surrogate, up to U+10FFFF).
-std::size_t character_bytes(std::string_view text, std::size_t i) {
-  const unsigned char first = byte_at(text, i), second = byte_at(text, i + 1);
-  if (first < 0x80) return 1;
-  const std::size_t count = first >= 0xc2 && first <= 0xdf   ? 2
-                            : first >= 0xe0 && first <= 0xef ? 3
-                            : first >= 0xf0 && first <= 0xf4 ? 4
-                                                             : 0;
-  for (std::size_t k = 1; k < count; ++k)
-    if ((byte_at(text, i + k) & 0xc0) != 0x80) return 0;
-  const bool is_wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
-                        (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
-  return is_wrong ? 0 : count;
 }
 
 bool is_control(std::string_view character) {
@@ -50,7 +36,7 @@ std::string in_escapes(std::string_view bytes) {
 std::string escape_all(std::string_view text) {
   std::string shown;
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t count = character_bytes(text, i);
+    const std::size_t count = count_character_bytes(text, i);
     const std::string_view character = text.substr(i, count == 0 ? 1 : count);
     shown += count == 0 || is_control(character) ? in_escapes(character) : std::string(character);
     i += character.size();

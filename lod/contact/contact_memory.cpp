@@ -25,6 +25,7 @@ CrowdPoint& find_nearest(std::span<CrowdPoint> points, const Vec3& arm) {
 void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdManifold> manifolds,
                            std::span<CrowdPoint> points, double step, const JobRunner& jobs) {
   Loads& before = begun_ ? last_substep_ : last_step_;
+  step *= begun_ ? 1.0 : shares_.of_forces;
   recalled_.clear();
   std::size_t expected = 0;
   each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
@@ -53,6 +54,7 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdMani
 
 void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
                              std::span<const CrowdPoint> points, double step) {
+  if (!shares_.remembers) return;
   begun_ = true;
   last_substep_.clear();
   last_substep_.loads.reserve(points.size());

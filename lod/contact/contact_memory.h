@@ -9,6 +9,7 @@
 #include "lod/contact/crowd_solver.h"
 #include "lod/contact/pair_memory.h"
 #include "lod/jobs.h"
+#include "lod/statistical/step_lengths.h"
 #include "reference/state_archive.h"
 
 namespace lodestone {
@@ -17,10 +18,11 @@ namespace lodestone {
 /// of a set recalls is of the last step, whichever set its bodies were in then.
 class ContactMemory {
  public:
-  void begin_step() { this_step_.clear(); }
+  /// Of `dt` seconds.
+  void begin_step(double dt) { this_step_.clear(), shares_ = lengths_.begin(dt); }
   void begin_islands() { begun_ = false; }
   void end_islands();
-  /// Where nothing was remembered in the step, what was stays.
+  /// Where nothing was remembered in the step, as in one much shorter than those before, what was stays.
   void end_step();
 
   /// Sets `guess` of the points of a pair to what it had, each force going to the point that is nearest to
@@ -33,7 +35,7 @@ class ContactMemory {
   void remember(std::span<const ContactKey> keys, std::span<const CrowdManifold> manifolds,
                 std::span<const CrowdPoint> points, double step);
 
-  void archive(StateArchive& a) { a(last_step_); }
+  void archive(StateArchive& a) { a(last_step_, lengths_); }
 
  private:
   struct Run {
@@ -51,7 +53,9 @@ class ContactMemory {
     void archive(StateArchive& a) { a(place, runs, loads); }
   };
   Loads last_step_, this_step_, last_substep_;  // of all islands, of those that are done, of those in hand
-  bool begun_ = false;                          // those in hand had a substep
+  bool begun_ = false;                          // those in hand had a substep that is remembered
+  StepLengths lengths_;
+  StepLengths::Shares shares_;  // in this step
 
   /// Manifolds of a pair that was there before.
   struct Recalled {

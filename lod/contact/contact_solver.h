@@ -21,6 +21,9 @@ struct SolverBody {
 
 inline constexpr double kUnbounded = 1e300;
 
+/// Ratio of masses that touch from which on sweeps alone do not carry a weight through the lighter body.
+inline constexpr double kUnevenMasses = 12.0;
+
 struct ContactSolverSettings {
   int sweeps = 10;  ///< at most; fewer once no impulse changes by more than `tolerance` of the greatest,
                     ///< or in a crowd no velocity by more than that of `fall`

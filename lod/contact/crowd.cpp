@@ -516,6 +516,7 @@ void Crowd::move_bodies(const ContactScene& scene, double time) {
         (solved.velocity - body.velocity).dot(falls) > kFalling * falls.squaredNorm() * time)
       body.quiet_time = std::max(0.0f, body.quiet_time - 2.0f * float(time));
     body.in_great_heap = solved.in_great_heap;
+    body.pinned = false;
     body.velocity = solved.velocity;
     body.spin += added;
     body.position += body.velocity * left;
@@ -599,6 +600,7 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
   };
   shifts_.assign(solver_bodies_.size(), Vec3::Zero());
   partings_.clear();
+  insiders_.clear();
   parting_of_.assign(solver_bodies_.size(), -1);
   const auto part_slowly = [&](std::int32_t index, const Vec3& by, double farthest) {
     if (!can_move(index)) return;
@@ -626,11 +628,14 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
       const bool inside =
           point.gap < -kWakingOverlap * radius && !is_sphere(scene, one) && !is_sphere(scene, other);
-      for (const Participant p : {one, other}) {
+      for (const std::int32_t index : {m.first, m.second}) {
+        const Participant p = index < 0 ? Participant::ground() : participants_[std::size_t(index)];
         if (is_eased(scene, p) && point.gap < -kBroughtOverlap * radius)
           scene.body(p).eased = kEasedTime;  // for as long as there is some
         if (inside && p.is_statistical())
-          scene.body(p).quiet_time = 0.0f;  // it is being moved out, though it has no velocity
+          insiders_.push_back({index, scene.position(p) - shift_of(index),
+                               touch.parting * push_out_overlap(point.gap, radius),
+                               std::max(first, second) >= kUnevenMasses * std::min(first, second)});
       }
       const double parting =
           (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
@@ -713,6 +718,22 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
   });
 }
 
+// Who is being moved out of another is not at rest, though it has no velocity. But a pebble between a boulder
+// and the ground is not moved, being moved back, nor is the boulder by a share of its lightness: they stay as
+// they are.
+void Crowd::keep_insiders_awake(const ContactScene& scene) {
+  constexpr double kStuck = 0.05;
+  const auto body_of = [&](const Insider& i) -> StatisticalBody& {
+    return scene.body(participants_[std::size_t(i.body)]);
+  };
+  const auto is_moved_out = [&](const Insider& i) {
+    return !i.uneven || (body_of(i).position - i.from).norm() > kStuck * i.asked;
+  };
+  for (const Insider& i : insiders_) body_of(i).pinned = true;
+  for (const Insider& i : insiders_)
+    if (is_moved_out(i)) body_of(i).pinned = false, body_of(i).quiet_time = 0.0f;
+}
+
 void Crowd::solve(const ContactScene& scene, const CrowdTouch& touch) {
   gather(scene, touch);
   solve_gathered(scene, touch);
@@ -734,6 +755,7 @@ ContactTally Crowd::move(const ContactScene& scene, const CrowdTouch& touch) {
   give_to_full(scene, touch);
   move_apart(scene, touch);
   lift_off_ground(scene, touch);
+  keep_insiders_awake(scene);
   ContactTally tally;
   tally.contacts = std::int64_t(points_.size());
   return tally;

@@ -59,7 +59,7 @@ class Crowd {
   ContactTally move(const ContactScene& scene, const CrowdTouch& touch);
   /// Of a step in which sets of islands take their substeps one after the other, each between begin_islands()
   /// and end_islands(): the impulses of its first substep begin with those of the last step.
-  void begin_step() { memory_.begin_step(), exchanges_.clear(); }
+  void begin_step(double dt) { memory_.begin_step(dt), exchanges_.clear(); }
   void begin_islands() { memory_.begin_islands(); }
   void end_islands() { memory_.end_islands(); }
   void end_step() { memory_.end_step(); }
@@ -82,6 +82,14 @@ class Crowd {
     std::int32_t body = 0;
     Vec3 by = Vec3::Zero();
     double farthest = 0.0;
+  };
+
+  /// One that is so deep in another that it is not at rest, and where it was before it is moved out.
+  struct Insider {
+    std::int32_t body = 0;
+    Vec3 from = Vec3::Zero();
+    double asked = 0.0;   ///< m: of both
+    bool uneven = false;  ///< the other weighs many times as much, or as little
   };
 
   void gather(const ContactScene& scene, const CrowdTouch& touch);
@@ -121,6 +129,7 @@ class Crowd {
   }
   void keep_full_apart(const ContactScene& scene);
   void lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) const;
+  void keep_insiders_awake(const ContactScene& scene);
 
   CrowdSettings settings_;
   JobRunner jobs_;
@@ -147,6 +156,7 @@ class Crowd {
   std::vector<Push> pushes_;              // on each solver body
   std::vector<Parting> partings_;         // in this substep
   std::vector<std::int32_t> parting_of_;  // of each solver body; −1: none
+  std::vector<Insider> insiders_;         // likewise
   std::vector<Vec3> shifts_;              // m: of each solver body, out of overlaps in this substep
   CrowdSolver solver_;
   ContactMemory memory_;

@@ -9,13 +9,11 @@ namespace {
 // ball of ten boxes' weight that rolls into a stack of these comes back by .6 m/s less than in ODE
 // (heavy_on_light).
 constexpr std::uint32_t kFewPoints = 60;
-// From here on sweeps alone do not carry a weight through a light body.
-constexpr float kUneven = 12.0F;
 
 }  // namespace
 
 IslandKind CrowdIslands::kind_of(const Island& island) const {
-  if (island.unevenness >= kUneven) return IslandKind::uneven;
+  if (double(island.unevenness) >= kUnevenMasses) return IslandKind::uneven;
   const bool is_small = island.unevenness == 0.0F || (island.points <= kFewPoints && !island.on_great_heap);
   return is_small ? IslandKind::small : IslandKind::great;
 }

@@ -14,6 +14,8 @@ namespace {
 // Overlap, say of bodies that were added on top of each other, is pushed apart at walking pace and not at
 // depth × ERP / h.
 constexpr double kMaxCorrectingVelocity = 1.0;
+// What is left of a frame may be a step of any length: in one of 1e-4 s a heap at rest is given 65 J.
+constexpr double kCorrectingTime = 1.0 / 960.0;  // s
 
 // dWorldStep is the truth's law, but its time grows with the cube of the contacts that hang together: a large
 // pile is QuickStep's.
@@ -42,6 +44,7 @@ OdeSettings ode_settings_of(const FullSettings& settings) {
           .quick_step_iterations = kQuickStepIterations,
           .direct_contacts_max = kDirectContactsMax,
           .max_correcting_velocity = kMaxCorrectingVelocity,
+          .correcting_time = kCorrectingTime,
           .most_mesh_measures = kMostMeshMeasures,
           .plane_depth_max = kPlaneDepthMax,
           .timed_contacts_above = kTimedContactsAbove,

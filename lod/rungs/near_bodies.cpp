@@ -88,7 +88,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
                   [&](std::int32_t index) { return step.scene.bodies[std::size_t(index)].is_sphere(); });
     move_alone(step, dt);
   }
-  crowd_.begin_step();
+  crowd_.begin_step(dt);
   for (const Pace pace : plan_.paces()) move_islands(step, pace);
   crowd_.end_step();
   for (std::size_t i = 0; i < neighbors.size(); ++i) {
@@ -343,8 +343,10 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
   carried_.find(scene, pairs_.contacts(), solid_contacts_, step.full_contacts);
   // Two hulls, one of which was put where the other is, are to part; no sleeper is to hold them together.
   inside_.clear();
+  const auto is_pinned = [&](Participant p) { return p.is_statistical() && scene.body(p).pinned; };
   for (const CrowdContact& c : pairs_.contacts())
-    if (overlap_by(scene, c, kWakingOverlap)) inside_.insert(inside_.end(), {c.first, c.second});
+    if (overlap_by(scene, c, kWakingOverlap) && !(is_pinned(c.first) && is_pinned(c.second)))
+      inside_.insert(inside_.end(), {c.first, c.second});
   const auto are_to_part = [&](const CrowdContact& c) {
     return !inside_.empty() && overlap_by(scene, c, kBroughtOverlap) &&
            (std::ranges::find(inside_, c.first) != inside_.end() ||

@@ -220,14 +220,15 @@ void SphereContacts::sweep(Spheres& spheres, const SphereKinds& kinds, const Mat
                            float bounce_velocity, const StepConstants& constants, bool last, bool eased,
                            Simd simd, SphereStep& step, const JobRunner& jobs) {
   const ContactLaw only_law = materials.law(kinds.material[0], kinds.material[0]);
-  if (last) make_room_to_remember(spheres);
+  const bool remembers = last && constants.remembers;
+  if (remembers) make_room_to_remember(spheres);
   run_by_colour(jobs, [&](Part& part) {
     const bool one_law = constants.one_kind && part.colour != kGroundColour;
     sweep_contacts({settings_, one_law, only_law, bounce_velocity, last, eased}, spheres, kinds, constants,
                    simd, part.run, step);
-    if (last && !is_apart(part.colour)) remember(spheres, bounce_velocity, constants, part);
+    if (remembers && !is_apart(part.colour)) remember(spheres, bounce_velocity, constants, part);
   });
-  if (last) remember_apart(spheres, bounce_velocity, constants);
+  if (remembers) remember_apart(spheres, bounce_velocity, constants);
 }
 
 void SphereContacts::make_room_to_remember(Spheres& spheres) {

@@ -112,7 +112,7 @@ struct SortLoop {
           v = F3{float(vx[i]), float(vy[i]), float(vz[i])} - velocity_of<OnePlane>(ground, p);
       const float touching = start[i].w, moving = s[i].x + s[i].y + s[i].z + s[i].w,
                   threshold = c.resting_energy * c.gravity * size[k];
-      const float kept = c.remembered * held[i], weight = pressure[p] * c.time;
+      const float kept = c.held * held[i], weight = pressure[p] * c.time;
       // Masks: 0 or −1.
       const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce),
                 others = -int(touching > 0.0f), level = -int(slope[p] == 0.0f);

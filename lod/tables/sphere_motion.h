@@ -78,7 +78,9 @@ struct StepConstants {
   double wide_time = 0.0, wide_gx = 0.0, wide_gy = 0.0, wide_gz = 0.0;  // for flight
   float gravity = 0.0f;                                                 // m/s²
   float resting_energy = 0.15f;  // J/kg over g R: the first threshold of 3.4
-  float remembered = 1.0f;       // of the last step's impulses, the part that contacts begin with
+  float remembered = 1.0f;       // of forces known, the part that contacts begin with
+  float held = 1.0f;             // of what the ground gave in the last step, likewise
+  bool remembers = true;         // what contacts give in this step
   bool update_radius = true;     // of those in flight
   int ticks = 17;                // ms that the step is long, as whole ones: over many steps they add up
   bool one_kind = false;

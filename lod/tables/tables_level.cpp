@@ -182,8 +182,8 @@ void TablesLevel::lay_still(std::int64_t place) {
 }
 
 void TablesLevel::archive(StateArchive& a) {
-  a(spheres_, contacts_, elapsed_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_, cornered_,
-    given_, pushes_, clips_, loads_);
+  a(spheres_, contacts_, elapsed_, lengths_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_,
+    cornered_, given_, pushes_, clips_, loads_);
   if (!a.reading()) return;
   kinds_ = {};
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());

@@ -20,6 +20,7 @@
 #include "lod/statistical/rest_law.h"
 #include "lod/statistical/sleepers.h"
 #include "lod/statistical/statistical_settings.h"
+#include "lod/statistical/step_lengths.h"
 #include "lod/step_report.h"
 #include "lod/support/hull_motion.h"
 #include "lod/tables/guest.h"
@@ -250,6 +251,7 @@ class TablesLevel {
   DisjointSets riders_;  // of the places awake, and what nothing stops
   StepConstants constants_;
   double elapsed_ = 0.0;  // s, over all steps
+  StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;
   bool one_mass_ = true;       // all bodies have, since there last were none
   std::int64_t eased_ = 0;     // bodies that are, asleep or not

@@ -78,6 +78,9 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height &&
                             settings_.tables.radius_update_interval <= 1;
   const Vec3& g = settings_.gravity;
+  const StepLengths::Shares known = lengths_.begin(dt);
+  const float remembered = settings_.tables.as_published() ? contacts_.settings().remembered
+                                                           : contacts_.settings().hull_remembered;
   constants_ = {.time = float(dt),
                 .gx = float(g.x()),
                 .gy = float(g.y()),
@@ -88,8 +91,9 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
                 .wide_gz = g.z(),
                 .gravity = float(g.norm()),
                 .resting_energy = float(tables_.resting_energy),
-                .remembered = settings_.tables.as_published() ? contacts_.settings().remembered
-                                                              : contacts_.settings().hull_remembered,
+                .remembered = remembered * float(known.of_forces),
+                .held = remembered * float(known.of_impulses),
+                .remembers = known.remembers,
                 .update_radius = plain_radius,
                 .ticks = step_ticks,
                 .one_kind = all_kinds_.size() == 1 && one_mass_,

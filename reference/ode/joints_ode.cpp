@@ -47,10 +47,10 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
       materials_(&materials),
       erp_(settings.erp),
       cfm_(settings.cfm),
-      max_correcting_velocity_(settings.max_correcting_velocity) {
+      max_correcting_velocity_(settings.max_correcting_velocity),
+      correcting_time_(settings.correcting_time) {
   mode_ = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM;
   if (settings.friction_along_slip) mode_ |= dContactFDir1;
-  joint_.surface.soft_erp = settings.erp;
   joint_.surface.bounce_vel = settings.bounce_velocity;
 }
 
@@ -70,7 +70,9 @@ void ContactJoints::begin(double h, int attempt) {
   unevenness_ = kUnevenness[attempt] * gravity_.norm() * h * h;
   // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone,
   // whosever the world is.
-  deepest_ = erp_ > 0.0 ? max_correcting_velocity_ * h / erp_ : dInfinity;
+  const double erp = erp_ * (h < correcting_time_ ? h / correcting_time_ : 1.0);
+  joint_.surface.soft_erp = erp;
+  deepest_ = erp > 0.0 ? max_correcting_velocity_ * h / erp : dInfinity;
 }
 
 void ContactJoints::add(const ContactSide& first, const ContactSide& second,

@@ -88,7 +88,7 @@ class ContactJoints {
   const MaterialTable* materials_;
   dContact joint_{};  // what every contact has in common is filled in once
   int mode_;          // of every contact
-  double erp_, cfm_, max_correcting_velocity_, attempt_cfm_ = 0.0;
+  double erp_, cfm_, max_correcting_velocity_, correcting_time_, attempt_cfm_ = 0.0;
   double h_ = 0.0, deepest_ = 0.0, unevenness_ = 0.0;
   Vec3 gravity_ = Vec3::Zero();
   Touches* touches_ = nullptr;

@@ -56,7 +56,9 @@ struct OdeSettings {
                        ///< proportion, for bodies above 100 kg, whose impacts it would soften
   double bounce_velocity = 0.05;  ///< m/s, slower contacts do not bounce
   double max_correcting_velocity =
-      1e9;  ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
+      1e9;                       ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
+  double correcting_time = 0.0;  ///< s: a shorter substep undoes less of an overlap, in proportion: by the
+                                 ///< same part it would push the faster the shorter it is
   bool friction_along_slip =
       true;  ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
   int max_contacts_per_pair = 8;

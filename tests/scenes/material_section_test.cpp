@@ -28,6 +28,14 @@ TEST_F(MaterialSection, TheDefaultFillsWhatIsNotSaid) {
   EXPECT_EQ(scene.materials[0].friction, 0.5);
 }
 
+TEST_F(MaterialSection, APairHasOneLaw) {
+  EXPECT_NE(
+      fault("materials: {ice: {}}\n"
+            "contacts: [{between: [ice, default], friction: 0}, {between: [default, ice], friction: 1}]\n")
+          .find("contacts[1].between: found a pair that has a law already, expected each pair once"),
+      std::string::npos);
+}
+
 // Of a pair the lower restitution and the root of the product of frictions, either way round, but for those
 // that are listed.
 TEST_F(MaterialSection, PairsFollowTheirRuleUnlessTheyAreListed) {

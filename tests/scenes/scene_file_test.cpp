@@ -219,7 +219,7 @@ TEST_F(SceneFile, TopLevelErrors) {
   const BadScene cases[] = {
       {"stp: {}", "s.yaml:4: stp: found an unknown key, expected one of version, step,"},
       {"step: {dt: 0.1}", "s.yaml:4: step.dt: found an unknown key, expected one of dt_s, steps,"},
-      {"step: {dt_s: 0}", "s.yaml:4: step.dt_s: found 0, expected a number in (0, 0.1]"},
+      {"step: {dt_s: 0}", "s.yaml:4: step.dt_s: found 0, expected a number in [1e-09, 0.1]"},
       {"step: {dt_s: -1}", "s.yaml:4: step.dt_s: found -1, expected"},
       {"step: {dt_s: .nan}", "s.yaml:4: step.dt_s: found .nan, expected"},
       {"step: {dt_s: nan}", "s.yaml:4: step.dt_s: found nan, expected"},

@@ -31,6 +31,15 @@ TEST(YamlValue, ExpandsAliases) {
 }
 
 // A message that quotes one would end there.
+// Names of a scene go into files that are UTF-8.
+TEST(YamlValue, RefusesTextThatIsNoUtf8) {
+  EXPECT_EQ(error_of("a: 1\nb: cr\xe2te\n"),
+            "s.yaml:2: text: found bytes that are no character, expected UTF-8 without any");
+  EXPECT_EQ(error_of("a: \xff\n"),
+            "s.yaml:1: text: found bytes that are no character, expected UTF-8 without any");
+  EXPECT_EQ(make_yaml("a: cr\xc3\xa2te\n", "s.yaml").entries.at(0).value.text, "cr\xc3\xa2te");
+}
+
 TEST(YamlValue, RefusesZeroBytes) {
   using namespace std::string_literals;
   EXPECT_EQ(error_of("a: 1\nb: x\0y\n"s), "s.yaml:2: text: found a zero byte, expected UTF-8 without any");

@@ -165,7 +165,7 @@ TEST_F(ArgumentChecks, RangesAreSaidAsFoundAndExpected) {
   expect_refused({{"sign", "--density"}, ""}, "-1", "a number above 0");
   expect_refused({{"run", "--steps"}, ""}, "0", "a whole number in [1 - 100000000]");
   expect_refused({{"run", "--level"}, ""}, "fast", "one of {auto,");
-  expect_refused({{"run", "--dt"}, ""}, "nan", "seconds above 0");
+  expect_refused({{"run", "--dt"}, ""}, "nan", "seconds from 1e-9 to 0.1");
   expect_refused({{"run", "--budget-ms"}, ""}, "nan", "");
 }
 

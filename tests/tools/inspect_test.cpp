@@ -50,6 +50,16 @@ TEST_F(Inspect, OnePageShowsEverything) {
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
 }
 
+TEST_F(Inspect, DoesNotWriteOverWhatItReads) {
+  const std::string before = testing::bytes_of(at("box.sig"));
+  const Ended ended = run("inspect " + name("box.sig") + " --svg " + name("box.sig"));
+  EXPECT_EQ(ended.exit_code, 3);
+  EXPECT_NE(ended.out.find("box.sig: found the file that FILE reads, expected another one for --svg"),
+            std::string::npos)
+      << ended.out;
+  EXPECT_EQ(testing::bytes_of(at("box.sig")), before);
+}
+
 TEST_F(Inspect, DrawsTheHeightCurve) {
   ASSERT_EQ(run("inspect " + name("box.sig") + " --svg " + name("height.svg")).exit_code, 0);
   const std::string svg = testing::bytes_of(at("height.svg"));

@@ -77,6 +77,15 @@ TEST_F(Losses, EveryFileOfAComparisonIsChecked) {
   expect_no_room(compare + "--out " + name("out"), "drops.csv");
 }
 
+// Before anything is measured.
+TEST_F(Losses, WhatCannotBeWrittenIsSaidAtOnce) {
+  for (const char* file : {"/dev/null/a.csv", "/"}) {
+    const Ended ended = run(std::string("compare drop box:0.2,0.3,0.4 --trials 1000000 --csv ") + file);
+    EXPECT_EQ(ended.exit_code, 3);
+    EXPECT_NE(ended.out.find(std::string(file) + ": found "), std::string::npos) << ended.out;
+  }
+}
+
 // Files may grow to a few kB, of a report of 200 steps.
 TEST_F(Losses, ARunKeepsWhatIsCompleteAndSaysWhatItHas) {
   const Ended ended = testing::run_shell("trap '' XFSZ; ulimit -f 16; " +

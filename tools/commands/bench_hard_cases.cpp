@@ -23,8 +23,8 @@ std::vector<std::string> ids() {
 
 ExitCode bench_hard_cases(const BenchHardCasesArguments& arguments) {
   const std::vector<HardCaseResult> results = with_progress(arguments.running, run_hard_cases);
-  if (!arguments.results.csv.empty()) save_csv(results, arguments.results.csv);
   print_results(arguments.results, json_of(results), text_of(results));
+  if (!arguments.results.csv.empty()) save_csv(results, arguments.results.csv);
   return exit_code_of(results);
 }
 

@@ -35,9 +35,9 @@ void compare_drop(const CompareDropArguments& arguments) {
   DropComparisonSettings settings = arguments.comparison.settings();
   const DropComparison comparison =
       with_progress(settings, [&](const auto& with_line) { return compare_drops(job, with_line); });
+  print_results(arguments.results, json_of(comparison), text_of(job, comparison));
   if (!arguments.out.empty()) save_drops(comparison, arguments.out);
   if (!arguments.results.csv.empty()) save_scores(comparison, arguments.results.csv);
-  print_results(arguments.results, json_of(comparison), text_of(job, comparison));
 }
 
 }  // namespace

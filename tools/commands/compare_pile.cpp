@@ -32,8 +32,8 @@ void compare_pile(const ComparePileArguments& arguments) {
   settings.dt_s = steps_of(arguments.steps);
   const PileComparison comparison =
       with_progress(settings, [&](const auto& with_line) { return compare_piles(job, with_line); });
-  if (!arguments.out.empty()) save_piles(comparison, arguments.out);
   print_results(arguments.results, json_of(comparison), text_of(job, comparison));
+  if (!arguments.out.empty()) save_piles(comparison, arguments.out);
 }
 
 }  // namespace

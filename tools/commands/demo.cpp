@@ -94,11 +94,15 @@ void add_demo_command(Command& program) {
   command.add_option("--budget-scene", arguments.budget_scene,
                      "another YAML file, run under budgets of 4, 8 and 16 ms, such as scenes/heap.yaml");
   command.add_option("--out", arguments.run.running.out, "folder for the trajectory");
-  command.add_option("--steps-csv", arguments.steps_csv,
-                     "file for every step of the mixed run and of those under a budget");
+  command
+      .add_option("--steps-csv", arguments.steps_csv,
+                  "file for every step of the mixed run and of those under a budget")
+      .written();
   add_json_argument(command, arguments.results);
-  command.add_option("--report", arguments.report,
-                     "file for the page of HTML; else report.html beside the trajectory");
+  command
+      .add_option("--report", arguments.report,
+                  "file for the page of HTML; else report.html beside the trajectory")
+      .written();
 }
 
 }  // namespace lodestone

@@ -34,7 +34,8 @@ void add_inspect_command(Command& program) {
   auto [command, arguments] =
       program.add<InspectArguments>("inspect", "say what a signature file holds", inspect);
   command.add_option("FILE", arguments.file, "a .sig file").required();
-  command.add_option("--svg", arguments.svg, "draw the collision height over spin to this SVG file");
+  command.add_option("--svg", arguments.svg, "draw the collision height over spin to this SVG file")
+      .written();
   add_json_argument(command, arguments.results);
 }
 

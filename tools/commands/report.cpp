@@ -34,7 +34,7 @@ void add_report_command(Command& program) {
   auto [command, arguments] = program.add<ReportArguments>(
       "report", "one page of HTML: speed against error, budgets, the paper's table, hard cases, signatures",
       report);
-  command.add_option("-o,--out", arguments.out, "file for the page");
+  command.add_option("-o,--out", arguments.out, "file for the page").written();
   command.add_option("--shapes", arguments.settings.shapes,
                      "whose signatures are shown; several with spaces");
   command.add_option("--threads", arguments.settings.threads, "that measure signatures; 0: all cores")

@@ -49,8 +49,10 @@ void add_run_command(Command& program) {
   command.add_option("--fork", arguments.run.running.fork_step,
                      "after this step the world goes on twice: as the scene says, and with --level, "
                      "--model, --budget-… or --full-within-m, which are then for this second future alone");
-  command.add_option("--record", arguments.run.running.record,
-                     "file for a recording, which `lodestone replay` does again");
+  command
+      .add_option("--record", arguments.run.running.record,
+                  "file for a recording, which `lodestone replay` does again")
+      .written();
   add_json_argument(command, arguments.results);
 }
 

@@ -203,7 +203,7 @@ void add_sign_command(Command& program) {
       "sign", "measure a shape's statistical signature, or find it in the cache", sign);
   add_shape_arguments(command, arguments.shape);
   add_signature_arguments(command, arguments.signature);
-  Option out = command.add_option("-o", arguments.out, "write it to this file, too");
+  Option out = command.add_option("-o", arguments.out, "write it to this file, too").written();
   Option shard =
       add_share_argument(command, arguments.share,
                          "measure one share of the trials, the I-th of N; -o names its part (see merge)")
@@ -215,6 +215,7 @@ void add_sign_command(Command& program) {
   command
       .add_option("--export-trials", arguments.export_trials,
                   "measure it anew and write the trials to this CSV file")
+      .written()
       .excludes(shard)
       .excludes(from);
   command.add_option("--seed", arguments.signature.settings.seed, "of every random draw of the measuring");

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "reference/error.h"
 #include "tools/commands.h"
 #include "tools/pages/page.h"
 #include "tools/results.h"
@@ -18,6 +19,11 @@ struct ViewArguments {
 };
 
 void view(const ViewArguments& arguments) {
+  for (const std::filesystem::path& run : arguments.runs) {
+    std::error_code error;  // one of them is not there
+    if (std::filesystem::equivalent(playback_of(run), arguments.page, error))
+      throw_input_error(arguments.page.string(), "the run that it is to play", "another file for the page");
+  }
   save_page(arguments.page, make_view_page(arguments.runs, arguments.blind));
   print_results(arguments.results,
                 {{"page", arguments.page.string()},
@@ -35,7 +41,7 @@ void add_view_command(Command& program) {
       .add_option("RUN", arguments.runs, "folders that `lodestone run SCENE --out DIR` wrote: one to three")
       .required()
       .words(1, 3);
-  command.add_option("-o", arguments.page, "the page");
+  command.add_option("-o", arguments.page, "the page").written();
   command.add_flag("--blind", arguments.blind,
                    "a test: two runs without names, left and right at random; which is which?");
   add_json_argument(command, arguments.results);

@@ -148,7 +148,7 @@ TEST(ContactMemory, OfIslandsIsTheirLastSubstepThenTheLastStep) {
   const ContactKey one = contact_key(1, 2), other = contact_key(3, 4);
   ContactMemory memory;
   for (int step = 0; step < 3; ++step) {
-    memory.begin_step();
+    memory.begin_step(1.0);
     for (const ContactKey key : step % 2 == 0 ? std::vector{one, other} : std::vector{other, one}) {
       const double own = key == one ? 10.0 : 20.0, before = own + 100.0 * (step - 1);
       memory.begin_islands();
@@ -158,9 +158,9 @@ TEST(ContactMemory, OfIslandsIsTheirLastSubstepThenTheLastStep) {
     }
     memory.end_step();
   }
-  memory.begin_step();  // in which nobody touches
+  memory.begin_step(1.0);  // in which nobody touches
   memory.end_step();
-  memory.begin_step();
+  memory.begin_step(1.0);
   memory.begin_islands();
   EXPECT_EQ(recalled(memory, one), 210.0);
   EXPECT_EQ(recalled(memory, other), 220.0);

@@ -87,5 +87,24 @@ TEST(HeavyOnLight, AColumnOfTablesBearsAHeavyTop) {
   EXPECT_NEAR(manager.state(top).position.z(), kSide * (kCubes - 0.5), 0.1 * kSide);
 }
 
+// Pushed into the floor as far as out of the boulder, it is not to be moved: both sleep all the same.
+TEST(HeavyOnLight, APebbleThatIsCaughtUnderABoulderSleepsAndSoDoesThat) {
+  constexpr double kBoulder = 0.6, kPebble = 0.03, kCaught = 0.004;  // m
+  Manager manager = on_floor();
+  for (const double x : {-0.25, 0.25})
+    manager.add_static_box({0.05, 0.5, kPebble - kCaught}, {x, 0.0, 0.5 * (kPebble - kCaught)},
+                           Quat::Identity());
+  const auto add_cube = [&](double size, double bottom) {
+    return manager.add_body({.shape = box_shape({size, size, size}),
+                             .state = at({0.0, 0.0, bottom + 0.5 * size}),
+                             .level = LevelChoice::support});
+  };
+  const BodyId pebble = add_cube(kPebble, 0.0), boulder = add_cube(kBoulder, kPebble - kCaught);
+  run(manager, 3.0);
+  EXPECT_TRUE(manager.asleep(pebble));
+  EXPECT_TRUE(manager.asleep(boulder));
+  EXPECT_NEAR(manager.state(boulder).position.z(), kPebble - kCaught + 0.5 * kBoulder, kCaught);
+}
+
 }  // namespace
 }  // namespace lodestone
