@@ -21,8 +21,8 @@ constexpr double kMostUnevenSweeps =
 // of a thousand times a column's mass then crush it more often.
 constexpr std::size_t kFewPoints = 12, kRelaxations = 16'000;
 constexpr double kUnevenTolerance = 1e-4;  // of what gravity adds to a velocity in the step
-// Of many points no more than so: gravel under boulders, 1 : 8,000, is then about as dear as in ODE where it
-// was five times as dear, and lies no otherwise. Of those between, a boulder on a few pebbles would creep.
+// Of many points no more than so: gravel under boulders, 1 : 8,000, costs a third and lies no otherwise. Of
+// those between, a boulder on a few pebbles would creep.
 constexpr std::size_t kManyPoints = 40, kRelaxationsOfMany = 16'000;
 constexpr double kToleranceOfMany = 0.01;
 
