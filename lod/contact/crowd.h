@@ -156,7 +156,7 @@ class Crowd {
   std::vector<Push> pushes_;              // on each solver body
   std::vector<Parting> partings_;         // in this substep
   std::vector<std::int32_t> parting_of_;  // of each solver body; −1: none
-  std::vector<Insider> insiders_;         // likewise
+  std::vector<Insider> insiders_;         // in this substep
   std::vector<Vec3> shifts_;              // m: of each solver body, out of overlaps in this substep
   CrowdSolver solver_;
   ContactMemory memory_;
