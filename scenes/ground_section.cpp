@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "lod/manager/checks.h"
 #include "scenes/scene_sections.h"
 #include "scenes/terrain.h"
 
@@ -19,6 +20,7 @@ GroundMesh load_ground_mesh(const YamlCursor& place, const ShapeOptions& search)
     GroundMesh ground{.mesh = load_mesh(find_mesh_file(name, search), {.untrusted = search.untrusted})};
     if (size) ground.mesh = scale_to_size(std::move(ground.mesh), size_m);
     for (Vec3& vertex : ground.mesh.vertices) vertex += position_m;
+    check_ground_mesh(ground.mesh);
     return ground;
   } catch (const InputError& error) {
     fail_at(key, error);

@@ -56,7 +56,7 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
       fail_fork("nothing that the second future has otherwise",
                 "a level, a model, a budget or full_within_m");
   }
-  const int frames = steps / scene.output.every_n_steps + 1,
+  const int every = scene.output.every_n_steps, frames = steps / every + (steps % every != 0) + 1,
             most = max_trajectory_frames(int(scene.bodies.size()));
   if (!settings.out.empty() && frames > most)
     throw InputError(
@@ -224,6 +224,7 @@ class Run {
   }
 
   RunResult finish() {
+    record_frame(end_step());  // whatever every_n_steps is
     result_.state_hash = manager_.state_hash();
     result_.step_ms = times_.summary();
     result_.processor_ms = processor_times_.summary();
@@ -283,6 +284,8 @@ class Run {
     if (settings_.keep_steps) result_.reports.push_back(report);
     if (settings_.keep_steps || !result_.playback.empty()) result_.step_processor_ms.push_back(processor_ms);
   }
+
+  int end_step() const { return from_step_ + result_.steps; }
 
   /// Whether `write_file` found room; if not, the run ends with what there is.
   template <class WriteFile>
@@ -370,8 +373,11 @@ class Run {
   }
 
   void record(int step) {
-    if (result_.playback.empty() || (step - from_step_) % scene_.output.every_n_steps != 0 || !sample_.finite)
-      return;
+    if ((step - from_step_) % scene_.output.every_n_steps == 0) record_frame(step);
+  }
+
+  void record_frame(int step) {
+    if (result_.playback.empty() || !sample_.finite) return;
     statuses_.clear();
     for (const BodyId body : bodies_)
       statuses_.push_back({.rung = manager_.rung(body),
@@ -395,7 +401,7 @@ class Run {
   /// Its value is when the last body fell asleep; a body that is awake after the bound fails it, even where
   /// it slept before.
   CheckResult asleep_check(double bound_s) const {
-    const double end_s = result_.steps * dt_s_;
+    const double end_s = end_step() * dt_s_;
     const bool all_asleep = last_awake_s_ < end_s;
     return {"all_asleep_by_s", last_awake_s_, bound_s, last_awake_s_ <= bound_s,
             all_asleep || end_s >= bound_s};

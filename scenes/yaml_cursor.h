@@ -27,8 +27,8 @@ struct NumberRange {
 inline constexpr NumberRange kPositive{0, kFarthest, true};
 inline constexpr NumberRange kNotNegative{0, kFarthest};
 inline constexpr NumberRange kFraction{0, 1};
-inline constexpr NumberRange kMass{kLeastMass, kFarthest};  ///< kg
-inline constexpr NumberRange kLength{1e-4, 1e4};            ///< m: the sizes a shape may have
+inline constexpr NumberRange kMass{kLeastMass, kGreatestMass};  ///< kg
+inline constexpr NumberRange kLength{1e-4, 1e4};                ///< m: the sizes a shape may have
 
 /// A value, and the dotted key that led to it (`bodies[2].scatter.count`). Refers to the tree and the file
 /// name: both must outlive it.

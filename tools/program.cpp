@@ -31,13 +31,32 @@ constexpr const char* kExitCodes =
 
 void complain(std::string_view message) { fmt::print(stderr, "lodestone: {}\n", printable(message)); }
 
+// Of `group`, or of the group in it that was named, whose command is not one of those that it has; empty if
+// that is not what is wrong. CLI11 says no more than that one is required.
+std::string find_command_fault(const CLI::App& group) {
+  const auto chosen = group.get_subcommands();
+  if (!chosen.empty()) return find_command_fault(*chosen.front());
+  std::vector<std::string> names;
+  for (const CLI::App* command : group.get_subcommands({})) names.push_back(command->get_name());
+  if (names.empty()) return "";
+  const std::vector<std::string> words = group.remaining();
+  const auto first =
+      std::ranges::find_if(words, [](const std::string& word) { return !word.starts_with('-'); });
+  const std::string group_name = group.get_parent() ? group.get_name() + ": " : "";
+  return fmt::format("{}found {}, expected one of {}", group_name,
+                     first == words.end() ? "no command" : fmt::format("'{}'", *first),
+                     fmt::join(names, ", "));
+}
+
 // CLI11's own exit codes are not ours.
 ExitCode explain(const CLI::App& program, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) {  // help was asked for
     program.exit(error, std::cout, std::cerr);
     return ExitCode::done;
   }
-  complain(error.what());
+  const bool is_missing = error.get_exit_code() == int(CLI::ExitCodes::RequiredError);
+  const std::string fault = is_missing ? find_command_fault(program) : "";
+  complain(fault.empty() ? error.what() : fault);
   fmt::print(stderr, "Run with --help for more information.\n");
   return ExitCode::usage;
 }

@@ -92,6 +92,16 @@ TEST_F(SavedPlayback, WhatIsNoneIsRefused) {
   EXPECT_NE(error_of_loading(), "no error");
 }
 
+TEST_F(SavedPlayback, EndsWithTheLastStep) {
+  std::string text = kFalling;
+  text.replace(text.find("every_n_steps: 2"), 16, "every_n_steps: 7");
+  const RunResult result = run_scene(load(text), {.level = LevelChoice::full, .out = folder() / "out"});
+  const auto times = load_playback(file()).header["times_s"];
+  ASSERT_EQ(times.size(), 7u);  // 0, 7, … 35, 40
+  EXPECT_EQ(times[6], 0.4);
+  EXPECT_EQ(result.steps, 40);
+}
+
 TEST_F(SavedPlayback, TwoFuturesAreOneUntilTheFork) {
   const Scene scene = load(R"(version: 1
 step: {dt_s: 0.01, steps: 60, full_substeps: 2}

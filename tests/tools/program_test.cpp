@@ -77,6 +77,14 @@ TEST(Program, WrongUsageIsTwoAndSilentOnStdout) {
   }
 }
 
+TEST(Program, ACommandThatIsNoneIsNamed) {
+  EXPECT_NE(run("nonsense", true).out.find("found 'nonsense', expected one of run, view, replay, "),
+            std::string::npos);
+  EXPECT_NE(run("", true).out.find("found no command, expected one of run, "), std::string::npos);
+  EXPECT_NE(run("compare --all dropp box", true).out.find("compare: found 'dropp', expected one of drop, "),
+            std::string::npos);
+}
+
 TEST(Program, BadInputIsThreeAndSilentOnStdout) {
   for (const char* arguments :
        {"run /nowhere/scene.yaml --json", "sign box:1,2 --json", "sign nowhere.obj",
