@@ -139,6 +139,7 @@ struct SweepContacts {
   StepConstants c;
   ContactArrays& contacts;
   SphereStep& step;
+  SweepOutcome& outcome;
 
   static constexpr std::int64_t kFew = 8 * kLanes;
 
@@ -169,7 +170,8 @@ struct SweepContacts {
     alignas(64) Row relative[Lanes], given[Lanes];
     alignas(64) float nx[Lanes], ny[Lanes], nz[Lanes], gap[Lanes], nearing[Lanes], gave[Lanes], e[Lanes];
     alignas(64) [[maybe_unused]] Row turning[Lanes], moved[Lanes], torque[Lanes], out[Lanes];
-    alignas(64) [[maybe_unused]] float friction[Lanes], size[Lanes], farthest[Lanes];
+    alignas(64) float changed[Lanes];
+    alignas(64) [[maybe_unused]] float friction[Lanes], size[Lanes], farthest[Lanes], deep[Lanes];
     const auto index = [&](std::int64_t i) { return std::size_t(at + i * stride); };
     const auto mass_of = [&](std::uint32_t place) {
       return place < awake ? float(inverse_mass[OneKind ? 0 : place]) : 0.0f;
@@ -206,6 +208,7 @@ struct SweepContacts {
       const float target = choose(nearing[i] < -bounce, bounced, shut);
       const float after = most(0.0f, before + share * (target - speed)), change = after - before;
       gave[i] = after;
+      changed[i] = absolute(change) * relative[i].w;
       float ix = change * x, iy = change * y, iz = change * z;
       if constexpr (Last) {
         // Friction on the slip of the touching points, with the inertia under which it changes most.
@@ -220,6 +223,7 @@ struct SweepContacts {
         torque[i].w = 0.0f;  // over the arm
         // Of an overlap, what is left of it by then.
         const float overlap = -gap[i] - slop * size[i] - (moved[i].x * x + moved[i].y * y + moved[i].z * z);
+        deep[i] = overlap / size[i];
         float way = push_out * most(0.0f, overlap);
         if constexpr (Eased) way = least(way, farthest[i]);
         out[i].x = x, out[i].y = y, out[i].z = z, out[i].w = way * share;
@@ -231,11 +235,13 @@ struct SweepContacts {
       const std::uint32_t a = contacts.first[k], b = std::min(contacts.second[k], awake);
       const float wa = mass_of(a), wb = mass_of(b);
       contacts.impulse[k] = gave[i];
+      outcome.changed = most(outcome.changed, changed[i]);
       const RowLanes impulse = lanes_of(given[i]);
       add_to(added[a], wa * impulse);
       add_to(added[b], -wb * impulse);
       if constexpr (Last) {
         const RowLanes turns = lanes_of(torque[i]);
+        outcome.deepest = most(outcome.deepest, deep[i]);
         add_to(turned_by[a], (radius[a] * wa) * turns);
         add_to(turned_by[b], (b < awake ? radius[b] * wb : 0.0f) * turns);
         add_to(turning_of[a], ((u[a].w - 1.0f) * wa) * turns);  // the slip that the next contacts see
@@ -266,11 +272,14 @@ ContactRun find_touching(const BallPairs& pairs, const Spheres& spheres, const S
   return {&contacts, begin, contacts.count};
 }
 
-void sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const SphereKinds& kinds,
-                    const StepConstants& constants, Simd simd, const ContactRun& contacts, SphereStep& step) {
+SweepOutcome sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const SphereKinds& kinds,
+                            const StepConstants& constants, Simd simd, const ContactRun& contacts,
+                            SphereStep& step) {
+  SweepOutcome outcome;
   const auto run = [&]<bool OneKind, bool Last, bool Eased>() {
     run_wide(simd,
-             SweepContacts<OneKind, Last, Eased>{settings, spheres, kinds, constants, *contacts.arrays, step},
+             SweepContacts<OneKind, Last, Eased>{settings, spheres, kinds, constants, *contacts.arrays, step,
+                                                 outcome},
              std::int64_t(contacts.begin), std::int64_t(contacts.end));
   };
   const auto run_last = [&]<bool OneKind>() {
@@ -285,6 +294,27 @@ void sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const
     run_last.template operator()<false>();
   else
     run.template operator()<false, false, false>();
+  return outcome;
+}
+
+void move_apart(const SphereContactSettings& settings, const Spheres& spheres, const SphereKinds& kinds,
+                const ContactRun& contacts, SphereStep& step) {
+  const ContactArrays& c = *contacts.arrays;
+  const auto awake = std::uint32_t(spheres.awake);
+  for (std::size_t k = contacts.begin; k < contacts.end; ++k) {
+    const std::uint32_t a = c.first[k], other = c.second[k], b = std::min(other, awake);
+    if (spheres.eased[a] != 0 || (other < kGroundPlace && spheres.eased[other] != 0)) continue;
+    const float wa = float(spheres.inverse_mass[a]), wb = b < awake ? float(spheres.inverse_mass[b]) : 0.0f,
+                own = kinds.radius[spheres.kind[a]],
+                size = b < awake ? least(own, kinds.radius[spheres.kind[b]]) : own;
+    const RowLanes normal{c.nx[k], c.ny[k], c.nz[k], 0.0f};
+    const Row moved = row_of((lanes_of(step.d[a]) - lanes_of(step.d[b])) * normal);
+    const float overlap = -c.gap[k] - settings.deep * size - (moved.x + moved.y + moved.z);
+    if (overlap <= 0.0f) continue;
+    const float way = settings.push_out * overlap / (wa + wb);
+    add_to(step.d[a], way * wa * normal);
+    add_to(step.d[b], -way * wb * normal);
+  }
 }
 
 }  // namespace lodestone

@@ -24,7 +24,12 @@ struct SweepSettings {
 };
 
 /// A round of the contacts given.
-void sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const SphereKinds& kinds,
-                    const StepConstants& constants, Simd simd, const ContactRun& contacts, SphereStep& step);
+SweepOutcome sweep_contacts(const SweepSettings& settings, const Spheres& spheres, const SphereKinds& kinds,
+                            const StepConstants& constants, Simd simd, const ContactRun& contacts,
+                            SphereStep& step);
+
+/// Moves bodies out of overlaps deeper than SphereContactSettings::deep, but for those that are eased.
+void move_apart(const SphereContactSettings& settings, const Spheres& spheres, const SphereKinds& kinds,
+                const ContactRun& contacts, SphereStep& step);
 
 }  // namespace lodestone

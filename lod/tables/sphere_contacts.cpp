@@ -216,19 +216,31 @@ void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, con
   });
 }
 
-void SphereContacts::sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
-                           float bounce_velocity, const StepConstants& constants, bool last, bool eased,
-                           Simd simd, SphereStep& step, const JobRunner& jobs) {
+SweepOutcome SphereContacts::sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
+                                   float bounce_velocity, const StepConstants& constants, bool last,
+                                   bool eased, Simd simd, SphereStep& step, const JobRunner& jobs) {
   const ContactLaw only_law = materials.law(kinds.material[0], kinds.material[0]);
   const bool remembers = last && constants.remembers;
   if (remembers) make_room_to_remember(spheres);
   run_by_colour(jobs, [&](Part& part) {
     const bool one_law = constants.one_kind && part.colour != kGroundColour;
-    sweep_contacts({settings_, one_law, only_law, bounce_velocity, last, eased}, spheres, kinds, constants,
-                   simd, part.run, step);
+    part.outcome = sweep_contacts({settings_, one_law, only_law, bounce_velocity, last, eased}, spheres,
+                                  kinds, constants, simd, part.run, step);
     if (remembers && !is_apart(part.colour)) remember(spheres, bounce_velocity, constants, part);
   });
   if (remembers) remember_apart(spheres, bounce_velocity, constants);
+  SweepOutcome outcome;
+  for (std::size_t p = 0; p < used_parts_; ++p)
+    if (parts_[p].run.size() > 0) outcome.include(parts_[p].outcome);
+  return outcome;
+}
+
+void SphereContacts::move_apart(const Spheres& spheres, const SphereKinds& kinds, SphereStep& step,
+                                const JobRunner& jobs) {
+  run_by_colour(jobs, [&](const Part& part) {
+    if (part.outcome.deepest > settings_.deep)
+      lodestone::move_apart(settings_, spheres, kinds, part.run, step);
+  });
 }
 
 void SphereContacts::make_room_to_remember(Spheres& spheres) {

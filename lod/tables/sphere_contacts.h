@@ -78,7 +78,9 @@ struct KnownApart {
 
 struct SphereContactSettings {
   int sweeps = 2,
-      hull_sweeps = 6;  // rounds a step; of the paper's spheres, and of those that know their hulls
+      hull_sweeps = 6,        // rounds a step; of the paper's spheres, and of those that know their hulls
+      most_hull_sweeps = 24;  // of the latter while contacts are not solved, as in a heap that lands
+  float solved = 0.2f;        // over √(g R): by less a round changes all closing speeds
   float remembered = 1.0f,
         hull_remembered = 0.97f;  // the part of the last step's impulses that contacts begin with: of a body
                                   // that is wedged in, what presses from all sides would else add up for ever
@@ -87,6 +89,17 @@ struct SphereContactSettings {
         push_out = 0.5f;  // overlap that stays, over R; part of the rest that is undone in a step
   float parting = 0.1f;  // over √(g R): no faster than so where one of them is eased (parting.h), as spheres
                          // may overlap where hulls did not
+  int deep_rounds = 3;  // further ones, of hulls, that undo push_out of what is deeper than
+  float deep = 0.08f;   // over R
+};
+
+/// What a round of contacts left, or would have, at most.
+struct SweepOutcome {
+  float changed = 0.0f;  ///< m/s, of a closing speed
+  float deepest = 0.0f;  ///< over R, of an overlap; of the last round alone
+  void include(const SweepOutcome& other) {
+    changed = std::max(changed, other.changed), deepest = std::max(deepest, other.deepest);
+  }
 };
 
 class SphereContacts {
@@ -117,9 +130,11 @@ class SphereContacts {
              const StepConstants& constants, SphereStep& step, const JobRunner& jobs);
   /// One round of all contacts; the last one has friction, moves bodies out of overlaps, and is remembered
   /// for the next step.
-  void sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
-             float bounce_velocity, const StepConstants& constants, bool last, bool eased, Simd simd,
-             SphereStep& step, const JobRunner& jobs);
+  SweepOutcome sweep(Spheres& spheres, const SphereKinds& kinds, const MaterialTable& materials,
+                     float bounce_velocity, const StepConstants& constants, bool last, bool eased, Simd simd,
+                     SphereStep& step, const JobRunner& jobs);
+  /// After the last round: another look at overlaps that are too deep, in those parts that have some.
+  void move_apart(const Spheres& spheres, const SphereKinds& kinds, SphereStep& step, const JobRunner& jobs);
 
   /// Calls `visit(run)` with runs of contacts that no other thread has bodies of at that time.
   template <class Visit>
@@ -153,6 +168,7 @@ class SphereContacts {
     int colour = 0;
     ContactRun run;
     std::uint32_t known_begin = 0;  // of its contacts in known_
+    SweepOutcome outcome;           // of the last round
   };
   static SphereContact contact_of(const ContactArrays& c, std::size_t i) {
     return {c.first[i], c.second[i], c.nx[i], c.ny[i], c.nz[i], c.gap[i], c.closing[i], c.impulse[i]};

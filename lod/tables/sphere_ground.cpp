@@ -380,6 +380,18 @@ void sweep_ground(const SphereGround& ground, const StepConstants& constants, Si
     run_wide(simd, SweepLoop<false>{ground, constants, step}, begin, end);
 }
 
+void keep_on_ground(const SphereGround& ground, std::int64_t begin, std::int64_t end, SphereStep& step) {
+  for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+    const std::uint8_t state = step.on_ground[i];
+    if (state < kNear || state > kSettles || step.p[i].w <= 0.0f) continue;
+    const auto p = std::size_t(step.plane[i]);
+    Row& d = step.d[i];
+    const float into =
+        -(d.x * ground.nx[p] + d.y * ground.ny[p] + d.z * ground.nz[p]) - most(0.0f, step.gap[i]);
+    if (into > 0.0f) add_to(d, into * RowLanes{ground.nx[p], ground.ny[p], ground.nz[p], 0.0f});
+  }
+}
+
 void lie_on_ground(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
                    const StepConstants& constants, Simd simd, std::int64_t begin, std::int64_t end,
                    SphereStep& step) {

@@ -54,6 +54,9 @@ void sort_near_ground(const Spheres& spheres, const SphereKinds& kinds, const Sp
 void sweep_ground(const SphereGround& ground, const StepConstants& constants, Simd simd, std::int64_t begin,
                   std::int64_t end, SphereStep& step);
 
+/// Of those that touch others, too: what contacts would move into the plane stays on it.
+void keep_on_ground(const SphereGround& ground, std::int64_t begin, std::int64_t end, SphereStep& step);
+
 /// Velocities and spins of those that lie on the ground after friction and, under the resting conditions, the
 /// turn into the rest pose.
 void lie_on_ground(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,

@@ -220,7 +220,7 @@ void TablesLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
 
 double TablesLevel::count_traffic(bool pair_phase) const {
   return count_bytes_moved(
-      {spheres_, step_, contacts_, pair_phase, has_planes(), settings_.sleeping, sweeps()});
+      {spheres_, step_, contacts_, pair_phase, has_planes(), settings_.sleeping, rounds_});
 }
 
 std::size_t TablesLevel::bytes() const {

@@ -192,6 +192,7 @@ class TablesLevel {
   void keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after);
   bool touches_further_planes(std::int64_t place) const;
   int sweeps() const;
+  void sweep_contacts();
   float ground_height(std::int64_t place, const Vec3& direction) const;
   double exit_distance(std::int64_t place, const Vec3& direction) const;
   Vec3 meeting_point(std::int64_t first, std::int64_t second) const;
@@ -242,6 +243,7 @@ class TablesLevel {
   SphereStep step_;
   TippingStep tipping_;
   bool tips_ = false;                   // whether anybody may tip over in this step
+  int rounds_ = 0;                      // of contacts, in the last step
   std::vector<HalfSpace> faces_;        // of this step: of the ground's parts, each for the sphere near it
   std::vector<NearFaces> near_faces_;   // by place
   std::vector<std::int32_t> cornered_;  // slots

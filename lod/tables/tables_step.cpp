@@ -384,20 +384,39 @@ void TablesLevel::respond(ContactTally& tally) {
   give_pushes(-1.0);  // what presses a body to the ground does not throw it there
   sort_ground();
   give_pushes(1.0);
+  rounds_ = 0;
   if (!crowd) return;
   pass_blows_on();
-  const int rounds = sweeps();
-  for (int sweep = 1; sweep <= rounds; ++sweep) {
-    const bool last = sweep == rounds;
-    contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, last, eased_ > 0, simd_,
-                    step_, jobs_);
+  sweep_contacts();
+  if (log_) write_contacts();
+}
+
+// Those of hulls as long as a round changes what bodies close in at; what is deep in each other is then taken
+// out faster than the last round alone would.
+void TablesLevel::sweep_contacts() {
+  const SphereContactSettings& settings = contacts_.settings();
+  const int usual = sweeps(), most = constants_.hulls ? std::max(usual, settings.most_hull_sweeps) : usual;
+  const float solved = settings.solved * std::sqrt(std::max(1.0f, constants_.gravity) *
+                                                   std::ranges::min(kinds_.radius));  // m/s
+  SweepOutcome outcome;
+  bool last = false;
+  for (rounds_ = 0; !last;) {
+    ++rounds_;
+    last = rounds_ >= most || (rounds_ >= usual && outcome.changed <= solved);
+    outcome = contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, last, eased_ > 0,
+                              simd_, step_, jobs_);
     if (!last)
       each_block([&](std::int64_t begin, std::int64_t end) {
         if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
         take_impulses(simd_, begin, end, step_);
       });
   }
-  if (log_) write_contacts();
+  if (!constants_.hulls || outcome.deepest <= settings.deep) return;
+  for (int round = 0; round < settings.deep_rounds; ++round) {
+    if (has_planes())
+      each_block([&](std::int64_t begin, std::int64_t end) { keep_on_ground(planes_, begin, end, step_); });
+    contacts_.move_apart(spheres_, kinds_, step_, jobs_);
+  }
 }
 
 void TablesLevel::write_contacts() {

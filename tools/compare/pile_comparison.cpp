@@ -185,6 +185,8 @@ PileFigures compare_with_truth(std::span<const PileObservation> truth, std::span
   figures.mean_height_error = relative_error(figures.mean_height_m, mean_over(truth, height));
   for (const PileObservation& pile : piles) {
     figures.max_penetration_m = std::max(figures.max_penetration_m, pile.max_penetration_m);
+    figures.end_penetration_over_size =
+        std::max(figures.end_penetration_over_size, pile.end_penetration_m / shape.size);
     figures.energy_rise = std::max(figures.energy_rise, pile.energy_rise);
     figures.hovering += pile.hovering;
     figures.escaped += pile.escaped;

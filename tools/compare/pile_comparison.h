@@ -29,6 +29,7 @@ struct PileFigures {
   double sleep_time_s = 0, sleep_time_error = 0;  ///< error: relative to the truth
   double mean_height_m = 0, mean_height_error = 0;
   double max_penetration_m = 0, penetration_over_size = 0;
+  double end_penetration_over_size = 0;     ///< of all piles
   double median_penetration_over_size = 0;  ///< mean over the piles
   double energy_rise = 0;                   ///< greatest, over the energy at the start
   int hovering = 0, escaped = 0;            ///< of all piles together

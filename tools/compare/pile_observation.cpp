@@ -65,6 +65,7 @@ PileObservation PileObserver::result() const {
   std::vector<char> at_rest;
   for (const double stir : last_stir_s_)
     at_rest.push_back(last_time_s_ - stir >= kPileRestDuration * std::sqrt(scale_));
+  pile.end_penetration_m = overlap_.deepest(last_);
   pile.median_penetration_m = overlap_.median_depth(last_);
   pile.hovering = overlap_.count_hovering(last_, at_rest, kHoverDrop * shape_.size);
   return pile;

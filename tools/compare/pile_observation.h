@@ -15,7 +15,8 @@ struct PileObservation {
   double sleep_time_s =
       0;  ///< mean over the bodies of the last time that the kinetic energy per mass is above 2e-3 J/kg
   double mean_height_m = 0;         ///< of the centres of mass, at the end
-  double max_penetration_m = 0;     ///< greatest of any pair and any body in a plane
+  double max_penetration_m = 0;     ///< greatest of any pair and any body in a plane, at any time
+  double end_penetration_m = 0;     ///< the same at the end
   double median_penetration_m = 0;  ///< of the pairs that overlap at the end
   double energy_rise = 0;  ///< greatest rise of kinetic and potential energy (over the floor) above an
                            ///< earlier sample, over that at the start

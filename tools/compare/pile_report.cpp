@@ -24,6 +24,7 @@ std::vector<std::string> cells_of(const PileFigures& f) {
           fmt::format("{:.3f}", f.mean_height_m),
           percent(f.mean_height_error),
           fmt::format("{:.1f}", 100.0 * f.penetration_over_size),
+          fmt::format("{:.1f}", 100.0 * f.end_penetration_over_size),
           fmt::format("{:.1f}", 100.0 * f.median_penetration_over_size),
           fmt::format("{}", f.hovering),
           fmt::format("{}", f.escaped),
@@ -47,8 +48,8 @@ std::vector<std::string> row_of(const PileRow& row) {
 
 std::string table_of(const PileComparison& comparison) {
   TextTable table({"method", "model", "step s", "substeps", "KE-L1", "sleep s", "error %", "height m",
-                   "error %", "overlap %", "median %", "hover", "escaped", "energy rise", "momentum",
-                   "ns/body-step"});
+                   "error %", "overlap %", "at end %", "median %", "hover", "escaped", "energy rise",
+                   "momentum", "ns/body-step"});
   table.add_row(row_of({"truth", "", "", ""}, comparison.truth));
   table.add_row(row_of({"noise floor", "", "", ""}, comparison.floor));
   for (const PileRow& row : comparison.rows) table.add_row(row_of(row));
@@ -62,6 +63,7 @@ void add_figures(ordered_json& json, const PileFigures& f) {
   json["mean_height_error"] = f.mean_height_error;
   json["max_penetration_m"] = f.max_penetration_m;
   json["penetration_over_size"] = f.penetration_over_size;
+  json["end_penetration_over_size"] = f.end_penetration_over_size;
   json["median_penetration_over_size"] = f.median_penetration_over_size;
   json["energy_rise"] = f.energy_rise;
   json["hovering"] = f.hovering;
@@ -93,9 +95,10 @@ ordered_json json_of(const PileRow& row, const PileFigures& floor) {
 
 void write_piles(OutputFile& out, const std::string& head, const std::vector<PileObservation>& piles) {
   for (std::size_t i = 0; i < piles.size(); ++i)
-    out.write(fmt::format("{},{},{},{},{},{},{},{},{}\n", head, i, piles[i].sleep_time_s,
+    out.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", head, i, piles[i].sleep_time_s,
                           piles[i].mean_height_m, piles[i].max_penetration_m, piles[i].energy_rise,
-                          piles[i].hovering, piles[i].escaped, piles[i].median_penetration_m));
+                          piles[i].hovering, piles[i].escaped, piles[i].median_penetration_m,
+                          piles[i].end_penetration_m));
 }
 
 void write_energy(OutputFile& out, const std::string& head, const std::vector<PileObservation>& piles,
@@ -164,7 +167,7 @@ void save_piles(const PileComparison& comparison, const std::filesystem::path& f
   save(folder / "piles.csv", [&](OutputFile& out) {
     out.write(
         "method,model,dt_s,pile,sleep_time_s,mean_height_m,max_penetration_m,energy_rise,hovering,escaped,"
-        "median_penetration_m\n");
+        "median_penetration_m,end_penetration_m\n");
     each_batch(comparison,
                [&](const std::string& head, const auto& piles, double) { write_piles(out, head, piles); });
   });

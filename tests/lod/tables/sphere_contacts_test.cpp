@@ -35,13 +35,15 @@ struct Balls : SphereScene {
     const std::pair<std::uint32_t, std::uint32_t> touches[] = {{0, 1}};
     contacts.add(spheres, dense, touches, kBounceVelocity, constants, Simd::portable);
   }
-  void answer(int rounds = 2, Simd simd = Simd::portable, bool eased = false) {
+  SweepOutcome answer(int rounds = 2, Simd simd = Simd::portable, bool eased = false) {
+    SweepOutcome outcome;
     contacts.begin(spheres, dense, materials, constants, step, jobs);
     for (int round = 1; round <= rounds; ++round) {
-      contacts.sweep(spheres, dense, materials, kBounceVelocity, constants, round == rounds, eased, simd,
-                     step, jobs);
+      outcome = contacts.sweep(spheres, dense, materials, kBounceVelocity, constants, round == rounds, eased,
+                               simd, step, jobs);
       if (round < rounds) take_impulses(simd, 0, spheres.awake, step);
     }
+    return outcome;
   }
   std::span<const double> spheres_of(const std::vector<double>& all) const {
     return std::span(all).first(std::size_t(spheres.awake));
@@ -119,6 +121,41 @@ TEST(SphereContacts, FrictionTurnsBallsAndKeepsTheirAngularMomentum) {
     const double braked = 1.0 - scene.step.velocity(0).y();
     EXPECT_NEAR(braked, std::min(friction * 1.0, 2.0 / 7.0), 1e-5) << friction;
     EXPECT_NEAR(scene.step.velocity(0).x(), 0.0, 1e-6);
+  }
+}
+
+TEST(SphereContacts, ARoundSaysWhatItChangedAtMost) {
+  for (const int rounds : {1, 2}) {
+    Balls scene(0.5, 0.4);
+    scene.ball(at({-kRadius, 0, 0}, {2, 0, 0}));
+    scene.ball(at({kRadius, 0, 0}, {-1, 0, 0}));
+    scene.ball(at({kRadius, 1, 0}, {0.2, 0, 0}));
+    scene.ball(at({2.99 * kRadius, 1, 0}));
+    scene.find();
+    ASSERT_EQ(scene.contacts.count(), 2);
+    const SweepOutcome outcome = scene.answer(rounds);
+    EXPECT_NEAR(outcome.changed, rounds == 1 ? 1.4 * 3.0 : 0.0, 1e-5);
+    EXPECT_NEAR(outcome.deepest, 0.01 - 0.002, 1e-5);
+  }
+}
+
+// Half of what is deeper than .08 R, in a round; of what comes slowly from another rung nothing.
+TEST(SphereContacts, DeepOverlapsAreOpenedFurther) {
+  for (const bool eased : {false, true}) {
+    Balls scene;
+    scene.ball(at({-0.08, 0, 0}));
+    scene.ball(at({0.08, 0, 0}), 3.0);
+    scene.constants.one_kind = false;
+    scene.spheres.eased[1] = eased ? 100 : 0;
+    scene.find(), scene.answer(2, Simd::portable, eased);
+    const auto parted = [&] { return scene.step.push_out(1).x() - scene.step.push_out(0).x(); };
+    const double before = parted(), left = 0.04 - before - 0.08 * kRadius;
+    scene.contacts.move_apart(scene.spheres, scene.dense, scene.step, scene.jobs);
+    EXPECT_NEAR(parted() - before, eased ? 0.0 : 0.5 * left, 1e-6);
+    EXPECT_NEAR(-scene.step.push_out(0).x() / scene.step.push_out(1).x(), 3.0, 1e-4);
+    for (int round = 0; round < 20; ++round)
+      scene.contacts.move_apart(scene.spheres, scene.dense, scene.step, scene.jobs);
+    EXPECT_NEAR(parted(), eased ? before : 0.04 - 0.08 * kRadius, 1e-6);
   }
 }
 

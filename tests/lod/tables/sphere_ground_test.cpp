@@ -216,6 +216,23 @@ TEST(SphereGround, GapsCloseAndOverlapsOpenGradually) {
   }
 }
 
+// What others would move into the plane stays over it; who touches nobody is moved by none.
+TEST(SphereGround, ContactsMoveNobodyIntoIt) {
+  for (const double gap : {0.0, 0.004}) {
+    OnPlane scene(at({0, 0, 0}, {0, 0, -1}), {}, kFriction, gap);
+    scene.lie(true);
+    const auto moved = [&](float z) {
+      scene.step.d[0] = {0.01f, 0.0f, z, 0.0f};
+      keep_on_ground(scene.ground, 0, 1, scene.step);
+      return scene.step.push_out(0);
+    };
+    EXPECT_LT((moved(-0.02f) - Vec3(0.01, 0, -gap)).norm(), 1e-6) << gap;
+    EXPECT_LT((moved(0.02f) - Vec3(0.01, 0, 0.02)).norm(), 1e-6) << gap;
+    scene.step.p[0].w = 0.0f;
+    EXPECT_LT((moved(-0.02f) - Vec3(0.01, 0, -0.02)).norm(), 1e-6) << gap;
+  }
+}
+
 TEST(SphereGround, IsTheSameToTheBitOnEveryProcessor) {
   std::vector<double> expected;
   for (const Simd simd : testing::kEverySimd) {

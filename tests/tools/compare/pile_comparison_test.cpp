@@ -29,12 +29,14 @@ TEST(PileFigures, AreOfMeansOverPiles) {
   std::vector piles = {pile({2.0, 3.0}, 3.3, 0.25), pile({2.0, 1.8}, 3.3, 0.25)};
   piles[1].hovering = piles[0].hovering = 1;
   piles[1].max_penetration_m = 0.02;
+  piles[0].end_penetration_m = 0.01;
   piles[0].median_penetration_m = 0.01, piles[1].median_penetration_m = 0.03;
   const PileFigures figures = compare_with_truth(truth, piles, *box_job().shape);
   EXPECT_NEAR(figures.ke_l1, 0.4 / 4.0, 1e-12);
   EXPECT_NEAR(figures.sleep_time_error, 0.1, 1e-12);
   EXPECT_NEAR(figures.mean_height_error, -0.5, 1e-12);
   EXPECT_NEAR(figures.penetration_over_size, 0.05, 1e-12);
+  EXPECT_NEAR(figures.end_penetration_over_size, 0.025, 1e-12);
   EXPECT_NEAR(figures.median_penetration_over_size, 0.05, 1e-12);
   EXPECT_EQ(figures.hovering, 2);
 }
@@ -119,10 +121,11 @@ PileComparison two_rows() {
 TEST(PileReport, JsonHasTheKeysThatScriptsReadAndNullsForWhatIsLeftOut) {
   const auto json = json_of(two_rows());
   for (const auto& row : json["rows"])
-    for (const char* key : {"method", "model", "ke_l1", "sleep_time_s", "mean_height_m", "max_penetration_m",
-                            "momentum_residual", "floor_ke_l1", "sleep_time_error", "mean_height_error",
-                            "penetration_over_size", "median_penetration_over_size", "hovering", "escaped",
-                            "energy_rise", "ns_per_body_step"})
+    for (const char* key :
+         {"method", "model", "ke_l1", "sleep_time_s", "mean_height_m", "max_penetration_m",
+          "momentum_residual", "floor_ke_l1", "sleep_time_error", "mean_height_error",
+          "penetration_over_size", "end_penetration_over_size", "median_penetration_over_size", "hovering",
+          "escaped", "energy_rise", "ns_per_body_step"})
       EXPECT_TRUE(row.contains(key)) << key;
   EXPECT_EQ(json["rows"][0]["ke_l1"], 0.0);
   EXPECT_TRUE(json["rows"][1]["ke_l1"].is_null());

@@ -33,7 +33,7 @@ TEST_F(Boxes, DepthIsThatOfPairsAndOfPlanes) {
 }
 
 // Of three pairs that overlap, by 1, 2 and 5 cm; apart from a fourth. What lay deeper before does not count.
-TEST_F(Boxes, TheMedianIsOfThePairsThatOverlapAtTheEnd) {
+TEST_F(Boxes, OverlapAtTheEndIsOfWhatIsThenInEachOther) {
   const auto beside = [](double y, double depth) {
     return std::pair{at({0, y, 0.1}), at({0.2 - depth, y, 0.1})};
   };
@@ -44,7 +44,10 @@ TEST_F(Boxes, TheMedianIsOfThePairsThatOverlapAtTheEnd) {
   }
   std::vector<RigidState> deeper = states;
   deeper[5].position.x() = 0.1;
-  EXPECT_NEAR(observe({deeper, states}).median_penetration_m, 0.02, 1e-9);
+  const PileObservation pile = observe({deeper, states});
+  EXPECT_NEAR(pile.median_penetration_m, 0.02, 1e-9);
+  EXPECT_NEAR(pile.end_penetration_m, 0.05, 1e-9);
+  EXPECT_NEAR(pile.max_penetration_m, 0.1, 1e-9);
   EXPECT_EQ(observe({{at({0, 0, 0.1}), at({0.5, 0, 0.1})}}).median_penetration_m, 0.0);
 }
 

@@ -1,0 +1,43 @@
+// Heaps of `tables`: what is poured lies beside and on each other, not in each other.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/lod/manager/manager_fixture.h"
+#include "tools/compare/pile_overlap.h"
+#include "tools/compare/pile_start.h"
+
+namespace lodestone {
+namespace {
+
+using namespace testing;
+
+// Of 100 bodies that fall from up to 8 m into a bin, after six seconds, over their size.
+double deepest_overlap_of_poured(const std::shared_ptr<const Shape>& shape, double side, std::uint64_t seed) {
+  const auto signature = coarse_signature(*shape, {.restitution = 0.4, .friction = 0.5});
+  Manager manager({.signatures = [&](const Shape&, const ContactLaw&) { return signature; }});
+  const std::vector<HalfSpace> bin = make_bin(side);
+  for (const HalfSpace& plane : bin) manager.add_plane(plane.normal, plane.offset);
+  std::vector<BodyId> bodies;
+  for (const RigidState& state : make_pile_start(*shape, {.bodies = 100, .side = side}, seed))
+    bodies.push_back(add(manager, shape, state, LevelChoice::tables));
+  for (int step = 0; step < 360; ++step) manager.step(kFrame);
+  std::vector<RigidState> states;
+  for (const BodyId body : bodies) states.push_back(manager.state(body));
+  return PileOverlap(*shape, bin).deepest(states) / shape->size;
+}
+
+TEST(TablesHeap, PouredBoxesLieBesideEachOther) {
+  const auto box = box_shape({0.2, 0.3, 0.4});
+  double sum = 0.0;
+  constexpr int kPiles = 6;
+  for (std::uint64_t seed = 1; seed <= kPiles; ++seed) {
+    const double deepest = deepest_overlap_of_poured(box, 1.6, seed);
+    EXPECT_LT(deepest, 0.2) << seed;
+    sum += deepest;
+  }
+  EXPECT_LT(sum / kPiles, 0.12);
+}
+
+}  // namespace
+}  // namespace lodestone
