@@ -148,7 +148,7 @@ class Manager {
   /// Lays it still where it is, even in the air, until something wakes it: a touch, a force, wake(). Forces
   /// given for the next step are dropped.
   void sleep(BodyId body);
-  void wake(BodyId body);  ///< it alone
+  void wake(BodyId body);  ///< it, and what is joined to it
 
   /// Between which rungs the policy keeps it, from the next step on; a LevelChoice that names a rung goes
   /// before it.

@@ -72,15 +72,14 @@ std::vector<SolidFace> faces_of(const Hull& hull) {
   return faces;
 }
 
-// Only what contacts need, and a support map of few cells: there may be many thousands.
-std::shared_ptr<const Shape> make_solid_shape(std::span<const Vec3> points, const Vec3& middle) {
+// Only what contacts need, and a support map of few cells: there may be many thousands. `hull` is about the
+// `middle`.
+std::shared_ptr<const Shape> make_solid_shape(Hull hull, const Vec3& middle) {
   constexpr int kCellsAlong = 4;
   Shape shape;
-  std::vector<Vec3> around;
-  for (const Vec3& p : points) around.push_back(p - middle);
   shape.name = "ground";
-  shape.hull = make_hull(around);
-  shape.support_map = SupportMap(shape.hull, points.size() <= 6 ? 1 : kCellsAlong);
+  shape.hull = std::move(hull);
+  shape.support_map = SupportMap(shape.hull, shape.hull.vertices.size() <= 6 ? 1 : kCellsAlong);
   shape.center_of_mass_in_mesh = middle;
   shape.convex = true;
   for (const Vec3& p : shape.hull.vertices) shape.radius = std::max(shape.radius, p.norm());
@@ -100,7 +99,9 @@ void GroundSolids::add(const std::shared_ptr<const Shape>& shape, const Vec3& ce
 
 void GroundSolids::add_hull(std::span<const Vec3> points) {
   const Vec3 middle = bounds_of(points).center();
-  add(make_solid_shape(points, middle), middle);
+  std::vector<Vec3> around;
+  for (const Vec3& p : points) around.push_back(p - middle);
+  add(make_solid_shape(make_hull(around), middle), middle);
 }
 
 void GroundSolids::add_sphere(double radius) {
@@ -140,8 +141,12 @@ void GroundSolids::add_surface(const Mesh& mesh) {
         {(corner[1] - corner[0]).norm(), (corner[2] - corner[1]).norm(), (corner[0] - corner[2]).norm()});
     if (!(across.norm() > 1e-9 * longest * longest)) continue;
     const Vec3 normal = across.normalized(), below = -depth * normal;
-    add_hull(std::array<Vec3, 6>{corner[0], corner[0] + below, corner[1], corner[1] + below, corner[2],
-                                 corner[2] + below});
+    Box box = bounds_of(corner);
+    for (const Vec3& c : corner) box.extend(c + below);
+    const Vec3 middle = box.center();
+    add(make_solid_shape(make_prism_hull({corner[0] - middle, corner[1] - middle, corner[2] - middle}, below),
+                         middle),
+        middle);
     solids_.back().surface = SurfaceTriangle{normal, corner, ridge[i], depth};
   }
 }

@@ -170,6 +170,7 @@ std::vector<Vec3> drop_flat_vertices(const Hull& hull) {
 // What follows from the vertices.
 void derive(Hull& hull) {
   hull.face_normals.clear();
+  hull.face_normals.reserve(hull.faces.size());
   for (int face = 0; face < int(hull.faces.size()); ++face)
     hull.face_normals.push_back(hull.area_vector(face).normalized());
   hull.lanes = {};
@@ -199,6 +200,22 @@ Hull make_hull(std::span<const Vec3> points) {
       throw InputError("hull: found points that lie in a plane, expected a solid's corners");
     hull = make_raw_hull(corners);
   }
+  derive(hull);
+  return hull;
+}
+
+Hull make_prism_hull(const std::array<Vec3, 3>& corners, const Vec3& below) {
+  static const Hull connected = [] {
+    Hull hull;
+    hull.vertices.resize(6);
+    hull.faces = {{0, 2, 4}, {1, 5, 3}, {0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}, {4, 5, 1}, {4, 1, 0}};
+    connect_neighbors(hull);
+    collect_incident_faces(hull);
+    return hull;
+  }();
+  Hull hull = connected;
+  for (std::size_t i = 0; i < 3; ++i)
+    hull.vertices[2 * i] = corners[i], hull.vertices[2 * i + 1] = corners[i] + below;
   derive(hull);
   return hull;
 }

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include "reference/error.h"
 #include "reference/ode/world_ode.h"
@@ -181,9 +183,33 @@ bool OdeWorld::asleep(OdeBodyId body) const { return !dBodyIsEnabled(impl_->bodi
 
 void OdeWorld::set_asleep(OdeBodyId id, bool asleep) {
   Body& body = impl_->bodies.find(id);
-  asleep ? dBodyDisable(body.body) : dBodyEnable(body.body);
-  if (!asleep) body.to_sleep_s = impl_->sleep.law().time;
+  if (!asleep) return impl_->wake(body.body);
+  dBodyDisable(body.body);
   impl_->collision.broad_phase().note_sleep(body);
+}
+
+// And what hangs together with it by joints. Where one of them wakes alone, ODE wakes the others in each of
+// its steps and they are laid down again, since they are slow: what the one is given is lost in them.
+void OdeWorld::Impl::wake(dBodyID body) {
+  std::vector<dBodyID> waiting{body};
+  std::unordered_set<dBodyID> known{body};
+  while (!waiting.empty()) {
+    const dBodyID next = waiting.back();
+    waiting.pop_back();
+    if (next == body || !dBodyIsEnabled(next)) dBodyEnable(next);
+    if (Body* own = bodies.owner(next)) {
+      own->to_sleep_s = sleep.law().time;
+      collision.broad_phase().note_sleep(*own);
+    }
+    for (int i = 0; i < dBodyGetNumJoints(next); ++i) {
+      const dJointID joint = dBodyGetJoint(next, i);
+      if (dJointGetType(joint) == dJointTypeContact) continue;
+      for (const int end : {0, 1})
+        if (const dBodyID other = dJointGetBody(joint, end);
+            other && !dBodyIsKinematic(other) && known.insert(other).second)
+          waiting.push_back(other);
+    }
+  }
 }
 
 const BodyProperties& OdeWorld::properties(OdeBodyId body) const {

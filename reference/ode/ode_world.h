@@ -224,7 +224,7 @@ class OdeWorld {
   void add_force(OdeBodyId body, const Vec3& force,
                  const Vec3& torque);  ///< N and N m, over the whole of the next step(); does not wake
   bool asleep(OdeBodyId body) const;
-  void set_asleep(OdeBodyId body, bool asleep);
+  void set_asleep(OdeBodyId body, bool asleep);  ///< wakes what is joined to it, too
   const BodyProperties& properties(OdeBodyId body) const;
   void set_properties(OdeBodyId body, const BodyProperties& properties);  ///< does not wake
   void set_sleep_law(const SleepLaw& law);

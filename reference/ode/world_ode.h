@@ -46,6 +46,7 @@ struct OdeWorld::Impl {
   void recover_bodies();
   void count_uneven_contacts();
   void wake_neighbors(const ode::Body& body);
+  void wake(dBodyID body);
 
   OdeSettings settings;
   std::unique_ptr<SpaceMirror> mirror;  // of the caller's space; else null

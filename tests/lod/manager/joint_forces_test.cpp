@@ -42,6 +42,36 @@ BodyId add_box(Manager& manager, const Vec3& at, double mass) {
                            .level = LevelChoice::support});
 }
 
+// Who is joined to it over others, too, is awake: by ODE alone those are laid down again in each of its
+// steps.
+TEST(JointForces, AForceOnASleeperMovesAllThatIsJoinedToIt) {
+  constexpr int kCubes = 4;
+  constexpr double kSide = 0.2, kMass = 8.0, kFriction = 0.5;  // m, kg
+  for (const bool woken : {false, true}) {
+    JointedWorld theirs;
+    Manager manager(theirs.world, theirs.space, unmeasured());
+    const auto cube = box_shape({kSide, kSide, kSide});
+    std::vector<BodyId> chain;
+    for (int i = 0; i < kCubes; ++i)
+      chain.push_back(add(manager, cube, at({-0.25 * i, 0, 0.5 * kSide}), LevelChoice::full));
+    run(manager, kFrame);
+    for (int i = 0; i + 1 < kCubes; ++i) {
+      const dJointID joint = dJointCreateBall(theirs.world, nullptr);
+      dJointAttach(joint, manager.ode_body(chain[std::size_t(i)]),
+                   manager.ode_body(chain[std::size_t(i) + 1]));
+      dJointSetBallAnchor(joint, -0.25 * i - 0.125, 0, 0.5 * kSide);
+    }
+    run(manager, 2.0);
+    ASSERT_EQ(manager.report().asleep, kCubes);
+    if (woken) manager.wake(chain[0]);
+    for (int frame = 0; frame < 60; ++frame) {
+      manager.add_force(chain[0], {1.3 * kFriction * kCubes * kMass * 9.81, 0, 0});
+      manager.step(kFrame);
+    }
+    EXPECT_NEAR(manager.state(chain[0]).position.x(), 0.5 * 0.3 * kFriction * 9.81, 0.02) << woken;
+  }
+}
+
 TEST(JointForces, APistonPushesARow) {
   JointedWorld theirs;
   Manager manager(theirs.world, theirs.space, unmeasured());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <thread>
 
@@ -84,6 +85,23 @@ TEST(Hull, ClimbsPastAxisAlignedTies) {
         EXPECT_EQ(hull.vertices[find_support(hull, direction, start)].dot(direction),
                   greatest_height(hull.vertices, direction));
     }
+}
+
+TEST(Hull, OfAPrismIsThatOfItsCorners) {
+  for (const double depth : {0.3, 1e-3}) {
+    const std::array<Vec3, 3> corners{Vec3(0, 0, 0), Vec3(1, 0.1, 0.2), Vec3(0.2, 0.9, -0.1)};
+    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    const Hull prism = make_prism_hull(corners, -depth * normal), found = make_hull(prism.vertices);
+    ASSERT_EQ(prism.vertices.size(), 6u);
+    EXPECT_EQ(prism.vertices, found.vertices);
+    EXPECT_EQ(prism.faces.size(), found.faces.size());
+    EXPECT_EQ(prism.lanes.x, found.lanes.x);
+    for (const Vec3& n : prism.face_normals)
+      EXPECT_TRUE(
+          std::ranges::any_of(found.face_normals, [&](const Vec3& m) { return (m - n).norm() < 1e-12; }));
+    expect_sound(prism);
+    expect_exact_support(prism, prism.vertices, 1000);
+  }
 }
 
 TEST(Hull, LeavesOutPointsOnFacesAndEdges) {
