@@ -396,8 +396,11 @@ void TablesLevel::respond(ContactTally& tally) {
 void TablesLevel::sweep_contacts() {
   const SphereContactSettings& settings = contacts_.settings();
   const int usual = sweeps(), most = constants_.hulls ? std::max(usual, settings.most_hull_sweeps) : usual;
-  const float solved = settings.solved * std::sqrt(std::max(1.0f, constants_.gravity) *
-                                                   std::ranges::min(kinds_.radius));  // m/s
+  float least = kinds_.radius[spheres_.kind[0]];  // m, of those that are awake now: kinds stay when these go
+  if (!constants_.one_kind)
+    for (std::int64_t i = 1; i < spheres_.awake; ++i)
+      least = std::min(least, kinds_.radius[spheres_.kind[std::size_t(i)]]);
+  const float solved = settings.solved * std::sqrt(std::max(1.0f, constants_.gravity) * least);  // m/s
   SweepOutcome outcome;
   bool last = false;
   for (rounds_ = 0; !last;) {
