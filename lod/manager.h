@@ -258,8 +258,9 @@ class Manager {
   /// Does again what a recording tells, from its snapshot on (see restore, also for `shapes`, which must have
   /// those of bodies that it adds), up to the first step that comes out otherwise than recorded, in the state
   /// of any body to the bit. Under a budget of milliseconds that is no fault, as rungs follow the clock.
-  /// Throws InputError for what is no recording, where restore does, and where it sets a policy with a
-  /// function that the policy here lacks, whose functions are used.
+  /// One that ends in the midst of a call, as where the program ended, is done as far as it goes.
+  /// Throws InputError for what is no recording, where it comes to what is damaged, where restore does, and
+  /// where it sets a policy with a function that the policy here lacks, whose functions are used.
   ReplayResult replay(std::span<const std::byte> recording,
                       std::span<const std::shared_ptr<const Shape>> shapes = {});
 

@@ -24,6 +24,7 @@ struct ContactScene {
   bool asleep(Participant p) const {
     return p.is_statistical() ? body(p).motion == Motion::asleep : neighbor(p).asleep;
   }
+  bool is_borne_up(Participant p) const { return p.is_statistical() && body(p).borne_up; }
   const Shape& shape(Participant p) const {
     return p.is_statistical() ? *kind_of(body(p)).shape : *neighbor(p).shape;
   }

@@ -56,6 +56,11 @@ struct GroundPart {
   Vec3 velocity_at(const Vec3& point) const {
     return pose.velocity + pose.angular_velocity.cross(point - pose.position);
   }
+  /// Along the chord of the arc that a rider whose centre is `center` follows in `time` s.
+  Vec3 carrying_velocity(const Vec3& center, double time) const {
+    const Quat half_way = rotation_from_vector(0.5 * time * pose.angular_velocity);
+    return pose.velocity + pose.angular_velocity.cross(half_way * (center - pose.position));
+  }
   /// m/s: of no point of it more.
   double greatest_speed() const;
 };

@@ -11,7 +11,7 @@ namespace lodestone {
 namespace {
 
 // The chunks of a recording, one after the other. One that is cut short, as where the program ended, is the
-// end.
+// end; a damaged one throws.
 class Chunks {
  public:
   explicit Chunks(std::span<const std::byte> bytes) : left_(bytes) {
@@ -21,18 +21,25 @@ class Chunks {
     left_ = left_.subspan(kRecordingMagic.size());
   }
   bool next() {
-    std::uint64_t length = 0;
-    if (left_.size() < sizeof length) return false;
-    std::memcpy(&length, left_.data(), sizeof length);
-    if (length > left_.size() - sizeof length) return false;
-    chunk_ = left_.subspan(sizeof length, length);
-    left_ = left_.subspan(sizeof length + length);
+    ChunkHead head;
+    if (left_.size() < sizeof head) return false;
+    std::memcpy(&head, left_.data(), sizeof head);
+    left_ = left_.subspan(sizeof head);
+    if (!head.has_true_length()) throw InputError(damage());
+    if (head.length > left_.size()) return false;
+    chunk_ = left_.first(head.length);
+    left_ = left_.subspan(head.length);
+    if (!head.fits(chunk_)) throw InputError(damage());
+    ++number_;
     return true;
   }
+  /// Of the chunk that is being read, or was to be read next.
+  std::string damage() const { return fmt::format("the recording is damaged in its chunk {}", number_); }
   StateArchive chunk() const { return {chunk_, {}}; }
 
  private:
   std::span<const std::byte> left_, chunk_;
+  int number_ = 1;
 };
 
 template <class... T>

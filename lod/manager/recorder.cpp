@@ -6,6 +6,19 @@
 
 namespace lodestone {
 
+namespace {
+
+std::uint64_t hash_of(std::uint64_t length) { return XXH64(&length, sizeof length, 0); }
+
+}  // namespace
+
+ChunkHead ChunkHead::of(std::span<const std::byte> chunk) {
+  const auto length = std::uint64_t(chunk.size());
+  return {length, hash_of(length), XXH64(chunk.data(), chunk.size(), 0)};
+}
+
+bool ChunkHead::has_true_length() const { return length_hash == hash_of(length); }
+
 std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given,
                                         const BodyTable& bodies) {
   for (const std::shared_ptr<const Shape>& shape : given)
@@ -46,10 +59,9 @@ void Recorder::set(RecordFunction write, std::vector<std::byte> snapshot) {
   note(Call::begin, snapshot);
 }
 
-// Its length first.
 void Recorder::put(const std::vector<std::byte>& chunk) const {
-  const auto length = std::uint64_t(chunk.size());
-  write_(std::as_bytes(std::span(&length, 1)));
+  const ChunkHead head = ChunkHead::of(chunk);
+  write_(std::as_bytes(std::span(&head, 1)));
   write_(chunk);
 }
 

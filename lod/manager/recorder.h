@@ -46,7 +46,16 @@ enum class Call : std::uint8_t {
 inline constexpr auto kLastCall = Call::set_policy;
 
 /// What a recording starts with.
-inline constexpr std::array<char, 8> kRecordingMagic = {'L', 'O', 'D', 'E', 'R', 'E', 'C', '2'};
+inline constexpr std::array<char, 8> kRecordingMagic = {'L', 'O', 'D', 'E', 'R', 'E', 'C', '3'};
+
+/// Before each chunk: how long it is, and by what damage to that and to its bytes is known.
+struct ChunkHead {
+  std::uint64_t length = 0, length_hash = 0, hash = 0;
+  static ChunkHead of(std::span<const std::byte> chunk);
+  /// False: what says how long the chunk is was damaged.
+  bool has_true_length() const;
+  bool fits(std::span<const std::byte> chunk) const { return of(chunk).hash == hash; }
+};
 
 /// What a shape is told by, wherever it was made.
 struct ShapeName {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <span>
 
 #include "lod/simd/lane_math.h"
@@ -13,6 +14,18 @@
 #include "lod/tables/spheres.h"
 
 namespace lodestone {
+
+/// What the ground does to a body in this step.
+enum class GroundState : std::uint8_t {
+  free,     ///< does not meet it
+  near,     ///< meets it at a speed that is an impact, or may meet it
+  lies,     ///< presses on it, and slides along it: no parabola
+  settles,  ///< so, and comes under the resting conditions
+  moved,    ///< met it by itself and was moved: the end leaves it alone
+  within,   ///< its hull may meet it, the sphere that stands for it does not
+  stands,   ///< touches no other and moves on its hull
+  unsound,  ///< after the end of the step: its state cannot be
+};
 
 /// Of a step, one element an awake body. What contacts read and add are rows, and one more stands for all
 /// that sleep.
@@ -43,6 +56,14 @@ struct SphereStep {
   /// Sets the row of those that sleep.
   void clear_still(std::size_t row) { p[row] = u[row] = a[row] = s[row] = d[row] = {}; }
 
+  /// Calls visit(i) for those of [begin, end) that stand so on the ground: mostly few or none.
+  template <class Visit>
+  void each(GroundState state, std::int64_t begin, std::int64_t end, const Visit& visit) const {
+    const std::uint8_t *at = on_ground.data() + begin, *last = on_ground.data() + end;
+    while (at < last &&
+           (at = static_cast<const std::uint8_t*>(std::memchr(at, int(state), std::size_t(last - at)))))
+      visit(at++ - on_ground.data());
+  }
   bool touches(std::int64_t i) const { return p[std::size_t(i)].w > 0.0f; }
   /// m/s, with gravity but for `without`.
   Vec3 velocity(std::int64_t i, lane::Row without = {}) const {
@@ -58,18 +79,6 @@ struct SphereStep {
 
  private:
   static Vec3 vector_of(lane::Row row) { return {double(row.x), double(row.y), double(row.z)}; }
-};
-
-/// What the ground does to a body in this step.
-enum class GroundState : std::uint8_t {
-  free,     ///< does not meet it
-  near,     ///< meets it at a speed that is an impact, or may meet it
-  lies,     ///< presses on it, and slides along it: no parabola
-  settles,  ///< so, and comes under the resting conditions
-  moved,    ///< met it by itself and was moved: the end leaves it alone
-  within,   ///< its hull may meet it, the sphere that stands for it does not
-  stands,   ///< touches no other and moves on its hull
-  unsound,  ///< after the end of the step: its state cannot be
 };
 
 struct StepConstants {

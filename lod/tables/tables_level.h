@@ -5,6 +5,7 @@
 // from the tables, and motion, 7 rest.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -222,8 +223,14 @@ class TablesLevel {
   void update_clips();
   bool stands(std::int64_t place) const;
   void recover(std::int64_t place, ContactTally& tally);
+  static constexpr std::int64_t kBlock = 1024;  // bodies of a job
   template <class Task>
-  void each_block(const Task& task) const;
+  void each_block(const Task& task) const {
+    const std::int64_t count = spheres_.awake;
+    if (count == 0) return;
+    jobs_((count + kBlock - 1) / kBlock,
+          TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+  }
 
   StatisticalSettings settings_;
   const Ground& ground_;

@@ -110,8 +110,9 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
   if (point.lift != 0.0) joint_.surface.mode |= dContactMotionN;
   if (joint_.surface.slip1 > 0.0) joint_.surface.mode |= dContactSlip1 | dContactSlip2;
   copy(slip_direction(first, second, point), joint_.fdir1);
-  for (const ContactSide* side : {&first, &second})
-    if (side->motion) move_surface(side->motion->velocity_at(point.point), point, side == &first);
+  for (const auto& [side, rider] : {std::pair(&first, &second), std::pair(&second, &first)})
+    if (side->motion)
+      move_surface(carrying_velocity(*side->motion, rider->body, point.point), point, side == &first);
   const dJointID joint = dJointCreateContact(world_, group_, &joint_);
   dJointAttach(joint, first.body, second.body);
   if (touches_) touches_->watch(joint, first, second, point, approach_of(first, second, point));
@@ -121,6 +122,15 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
 double ContactJoints::approach_of(const ContactSide& first, const ContactSide& second,
                                   const ContactPoint& point) const {
   return point.normal.dot(velocity_at(second, point.point) - velocity_at(first, point.point));
+}
+
+// Along the chord of a rider's arc, not along the tangent at its beginning, on which it would walk outward by
+// ω² h² r / 2 in each step: what goes round with its carrier is turned by half of ω h on the way.
+Vec3 ContactJoints::carrying_velocity(const SurfaceMotion& carrier, dBodyID rider, const Vec3& point) const {
+  const Vec3& turning = carrier.angular_velocity;
+  if (!rider || turning.isZero(0.0)) return carrier.velocity_at(point);
+  const Vec3 going_round = to_vec3(dBodyGetLinearVel(rider)) - carrier.velocity;
+  return carrier.velocity_at(point) + (rotation_from_vector(0.5 * h_ * turning) * going_round - going_round);
 }
 
 /// `turned`: the surface is the first side, ODE's first body the second.

@@ -78,6 +78,7 @@ class ContactJoints {
  private:
   void add_joint(const ContactSide& first, const ContactSide& second, const ContactPoint& point);
   double depth_of(const ContactPoint& point) const;
+  Vec3 carrying_velocity(const SurfaceMotion& carrier, dBodyID rider, const Vec3& point) const;
   void move_surface(const Vec3& velocity, const ContactPoint& point, bool turned);
   double approach_of(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const;
   Vec3 slip_direction(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const;

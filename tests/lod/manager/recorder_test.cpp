@@ -22,18 +22,20 @@ struct Tape {
   std::vector<Bytes> chunks() const {
     std::vector<Bytes> chunks;
     for (std::size_t at = kRecordingMagic.size(); at < bytes.size();) {
-      std::uint64_t length = 0;
-      std::memcpy(&length, bytes.data() + at, sizeof length);
-      at += sizeof length;
-      EXPECT_LE(at + length, bytes.size());
-      chunks.emplace_back(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(at + length));
-      at += length;
+      ChunkHead head;
+      std::memcpy(&head, bytes.data() + at, sizeof head);
+      at += sizeof head;
+      EXPECT_LE(at + head.length, bytes.size());
+      chunks.emplace_back(bytes.begin() + std::ptrdiff_t(at),
+                          bytes.begin() + std::ptrdiff_t(at + head.length));
+      EXPECT_TRUE(head.has_true_length() && head.fits(chunks.back()));
+      at += head.length;
     }
     return chunks;
   }
 };
 
-TEST(Recorder, AChunkIsItsLengthAndTheCall) {
+TEST(Recorder, AChunkIsItsHeadAndTheCall) {
   Tape tape;
   Recorder recorder;
   EXPECT_FALSE(recorder.on());
@@ -171,6 +173,27 @@ TEST(Recording, EveryTruncationIsRefusedOrEndsAtAStep) {
     refused += fault != kNothingThrown;
   }
   EXPECT_GT(refused, 10);
+}
+
+// A bit is enough, in the call and its values, in what came of it, or in a chunk's head.
+TEST(Recording, DamageIsFoundWhereverItIs) {
+  using namespace testing;
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  Tape tape;
+  Manager manager = on_floor();
+  const BodyId body = add(manager, box, at({0, 0, 1}));
+  manager.set_record(tape.write);
+  for (int i = 0; i < 3; ++i) manager.add_impulse(body, Vec3(0, 0, 1), Vec3(0, 0, 1)), manager.step(kFrame);
+  const std::shared_ptr<const Shape> shapes[] = {box};
+  EXPECT_TRUE(on_floor().replay(tape.bytes, shapes).same);
+  for (std::size_t place = 0; place < tape.bytes.size(); place += 3) {
+    Bytes damaged = tape.bytes;
+    damaged[place] ^= std::byte(1 << place % 8);
+    const std::string fault = message_of([&] { on_floor().replay(damaged, shapes); });
+    EXPECT_TRUE(
+        fault.starts_with(place < kRecordingMagic.size() ? "no recording" : "the recording is damaged"))
+        << place << " of " << tape.bytes.size() << ": " << fault;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,218 @@
+// Stage 4 of TablesLevel's step: what touches answers, in rounds over all contacts, and what lies on the
+// ground is told from what strikes it.
+#include <algorithm>
+#include <cmath>
+
+#include "lod/tables/tables_level.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kMostUneven = 12.0;  // times the rounds of contacts of like bodies
+
+}  // namespace
+
+const TablesLevel::Load* TablesLevel::load_of(std::int64_t place) const {
+  const auto slot = std::uint32_t(spheres_.slot[std::size_t(place)]);
+  const auto load = std::ranges::lower_bound(loads_, slot, {}, &Load::slot);
+  const bool known =
+      load != loads_.end() && load->slot == slot && load->owner == spheres_.owner[std::size_t(place)];
+  return known ? &*load : nullptr;
+}
+
+template <class Visit>
+void TablesLevel::each_pressed(const Visit& visit) {
+  for (const Load& load : loads_) {
+    if (load.slot >= spheres_.place_of_slot.size()) continue;
+    const std::size_t i = spheres_.place_of_slot[load.slot];
+    if (std::int64_t(i) < spheres_.awake && step_.touches(std::int64_t(i)) &&
+        load_of(std::int64_t(i)) == &load)
+      visit(i, Vec3(load.steady * constants_.wide_time));
+  }
+}
+
+// Contacts with hulls are answered after those of spheres: what hulls pressed with in the last step these are
+// to bear now, else what lies on a heap sinks into it at the speed that gravity gives it in a step.
+void TablesLevel::press() {
+  each_pressed([&](std::size_t i, const Vec3& by) { step_.add_velocity(std::int64_t(i), by); });
+}
+
+// From whom no hull has moved after all, so that momentum is kept. What goes up or down stays: the ground
+// bore it, and who bore it last must not be flung.
+void TablesLevel::take_back_pressing() {
+  const Vec3 up = -settings_.gravity.normalized();
+  each_pressed([&](std::size_t i, const Vec3& by) {
+    if (step_.on_ground[i] != std::uint8_t(GroundState::moved))
+      step_.add_velocity(std::int64_t(i), by.dot(up) * up - by);
+  });
+}
+
+// A round passes on to a light body a share of what a heavy one on top of it weighs: the more unlike they
+// are, the more rounds, as UnevenIslands.
+int TablesLevel::sweeps() const {
+  if (!constants_.hulls) return contacts_.settings().sweeps;
+  const int usual = contacts_.settings().hull_sweeps;
+  if (one_mass_) return usual;
+  double ratio = 1.0;
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second >= std::uint32_t(spheres_.awake)) return;
+    const double up = -(double(c.nx) * constants_.wide_gx + double(c.ny) * constants_.wide_gy +
+                        double(c.nz) * constants_.wide_gz);
+    const double first = spheres_.inverse_mass[c.first], second = spheres_.inverse_mass[c.second];
+    ratio = std::max(ratio, up > 0.0 ? second / first : first / second);
+  });
+  return int(usual * std::min(kMostUneven, 1.0 + std::sqrt(0.5 * (ratio - 1.0))));
+}
+
+void TablesLevel::respond(ContactTally& tally) {
+  tally.contacts += contacts_.count();
+  if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
+  const bool crowd = contacts_.count() > 0;
+  if (crowd) contacts_.begin(spheres_, kinds_, materials_, constants_, step_, jobs_);
+  if (crowd) press();
+  give_pushes(-1.0);  // what presses a body to the ground does not throw it there
+  sort_ground();
+  give_pushes(1.0);
+  rounds_ = 0;
+  if (!crowd) return;
+  pass_blows_on();
+  sweep_contacts();
+  if (log_) write_contacts();
+}
+
+// Those of hulls as long as a round changes what bodies close in at; what is deep in each other is then taken
+// out faster than the last round alone would.
+void TablesLevel::sweep_contacts() {
+  const SphereContactSettings& settings = contacts_.settings();
+  const int usual = sweeps(), most = constants_.hulls ? std::max(usual, settings.most_hull_sweeps) : usual;
+  float least = kinds_.radius[spheres_.kind[0]];  // m, of those that are awake now: kinds stay when these go
+  if (!constants_.one_kind)
+    for (std::int64_t i = 1; i < spheres_.awake; ++i)
+      least = std::min(least, kinds_.radius[spheres_.kind[std::size_t(i)]]);
+  const float solved = settings.solved * std::sqrt(std::max(1.0f, constants_.gravity) * least);  // m/s
+  SweepOutcome outcome;
+  bool last = false;
+  for (rounds_ = 0; !last;) {
+    ++rounds_;
+    last = rounds_ >= most || (rounds_ >= usual && outcome.changed <= solved);
+    outcome = contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, last, eased_ > 0,
+                              simd_, step_, jobs_);
+    if (!last)
+      each_block([&](std::int64_t begin, std::int64_t end) {
+        if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
+        take_impulses(simd_, begin, end, step_);
+      });
+  }
+  if (!constants_.hulls || outcome.deepest <= settings.deep) return;
+  for (int round = 0; round < settings.deep_rounds; ++round) {
+    if (has_planes())
+      each_block([&](std::int64_t begin, std::int64_t end) { keep_on_ground(planes_, begin, end, step_); });
+    contacts_.move_apart(spheres_, kinds_, step_, jobs_);
+  }
+}
+
+void TablesLevel::write_contacts() {
+  contacts_.each([&](const SphereContact& c) { write_contact(c); });
+  for (const SphereContact& c : passed_) write_contact(c);
+}
+
+void TablesLevel::write_contact(const SphereContact& c) {
+  if (c.impulse <= 0.0f) return;
+  const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
+  if (c.second >= kGroundPlace) {
+    const HalfSpace& under = plane(std::int32_t(c.second - kGroundPlace));
+    return log_->add({.first = spheres_.owner[c.first],
+                      .ground = under.id,
+                      .ground_material = under.material,
+                      .point = spheres_.position(c.first) - double(ground_height(c.first, -normal)) * normal,
+                      .normal = normal,
+                      .impulse = double(c.impulse),
+                      .approach = std::max(0.0, -double(c.closing))});
+  }
+  log_->add({.first = spheres_.owner[c.first],
+             .second = spheres_.owner[c.second],
+             .point = meeting_point(c.first, c.second),
+             .normal = normal,
+             .impulse = double(c.impulse),
+             .approach = std::max(0.0, -double(c.closing))});
+}
+
+// Of those that lie on it; impacts are written where they are answered.
+void TablesLevel::write_ground() {
+  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
+    const std::uint8_t state = step_.on_ground[std::size_t(i)];
+    if (state != std::uint8_t(GroundState::lies) && state != std::uint8_t(GroundState::settles)) continue;
+    const HalfSpace& under = plane(step_.plane[std::size_t(i)]);
+    const double pressing =
+        std::max(0.0, -settings_.gravity.dot(under.normal)) * constants_.wide_time;  // m/s
+    log_->add({.first = spheres_.owner[std::size_t(i)],
+               .ground = under.id,
+               .ground_material = under.material,
+               .point = spheres_.position(i) - double(spheres_.radius[std::size_t(i)]) * under.normal,
+               .normal = under.normal,
+               .impulse = std::max(pressing, double(spheres_.held[std::size_t(i)])) /
+                          spheres_.inverse_mass[std::size_t(i)]});
+  }
+}
+
+// The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves
+// as if alone.
+void TablesLevel::respond_as_paper(ContactTally& tally) {
+  const auto take = [&](std::int64_t place, const StatisticalBody& body) {
+    spheres_.put(place, body);
+    start_block(place, place + 1, Simd::portable);
+  };
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second >= std::uint32_t(spheres_.awake)) return;
+    StatisticalBody first = spheres_.body(c.first), second = spheres_.body(c.second);
+    const BodyKind &first_kind = kind_of(c.first), &second_kind = kind_of(c.second);
+    respond_pair_as_paper(first, first_kind, second, second_kind,
+                          Vec3(double(c.nx), double(c.ny), double(c.nz)), world(),
+                          materials_.law(first_kind.material, second_kind.material), settings_.tables, tally);
+    take(c.first, first);
+    take(c.second, second);
+  });
+  contacts_.clear();
+}
+
+void TablesLevel::sort_ground() {
+  end_clips_of_touched();
+  each_block([&](std::int64_t begin, std::int64_t end) {
+    if (constants_.hulls) choose_hulls(begin, end);
+    if (!has_planes()) return clear_added(begin, end, step_);
+    sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
+    step_.each(GroundState::settles, begin, end, [&](std::int64_t i) { choose_rest_pose(i); });
+    for (auto carried = std::ranges::lower_bound(carried_, begin, {}, &Carried::place);
+         carried != carried_.end() && carried->place < end; ++carried) {
+      std::uint8_t& state = step_.on_ground[std::size_t(carried->place)];
+      const bool among_others = state >= std::uint8_t(GroundState::lies) && step_.touches(carried->place);
+      if (state != std::uint8_t(GroundState::stands) && !among_others)
+        state = std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
+    }
+  });
+}
+
+bool TablesLevel::touches_further_planes(std::int64_t place) const {
+  return std::ranges::binary_search(plane_touches_, std::uint32_t(place), {}, &PlaneTouch::place);
+}
+
+// The rest pose that needs the smallest rotation (3.4), unless it has one that holds it. What knows its hull
+// lies in a wedge as it came.
+void TablesLevel::choose_rest_pose(std::int64_t i) {
+  if (constants_.hulls && touches_further_planes(i)) {
+    spheres_.motion[i] = Motion::dynamic;
+    step_.on_ground[i] = std::uint8_t(GroundState::lies);
+    return;
+  }
+  const Quat orientation = spheres_.orientation(i);
+  const BodyKind& kind = kind_of(i);
+  const HalfSpace& under = plane(step_.plane[i]);
+  if (spheres_.motion[i] == Motion::settling &&
+      holds_pose(orientation, kind, spheres_.pose[i], under, world()))
+    return;
+  const RestingRecord resting = find_resting(orientation, kind, under, world(), settings_.tables);
+  spheres_.motion[i] = resting.pose < 0 ? Motion::dynamic : Motion::settling;
+  if (resting.pose >= 0) spheres_.pose[i] = std::int16_t(resting.pose);
+}
+
+}  // namespace lodestone
