@@ -89,6 +89,8 @@ std::string find_unsigned_fault(const std::string& text) {
              : fmt::format("found '{}', expected a whole number from 0 on", text);
 }
 
+std::string find_absence(const std::string& text) { return text.empty() ? "found '', expected a name" : ""; }
+
 // "FLOAT in [0 - 1]", "POSITIVE", "{auto,full}" are what a usage shows; a sentence says it in words.
 std::string words_for(const std::string& description) {
   const auto after = [&](std::string_view head, std::string_view words) -> std::string {
@@ -121,7 +123,7 @@ void word_alike(CLI::Option& option) {
   }
 }
 
-void check_numbers(CLI::Option& option) {
+void check_values(CLI::Option& option) {
   word_alike(option);
   const std::string type = option.get_type_name();
   // A check of their own where they are words, such as 1/60, is left to them.
@@ -135,6 +137,8 @@ void check_numbers(CLI::Option& option) {
     option.transform(CLI::Validator([](std::string& text) { return find_unsigned_fault(text); }, ""));
   else if (is_of("INT"))
     option.transform(CLI::Validator([](std::string& text) { return find_integer_fault(text); }, ""));
+  else if (option.get_items_expected_max() > 0)
+    option.check(CLI::Validator([](std::string& text) { return find_absence(text); }, ""));
 }
 
 }  // namespace
@@ -265,9 +269,9 @@ Option Command::add_text(const std::string& name, std::function<void(const std::
 
 void Command::add_footer(const std::string& text) { app_->footer(text); }
 
-void check_numbers(CLI::App& program) {
-  for (CLI::Option* option : program.get_options()) check_numbers(*option);
-  for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) check_numbers(*command);
+void check_values(CLI::App& program) {
+  for (CLI::Option* option : program.get_options()) check_values(*option);
+  for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) check_values(*command);
 }
 
 }  // namespace lodestone

@@ -114,8 +114,9 @@ class Command {
 
 /// To be called once all commands are there. From then on each of their options that takes a number refuses
 /// what is none (not a number, infinite, beyond its type's range, a sign where there can be none), before its
-/// own checks, which not-a-number passes; and every refusal of an option's value reads `found …, expected …`.
-void check_numbers(CLI::App& program);
+/// own checks, which not-a-number passes; any other refuses an empty text; and every refusal of an option's
+/// value reads `found …, expected …`.
+void check_values(CLI::App& program);
 
 template <class Arguments>
 struct Command::Added {

@@ -29,7 +29,7 @@ constexpr const char* kExitCodes =
     "cannot be used, or not\n"
     "written), 4 the simulation diverged, 130 interrupted, 143 terminated.";
 
-void complain(std::string_view message) { fmt::print(stderr, "lodestone: {}\n", printable(message)); }
+void complain(std::string_view message) { write_stderr(fmt::format("lodestone: {}\n", printable(message))); }
 
 // Of `group`, or of the group in it that was named, whose command is not one of those that it has; empty if
 // that is not what is wrong. CLI11 says no more than that one is required.
@@ -57,7 +57,7 @@ ExitCode explain(const CLI::App& program, const CLI::ParseError& error) {
   const bool is_missing = error.get_exit_code() == int(CLI::ExitCodes::RequiredError);
   const std::string fault = is_missing ? find_command_fault(program) : "";
   complain(fault.empty() ? error.what() : fault);
-  fmt::print(stderr, "Run with --help for more information.\n");
+  write_stderr("Run with --help for more information.\n");
   return ExitCode::usage;
 }
 
@@ -130,6 +130,7 @@ void add_commands(Command& program) {
 }
 
 ExitCode run_lodestone(int argc, char** argv) {
+  hold_standard_streams();
   ExitCode exit_code = ExitCode::done;
   try {
     CLI::App program("Simulation level of detail for rigid bodies, on ODE", "lodestone");
@@ -137,7 +138,7 @@ ExitCode run_lodestone(int argc, char** argv) {
     program.footer(kExitCodes);
     Command commands(program, exit_code);
     add_commands(commands);
-    check_numbers(program);
+    check_values(program);
     parse(program, argc, argv, exit_code);
     check_standard_output();
   } catch (const ArgumentError& error) {

@@ -39,7 +39,7 @@ std::size_t terminal_columns() {
 ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
-  if (shown_) fmt::print(stderr, "\r\x1b[K");
+  if (shown_) write_stderr("\r\x1b[K");
 }
 
 void ProgressLine::show(const std::string& stage, double fraction) {
@@ -55,8 +55,7 @@ void ProgressLine::show(const std::string& stage, double fraction) {
   const std::string line =
       fmt::format("[{:=<{}}{: <{}}] {:3.0f} %{} {}", "", filled, "", kBarCells - filled, 100 * fraction,
                   text_of_time_left(fraction, now_s - start_s_), printable(stage));
-  fmt::print(stderr, "\r\x1b[K{}", line.substr(0, terminal_columns() - 1));
-  std::fflush(stderr);
+  write_stderr(fmt::format("\r\x1b[K{}", line.substr(0, terminal_columns() - 1)));
 }
 
 Progress ProgressLine::function() {

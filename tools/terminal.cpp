@@ -1,10 +1,12 @@
 #include "tools/terminal.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 
 #include "reference/utf8.h"
@@ -52,9 +54,22 @@ std::string printable(std::string_view text) {
                      escape_all(text.substr(text.size() - kShown)));
 }
 
+void hold_standard_streams() {
+  for (int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) != -1) continue;
+    const int other_way = stream == STDIN_FILENO ? O_WRONLY : O_RDONLY;  // so that its use fails, as it would
+    if (open("/dev/null", other_way) != stream) return;  // takes the first that is free: this one
+  }
+}
+
+void write_stderr(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
 void warn(const std::string& message) {
-  fmt::print(stderr, "{}lodestone: warning: {}\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "",
-             printable(message));
+  write_stderr(fmt::format("{}lodestone: warning: {}\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "",
+                           printable(message)));
 }
 
 bool stdout_has_styles() {

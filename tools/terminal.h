@@ -12,6 +12,13 @@ namespace lodestone {
 /// middle is left out.
 std::string printable(std::string_view text);
 
+/// Where standard input, output or stderr is closed, the next file that is opened would take its place, and
+/// get what is said there: keeps the places. To be called before anything is opened.
+void hold_standard_streams();
+
+/// At once. Where stderr is closed or full nobody can be told, and the exit code says it alone.
+void write_stderr(std::string_view text);
+
 /// What goes on in spite of something: a line on stderr, in place of a line of progress that may stand there.
 void warn(const std::string& message);
 

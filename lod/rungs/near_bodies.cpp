@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "lod/contact/free_way.h"
 #include "lod/statistical/parting.h"
 #include "lod/statistical/turn_lanes.h"
 #include "lod/timing/stage_timer.h"
@@ -406,11 +407,38 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
     crowd_.drop(crowd_scene);
     meet_woken(step, pace, substep);
   }
+  note_places(step);
   step.tally += crowd_.move(crowd_scene, touch());
+  stop_before_unseen_ground(step);
   for (const std::int32_t index : movers_)
     if (const StatisticalBody& body = scene.bodies[std::size_t(index)];
         body.is_solved_in_crowd() && body.motion != Motion::asleep && !step.support.is_guest(index))
       step.support.update_quiet(index, faces_.of(index), time, step.tally);
+}
+
+// Of those that touch others.
+void NearBodies::note_places(const Step& step) {
+  places_.clear();
+  if (!ground_.has_parts()) return;
+  for (const std::int32_t index : movers_) {
+    const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+    if (body.crowded && body.motion != Motion::asleep &&
+        meets_solids(step.scene.world.properties_of(body.owner)))
+      places_.emplace_back(index, body.position);
+  }
+}
+
+// Whom others drive did not close in on the ground when contacts were found, and may be behind it when they
+// are next. It stops there, and strikes it in the next substep.
+void NearBodies::stop_before_unseen_ground(const Step& step) {
+  constexpr double kFar = 0.25;  // over the inner radius: whoever goes less passes nothing
+  for (const auto& [index, from] : places_) {
+    StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+    const Shape& shape = *kinds_[body.kind].shape;
+    const Vec3 way = body.position - from;
+    if (way.norm() > kFar * shape.inner_radius)
+      body.position = from + find_free_way(ground_, body, shape, from, way) * way;
+  }
 }
 
 // Of the movers those that are solved with others.

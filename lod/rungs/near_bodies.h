@@ -90,6 +90,8 @@ class NearBodies {
   void wake_touched(const Step& step, Pace pace);
   void meet_woken(const Step& step, Pace pace, int substep);
   void move_crowded(const Step& step, Pace pace, int substep);
+  void note_places(const Step& step);
+  void stop_before_unseen_ground(const Step& step);
   void take_crowded(const Step& step);
   void move_full_on(double time, int substep);
   void find_carriers(const ContactScene& scene);
@@ -109,11 +111,12 @@ class NearBodies {
   RestLaw rest_law_;
   CarriedBodies carried_;
   Blows blows_;
-  std::vector<std::int32_t> movers_;              // indices: who is awake and moves at the pace in hand
-  std::vector<Participant> woken_;                // by contacts, those that were found or solved last
-  std::vector<Participant> struck_;               // of these, those that blows reach through others
-  std::vector<Participant> inside_;               // others, so deep that these were added there
-  std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
+  std::vector<std::pair<std::int32_t, Vec3>> places_;  // of those that touch others, before they are moved
+  std::vector<std::int32_t> movers_;                   // indices: who is awake and moves at the pace in hand
+  std::vector<Participant> woken_;                     // by contacts, those that were found or solved last
+  std::vector<Participant> struck_;                    // of these, those that blows reach through others
+  std::vector<Participant> inside_;                    // others, so deep that these were added there
+  std::vector<FullNeighbor> full_, full_before_;       // the neighbours, moved on between substeps
   std::vector<SolidContact> solid_contacts_, known_contacts_;
   FacesBelow faces_, known_faces_;
   std::vector<std::int32_t> known_movers_;

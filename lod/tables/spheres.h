@@ -76,6 +76,9 @@ struct Spheres {
   }
 
   Vec3 position(std::int64_t place) const { return {x[place], y[place], z[place]}; }
+  void set_position(std::int64_t place, const Vec3& at) {
+    x[place] = at.x(), y[place] = at.y(), z[place] = at.z();
+  }
   Vec3 velocity(std::int64_t place) const { return {vx[place], vy[place], vz[place]}; }
   Vec3 spin(std::int64_t place) const { return {lx[place], ly[place], lz[place]}; }
   Quat orientation(std::int64_t place) const {

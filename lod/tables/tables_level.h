@@ -107,6 +107,12 @@ class TablesLevel {
   double count_traffic(bool pair_phase) const;
 
  private:
+  /// One that its contacts made faster, where it was, and how fast it was (m/s).
+  struct Driven {
+    std::int64_t place = 0;
+    Vec3 from = Vec3::Zero();  // m
+    double speed = 0.0;
+  };
   struct NearFaces {
     std::int64_t place = 0;
     std::int32_t begin = 0, end = 0;  // in faces_
@@ -171,8 +177,11 @@ class TablesLevel {
   void note_pushes();
   void take_back_excess();
   void keep_above_ground();
+  void note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const;
+  void stop_before_unseen_ground();
   void give_pushes(double share);
   void start(double dt, std::span<const std::uint32_t> order);
+  double ground_reach(std::int64_t place, double speed) const;
   void find_near_faces(std::int64_t begin, std::int64_t end);
   bool find_planes_of(std::int64_t place);
   bool is_cornered(std::int64_t place, std::span<const GroundNear> near, double margin) const;
@@ -275,6 +284,7 @@ class TablesLevel {
   std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
+  std::vector<std::vector<Driven>> driven_;       // likewise
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
       still_touches_,  // place awake, slot asleep; then both places
       left_asleep_;    // those of them that touch too gently to wake the sleeper

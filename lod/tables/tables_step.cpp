@@ -104,84 +104,6 @@ void TablesLevel::start_block(std::int64_t begin, std::int64_t end, Simd simd) {
                        near->place + 1, step_);
 }
 
-// Of the spheres at places [begin, end): what they are near of the ground's parts, as planes.
-void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
-  if (!ground_.has_parts()) return;
-  const double time = constants_.wide_time, fall = 0.5 * settings_.gravity.norm() * time * time;
-  thread_local std::vector<GroundNear> near;
-  for (std::int64_t i = begin; i < end; ++i) {
-    const double size = double(kinds_.radius[spheres_.kind[i]]),
-                 way = spheres_.velocity(i).norm() * time + fall;
-    const Vec3 center = spheres_.position(i);
-    near.clear();
-    const std::size_t first = faces_.size();
-    const bool alone = is_alone(i), only_planes = alone && find_planes_of(i);
-    const PairBody hull{kind_of(i).shape.get(), center, spheres_.orientation(i)};
-    if (!only_planes)
-      find_ground_near(ground_, center, 1.01 * size + way, 0.0, near, constants_.hulls ? &hull : nullptr);
-    for (const GroundNear& n : near) faces_.push_back(n.plane(center));
-    if (faces_.size() == first) continue;
-    for (std::size_t face = first; face < faces_.size(); ++face) {
-      const GroundPart* part = only_planes ? nullptr : near[face - first].part;  // which moves, perhaps
-      planes_.add(faces_[face], materials_, kinds_, settings_.gravity,
-                  part ? part->carrying_velocity(center, time) : Vec3(Vec3::Zero()),
-                  part ? part->pose.angular_velocity : Vec3(Vec3::Zero()));
-    }
-    const double margin = 0.01 * size + way;
-    const bool cornered = (alone && !only_planes) || is_cornered(i, near, margin);
-    const bool above = std::ranges::none_of(near, [](const GroundNear& n) { return n.part->moves(); }) &&
-                       std::all_of(faces_.begin() + std::ptrdiff_t(first), faces_.end(),
-                                   [&](const HalfSpace& face) { return face.height_of(center) >= 0.0; });
-    near_faces_.push_back(
-        {i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered, above});
-    const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
-      return n.part->moves() && n.height < double(spheres_.radius[i]) + margin;
-    });
-    if (mover != near.end())
-      carried_.push_back(
-          {i, mover->part->carrying_velocity(center, time), mover->part->pose.angular_velocity});
-    if (cornered) cornered_.push_back(spheres_.slot[i]);
-  }
-}
-
-// Among others, of what is nearer than it reaches, `margin` m around. A published sphere meets one plane; one
-// that knows its hull meets as many as there are, but over edges its hull tips as long as it moves, and what
-// moves holds it.
-bool TablesLevel::is_cornered(std::int64_t place, std::span<const GroundNear> near, double margin) const {
-  const auto is_held = [&] {
-    return is_held_several_ways(near, ground_.planes(), spheres_.position(place),
-                                double(spheres_.radius[std::size_t(place)]) + margin);
-  };
-  if (!constants_.hulls) return is_held();
-  const auto is_over_edge = [&](const GroundNear& n) {
-    return n.at_edge && n.height <= double(ground_height(place, -n.normal)) + margin;
-  };
-  if (std::ranges::any_of(near, is_over_edge) && !is_nearly_still(spheres_.body(place), kind_of(place), true))
-    return true;
-  return std::ranges::any_of(near, [](const GroundNear& n) { return n.part->moves(); }) && is_held();
-}
-
-// Of one that may stand on its hull. Who stands does until an edge is near, who does not waits until it is
-// farther away: else one at rest there would go on to change.
-bool TablesLevel::find_planes_of(std::int64_t place) {
-  constexpr double kSlack = 0.1;  // over R
-  const BodyKind& kind = kind_of(place);
-  const double slack =
-      spheres_.on_hull[std::size_t(place)] == HullStand::none ? kSlack * kind.shape->radius : 0.0;
-  return find_planes_below(spheres_.body(place), kind, ground_, slack, constants_.wide_time, faces_);
-}
-
-const TablesLevel::NearFaces* TablesLevel::near_faces_at(std::int64_t place) const {
-  const auto near = std::ranges::lower_bound(near_faces_, place, {}, &NearFaces::place);
-  return near == near_faces_.end() || near->place != place ? nullptr : &*near;
-}
-
-std::span<const HalfSpace> TablesLevel::faces_of(std::int64_t place) const {
-  const NearFaces* near = near_faces_at(place);
-  if (!near) return {};
-  return std::span(faces_).subspan(std::size_t(near->begin), std::size_t(near->end - near->begin));
-}
-
 void TablesLevel::update_radii_one_by_one() {
   for (std::int64_t i = 0; i < spheres_.awake; ++i)
     if (spheres_.motion[i] == Motion::dynamic && spheres_.since_crowded[i] > 0)
@@ -215,39 +137,6 @@ void TablesLevel::note_paired() {
   });
 }
 
-// A body meets the plane that carries it as ground; in a corner it touches more, and is held by each.
-void TablesLevel::find_further_planes() {
-  const std::span<const HalfSpace> everywhere = ground_.planes();
-  plane_touches_.clear();
-  if (everywhere.size() + faces_.size() < 2) return;
-  if (constants_.hulls) note_paired();
-  const auto look = [&](std::int64_t i, std::uint32_t number) {
-    if (std::int32_t(number) == step_.plane[std::size_t(i)]) return;
-    const HalfSpace& other = plane(std::int32_t(number));
-    const float gap = float(other.height_of(spheres_.position(i))) - ground_height(i, -other.normal),
-                closing = float(spheres_.velocity(i).dot(other.normal));
-    const BodyKind& kind = kind_of(i);
-    if (gap + closing * constants_.time > contacts_.settings().touching * float(kind.shape->radius)) return;
-    const Vec3& n = other.normal;
-    plane_touches_.push_back({.place = std::uint32_t(i),
-                              .plane = number,
-                              .normal = {float(n.x()), float(n.y()), float(n.z())},
-                              .gap = gap,
-                              .closing = closing,
-                              .law = materials_.law(kind.material, other.material)});
-  };
-  auto near = near_faces_.begin();
-  step_.each(GroundState::near, 0, spheres_.awake, [&](std::int64_t i) {
-    if (constants_.hulls && !paired_[std::size_t(i)] && is_alone(i)) return;  // its hull, on all of them
-    for (std::uint32_t number = 0; number < everywhere.size(); ++number) look(i, number);
-    while (near != near_faces_.end() && near->place < i) ++near;
-    if (near == near_faces_.end() || near->place != i) return;
-    for (std::int32_t face = near->begin; face < near->end; ++face)
-      look(i, std::uint32_t(everywhere.size()) + std::uint32_t(face));
-  });
-  if (!plane_touches_.empty()) contacts_.add_ground(spheres_, plane_touches_, bounce_velocity(), constants_);
-}
-
 // Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts,
 // motion.
 void TablesLevel::finish(ContactTally& tally) {
@@ -255,6 +144,7 @@ void TablesLevel::finish(ContactTally& tally) {
   take_back_pressing();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
   joined_.resize(std::max(joined_.size(), tallies_.size()));
+  driven_.resize(std::max(driven_.size(), tallies_.size()));
   tips_ = constants_.hulls && kinds_.any_tips() && contacts_.count() > 0;
   if (tips_) {
     tipping_.clear(std::size_t(spheres_.awake));
@@ -265,6 +155,7 @@ void TablesLevel::finish(ContactTally& tally) {
   each_block([&](std::int64_t begin, std::int64_t end) {
     ContactTally& own = tallies_[std::size_t(begin / kBlock)];
     std::vector<PlayingClip>& joined = joined_[std::size_t(begin / kBlock)];
+    note_driven(begin, end, driven_[std::size_t(begin / kBlock)]);
     if (ground) {
       sweep_ground(planes_, constants_, simd_, begin, end, step_);
       lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
@@ -279,6 +170,7 @@ void TablesLevel::finish(ContactTally& tally) {
   for (const ContactTally& t : tallies_) tally += t;
   take_back_excess();
   keep_above_ground();
+  stop_before_unseen_ground();
   update_clips();
   if (log_ && ground) write_ground();
 }
@@ -290,27 +182,6 @@ void TablesLevel::take_back_excess() {
     if (step_.on_ground[i] != std::uint8_t(GroundState::free) || step_.touches(std::int64_t(i))) continue;
     const Vec3 too_far = 0.5 * constants_.wide_time * constants_.wide_time * force.acceleration;
     spheres_.x[i] -= too_far.x(), spheres_.y[i] -= too_far.y(), spheres_.z[i] -= too_far.z();
-  }
-}
-
-// Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way.
-// Out of ground without an underside it comes back; beyond the middle of a slab it would leave by the other
-// side.
-void TablesLevel::keep_above_ground() {
-  constexpr double kLeast = 0.02;  // over R
-  for (const NearFaces& near : near_faces_) {
-    const auto i = std::size_t(near.place);
-    if (!near.above || near.place >= spheres_.awake || !step_.touches(near.place)) continue;
-    for (std::int32_t face = near.begin; face < near.end; ++face) {
-      const HalfSpace& plane = faces_[std::size_t(face)];
-      const double lift =
-          kLeast * double(kinds_.radius[spheres_.kind[i]]) - plane.height_of(spheres_.position(near.place));
-      if (lift <= 0.0) continue;
-      const Vec3 out = lift * plane.normal,
-                 stop = std::max(0.0, -spheres_.velocity(near.place).dot(plane.normal)) * plane.normal;
-      spheres_.x[i] += out.x(), spheres_.y[i] += out.y(), spheres_.z[i] += out.z();
-      spheres_.vx[i] += stop.x(), spheres_.vy[i] += stop.y(), spheres_.vz[i] += stop.z();
-    }
   }
 }
 

@@ -25,6 +25,7 @@ struct Motion {
   std::array<dReal, 12> rotation{};
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero(), given_force = Vec3::Zero(), given_torque = Vec3::Zero();
   double to_sleep_s = 0.0;
+  std::uint64_t joints_at_rest = 0;
   int last_support = 0;
   bool awake = true, was_enabled = true, disturbed = false;
 };
@@ -55,6 +56,7 @@ Motion motion_of(const Body& body) {
   motion.given_force = body.force, motion.given_torque = body.torque;
   motion.last_support = body.last_support;
   motion.to_sleep_s = body.to_sleep_s;
+  motion.joints_at_rest = body.joints_at_rest;
   motion.awake = dBodyIsEnabled(body.body), motion.was_enabled = body.was_enabled,
   motion.disturbed = body.disturbed;
   return motion;
@@ -69,6 +71,7 @@ void set_motion(Body& body, const Motion& motion) {
   body.last_good = motion.last_good;
   body.last_support = motion.last_support;
   body.impact_time.reset();
+  body.joints_at_rest = motion.joints_at_rest;
   body.to_sleep_s = motion.to_sleep_s, body.was_enabled = motion.was_enabled,
   body.disturbed = motion.disturbed;
   motion.awake ? dBodyEnable(body.body) : dBodyDisable(body.body);

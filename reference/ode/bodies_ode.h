@@ -30,12 +30,13 @@ struct Body {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   RigidState last_good;
   BodyProperties properties;
-  double to_sleep_s = 0.0;   ///< how much longer it has to be still to fall asleep
-  bool was_enabled = true;   ///< after the last substep
-  bool fell_asleep = false;  ///< in this substep
-  bool kept_awake = false;   ///< in this step, with what it touches
-  bool disturbed = false;    ///< since: what it may lie on came, went or was moved
-  bool damped = false;       ///< ODE was told of its damping
+  double to_sleep_s = 0.0;           ///< how much longer it has to be still to fall asleep
+  bool was_enabled = true;           ///< after the last substep
+  bool fell_asleep = false;          ///< in this substep
+  bool kept_awake = false;           ///< in this step, with what it touches
+  bool disturbed = false;            ///< since: what it may lie on came, went or was moved
+  bool damped = false;               ///< ODE was told of its damping
+  std::uint64_t joints_at_rest = 0;  ///< sum_up_joints() of one that sleeps; 0: not known, or awake
   OdeGeometry geometry = OdeGeometry::trimesh;
   std::uint64_t birth =
       0;  ///< bodies of this world made before it: ODE goes through them from the last to the first

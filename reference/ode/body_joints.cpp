@@ -1,6 +1,9 @@
 #include "reference/ode/body_joints.h"
 
 #include <ode/ode.h>
+#include <xxhash.h>
+
+#include <array>
 
 namespace lodestone {
 namespace {
@@ -21,7 +24,53 @@ void hold(dxBody* second, const Vec3& point, std::vector<JointRow>& rows) {
     rows.push_back({second, point, direction});
 }
 
+struct JointParameters {
+  dReal (*read)(dJointID, int) = nullptr;
+  int axes = 1;
+};
+
+JointParameters parameters_of(dJointType type) {
+  switch (type) {
+    case dJointTypeHinge:
+      return {dJointGetHingeParam};
+    case dJointTypeSlider:
+      return {dJointGetSliderParam};
+    case dJointTypePiston:
+      return {dJointGetPistonParam};
+    case dJointTypeHinge2:
+      return {dJointGetHinge2Param, 2};
+    case dJointTypeUniversal:
+      return {dJointGetUniversalParam, 2};
+    case dJointTypeAMotor:
+      return {dJointGetAMotorParam, 3};
+    case dJointTypeLMotor:
+      return {dJointGetLMotorParam, 3};
+    default:
+      return {};
+  }
+}
+
 }  // namespace
+
+std::uint64_t sum_up_joints(dxBody* body) {
+  std::uint64_t sum = 1;
+  for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
+    const dJointID joint = dBodyGetJoint(body, i);
+    const dJointType type = dJointGetType(joint);
+    if (type == dJointTypeContact) continue;
+    std::uint64_t own = std::uint64_t(type) * 2 + std::uint64_t(dJointIsEnabled(joint));
+    const JointParameters parameters = parameters_of(type);
+    for (int axis = 0; parameters.read && axis < parameters.axes; ++axis) {
+      std::array<double, 4> settings{};
+      const std::array<int, 4> names{dParamVel, dParamFMax, dParamLoStop, dParamHiStop};
+      for (std::size_t k = 0; k < names.size(); ++k)
+        settings[k] = parameters.read(joint, names[k] + axis * dParamGroup2);
+      own = XXH64(settings.data(), sizeof settings, own);
+    }
+    sum += 2 * own;  // in any order, and never 0
+  }
+  return sum;
+}
 
 void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
   for (int i = 0; i < dBodyGetNumJoints(body); ++i) {

@@ -1,6 +1,7 @@
 // The joints that a caller has put on an ODE body, and those of a scene.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "reference/geometry.h"
@@ -42,6 +43,11 @@ struct JointMotor {
 void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& motors);
 /// Whether find_joint_motors() has the joint's.
 bool has_motor(dxJoint* joint);
+
+/// Of what `body` hangs on, contacts left out: how many joints, and what the motors and stops of hinges (1
+/// and 2), sliders, pistons, universal joints and pure motors are set to. Another number, never 0, where that
+/// is another.
+std::uint64_t sum_up_joints(dxBody* body);
 
 enum class JointKind { ball, hinge };
 

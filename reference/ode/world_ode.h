@@ -43,6 +43,7 @@ struct OdeWorld::Impl {
   void take_back_bodies();
   void put_back(ode::Body& body);
   void put_back_unsound();
+  void wake_whose_joints_changed();
   void recover_bodies();
   void count_uneven_contacts();
   void wake_neighbors(const ode::Body& body);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "reference/ode/body_joints.h"
 #include "reference/ode/islands.h"
 #include "reference/ode/world_ode.h"
 #include "reference/simulation_error.h"
@@ -71,6 +72,7 @@ bool OdeWorld::Impl::has_work() {
 
 void OdeWorld::Impl::look_at_callers_space() {
   put_back_unsound();
+  wake_whose_joints_changed();
   if (!mirror) return;
   mirror->refresh();
   collision.note_changes(bodies);
@@ -254,6 +256,10 @@ void OdeWorld::Impl::recover_bodies() {
     if (!body.body) continue;
     body.was_enabled = dBodyIsEnabled(body.body);
     collision.broad_phase().note_sleep(body);
+    if (body.was_enabled)
+      body.joints_at_rest = 0;
+    else if (body.joints_at_rest == 0)
+      body.joints_at_rest = sum_up_joints(body.body);
     if (!body.was_enabled) continue;
     RigidState now = state_of(body.body);
     if (is_sound(now)) {
@@ -283,6 +289,21 @@ void OdeWorld::Impl::put_back_unsound() {
     if (!pushed && is_sound(state_of(body.body))) continue;
     put_back(body);
     collision.broad_phase().forget(body);
+  }
+}
+
+// ODE lets a sleeper hang in the air whose joint was destroyed, and be deaf to its motor and to
+// dBodyAddForce.
+void OdeWorld::Impl::wake_whose_joints_changed() {
+  for (Body& body : bodies.slots()) {
+    if (!body.body || dBodyIsEnabled(body.body) || body.properties.kinematic) continue;
+    const std::uint64_t hangs_on = sum_up_joints(body.body);
+    if (body.joints_at_rest == 0) body.joints_at_rest = hangs_on;
+    const bool is_pushed =
+        !to_vec3(dBodyGetForce(body.body)).isZero(0.0) || !to_vec3(dBodyGetTorque(body.body)).isZero(0.0);
+    if (hangs_on == body.joints_at_rest && !is_pushed) continue;
+    body.joints_at_rest = 0;
+    wake(body.body);
   }
 }
 

@@ -106,7 +106,7 @@ class ArgumentChecks : public ::testing::Test {
   ArgumentChecks() {
     Command commands(program_, exit_code_);
     add_commands(commands);
-    check_numbers(program_);
+    check_values(program_);
   }
 
   // Those of every command whose type begins with `type`.

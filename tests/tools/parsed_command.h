@@ -20,7 +20,7 @@ Arguments parse(const std::string& line, const auto& add) {
   auto [command, arguments] =
       Command(program, exit_code).add<Arguments>("do", "it", [&](Arguments& given) { parsed = given; });
   add(command, arguments);
-  check_numbers(program);
+  check_values(program);
   program.parse("do " + line);
   EXPECT_EQ(exit_code, ExitCode::done);
   return parsed;

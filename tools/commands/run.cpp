@@ -32,7 +32,8 @@ ExitCode run(const RunCommandArguments& arguments) {
   print_results(arguments.results, json_of(result),
                 fmt::format("{}: {} bodies, {} steps\n{}", arguments.run.scene.string(), result.bodies,
                             result.steps, text_of(result)));
-  if (!result.write_error.empty()) fmt::print(stderr, "lodestone: {}\n", printable(result.write_error));
+  if (!result.write_error.empty())
+    write_stderr(fmt::format("lodestone: {}\n", printable(result.write_error)));
   return exit_code_of(result);
 }
 

@@ -63,8 +63,9 @@ SourcedSignature sign_from_trials(const SignArguments& arguments, const Shape& s
   Signature signature =
       make_signature_from_trials(shape, settings_of(arguments), trials,
                                  {.threads = arguments.threads, .progress = line.function()}, &coverage);
-  fmt::print(stderr, "{} collisions fill {} of {} cells; {} left out; {} rests. The rest is ODE's.\n",
-             coverage.collisions, coverage.measured_cells, coverage.cells, coverage.left_out, coverage.rests);
+  write_stderr(fmt::format("{} collisions fill {} of {} cells; {} left out; {} rests. The rest is ODE's.\n",
+                           coverage.collisions, coverage.measured_cells, coverage.cells, coverage.left_out,
+                           coverage.rests));
   return {.signature = std::make_shared<const Signature>(std::move(signature)), .file = {}};
 }
 

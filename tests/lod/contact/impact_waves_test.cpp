@@ -9,7 +9,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kWaveStep = 1.0 / 180.0, kSpeed = 4.0, kRadius = 0.1;
+constexpr double kWaveStep = 1.0 / 180.0, kSpeed = 4.0, kWaveRadius = 0.1;
 
 // Equal balls along x without a gap, the first of which comes at the others.
 struct Row {
@@ -17,7 +17,7 @@ struct Row {
     for (int i = 0; i < count; ++i) {
       SolverBody& body = bodies.emplace_back();
       body.inverse_mass = 1.0;
-      body.inverse_inertia = 2.5 / (kRadius * kRadius) * Mat3::Identity();
+      body.inverse_inertia = 2.5 / (kWaveRadius * kWaveRadius) * Mat3::Identity();
     }
     bodies[0].velocity = Vec3(kSpeed, 0, 0);
     for (int i = 0; i + 1 < count; ++i) {
@@ -28,7 +28,7 @@ struct Row {
                            .begin = std::uint32_t(i),
                            .count = 1});
       CrowdPoint& point = points.emplace_back();
-      point.arm_first = Vec3(-kRadius, 0, 0), point.arm_second = Vec3(kRadius, 0, 0);
+      point.arm_first = Vec3(-kWaveRadius, 0, 0), point.arm_second = Vec3(kWaveRadius, 0, 0);
       if (i > 0) point.guess = Vec3(load, 0, 0);
     }
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
+#include <string_view>
 #include <vector>
 
 #include "tests/lod/manager/manager_fixture.h"
@@ -69,6 +70,43 @@ TEST(JointForces, AForceOnASleeperMovesAllThatIsJoinedToIt) {
       manager.step(kFrame);
     }
     EXPECT_NEAR(manager.state(chain[0]).position.x(), 0.5 * 0.3 * kFriction * 9.81, 0.02) << woken;
+  }
+}
+
+// A cube that sleeps on a joint to the world: what its author changes there wakes it, as it would not in ODE.
+TEST(JointForces, ASleeperFeelsWhatIsDoneToItsJoint) {
+  struct Case {
+    const char* what;
+    void (*change)(dJointID joint, dBodyID body);
+    double least;  // m, that it moves in half a second
+  };
+  for (const auto& [what, change, least] :
+       {Case{"destroyed", [](dJointID joint, dBodyID) { dJointDestroy(joint); }, 1.0},
+        {"motor", [](dJointID joint, dBodyID) { dJointSetSliderParam(joint, dParamVel, 1.0); }, 0.4},
+        {"stop", [](dJointID joint, dBodyID) { dJointSetSliderParam(joint, dParamLoStop, 0.1); }, 0.05},
+        {"force", [](dJointID, dBodyID body) { dBodyAddForce(body, 500, 0, 0); }, 0.02},
+        {"nothing", [](dJointID, dBodyID) {}, 0.0}}) {
+    JointedWorld theirs;
+    Manager manager(theirs.world, theirs.space, unmeasured());
+    const Vec3 start(0, 0, 3);
+    const BodyId cube = add(manager, box_shape({0.2, 0.2, 0.2}), at(start), LevelChoice::full);
+    run(manager, kFrame);
+    const dJointID joint = dJointCreateSlider(theirs.world, nullptr);
+    const double power = std::string_view(what) == "force" || std::string_view(what) == "stop" ? 0.0 : 100.0;
+    dJointAttach(joint, manager.ode_body(cube), nullptr);
+    dJointSetSliderAxis(joint, 1, 0, 0);
+    dJointSetSliderParam(joint, dParamFMax, power);
+    manager.set_state(cube, at(start));
+    run(manager, 2.0);
+    ASSERT_TRUE(manager.asleep(cube)) << what;
+    const Vec3 before = manager.state(cube).position;
+    change(joint, manager.ode_body(cube));
+    run(manager, 0.5);
+    const double moved = (manager.state(cube).position - before).norm();
+    EXPECT_GE(moved, least) << what;
+    if (least == 0.0) {
+      EXPECT_TRUE(manager.asleep(cube));
+    }
   }
 }
 

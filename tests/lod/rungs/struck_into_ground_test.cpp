@@ -1,0 +1,50 @@
+// What others drive at a wall within a step was not on its way there when the ground was looked for.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+using testing::add;
+using testing::coarse_signature;
+using testing::kFrame;
+
+constexpr double kStruckRadius = 0.05,
+                 kStrikerRadius =
+                     0.1;  // m: radii of what is struck, and of a ball of eight times its density
+
+// How many of those before a wall `thick` m thick, at 16 distances, are behind it after a second.
+int pass_wall(LevelChoice level, bool is_ball, double speed, double thick) {
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kStruckRadius)),
+             striker = std::make_shared<const Shape>(make_sphere_shape(kStrikerRadius)),
+             box = testing::box_shape({2 * kStruckRadius, 2 * kStruckRadius, 2 * kStruckRadius});
+  Manager manager = testing::on_floor({.signatures = coarse_signature});
+  manager.add_static_box({thick, 90, 40}, {0.5 * thick, 0, 20}, Quat::Identity());
+  std::vector<BodyId> struck;
+  for (int i = 0; i < 16; ++i) {
+    const double x = -kStruckRadius - 0.02 - 0.037 * i, y = 3.0 * i - 24.0;  // m
+    struck.push_back(add(manager, is_ball ? ball : box, testing::at({x, y, kStruckRadius}), level));
+    RigidState coming = testing::at({x - 0.5, y, kStrikerRadius});
+    coming.velocity.x() = speed;
+    manager.add_body({.shape = striker, .state = coming, .mass = 8.4, .level = level});
+  }
+  for (int frame = 0; frame < 60; ++frame) manager.step(kFrame);
+  return int(std::ranges::count_if(
+      struck, [&](BodyId body) { return manager.state(body).position.x() > 0.5 * thick; }));
+}
+
+TEST(StruckIntoGround, NothingPassesAWall) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const bool is_ball : {false, true})
+      for (const double speed : {10.0, 40.0})
+        for (const double thick : {0.02, 0.2})
+          EXPECT_EQ(pass_wall(level, is_ball, speed, thick), 0)
+              << int(level) << (is_ball ? " ball, " : " box, ") << speed << " m/s, " << thick << " m";
+}
+
+}  // namespace
+}  // namespace lodestone
