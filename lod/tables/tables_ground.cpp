@@ -160,7 +160,7 @@ void TablesLevel::note_driven(std::int64_t begin, std::int64_t end, std::vector<
 // What is struck within a step may come to ground that was out of its reach, on whose other side it would be
 // before anybody looks. It stops there, and strikes it in the next step.
 void TablesLevel::stop_before_unseen_ground() {
-  for (const std::vector<Driven>& of_block : driven_)
+  for (const std::vector<Driven>& of_block : std::span(driven_).first(tallies_.size()))  // of this step
     for (const Driven& driven : of_block) {
       const double radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
       const Vec3 way = spheres_.position(driven.place) - driven.from;

@@ -46,5 +46,31 @@ TEST(StruckIntoGround, NothingPassesAWall) {
               << int(level) << (is_ball ? " ball, " : " box, ") << speed << " m/s, " << thick << " m";
 }
 
+// More than a thousand, so that they stand in several blocks, of which the last have nobody later: what was
+// noted of bodies there says nothing of who has come to their places, behind other walls.
+TEST(StruckIntoGround, WhoWasStruckOnceIsLeftAloneLater) {
+  Manager manager({.signatures = coarse_signature});
+  manager.add_static_box({90, 90, 1}, {0, 0, -0.5}, Quat::Identity());
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kStruckRadius));
+  std::vector<BodyId> balls;
+  for (int i = 0; i < 1'300; ++i) {
+    const double x = 0.5 * (i / 2 % 26) - 6.0, y = 0.5 * (i / 52) - 6.0;  // m
+    RigidState state = testing::at({x, y, kStruckRadius + 0.5 + 0.25 * (i % 2)});
+    state.velocity.z() = i % 2 == 0 ? 0.0 : -10.0;
+    balls.push_back(manager.add_body({.shape = ball, .state = state, .level = LevelChoice::tables}));
+  }
+  for (int i = 0; i < 25; ++i)
+    manager.add_static_box({0.02, 90, 4}, {0.5 * i - 5.75, 0, 2}, Quat::Identity());
+  manager.step(kFrame);  // in which all are struck
+  for (std::size_t i = 2; i < balls.size(); ++i) manager.sleep(balls[i]);
+  for (int frame = 0; frame < 5; ++frame) {
+    std::vector<Vec3> before;
+    for (const BodyId body : balls) before.push_back(manager.state(body).position);
+    manager.step(kFrame);
+    for (std::size_t i = 2; i < balls.size(); ++i)
+      ASSERT_EQ(manager.state(balls[i]).position, before[i]) << i << " in frame " << frame;
+  }
+}
+
 }  // namespace
 }  // namespace lodestone
