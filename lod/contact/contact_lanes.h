@@ -13,6 +13,7 @@
 
 #include "lod/contact/contact_solver.h"
 #include "lod/contact/crowd_manifold.h"
+#include "lod/room.h"
 #include "lod/simd/lanes.h"
 
 namespace lodestone {
@@ -202,7 +203,7 @@ class ContactLanes {
   /// points of all are made by end().
   void add_batch(const CrowdContacts& contacts, std::span<const std::uint32_t> which,
                  std::span<const double> unit_mass);
-  void end() { points_.resize(point_count_); }
+  void end() { resize_in_room(points_, point_count_); }
   bool empty() const { return batches_.empty(); }
 
   /// Frames, effective masses, the velocities to reach and guesses of the batches [begin, end); the contacts'
@@ -404,7 +405,7 @@ void ContactLanes<L>::take_motions(std::span<const SolverBody> bodies) {
 template <Lanes L>
 void ContactLanes<L>::add_batch(const CrowdContacts& contacts, std::span<const std::uint32_t> which,
                                 std::span<const double> unit_mass) {
-  BatchLanes<L>& batch = batches_.emplace_back();
+  BatchLanes<L>& batch = append_in_room(batches_);
   batch.lanes = std::int32_t(which.size());
   batch.begin = point_count_;
   for (std::size_t lane = 0; lane < which.size(); ++lane) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "lod/room.h"
+
 namespace lodestone {
 namespace {
 
@@ -57,20 +59,21 @@ void ContactMemory::remember(std::span<const ContactKey> keys, std::span<const C
   if (!shares_.remembers) return;
   begun_ = true;
   last_substep_.clear();
-  last_substep_.loads.reserve(points.size());
-  for (const CrowdPoint& point : points) {
-    const Vec3& bears = point.in_blow ? point.guess : point.impulse;
-    last_substep_.loads.push_back({(bears / step).cast<float>(), point.arm_first.cast<float>(),
-                                   point.in_blow ? -1.0F : point.frictionless / float(step)});
-  }
-  for (const CrowdManifold& m : manifolds)
-    if (m.to_forget)
-      for (Load& load : std::span(last_substep_.loads).subspan(m.begin, m.count))
-        load.force.setZero(), load.frictionless = -1.0F;
+  std::vector<Load>& loads = last_substep_.loads;
   each_run(keys, [&](ContactKey key, std::size_t first, std::size_t end) {
+    const auto begin = std::uint32_t(loads.size());
+    for (const CrowdManifold& m : manifolds.subspan(first, end - first)) {
+      if (m.to_forget) continue;
+      for (const CrowdPoint& point : points.subspan(m.begin, m.count)) {
+        const Vec3& bears = point.in_blow ? point.guess : point.impulse;
+        const float frictionless = point.in_blow ? -1.0F : point.frictionless;
+        if (bears.isZero(0.0) && frictionless < 0.0F) continue;  // most points of a heap bear nothing
+        append_in_room(loads) = {(bears / step).cast<float>(), point.arm_first.cast<float>(),
+                                 frictionless / float(step)};
+      }
+    }
     last_substep_.place.add(key);
-    const std::uint32_t begin = manifolds[first].begin;
-    last_substep_.runs.push_back({begin, manifolds[end - 1].begin + manifolds[end - 1].count - begin});
+    last_substep_.runs.push_back({begin, std::uint32_t(loads.size()) - begin});
   });
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "lod/contact/crowd.h"
+#include "lod/room.h"
 
 namespace lodestone {
 namespace {
@@ -55,8 +56,8 @@ int Crowd::solver_index(Participant p) {
 
 // Those of the participants from `from` on.
 void Crowd::take_bodies(const ContactScene& scene, std::size_t from, double time) {
-  solver_bodies_.resize(participants_.size());
-  angular_before_.resize(participants_.size());
+  resize_in_room(solver_bodies_, participants_.size());
+  resize_in_room(angular_before_, participants_.size());
   run_in_pieces(jobs_, std::int64_t(participants_.size() - from), kBlock,
                 [&](std::int64_t begin, std::int64_t end) {
                   for (std::size_t i = from + std::size_t(begin); i < from + std::size_t(end); ++i) {
@@ -102,14 +103,14 @@ std::int32_t Crowd::solver_index_of_ground(const Vec3& velocity) {
 
 void Crowd::add_manifold(ContactKey key, std::int32_t first, std::int32_t second, const Vec3& normal,
                          const ContactLaw& law) {
-  keys_.push_back(key);
-  manifolds_.push_back({first, second, normal, law, std::uint32_t(points_.size()), 0});
-  grounds_.emplace_back();
+  append_in_room(keys_) = key;
+  append_in_room(manifolds_) = {first, second, normal, law, std::uint32_t(points_.size()), 0};
+  append_in_room(grounds_);
 }
 
 // Of the last manifold.
 void Crowd::add_point(const Vec3& arm_first, const Vec3& arm_second, double gap) {
-  CrowdPoint& point = points_.emplace_back();
+  CrowdPoint& point = append_in_room(points_);
   point.arm_first = arm_first;
   point.arm_second = arm_second;
   point.gap = gap;
@@ -118,8 +119,8 @@ void Crowd::add_point(const Vec3& arm_first, const Vec3& arm_second, double gap)
 
 // The first manifolds of all.
 void Crowd::add_pair_contacts(const ContactScene& scene, std::span<const CrowdContact> contacts) {
-  keys_.resize(contacts.size());
-  manifolds_.resize(contacts.size());
+  resize_in_room(keys_, contacts.size());
+  resize_in_room(manifolds_, contacts.size());
   grounds_.assign(contacts.size(), {});
   std::uint32_t points = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -128,7 +129,7 @@ void Crowd::add_pair_contacts(const ContactScene& scene, std::span<const CrowdCo
     manifolds_[i].begin = points;
     points += std::uint32_t(contacts[i].contact.manifold.count);
   }
-  points_.resize(points);
+  resize_in_room(points_, points);
   run_in_pieces(jobs_, std::int64_t(contacts.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
       const auto& [first, second, contact] = contacts[i];

@@ -302,7 +302,7 @@ namespace {
 double find_turning_since(const PairPose& then, const PairBody& first, const PairBody& second) {
   // Of two quaternions that are a chord c apart the angle is 4 asin(c / 2), up to half a turn at most 2 c +
   // c³/8.
-  const auto turned = [](const Eigen::Vector4f& from, const Quat& to) {
+  const auto turned = [](const PairPose::Turn& from, const Quat& to) {
     const Eigen::Vector4d was = from.cast<double>();
     const double square = std::min((was - to.coeffs()).squaredNorm(), (was + to.coeffs()).squaredNorm());
     return std::sqrt(square) * (2.0 + square / 8.0);

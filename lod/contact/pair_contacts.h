@@ -44,10 +44,11 @@ HeldContact hold(const PairContact& contact, const PairBody& first, const PairBo
 /// Where its points are now, and their gaps along the normal that it was found with.
 PairContact follow(const HeldContact& held, const PairBody& first, const PairBody& second);
 
-/// How two bodies lie to each other.
+/// How two bodies lie to each other. Kept for every pair that is near, so not aligned to vector registers.
 struct PairPose {
-  Eigen::Vector3f apart = Eigen::Vector3f::Zero();        ///< m, of the first from the second
-  Eigen::Vector4f first{0, 0, 0, 1}, second{0, 0, 0, 1};  ///< orientations
+  using Turn = Eigen::Matrix<float, 4, 1, Eigen::DontAlign>;
+  Eigen::Vector3f apart = Eigen::Vector3f::Zero();  ///< m, of the first from the second
+  Turn first{0, 0, 0, 1}, second{0, 0, 0, 1};       ///< orientations
 };
 PairPose pose_of(const PairBody& first, const PairBody& second);
 /// m: no gap between them has changed by more since they lay so.

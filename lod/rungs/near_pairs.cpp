@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lod/room.h"
+
 namespace lodestone {
 namespace {
 
@@ -43,9 +45,7 @@ bool comes_before(const Vec3& p, const Vec3& q) {
 
 std::uint32_t NearPairs::take_place() {
   if (spare_.empty()) {
-    if (all_.size() == all_.capacity())
-      all_.reserve(all_.size() + all_.size() / 4 + 64);  // a quarter more, not twice as much: they are many
-    all_.emplace_back();
+    append_in_room(all_);
     return std::uint32_t(all_.size() - 1);
   }
   const std::uint32_t place = spare_.back();
@@ -274,7 +274,7 @@ void NearPairs::follow_contacts(const ContactScene& scene, double time, std::spa
   first_contact_[0] = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) first_contact_[i + 1] += first_contact_[i];
   const std::size_t before = contacts_.size();
-  contacts_.resize(before + first_contact_.back());
+  resize_in_room(contacts_, before + first_contact_.back());
   may_close_.resize(first_contact_.back());
   const auto found = std::span(contacts_).subspan(before);
   run_in_pieces(jobs_, std::int64_t(pairs.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
