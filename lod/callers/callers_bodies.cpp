@@ -5,6 +5,7 @@
 #include "lod/callers/geom_solids.h"
 #include "lod/contact/hull_contacts.h"
 #include "lod/contact/pair_contacts.h"
+#include "lod/ground/met_ground.h"
 #include "reference/error.h"
 #include "reference/ode/callers_bodies.h"
 
@@ -32,7 +33,8 @@ Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {
 }  // namespace
 
 void CallersBodies::follow(const SpaceMirror& mirror,
-                           const std::function<void(const Eigen::AlignedBox3d&)>& left) {
+                           const std::function<void(const Eigen::AlignedBox3d&)>& left,
+                           const std::function<void(std::uint32_t, const GroundBits&)>& tell) {
   const std::span<const MirroredGeom> geoms = mirror.geoms();
   body_of_slot_.resize(geoms.size(), nullptr);
   const auto entry_of = [&](dxBody* body) { return std::ranges::find(bodies_, body, &Entry::body); };
@@ -43,7 +45,9 @@ void CallersBodies::follow(const SpaceMirror& mirror,
     std::erase(entry->slots, slot);
     entry->stale = true;
     left(geoms[slot].bounds);
-    if (entry->slots.empty()) bodies_.erase(entry);
+    if (!entry->slots.empty()) continue;
+    tell(entry->owner, {});
+    bodies_.erase(entry);
   }
   for (const std::uint32_t slot : mirror.added()) {
     if (!geoms[slot].dynamic) continue;
@@ -65,6 +69,13 @@ void CallersBodies::follow(const SpaceMirror& mirror,
     if (body_of_slot_[slot] && moved > kLeft * now.sizes().maxCoeff()) left(before);
   }
   for (Entry& entry : bodies_) {
+    if (entry.stale || entry.untold) {
+      entry.bits = {0, 0};
+      for (const std::uint32_t slot : entry.slots)
+        entry.bits.category |= geoms[slot].category, entry.bits.collide |= geoms[slot].collide;
+      tell(entry.owner, entry.bits);
+      entry.untold = false;
+    }
     if (!entry.stale) continue;
     entry.stale = false;
     entry.shape = nullptr;
@@ -126,7 +137,7 @@ void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
 }
 
 // What holds them up: the ground below, which the caller's own contacts act against.
-void add_ground_contacts(const Ground& ground, const FullNeighbor& body, std::int32_t index,
+void add_ground_contacts(const MetGround& ground, const FullNeighbor& body, std::int32_t index,
                          std::vector<FullContact>& contacts) {
   const Shape& shape = *body.shape;
   const double margin = kTouching * shape.radius;
@@ -145,7 +156,6 @@ void add_ground_contacts(const Ground& ground, const FullNeighbor& body, std::in
         add(body.state.position + low.contact[std::size_t(i)].arm, plane.normal,
             low.contact[std::size_t(i)].gap);
   }
-  if (!ground.has_parts()) return;
   std::vector<const GroundPart*> parts;
   std::vector<PlacedSolid> near;
   ground.find_parts(body.state.position, shape.radius + margin, parts);
@@ -175,7 +185,10 @@ void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vecto
     neighbor.asleep = !callers::is_enabled(entry.body);
     const auto index = std::int32_t(neighbors.size());
     neighbors.push_back(neighbor);
-    if (!neighbor.asleep) add_ground_contacts(ground, neighbor, index, contacts);
+    if (neighbor.asleep) continue;
+    BodyProperties own;
+    own.category = entry.bits.category, own.collide = entry.bits.collide;
+    add_ground_contacts({ground, own}, neighbor, index, contacts);
   }
 }
 
@@ -209,6 +222,7 @@ void CallersBodies::archive(StateArchive& a) {
   std::uint32_t owners = owners_;
   a(known, owners);
   if (!a.reading()) return;
+  for (Entry& entry : bodies_) entry.untold = true;
   const auto is_there = [](const Known& at) {
     return [&at](const Entry& entry) { return callers::state(entry.body).position == at.position; };
   };
@@ -225,10 +239,11 @@ void CallersBodies::archive(StateArchive& a) {
   for (; next != bodies_.end(); ++next) next->owner = kFirstOwner + owners_++;
 }
 
-void CallersBodies::each_near(const Vec3& center, double radius,
+void CallersBodies::each_near(const Vec3& center, double radius, const BodyProperties& own,
                               const std::function<void(const Shape&, const RigidState&)>& visit) const {
   for (const Entry& entry : bodies_) {
-    if (!entry.shape) continue;
+    if (!entry.shape || !may_meet(own.category, own.collide, entry.bits.category, entry.bits.collide))
+      continue;
     const RigidState state = callers::state(entry.body);
     const double reach = radius + entry.shape->radius;
     if ((state.position - center).squaredNorm() < reach * reach) visit(*entry.shape, state);

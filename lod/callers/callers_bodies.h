@@ -28,8 +28,11 @@ struct CallersPart {
 class CallersBodies {
  public:
   /// Takes in what the mirror saw in its last refresh. Calls left(box) with the bounds (m, world) that a geom
-  /// had which is no more, or is not there any more: what slept on it has lost its hold.
-  void follow(const SpaceMirror& mirror, const std::function<void(const Eigen::AlignedBox3d&)>& left);
+  /// had which is no more, or is not there any more: what slept on it has lost its hold. Calls
+  /// tell(owner, bits) where a body's bits, those of all of its geoms together, may have changed; all of them
+  /// where it is gone.
+  void follow(const SpaceMirror& mirror, const std::function<void(const Eigen::AlignedBox3d&)>& left,
+              const std::function<void(std::uint32_t, const GroundBits&)>& tell);
   std::size_t size() const { return bodies_.size(); }
 
   /// Appends them as neighbours, as they are now, and what holds them up: `first` is the index that the first
@@ -44,8 +47,9 @@ class CallersBodies {
   /// Not the bodies themselves, but their order and by what numbers their contacts are remembered: of those
   /// that the reader has in the same places, and of others in their order.
   void archive(StateArchive& a);
-  /// Calls visit(shape, state) for each whose ball meets that of `radius` m about `center`.
-  void each_near(const Vec3& center, double radius,
+  /// Calls visit(shape, state) for each whose ball meets that of `radius` m about `center`, and whose bits
+  /// meet `own`.
+  void each_near(const Vec3& center, double radius, const BodyProperties& own,
                  const std::function<void(const Shape&, const RigidState&)>& visit) const;
   /// Their geoms as they are now, at any time; of those that the mirror saw in its last refresh.
   std::vector<CallersPart> find_parts(const SpaceMirror& mirror) const;
@@ -59,7 +63,9 @@ class CallersBodies {
     std::vector<std::shared_ptr<const GroundSolids>> solids;  // of each geom; null: it has none
     std::shared_ptr<const Shape> shape;  // null: to be made anew, or none of its geoms is a solid
     std::uint32_t owner = 0;
-    bool stale = true;
+    GroundBits bits;     // of all its geoms
+    bool stale = true;   // a geom came or went
+    bool untold = true;  // its bits
   };
   static void make_shape(const SpaceMirror& mirror, Entry& entry);
 

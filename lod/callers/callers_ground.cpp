@@ -24,7 +24,9 @@ Vec3 rotation_between(const Quat& from, const Quat& to) {
   return turn.angle() * turn.axis();
 }
 
-HalfSpace plane_of(const MirroredGeom& geom) { return {geom.normal, geom.offset, 0}; }
+HalfSpace plane_of(const MirroredGeom& geom) {
+  return {.normal = geom.normal, .offset = geom.offset, .bits = {geom.category, geom.collide}};
+}
 
 }  // namespace
 
@@ -76,6 +78,7 @@ void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt)
     ids_[slot] = ground_.add_plane(plane_of(geom));
   } else {
     GroundShape shape{.bounds = in_own_frame(geom)};
+    shape.bits = {geom.category, geom.collide};
     if (geom.kind == GeomKind::height_field || geom.kind == GeomKind::other) {
       shape.probe = [probe = probe_, own = geom.geom](const Vec3& from, const Vec3& direction,
                                                       double length) -> std::optional<GroundHit> {

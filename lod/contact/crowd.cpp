@@ -57,10 +57,26 @@ void Crowd::solve_gathered(const ContactScene& scene, const CrowdTouch& touch) {
       scene.world.gravity_strength() * time;  // what gravity adds in a step is no impact
   settings.fall = scene.world.gravity * time;
   memory_.recall(keys_, manifolds_, points_, time, jobs_);
+  relieve_opposed();
   borne_weights_.guess(solver_bodies_, manifolds_, points_, settings.fall, time);
   noted_ = scene.world.log ? note_approaches(scene, time) : 0;
   solver_.solve(solver_bodies_, manifolds_, points_, time, settings, jobs_);
   for (const std::uint32_t struck : solver_.struck()) manifolds_[struck].to_forget = true;
+}
+
+// By how much both of two that push against each other do: nothing is held by that, and from step to step it
+// would grow.
+void Crowd::relieve_opposed() {
+  for (const std::uint32_t i : opposed_) {
+    const CrowdManifold& one_way = manifolds_[i];
+    CrowdPoint &one = points_[one_way.begin], &other = points_[manifolds_[i + 1].begin];
+    const double both =
+        std::max(0.0, std::min(one.guess.dot(one_way.normal), -other.guess.dot(one_way.normal)));
+    one.guess -= both * one_way.normal;
+    other.guess += both * one_way.normal;
+    const float both_without = std::min(one.frictionless, other.frictionless);
+    if (both_without > 0.0F) one.frictionless -= both_without, other.frictionless -= both_without;
+  }
 }
 
 // What touches, but for two full bodies. The impulses follow, in the same order.

@@ -107,6 +107,7 @@ class Crowd {
   void sort_full_contacts(std::span<const FullContact> full_contacts, std::size_t neighbors);
   void add_full_contacts(const ContactScene& scene, int index, const CrowdTouch& touch);
   void solve_gathered(const ContactScene& scene, const CrowdTouch& touch);
+  void relieve_opposed();
   void note_presses(const ContactScene& scene, double time);
   std::size_t note_approaches(const ContactScene& scene, double time) const;
   void note_impulses(ContactLog& log, std::size_t known) const;
@@ -149,6 +150,7 @@ class Crowd {
   std::vector<ContactKey> keys_;                          // of each manifold
   std::vector<std::pair<GroundId, MaterialId>> grounds_;  // that it is with, for the log
   std::vector<CrowdPoint> points_;
+  std::vector<std::uint32_t> opposed_;  // manifolds that push against the next one: what a joint holds
   GroundMeetings meetings_;
   std::size_t noted_ = 0;  // contacts in the log before those at hand
   std::vector<Participant> pressed_;

@@ -204,10 +204,12 @@ void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdT
                                           : solver_index(Participant::full(std::size_t(other)));
     const bool added_by_the_other = other >= 0 && second < index && !scene.neighbors[other].asleep;
     if (added_by_the_other) continue;
-    add_manifold(
-        contact_key(scene.neighbors[self].owner, other < 0 ? 0xffffffff : scene.neighbors[other].owner),
-        index, second, is_first ? contact.normal : Vec3(-contact.normal),
-        {.restitution = 0.0, .friction = contact.friction});
+    const ContactKey key =
+        contact_key(scene.neighbors[self].owner, other < 0 ? 0xffffffff : scene.neighbors[other].owner);
+    if (contact.row % 2 == 1) opposed_.push_back(std::uint32_t(manifolds_.size()));
+    add_manifold(numbered_key(key, contact.row), index, second,
+                 is_first ? contact.normal : Vec3(-contact.normal),
+                 {.restitution = 0.0, .friction = contact.friction});
     add_point(contact.point - at_self,
               other < 0 ? Vec3(Vec3::Zero()) : Vec3(contact.point - scene.neighbors[other].state.position),
               contact.drive ? -contact.drive->speed * touch.time : contact.gap);
@@ -219,6 +221,7 @@ void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdT
 void Crowd::gather(const ContactScene& scene, const CrowdTouch& touch) {
   participants_.clear();
   moving_parts_.clear(), moving_ground_.clear();
+  opposed_.clear();
   make_room(scene.bodies.size());
   index_of_neighbor_.assign(scene.neighbors.size(), -1);
 

@@ -267,8 +267,10 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
   each_participant([&](std::size_t i) {
     const Participant p = participants_[i];
     if (!p.is_statistical() || scene.asleep(p)) return;
-    if (const BodyProperties& own = scene.properties(p); own.kinematic || !meets_ground(own)) return;
-    for (const HalfSpace& plane : scene.world.planes) lift(p, plane);
+    const BodyProperties& own = scene.properties(p);
+    if (own.kinematic) return;
+    for (const HalfSpace& plane : scene.world.planes)
+      if (meets_ground(own, plane.bits)) lift(p, plane);
     for (const HalfSpace& face : touch.faces.of(std::int32_t(p.index()))) lift(p, face);
   });
 }

@@ -15,6 +15,18 @@ bool is_over(const SurfaceTriangle& t, const Vec3& point) {
   return true;
 }
 
+bool is_behind(const SurfaceTriangle& t, const Vec3& point) {
+  const double height = t.normal.dot(point - t.corner[0]);
+  if (height >= 0.0) return false;
+  double sum = 0.0, thickness = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {  // by the point's shares of the corners
+    const Vec3 &b = t.corner[(i + 1) % 3], &c = t.corner[(i + 2) % 3];
+    const double share = std::max(0.0, (b - point).cross(c - point).dot(t.normal));
+    sum += share, thickness += share * t.thickness[i];
+  }
+  return -height * sum > thickness;
+}
+
 Vec3 find_way_from_edge(const SurfaceTriangle& t, std::size_t edge, const Vec3& point) {
   const Vec3 from = point - t.corner[edge], along = t.corner[(edge + 1) % 3] - t.corner[edge];
   return from - std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
@@ -48,6 +60,7 @@ SurfaceBelow find_surface_below(const PlacedSolid& placed, const Vec3& center, d
     ridge |= in_reach && t.ridge[i];
   }
   if (!any_edge && !is_over(t, at)) return {};
+  if (!ridge && is_behind(t, at)) return {};
   if (ridge || height < 0.0) return {.in_reach = true, .plane = {}};
   const Vec3 normal = placed.orientation * t.normal,
              corner = placed.position + placed.orientation * (t.corner[0] - placed.solid->center);
@@ -122,6 +135,7 @@ std::optional<HalfSpace> find_mean_plane(std::span<const PlacedSolid> near, cons
     if (!placed.solid->surface) return {};
     const SurfaceTriangle& t = *placed.solid->surface;
     const Vec3 at = in_part(placed, center);
+    if (is_behind(t, at)) continue;
     const Vec3 way = placed.orientation * (at - find_nearest_on(t, at));
     const double share = way.squaredNorm() / (reach * reach);
     if (share >= 1.0) continue;

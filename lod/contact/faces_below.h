@@ -14,6 +14,9 @@ Vec3 in_part(const PlacedSolid& placed, const Vec3& point);
 
 /// Whether a point, in the part's frame, lies over the triangle or below it, along its normal.
 bool is_over(const SurfaceTriangle& t, const Vec3& point);
+/// Whether a point, in the part's frame, is beyond the other side of what is solid below the triangle: on the
+/// far side of a wall.
+bool is_behind(const SurfaceTriangle& t, const Vec3& point);
 /// m: to it from the nearest point of the edge from corner `edge` to the next.
 Vec3 find_way_from_edge(const SurfaceTriangle& t, std::size_t edge, const Vec3& point);
 

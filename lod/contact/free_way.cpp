@@ -9,7 +9,7 @@
 
 namespace lodestone {
 
-double find_free_way(const Ground& ground, const Vec3& center, const Vec3& way, double radius,
+double find_free_way(const MetGround& ground, const Vec3& center, const Vec3& way, double radius,
                      const ReachFunction& reach_of) {
   constexpr int kMostLooks = 16;
   constexpr double kArrived = 1e-3;   // over the way that was left
@@ -37,8 +37,8 @@ double find_free_way(const Ground& ground, const Vec3& center, const Vec3& way, 
   return gone;
 }
 
-double find_free_way(const Ground& ground, const StatisticalBody& body, const Shape& shape, const Vec3& from,
-                     const Vec3& way) {
+double find_free_way(const MetGround& ground, const StatisticalBody& body, const Shape& shape,
+                     const Vec3& from, const Vec3& way) {
   const auto reach_of = [&](const Vec3& direction) {
     if (body.is_sphere()) return double(body.sphere_radius);
     std::int32_t hint = body.support_hint;

@@ -35,10 +35,10 @@ void GroundMeetings::find(const ContactScene& scene, std::span<const Participant
       if (height <= (body.is_sphere() ? double(body.sphere_radius) : radius) + way)
         meetings_.push_back({std::int32_t(i), &plane, number, height, way, {}});
     };
-    if (p.is_statistical() && !scene.asleep(p) && !scene.properties(p).kinematic &&
-        meets_ground(scene.properties(p))) {
+    if (p.is_statistical() && !scene.asleep(p) && !scene.properties(p).kinematic) {
+      const BodyProperties& own = scene.properties(p);
       for (std::size_t number = 0; number < scene.world.planes.size(); ++number)
-        add(scene.world.planes[number], number);
+        if (meets_ground(own, scene.world.planes[number].bits)) add(scene.world.planes[number], number);
       std::size_t number = kFirstFace;
       for (const HalfSpace& face : faces.of(std::int32_t(p.index()))) add(face, number++);
     }

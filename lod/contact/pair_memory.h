@@ -17,6 +17,11 @@ inline ContactKey contact_key(std::uint32_t first, std::uint32_t second) {
 inline ContactKey ground_key(std::uint32_t body, std::size_t plane) {
   return contact_key(body, std::uint32_t(0xffffffff - plane));
 }
+/// One of several between the same two, by its number.
+inline ContactKey numbered_key(ContactKey key, std::uint32_t number) {
+  return key ^
+         number * 0x9e3779b97f4a7c15u;  // 2⁶⁴ over the golden ratio: far from each other and from others
+}
 
 class PairMemory {
  public:

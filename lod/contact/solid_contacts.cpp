@@ -24,7 +24,7 @@ bool may_close(const PairContact& contact, const GroundPart& part, const GroundS
 }
 }  // namespace
 
-void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after,
+void find_ground_near(const MetGround& ground, const Vec3& center, double reach, double after,
                       std::vector<GroundNear>& found, const PairBody* hull) {
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
@@ -88,8 +88,8 @@ std::span<const HalfSpace> join_planes(std::span<const HalfSpace> planes, std::s
 }
 
 void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
-                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
-                          std::vector<HalfSpace>& planes) {
+                          const MetGround& ground, double after, double time,
+                          std::vector<SolidContact>& found, std::vector<HalfSpace>& planes) {
   GroundSeeker seeker = seeker_of(body, *kind.shape, slot, time);
   seeker.omega.setZero();
   const double radius = double(body.sphere_radius),
@@ -130,8 +130,8 @@ std::optional<Vec3> find_velocity_of_ground(std::span<const SolidContact> of_bod
   return together ? std::optional(first.velocity) : std::nullopt;
 }
 
-bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const Ground& ground, double slack,
-                       double time, std::vector<HalfSpace>& planes) {
+bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,
+                       double slack, double time, std::vector<HalfSpace>& planes) {
   const GroundSeeker seeker = seeker_of(body, *kind.shape, 0, time);
   const double reach = seeker.reach() + slack;
   thread_local std::vector<const GroundPart*> parts;
@@ -160,7 +160,7 @@ bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const 
 }
 
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
-                         const Ground& ground, double after, double time, std::vector<SolidContact>& found,
+                         const MetGround& ground, double after, double time, std::vector<SolidContact>& found,
                          std::vector<HalfSpace>& planes, SolidSearch wanted) {
   const Shape& shape = *kind.shape;
   const GroundSeeker seeker = seeker_of(body, shape, slot, time);

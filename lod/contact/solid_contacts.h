@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lod/contact/pair_contacts.h"
-#include "lod/ground/ground.h"
+#include "lod/ground/met_ground.h"
 #include "lod/statistical/statistical_body.h"
 
 namespace lodestone {
@@ -27,7 +27,7 @@ enum class SolidSearch : std::uint8_t { all, one_of_a_part };
 /// to `found`. Where the body lies over faces only, away from their edges and not wedged in between them, or
 /// over very gentle ground of triangles, there are none but the planes that these are, appended to `planes`.
 void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
-                         const Ground& ground, double after, double time, std::vector<SolidContact>& found,
+                         const MetGround& ground, double after, double time, std::vector<SolidContact>& found,
                          std::vector<HalfSpace>& planes, SolidSearch search = SolidSearch::all);
 
 /// Of the contacts, those of the body of the first one: they stand together.
@@ -41,8 +41,8 @@ std::optional<Vec3> find_velocity_of_ground(std::span<const SolidContact> of_bod
 /// Appends the planes that stand for what the body may meet of the ground's parts within `time` seconds:
 /// faces, and for gentle ground of triangles one of its mean slope. False, and none, where there is more,
 /// less than `slack` m beyond what it reaches: edges, or what moves.
-bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const Ground& ground, double slack,
-                       double time, std::vector<HalfSpace>& planes);
+bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,
+                       double slack, double time, std::vector<HalfSpace>& planes);
 
 /// What a ball meets of a solid of the ground's parts: the plane across the way to its nearest point.
 struct GroundNear {
@@ -58,7 +58,7 @@ struct GroundNear {
 
 /// Appends what a ball of radius `reach` about `center` meets of the ground's parts, `after` so many seconds
 /// of the step. With a `hull` in it, the planes that stand for the ground to this.
-void find_ground_near(const Ground& ground, const Vec3& center, double reach, double after,
+void find_ground_near(const MetGround& ground, const Vec3& center, double reach, double after,
                       std::vector<GroundNear>& found, const PairBody* hull = nullptr);
 
 /// Whether, of the ground within `reach` of `center`, two faces look different ways: a corner or a wedge.
@@ -68,8 +68,8 @@ bool is_held_several_ways(std::span<const GroundNear> near, std::span<const Half
 /// As find_solid_contacts, of a sphere: what holds it one way is a plane to it, appended to `planes`; what
 /// moves or holds it several ways, contacts.
 void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std::int32_t slot,
-                          const Ground& ground, double after, double time, std::vector<SolidContact>& found,
-                          std::vector<HalfSpace>& planes);
+                          const MetGround& ground, double after, double time,
+                          std::vector<SolidContact>& found, std::vector<HalfSpace>& planes);
 
 /// The planes that a body may meet: the ground's and the faces of its parts that it is near. A thread has one
 /// at a time.

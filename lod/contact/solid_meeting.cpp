@@ -144,11 +144,14 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   const Vec3 normal = placed.orientation * t.normal;
   const LowestPoint lowest = find_lowest_over(body, placed, normal);
   if (lowest.gap > margin) return {};
-  // What is over the triangle is nearest to it along its normal.
-  if (lowest.is_over && lowest.gap > -kDeepestBelow * body.shape->inner_radius)
-    return find_contact_along(body, ground, normal, margin, ahead);
+  // What is over the triangle is nearest to it along its normal. What is far below it came another way: it
+  // is beside it, or behind.
+  const bool is_deep = lowest.gap <= -kDeepestBelow * body.shape->inner_radius;
+  if (lowest.is_over && !is_deep) return find_contact_along(body, ground, normal, margin, ahead);
   std::optional<PairContact> flat;
-  const auto find_flat = [&] { flat = find_contact_along(body, ground, normal, margin, ahead); };
+  const auto find_flat = [&] {
+    if (!is_deep) flat = find_contact_along(body, ground, normal, margin, ahead);
+  };
   const bool any_ridge = std::ranges::find(t.ridge, true) != t.ridge.end();
   if (!any_ridge) {
     // Most of a fine surface: nearer than `margin` along the normal they are nearer anyhow, so that what they
@@ -199,7 +202,8 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
     const double height = t->normal.dot(at - t->corner[0]);
     const std::size_t edge = nearest_edge(*t, at);
     const Vec3 &from = t->corner[edge], along = (t->corner[(edge + 1) % 3] - from).normalized();
-    if (t->normal.cross(along).dot(at - from) >= 0.0) return Nearest{t->normal, height};
+    if (t->normal.cross(along).dot(at - from) >= 0.0)
+      return is_behind(*t, at) ? std::nullopt : std::optional(Nearest{t->normal, height});
     if (!t->ridge[edge] || height < 0.0) return {};
   }
   return find_nearest_of_faces(solid, point);

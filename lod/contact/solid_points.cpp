@@ -252,8 +252,8 @@ void PointSearch::drop_held() {
 
 }  // namespace
 
-void find_solid_points(const StatisticalBody& body, const BodyKind& kind, const Ground& ground, double time,
-                       double margin, SolidPoints& found) {
+void find_solid_points(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,
+                       double time, double margin, SolidPoints& found) {
   thread_local Work work;
   work.near.clear(), work.probed.clear();
   found.points.clear(), found.planes.clear();

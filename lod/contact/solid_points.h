@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "lod/ground/ground.h"
+#include "lod/ground/met_ground.h"
 #include "lod/statistical/statistical_body.h"
 
 namespace lodestone {
@@ -27,7 +27,7 @@ struct SolidPoints {
 };
 
 /// Of the body as it moves for `time` seconds. `margin`, m: what is nearer can carry.
-void find_solid_points(const StatisticalBody& body, const BodyKind& kind, const Ground& ground, double time,
-                       double margin, SolidPoints& found);
+void find_solid_points(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,
+                       double time, double margin, SolidPoints& found);
 
 }  // namespace lodestone

@@ -105,7 +105,7 @@ bool are_wedge(std::span<const HalfSpace> planes) {
   return false;
 }
 
-bool find_uneven_ground(const GroundSeeker& seeker, const Ground& ground, double after, double time,
+bool find_uneven_ground(const GroundSeeker& seeker, const MetGround& ground, double after, double time,
                         std::vector<PlacedSolid>& near, std::vector<SolidContact>& found,
                         std::vector<HalfSpace>& planes) {
   const Vec3& center = seeker.body.position;

@@ -41,7 +41,7 @@ bool are_wedge(std::span<const HalfSpace> planes);
 /// Appends the solids that are near, `after` so many seconds of the step, to `near`, and what is known by
 /// rays alone to `found` and `planes`. False, and planes appended, where these are all that the body may
 /// meet.
-bool find_uneven_ground(const GroundSeeker& seeker, const Ground& ground, double after, double time,
+bool find_uneven_ground(const GroundSeeker& seeker, const MetGround& ground, double after, double time,
                         std::vector<PlacedSolid>& near, std::vector<SolidContact>& found,
                         std::vector<HalfSpace>& planes);
 

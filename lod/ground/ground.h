@@ -12,6 +12,7 @@
 #include "lod/ground/ground_solids.h"
 #include "lod/ground/half_space.h"
 #include "lod/ground_id.h"
+#include "reference/body_properties.h"
 #include "reference/state_archive.h"
 
 namespace lodestone {
@@ -32,6 +33,7 @@ struct GroundShape {
   std::function<GroundSolids()> make = {};  ///< called when a body first comes near
   GroundProbe probe = {};
   Vec3 up = Vec3::UnitZ();  ///< of `probe`: rays are cast against it, in the part's own frame
+  GroundBits bits = {};
 };
 
 /// Where a part stands, and how it moves in this step.

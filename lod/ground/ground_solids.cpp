@@ -74,12 +74,7 @@ void GroundSolids::add_mesh(const Mesh& mesh) {
 
 void GroundSolids::add_surface(const Mesh& mesh) {
   surface_ = std::make_shared<const SurfaceSolids>(mesh);
-  bounds_.reserve(bounds_.size() + surface_->size());
-  for (std::size_t i = 0; i < surface_->size(); ++i) {
-    bounds_.push_back(surface_->bounds(i));
-    all_bounds_.extend(bounds_.back());
-  }
-  tree_.reset();
+  for (std::size_t i = 0; i < surface_->size(); ++i) all_bounds_.extend(surface_->bounds(i));
 }
 
 struct GroundSolids::Tree : BoxTree {
@@ -87,8 +82,8 @@ struct GroundSolids::Tree : BoxTree {
 };
 
 void GroundSolids::prepare() {
-  if (tree_ || size() < 2) return;
-  std::vector<int> indices(size());
+  if (tree_ || solids_.size() < 2) return;
+  std::vector<int> indices(solids_.size());
   std::iota(indices.begin(), indices.end(), 0);
   tree_ = std::make_shared<const Tree>(indices.begin(), indices.end(), bounds_.begin(), bounds_.end());
 }
@@ -99,8 +94,9 @@ void GroundSolids::find_near(const Vec3& center, double reach, std::vector<int>&
   };
   if (tree_)
     tree_->visit_near(center, reach, add);
-  else if (size() == 1)
+  else if (solids_.size() == 1)
     add(0);
+  if (surface_) surface_->find_near(center, reach, int(solids_.size()), found);
 }
 
 }  // namespace lodestone

@@ -22,7 +22,7 @@ class GroundSolids {
   /// To be called after solids were added, before they are looked for.
   void prepare();
 
-  std::size_t size() const { return bounds_.size(); }
+  std::size_t size() const { return solids_.size() + (surface_ ? surface_->size() : 0); }
   /// For any thread at any time; stays where it is until something is added.
   const GroundSolid& operator[](int i) const {
     const auto place = std::size_t(i);
@@ -38,11 +38,11 @@ class GroundSolids {
   void add_surface(const Mesh& mesh);
 
   std::vector<GroundSolid> solids_;
+  std::vector<Eigen::AlignedBox3d> bounds_;       // of these
   std::shared_ptr<const SurfaceSolids> surface_;  // behind those, shared by copies
-  std::vector<Eigen::AlignedBox3d> bounds_;
   Eigen::AlignedBox3d all_bounds_;
   struct Tree;
-  std::shared_ptr<const Tree> tree_;  // shared by copies; null for one solid alone
+  std::shared_ptr<const Tree> tree_;  // of `bounds_`, shared by copies; null for one solid alone
 };
 
 }  // namespace lodestone

@@ -1,16 +1,20 @@
 #include "lod/ground/surface_solids.h"
 
 #include <algorithm>
+#include <numeric>
 #include <span>
+#include <utility>
 
+#include "lod/ground/box_tree.h"
 #include "reference/mesh/mesh_edges.h"
+#include "reference/mesh/rays.h"
 
 namespace lodestone {
 namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-constexpr double kDepth = 0.02;      // of the solids, over the diagonal of the surface's bounding box
+constexpr double kDepth = 0.02;  // of the solids, at most, over the diagonal of the surface's bounding box
 constexpr double kRidgeSine = 0.05;  // an edge whose faces fall away by more than this (3°) stands out
 
 // Of the face's area, twice.
@@ -42,19 +46,28 @@ std::size_t edge_of(const std::array<int, 3>& face, const EdgeUse& use) {
   return std::size_t(std::ranges::find(face, from) - face.begin());
 }
 
-// Of its corners, and as far below them as it is solid.
-Box bounds_of(const std::array<Vec3, 3>& corner, const Vec3& below) {
+Vec3 unit_normal(const std::array<Vec3, 3>& corner) {
+  return (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+}
+
+// Of its corners, and of what lies below them.
+Box bounds_of(const std::array<Vec3, 3>& corner, const std::array<Vec3, 3>& below) {
   Box box;
-  for (const Vec3& c : corner) box.extend(c), box.extend(c + below);
+  for (std::size_t i = 0; i < 3; ++i) box.extend(corner[i]), box.extend(corner[i] + below[i]);
   return box;
 }
 
 }  // namespace
 
+struct SurfaceSolids::Tree : BoxTree {
+  using BoxTree::BoxTree;
+};
+
 SurfaceSolids::SurfaceSolids(const Mesh& mesh) : vertices_(mesh.vertices) {
   Box box;
   for (const Vec3& v : vertices_) box.extend(v);
-  depth_ = kDepth * box.diagonal().norm();
+  size_ = box.diagonal().norm();
+  depth_ = kDepth * size_;
   std::vector<std::array<bool, 3>> ridge(mesh.faces.size(), {true, true, true});
   visit_edges(mesh, [&](std::span<const EdgeUse> uses) {
     for (const EdgeUse& use : uses)
@@ -63,11 +76,31 @@ SurfaceSolids::SurfaceSolids(const Mesh& mesh) : vertices_(mesh.vertices) {
   triangles_.reserve(mesh.faces.size());
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
     if (has_area(mesh, mesh.faces[i])) triangles_.push_back({mesh.faces[i], ridge[i]});
-  solids_ = std::make_unique<std::atomic<const GroundSolid*>[]>(triangles_.size());
+  solids_ = std::make_unique<std::atomic<const GroundSolid*>[]>(size());
+  bounds_.reserve(size());
+  for (const Triangle& triangle : triangles_) {
+    const std::array<Vec3, 3> corner = corners_of(triangle);
+    const Vec3 below = -depth_ * unit_normal(corner);
+    bounds_.push_back(bounds_of(corner, {below, below, below}));
+  }
+  if (size() < 2) return;
+  std::vector<int> indices(size());
+  std::iota(indices.begin(), indices.end(), 0);
+  tree_ = std::make_unique<const Tree>(indices.begin(), indices.end(), bounds_.begin(), bounds_.end());
 }
 
 SurfaceSolids::~SurfaceSolids() {
   for (std::size_t i = 0; i < size(); ++i) delete solids_[i].load();
+}
+
+void SurfaceSolids::find_near(const Vec3& center, double reach, int first, std::vector<int>& found) const {
+  const auto add = [&](int i) {
+    if (bounds_[std::size_t(i)].squaredExteriorDistance(center) <= reach * reach) found.push_back(first + i);
+  };
+  if (tree_)
+    tree_->visit_near(center, reach, add);
+  else if (size() == 1)
+    add(0);
 }
 
 std::array<Vec3, 3> SurfaceSolids::corners_of(const Triangle& triangle) const {
@@ -75,22 +108,92 @@ std::array<Vec3, 3> SurfaceSolids::corners_of(const Triangle& triangle) const {
   return {at(0), at(1), at(2)};
 }
 
-Vec3 SurfaceSolids::normal_of(const Triangle& triangle) const {
-  const std::array<Vec3, 3> corner = corners_of(triangle);
-  return (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+// Where a ray crosses the surface, in no order: how far along it, m, and whether it goes in there.
+template <class Visit>
+void SurfaceSolids::visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const {
+  const auto cross = [&](int i) {
+    const std::array<Vec3, 3> corner = corners_of(triangles_[std::size_t(i)]);
+    if (const auto in = meet_front(corner, from, direction, size_))
+      visit(*in, true);
+    else if (const auto out = meet_back(corner, from, direction, size_))
+      visit(*out, false);
+  };
+  if (tree_)
+    tree_->visit_along(from, direction, size_, cross);
+  else
+    cross(0);
 }
 
-Box SurfaceSolids::bounds(std::size_t i) const {
-  return bounds_of(corners_of(triangles_[i]), -depth_ * normal_of(triangles_[i]));
+// Whether the same triangle is there again, seen from the other side: of a sheet that is solid to both.
+bool SurfaceSolids::has_reverse(const std::array<Vec3, 3>& corner) const {
+  const Vec3 normal = unit_normal(corner);
+  bool found = false;
+  const auto look_at = [&](int i) {
+    const std::array<Vec3, 3> other = corners_of(triangles_[std::size_t(i)]);
+    const auto is_its = [&](const Vec3& c) { return std::ranges::find(corner, c) != corner.end(); };
+    found = found || (std::ranges::all_of(other, is_its) && unit_normal(other).dot(normal) < 0.0);
+  };
+  if (tree_) tree_->visit_near(corner[0], 0.0, look_at);
+  return found;
+}
+
+// m: from just below the surface to where a ray has left all solids that it was in there, which may overlap:
+// a pedestal is let into its floor. At least the triangle's own, though of a room without an outer skin, or a
+// landscape, nothing says so. `size_`: to no end.
+double SurfaceSolids::find_thickness_at(const Vec3& point, const Vec3& normal) const {
+  const Vec3 from = point - 1e-9 * size_ * normal;
+  int within = 0;  // so many
+  visit_crossings(from, normal, [&](double, bool in) { within += in ? -1 : 1; });
+  within = std::max(within, 1);
+  thread_local std::vector<std::pair<double, int>> crossings;  // m; how many more it is in from there on
+  crossings.clear();
+  visit_crossings(from, -normal, [&](double at, bool in) { crossings.emplace_back(at, in ? 1 : -1); });
+  std::ranges::sort(crossings);
+  for (const auto& [at, more] : crossings)
+    if ((within += more) <= 0) return at;
+  return size_;
+}
+
+// m, below each corner: so that the plane through these ends lies nowhere beyond the other side, as seen by
+// rays from a few places in the triangle, which are no likely places of others' edges.
+std::array<double, 3> SurfaceSolids::find_thickness(const std::array<Vec3, 3>& corner,
+                                                    const Vec3& normal) const {
+  constexpr double kThinnest = 2e-4;  // over the longest edge
+  static const std::array<Vec3, 7> places{
+      Vec3(0.90, 0.06, 0.04), Vec3(0.04, 0.90, 0.06), Vec3(0.06, 0.04, 0.90), Vec3(0.47, 0.43, 0.10),
+      Vec3(0.10, 0.47, 0.43), Vec3(0.43, 0.10, 0.47), Vec3(0.35, 0.33, 0.32)};  // shares of the corners
+  const double longest = std::max(
+      {(corner[1] - corner[0]).norm(), (corner[2] - corner[1]).norm(), (corner[0] - corner[2]).norm()});
+  Vec3 thickness = Vec3::Constant(has_reverse(corner) ? 0.0 : size_);
+  std::array<double, places.size()> there;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3& share = places[i];
+    there[i] = find_thickness_at(share[0] * corner[0] + share[1] * corner[1] + share[2] * corner[2], normal);
+    if (i < 3) thickness[int(i)] = std::min(thickness[int(i)], there[i]);
+  }
+  // Towards a sharp edge it goes on to shrink.
+  if (*std::max_element(there.begin(), there.begin() + 3) < size_) {
+    Mat3 shares;
+    for (int i = 0; i < 3; ++i) shares.row(i) = places[std::size_t(i)];
+    thickness = thickness.cwiseMin(shares.inverse() * Vec3(there[0], there[1], there[2])).cwiseMax(0.0);
+  }
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (const double at = places[i].dot(thickness); at > there[i]) thickness *= there[i] / at;
+  thickness = thickness.cwiseMax(kThinnest * longest);
+  return {thickness[0], thickness[1], thickness[2]};
 }
 
 GroundSolid SurfaceSolids::make(const Triangle& triangle) const {
   const std::array<Vec3, 3> corner = corners_of(triangle);
-  const Vec3 normal = normal_of(triangle), below = -depth_ * normal,
-             middle = bounds_of(corner, below).center();
+  const Vec3 normal = unit_normal(corner);
+  const std::array<double, 3> thickness = find_thickness(corner, normal);
+  const auto below = [&](std::size_t i) { return Vec3(-std::min(depth_, thickness[i]) * normal); };
+  const std::array<Vec3, 3> down{below(0), below(1), below(2)};
+  const Vec3 middle = bounds_of(corner, down).center();
   GroundSolid solid = make_ground_solid(
-      make_prism_hull({corner[0] - middle, corner[1] - middle, corner[2] - middle}, below), middle);
-  solid.surface = SurfaceTriangle{normal, corner, triangle.ridge, depth_};
+      make_prism_hull({corner[0] - middle, corner[1] - middle, corner[2] - middle}, down), middle);
+  solid.surface = SurfaceTriangle{normal, corner, triangle.ridge, thickness,
+                                  std::min(depth_, *std::ranges::max_element(thickness))};
   return solid;
 }
 

@@ -1,5 +1,6 @@
-// A surface of triangles as ground: each is a solid, which is made when something first comes near it, as a
-// solid takes a hundred times the memory of its triangle and most of a landscape lies idle.
+// A surface of triangles as ground: each is a solid, as deep as the surface lets it be. It is made when
+// something first comes near, as a solid takes a hundred times the memory of its triangle and most of a
+// landscape lies idle.
 #pragma once
 
 #include <array>
@@ -21,7 +22,10 @@ class SurfaceSolids {
   SurfaceSolids& operator=(const SurfaceSolids&) = delete;
 
   std::size_t size() const { return triangles_.size(); }
-  Eigen::AlignedBox3d bounds(std::size_t i) const;
+  /// m: of what is solid, at most.
+  const Eigen::AlignedBox3d& bounds(std::size_t i) const { return bounds_[i]; }
+  /// Appends those whose bounds come within `reach` m of `center`, counted from `first`.
+  void find_near(const Vec3& center, double reach, int first, std::vector<int>& found) const;
   /// For any thread at any time; stays where it is.
   const GroundSolid& operator[](std::size_t i) const;
   /// How many of them something has come near.
@@ -34,12 +38,20 @@ class SurfaceSolids {
   };
 
   std::array<Vec3, 3> corners_of(const Triangle& triangle) const;
-  Vec3 normal_of(const Triangle& triangle) const;
+  std::array<double, 3> find_thickness(const std::array<Vec3, 3>& corner, const Vec3& normal) const;
+  double find_thickness_at(const Vec3& point, const Vec3& normal) const;
+  template <class Visit>
+  void visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const;
+  bool has_reverse(const std::array<Vec3, 3>& corner) const;
   GroundSolid make(const Triangle& triangle) const;
 
   std::vector<Vec3> vertices_;  // m
   std::vector<Triangle> triangles_;
-  double depth_ = 0.0;                                         // m: so far below the surface each is solid
+  std::vector<Eigen::AlignedBox3d> bounds_;  // of each triangle
+  struct Tree;
+  std::unique_ptr<const Tree> tree_;  // of these; null for less than two
+  double size_ = 0.0;                 // m, the diagonal of all
+  double depth_ = 0.0;                // m: so far below the surface each is solid, at most
   std::unique_ptr<std::atomic<const GroundSolid*>[]> solids_;  // of each triangle; null: not made yet
 };
 

@@ -83,6 +83,12 @@ class BodyTable {
   const BodyProperties& properties(std::uint32_t index) const { return properties_.of(index); }
   void set_properties(std::uint32_t index, const BodyProperties& properties);
   const OwnProperties& own_properties() const { return properties_; }
+  /// Of a body of the caller's, which is none of these.
+  void set_bits(std::uint32_t owner, const GroundBits& bits) {
+    BodyProperties properties;
+    properties.category = bits.category, properties.collide = bits.collide;
+    properties_.set(owner, properties);
+  }
   /// The greatest that any body had.
   double greatest_importance() const { return greatest_importance_; }
 

@@ -19,6 +19,7 @@ void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBod
     find_joint_rows(bodies[i], reach, rows);
     find_joint_motors(bodies[i], reach, motors);
     if (rows.empty() && motors.empty()) continue;
+    std::uint32_t number = 0;
     if (index_of.empty())
       for (std::size_t k = 0; k < bodies.size(); ++k) index_of.emplace(bodies[k], std::int32_t(k));
     const auto add = [&](dxBody* other, const Vec3& point, const Vec3& direction, const JointMotor* motor) {
@@ -31,7 +32,8 @@ void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBod
                                               .point = point + sign * kToOneSide * reach * direction,
                                               .normal = sign * direction,
                                               .gap = 0.0,
-                                              .friction = 0.0});
+                                              .friction = 0.0,
+                                              .row = ++number});
         if (motor) contact.drive = Drive{.speed = sign * motor->speed, .force = motor->force};
       }
     };

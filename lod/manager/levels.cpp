@@ -104,7 +104,8 @@ void Levels::follow_callers_space(double dt) {
   if (!mirror) return;
   const auto wake = [this](const Eigen::AlignedBox3d& box) { wake_in(box); };
   callers.ground.follow(*mirror, dt, wake, [this](const HalfSpace& plane) { wake_on(plane); });
-  callers.bodies.follow(*mirror, wake);
+  callers.bodies.follow(
+      *mirror, wake, [this](std::uint32_t owner, const GroundBits& bits) { bodies.set_bits(owner, bits); });
 }
 
 void Levels::look_away() {

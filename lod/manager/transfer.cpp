@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lod/ground/met_ground.h"
 #include "lod/statistical/parting.h"
 #include "reference/error.h"
 #include "reference/hull/hull_overlap.h"
@@ -87,14 +88,13 @@ double find_gap_below(const Shape& shape) {
 }
 
 // With planes and the parts of the ground; those known by rays count as the plane below.
-bool overlaps_ground(const Levels& levels, const Shape& shape, const RigidState& state) {
-  if (overlaps_planes(levels.ground.planes(), shape, state)) return true;
-  if (!levels.ground.has_parts()) return false;
+bool overlaps_ground(const MetGround& ground, const Shape& shape, const RigidState& state) {
+  if (overlaps_planes(ground.planes(), shape, state)) return true;
   const double allowed = kOverlapAllowed * shape.radius;
   std::vector<const GroundPart*> parts;
   std::vector<PlacedSolid> near;
   std::vector<HalfSpace> probed;
-  levels.ground.find_parts(state.position, shape.radius, parts);
+  ground.find_parts(state.position, shape.radius, parts);
   for (const GroundPart* part : parts) {
     find_solids(*part, state.position, shape.radius, 0.0, near);
     if (const auto plane = probe_below(*part, state.position, shape.radius)) probed.push_back(*plane);
@@ -156,7 +156,8 @@ void take_out(Levels& levels, std::uint32_t body) {
 bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uint32_t> but) {
   const RigidState state = levels.state(body);
   const Shape& shape = *levels.bodies.shape(body);
-  if (overlaps_ground(levels, shape, state)) return true;
+  const BodyProperties& own = levels.bodies.properties(body);
+  if (overlaps_ground({levels.ground, own}, shape, state)) return true;
   const auto overlaps_body = [&](std::uint32_t other, const RigidState& there) {
     const Shape& other_shape = *levels.bodies.shape(other);
     const double reach = shape.radius + other_shape.radius,
@@ -173,7 +174,7 @@ bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uin
     return true;
   bool meets_callers = false;
   levels.callers.bodies.each_near(
-      state.position, shape.radius, [&](const Shape& other, const RigidState& there) {
+      state.position, shape.radius, own, [&](const Shape& other, const RigidState& there) {
         const double allowed = kOverlapAllowed * std::min(shape.radius, other.radius);
         meets_callers |= measure_pair_overlap(shape, state, other, there, allowed) > allowed;
       });

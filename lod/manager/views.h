@@ -50,7 +50,8 @@ class Views {
     double weight = 0.0;  // rad/px
     bool all_around = true;
     Vec3 forward = Vec3::UnitX();
-    std::array<Vec3, 4> inward{};  // unit normals of the sides of its frustum
+    std::array<Vec3, 4> inward{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(),
+                               Vec3::Zero()};  // unit normals of the sides of its frustum
     friend bool operator==(const View&, const View&) = default;
   };
   static View view_of(const Viewpoint& viewpoint);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/mesh/rays.h"
+
 namespace lodestone {
 namespace {
 
@@ -11,22 +13,6 @@ using Box = Eigen::AlignedBox3d;
 constexpr std::uint32_t kLeaf = 4;  // triangles
 
 Vec3 normal_of(const std::array<Vec3, 3>& t) { return (t[1] - t[0]).cross(t[2] - t[0]); }
-
-// Ericson 5.3.3: where the ray is within the box made larger by `margin` on all sides, if before `length`.
-bool enters_box(const Box& box, double margin, const Vec3& from, const Vec3& direction, double length) {
-  double first = 0.0, last = length;
-  for (int a = 0; a < 3; ++a) {
-    const double low = box.min()[a] - margin - from[a], high = box.max()[a] + margin - from[a];
-    if (direction[a] == 0.0) {
-      if (low > 0.0 || high < 0.0) return false;
-      continue;
-    }
-    const double one = low / direction[a], other = high / direction[a];
-    first = std::max(first, std::min(one, other));
-    last = std::min(last, std::max(one, other));
-  }
-  return first <= last;
-}
 
 // Ericson 5.1.5.
 Vec3 nearest_point(const std::array<Vec3, 3>& t, const Vec3& p) {
@@ -54,18 +40,6 @@ bool is_within(const std::array<Vec3, 3>& t, const Vec3& normal, const Vec3& p) 
   for (std::size_t i = 0; i < 3; ++i)
     if ((t[(i + 1) % 3] - t[i]).cross(p - t[i]).dot(normal) < 0.0) return false;
   return true;
-}
-
-// Möller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997; front faces only.
-std::optional<double> meet_front(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& direction,
-                                 double length) {
-  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], p = direction.cross(ac);
-  const double determinant = ab.dot(p);
-  if (determinant <= 0.0) return {};
-  const Vec3 to = from - t[0], q = to.cross(ab);
-  const double u = to.dot(p), v = direction.dot(q), distance = ac.dot(q) / determinant;
-  if (u < 0.0 || v < 0.0 || u + v > determinant || distance < 0.0 || distance > length) return {};
-  return distance;
 }
 
 // Of a ray into a cylinder about the segment, without its ends.
@@ -233,7 +207,7 @@ bool TriangleTree::contains(const Vec3& point) const {
   walk([&](const Box& box) { return enters_box(box, 0.0, point, direction, length); },
        [&](const Triangle& t) {
          crossings += meet_front(t, point, direction, length).has_value() ||
-                      meet_front({t[0], t[2], t[1]}, point, direction, length).has_value();
+                      meet_back(t, point, direction, length).has_value();
        });
   return crossings % 2 == 1;
 }

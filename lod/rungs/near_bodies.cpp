@@ -226,15 +226,16 @@ void NearBodies::find_ground_solids_of(const Step& step, std::int32_t index, dou
   const ContactScene& scene = step.scene;
   StatisticalBody& body = scene.bodies[std::size_t(index)];
   const std::size_t before = solid_contacts_.size(), faces = faces_.faces.size();
-  if (meets_solids(scene.world.properties_of(body.owner))) {
+  if (const BodyProperties& own = scene.world.properties_of(body.owner); meets_solids(own)) {
+    const MetGround ground(ground_, own);
     const BodyKind& kind = scene.kind_of(body);
     const Vec3 velocity = body.velocity;
     if (search == SolidSearch::one_of_a_part)  // of the whole step
       body.velocity += time * scene.gravity(Participant::statistical(std::size_t(index)));
     if (body.is_sphere())
-      find_sphere_contacts(body, kind, index, ground_, after, time, solid_contacts_, faces_.faces);
+      find_sphere_contacts(body, kind, index, ground, after, time, solid_contacts_, faces_.faces);
     else
-      find_solid_contacts(body, kind, index, ground_, after, time, solid_contacts_, faces_.faces, search);
+      find_solid_contacts(body, kind, index, ground, after, time, solid_contacts_, faces_.faces, search);
     body.velocity = velocity;
   }
   faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
@@ -437,7 +438,9 @@ void NearBodies::stop_before_unseen_ground(const Step& step) {
     const Shape& shape = *kinds_[body.kind].shape;
     const Vec3 way = body.position - from;
     if (way.norm() > kFar * shape.inner_radius)
-      body.position = from + find_free_way(ground_, body, shape, from, way) * way;
+      body.position =
+          from +
+          find_free_way({ground_, step.scene.world.properties_of(body.owner)}, body, shape, from, way) * way;
   }
 }
 

@@ -82,6 +82,8 @@ struct FullContact {
   double friction = 0.5;
   Vec3 velocity = Vec3::Zero();     ///< m/s, of the ground there
   std::optional<Drive> drive = {};  ///< a motor's: no contact, but pushes along its normal
+  std::uint32_t row = 0;            ///< of a joint's: its number among those of the first body, odd where it
+                                    ///< pushes one way, and the next where it pushes the other; 0: a contact
 };
 
 }  // namespace lodestone

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "lod/ground/half_space.h"
 #include "reference/body_properties.h"
 #include "reference/state_archive.h"
 
@@ -35,8 +36,9 @@ class OwnProperties {
 inline bool may_meet(const BodyProperties& a, const BodyProperties& b) {
   return may_meet(a.category, a.collide, b.category, b.collide);
 }
-/// Ground of a manager has all bits.
-inline bool meets_ground(const BodyProperties& a) { return may_meet(a, BodyProperties{}); }
+inline bool meets_ground(const BodyProperties& a, const GroundBits& bits = {}) {
+  return may_meet(a.category, a.collide, bits.category, bits.collide);
+}
 /// Whether a settling clip, recorded under gravity and nothing else, is how it comes to rest.
 inline bool moves_by_itself(const BodyProperties& p) {
   BodyProperties bits_only;

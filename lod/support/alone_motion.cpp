@@ -1,4 +1,5 @@
 // How a body moves that touches no other: flight and impacts, or a settling clip.
+#include "lod/ground/met_ground.h"
 #include "lod/statistical/flight.h"
 #include "lod/support/hull_motion.h"
 #include "lod/support/support_level.h"
@@ -24,7 +25,7 @@ void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> face
   const ActingForce& force = acting_.of(slot);  // for what moves alone, as good as a gravity of its own
   step_world.gravity += force.acceleration;
   step_world.turning = force.turning;
-  if (!meets_ground(own)) step_world.planes = {};
+  step_world.planes = MetGround(ground_, own).of(step_world.planes);
   static const HullMotionSettings settings;
   const HullMotion moved = move_on_hull(body, clips_[std::size_t(slot)], kind, step_world, settings_.gravity,
                                         time, moves_by_itself(own) && force.is_none(), settings, turned);

@@ -63,7 +63,7 @@ void Seeker::find_on_solids() {
   constexpr double kSameWay = 0.9999;  // cosine
   thread_local SolidPoints near;
   const double radius = kind.shape->radius, same = kSame * radius;
-  find_solid_points(body, kind, *world.solids, time, least_margin, near);
+  find_solid_points(body, kind, {*world.solids, world.properties_of(body.owner)}, time, least_margin, near);
   found.until = near.until;
   for (const HalfSpace& face : near.planes)
     if (const HalfSpace* plane = found.keep(face)) ++found.under, find_on_plane(*plane);

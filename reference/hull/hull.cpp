@@ -204,7 +204,7 @@ Hull make_hull(std::span<const Vec3> points) {
   return hull;
 }
 
-Hull make_prism_hull(const std::array<Vec3, 3>& corners, const Vec3& below) {
+Hull make_prism_hull(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& below) {
   static const Hull connected = [] {
     Hull hull;
     hull.vertices.resize(6);
@@ -215,7 +215,7 @@ Hull make_prism_hull(const std::array<Vec3, 3>& corners, const Vec3& below) {
   }();
   Hull hull = connected;
   for (std::size_t i = 0; i < 3; ++i)
-    hull.vertices[2 * i] = corners[i], hull.vertices[2 * i + 1] = corners[i] + below;
+    hull.vertices[2 * i] = corners[i], hull.vertices[2 * i + 1] = corners[i] + below[i];
   derive(hull);
   return hull;
 }

@@ -49,9 +49,10 @@ struct Hull {
 /// than 1e-10 × size is no corner. Throws InputError where they lie in a plane or are fewer than four.
 Hull make_hull(std::span<const Vec3> points);
 
-/// Of a triangle, counter-clockwise seen from outside, and the same moved by `below`, into the solid:
-/// vertices 0, 2, 4 are its corners, and each next one lies below. Takes a fiftieth of make_hull's time.
-Hull make_prism_hull(const std::array<Vec3, 3>& corners, const Vec3& below);
+/// Of a triangle, counter-clockwise seen from outside, and its corners each moved by its own of `below`, all
+/// one way, into the solid: vertices 0, 2, 4 are its corners, and each next one lies below. Takes a fiftieth
+/// of make_hull's time.
+Hull make_prism_hull(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& below);
 
 /// Moves the hull's `origin` to zero, then scales it.
 void transform_hull(Hull& hull, const Vec3& origin, double factor);

@@ -22,6 +22,11 @@ bool may_touch(dBodyID first, dBodyID second) {
   return !(first && second && dAreConnectedExcluding(first, second, dJointTypeContact));
 }
 
+bool bits_let_meet(const Body& first, const Body& second) {
+  const BodyProperties &a = first.properties, &b = second.properties;
+  return may_meet(a.category, a.collide, b.category, b.collide);
+}
+
 auto sorted_by(const Candidate& c) {
   return std::tie(c.first_order, c.second_order, c.first_part, c.second_part);
 }
@@ -75,6 +80,7 @@ std::span<const Candidate> BroadPhase::find(Bodies& bodies) {
   const auto is_awake = [](const Body& body) { return body.body && dBodyIsEnabled(body.body); };
   if (bodies.count() > 1 && std::ranges::any_of(bodies.slots(), is_awake))
     dSpaceCollide(bodies_space_, this, meet_ours);
+  drop_filtered(bodies);
   for (const Body& body : bodies.slots())
     if (is_awake(body)) find_around(body, std::uint64_t(&body - bodies.slots().data()));
   if (callers_) find_sleepers_met();
@@ -87,15 +93,22 @@ void BroadPhase::meet_ours(void* data, dGeomID a, dGeomID b) {
   if (!may_touch(dGeomGetBody(a), dGeomGetBody(b))) return;
   const Body *first = self.bodies_->owner(a), *second = self.bodies_->owner(b);
   if (second < first) std::swap(first, second), std::swap(a, b);
-  if (!self.lets_meet(*first, *second)) return;
+  if (!bits_let_meet(*first, *second)) return;
   const Body* slots = self.bodies_->slots().data();
   self.candidates_.push_back(
       {a, b, std::uint64_t(first - slots), std::uint64_t(second - slots), part_of(a), part_of(b)});
 }
 
 bool BroadPhase::lets_meet(const Body& first, const Body& second) const {
-  const BodyProperties &a = first.properties, &b = second.properties;
-  return may_meet(a.category, a.collide, b.category, b.collide) && (!filter_ || filter_(first.id, second.id));
+  return bits_let_meet(first, second) && (!filter_ || filter_(first.id, second.id));
+}
+
+// Outside of ODE's call, which would leave its space locked where the filter throws.
+void BroadPhase::drop_filtered(Bodies& bodies) {
+  if (!filter_) return;
+  const auto id_of = [&](std::uint64_t slot) { return bodies.slots()[slot].id; };
+  std::erase_if(candidates_,
+                [&](const Candidate& c) { return !filter_(id_of(c.first_order), id_of(c.second_order)); });
 }
 
 void BroadPhase::find_around(const Body& body, std::uint64_t order) {

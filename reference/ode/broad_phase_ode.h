@@ -66,6 +66,7 @@ class BroadPhase {
 
  private:
   static void meet_ours(void* self, dGeomID a, dGeomID b);
+  void drop_filtered(Bodies& bodies);
   void find_around(const Body& body, std::uint64_t order);
   void find_sleepers_met();
   void add(const Candidate& candidate, unsigned category, unsigned collide);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "tests/lod/callers/callers_scene.h"
 
@@ -13,7 +14,9 @@ class BodiesOfCaller : public ::testing::Test {
  protected:
   void follow() {
     scene_.mirror->refresh();
-    callers_.follow(*scene_.mirror, [this](const Eigen::AlignedBox3d& box) { left_.push_back(box); });
+    callers_.follow(
+        *scene_.mirror, [this](const Eigen::AlignedBox3d& box) { left_.push_back(box); },
+        [this](std::uint32_t owner, const GroundBits& bits) { bits_[owner] = bits; });
   }
   std::vector<FullNeighbor> gather() {
     std::vector<FullNeighbor> neighbors;
@@ -35,7 +38,21 @@ class BodiesOfCaller : public ::testing::Test {
   CallersBodies callers_;
   std::vector<FullContact> contacts_;
   std::vector<Eigen::AlignedBox3d> left_;
+  std::map<std::uint32_t, GroundBits> bits_;
 };
+
+TEST_F(BodiesOfCaller, HaveTheBitsOfAllTheirGeoms) {
+  const dBodyID body = scene_.body(2.0, {1, 2, 3});
+  dGeomSetCategoryBits(dBodyGetFirstGeom(body), 2), dGeomSetCollideBits(dBodyGetFirstGeom(body), 4);
+  follow();
+  const std::uint32_t owner = gather().front().owner;
+  ASSERT_TRUE(bits_.contains(owner));
+  EXPECT_EQ(bits_[owner].category, 2U);
+  EXPECT_EQ(bits_[owner].collide, 4U);
+  dGeomSetCategoryBits(dBodyGetFirstGeom(body), 8);
+  follow();
+  EXPECT_EQ(bits_[gather().front().owner].category, 8U);
+}
 
 TEST_F(BodiesOfCaller, AreNeighboursAsTheyAreNow) {
   const dBodyID a = scene_.body(2.0, {1, 2, 3}), b = scene_.body(5.0, {4, 0, 1});
@@ -154,7 +171,7 @@ TEST_F(BodiesOfCaller, NearAreThoseWhoseBallsMeet) {
   follow();
   for (const auto& [radius, expected] : {std::pair(0.5, 0), {0.66, 1}, {3.66, 2}}) {
     int met = 0;
-    callers_.each_near({-1, 0, 0}, radius, [&](const Shape&, const RigidState&) { ++met; });
+    callers_.each_near({-1, 0, 0}, radius, {}, [&](const Shape&, const RigidState&) { ++met; });
     EXPECT_EQ(met, expected) << radius;
   }
 }

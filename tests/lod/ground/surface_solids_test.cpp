@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "lod/ground/ground_solids.h"
 
@@ -36,6 +39,72 @@ TEST(SurfaceSolids, AreMadeWhereSomethingComesNear) {
   const Eigen::AlignedBox3d bounds = surface.bounds(7);
   for (const Vec3& v : solid.shape->hull.vertices)
     EXPECT_LT(bounds.squaredExteriorDistance(solid.center + v), 1e-24);
+}
+
+// Boxes by their sides and middles, m.
+Mesh boxes(const std::vector<std::pair<Vec3, Vec3>>& placed) {
+  Mesh mesh;
+  for (const auto& [sides, middle] : placed) {
+    const Mesh box = make_box(sides);
+    const int before = int(mesh.vertices.size());
+    for (const Vec3& v : box.vertices) mesh.vertices.push_back(middle + v);
+    for (const auto& f : box.faces) mesh.faces.push_back({f[0] + before, f[1] + before, f[2] + before});
+  }
+  return mesh;
+}
+
+// m: how far below the triangle that has `normal` and lies at `height` along it its solid reaches, at most.
+double depth_of(const SurfaceSolids& surface, const Vec3& normal, double height) {
+  double depth = -1.0;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const GroundSolid& solid = surface[i];
+    if (solid.surface->normal.dot(normal) < 0.999) continue;
+    if (std::abs(solid.surface->corner[0].dot(normal) - height) > 1e-9) continue;
+    for (const Vec3& v : solid.shape->hull.vertices)
+      depth = std::max(depth, height - (solid.center + v).dot(normal));
+  }
+  return depth;
+}
+
+TEST(SurfaceSolids, AreNoDeeperThanTheSurfaceIsThick) {
+  // A floor of 1 m, a table top of 5 cm over it, and a pedestal that is let into the floor by 1 cm.
+  const SurfaceSolids surface(
+      boxes({{{20, 20, 1}, {0, 0, -0.5}}, {{1.5, 1.5, 0.05}, {3, 0, 1.0}}, {{1, 1, 1}, {-3, 0, 0.49}}}));
+  const double usual = 0.02 * std::sqrt(20 * 20 + 20 * 20 + 2.025 * 2.025);
+  EXPECT_NEAR(depth_of(surface, Vec3::UnitZ(), 0.0), usual, 1e-9);
+  EXPECT_NEAR(depth_of(surface, Vec3::UnitZ(), 1.025), 0.05, 1e-6);
+  EXPECT_NEAR(depth_of(surface, -Vec3::UnitZ(), -0.975), 0.05, 1e-6);
+  EXPECT_NEAR(depth_of(surface, Vec3::UnitX(), -2.5), usual, 1e-9);
+  EXPECT_NEAR(depth_of(surface, Vec3::UnitZ(), 0.99), usual, 1e-9);
+}
+
+TEST(SurfaceSolids, TaperWhereTheSurfaceDoes) {
+  Mesh wedge;  // its edge along y at x = 0, .4 m thick at x = 2
+  wedge.vertices = {{0, 0, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}, {2, 0, 0.4}, {2, 1, 0.4}};
+  wedge.faces = {{0, 3, 2}, {0, 1, 3}, {0, 4, 5}, {0, 5, 1}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}};
+  const SurfaceSolids surface(wedge);
+  for (std::size_t i = 0; i < surface.size(); ++i)
+    for (const Vec3& v : surface[i].shape->hull.vertices) {
+      const Vec3 at = surface[i].center + v;
+      EXPECT_GT(at.z(), -0.005) << i;
+      EXPECT_LT(at.z(), 0.2 * at.x() + 0.005) << i;
+    }
+}
+
+TEST(SurfaceSolids, OfASheetThatIsThereBothWaysAreThin) {
+  Mesh sheet = waves(4);
+  for (std::size_t i = 0, count = sheet.faces.size(); i < count; ++i)
+    sheet.faces.push_back({sheet.faces[i][0], sheet.faces[i][2], sheet.faces[i][1]});
+  const SurfaceSolids surface(sheet);
+  for (std::size_t i = 0; i < surface.size(); ++i) EXPECT_LT(surface[i].surface->depth, 1e-3);
+}
+
+TEST(SurfaceSolids, OfARoomWithoutAnOuterSkinAreDeep) {
+  Mesh room = boxes({{{4, 4, 3}, {0, 0, 1.5}}});
+  for (auto& f : room.faces) std::swap(f[1], f[2]);  // seen from inside
+  const SurfaceSolids surface(room);
+  for (std::size_t i = 0; i < surface.size(); ++i)
+    EXPECT_NEAR(surface[i].surface->depth, 0.02 * std::sqrt(16.0 + 16.0 + 9.0), 1e-9);
 }
 
 TEST(SurfaceSolids, CopiesOfAPartShareThem) {

@@ -88,10 +88,12 @@ TEST(Hull, ClimbsPastAxisAlignedTies) {
 }
 
 TEST(Hull, OfAPrismIsThatOfItsCorners) {
-  for (const double depth : {0.3, 1e-3}) {
+  for (const std::array<double, 3>& depth :
+       {std::array{0.3, 0.3, 0.3}, std::array{1e-3, 1e-3, 1e-3}, std::array{0.3, 1e-3, 0.1}}) {
     const std::array<Vec3, 3> corners{Vec3(0, 0, 0), Vec3(1, 0.1, 0.2), Vec3(0.2, 0.9, -0.1)};
     const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-    const Hull prism = make_prism_hull(corners, -depth * normal), found = make_hull(prism.vertices);
+    const Hull prism = make_prism_hull(corners, {-depth[0] * normal, -depth[1] * normal, -depth[2] * normal}),
+               found = make_hull(prism.vertices);
     ASSERT_EQ(prism.vertices.size(), 6u);
     EXPECT_EQ(prism.vertices, found.vertices);
     EXPECT_EQ(prism.faces.size(), found.faces.size());

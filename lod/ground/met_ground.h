@@ -1,0 +1,48 @@
+// The ground as one body meets it: of a caller's geoms only those that their bits and its own let meet.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lod/ground/ground.h"
+
+namespace lodestone {
+
+class MetGround {
+ public:
+  /// As most bodies do: all of it.
+  MetGround(const Ground& ground) : ground_(ground) {}  // NOLINT: to most bodies it is the same
+  MetGround(const Ground& ground, const BodyProperties& own)
+      : ground_(ground), category_(own.category), collide_(own.collide) {}
+
+  bool meets(const GroundBits& bits) const {
+    return may_meet(category_, collide_, bits.category, bits.collide);
+  }
+  /// As Ground::find_parts.
+  void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const {
+    const std::size_t before = found.size();
+    ground_.find_parts(center, reach, found);
+    if (meets_all()) return;
+    std::erase_if(found, [&, i = std::size_t(0)](const GroundPart* part) mutable {
+      return i++ >= before && !meets(part->shape.bits);
+    });
+  }
+  /// Of some of the ground's planes or faces; valid until this thread calls it again.
+  std::span<const HalfSpace> of(std::span<const HalfSpace> planes) const {
+    if (meets_all()) return planes;
+    thread_local std::vector<HalfSpace> met;
+    met.clear();
+    for (const HalfSpace& plane : planes)
+      if (meets(plane.bits)) met.push_back(plane);
+    return met;
+  }
+  std::span<const HalfSpace> planes() const { return of(ground_.planes()); }
+
+ private:
+  bool meets_all() const { return (category_ & collide_) == ~0u; }
+
+  const Ground& ground_;
+  unsigned category_ = ~0u, collide_ = ~0u;
+};
+
+}  // namespace lodestone
