@@ -32,6 +32,7 @@ struct StepCounts {
 
   double& at(Rung rung, Activity activity) { return rungs[std::size_t(rung)][std::size_t(activity)]; }
   double at(Rung rung, Activity activity) const { return rungs[std::size_t(rung)][std::size_t(activity)]; }
+  void archive(StateArchive& a) { a(rungs, changes, added, asked); }
 };
 
 /// Processor time of a step, ms.
