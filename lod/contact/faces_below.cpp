@@ -125,12 +125,19 @@ bool is_smooth(std::span<const PlacedSolid> near, const Vec3& center, double rea
 std::optional<HalfSpace> find_mean_plane(std::span<const PlacedSolid> near, const Vec3& center, double reach,
                                          double least_cosine) {
   constexpr double kSeam = 1e-12;  // over the square of the reach: nearer than so it lies over the triangle
+  constexpr double kLayer = 1e-3;  // over the reach: so far below another it is hidden
+  struct Over {
+    Vec3 normal, foot;
+  };
   thread_local std::vector<Vec3> normals;
-  normals.clear();
+  thread_local std::vector<Over> over;  // triangles, and the point of each that is straight below
+  normals.clear(), over.clear();
+  const auto hides = [&](const Over& one, const Over& other) {
+    return one.normal.dot(other.foot - one.foot) < -kLayer * reach;
+  };
   HalfSpace mean{.normal = Vec3::Zero()};
   Vec3 place = Vec3::Zero();
   double weights = 0.0;
-  bool over = false;
   for (const PlacedSolid& placed : near) {
     if (!placed.solid->surface) return {};
     const SurfaceTriangle& t = *placed.solid->surface;
@@ -147,10 +154,13 @@ std::optional<HalfSpace> find_mean_plane(std::span<const PlacedSolid> near, cons
     mean.normal += weight * normals.back();
     place += weight * (center - way);
     if (way.squaredNorm() - height * height > kSeam * reach * reach) continue;
-    over = true;
+    const Over own{normals.back(), center - way};
+    for (const Over& other : over)
+      if (hides(own, other) || hides(other, own)) return {};
+    over.push_back(own);
     mean.material = placed.part->material, mean.id = placed.part->id;
   }
-  if (!over) return {};
+  if (over.empty()) return {};
   mean.normal.normalize();
   mean.offset = mean.normal.dot(place) / weights;
   const auto is_gentle = [&](const Vec3& normal) { return normal.dot(mean.normal) > least_cosine; };

@@ -41,8 +41,8 @@ bool find_faces_below(std::span<const PlacedSolid> near, const Vec3& center, dou
 bool is_smooth(std::span<const PlacedSolid> near, const Vec3& center, double reach);
 
 /// One plane for gentle ground of triangles below `center`: the mean of those in reach, the nearer the more,
-/// so that it turns by degrees as a body moves on. None beyond a border, or where a triangle's normal and the
-/// plane's have a cosine below `least_cosine`.
+/// so that it turns by degrees as a body moves on. None beyond a border, over several layers, or where a
+/// triangle's normal and the plane's have a cosine below `least_cosine`.
 std::optional<HalfSpace> find_mean_plane(std::span<const PlacedSolid> near, const Vec3& center, double reach,
                                          double least_cosine);
 

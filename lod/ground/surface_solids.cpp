@@ -87,6 +87,13 @@ SurfaceSolids::SurfaceSolids(const Mesh& mesh) : vertices_(mesh.vertices) {
   std::vector<int> indices(size());
   std::iota(indices.begin(), indices.end(), 0);
   tree_ = std::make_unique<const Tree>(indices.begin(), indices.end(), bounds_.begin(), bounds_.end());
+  one_way_ = looks_one_way();
+  if (one_way_) return;
+  find_reversed();
+  std::vector<Box> bare;
+  for (const Triangle& triangle : triangles_)
+    bare.push_back(bounds_of(corners_of(triangle), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}));
+  bare_tree_ = std::make_unique<const Tree>(indices.begin(), indices.end(), bare.begin(), bare.end());
 }
 
 SurfaceSolids::~SurfaceSolids() {
@@ -118,37 +125,66 @@ void SurfaceSolids::visit_crossings(const Vec3& from, const Vec3& direction, con
     else if (const auto out = meet_back(corner, from, direction, size_))
       visit(*out, false);
   };
-  if (tree_)
-    tree_->visit_along(from, direction, size_, cross);
+  if (bare_tree_)
+    bare_tree_->visit_along(from, direction, size_, cross);
   else
     cross(0);
 }
 
-// Whether the same triangle is there again, seen from the other side: of a sheet that is solid to both.
-bool SurfaceSolids::has_reverse(const std::array<Vec3, 3>& corner) const {
-  const Vec3 normal = unit_normal(corner);
-  bool found = false;
-  const auto look_at = [&](int i) {
-    const std::array<Vec3, 3> other = corners_of(triangles_[std::size_t(i)]);
-    const auto is_its = [&](const Vec3& c) { return std::ranges::find(corner, c) != corner.end(); };
-    found = found || (std::ranges::all_of(other, is_its) && unit_normal(other).dot(normal) < 0.0);
+// Whether the surface may have another side anywhere: not where all of it looks nearly one way, as a
+// landscape does.
+bool SurfaceSolids::looks_one_way() const {
+  constexpr double kApart = 0.71;  // cosine, of 45°: of no two are the normals more than 90° apart
+  Vec3 mean = Vec3::Zero();
+  for (const Triangle& triangle : triangles_) {
+    const std::array<Vec3, 3> corner = corners_of(triangle);
+    mean += (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+  }
+  mean.normalize();
+  return std::ranges::all_of(triangles_, [&](const Triangle& triangle) {
+    return unit_normal(corners_of(triangle)).dot(mean) > kApart;
+  });
+}
+
+// Notes those triangles that are there again, seen from the other side: sheets that are solid to both.
+void SurfaceSolids::find_reversed() {
+  using Corners = std::array<std::array<double, 3>, 3>;
+  const auto sorted_corners = [&](const Triangle& triangle) {
+    Corners sorted;
+    const std::array<Vec3, 3> corner = corners_of(triangle);
+    for (std::size_t i = 0; i < 3; ++i) sorted[i] = {corner[i].x(), corner[i].y(), corner[i].z()};
+    std::ranges::sort(sorted);
+    return sorted;
   };
-  if (tree_) tree_->visit_near(corner[0], 0.0, look_at);
-  return found;
+  std::vector<std::pair<Corners, std::size_t>> all;
+  for (std::size_t i = 0; i < size(); ++i) all.emplace_back(sorted_corners(triangles_[i]), i);
+  std::ranges::sort(all);
+  const auto normal_at = [&](const auto& entry) { return unit_normal(corners_of(triangles_[entry.second])); };
+  for (auto run = all.begin(); run != all.end();) {
+    const auto end =
+        std::find_if(run, all.end(), [&](const auto& other) { return other.first != run->first; });
+    const Vec3 first = normal_at(*run);
+    const bool both_ways =
+        std::any_of(run, end, [&](const auto& other) { return normal_at(other).dot(first) < 0.0; });
+    for (; run != end; ++run) triangles_[run->second].reversed = both_ways;
+  }
 }
 
 // m: from just below the surface to where a ray has left all solids that it was in there, which may overlap:
-// a pedestal is let into its floor. At least the triangle's own, though of a room without an outer skin, or a
-// landscape, nothing says so. `size_`: to no end.
+// a pedestal is let into its floor. Along a line that does not leave as many as it enters the surface is
+// open, as a landscape is, or a room without an outer skin: there it is the triangle's own alone. `size_`: to
+// no end.
 double SurfaceSolids::find_thickness_at(const Vec3& point, const Vec3& normal) const {
   const Vec3 from = point - 1e-9 * size_ * normal;
   int within = 0;  // so many
   visit_crossings(from, normal, [&](double, bool in) { within += in ? -1 : 1; });
-  within = std::max(within, 1);
   thread_local std::vector<std::pair<double, int>> crossings;  // m; how many more it is in from there on
   crossings.clear();
   visit_crossings(from, -normal, [&](double at, bool in) { crossings.emplace_back(at, in ? 1 : -1); });
   std::ranges::sort(crossings);
+  const int outside = std::accumulate(crossings.begin(), crossings.end(), within,
+                                      [](int sum, const auto& c) { return sum + c.second; });
+  if (outside != 0) within = 1;
   for (const auto& [at, more] : crossings)
     if ((within += more) <= 0) return at;
   return size_;
@@ -156,15 +192,16 @@ double SurfaceSolids::find_thickness_at(const Vec3& point, const Vec3& normal) c
 
 // m, below each corner: so that the plane through these ends lies nowhere beyond the other side, as seen by
 // rays from a few places in the triangle, which are no likely places of others' edges.
-std::array<double, 3> SurfaceSolids::find_thickness(const std::array<Vec3, 3>& corner,
-                                                    const Vec3& normal) const {
+std::array<double, 3> SurfaceSolids::find_thickness(const std::array<Vec3, 3>& corner, const Vec3& normal,
+                                                    bool reversed) const {
+  if (one_way_) return {size_, size_, size_};
   constexpr double kThinnest = 2e-4;  // over the longest edge
   static const std::array<Vec3, 7> places{
       Vec3(0.90, 0.06, 0.04), Vec3(0.04, 0.90, 0.06), Vec3(0.06, 0.04, 0.90), Vec3(0.47, 0.43, 0.10),
       Vec3(0.10, 0.47, 0.43), Vec3(0.43, 0.10, 0.47), Vec3(0.35, 0.33, 0.32)};  // shares of the corners
   const double longest = std::max(
       {(corner[1] - corner[0]).norm(), (corner[2] - corner[1]).norm(), (corner[0] - corner[2]).norm()});
-  Vec3 thickness = Vec3::Constant(has_reverse(corner) ? 0.0 : size_);
+  Vec3 thickness = Vec3::Constant(reversed ? 0.0 : size_);
   std::array<double, places.size()> there;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vec3& share = places[i];
@@ -186,7 +223,7 @@ std::array<double, 3> SurfaceSolids::find_thickness(const std::array<Vec3, 3>& c
 GroundSolid SurfaceSolids::make(const Triangle& triangle) const {
   const std::array<Vec3, 3> corner = corners_of(triangle);
   const Vec3 normal = unit_normal(corner);
-  const std::array<double, 3> thickness = find_thickness(corner, normal);
+  const std::array<double, 3> thickness = find_thickness(corner, normal, triangle.reversed);
   const auto below = [&](std::size_t i) { return Vec3(-std::min(depth_, thickness[i]) * normal); };
   const std::array<Vec3, 3> down{below(0), below(1), below(2)};
   const Vec3 middle = bounds_of(corner, down).center();

@@ -35,23 +35,28 @@ class SurfaceSolids {
   struct Triangle {
     std::array<int, 3> corner;  // in vertices_
     std::array<bool, 3> ridge;
+    bool reversed = false;  // there again, seen from the other side
   };
 
   std::array<Vec3, 3> corners_of(const Triangle& triangle) const;
-  std::array<double, 3> find_thickness(const std::array<Vec3, 3>& corner, const Vec3& normal) const;
+  bool looks_one_way() const;
+  void find_reversed();
+  std::array<double, 3> find_thickness(const std::array<Vec3, 3>& corner, const Vec3& normal,
+                                       bool reversed) const;
   double find_thickness_at(const Vec3& point, const Vec3& normal) const;
   template <class Visit>
   void visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const;
-  bool has_reverse(const std::array<Vec3, 3>& corner) const;
   GroundSolid make(const Triangle& triangle) const;
 
   std::vector<Vec3> vertices_;  // m
   std::vector<Triangle> triangles_;
   std::vector<Eigen::AlignedBox3d> bounds_;  // of each triangle
   struct Tree;
-  std::unique_ptr<const Tree> tree_;  // of these; null for less than two
-  double size_ = 0.0;                 // m, the diagonal of all
-  double depth_ = 0.0;                // m: so far below the surface each is solid, at most
+  std::unique_ptr<const Tree> tree_;       // of these; null for less than two
+  bool one_way_ = true;                    // no ray meets another side
+  std::unique_ptr<const Tree> bare_tree_;  // of the triangles themselves, for rays; null where none are cast
+  double size_ = 0.0;                      // m, the diagonal of all
+  double depth_ = 0.0;                     // m: so far below the surface each is solid, at most
   std::unique_ptr<std::atomic<const GroundSolid*>[]> solids_;  // of each triangle; null: not made yet
 };
 

@@ -19,10 +19,10 @@ void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBod
     find_joint_rows(bodies[i], reach, rows);
     find_joint_motors(bodies[i], reach, motors);
     if (rows.empty() && motors.empty()) continue;
-    std::uint32_t number = 0;
     if (index_of.empty())
       for (std::size_t k = 0; k < bodies.size(); ++k) index_of.emplace(bodies[k], std::int32_t(k));
-    const auto add = [&](dxBody* other, const Vec3& point, const Vec3& direction, const JointMotor* motor) {
+    const auto add = [&](dxBody* other, const Vec3& point, const Vec3& direction, std::uint32_t number,
+                         const JointMotor* motor) {
       const auto second = other ? index_of.find(other) : index_of.end();
       if (other && second == index_of.end()) return;  // without geoms: of no shape that is known
       for (const double sign : {1.0, -1.0}) {
@@ -33,12 +33,17 @@ void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBod
                                               .normal = sign * direction,
                                               .gap = 0.0,
                                               .friction = 0.0,
-                                              .row = ++number});
+                                              .row = sign > 0.0 ? 2 * number + 1 : 2 * number + 2});
         if (motor) contact.drive = Drive{.speed = sign * motor->speed, .force = motor->force};
       }
     };
-    for (const JointRow& row : rows) add(row.second, row.point, row.direction, nullptr);
-    for (const JointMotor& motor : motors) add(motor.second, motor.point, motor.direction, &motor);
+    // Counted from the oldest joint on, which ODE lists last: those that come change no number.
+    constexpr std::uint32_t kMotors = 1U << 16;
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      add(rows[r].second, rows[r].point, rows[r].direction, std::uint32_t(rows.size() - r), nullptr);
+    for (std::size_t m = 0; m < motors.size(); ++m)
+      add(motors[m].second, motors[m].point, motors[m].direction, kMotors + std::uint32_t(motors.size() - m),
+          &motors[m]);
   }
 }
 

@@ -78,6 +78,19 @@ TEST(SurfaceSolids, AreNoDeeperThanTheSurfaceIsThick) {
   EXPECT_NEAR(depth_of(surface, Vec3::UnitZ(), 0.99), usual, 1e-9);
 }
 
+// It has no other side itself: what lies below it is none the thicker.
+TEST(SurfaceSolids, ASheetAboveMakesNothingThick) {
+  Mesh mesh = boxes({{{3, 3, 0.05}, {0, 0, 1}}});
+  const int first = int(mesh.vertices.size());
+  for (const Vec3& v : {Vec3(-5, -5, 4), Vec3(5, -5, 4), Vec3(5, 5, 4), Vec3(-5, 5, 4)})
+    mesh.vertices.push_back(v);
+  mesh.faces.push_back({first, first + 1, first + 2}), mesh.faces.push_back({first, first + 2, first + 3});
+  const SurfaceSolids surface(mesh);
+  EXPECT_NEAR(depth_of(surface, Vec3::UnitZ(), 1.025), 0.05, 1e-6);
+  EXPECT_NEAR(depth_of(surface, -Vec3::UnitZ(), -0.975), 0.05, 1e-6);
+  EXPECT_GT(depth_of(surface, Vec3::UnitZ(), 4.0), 0.2);
+}
+
 TEST(SurfaceSolids, TaperWhereTheSurfaceDoes) {
   Mesh wedge;  // its edge along y at x = 0, .4 m thick at x = 2
   wedge.vertices = {{0, 0, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}, {2, 0, 0.4}, {2, 1, 0.4}};

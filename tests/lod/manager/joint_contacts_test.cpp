@@ -305,6 +305,40 @@ TEST(JointContacts, AWreckingBallOnAHingeThrowsNobody) {
     }
 }
 
+// What its rows bear goes on being known while other joints of it come and go.
+TEST(JointContacts, APlankOnAHingeLiesStillWhileOtherJointsComeAndGo) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    TheirWorld theirs;
+    Manager manager(theirs.world, theirs.space, kSettings);
+    const BodyId crate = add_crate(manager, level),
+                 plank = manager.add_body({.shape = box_shape({1.0, 0.2, 0.1}),
+                                           .state = testing::at({0.4, 0, kCrate + 0.051}),
+                                           .mass = 200.0,
+                                           .level = LevelChoice::full}),
+                 light = add_full(manager, kLimb, kLimbMass, {0.4, 0, kCrate + 0.2});
+    manager.step(kFrame);
+    const dJointID hinge = dJointCreateHinge(theirs.world, nullptr);
+    dJointAttach(hinge, manager.ode_body(plank), nullptr);
+    dJointSetHingeAnchor(hinge, 0.9, 0, kCrate + 0.05);
+    dJointSetHingeAxis(hinge, 0, 1, 0);
+    dJointID ball = nullptr;
+    double fastest = 0.0;
+    for (int i = 0; i < 180; ++i) {
+      if (i % 20 == 0) {
+        ball = dJointCreateBall(theirs.world, nullptr);
+        dJointAttach(ball, manager.ode_body(plank), manager.ode_body(light));
+        dJointSetBallAnchor(ball, 0.4, 0, kCrate + 0.12);
+      } else if (i % 20 == 10) {
+        dJointDestroy(ball);
+      }
+      manager.step(kFrame);
+      if (i > 60) fastest = std::max(fastest, manager.state(crate).velocity.norm());
+    }
+    EXPECT_LT(fastest, 0.05) << int(level);
+    EXPECT_NEAR(manager.state(plank).position.z(), kCrate + 0.05, 2 * kBears) << int(level);
+  }
+}
+
 // Ten planks hinged to each other and to the world, a little slack: ODE keeps all five crates on them.
 // Thirteen of fifteen were thrown off.
 TEST(JointContacts, ABridgeOfHingedPlanksCarriesCrates) {

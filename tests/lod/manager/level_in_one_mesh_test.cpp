@@ -72,6 +72,15 @@ TEST_P(LevelInOneMesh, WhatFallsOnAThinTableStaysOnIt) {
   }
 }
 
+// The mean of all layers lies below the upper one.
+TEST_P(LevelInOneMesh, WhatLiesOnLayersLiesOnTheUpperOne) {
+  for (const double z : {0.025, 0.075}) add({6, 6, 0.05}, {0, 0, z});
+  Manager manager = make_manager();
+  const BodyId body = testing::add(manager, crate(), {.position = {0.1, 0.2, 0.3005}}, GetParam());
+  testing::run(manager, 2.0);
+  EXPECT_NEAR(manager.state(body).position.z(), 0.3, 1e-3);
+}
+
 // Half of them ended behind one of 2 cm.
 TEST_P(LevelInOneMesh, NobodyPassesAThinWall) {
   for (int i = 0; i < 4; ++i) add({0.02, 2.0, 2.5}, {-6.0 + 3.0 * i, 0, 1.24});
