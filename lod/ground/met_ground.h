@@ -1,6 +1,8 @@
 // The ground as one body meets it: of a caller's geoms only those that their bits and its own let meet.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -20,12 +22,11 @@ class MetGround {
   }
   /// As Ground::find_parts.
   void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const {
-    const std::size_t before = found.size();
+    const auto before = std::ptrdiff_t(found.size());
     ground_.find_parts(center, reach, found);
     if (meets_all()) return;
-    std::erase_if(found, [&, i = std::size_t(0)](const GroundPart* part) mutable {
-      return i++ >= before && !meets(part->shape.bits);
-    });
+    const auto passed = [this](const GroundPart* part) { return !meets(part->shape.bits); };
+    found.erase(std::remove_if(found.begin() + before, found.end(), passed), found.end());
   }
   /// Of some of the ground's planes or faces; valid until this thread calls it again.
   std::span<const HalfSpace> of(std::span<const HalfSpace> planes) const {

@@ -118,17 +118,13 @@ std::array<Vec3, 3> SurfaceSolids::corners_of(const Triangle& triangle) const {
 // Where a ray crosses the surface, in no order: how far along it, m, and whether it goes in there.
 template <class Visit>
 void SurfaceSolids::visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const {
-  const auto cross = [&](int i) {
+  bare_tree_->visit_along(from, direction, size_, [&](int i) {
     const std::array<Vec3, 3> corner = corners_of(triangles_[std::size_t(i)]);
     if (const auto in = meet_front(corner, from, direction, size_))
       visit(*in, true);
     else if (const auto out = meet_back(corner, from, direction, size_))
       visit(*out, false);
-  };
-  if (bare_tree_)
-    bare_tree_->visit_along(from, direction, size_, cross);
-  else
-    cross(0);
+  });
 }
 
 // Whether the surface may have another side anywhere: not where all of it looks nearly one way, as a
@@ -176,11 +172,12 @@ void SurfaceSolids::find_reversed() {
 // no end.
 double SurfaceSolids::find_thickness_at(const Vec3& point, const Vec3& normal) const {
   const Vec3 from = point - 1e-9 * size_ * normal;
-  int within = 0;  // so many
-  visit_crossings(from, normal, [&](double, bool in) { within += in ? -1 : 1; });
+  int within = 0;                                              // so many
   thread_local std::vector<std::pair<double, int>> crossings;  // m; how many more it is in from there on
   crossings.clear();
   visit_crossings(from, -normal, [&](double at, bool in) { crossings.emplace_back(at, in ? 1 : -1); });
+  if (std::ranges::none_of(crossings, [](const auto& c) { return c.second < 0; })) return size_;
+  visit_crossings(from, normal, [&](double, bool in) { within += in ? -1 : 1; });
   std::ranges::sort(crossings);
   const int outside = std::accumulate(crossings.begin(), crossings.end(), within,
                                       [](int sum, const auto& c) { return sum + c.second; });
@@ -196,9 +193,9 @@ std::array<double, 3> SurfaceSolids::find_thickness(const std::array<Vec3, 3>& c
                                                     bool reversed) const {
   if (one_way_) return {size_, size_, size_};
   constexpr double kThinnest = 2e-4;  // over the longest edge
-  static const std::array<Vec3, 7> places{
-      Vec3(0.90, 0.06, 0.04), Vec3(0.04, 0.90, 0.06), Vec3(0.06, 0.04, 0.90), Vec3(0.47, 0.43, 0.10),
-      Vec3(0.10, 0.47, 0.43), Vec3(0.43, 0.10, 0.47), Vec3(0.35, 0.33, 0.32)};  // shares of the corners
+  static const std::array<Vec3, 4> places{Vec3(0.90, 0.06, 0.04), Vec3(0.04, 0.90, 0.06),
+                                          Vec3(0.06, 0.04, 0.90),
+                                          Vec3(0.35, 0.33, 0.32)};  // shares of the corners
   const double longest = std::max(
       {(corner[1] - corner[0]).norm(), (corner[2] - corner[1]).norm(), (corner[0] - corner[2]).norm()});
   Vec3 thickness = Vec3::Constant(reversed ? 0.0 : size_);

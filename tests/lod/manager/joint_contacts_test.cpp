@@ -243,20 +243,24 @@ TEST(JointContacts, ADoorOnAMotorSweepsCratesAside) {
 }
 
 // A plank with one end on a hinge of the world, at the height of the crate on which its other end lies.
+BodyId add_hinged_plank(const TheirWorld& theirs, Manager& manager, double mass) {
+  const BodyId plank = manager.add_body({.shape = box_shape({1.0, 0.2, 0.1}),
+                                         .state = testing::at({0.4, 0, kCrate + 0.051}),
+                                         .mass = mass,
+                                         .level = LevelChoice::full});
+  manager.step(kFrame);
+  const dJointID hinge = dJointCreateHinge(theirs.world, nullptr);
+  dJointAttach(hinge, manager.ode_body(plank), nullptr);
+  dJointSetHingeAnchor(hinge, 0.9, 0, kCrate + 0.05);
+  dJointSetHingeAxis(hinge, 0, 1, 0);
+  return plank;
+}
+
 TEST(JointContacts, TheWorldBearsItsShare) {
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
     TheirWorld theirs;
     Manager manager(theirs.world, theirs.space, kSettings);
-    const BodyId crate = add_crate(manager, level),
-                 plank = manager.add_body({.shape = box_shape({1.0, 0.2, 0.1}),
-                                           .state = testing::at({0.4, 0, kCrate + 0.051}),
-                                           .mass = 20.0,
-                                           .level = LevelChoice::full});
-    manager.step(kFrame);
-    const dJointID hinge = dJointCreateHinge(theirs.world, nullptr);
-    dJointAttach(hinge, manager.ode_body(plank), nullptr);
-    dJointSetHingeAnchor(hinge, 0.9, 0, kCrate + 0.05);
-    dJointSetHingeAxis(hinge, 0, 1, 0);
+    const BodyId crate = add_crate(manager, level), plank = add_hinged_plank(theirs, manager, 20.0);
     run(manager, 4.0);
     EXPECT_NEAR(manager.state(plank).position.z(), kCrate + 0.05, kBears) << int(level);
     EXPECT_LT(manager.state(crate).position.head<2>().norm(), 0.01) << int(level);
@@ -311,16 +315,8 @@ TEST(JointContacts, APlankOnAHingeLiesStillWhileOtherJointsComeAndGo) {
     TheirWorld theirs;
     Manager manager(theirs.world, theirs.space, kSettings);
     const BodyId crate = add_crate(manager, level),
-                 plank = manager.add_body({.shape = box_shape({1.0, 0.2, 0.1}),
-                                           .state = testing::at({0.4, 0, kCrate + 0.051}),
-                                           .mass = 200.0,
-                                           .level = LevelChoice::full}),
-                 light = add_full(manager, kLimb, kLimbMass, {0.4, 0, kCrate + 0.2});
-    manager.step(kFrame);
-    const dJointID hinge = dJointCreateHinge(theirs.world, nullptr);
-    dJointAttach(hinge, manager.ode_body(plank), nullptr);
-    dJointSetHingeAnchor(hinge, 0.9, 0, kCrate + 0.05);
-    dJointSetHingeAxis(hinge, 0, 1, 0);
+                 light = add_full(manager, kLimb, kLimbMass, {0.4, 0, kCrate + 0.2}),
+                 plank = add_hinged_plank(theirs, manager, 200.0);
     dJointID ball = nullptr;
     double fastest = 0.0;
     for (int i = 0; i < 180; ++i) {
