@@ -8,6 +8,7 @@
 namespace lodestone {
 namespace {
 
+const Eigen::AlignedBox3d kEverywhere(Vec3::Constant(-1e9), Vec3::Constant(1e9));  // m
 constexpr double kLeap = 50.0;  // m/s: what seems faster was put elsewhere, and carries nothing along
 
 Eigen::AlignedBox3d in_own_frame(const MirroredGeom& geom) {
@@ -30,26 +31,24 @@ HalfSpace plane_of(const MirroredGeom& geom) {
 
 }  // namespace
 
-void CallersGround::follow(const SpaceMirror& mirror, double dt,
-                           const std::function<void(const Eigen::AlignedBox3d&)>& disturbed,
-                           const std::function<void(const HalfSpace&)>& came) {
+void CallersGround::follow(const SpaceMirror& mirror, double dt, const Wakes& wakes) {
   const std::span<const MirroredGeom> geoms = mirror.geoms();
   ids_.resize(geoms.size());
   for (const std::uint32_t slot : mirror.removed()) {
     if (!ids_[slot]) continue;
     if (!ground_.is_plane(ids_[slot]))
-      disturbed(ground_.bounds(ids_[slot]));
+      wakes.gone(ground_.bounds(ids_[slot]));
     else
-      disturbed({Vec3::Constant(-1e9), Vec3::Constant(1e9)});
+      wakes.disturbed(kEverywhere);
     remove(slot);
   }
   for (const std::uint32_t slot : mirror.added()) {
     if (geoms[slot].dynamic) continue;
     add(geoms[slot], slot, dt);
     if (ground_.is_plane(ids_[slot]))
-      came(plane_of(geoms[slot]));
+      wakes.came(plane_of(geoms[slot]));
     else
-      disturbed(geoms[slot].bounds);
+      wakes.disturbed(geoms[slot].bounds);
   }
   for (const std::uint32_t slot : moving_)
     if (ids_[slot]) ground_.move_part(ids_[slot], pose_of(geoms[slot], false, dt));
@@ -59,15 +58,17 @@ void CallersGround::follow(const SpaceMirror& mirror, double dt,
     ground_.move_part(ids_[slot], pose);
     if (!ground_.part(ids_[slot]).moves() && !moved) return;
     moving_.push_back(slot);
-    disturbed(geoms[slot].bounds.merged(geoms[slot].previous_bounds));
+    const Eigen::AlignedBox3d &now = geoms[slot].bounds, &before = geoms[slot].previous_bounds;
+    if (before.intersects(now)) return wakes.disturbed(now.merged(before));
+    wakes.gone(before);
+    wakes.disturbed(now);
   };
   for (const std::uint32_t slot : mirror.moved()) {
     if (!ids_[slot]) continue;
     if (!ground_.is_plane(ids_[slot]))
       move(slot, true);
     else
-      ground_.move_plane(ids_[slot], plane_of(geoms[slot])),
-          disturbed({Vec3::Constant(-1e9), Vec3::Constant(1e9)});
+      ground_.move_plane(ids_[slot], plane_of(geoms[slot])), wakes.disturbed(kEverywhere);
   }
   for (const std::uint32_t slot : carried_)
     if (!std::ranges::binary_search(mirror.moved(), slot)) move(slot, false);

@@ -16,11 +16,14 @@ class CallersGround {
   /// `ground` must outlive it.
   explicit CallersGround(Ground& ground) : ground_(ground) {}
 
-  /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s. Calls disturbed(box)
-  /// for where something came, went or moved, and came(plane) for a new plane: what lies there wakes.
-  void follow(const SpaceMirror& mirror, double dt,
-              const std::function<void(const Eigen::AlignedBox3d&)>& disturbed,
-              const std::function<void(const HalfSpace&)>& came);
+  /// What wakes, where boxes of the world and planes have changed.
+  struct Wakes {
+    std::function<void(const Eigen::AlignedBox3d&)> disturbed;  ///< something came or moved there
+    std::function<void(const Eigen::AlignedBox3d&)> gone;       ///< what was there is elsewhere, or nowhere
+    std::function<void(const HalfSpace&)> came;
+  };
+  /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s.
+  void follow(const SpaceMirror& mirror, double dt, const Wakes& wakes);
 
   /// The geom that a part or plane is; null where it is none of the caller's.
   dxGeom* geom_of(GroundId id) const;

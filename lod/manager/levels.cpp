@@ -103,7 +103,10 @@ void Levels::follow_callers_space(double dt) {
   const SpaceMirror* mirror = full.world()->callers_space();
   if (!mirror) return;
   const auto wake = [this](const Eigen::AlignedBox3d& box) { wake_in(box); };
-  callers.ground.follow(*mirror, dt, wake, [this](const HalfSpace& plane) { wake_on(plane); });
+  callers.ground.follow(*mirror, dt,
+                        {.disturbed = wake,
+                         .gone = [this](const Eigen::AlignedBox3d& box) { wake_piled_in(box); },
+                         .came = [this](const HalfSpace& plane) { wake_on(plane); }});
   callers.bodies.follow(
       *mirror, wake, [this](std::uint32_t owner, const GroundBits& bits) { bodies.set_bits(owner, bits); });
 }
@@ -119,24 +122,19 @@ std::vector<CallersPart> Levels::callers_parts() const {
 
 void Levels::wake_in(const Eigen::AlignedBox3d& box) {
   eased.wake_in(*this, box);
-  if (!statistical || statistical->asleep_count() == 0) return;
-  std::vector<std::uint32_t> near;
-  statistical->find_sleepers(box.center(), 0.5 * box.sizes().norm(), near);
-  std::ranges::sort(near);
-  for (const std::uint32_t body : near) {
-    const double reach = (1.0 + kTouchMargin) * bodies.shape(body)->radius;
-    if (box.squaredExteriorDistance(statistical->position(bodies[body].statistical)) <= reach * reach)
-      wake(body);
-  }
+  for (const std::uint32_t body : find_sleepers_in(box)) wake(body);
 }
 
 void Levels::wake_all_in(const Eigen::AlignedBox3d& box) {
   wake_in(box);
-  for (const FullLevel::Member& member : full.members()) {
-    const double reach = (1.0 + kTouchMargin) * bodies.shape(member.owner)->radius;
-    if (asleep(member.owner) && box.squaredExteriorDistance(state(member.owner).position) <= reach * reach)
-      wake(member.owner);
-  }
+  for (const std::uint32_t body : find_full_in(box)) wake(body);
+}
+
+void Levels::wake_piled_in(const Eigen::AlignedBox3d& box) {
+  std::vector<std::uint32_t> lay_there = find_sleepers_in(box);
+  std::ranges::copy(find_full_in(box), std::back_inserter(lay_there));
+  wake_all_in(box);
+  for (const std::uint32_t body : lay_there) wake_piled_on(body);
 }
 
 void Levels::wake_on(const HalfSpace& plane) {
@@ -166,6 +164,51 @@ void Levels::wake_at(const Vec3& center, double radius) {
     find_at(center, radius, 1.0 + kTouchMargin, level, near, true);
   std::ranges::sort(near);
   for (const std::uint32_t body : near) wake(body);
+}
+
+void Levels::wake_piled_on(std::uint32_t lowest) {
+  constexpr double kAbove = 0.1;  // of the distance: what lies beside it is not piled on it
+  const double strength = statistical_settings.gravity.norm();
+  if (strength == 0.0) return;
+  const Vec3 up = -statistical_settings.gravity / strength;
+  std::vector<std::uint32_t> bear = {lowest}, near;
+  while (!bear.empty()) {
+    const std::uint32_t below = bear.back();
+    bear.pop_back();
+    near.clear();
+    for (const Level level : {Level::full, Level::statistical})
+      find_near(below, 1.0 + kTouchMargin, level, near, true);
+    std::ranges::sort(near);
+    for (const std::uint32_t body : near) {
+      const Vec3 apart = state(body).position - state(below).position;
+      if (!asleep(body) || apart.dot(up) <= kAbove * apart.norm()) continue;
+      wake(body);
+      bear.push_back(body);
+    }
+  }
+}
+
+bool Levels::meets(std::uint32_t body, const Vec3& place, const Eigen::AlignedBox3d& box) const {
+  const double reach = (1.0 + kTouchMargin) * bodies.shape(body)->radius;
+  return box.squaredExteriorDistance(place) <= reach * reach;
+}
+
+std::vector<std::uint32_t> Levels::find_sleepers_in(const Eigen::AlignedBox3d& box) const {
+  std::vector<std::uint32_t> found;
+  if (!statistical || statistical->asleep_count() == 0) return found;
+  statistical->find_sleepers(box.center(), 0.5 * box.sizes().norm(), found);
+  std::ranges::sort(found);
+  std::erase_if(found, [&](std::uint32_t body) {
+    return !meets(body, statistical->position(bodies[body].statistical), box);
+  });
+  return found;
+}
+
+std::vector<std::uint32_t> Levels::find_full_in(const Eigen::AlignedBox3d& box) const {
+  std::vector<std::uint32_t> found;
+  for (const FullLevel::Member& member : full.members())
+    if (meets(member.owner, state(member.owner).position, box)) found.push_back(member.owner);
+  return found;
 }
 
 void Levels::find_near(std::uint32_t body, double factor, Level level, std::vector<std::uint32_t>& near,

@@ -83,6 +83,9 @@ struct Levels {
   /// Wakes the statistical bodies whose bounding spheres meet `box`, and full ones that lie as they did
   /// there.
   void wake_in(const Eigen::AlignedBox3d& box);
+  /// Wakes the bodies of either level whose bounding spheres meet `box`, from which ground is gone, and what
+  /// is piled on them.
+  void wake_piled_in(const Eigen::AlignedBox3d& box);
   /// Wakes the bodies of either level whose bounding spheres meet `box`: new ground is there.
   void wake_all_in(const Eigen::AlignedBox3d& box);
   /// Wakes the bodies of either level that a new `plane` cuts.
@@ -103,6 +106,13 @@ struct Levels {
   void give_forces();
 
  private:
+  /// Wakes those of either level that sleep above the body, bounding sphere to bounding sphere, and above
+  /// these, and so on: nothing holds them up any more.
+  void wake_piled_on(std::uint32_t body);
+  /// Whether its bounding sphere about `place`, m, meets the box.
+  bool meets(std::uint32_t body, const Vec3& place, const Eigen::AlignedBox3d& box) const;
+  std::vector<std::uint32_t> find_sleepers_in(const Eigen::AlignedBox3d& box) const;  // statistical ones
+  std::vector<std::uint32_t> find_full_in(const Eigen::AlignedBox3d& box) const;
   void find_at(const Vec3& center, double radius, double factor, Level level,
                std::vector<std::uint32_t>& near, bool asleep_only) const;
   const NearFull& near_full() const;

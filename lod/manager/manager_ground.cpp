@@ -66,14 +66,20 @@ void Manager::move_ground(GroundId id, const RigidState& state) {
   check_valid(levels.ground, id);
   if (levels.ground.is_plane(id)) throw_input_error("ground to be moved", "a plane", "a static box or mesh");
   const RigidState sound = checked(state);
-  impl_->disturb(levels.ground.bounds(id));
+  const Eigen::AlignedBox3d before = levels.ground.bounds(id);
   levels.ground.move_part(id, {.position = sound.position,
                                .orientation = sound.orientation,
                                .velocity = sound.velocity,
                                .angular_velocity = sound.angular_velocity,
                                .comes_back = true});
+  const Eigen::AlignedBox3d after = levels.ground.bounds(id);
+  if (before.intersects(after))
+    levels.wake_in(before);
+  else
+    levels.wake_piled_in(before);
+  levels.wake_in(after);
   levels.full.move_ground(id, sound);
-  impl_->disturb(levels.ground.bounds(id));
+  impl_->queries.touch();
   impl_->recorder.note(Call::move_ground, id, state);
 }
 
@@ -83,7 +89,7 @@ void Manager::remove_ground(GroundId id) {
   if (levels.ground.is_plane(id))
     levels.wake_all();
   else
-    impl_->disturb(levels.ground.bounds(id));
+    levels.wake_piled_in(levels.ground.bounds(id));
   levels.ground.remove(id);
   levels.full.remove_ground(id);
   impl_->queries.touch();
@@ -91,11 +97,6 @@ void Manager::remove_ground(GroundId id) {
 }
 
 bool Manager::valid(GroundId id) const { return impl_->levels.ground.valid(id); }
-
-void Manager::Impl::disturb(const Eigen::AlignedBox3d& box) {
-  levels.wake_in(box);
-  queries.touch();
-}
 
 void Manager::include_body(dxBody* body) {
   check_callers(impl_->callers_world, body);

@@ -81,7 +81,6 @@ struct Manager::Impl {
   void end_stages();
   void begin_lists();
   const StepReport& finish_lists(double dt);
-  void disturb(const Eigen::AlignedBox3d& box);
   void find_signatures(const RungChanges& changes);
 };
 

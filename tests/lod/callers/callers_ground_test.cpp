@@ -17,9 +17,11 @@ class GroundOfCaller : public ::testing::Test {
   void follow() {
     disturbed_.clear(), planes_.clear();
     scene_.mirror->refresh();
+    const auto note = [this](const Eigen::AlignedBox3d& box) { disturbed_.push_back(box); };
     callers_.follow(*scene_.mirror, kCallersStep,
-                    [this](const Eigen::AlignedBox3d& box) { disturbed_.push_back(box); },
-                    [this](const HalfSpace& plane) { planes_.push_back(plane); });
+                    {.disturbed = note, .gone = note, .came = [this](const HalfSpace& plane) {
+                       planes_.push_back(plane);
+                     }});
   }
   /// The geoms of the parts that come within a metre of a place.
   std::multiset<dGeomID> near(const Vec3& place) const {

@@ -70,6 +70,59 @@ TEST(LeftPlaces, ATowerFallsWhereItsGroundGoes) {
   }
 }
 
+/// m, between two that lay on each other.
+double widest_gap(const Manager& manager, const std::vector<BodyId>& tower) {
+  double widest = 0.0;
+  for (std::size_t i = 1; i < tower.size(); ++i)
+    widest = std::max(
+        widest, manager.state(tower[i]).position.z() - manager.state(tower[i - 1]).position.z() - kSide);
+  return widest;
+}
+
+// As one: it does not wake crate by crate.
+TEST(LeftPlaces, ATowerFallsAsItStoodWhereItsGroundIsRemovedOrPutElsewhere) {
+  for (const LevelChoice level : kRungs)
+    for (const bool is_removed : {true, false}) {
+      Manager manager(settings());
+      manager.add_plane(Vec3::UnitZ(), -10.0);
+      const GroundId slab = manager.add_static_box({1, 1, 0.2}, {0, 0, -0.1}, Quat::Identity());
+      const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
+      if (is_removed)
+        manager.remove_ground(slab);
+      else
+        manager.move_ground(slab, testing::at({20, 0, -0.1}));
+      run(manager, 1.0);
+      EXPECT_LT(manager.state(tower.front()).position.z(), -4.0) << int(level) << " removed: " << is_removed;
+      EXPECT_LT(widest_gap(manager, tower), 0.1 * kSide) << int(level) << " removed: " << is_removed;
+    }
+}
+
+TEST(LeftPlaces, ATowerFallsAsItStoodWhereAGeomOfTheCallersGoes) {
+  for (const LevelChoice level : kRungs)
+    for (const bool is_destroyed : {true, false}) {
+      dInitODE2(0);
+      const dWorldID world = dWorldCreate();
+      const dSpaceID space = dHashSpaceCreate(nullptr);
+      dWorldSetGravity(world, 0, 0, -9.81);
+      dCreatePlane(space, 0, 0, 1, -10.0);
+      const dGeomID slab = dCreateBox(space, 1, 1, 0.2);
+      dGeomSetPosition(slab, 0, 0, -0.1);
+      {
+        Manager manager(world, space, settings());
+        const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
+        if (is_destroyed)
+          dGeomDestroy(slab);
+        else
+          dGeomSetPosition(slab, 50, 0, -0.1);
+        run(manager, 1.0);
+        EXPECT_LT(manager.state(tower.front()).position.z(), -4.0) << int(level) << " gone: " << is_destroyed;
+        EXPECT_LT(widest_gap(manager, tower), 0.1 * kSide) << int(level) << " gone: " << is_destroyed;
+      }
+      dSpaceDestroy(space);
+      dWorldDestroy(world);
+    }
+}
+
 // One that the caller himself removes, or puts elsewhere.
 TEST(LeftPlaces, ATowerFallsWhereABodyOfTheCallersGoes) {
   for (const LevelChoice level : kRungs)
