@@ -216,7 +216,8 @@ void refuse_other_text(const std::string& text, const std::string& name) {
 YamlValue make_yaml(const std::string& text, const std::string& name, const YamlLimits& limits) {
   refuse_other_text(text, name);
   TreeBuilder builder(name, limits);
-  std::istringstream in(text);
+  // Before a line feed alone a carriage return ends a line to yaml-cpp: a last one may be left over.
+  std::istringstream in(text.substr(0, text.find_last_not_of('\r') + 1));
   try {
     YAML::Parser parser(in);
     while (parser.HandleNextDocument(builder)) {

@@ -34,7 +34,9 @@ bool is_ridge(const Mesh& mesh, std::span<const EdgeUse> uses) {
   const Vec3 normal = area_vector(mesh, mesh.faces[std::size_t(uses[0].face)]).normalized();
   for (const int v : mesh.faces[std::size_t(uses[1].face)]) {
     if (v == uses[1].low || v == uses[1].high) continue;
-    const Vec3 away = mesh.vertices[v] - mesh.vertices[uses[1].low];
+    const Vec3& at = mesh.vertices[uses[1].low];
+    const Vec3 along = (mesh.vertices[uses[1].high] - at).normalized(), way = mesh.vertices[v] - at;
+    const Vec3 away = way - way.dot(along) * along;  // from the edge, however long that is
     return away.dot(normal) < -kRidgeSine * away.norm();
   }
   return true;

@@ -16,6 +16,9 @@ constexpr std::int64_t kLanes = 16;
 // those of a column that lands do. `speed` is that of the first against the second, `own` its own.
 LODESTONE_INLINE float if_one_stops(float speed, float own) { return least(speed, least(own, speed - own)); }
 
+// Squared cosine of 45°: what stands steeper beside another does not lie on it.
+constexpr float kLying = 0.5f;
+
 template <bool OneKind, bool Oriented>
 struct TouchLoop {
   const BallPairs& pairs;
@@ -32,6 +35,8 @@ struct TouchLoop {
     [[maybe_unused]] const float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(),
                                  *qz = spheres.qz.data(), *height = kinds.pair_height.data();
     [[maybe_unused]] const Row* face = kinds.pair_face.data();
+    [[maybe_unused]] const float lying = kLying * c.gravity * c.gravity;
+    [[maybe_unused]] const float* unsteady = kinds.unsteady.data();
     [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
     alignas(64) float bx[kChunk]{}, by[kChunk]{}, bz[kChunk]{}, ux[kChunk]{}, uy[kChunk]{}, uz[kChunk]{},
         limit[kChunk]{}, first_arm[kChunk]{}, second_arm[kChunk]{};
@@ -43,7 +48,7 @@ struct TouchLoop {
     alignas(64) std::int32_t touches[kChunk];
     [[maybe_unused]] alignas(64) float apart_by[kChunk], face_x[kChunk], face_y[kChunk], face_z[kChunk],
         face_gap[kChunk], face_closing[kChunk];
-    [[maybe_unused]] alignas(64) std::int32_t face_touches[kChunk];
+    [[maybe_unused]] alignas(64) std::int32_t face_touches[kChunk], face_flush[kChunk];
     [[maybe_unused]] const auto first_hull = [&](std::int64_t i) {
       return MappedHull{OneKind ? 0 : first_map[i], {first_w[i], {first_x[i], first_y[i], first_z[i]}}};
     };
@@ -100,12 +105,14 @@ struct TouchLoop {
         for (std::int64_t k = 0; k < whole; ++k) {
           const std::int32_t i = kept[k];
           const HullSeparation found =
-              separate_hulls(height, face, first_hull(i), second_hull(i), {nx[i], ny[i], nz[i]}, apart_by[i],
-                             {gap[i], first_face[i], second_face[i]});
+              separate_hulls(height, face, unsteady, first_hull(i), second_hull(i), {nx[i], ny[i], nz[i]},
+                             apart_by[i], {gap[i], first_face[i], second_face[i]});
           const F3 normal = found.normal;
           const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
+          const float down = dot(normal, {c.gx, c.gy, c.gz});
+          const bool lies = choose(found.flush, down * down, 0.0f) > lying;
           face_x[k] = normal.x, face_y[k] = normal.y, face_z[k] = normal.z, face_gap[k] = found.gap,
-          face_closing[k] = speed;
+          face_closing[k] = speed, face_flush[k] = choose(lies, 0, kNotFlush);
           const float may_close = if_one_stops(speed, wx[i] * normal.x + wy[i] * normal.y + wz[i] * normal.z);
           face_touches[k] = choose(found.gap + may_close * c.time > limit[i], 0, 1);
         }
@@ -113,6 +120,7 @@ struct TouchLoop {
           out.first[count] = pairs.first(chunk + kept[k]), out.second[count] = pairs.second(chunk + kept[k]);
           out.nx[count] = face_x[k], out.ny[count] = face_y[k], out.nz[count] = face_z[k];
           out.gap[count] = face_gap[k], out.closing[count] = face_closing[k];
+          out.flush[count] = face_flush[k];  // which one is not known yet
           count += std::size_t(face_touches[k]);
         }
         continue;
@@ -120,7 +128,7 @@ struct TouchLoop {
       for (std::int64_t i = 0; i < n; ++i) {
         out.first[count] = pairs.first(chunk + i), out.second[count] = pairs.second(chunk + i);
         out.nx[count] = nx[i], out.ny[count] = ny[i], out.nz[count] = nz[i];
-        out.gap[count] = gap[i], out.closing[count] = closing[i];
+        out.gap[count] = gap[i], out.closing[count] = closing[i], out.flush[count] = kNotFlush;
         count += std::size_t(touches[i]);
       }
     }
@@ -142,6 +150,9 @@ struct SweepContacts {
   SweepOutcome& outcome;
 
   static constexpr std::int64_t kFew = 8 * kLanes;
+  // Of what gravity gives in a step: what is pressed by less does not slide, whatever its friction.
+  static constexpr float kLeastLoad = 0.5f;
+  static constexpr float kLevel = 0.996f;  // cosine of 5°: on what is as level nothing draws a body on
 
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     const std::int64_t stride = end - begin < kFew ? 0 : (end - begin) / kLanes,
@@ -151,6 +162,10 @@ struct SweepContacts {
   }
 
  private:
+  LODESTONE_INLINE FlushContact* flush_of(std::size_t contact) const {
+    const std::int32_t flush = contacts.flush[contact];
+    return flush == kNotFlush ? nullptr : &contacts.flush_contacts[std::size_t(flush)];
+  }
   /// Those at `at`, `at` + `stride`, …
   template <std::int64_t Lanes>
   LODESTONE_INLINE void answer(std::int64_t at, std::int64_t stride) const {
@@ -164,13 +179,16 @@ struct SweepContacts {
     [[maybe_unused]] const float slop = settings.contact.slop, push_out = settings.contact.push_out;
     [[maybe_unused]] const float parting =
         settings.contact.parting * square_root(most(1.0f, c.gravity)) * c.time;  // m over √m
-    const Row *p = step.p.data(), *u = step.u.data();
+    [[maybe_unused]] const float least_load = kLeastLoad * c.gravity * c.time,   // m/s
+        level = kLevel * kLevel * c.gravity * c.gravity;                         // m²/s⁴
+    const Row *p = step.p.data(), *u = step.u.data(), *ground = settings.ground_velocities.data();
     Row *added = step.a.data(), *turned_by = step.s.data(), *pushed = step.d.data(),
         *turning_of = step.u.data();
     alignas(64) Row relative[Lanes], given[Lanes];
     alignas(64) float nx[Lanes], ny[Lanes], nz[Lanes], gap[Lanes], nearing[Lanes], gave[Lanes], e[Lanes];
     alignas(64) [[maybe_unused]] Row turning[Lanes], moved[Lanes], torque[Lanes], out[Lanes];
     alignas(64) float changed[Lanes];
+    alignas(64) [[maybe_unused]] Row rubbed[Lanes];  // N s, of friction; 1 where the two roll on each other
     alignas(64) [[maybe_unused]] float friction[Lanes], size[Lanes], farthest[Lanes], deep[Lanes];
     const auto index = [&](std::int64_t i) { return std::size_t(at + i * stride); };
     const auto mass_of = [&](std::uint32_t place) {
@@ -183,12 +201,17 @@ struct SweepContacts {
       nx[i] = contacts.nx[k], ny[i] = contacts.ny[k], nz[i] = contacts.nz[k];
       gap[i] = contacts.gap[k], nearing[i] = contacts.closing[k], gave[i] = contacts.impulse[k];
       e[i] = OneKind ? float(settings.only_law.restitution) : contacts.restitution[k];
-      relative[i] = row_of(lanes_of(p[a]) + lanes_of(added[a]) - lanes_of(p[b]) - lanes_of(added[b]));
+      const Row& of_second = other >= kGroundPlace ? ground[other - kGroundPlace] : p[b];
+      relative[i] = row_of(lanes_of(p[a]) + lanes_of(added[a]) - lanes_of(of_second) - lanes_of(added[b]));
       relative[i].w = wa + wb;
       if constexpr (Last) {
         friction[i] = OneKind ? float(settings.only_law.friction) : contacts.friction[k];
-        turning[i] = row_of(lanes_of(u[a]) + lanes_of(u[b]));
-        turning[i].w = wa * u[a].w + wb * u[b].w;
+        const FlushContact* flush = flush_of(k);
+        const F3 known = flush ? flush->friction : F3{};
+        const float rolls = flush ? 0.0f : 1.0f;
+        rubbed[i] = {known.x, known.y, known.z, rolls};
+        turning[i] = row_of(rolls * (lanes_of(u[a]) + lanes_of(u[b])));
+        turning[i].w = flush ? wa + wb : wa * u[a].w + wb * u[b].w;
         moved[i] = row_of(lanes_of(pushed[a]) - lanes_of(pushed[b]));
         size[i] = OneKind     ? size_of[0]
                   : b < awake ? least(size_of[kind[a]], size_of[kind[b]])
@@ -213,14 +236,23 @@ struct SweepContacts {
       if constexpr (Last) {
         // Friction on the slip of the touching points, with the inertia under which it changes most.
         const float tx = turning[i].x, ty = turning[i].y, tz = turning[i].z;
-        const float slip_x = vx - speed * x - (ty * z - tz * y), slip_y = vy - speed * y - (tz * x - tx * z),
-                    slip_z = vz - speed * z - (tx * y - ty * x);
-        const float slipping = square_root(slip_x * slip_x + slip_y * slip_y + slip_z * slip_z) + 1e-12f;
-        const float rub = least(friction[i] * after / slipping, 1.0f / turning[i].w);
-        const float fx = -rub * slip_x, fy = -rub * slip_y, fz = -rub * slip_z;
+        // What friction is known to give is part of it, as the slip that there would be without.
+        const float known_x = rubbed[i].x, known_y = rubbed[i].y, known_z = rubbed[i].z, rolls = rubbed[i].w,
+                    inertia = turning[i].w;
+        const float slip_x = vx - speed * x - (ty * z - tz * y) - inertia * known_x,
+                    slip_y = vy - speed * y - (tz * x - tx * z) - inertia * known_y,
+                    slip_z = vz - speed * z - (tx * y - ty * x) - inertia * known_z;
+        const float slipping = square_root(slip_x * slip_x + slip_y * slip_y + slip_z * slip_z) + 1e-12f,
+                    most_rub = friction[i] * after / slipping, held = 1.0f / inertia,
+                    rub = least(most_rub, held);
+        rubbed[i].x = -rub * slip_x, rubbed[i].y = -rub * slip_y, rubbed[i].z = -rub * slip_z;
+        const float fx = rubbed[i].x - known_x, fy = rubbed[i].y - known_y, fz = rubbed[i].z - known_z;
         ix += fx, iy += fy, iz += fz;
-        torque[i].x = fy * z - fz * y, torque[i].y = fz * x - fx * z, torque[i].z = fx * y - fy * x,
-        torque[i].w = 0.0f;  // over the arm
+        torque[i].x = rolls * (fy * z - fz * y), torque[i].y = rolls * (fz * x - fx * z),
+        torque[i].z = rolls * (fx * y - fy * x);  // over the arm
+        const float down = c.gx * x + c.gy * y + c.gz * z;
+        const bool slides = (most_rub < held) & (after * relative[i].w > least_load) & (down * down < level);
+        torque[i].w = choose(slides, (1.0f - rolls) * kSlides, 0.0f);
         // Of an overlap, what is left of it by then.
         const float overlap = -gap[i] - slop * size[i] - (moved[i].x * x + moved[i].y * y + moved[i].z * z);
         deep[i] = overlap / size[i];
@@ -241,6 +273,7 @@ struct SweepContacts {
       add_to(added[b], -wb * impulse);
       if constexpr (Last) {
         const RowLanes turns = lanes_of(torque[i]);
+        if (FlushContact* flush = flush_of(k)) flush->friction = {rubbed[i].x, rubbed[i].y, rubbed[i].z};
         outcome.deepest = most(outcome.deepest, deep[i]);
         add_to(turned_by[a], (radius[a] * wa) * turns);
         add_to(turned_by[b], (b < awake ? radius[b] * wb : 0.0f) * turns);

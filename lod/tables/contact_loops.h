@@ -16,7 +16,8 @@ ContactRun find_touching(const BallPairs& pairs, const Spheres& spheres, const S
 
 struct SweepSettings {
   const SphereContactSettings& contact;
-  bool one_law = false;  // of all contacts of the run, and their bodies of one kind
+  std::span<const lane::Row> ground_velocities;  // m/s, by the planes' numbers
+  bool one_law = false;                          // of all contacts of the run, and their bodies of one kind
   ContactLaw only_law;
   float bounce_velocity = 0.0f;  // m/s
   bool last = false;

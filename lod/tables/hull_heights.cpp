@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 namespace lodestone {
 namespace {
@@ -65,6 +67,29 @@ SupportPatch find_patch_of(const Hull& hull, const Vec3& direction, int start) {
 }
 
 }  // namespace
+
+void find_unsteady(const RestingFaces* stands, std::span<const lane::Row> faces, std::span<float> unsteady) {
+  constexpr double kSameFace = 0.998;  // cosine
+  constexpr double kFirmly = 0.3;      // tangent of the angle
+  constexpr int kAround = 8;
+  std::vector<Vec3> firm;  // normals, out of the body
+  if (stands)
+    for (const RestingFace& face : stands->faces()) {
+      const Vec3 out = -face.normal, u = out.unitOrthogonal(), v = out.cross(u);
+      bool holds = true;
+      for (int i = 0; i < kAround; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / kAround;
+        holds =
+            holds && stands->holds(face.normal, out + kFirmly * (std::cos(angle) * u + std::sin(angle) * v));
+      }
+      if (holds) firm.push_back(out);
+    }
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Vec3 normal(double(faces[i].x), double(faces[i].y), double(faces[i].z));
+    const bool is_firm = std::ranges::any_of(firm, [&](const Vec3& f) { return f.dot(normal) > kSameFace; });
+    unsteady[i] = is_firm ? 0.0f : 1.0f;
+  }
+}
 
 double find_rolling_lever(const Shape& shape) {
   if (shape.sphere_radius) return 0.0;

@@ -7,6 +7,7 @@
 
 #include "lod/simd/lane_math.h"
 #include "lod/simd/row.h"
+#include "reference/hull/resting_faces.h"
 #include "reference/shape.h"
 
 namespace lodestone {
@@ -36,6 +37,10 @@ struct HullMaps {
                                    ///< its distance, m
 };
 void sample_hull(const Shape& shape, const HullMaps& maps);
+
+/// Of each of `faces`, as sample_hull finds them: 0 where the body stands on it firmly, however it is pulled
+/// along within 17° of its normal, 1 elsewhere and where nobody knows (null).
+void find_unsteady(const RestingFaces* stands, std::span<const lane::Row> faces, std::span<float> unsteady);
 
 /// m, of the rolling resistance of hulls among others: a sphere rolls on where a hull lies on a face or falls
 /// from edge to edge, and each of these holds it by its weight times what its lowest point lies beside the

@@ -24,13 +24,18 @@ LODESTONE_INLINE LineSeparation separate_along_line(const float* heights, const 
           first.map + from_first.nearest, second.map + from_second.nearest};
 }
 
+/// Of the angle between two faces that lie on each other, or one on a plane, at most: 3.6°.
+inline constexpr float kFlushCosine = 0.998f;
+
 struct HullSeparation {
-  F3 normal;  ///< from the second to the first
-  float gap;  ///< m, negative: overlap; no more than the hulls' distance
+  F3 normal;   ///< from the second to the first
+  float gap;   ///< m, negative: overlap; no more than the hulls' distance
+  bool flush;  ///< face lies on face, the line of the centres goes through both, and on these both stand
+               ///< firmly
 };
 /// The best of three separating axes, the line and the normals of the two faces, so that what lies on a face
-/// is held by that face.
-LODESTONE_INLINE HullSeparation separate_hulls(const float* heights, const Row* faces,
+/// is held by that face. `unsteady` is that of the kinds (SphereKinds).
+LODESTONE_INLINE HullSeparation separate_hulls(const float* heights, const Row* faces, const float* unsteady,
                                                const MappedHull& first, const MappedHull& second, F3 line,
                                                float distance, const LineSeparation& along) {
   const Row &by_first = faces[along.first], &by_second = faces[along.second];
@@ -42,8 +47,10 @@ LODESTONE_INLINE HullSeparation separate_hulls(const float* heights, const Row* 
                   distance * dot(of_second, line) - by_second.w -
                   read_map(heights, first.map, place_in_map(turned(back(first.turn), -1.0f * of_second)));
   const float gap = most(gap_first, gap_second);
-  return {choose(along.gap > gap, line, choose(gap_first > gap_second, of_first, of_second)),
-          most(along.gap, gap)};
+  const bool of_line = along.gap > gap;
+  const float cosine = choose(of_line, -1.0f, dot(of_first, of_second));
+  return {choose(of_line, line, choose(gap_first > gap_second, of_first, of_second)), most(along.gap, gap),
+          cosine > kFlushCosine + unsteady[along.first] + unsteady[along.second]};
 }
 
 }  // namespace lodestone::lane

@@ -35,7 +35,7 @@ void ContactArrays::make_room(std::size_t elements, bool one_kind) {
     const auto grow = [&](auto& array) {
       array.reserve(size), array.resize(size);
     };  // not twice as long, as a resize by itself would
-    grow(first), grow(second);
+    grow(first), grow(second), grow(flush);
     for (auto* array : {&nx, &ny, &nz, &gap, &closing, &impulse}) grow(*array);
   }
   if (!one_kind) restitution.resize(first.size()), friction.resize(first.size());
@@ -44,6 +44,7 @@ void ContactArrays::make_room(std::size_t elements, bool one_kind) {
 void ContactArrays::clear() {
   lately = std::max(count, lately - lately / 64);
   count = 0;
+  flush_contacts.clear();
   if (first.size() < lately + lately / 2 + 8192) return;
   const std::size_t kept = lately;
   *this = {};
@@ -127,7 +128,10 @@ void SphereContacts::add_ground(const Spheres& spheres, std::span<const PlaneTou
     const std::size_t at = c.count++;
     c.first[at] = touch.place, c.second[at] = kGroundPlace | touch.plane;
     c.nx[at] = touch.normal.x, c.ny[at] = touch.normal.y, c.nz[at] = touch.normal.z;
+    if (touch.plane >= ground_velocities_.size()) ground_velocities_.resize(touch.plane + 1);
+    ground_velocities_[touch.plane] = {touch.velocity.x, touch.velocity.y, touch.velocity.z, 0.0f};
     c.gap[at] = touch.gap, c.closing[at] = touch.closing;
+    c.flush[at] = touch.flush ? 0 : kNotFlush;
     c.restitution[at] = float(touch.law.restitution), c.friction[at] = float(touch.law.friction);
   }
   ground_part().run = {&c, begin, c.count};
@@ -146,6 +150,15 @@ float SphereContacts::find_known_apart(std::uint32_t owner, std::uint32_t other)
   const auto found =
       std::ranges::lower_bound(known_apart_, std::array{owner, other}, {}, &KnownApart::owners);
   return found != known_apart_.end() && found->owners == std::array{owner, other} ? found->force : 0.0f;
+}
+
+// N, on the first of the two, along the plane of that normal.
+F3 SphereContacts::find_known_friction(std::uint32_t owner, std::uint32_t other, F3 normal) const {
+  const std::array owners{std::min(owner, other), std::max(owner, other)};
+  const auto found = std::ranges::lower_bound(known_friction_, owners, {}, &KnownFriction::owners);
+  if (found == known_friction_.end() || found->owners != owners) return {};
+  const F3 force = (owners[0] == owner ? 1.0f : -1.0f) * found->force;
+  return force - dot(force, normal) * normal;
 }
 
 // Contacts mostly come in the order of the last step: `nth`, of those of the first body, is where it should
@@ -186,6 +199,13 @@ void SphereContacts::recall(const Spheres& spheres, float bounce_velocity, const
     c.impulse[i] = impact || none ? 0.0f
                                   : constants.remembered * constants.time *
                                         known_force(spheres, c.first[i], c.second[i], nth);
+    if (c.flush[i] == kNotFlush) continue;
+    c.flush[i] = std::int32_t(c.flush_contacts.size());
+    const bool is_new = impact || c.second[i] >= kGroundPlace;
+    const F3 force = is_new ? F3{}
+                            : find_known_friction(spheres.owner[c.first[i]], spheres.owner[c.second[i]],
+                                                  {c.nx[i], c.ny[i], c.nz[i]});
+    c.flush_contacts.push_back({i, constants.rubbed * constants.time * force});
   }
 }
 
@@ -212,6 +232,11 @@ void SphereContacts::begin(const Spheres& spheres, const SphereKinds& kinds, con
       const RowLanes normal{c.nx[i], c.ny[i], c.nz[i], 0.0f}, one{0.0f, 0.0f, 0.0f, 1.0f};
       add_to(step.p[a], impulse * float(spheres.inverse_mass[a]) * normal + one);
       if (b < awake) add_to(step.p[b], -impulse * float(spheres.inverse_mass[b]) * normal + one);
+      if (c.flush[i] == kNotFlush) continue;
+      const F3& f = c.flush_contacts[std::size_t(c.flush[i])].friction;
+      const RowLanes friction{f.x, f.y, f.z, 0.0f};
+      add_to(step.p[a], float(spheres.inverse_mass[a]) * friction);
+      if (b < awake) add_to(step.p[b], -float(spheres.inverse_mass[b]) * friction);
     }
   });
 }
@@ -224,11 +249,13 @@ SweepOutcome SphereContacts::sweep(Spheres& spheres, const SphereKinds& kinds, c
   if (remembers) make_room_to_remember(spheres);
   run_by_colour(jobs, [&](Part& part) {
     const bool one_law = constants.one_kind && part.colour != kGroundColour;
-    part.outcome = sweep_contacts({settings_, one_law, only_law, bounce_velocity, last, eased}, spheres,
-                                  kinds, constants, simd, part.run, step);
+    part.outcome =
+        sweep_contacts({settings_, ground_velocities_, one_law, only_law, bounce_velocity, last, eased},
+                       spheres, kinds, constants, simd, part.run, step);
     if (remembers && !is_apart(part.colour)) remember(spheres, bounce_velocity, constants, part);
   });
   if (remembers) remember_apart(spheres, bounce_velocity, constants);
+  if (remembers) remember_friction(spheres, bounce_velocity, constants);
   SweepOutcome outcome;
   for (std::size_t p = 0; p < used_parts_; ++p)
     if (parts_[p].run.size() > 0) outcome.include(parts_[p].outcome);
@@ -286,11 +313,30 @@ void SphereContacts::remember_apart(const Spheres& spheres, float bounce_velocit
   std::ranges::sort(known_apart_, {}, &KnownApart::owners);
 }
 
+void SphereContacts::remember_friction(const Spheres& spheres, float bounce_velocity,
+                                       const StepConstants& constants) {
+  known_friction_.clear();
+  const float per_time = 1.0f / constants.time;
+  for (const ContactArrays& c : arrays_)
+    for (const FlushContact& flush : c.flush_contacts) {
+      const std::uint32_t second = c.second[flush.at];
+      if (second >= kGroundPlace || !is_support(c, flush.at, bounce_velocity)) continue;
+      const std::uint32_t owner = spheres.owner[c.first[flush.at]], other = spheres.owner[second];
+      known_friction_.push_back({{std::min(owner, other), std::max(owner, other)},
+                                 (owner < other ? per_time : -per_time) * flush.friction});
+    }
+  std::ranges::sort(known_friction_, {}, &KnownFriction::owners);
+}
+
 std::size_t SphereContacts::bytes() const {
   std::size_t bytes = known_.capacity() * sizeof(KnownContact) +
-                      known_apart_.capacity() * sizeof(KnownApart) + parts_.capacity() * sizeof(Part);
-  for (const ContactArrays& arrays : arrays_)
+                      known_apart_.capacity() * sizeof(KnownApart) +
+                      known_friction_.capacity() * sizeof(KnownFriction) +
+                      ground_velocities_.capacity() * sizeof(Row) + parts_.capacity() * sizeof(Part);
+  for (const ContactArrays& arrays : arrays_) {
     arrays.each_array([&](const auto& array) { bytes += array.capacity() * sizeof array[0]; });
+    bytes += arrays.flush_contacts.capacity() * sizeof(FlushContact);
+  }
   return bytes;
 }
 

@@ -19,6 +19,14 @@
 
 namespace lodestone {
 
+/// Face on face, or on a plane: such bodies slide on each other and do not roll. Friction begins with what it
+/// gave in the last step, so that stacks are carried along and hold on slopes.
+struct FlushContact {
+  std::size_t at = 0;      // in the other arrays
+  lane::F3 friction = {};  // N s, on the first
+};
+inline constexpr std::int32_t kNotFlush = -1;
+
 /// Contacts as dense arrays, of which the first `count` elements are taken.
 struct ContactArrays {
   std::vector<std::uint32_t> first, second;  // places; beyond those awake: asleep, does not move
@@ -26,6 +34,8 @@ struct ContactArrays {
   std::vector<float> gap;                    // m, negative: overlap
   std::vector<float> closing;                // m/s at the start of the step, negative: nearing
   std::vector<float> impulse;                // N s
+  std::vector<std::int32_t> flush;           // which of the flush_contacts it is; kNotFlush: none of them
+  std::vector<FlushContact> flush_contacts;
   std::vector<float> restitution, friction;  // of the two materials; empty where all bodies are of one kind
   std::size_t count = 0, lately = 0;         // taken; at most, of late
 
@@ -33,7 +43,7 @@ struct ContactArrays {
   template <class Visit>
   void each_array(const Visit& visit) const {
     visit(first), visit(second), visit(nx), visit(ny), visit(nz), visit(gap), visit(closing), visit(impulse),
-        visit(restitution), visit(friction);
+        visit(flush), visit(restitution), visit(friction);
   }
   /// Of all arrays at least.
   void make_room(std::size_t elements, bool one_kind);
@@ -52,7 +62,9 @@ struct ContactRun {
 struct PlaneTouch {
   std::uint32_t place = 0, plane = 0;
   lane::F3 normal = {};
+  lane::F3 velocity = {};            // m/s, of the ground there
   float gap = 0.0f, closing = 0.0f;  // m, m/s
+  bool flush = false;
   ContactLaw law = {};
 };
 inline constexpr std::uint32_t kGroundPlace = 1u << 31;
@@ -74,6 +86,12 @@ struct KnownContact {
 struct KnownApart {
   std::array<std::uint32_t, 2> owners{};
   float force = 0.0f;  // N
+};
+
+/// Of what lay face on face in the last step.
+struct KnownFriction {
+  std::array<std::uint32_t, 2> owners{};  // ascending
+  lane::F3 force = {};                    // N, on the first
 };
 
 struct SphereContactSettings {
@@ -142,7 +160,7 @@ class SphereContacts {
     run_by_colour(jobs, [&](const Part& part) { visit(part.run); });
   }
 
-  void archive(StateArchive& a) { a(known_, known_apart_); }
+  void archive(StateArchive& a) { a(known_, known_apart_, known_friction_); }
   const SphereContactSettings& settings() const { return settings_; }
   std::int64_t count() const;
   std::size_t bytes() const;
@@ -194,12 +212,14 @@ class SphereContacts {
                     std::uint32_t nth) const;
   float find_known_force(const Spheres& spheres, std::uint32_t at, std::uint32_t other) const;
   float find_known_apart(std::uint32_t owner, std::uint32_t other) const;
+  lane::F3 find_known_friction(std::uint32_t owner, std::uint32_t other, lane::F3 normal) const;
   float pressed(const ContactArrays& c, std::size_t i) const;
   void recall(const Spheres& spheres, float bounce_velocity, const StepConstants& constants,
               const ContactRun& run) const;
   void make_room_to_remember(Spheres& spheres);
   void remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants, const Part& part);
   void remember_apart(const Spheres& spheres, float bounce_velocity, const StepConstants& constants);
+  void remember_friction(const Spheres& spheres, float bounce_velocity, const StepConstants& constants);
   // Its contacts may be of first bodies that another part has contacts of, too.
   static bool is_apart(int colour) { return colour >= CellGrid::kColours - 1; }
   static constexpr int kStillColour = CellGrid::kColours, kGroundColour = CellGrid::kColours + 1;
@@ -221,8 +241,10 @@ class SphereContacts {
   std::mutex free_arrays_access_;
   std::size_t used_parts_ = 0;
   std::array<std::vector<std::uint32_t>, kGroundColour + 1> of_colour_;
+  std::vector<lane::Row> ground_velocities_;  // m/s, of each plane that is touched in this step
   std::vector<KnownContact> known_;
-  std::vector<KnownApart> known_apart_;  // by owners
+  std::vector<KnownApart> known_apart_;        // by owners
+  std::vector<KnownFriction> known_friction_;  // by owners
 };
 
 }  // namespace lodestone

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lod/tables/hull_separation.h"
+
 namespace lodestone {
 namespace {
 
@@ -12,6 +14,8 @@ constexpr auto kNear = std::uint8_t(GroundState::near), kLies = std::uint8_t(Gro
 static_assert(kSettles == kLies + 1);
 constexpr float kFootprint = 0.3f;  // lever of pivoting friction over R
 constexpr float kRise = 0.25f;      // of a sphere that has grown into the plane, part a step
+constexpr float kLeastLoad =
+    0.25f;  // of what gravity gives in a step: what presses less is not held by friction
 
 constexpr auto kWithin = std::uint8_t(GroundState::within);
 
@@ -47,18 +51,25 @@ struct NearLoop {
     const float pull = least(0.0f, n.x * c.gx + n.y * c.gy + n.z * c.gz), rising = dot(moving, n);
     [[maybe_unused]] const std::uint32_t* kind = spheres.kind.data();
     [[maybe_unused]] const float *size = kinds.radius.data(), *heights = kinds.hull_height.data();
+    [[maybe_unused]] const Row* face = kinds.pair_face.data();
+    [[maybe_unused]] const float* unsteady = kinds.unsteady.data();
     [[maybe_unused]] const std::uint8_t* since_crowded = spheres.since_crowded.data();
+    [[maybe_unused]] std::uint8_t* flush = step.flush.data();
     [[maybe_unused]] const float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(),
                                  *qz = spheres.qz.data();
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const float height = float(wide_x * x[i] + wide_y * y[i] + wide_z * z[i] - offset);
       float own = radius[i];
+      [[maybe_unused]] int lies_flush = 0;
       if constexpr (Hulls) {  // among others it has its hull's height, as they meet it
         const Turn q{qw[i], {qx[i], qy[i], qz[i]}};
-        const float of_hull =
-            read_hull_height(heights, int(kind[i]) * kHullHeights, turned(back(q), -1.0f * n));
-        own = choose(int(since_crowded[i]) < kLeaningTicks, of_hull, own);
+        const int map = int(kind[i]) * kHullHeights;
+        const MapPlace place = place_in_map(turned(back(q), -1.0f * n));
+        own = choose(int(since_crowded[i]) < kLeaningTicks, read_map(heights, map, place), own);
+        const Row& under = face[map + place.nearest];
+        const float cosine = -dot(turned(q, {under.x, under.y, under.z}), n);
+        lies_flush = int(cosine > kFlushCosine + unsteady[map + place.nearest]);
       }
       const float above = height - own;
       const float speed = n.x * float(vx[i]) + n.y * float(vy[i]) + n.z * float(vz[i]);
@@ -74,6 +85,7 @@ struct NearLoop {
         const int within =
             -(int(height - size[kind[i]] + 1.001f * way < 0.002f * radius[i]) & int(state == 0));
         otherwise = (int(kWithin) & within) | (state & ~within);
+        flush[i] = std::uint8_t((lies_flush & nearest) | (int(flush[i]) & ~nearest));
       }
       on_ground[i] = std::uint8_t((int(kNear) & near) | (otherwise & ~near));
       gap[i] = select(nearest, above, known);
@@ -184,6 +196,7 @@ struct LieLoop {
         own.kind[i] = std::int32_t(spheres.kind[std::size_t(at + i)]);
         own.plane[i] = step.plane[std::size_t(at + i)],
         own.on_ground[i] = step.on_ground[std::size_t(at + i)];
+        own.flush[i] = step.flush[std::size_t(at + i)];
       }
       lie(own, at, count);
       for (std::int64_t i = 0; i < count; ++i) motion[at + i] = std::uint8_t(own.motion[i]);
@@ -192,7 +205,7 @@ struct LieLoop {
 
  private:
   struct SmallNumbers {
-    std::int32_t motion[kBlock], pose[kBlock], kind[kBlock], plane[kBlock], on_ground[kBlock];
+    std::int32_t motion[kBlock], pose[kBlock], kind[kBlock], plane[kBlock], on_ground[kBlock], flush[kBlock];
   };
 
   LODESTONE_INLINE void lie(SmallNumbers& numbers, std::int64_t begin, std::int64_t count) const {
@@ -203,7 +216,7 @@ struct LieLoop {
                  *lz = spheres.lz.data() + begin;
     float* held = spheres.held.data() + begin;
     const std::int32_t *kind = numbers.kind, *pose = numbers.pose, *plane = numbers.plane,
-                       *on_ground = numbers.on_ground;
+                       *on_ground = numbers.on_ground, *flush = numbers.flush;
     std::int32_t* motion = numbers.motion;
     const float *size = kinds.radius.data(), *blend_time = kinds.blend_time.data();
     const float *pose_x = kinds.pose_x.data(), *pose_y = kinds.pose_y.data(), *pose_z = kinds.pose_z.data();
@@ -216,6 +229,7 @@ struct LieLoop {
                 *slope = ground.slope.data(), *friction = ground.friction.data();
     const std::int32_t* row = ground.row.data();
     const int kind_count = int(ground.kinds);
+    const float least_load = kLeastLoad * c.gravity * c.time;  // m/s
     const Row* begun = step.p.data() + begin;
     const float* gap = step.gap.data() + begin;
     Row *a = step.a.data() + begin, *s = step.s.data() + begin, *d = step.d.data() + begin;
@@ -257,7 +271,8 @@ struct LieLoop {
       // Coulomb friction of the lowest point: the impulse that ends its slip, at most μ times the normal one.
       // The patch that the body stands on, of which the sphere knows nothing, brakes pivoting about n: by
       // kFootprint R, its mean lever, times the same bound.
-      const bool on_face = rests & (slope[p] > 0.0f);  // which does not roll
+      const bool lies_flush = others & (flush[i] != 0),
+                 on_face = (rests & (slope[p] > 0.0f)) | lies_flush;  // which does not roll
       const F3 omega = in_world(soft, k, q, spin), arm = choose(on_face, 0.0f, -r) * n,
                touching = v - u + cross(omega, arm), slip = touching - dot(touching, n) * n;
       const float speed = length(slip), available = friction[row[p] * kind_count + k] * given_speed;
@@ -275,7 +290,9 @@ struct LieLoop {
 
       const F3 change = choose(lies, v - start, old), turn = choose(lies, spin - start_spin, old_turn);
       a[i].x = change.x, a[i].y = change.y, a[i].z = change.z, a[i].w = given_speed;
-      s[i].x = turn.x, s[i].y = turn.y, s[i].z = turn.z, s[i].w = moving;
+      const bool slides =
+          lies & lies_flush & (slope[p] > 0.0f) & (available < needed) & (given_speed > least_load);
+      s[i].x = turn.x, s[i].y = turn.y, s[i].z = turn.z, s[i].w = choose(slides, kSlides, moving);
       held[i] = choose(lies & others, given_speed, 0.0f);
       motion[i] = choose(lies & !rests, int(Motion::dynamic), moves);
       // The ground has the last word: among others no sinking in; alone down onto it; out of it gradually.
@@ -303,6 +320,10 @@ void choose_loop(const StepConstants& constants, const SphereGround& ground, con
 }
 
 }  // namespace
+
+Vec3 SphereGround::velocity(std::size_t plane) const {
+  return {double(ux[plane]), double(uy[plane]), double(uz[plane])};
+}
 
 void SphereGround::clear(std::size_t kinds_now) {
   for (auto* array : {&nx, &ny, &nz, &ux, &uy, &uz, &turn, &pressure, &slope, &friction}) array->clear();

@@ -26,6 +26,7 @@ struct SphereGround {
   std::vector<float> of_material;  // friction with the material of a new row; negative: not asked for yet
 
   bool is_one_plane() const { return nx.size() == 1 && !any_moves; }  ///< and it stands
+  Vec3 velocity(std::size_t plane) const;                             ///< m/s, of the ground there
   void clear(std::size_t kinds_now);
   /// Returns the plane's number. Its ground moves and turns by `velocity` (m/s, there) and `angular_velocity`
   /// (rad/s).

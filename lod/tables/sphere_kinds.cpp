@@ -33,6 +33,7 @@ void SphereKinds::resize(std::size_t size) {
   height.resize(size * (kHeightSamples + 1));
   pair_height.resize(size * std::size_t(kHullHeights));
   pair_face.resize(size * std::size_t(kHullHeights));
+  unsteady.resize(size * std::size_t(kHullHeights));
   patch.resize(size * std::size_t(kHullHeights));
   hull_height.resize(size * std::size_t(kHullHeights));
   material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size),
@@ -78,6 +79,7 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   farthest_reach[k] = std::ranges::max(map_of(pair_height));
   rolling_lever[k] = float(find_rolling_lever(shape));
   blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
+  find_unsteady(kind.faces.get(), map_of(pair_face), map_of(unsteady));
   set_poses(k, kind);
 }
 

@@ -19,6 +19,7 @@ struct SphereKinds {
   std::vector<float> height;  // kHeightSamples + 1 a kind, m, one more to read beyond the end
   std::vector<float> hull_height, pair_height;      // kHullHeights a kind, m: HullMaps
   std::vector<lane::Row> pair_face;                 // as many
+  std::vector<float> unsteady;                      // as many: 0 where it stands firmly on that face, else 1
   std::vector<SupportPatch> patch;                  // as many
   std::vector<float> tips;                          // 0 to 1: whether it tips over (tipping.h)
   std::vector<float> thickness;                     // over its reach, of the hull where it is thinnest

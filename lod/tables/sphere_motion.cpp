@@ -146,14 +146,14 @@ struct TakeLoop {
 void SphereStep::resize(std::size_t count) {
   for (auto* rows : {&p, &u, &a, &s, &d}) rows->resize(count + 1);
   for (auto* array : {&reach, &gap}) array->resize(count);
-  on_ground.resize(count), plane.resize(count);
+  on_ground.resize(count), flush.resize(count), plane.resize(count);
 }
 
 std::size_t SphereStep::bytes() const {
   std::size_t bytes = 0;
   for (const auto* rows : {&p, &u, &a, &s, &d}) bytes += rows->capacity() * sizeof(Row);
   for (const auto* array : {&reach, &gap}) bytes += array->capacity() * sizeof(float);
-  bytes += on_ground.capacity() + plane.capacity() * sizeof(std::int32_t);
+  bytes += on_ground.capacity() + flush.capacity() + plane.capacity() * sizeof(std::int32_t);
   return bytes;
 }
 

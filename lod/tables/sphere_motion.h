@@ -29,6 +29,7 @@ enum class GroundState : std::uint8_t {
 
 /// Of a step, one element an awake body. What contacts read and add are rows, and one more stands for all
 /// that sleep.
+inline constexpr float kSlides = 1e9f;  // J/kg: what slides is not near-still, however slow
 struct SphereStep {
   std::vector<float> reach;  // m
   // The rows: a vector in xyz, a number in w. r is the sphere's radius, ω its angular velocity.
@@ -40,12 +41,13 @@ struct SphereStep {
   // a  xyz  m/s   what the contacts of this step add to p
   //    w    m/s   what the ground gives it against what presses
   // s  xyz  m²/s  what the contacts add to the spin (angular momentum over mass)
-  //    w    J/kg  kinetic energy at the start
+  //    w    J/kg  kinetic energy at the start, and kSlides more for what slides face on face
   // d  xyz  m     how far contacts move it out of overlaps
   //    w    m     how far the ground alone does
   std::vector<lane::Row> p, u, a, s, d;
   std::vector<float> gap;               // m, to its plane, where near
   std::vector<std::uint8_t> on_ground;  // GroundState
+  std::vector<std::uint8_t> flush;      // whether a face of its hull lies on its plane; of those among others
   std::vector<std::int32_t> plane;      // that carries it most, of those the nearest
   void resize(std::size_t count);
   std::size_t bytes() const;
@@ -89,6 +91,7 @@ struct StepConstants {
   float resting_energy = 0.15f;  // J/kg over g R: the first threshold of 3.4
   float remembered = 1.0f;       // of forces known, the part that contacts begin with
   float held = 1.0f;             // of what the ground gave in the last step, likewise
+  float rubbed = 1.0f;           // of friction, face on face, likewise
   bool remembers = true;         // what contacts give in this step
   bool update_radius = true;     // of those in flight
   int ticks = 17;                // ms that the step is long, as whole ones: over many steps they add up

@@ -100,16 +100,19 @@ void TablesLevel::find_further_planes() {
   const auto look = [&](std::int64_t i, std::uint32_t number) {
     if (std::int32_t(number) == step_.plane[std::size_t(i)]) return;
     const HalfSpace& other = plane(std::int32_t(number));
+    const Vec3 ground = planes_.velocity(number);
     const float gap = float(other.height_of(spheres_.position(i))) - ground_height(i, -other.normal),
-                closing = float(spheres_.velocity(i).dot(other.normal));
+                closing = float((spheres_.velocity(i) - ground).dot(other.normal));
     const BodyKind& kind = kind_of(i);
     if (gap + closing * constants_.time > contacts_.settings().touching * float(kind.shape->radius)) return;
     const Vec3& n = other.normal;
     plane_touches_.push_back({.place = std::uint32_t(i),
                               .plane = number,
                               .normal = {float(n.x()), float(n.y()), float(n.z())},
+                              .velocity = {float(ground.x()), float(ground.y()), float(ground.z())},
                               .gap = gap,
                               .closing = closing,
+                              .flush = constants_.hulls && lies_flush(i, -other.normal),
                               .law = materials_.law(kind.material, other.material)});
   };
   auto near = near_faces_.begin();
@@ -121,7 +124,8 @@ void TablesLevel::find_further_planes() {
     for (std::int32_t face = near->begin; face < near->end; ++face)
       look(i, std::uint32_t(everywhere.size()) + std::uint32_t(face));
   });
-  if (!plane_touches_.empty()) contacts_.add_ground(spheres_, plane_touches_, bounce_velocity(), constants_);
+  if (plane_touches_.empty()) return;
+  contacts_.add_ground(spheres_, plane_touches_, bounce_velocity(), constants_);
 }
 
 // Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way.

@@ -10,6 +10,16 @@ float TablesLevel::ground_height(std::int64_t place, const Vec3& direction) cons
                           : spheres_.radius[std::size_t(place)];
 }
 
+/// Whether a face on which it stands firmly lies on a plane that is in that direction (unit).
+bool TablesLevel::lies_flush(std::int64_t place, const Vec3& direction) const {
+  const Vec3 own = spheres_.orientation(place).conjugate() * direction;
+  const lane::F3 towards{float(own.x()), float(own.y()), float(own.z())};
+  const std::size_t at = std::size_t(int(spheres_.kind[std::size_t(place)]) * kHullHeights +
+                                     lane::place_in_map(towards).nearest);
+  const lane::Row& face = kinds_.pair_face[at];
+  return dot({face.x, face.y, face.z}, towards) > lane::kFlushCosine + kinds_.unsteady[at];
+}
+
 /// m: where a line in that direction (unit) from its centre leaves it.
 double TablesLevel::exit_distance(std::int64_t place, const Vec3& direction) const {
   const auto i = std::size_t(place);
@@ -53,9 +63,9 @@ std::pair<Vec3, double> TablesLevel::separate(std::int64_t first, std::int64_t s
   const float* heights = kinds_.pair_height.data();
   const lane::MappedHull one = placed(first), other = placed(second);
   const lane::F3 line{float(along.x()), float(along.y()), float(along.z())};
-  const lane::HullSeparation found =
-      lane::separate_hulls(heights, kinds_.pair_face.data(), one, other, line, float(distance),
-                           lane::separate_along_line(heights, one, other, line, float(distance)));
+  const lane::HullSeparation found = lane::separate_hulls(
+      heights, kinds_.pair_face.data(), kinds_.unsteady.data(), one, other, line, float(distance),
+      lane::separate_along_line(heights, one, other, line, float(distance)));
   return {Vec3(double(found.normal.x), double(found.normal.y), double(found.normal.z)), double(found.gap)};
 }
 

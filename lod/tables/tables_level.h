@@ -126,6 +126,14 @@ class TablesLevel {
     Vec3 last = Vec3::Zero();    // m/s², in the last step
     Vec3 steady = Vec3::Zero();  // m/s²: what of it was there in the step before, too
   };
+  struct GroundFriction {
+    std::uint32_t slot = 0, owner = 0;
+    lane::F3 force;  // m/s², over the mass
+  };
+  struct GivenFriction {
+    std::int64_t place = 0;
+    lane::F3 velocity;  // m/s
+  };
   struct Carried {
     std::int64_t place = 0;
     Vec3 velocity, angular_velocity;  // of the ground below
@@ -169,7 +177,16 @@ class TablesLevel {
   void forget_all_given();
   void ease();
   bool find_riders();
+  void join_touching();
+  void join_carried();
+  void let_driven_go();
   void note_who_falls();
+  bool rubs_on_ground(std::int64_t place) const;
+  void give_ground_friction();
+  void take_back_ground_friction();
+  void begin_rubbing(std::int64_t begin, std::int64_t end, std::vector<GroundFriction>& rubs) const;
+  void end_rubbing(std::vector<GroundFriction>& rubs) const;
+  void remember_ground_friction();
   bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
   bool rolls_on_ground(std::int64_t place) const;
 
@@ -204,6 +221,7 @@ class TablesLevel {
   int sweeps() const;
   void sweep_contacts();
   float ground_height(std::int64_t place, const Vec3& direction) const;
+  bool lies_flush(std::int64_t place, const Vec3& direction) const;
   double exit_distance(std::int64_t place, const Vec3& direction) const;
   Vec3 meeting_point(std::int64_t first, std::int64_t second) const;
   float read_heights(const std::vector<float>& heights, std::int64_t place, const Vec3& direction) const;
@@ -265,8 +283,9 @@ class TablesLevel {
   std::vector<std::int32_t> cornered_;  // slots
   std::vector<Carried> carried_;        // by place: near ground that moves
   std::vector<std::int64_t> carried_guests_,
-      leaning_;          // places: of guests; of those on their hulls that touch
-  DisjointSets riders_;  // of the places awake, and what nothing stops
+      leaning_;                      // places: of guests; of those on their hulls that touch
+  std::vector<std::int32_t> drawn_;  // places awake, in finish()
+  DisjointSets riders_;              // of the places awake, and what nothing stops
   StepConstants constants_;
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
@@ -279,6 +298,9 @@ class TablesLevel {
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
   std::vector<Load> loads_, new_loads_;                  // of the last step's guests, by slot; of this one's
+  std::vector<GroundFriction> ground_friction_;          // of the last step, by slot
+  std::vector<GivenFriction> given_friction_;            // of that, in this step
+  std::vector<std::vector<GroundFriction>> rubs_;        // in this step, by block
   std::vector<Push> pushes_;
   ActingForces acting_;                           // in this step; bodies begin it with what they give in all
   std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act

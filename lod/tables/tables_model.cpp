@@ -15,6 +15,7 @@
 namespace lodestone {
 namespace {
 
+constexpr double kSameFace = 0.998;                          // cosine between the normals of one face
 constexpr std::uint32_t kHeightDraw = 1, kResponseDraw = 2;  // what a draw is for: the last part of its key
 
 // The key of a body's draws: which body, and which of its collisions.
@@ -105,6 +106,17 @@ int find_pose_on_slope(const Quat& orientation, const BodyKind& kind, const Half
         cosine > best_cosine && holds_pose(orientation, kind, i, plane, world))
       best_cosine = cosine, best = i;
   return best;
+}
+
+// Flush on a face that it has not the energy to leave. `up`: the plane's normal, body axes; J/kg.
+bool stands_securely(const RestingFaces& faces, const Shape& shape, const Vec3& up, double energy,
+                     double gravity) {
+  constexpr double kSlack = 1e-4;  // over R
+  if (gravity <= 0.0) return false;
+  const double height = -up.dot(shape.hull.vertices[std::size_t(find_support(shape.hull, -up))]);
+  const int face =
+      faces.find_certain(up, height + std::max(0.0, energy) / gravity + kSlack * shape.radius, 0.0);
+  return face >= 0 && faces.faces()[std::size_t(face)].normal.dot(up) > kSameFace;
 }
 
 // The rotation, as a vector in world axes, that takes the body into rest pose `pose` on `plane`.
@@ -255,13 +267,20 @@ bool holds_pose(const Quat& orientation, const BodyKind& kind, int pose, const H
 }
 
 RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane,
-                           const StepWorld& world, const TablesOptions& options) {
+                           const StepWorld& world, double energy, const TablesOptions& options) {
   if (!options.rest_poses) return {};
   if (!world.is_horizontal(plane)) return {find_pose_on_slope(orientation, kind, plane, world)};
   Vec3 up = orientation.conjugate() * plane.normal;
   if (kind.faces && !options.nearest_rest_pose)
     up = kind.faces->faces()[std::size_t(kind.faces->find_quasistatic(up))].normal;
-  return {find_nearest_rest_pose(*kind.signature, up)};
+  const int pose = find_nearest_rest_pose(*kind.signature, up);
+  if (options.as_published() || !kind.faces) return {pose};
+  const Vec3& lying = kind.signature->rest_poses[std::size_t(pose)].normal;
+  const bool is_kept = up.dot(lying) > kSameFace;
+  return {is_kept || !stands_securely(*kind.faces, *kind.shape, orientation.conjugate() * plane.normal,
+                                      energy, world.gravity_strength())
+              ? pose
+              : -1};
 }
 
 ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, const BodyKind& kind,
@@ -311,7 +330,8 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
                       .impulse = body.mass * std::max(0.0, approach + body.velocity.dot(plane.normal)),
                       .approach = std::max(0.0, approach)});
     if (body.motion == Motion::dynamic && energy_before < settings.resting_energy * energy_unit) {
-      resting = find_resting(body.orientation, kind, plane, world, settings.options);
+      resting = find_resting(body.orientation, kind, plane, world, energy_before - 0.5 * approach * approach,
+                             settings.options);
       if (resting.pose >= 0) body.motion = Motion::settling;
     }
     if (body.motion == Motion::settling && energy_before > 2.0 * settings.resting_energy * energy_unit)

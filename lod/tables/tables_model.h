@@ -43,9 +43,10 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
                               const StepWorld& world, double time, const TablesSettings& settings);
 
 /// The resting condition's pose on `plane`: the one that needs the smallest rotation (3.4), on a slope of
-/// those in which the body stays there; −1 where there is none.
+/// those in which the body stays there; −1 where there is none, and, but for the paper's model, where the
+/// body stands on a face that is no kept pose without the `energy`, J/kg, to tip off it: a book on end.
 RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const HalfSpace& plane,
-                           const StepWorld& world, const TablesOptions& options);
+                           const StepWorld& world, double energy, const TablesOptions& options);
 
 /// Whether a body led to that pose stays in it on `plane`: always on a horizontal one; on a slope where it
 /// does not tip over the edge of the face that it lies on.

@@ -73,6 +73,7 @@ void TablesLevel::respond(ContactTally& tally) {
   give_pushes(-1.0);  // what presses a body to the ground does not throw it there
   sort_ground();
   give_pushes(1.0);
+  give_ground_friction();
   rounds_ = 0;
   if (!crowd) return;
   pass_blows_on();
@@ -210,7 +211,10 @@ void TablesLevel::choose_rest_pose(std::int64_t i) {
   if (spheres_.motion[i] == Motion::settling &&
       holds_pose(orientation, kind, spheres_.pose[i], under, world()))
     return;
-  const RestingRecord resting = find_resting(orientation, kind, under, world(), settings_.tables);
+  // What it has towards the plane ends there.
+  const double falling = spheres_.velocity(i).dot(under.normal),
+               energy = double(step_.s[std::size_t(i)].w) - 0.5 * falling * falling;
+  const RestingRecord resting = find_resting(orientation, kind, under, world(), energy, settings_.tables);
   spheres_.motion[i] = resting.pose < 0 ? Motion::dynamic : Motion::settling;
   if (resting.pose >= 0) spheres_.pose[i] = std::int16_t(resting.pose);
 }

@@ -9,6 +9,7 @@ namespace {
 
 constexpr float kPartingTime = 0.05f;      // of the time
 constexpr double kFallingInterval = 0.05;  // s; less than anybody must lie still for
+constexpr double kDraws = 0.2;             // of gravity, across it: a force that draws what it acts on along
 constexpr double kCarries = 0.05;  // sine of a plane's angle to the vertical: a steeper one carries nobody
 
 }  // namespace
@@ -16,14 +17,43 @@ constexpr double kCarries = 0.05;  // sine of a plane's angle to the vertical: a
 // Who is moved, directly or through others, by what nothing stops: as CarriedBodies are. False: nobody.
 bool TablesLevel::find_riders() {
   if (carried_.empty() && carried_guests_.empty()) return false;
-  const auto nothing_stops = std::int32_t(spheres_.awake);
+  join_touching();
+  join_carried();
+  return true;
+}
+
+void TablesLevel::join_touching() {
   riders_.set_all_apart(std::size_t(spheres_.awake) + 1);
-  for (const Carried& carried : carried_) riders_.join(std::int32_t(carried.place), nothing_stops);
-  for (const std::int64_t place : carried_guests_) riders_.join(std::int32_t(place), nothing_stops);
   contacts_.each([&](const SphereContact& c) {
     if (c.second < std::uint32_t(spheres_.awake)) riders_.join(std::int32_t(c.first), std::int32_t(c.second));
   });
-  return true;
+}
+
+void TablesLevel::join_carried() {
+  const auto nothing_stops = std::int32_t(spheres_.awake);
+  for (const Carried& carried : carried_) riders_.join(std::int32_t(carried.place), nothing_stops);
+  for (const std::int64_t place : carried_guests_) riders_.join(std::int32_t(place), nothing_stops);
+}
+
+// What lies near-still on others is brought to a stop in the world, but not with what carries it, and not
+// where a force draws it or them on.
+void TablesLevel::let_driven_go() {
+  std::vector<std::int32_t>& drawn = drawn_;
+  drawn.clear();
+  const double strength = settings_.gravity.norm();
+  for (const ActingForce& force : acting_.all()) {
+    const Vec3 aside = strength > 0.0 ? Vec3(force.acceleration.cross(settings_.gravity) / strength)
+                                      : Vec3(force.acceleration);  // as long as what is across gravity
+    if (aside.norm() > kDraws * strength) drawn.push_back(std::int32_t(place_of(force.slot)));
+  }
+  if (drawn.empty() && carried_.empty() && carried_guests_.empty()) return;
+  join_touching();
+  join_carried();
+  const auto driven = std::int32_t(spheres_.awake);
+  for (const std::int32_t place : drawn)
+    if (place < driven) riders_.join(place, driven);
+  for (std::int32_t i = 0; i < driven; ++i)
+    if (riders_.root_of(i) == riders_.root_of(driven)) spheres_.crowded_for[std::size_t(i)] = 0;
 }
 
 // What falls with all that it touches does not lie on it, however long they touch.
@@ -98,7 +128,7 @@ void TablesLevel::rest() {
                                    rest_law_.sleep_speed(radius) * constants_.wide_time;
     const bool parts = tips || spheres_.on_hull[i] == HullStand::rises ||
                        (step_.touches(i) && out >= rest_law_.sleep_speed(radius));
-    if (rides(i)) {
+    if (rides(i) || step_.s[std::size_t(i)].w >= kSlides) {
       spheres_.quiet[i] = 0.0f;
       continue;
     }

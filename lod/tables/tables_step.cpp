@@ -72,6 +72,7 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
                 .resting_energy = float(tables_.resting_energy),
                 .remembered = remembered * float(known.of_forces),
                 .held = remembered * float(known.of_impulses),
+                .rubbed = float(known.of_forces),
                 .remembers = known.remembers,
                 .update_radius = plain_radius,
                 .ticks = step_ticks,
@@ -142,9 +143,13 @@ void TablesLevel::note_paired() {
 void TablesLevel::finish(ContactTally& tally) {
   const bool ground = has_planes();
   take_back_pressing();
+  take_back_ground_friction();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
   joined_.resize(std::max(joined_.size(), tallies_.size()));
   driven_.resize(std::max(driven_.size(), tallies_.size()));
+  rubs_.resize(std::max(rubs_.size(), tallies_.size()));
+  for (std::size_t block = tallies_.size(); block < rubs_.size(); ++block) rubs_[block].clear();
+  let_driven_go();
   tips_ = constants_.hulls && kinds_.any_tips() && contacts_.count() > 0;
   if (tips_) {
     tipping_.clear(std::size_t(spheres_.awake));
@@ -158,7 +163,9 @@ void TablesLevel::finish(ContactTally& tally) {
     note_driven(begin, end, driven_[std::size_t(begin / kBlock)]);
     if (ground) {
       sweep_ground(planes_, constants_, simd_, begin, end, step_);
+      begin_rubbing(begin, end, rubs_[std::size_t(begin / kBlock)]);
       lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
+      end_rubbing(rubs_[std::size_t(begin / kBlock)]);
       step_.each(GroundState::near, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
       if (constants_.hulls)
         step_.each(GroundState::stands, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
@@ -168,6 +175,7 @@ void TablesLevel::finish(ContactTally& tally) {
     step_.each(GroundState::unsound, begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
+  remember_ground_friction();
   take_back_excess();
   keep_above_ground();
   stop_before_unseen_ground();

@@ -40,6 +40,11 @@ TEST(YamlValue, RefusesTextThatIsNoUtf8) {
   EXPECT_EQ(make_yaml("a: cr\xc3\xa2te\n", "s.yaml").entries.at(0).value.text, "cr\xc3\xa2te");
 }
 
+TEST(YamlValue, LinesMayEndInCarriageReturns) {
+  for (const char* text : {"a: [1, 2]\r\nb: 3\r\n", "b: 3\r\na: [1, 2]\r"})
+    EXPECT_EQ(make_yaml(text, "s.yaml").entries.size(), 2U) << text;
+}
+
 TEST(YamlValue, RefusesZeroBytes) {
   using namespace std::string_literals;
   EXPECT_EQ(error_of("a: 1\nb: x\0y\n"s), "s.yaml:2: text: found a zero byte, expected UTF-8 without any");

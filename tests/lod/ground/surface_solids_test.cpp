@@ -78,6 +78,22 @@ TEST(SurfaceSolids, AreNoDeeperThanTheSurfaceIsThick) {
   EXPECT_NEAR(depth_of(surface, Vec3::UnitZ(), 0.99), usual, 1e-9);
 }
 
+// However long the step is beside its height: over what stands out nothing is met along a riser's normal.
+TEST(SurfaceSolids, EdgesOfWideStepsStandOut) {
+  for (const double wide : {1.0, 4.0, 40.0}) {  // m
+    const SurfaceSolids surface(boxes({{{1, wide, 0.2}, {0, 0, 0}}}));
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+      const SurfaceTriangle& triangle = *surface[i].surface;
+      for (int edge = 0; edge < 3; ++edge) {
+        const Vec3 along = triangle.corner[std::size_t((edge + 1) % 3)] - triangle.corner[std::size_t(edge)];
+        int directions = 0;  // the diagonals of its faces do not
+        for (const double x : along) directions += std::abs(x) > 1e-9;
+        EXPECT_EQ(triangle.ridge[std::size_t(edge)], directions == 1) << wide << " m, " << i;
+      }
+    }
+  }
+}
+
 // It has no other side itself: what lies below it is none the thicker.
 TEST(SurfaceSolids, ASheetAboveMakesNothingThick) {
   Mesh mesh = boxes({{{3, 3, 0.05}, {0, 0, 1}}});

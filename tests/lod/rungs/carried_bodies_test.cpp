@@ -99,11 +99,55 @@ TEST(CarriedBodies, TheySleepAgainWhereItStands) {
   }
 }
 
-// Spheres roll on one another, so that only the lowest goes along.
-TEST(CarriedBodies, APlatformCarriesTheLowestOfAStackOfTables) {
-  OnLift on(LevelChoice::tables, 2);
-  on.move({0.3, 0, 0});
-  EXPECT_NEAR(on.manager.state(on.stack.front()).position.x(), 0.3 * kLiftedFor, 0.1);
+// A platform that is there at once slides under them until friction has set them in motion.
+TEST(CarriedBodies, APlatformCarriesAStackOfTables) {
+  for (const double speed : kSpeeds) {
+    OnLift on(LevelChoice::tables, 3);
+    on.move({speed, 0, 0});
+    for (const BodyId body : on.stack)
+      EXPECT_NEAR(on.manager.state(body).position.x(), speed * kLiftedFor, 0.1 * kCrate) << speed << " m/s";
+  }
+}
+
+// m: how far crates of `tables` slip, at most, in four seconds on a platform of `parts` boxes that starts off
+// at 1 m/s², goes on at 1 m/s and takes them up and down by .2 m meanwhile.
+double slip_on_platform(int parts, const std::vector<Vec3>& places) {
+  Manager manager({.signatures = coarse_signature});
+  constexpr double kWidth = 6.0;
+  std::vector<GroundId> platform;
+  const auto middle_of = [&](int part) { return Vec3(0, kWidth / parts * (part - 0.5 * (parts - 1)), -0.1); };
+  for (int part = 0; part < parts; ++part)
+    platform.push_back(manager.add_static_box({6, kWidth / parts, 0.2}, middle_of(part), Quat::Identity()));
+  std::vector<BodyId> crates;
+  for (const Vec3& place : places)
+    crates.push_back(add(manager, crate(), testing::at(place), LevelChoice::tables));
+  const auto way = [](double t) {
+    return Vec3(t < 1.0 ? 0.5 * t * t : t - 0.5, 0, 0.2 * (1.0 - std::cos(1.5 * t)));
+  };
+  constexpr int kFrames = 240;
+  for (int i = 0; i < kFrames; ++i) {
+    const Vec3 from = way(i * kFrame), velocity = (way((i + 1) * kFrame) - from) / kFrame;
+    for (int part = 0; part < parts; ++part) {
+      RigidState state = testing::at(middle_of(part) + from);
+      state.velocity = velocity;
+      manager.move_ground(platform[std::size_t(part)], state);
+    }
+    manager.step(kFrame);
+  }
+  double most = 0.0;
+  for (std::size_t i = 0; i < crates.size(); ++i)
+    most = std::max(most, (manager.state(crates[i]).position - way(kFrames * kFrame) - places[i]).norm());
+  return most;
+}
+
+TEST(CarriedBodies, CratesOfTablesThatTouchAreCarriedAlong) {
+  const double low = kCrate / 2, side = kCrate;
+  for (const int parts : {1, 2}) {  // of two, they lie on the seam
+    EXPECT_LT(slip_on_platform(parts, {{0, 0, low}}), 0.02) << parts;
+    EXPECT_LT(slip_on_platform(parts, {{0, 0, low}, {side, 0, low}, {0, side, low}, {side, side, low}}), 0.02)
+        << parts;
+    EXPECT_LT(slip_on_platform(parts, {{0, 0, low}, {0, 0, low + side}}), 0.15 * side) << parts;
+  }
 }
 
 /// Kinematic; its face is 2 cm before a crate that stands at the origin.

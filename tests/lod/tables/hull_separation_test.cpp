@@ -22,7 +22,7 @@ lane::HullSeparation separate(const Maps& maps, const RigidState& first, const R
   const float* heights = maps.pair_heights.data();
   const float distance = float(between.norm());
   return lane::separate_hulls(
-      heights, maps.faces.data(), placed(first), placed(second), line, distance,
+      heights, maps.faces.data(), maps.unsteady.data(), placed(first), placed(second), line, distance,
       lane::separate_along_line(heights, placed(first), placed(second), line, distance));
 }
 
@@ -36,6 +36,31 @@ TEST(HullSeparation, WhatLiesOnAFaceIsHeldByIt) {
     const lane::HullSeparation found = separate(maps, above, below);
     EXPECT_NEAR(found.gap, 0.01, 1e-3) << aside;
     EXPECT_NEAR(found.normal.z, 1.0, 1e-3);
+    EXPECT_TRUE(found.flush) << aside;
+  }
+}
+
+TEST(HullSeparation, FlushIsFaceOnFaceOfWhatStandsFirmlyThere) {
+  struct Case {
+    const char* what;
+    std::shared_ptr<const Shape> shape;
+    double apart;  // m
+    Quat turn;     // of the upper one
+    bool flush;
+  };
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.1));
+  const Quat upright = Quat::Identity();
+  for (const auto& [what, shape, apart, turn, flush] :
+       std::vector<Case>{{"cubes", testing::box_shape({0.2, 0.2, 0.2}), 0.2, upright, true},
+                         {"one of them tilted", testing::box_shape({0.2, 0.2, 0.2}), 0.21,
+                          rotation_from_vector(Vec3(0.15, 0, 0)), false},
+                         {"beams on their sides", testing::box_shape({0.8, 0.08, 0.08}), 0.08, upright, true},
+                         {"books on end", testing::box_shape({0.04, 0.2, 0.3}), 0.3, upright, false},
+                         {"balls", ball, 0.2, upright, false}}) {
+    RigidState above, below;
+    above.position = {0, 0, apart};
+    above.orientation = turn;
+    EXPECT_EQ(separate(Maps(*shape), above, below).flush, flush) << what;
   }
 }
 

@@ -55,5 +55,29 @@ TEST(RestPoses, BodiesLieOnFacesWithThemAndAskewWithout) {
   EXPECT_GT(without.misfit, 0.02);
 }
 
+// Hardly a trial ends on end: what was set so, among its like, stays so all the same.
+TEST(RestPoses, ARowOfBooksStandsOnEnd) {
+  const auto book = std::make_shared<const Shape>(make_shape("book", make_box({0.04, 0.2, 0.3})));
+  SignatureSettings coarse;
+  coarse.n_theta = 3, coarse.n_phi = 3, coarse.n_alpha = 4, coarse.trials_per_cell = 8;
+  coarse.height_trials = 60, coarse.settling_trials = 20, coarse.clips = 4;
+  const auto signature = std::make_shared<const Signature>(measure_signature(*book, coarse, 2));
+  Ground ground;
+  ground.add_plane({.normal = Vec3::UnitZ()});
+  const MaterialTable materials;
+  testing::OneRung level(StatisticalModel::tables, StatisticalSettings{}, ground, materials);
+  constexpr int kBooks = 12;
+  for (int i = 0; i < kBooks; ++i)
+    level.add(std::uint32_t(i), book, 1.5, 0, {.position = Vec3(0.0402 * i, 0, 0.15)}, false, signature);
+  for (int step = 0; step < 240; ++step) {
+    StepReport report;
+    level.step(1.0 / 60, {}, report);
+  }
+  for (int i = 0; i < kBooks; ++i) {
+    EXPECT_NEAR((level.state(i).orientation * Vec3::UnitZ()).z(), 1.0, 0.01) << i;
+    EXPECT_TRUE(level.asleep(i)) << i;
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -129,7 +129,7 @@ TEST(TablesModel, TheNearestPoseNeedsTheSmallestRotationAndTheOtherIsTippedInto)
   const Quat orientation(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
   const auto axis_of = [&](bool nearest) {
     const RestingRecord record =
-        find_resting(orientation, kind, floor, world, {.nearest_rest_pose = nearest});
+        find_resting(orientation, kind, floor, world, 0.0, {.nearest_rest_pose = nearest});
     EXPECT_GE(record.pose, 0);
     int axis = 0;
     kind.signature->rest_poses[std::size_t(record.pose)].normal.cwiseAbs().maxCoeff(&axis);
@@ -137,6 +137,28 @@ TEST(TablesModel, TheNearestPoseNeedsTheSmallestRotationAndTheOtherIsTippedInto)
   };
   EXPECT_EQ(axis_of(true), 2);   // .4 m upright, 40° away
   EXPECT_EQ(axis_of(false), 0);  // .2 m upright: the edge between them is at atan(.2/.4) = 27°
+}
+
+// What was set on a face on which no trial ends stays there, as long as it has not the energy to tip off it.
+TEST(TablesModel, ABookOnEndStandsUnlessItTips) {
+  const auto book = std::make_shared<const Shape>(make_shape("book", make_box({0.04, 0.2, 0.3})));
+  auto lies = std::make_shared<Signature>();
+  lies->rest_poses = {{.normal = Vec3::UnitX(), .height = 0.02 / book->radius, .frequency = 1.0}};
+  BodyKind kind = make_body_kind(book, lies);
+  kind.faces = std::make_shared<const RestingFaces>(book->hull);
+  const MaterialTable materials;
+  const HalfSpace floor{.normal = Vec3::UnitZ()};
+  const StepWorld world{.gravity = {0, 0, -9.81}, .planes = {&floor, 1}, .materials = &materials};
+  const auto pose = [&](double tilt, double energy, const TablesOptions& options = {}) {
+    return find_resting(Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY())), kind, floor, world, energy, options)
+        .pose;
+  };
+  const double pass = 9.81 * (std::hypot(0.15, 0.02) - 0.15);  // J/kg
+  EXPECT_EQ(pose(0.0, 0.0), -1);
+  EXPECT_EQ(pose(0.0, 0.9 * pass), -1);
+  EXPECT_EQ(pose(0.0, 1.1 * pass), 0);
+  EXPECT_EQ(pose(0.1, 0.0), 0);
+  EXPECT_EQ(pose(0.0, 0.0, {.published = true}), 0);
 }
 
 }  // namespace
