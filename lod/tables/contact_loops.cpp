@@ -189,7 +189,8 @@ struct SweepContacts {
     alignas(64) [[maybe_unused]] Row turning[Lanes], moved[Lanes], torque[Lanes], out[Lanes];
     alignas(64) float changed[Lanes];
     alignas(64) [[maybe_unused]] Row rubbed[Lanes];  // N s, of friction; 1 where the two roll on each other
-    alignas(64) [[maybe_unused]] float friction[Lanes], size[Lanes], farthest[Lanes], deep[Lanes];
+    alignas(64) [[maybe_unused]] float friction[Lanes], size[Lanes], farthest[Lanes], deep[Lanes],
+        slides[Lanes];
     const auto index = [&](std::int64_t i) { return std::size_t(at + i * stride); };
     const auto mass_of = [&](std::uint32_t place) {
       return place < awake ? float(inverse_mass[OneKind ? 0 : place]) : 0.0f;
@@ -249,10 +250,10 @@ struct SweepContacts {
         const float fx = rubbed[i].x - known_x, fy = rubbed[i].y - known_y, fz = rubbed[i].z - known_z;
         ix += fx, iy += fy, iz += fz;
         torque[i].x = rolls * (fy * z - fz * y), torque[i].y = rolls * (fz * x - fx * z),
-        torque[i].z = rolls * (fx * y - fy * x);  // over the arm
+        torque[i].z = rolls * (fx * y - fy * x), torque[i].w = 0.0f;  // over the arm
         const float down = c.gx * x + c.gy * y + c.gz * z;
-        const bool slides = (most_rub < held) & (after * relative[i].w > least_load) & (down * down < level);
-        torque[i].w = choose(slides, (1.0f - rolls) * kSlides, 0.0f);
+        const bool slips = (most_rub < held) & (after * relative[i].w > least_load) & (down * down < level);
+        slides[i] = choose(slips, (1.0f - rolls) * kSlides, 0.0f);
         // Of an overlap, what is left of it by then.
         const float overlap = -gap[i] - slop * size[i] - (moved[i].x * x + moved[i].y * y + moved[i].z * z);
         deep[i] = overlap / size[i];
@@ -277,6 +278,7 @@ struct SweepContacts {
         outcome.deepest = most(outcome.deepest, deep[i]);
         add_to(turned_by[a], (radius[a] * wa) * turns);
         add_to(turned_by[b], (b < awake ? radius[b] * wb : 0.0f) * turns);
+        turned_by[a].w += slides[i], turned_by[b].w += slides[i];
         add_to(turning_of[a], ((u[a].w - 1.0f) * wa) * turns);  // the slip that the next contacts see
         add_to(turning_of[b], ((u[b].w - 1.0f) * wb) * turns);
         const RowLanes pushes{out[i].x, out[i].y, out[i].z, 0.0f};

@@ -27,9 +27,11 @@ enum class GroundState : std::uint8_t {
   unsound,  ///< after the end of the step: its state cannot be
 };
 
+/// J/kg, in place of a kinetic energy: what slides is not near-still, however slow.
+inline constexpr float kSlides = 1e9f;
+
 /// Of a step, one element an awake body. What contacts read and add are rows, and one more stands for all
 /// that sleep.
-inline constexpr float kSlides = 1e9f;  // J/kg: what slides is not near-still, however slow
 struct SphereStep {
   std::vector<float> reach;  // m
   // The rows: a vector in xyz, a number in w. r is the sphere's radius, ω its angular velocity.

@@ -166,11 +166,12 @@ TEST_F(Slope, ABoxAloneMovesOnItsHull) {
               median_of(StatisticalModel::support, 6.0, height), 0.01);
 }
 
-// Face on face does not roll: on 20° both stand, on 31° both slide by what friction leaves of gravity.
+// Face on face does not roll: on 20° both stand, on 28° and 31° both slide by what friction leaves of
+// gravity.
 TEST_F(Slope, StackedCubesStandOrSlideTogether) {
   static const auto cube = std::make_shared<const Shape>(make_shape("cube", make_box({0.3, 0.3, 0.3})));
   materials_.replace(0, {.friction = 0.5});
-  for (const double degrees : {20.0, 31.0}) {
+  for (const auto& [degrees, mass] : {std::pair{20.0, 20.0}, {31.0, 20.0}, {28.0, 2e4}}) {
     ground_ = Ground();
     tilt(degrees);
     testing::OneRung level = make();
@@ -178,13 +179,13 @@ TEST_F(Slope, StackedCubesStandOrSlideTogether) {
       RigidState s;
       s.position = turn_ * Vec3(0, 0, 0.1501 + 0.3001 * i);
       s.orientation = turn_;
-      level.add(std::uint32_t(i), cube, 20.0, 0, s, false, box_signature());
+      level.add(std::uint32_t(i), cube, mass, 0, s, false, box_signature());
     }
     run(level, 2.0);
     const double left = std::max(0.0, std::sin(radians(degrees)) - 0.5 * std::cos(radians(degrees)));
     const double way = 0.5 * kGravity * left * 4.0;  // m
     for (int i : {0, 1}) {
-      EXPECT_NEAR((turn_.conjugate() * level.state(i).position).x(), way, 0.01 + 0.1 * way)
+      EXPECT_NEAR((turn_.conjugate() * level.state(i).position).x(), way, 0.02 + 0.25 * way)
           << degrees << ", " << i;
       EXPECT_EQ(level.asleep(i), left == 0.0) << degrees << ", " << i;
     }
