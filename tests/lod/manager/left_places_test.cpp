@@ -97,29 +97,38 @@ TEST(LeftPlaces, ATowerFallsAsItStoodWhereItsGroundIsRemovedOrPutElsewhere) {
     }
 }
 
+/// A caller's, with a floor ten metres down.
+struct DeepWorld {
+  dWorldID world = nullptr;
+  dSpaceID space = nullptr;
+  DeepWorld() {
+    dInitODE2(0);
+    world = dWorldCreate(), space = dHashSpaceCreate(nullptr);
+    dWorldSetGravity(world, 0, 0, -9.81);
+    dCreatePlane(space, 0, 0, 1, -10.0);
+  }
+  ~DeepWorld() { dSpaceDestroy(space), dWorldDestroy(world); }
+  DeepWorld(const DeepWorld&) = delete;
+  DeepWorld& operator=(const DeepWorld&) = delete;
+};
+
 TEST(LeftPlaces, ATowerFallsAsItStoodWhereAGeomOfTheCallersGoes) {
   for (const LevelChoice level : kRungs)
     for (const bool is_destroyed : {true, false}) {
-      dInitODE2(0);
-      const dWorldID world = dWorldCreate();
-      const dSpaceID space = dHashSpaceCreate(nullptr);
-      dWorldSetGravity(world, 0, 0, -9.81);
-      dCreatePlane(space, 0, 0, 1, -10.0);
+      const DeepWorld his_world;
+      const dWorldID world = his_world.world;
+      const dSpaceID space = his_world.space;
       const dGeomID slab = dCreateBox(space, 1, 1, 0.2);
       dGeomSetPosition(slab, 0, 0, -0.1);
-      {
-        Manager manager(world, space, settings());
-        const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
-        if (is_destroyed)
-          dGeomDestroy(slab);
-        else
-          dGeomSetPosition(slab, 50, 0, -0.1);
-        run(manager, 1.0);
-        EXPECT_LT(manager.state(tower.front()).position.z(), -4.0) << int(level) << " gone: " << is_destroyed;
-        EXPECT_LT(widest_gap(manager, tower), 0.1 * kSide) << int(level) << " gone: " << is_destroyed;
-      }
-      dSpaceDestroy(space);
-      dWorldDestroy(world);
+      Manager manager(world, space, settings());
+      const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
+      if (is_destroyed)
+        dGeomDestroy(slab);
+      else
+        dGeomSetPosition(slab, 50, 0, -0.1);
+      run(manager, 1.0);
+      EXPECT_LT(manager.state(tower.front()).position.z(), -4.0) << int(level) << " gone: " << is_destroyed;
+      EXPECT_LT(widest_gap(manager, tower), 0.1 * kSide) << int(level) << " gone: " << is_destroyed;
     }
 }
 
@@ -127,35 +136,29 @@ TEST(LeftPlaces, ATowerFallsAsItStoodWhereAGeomOfTheCallersGoes) {
 TEST(LeftPlaces, ATowerFallsWhereABodyOfTheCallersGoes) {
   for (const LevelChoice level : kRungs)
     for (const bool is_destroyed : {true, false}) {
-      dInitODE2(0);
-      const dWorldID world = dWorldCreate();
-      const dSpaceID space = dHashSpaceCreate(nullptr);
-      dWorldSetGravity(world, 0, 0, -9.81);
-      dCreatePlane(space, 0, 0, 1, -10.0);
-      {
-        const dBodyID his = dBodyCreate(world);
-        dMass mass;
-        dMassSetBoxTotal(&mass, 500.0, 1, 1, 0.2);
-        dBodySetMass(his, &mass);
-        dGeomSetBody(dCreateBox(space, 1, 1, 0.2), his);
-        dBodySetPosition(his, 0, 0, -0.1);
-        const dJointID hold = dJointCreateFixed(world, nullptr);
-        dJointAttach(hold, his, nullptr);
-        dJointSetFixed(hold);
-        dBodySetAutoDisableFlag(his, 1);
-        Manager manager(world, space, settings());
-        const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
-        const double before = top_of(manager, tower);
-        dJointDestroy(hold);
-        if (is_destroyed)
-          dGeomDestroy(dBodyGetFirstGeom(his)), dBodyDestroy(his);
-        else
-          dBodySetPosition(his, 50, 0, -0.1);
-        run(manager, 1.0);
-        EXPECT_LT(top_of(manager, tower), before - 1.0) << int(level) << " destroyed: " << is_destroyed;
-      }
-      dSpaceDestroy(space);
-      dWorldDestroy(world);
+      const DeepWorld his_world;
+      const dWorldID world = his_world.world;
+      const dSpaceID space = his_world.space;
+      const dBodyID his = dBodyCreate(world);
+      dMass mass;
+      dMassSetBoxTotal(&mass, 500.0, 1, 1, 0.2);
+      dBodySetMass(his, &mass);
+      dGeomSetBody(dCreateBox(space, 1, 1, 0.2), his);
+      dBodySetPosition(his, 0, 0, -0.1);
+      const dJointID hold = dJointCreateFixed(world, nullptr);
+      dJointAttach(hold, his, nullptr);
+      dJointSetFixed(hold);
+      dBodySetAutoDisableFlag(his, 1);
+      Manager manager(world, space, settings());
+      const std::vector<BodyId> tower = sleeping_tower(manager, level, 0.0);
+      const double before = top_of(manager, tower);
+      dJointDestroy(hold);
+      if (is_destroyed)
+        dGeomDestroy(dBodyGetFirstGeom(his)), dBodyDestroy(his);
+      else
+        dBodySetPosition(his, 50, 0, -0.1);
+      run(manager, 1.0);
+      EXPECT_LT(top_of(manager, tower), before - 1.0) << int(level) << " destroyed: " << is_destroyed;
     }
 }
 
