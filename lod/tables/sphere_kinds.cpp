@@ -10,9 +10,25 @@
 namespace lodestone {
 namespace {
 
-// How far a hull reaches over how thick it is: a cube, 1.7, a box of 2 : 3 : 4 and a bunny, 2.7, are round
-// enough for spheres to heap up as they do; a regular tetrahedron, 3, a coin and a beam, 10, are not.
-constexpr float kStays = 2.75f, kTips = 3.0f;
+// How far a hull reaches over how thick it is: what is nearly a ball, up to 1.3, rolls; a cube, 1.7, and a
+// box of 2 : 3 : 4, 2.7, tip slowly; a regular tetrahedron, 3, a coin and a beam, 10, at full rate. Compact
+// bodies that do not fill their hulls, such as a bunny, do not tip: they count as smaller, and heap up low
+// enough.
+struct Reach {
+  float from, to;
+};
+constexpr Reach kRolls{1.3f, 1.55f}, kLong{2.75f, 3.0f};
+constexpr float kCompactRate = 0.35f;  // over the full one
+// In standard deviations of the corners that two patches have in common. To hold the upper of two equal faces
+// as long as its centre of mass is over the lower takes .71; with no more heaps come to rest late. What is
+// long or flat lands on its edges, and falls over those before its pressure is even.
+constexpr float kPatchReach = 1.73f;
+// Over R: the work that tipping has on credit, of what is compact and of what is long or flat.
+constexpr float kCompactCredit = 0.25f, kLongCredit = 0.6f;
+
+float share_of_reach(float reach, const Reach& of) {
+  return std::clamp((reach - of.from) / (of.to - of.from), 0.0f, 1.0f);
+}
 
 }  // namespace
 
@@ -23,13 +39,21 @@ void SphereKinds::take(const Kinds& kinds, std::uint32_t kind, double gravity) {
   set(kind, kinds[kind], gravity);
 }
 
+void SphereKinds::take_friction(const Kinds& kinds, const MaterialTable& materials) {
+  for (std::uint32_t k = 0; k < size(); ++k) {
+    if (birth_[k] == 0 || birth_[k] != kinds.birth(k)) continue;
+    const MaterialId own = kinds[k].material;
+    own_friction[k] = float(materials.law(own, own).friction);
+  }
+}
+
 void SphereKinds::resize(std::size_t size) {
-  for (auto* array : {&radius,        &ixx,       &iyy, &izz, &ixy, &ixz, &iyz,
-                      &jxx,           &jyy,       &jzz, &jxy, &jxz, &jyz, &softest,
-                      &gxx,           &gyy,       &gzz, &gxy, &gxz, &gyz, &farthest_reach,
-                      &rolling_lever, &blend_time})
+  for (auto* array : {&radius,        &ixx,        &iyy,         &izz, &ixy, &ixz, &iyz,
+                      &jxx,           &jyy,        &jzz,         &jxy, &jxz, &jyz, &softest,
+                      &gxx,           &gyy,        &gzz,         &gxy, &gxz, &gyz, &farthest_reach,
+                      &rolling_lever, &blend_time, &own_friction})
     array->resize(size, 1.0f);
-  tips.resize(size, 0.0f), thickness.resize(size);
+  tips.resize(size, 0.0f), tipping_work.resize(size), patch_reach.resize(size), thickness.resize(size);
   height.resize(size * (kHeightSamples + 1));
   pair_height.resize(size * std::size_t(kHullHeights));
   pair_face.resize(size * std::size_t(kHullHeights));
@@ -73,7 +97,12 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   gxy[k] = float(give(0, 1)), gxz[k] = float(give(0, 2)), gyz[k] = float(give(1, 2));
   const auto [thin, far] = std::ranges::minmax(map_of(hull_height));
   tipping_ -= tips[k] > 0.0f;
-  tips[k] = shape.sphere_radius ? 0.0f : std::clamp((far / thin - kStays) / (kTips - kStays), 0.0f, 1.0f);
+  const float reach = far / thin;
+  const float length = share_of_reach(reach, kLong);
+  const float convex_rate = share_of_reach(reach, kRolls) * std::lerp(kCompactRate, 1.0f, length);
+  tips[k] = shape.sphere_radius ? 0.0f : shape.convex ? convex_rate : length;
+  tipping_work[k] = std::lerp(kCompactCredit, kLongCredit, length) * radius[k];
+  patch_reach[k] = kPatchReach * (1.0f - length);
   thickness[k] = thin / far;
   tipping_ += tips[k] > 0.0f;
   farthest_reach[k] = std::ranges::max(map_of(pair_height));

@@ -22,10 +22,13 @@ struct SphereKinds {
   std::vector<float> unsteady;                      // as many: 0 where it stands firmly on that face, else 1
   std::vector<SupportPatch> patch;                  // as many
   std::vector<float> tips;                          // 0 to 1: whether it tips over (tipping.h)
+  std::vector<float> tipping_work;                  // m: of its weight, what tipping may take beyond its fall
+  std::vector<float> patch_reach;                   // standard deviations of a patch that pressure goes
   std::vector<float> thickness;                     // over its reach, of the hull where it is thinnest
   std::vector<float> gxx, gyy, gzz, gxy, gxz, gyz;  // 1/m, body axes: one over how far it reaches beside an
                                                     // axis, as a rod with its inertia would
   std::vector<float> farthest_reach;                // m, of pair_height
+  std::vector<float> own_friction;                  // coefficient, of two bodies of the kind, in this step
   std::vector<float> rolling_lever;                 // m, of rolling resistance
   std::vector<float> blend_time;                    // s, of the approach to a rest pose
   std::vector<std::int32_t> first_pose;             // of the kind's rest poses in the next ones
@@ -37,6 +40,8 @@ struct SphereKinds {
   }
   /// Takes in a kind, unless it is known; m/s².
   void take(const Kinds& kinds, std::uint32_t kind, double gravity);
+  /// Of each kind that a body has; materials may be changed between steps.
+  void take_friction(const Kinds& kinds, const MaterialTable& materials);
   std::size_t size() const { return radius.size(); }
   /// Whether there are kinds that tip over.
   bool any_tips() const { return tipping_ > 0; }

@@ -36,7 +36,8 @@ struct EndLoop {
     std::uint8_t* on_ground = step.on_ground.data();
     std::uint8_t *crowded_for = spheres.crowded_for.data(), *since_crowded = spheres.since_crowded.data();
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
-    const float *size = kinds.radius.data(), *lever = kinds.rolling_lever.data();
+    const float *size = kinds.radius.data(), *lever = kinds.rolling_lever.data(),
+                *friction = kinds.own_friction.data();
     const float rolling = c.hulls ? c.gravity * c.time : 0.0f;  // m/s over the lever
     const double calm = c.hulls ? 1.0 : double(most(0.0f, 1.0f - kCalming * c.time)),
                  stop = double(most(0.0f, 1.0f - kStopRate * c.time));
@@ -78,7 +79,12 @@ struct EndLoop {
       const bool calms = lies & !rolls & (s[i].w < c.resting_energy * c.gravity * size[k]);
       const bool stops = lies & !rolls & (s[i].w < least_energy * size[k]);
       crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
-      const double stopping = select(-std::int64_t(stops), stop, 1.0);
+      // By friction at most: what is struck on ice goes on.
+      const float slowed = choose(
+          published, 1.0f, friction[k] * c.gravity * c.time / most(square_root(2.0f * leaves), 1e-20f));
+      const double slid = 1.0 - double(slowed);
+      const double stopping =
+          select(-std::int64_t(stops), select(-std::int64_t(slid > stop), slid, stop), 1.0);
       const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};
       const float turning = most(length(turned_to), 1e-20f),
                   braked = most(0.0f, 1.0f - choose(touches, rolling * lever[k], 0.0f) / turning);

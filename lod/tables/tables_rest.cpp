@@ -8,6 +8,7 @@ namespace lodestone {
 namespace {
 
 constexpr float kPartingTime = 0.05f;      // of the time
+constexpr double kWedged = 4.0;            // over the energy of who is still: no more in any frame
 constexpr double kFallingInterval = 0.05;  // s; less than anybody must lie still for
 constexpr double kDraws = 0.2;             // of gravity, across it: a force that draws what it acts on along
 constexpr double kCarries = 0.05;  // sine of a plane's angle to the vertical: a steeper one carries nobody
@@ -120,9 +121,11 @@ void TablesLevel::rest() {
     const double radius = kind_of(i).shape->radius;
     const bool among_others =
         spheres_.since_crowded[i] < kLeaningTicks || std::ranges::binary_search(leaning_, i);
-    const bool still = has_less_energy(i, rest_law_.still_energy(among_others, radius, gravity));
+    const double still_energy = rest_law_.still_energy(among_others, radius, gravity);
+    const bool still = has_less_energy(i, still_energy);
     // While it is still being taken out of an overlap its time hardly counts; one that is pressed in again as
-    // far as it is taken out stays where it is. In a wedge it may go to and fro for ever.
+    // far as it is taken out stays where it is. In a wedge it may go to and fro for ever: the time in which
+    // it then stands still adds up.
     const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
     const bool tips = tips_ && double(tipping_.turned[std::size_t(i)]) * radius >=
                                    rest_law_.sleep_speed(radius) * constants_.wide_time;
@@ -132,7 +135,10 @@ void TablesLevel::rest() {
       spheres_.quiet[i] = 0.0f;
       continue;
     }
-    spheres_.quiet[i] = still ? spheres_.quiet[i] + (parts ? kPartingTime : 1.0f) * constants_.time : 0.0f;
+    if (still)
+      spheres_.quiet[i] += (parts ? kPartingTime : 1.0f) * constants_.time;
+    else if (!among_others || tips || !has_less_energy(i, kWedged * still_energy))
+      spheres_.quiet[i] = 0.0f;
     const bool waits_less = among_others && !rolls_on_ground(i);
     if (spheres_.quiet[i] < rest_law_.still_time(waits_less) || (!among_others && !stands(i))) continue;
     fell_asleep_.push_back(spheres_.owner[std::size_t(i)]);

@@ -78,6 +78,7 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
                 .ticks = step_ticks,
                 .one_kind = all_kinds_.size() == 1 && one_mass_,
                 .hulls = !settings_.tables.as_published()};
+  kinds_.take_friction(all_kinds_, materials_);
   step_.resize(std::size_t(spheres_.awake));
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0)
     update_radii_one_by_one();

@@ -13,9 +13,9 @@ constexpr float kTippingRate = 2.0f;  // √(g/R), of what is pressed at its end
 // half as much again it comes there sooner, and does not go to and fro.
 constexpr float kFlush = 1.5f * kPatchAngle;
 // Tipping does work: its torque, over its weight, times its angle, m. That must come from its fall, so that a
-// heap does not work for ever against what holds it, but for a credit of kTippingCredit R, which flight
-// gives anew. What sinks more slowly than kCreep √(gR) creeps, and has nothing of it.
-constexpr float kTippingCredit = 0.6f, kCreep = 0.03f;
+// heap does not work for ever against what holds it, but for a credit, which flight gives anew
+// (SphereKinds::tipping_work). What sinks more slowly than kCreep √(gR) creeps, and has nothing of it.
+constexpr float kCreep = 0.03f;
 // Variance over the squared radius: of where two corners touch.
 constexpr float kSharpest = 1e-5f;
 
@@ -30,21 +30,48 @@ struct TurnedPatch {
   float uu, vv, uv;
 };
 
+struct BesideNormal {
+  explicit BesideNormal(F3 n) {
+    const F3 aside = absolute(n.x) < 0.6f ? F3{1.0f, 0.0f, 0.0f} : F3{0.0f, 1.0f, 0.0f},
+             along = cross(n, aside);
+    u = (1.0f / length(along)) * along, v = cross(n, u);
+  }
+  F3 u, v;
+};
+
 SupportPatch patch_of(const SphereKinds& kinds, int kind, const Turn& turn, F3 direction) {
   return read_patch(kinds.patch.data() + std::size_t(kind) * std::size_t(kHullHeights),
                     place_in_map(turned(back(turn), direction)));
 }
 
-TurnedPatch find_patch(const SphereKinds& kinds, int kind, const Turn& turn, F3 direction, F3 u, F3 v) {
+TurnedPatch find_patch(const SphereKinds& kinds, int kind, const Turn& turn, F3 direction,
+                       const BesideNormal& beside) {
   const SupportPatch patch = patch_of(kinds, kind, turn, direction);
-  const F3 own_u = turned(back(turn), u), own_v = turned(back(turn), v);
+  const F3 own_u = turned(back(turn), beside.u), own_v = turned(back(turn), beside.v);
   return {turned(turn, patch.mean), patch.spread(own_u, own_u), patch.spread(own_v, own_v),
           patch.spread(own_u, own_v)};
 }
 
+// Of a point, (x, y) from a patch's mean in the two directions beside its normal, how far that is, in
+// standard deviations of the patch, squared.
+float squared_distance(const TurnedPatch& patch, float x, float y, float sharpest) {
+  const float uu = patch.uu + sharpest, vv = patch.vv + sharpest;
+  return (vv * x * x - 2.0f * patch.uv * x * y + uu * y * y) / (uu * vv - patch.uv * patch.uv);
+}
+
+// Of the lever of what presses on a body, what is left of it where pressure goes within the patch towards the
+// centre of mass, at most `reach` standard deviations; the centre is `squared` from the patch's mean.
+float share_of_lever(float squared, float reach) {
+  return squared > reach * reach ? 1.0f - reach / square_root(squared) : 0.0f;
+}
+
+float variance_of_corners(float radius) { return kSharpest * radius * radius; }
+
 // Where two hulls touch, from the centre of the first: the means of both, `between` apart from first to
 // second, each weighted by the inverse of its spread, beside the normal.
-F3 join_patches(const TurnedPatch& first, const TurnedPatch& second, F3 between, F3 u, F3 v, float sharpest) {
+F3 join_patches(const TurnedPatch& first, const TurnedPatch& second, F3 between, const BesideNormal& beside,
+                float sharpest) {
+  const auto [u, v] = beside;
   const float x = dot(between, u), y = dot(between, v);
   const float uu = first.uu + second.uu + sharpest, vv = first.vv + second.vv + sharpest,
               uv = first.uv + second.uv, scale = 1.0f / (uu * vv - uv * uv);
@@ -83,8 +110,13 @@ PressingLoad load_of(const Spheres& spheres, const SphereKinds& kinds, const Sph
   if (!lies || spheres.held[i] <= 0.0f) return load;
   const auto plane = std::size_t(step.plane[i]);
   const F3 n{ground.nx[plane], ground.ny[plane], ground.nz[plane]};
-  const F3 arm = patch_of(kinds, int(spheres.kind[i]), turn, -1.0f * n).mean;
-  load.torque = load.torque + spheres.held[i] * cross(turned(turn, arm), n);
+  const auto kind = std::size_t(spheres.kind[i]);
+  const BesideNormal beside(n);
+  const TurnedPatch patch = find_patch(kinds, int(kind), turn, -1.0f * n, beside);
+  const float squared = squared_distance(patch, dot(patch.mean, beside.u), dot(patch.mean, beside.v),
+                                         variance_of_corners(kinds.radius[kind]));
+  load.torque =
+      load.torque + spheres.held[i] * share_of_lever(squared, kinds.patch_reach[kind]) * cross(patch.mean, n);
   load.impulses += spheres.held[i];
   return load;
 }
@@ -117,27 +149,33 @@ void add_torques(const ContactRun& contacts, const Spheres& spheres, const Spher
     if (c.impulse[i] <= 0.0f || c.closing[i] < -bounce_velocity) continue;
     if (kinds.tips[std::size_t(first_kind)] + kinds.tips[std::size_t(second_kind)] <= 0.0f) continue;
     const F3 n{c.nx[i], c.ny[i], c.nz[i]};
-    const F3 aside = absolute(n.x) < 0.6f ? F3{1.0f, 0.0f, 0.0f} : F3{0.0f, 1.0f, 0.0f},
-             along = cross(n, aside);
-    const F3 u = (1.0f / length(along)) * along, v = cross(n, u);
-    const TurnedPatch first = find_patch(kinds, first_kind, turn_of(spheres, a), -1.0f * n, u, v);
-    const auto add = [&](std::uint32_t place, F3 arm, F3 impulse) {
-      const F3 torque = cross(arm, impulse);
+    const BesideNormal beside(n);
+    const TurnedPatch first = find_patch(kinds, first_kind, turn_of(spheres, a), -1.0f * n, beside);
+    const auto squared_from = [&](const TurnedPatch& patch, F3 arm, float sharpest) {
+      return squared_distance(patch, dot(arm, beside.u), dot(arm, beside.v), sharpest);
+    };
+    const auto add = [&](std::uint32_t place, int kind, F3 arm, float squared, F3 normal) {
+      const float lever = share_of_lever(squared, kinds.patch_reach[std::size_t(kind)]);
+      const F3 torque = lever * cross(arm, normal);
       const float weight = c.impulse[i] * float(spheres.inverse_mass[place]);
       add_to(tipping.torque[place], weight * RowLanes{torque.x, torque.y, torque.z, 1.0f});
     };
+    const float radius = kinds.radius[std::size_t(first_kind)];
     if (on_plane) {
-      add(a, first.mean, n);
+      add(a, first_kind, first.mean, squared_from(first, first.mean, variance_of_corners(radius)), n);
       continue;
     }
-    const TurnedPatch second = find_patch(kinds, second_kind, turn_of(spheres, b), n, u, v);
+    const TurnedPatch second = find_patch(kinds, second_kind, turn_of(spheres, b), n, beside);
     const F3 centres{float(spheres.x[b] - spheres.x[a]), float(spheres.y[b] - spheres.y[a]),
                      float(spheres.z[b] - spheres.z[a])};
-    const float size = least(kinds.radius[std::size_t(first_kind)], kinds.radius[std::size_t(second_kind)]);
-    const F3 point =
-        join_patches(first, second, centres + second.mean - first.mean, u, v, kSharpest * size * size);
-    add(a, point, n);
-    if (b < awake) add(b, point - centres, -1.0f * n);
+    const float sharpest = variance_of_corners(least(radius, kinds.radius[std::size_t(second_kind)]));
+    const F3 point = join_patches(first, second, centres + second.mean - first.mean, beside, sharpest);
+    // Of what two patches have in common, as of independent measurements.
+    const auto squared_from_both = [&](F3 arm) {
+      return squared_from(first, arm, sharpest) + squared_from(second, arm, sharpest);
+    };
+    add(a, first_kind, point, squared_from_both(point), n);
+    if (b < awake) add(b, second_kind, point - centres, squared_from_both(point - centres), -1.0f * n);
   }
 }
 
@@ -151,7 +189,7 @@ void tip(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
     if (kinds.tips[kind] <= 0.0f) continue;
     if (!step.touches(at)) spheres.tipping_credit[i] = 1.0f;
     if (!step.touches(at) || step.on_ground[i] == std::uint8_t(GroundState::moved)) continue;
-    const float whole = kTippingCredit * kinds.radius[kind];  // m
+    const float whole = kinds.tipping_work[kind];
     float& credit = spheres.tipping_credit[i];
     const float fallen = fall_of(spheres, step, constants, i) - creep_of(kinds, constants, kind);
     credit = least(1.0f, most(0.0f, credit + fallen / whole));

@@ -2,8 +2,9 @@
 // through their centres. A contact lies where both hulls are likely to be touched: each has, in the direction
 // of the contact, a mean and a spread of its farthest points, wide along a face or an edge, none at a corner,
 // and the two are joined as independent measurements of one point are. There the contact's impulse has its
-// torque. The body gives way to it without inertia, so that turning takes potential energy away and leaves no
-// motion: what knows its hull turns, as it sinks, until it lies on a face or is held.
+// torque, of a compact body by what is left of its lever once pressure has gone towards the centre of mass as
+// far as it can within the patch. The body gives way to it without inertia, so that turning takes potential
+// energy away and leaves no motion: what knows its hull turns as it sinks till it lies on a face or is held.
 #pragma once
 
 #include <vector>

@@ -106,7 +106,8 @@ TEST(ShippedScenes, NoneIsLeftOut) {
 
 // What is left of their energy is how high they lie: 5,716, 5,819, 5,686 and 5,607 J at the full level
 // (`build/lodestone run scenes/bins.yaml --level full --seed 1…4`), 8 s of processor time each. With
-// friction bounded by the impulses as they are `support` had 6,219, 6,045, 6,084 and 6,284.
+// friction bounded by the impulses as they are `support` had 6,219, 6,045, 6,084 and 6,284; while crates did
+// not tip over at `tables` that had 7,133, 7,237, 7,358 and 7,306.
 TEST(ShippedScenes, SmallHeapsAreAsHighAsAtTheFullLevel) {
   constexpr double kFull = 5'707.0;                                  // J, their mean
   std::map<std::string, std::shared_ptr<const Signature>> measured;  // by the shape's name
@@ -119,14 +120,19 @@ TEST(ShippedScenes, SmallHeapsAreAsHighAsAtTheFullLevel) {
     settings.height_trials = 60, settings.settling_trials = 100, settings.clips = 20;
     return signature = std::make_shared<const Signature>(measure_signature(shape, settings, 2));
   };
-  double mean = 0.0;
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
-    const Scene scene = load_scene(kFolder / "bins.yaml", {.mesh_paths = {}, .seed = seed});
-    const RunResult run = run_scene(scene, {.level = LevelChoice::support, .signatures = measure});
-    EXPECT_EQ(run.last().asleep, run.bodies) << seed;
-    mean += run.energy_end_j / 4.0;
+  for (const auto& [model, bound] :
+       {std::pair{StatisticalModel::support, 0.03}, {StatisticalModel::tables, 0.18}}) {
+    double mean = 0.0;
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      const Scene scene = load_scene(kFolder / "bins.yaml", {.mesh_paths = {}, .seed = seed});
+      const RunResult run =
+          run_scene(scene, {.model = model, .level = LevelChoice::statistical, .signatures = measure});
+      const int restless = model == StatisticalModel::tables ? 3 : 0;  // some wait longer in a wedge
+      EXPECT_GE(run.last().asleep, run.bodies - restless) << int(model) << ", seed " << seed;
+      mean += run.energy_end_j / 4.0;
+    }
+    EXPECT_NEAR(mean, kFull, bound * kFull) << int(model);
   }
-  EXPECT_NEAR(mean, kFull, 0.03 * kFull);
 }
 
 TEST(ShippedScenes, SidesAreAlike) {
