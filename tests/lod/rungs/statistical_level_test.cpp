@@ -29,10 +29,10 @@ class Statistical : public ::testing::TestWithParam<StatisticalModel> {
                   s.angular_velocity.dot(spin_of(s.orientation, s.angular_velocity, *box()))) +
            9.81 * s.position.z();
   }
-  static std::vector<RigidState> crowd(int count, double side) {
+  static std::vector<RigidState> crowd(int count, double side, std::uint64_t seed = 5) {
     std::vector<RigidState> states;
     for (int i = 0; i < count; ++i) {
-      RandomStream random(5, std::uint64_t(i), 0);
+      RandomStream random(seed, std::uint64_t(i), 0);
       const int per_layer = int(side / 0.6) * int(side / 0.6), row = int(side / 0.6);
       RigidState s;
       s.position = {0.6 * (i % row), 0.6 * (i % per_layer / row), 0.5 + 0.6 * (i / per_layer)};
@@ -107,23 +107,31 @@ TEST_P(Statistical, SameStatesForEveryThreadCount) {
   }
 }
 
-TEST_P(Statistical, ACrowdStaysAboveTheGroundFiniteAndLosesEnergy) {
-  OneRung level = make_level();
-  double before = 0.0;
-  for (const RigidState& s : crowd(200, 2.4)) add(level, s), before += energy_of(s);
-  for (int i = 0; i < 240; ++i) {
-    StepReport report;
-    level.step(1.0 / 60.0, {}, report);
-    double now = 0.0;
-    for (int slot = 0; slot < level.size(); ++slot) {
-      const RigidState s = level.state(slot);
-      ASSERT_TRUE(s.position.allFinite() && s.velocity.allFinite() && s.angular_velocity.allFinite())
-          << "step " << i;
-      ASSERT_GT(s.position.z(), 0.05) << "step " << i;
-      now += energy_of(s);
+// The lowest centre of two hundred, as they land on each other, differs from crowd to crowd: at `tables` .07
+// ± .016 m of 24 (tried), the deepest .03.
+TEST_P(Statistical, CrowdsStayAboveTheGroundFiniteAndLoseEnergy) {
+  double lowest_on_average = 0.0;  // m
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    OneRung level = make_level();
+    double before = 0.0, lowest = 1.0;
+    for (const RigidState& s : crowd(200, 2.4, seed)) add(level, s), before += energy_of(s);
+    for (int i = 0; i < 240; ++i) {
+      StepReport report;
+      level.step(1.0 / 60.0, {}, report);
+      double now = 0.0;
+      for (int slot = 0; slot < level.size(); ++slot) {
+        const RigidState s = level.state(slot);
+        ASSERT_TRUE(s.position.allFinite() && s.velocity.allFinite() && s.angular_velocity.allFinite())
+            << "step " << i;
+        lowest = std::min(lowest, s.position.z());
+        now += energy_of(s);
+      }
+      ASSERT_LE(now, before * 1.001) << "step " << i;
     }
-    ASSERT_LE(now, before * 1.001) << "step " << i;
+    EXPECT_GT(lowest, 0.02) << seed;
+    lowest_on_average += lowest / 5.0;
   }
+  EXPECT_GT(lowest_on_average, 0.05);
 }
 
 TEST_P(Statistical, OneBodyRunsNoPairPhase) {
