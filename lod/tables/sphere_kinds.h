@@ -23,7 +23,7 @@ struct SphereKinds {
   std::vector<SupportPatch> patch;                  // as many
   std::vector<float> tips;                          // 0 to 1: whether it tips over (tipping.h)
   std::vector<float> tipping_work;                  // m: of its weight, what tipping may take beyond its fall
-  std::vector<float> patch_reach;                   // standard deviations of a patch that pressure goes
+  std::vector<float> patch_reach;                   // standard deviations: how far pressure goes in a patch
   std::vector<float> thickness;                     // over its reach, of the hull where it is thinnest
   std::vector<float> gxx, gyy, gzz, gxy, gxz, gyz;  // 1/m, body axes: one over how far it reaches beside an
                                                     // axis, as a rod with its inertia would

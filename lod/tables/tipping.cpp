@@ -30,6 +30,7 @@ struct TurnedPatch {
   float uu, vv, uv;
 };
 
+// Two directions at right angles to a normal and to each other.
 struct BesideNormal {
   explicit BesideNormal(F3 n) {
     const F3 aside = absolute(n.x) < 0.6f ? F3{1.0f, 0.0f, 0.0f} : F3{0.0f, 1.0f, 0.0f},
