@@ -14,8 +14,11 @@ namespace lodestone {
 namespace {
 
 /// What the hash covers is rounded to this much of the radius, so that copies at another scale agree in spite
-/// of rounding.
-constexpr double kHashQuantum = 1e-5;
+/// of rounding. Finer than single precision, in which ODE has its meshes.
+constexpr double kHashQuantum = 0x1p-26;
+
+/// In units of kHashQuantum.
+std::int64_t round_ratio(double ratio) { return std::llround(ratio / kHashQuantum); }
 
 void require_solid(const std::string& name, const MeshReport& report, const MassOverride& mass) {
   if (report.closed() || (mass.center_of_mass_m && mass.inertia_per_mass_m2)) return;
@@ -84,7 +87,7 @@ double longest_side(std::span<const Vec3> points) {
 
 std::uint64_t hash_content(const Shape& shape) {
   std::vector<std::int64_t> content;
-  const auto add = [&](double ratio) { content.push_back(std::llround(ratio / kHashQuantum)); };
+  const auto add = [&](double ratio) { content.push_back(round_ratio(ratio)); };
   for (const Vec3& vertex : shape.mesh.vertices)
     for (double coordinate : vertex) add(coordinate / shape.radius);
   for (const auto& face : shape.mesh.faces) content.insert(content.end(), face.begin(), face.end());
@@ -170,6 +173,28 @@ Shape scale_shape(const Shape& shape, double factor) {
   for (Shape& piece : scaled.pieces) piece = scale_shape(piece, factor);
   if (scaled.sphere_radius) *scaled.sphere_radius *= factor;
   return scaled;
+}
+
+Shape make_hashed_copy(const Shape& shape, double radius_m) {
+  if (shape.sphere_radius) return make_sphere_shape(radius_m);
+  const auto rounded = [](double value, double unit) {
+    return double(round_ratio(value / unit)) * kHashQuantum;
+  };
+  Shape copy;
+  copy.name = shape.name;
+  copy.mesh = shape.mesh;
+  for (Vec3& vertex : copy.mesh.vertices)
+    for (double& coordinate : vertex) coordinate = rounded(coordinate, shape.radius) * radius_m;
+  copy.hull = make_hull(copy.mesh.vertices);
+  copy.convex = shape.convex;
+  copy.volume = shape.volume * std::pow(radius_m / shape.radius, 3);
+  for (int i = 0; i < 9; ++i)
+    copy.inertia_per_mass(i) =
+        rounded(shape.inertia_per_mass(i), shape.radius * shape.radius) * (radius_m * radius_m);
+  finish(copy);
+  copy.radius = radius_m;  // so that a copy's copy is the same
+  copy.content_hash = shape.content_hash;
+  return copy;
 }
 
 }  // namespace lodestone

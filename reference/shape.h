@@ -53,6 +53,10 @@ Shape make_sphere_shape(double radius_m);
 /// A copy `factor` times as large, of the same density.
 Shape scale_shape(const Shape& shape, double factor);
 
+/// A copy of that radius, made of nothing but what the content hash covers: of all shapes with one hash it is
+/// the same to the bit, whatever their sizes. Its vertices lie within 1e-7 R of those of `shape`. No pieces.
+Shape make_hashed_copy(const Shape& shape, double radius_m);
+
 /// The well-known bunny of Debian's glmark2-data, its longest side `size_m`, simplified to `faces` faces (the
 /// paper's 4,698). Throws InputError naming the package where the file is missing.
 Shape make_bunny_shape(double size_m, int faces = 4698);

@@ -18,7 +18,7 @@ SceneStep load_step(const YamlCursor& root, const SceneLoadSettings& settings, i
   SceneStep step;
   if (auto section = root.find("step")) {
     section->expect_keys({"dt_s", "steps", "full_substeps", "gravity_m_per_s2", "seed"});
-    if (auto key = section->find("dt_s")) step.dt_s = key->number({1e-9, 0.1});
+    if (auto key = section->find("dt_s")) step.dt_s = key->quotient({1e-9, 0.1});
     if (auto key = section->find("steps")) steps = int(key->integer(1, 100'000'000));
     if (auto key = section->find("full_substeps")) step.full_substeps = int(key->integer(1, 1000));
     if (auto key = section->find("gravity_m_per_s2")) step.gravity_m_per_s2 = key->vector({-1e4, 1e4});

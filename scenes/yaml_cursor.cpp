@@ -38,16 +38,28 @@ bool has_leading_zero(std::string_view text) {
 }
 
 template <class Number>
-std::optional<Number> parse(const YamlValue& value) {
-  if (value.kind != YamlValue::Kind::scalar || value.quoted || has_leading_zero(value.text))
-    return std::nullopt;
-  const char* begin = value.text.data();
-  const char* end = begin + value.text.size();
-  if (begin != end && *begin == '+') ++begin;
+std::optional<Number> parse(std::string_view text) {
+  if (has_leading_zero(text)) return std::nullopt;
+  if (text.starts_with('+')) text.remove_prefix(1);
   Number number{};
-  const auto [stop, error] = std::from_chars(begin, end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
   return number;
+}
+
+template <class Number>
+std::optional<Number> parse(const YamlValue& value) {
+  return value.kind == YamlValue::Kind::scalar && !value.quoted ? parse<Number>(std::string_view(value.text))
+                                                                : std::nullopt;
+}
+
+/// Of a number, or of two with a slash between them.
+std::optional<double> parse_quotient(const YamlValue& value) {
+  const std::size_t slash = value.text.find('/');
+  if (slash == std::string::npos || value.quoted) return parse<double>(value);
+  const std::string_view text = value.text;
+  const auto above = parse<double>(text.substr(0, slash)), below = parse<double>(text.substr(slash + 1));
+  return above && below ? std::optional(*above / *below) : std::nullopt;
 }
 
 std::string text_of(const NumberRange& range) {
@@ -165,6 +177,12 @@ std::string YamlCursor::text() const {
 double YamlCursor::number(const NumberRange& range) const {
   const std::optional<double> number = parse<double>(*value_);
   if (!number || !contains(range, *number)) fail(found(), text_of(range));
+  return *number;
+}
+
+double YamlCursor::quotient(const NumberRange& range) const {
+  const std::optional<double> number = parse_quotient(*value_);
+  if (!number || !contains(range, *number)) fail(found(), text_of(range) + ", or such a quotient as 1/60");
   return *number;
 }
 

@@ -56,6 +56,7 @@ class YamlCursor {
 
   std::string text() const;
   double number(const NumberRange& range = {}) const;
+  double quotient(const NumberRange& range = {}) const;  ///< a number, or two as `1/60`
   std::int64_t integer(std::int64_t low, std::int64_t high) const;
   bool truth() const;  ///< false or true
   Vec3 vector(const NumberRange& range = {}) const;

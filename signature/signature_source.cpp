@@ -13,6 +13,7 @@
 #include "signature/measure/measure.h"
 #include "signature/measure/measurement_journal.h"
 #include "signature/measure/measurement_part.h"
+#include "signature/measure/measurement_shape.h"
 #include "signature/measure/settling_trial.h"
 #include "signature/settings_archive.h"
 #include "signature/signature_file.h"
@@ -21,7 +22,7 @@ namespace lodestone {
 namespace {
 
 // Raised when measuring changes its results: older files are then measured anew.
-constexpr std::uint32_t kMeasuringVersion = 9;
+constexpr std::uint32_t kMeasuringVersion = 10;
 
 class Stopwatch {
  public:
@@ -42,14 +43,7 @@ std::filesystem::path default_cache_folder() {
 }
 
 MeasurementIdentity identity_of(const Shape& shape, const SignatureSettings& settings, const Share& share) {
-  MeasurementIdentity identity{measurement_versions(),
-                               settings,
-                               share,
-                               shape,
-                               std::uint32_t(shape.mesh.vertices.size()),
-                               std::uint32_t(shape.mesh.faces.size())};
-  identity.shape.mesh = {};
-  return identity;
+  return {measurement_versions(), settings, share, *make_measurement_shape(shape)};
 }
 
 // Names the content: shape, law, settings and versions.

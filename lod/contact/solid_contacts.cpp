@@ -22,42 +22,75 @@ bool may_close(const PairContact& contact, const GroundPart& part, const GroundS
                turn = (seeker.omega - part.pose.angular_velocity).norm() * seeker.shape.radius;
   return contact.gap <= seeker.touching + std::max(0.0, approach + turn) * time;
 }
+
+// Faces that `center` lies over.
+const std::vector<HalfSpace>& find_faces_straight_below(std::span<const PlacedSolid> near,
+                                                        std::span<const std::optional<Nearest>> nearest,
+                                                        const Vec3& center, double reach) {
+  thread_local std::vector<HalfSpace> faces;
+  faces.clear();
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (!nearest[i] || nearest[i]->at_edge || nearest[i]->height < 0.0 || nearest[i]->height >= reach)
+      continue;
+    const Vec3 normal = near[i].orientation * nearest[i]->normal;
+    faces.push_back({.normal = normal, .offset = normal.dot(center) - nearest[i]->height});
+  }
+  return faces;
+}
+
+// A seam: an edge of a solid in the face of another, which whoever lies over that meets first, and would trip
+// over.
+bool lies_in_one(std::span<const HalfSpace> faces, const Vec3& edge, double reach) {
+  constexpr double kFlush = 0.01;
+  return std::ranges::any_of(
+      faces, [&](const HalfSpace& face) { return std::abs(face.height_of(edge)) <= kFlush * reach; });
+}
+
 }  // namespace
 
 void find_ground_near(const MetGround& ground, const Vec3& center, double reach, double after,
                       std::vector<GroundNear>& found, const PairBody* hull) {
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
+  thread_local std::vector<std::optional<Nearest>> nearest;  // of each
   thread_local std::vector<Nearest> planes;
-  parts.clear();
+  parts.clear(), near.clear(), nearest.clear();
   ground.find_parts(center, reach, parts);
+  for (const GroundPart* part : parts) find_solids(*part, center, reach, after, near);
+  const auto in_solid = [&](const PlacedSolid& placed) {
+    return Vec3(placed.orientation.conjugate() * (center - placed.position));
+  };
+  for (const PlacedSolid& placed : near) nearest.push_back(find_nearest(*placed.solid, in_solid(placed)));
+  const std::vector<HalfSpace>& faces = find_faces_straight_below(near, nearest, center, reach);
+  std::size_t i = 0;
   for (const GroundPart* part : parts) {
     if (const auto plane = probe_below(*part, center, reach))
       found.push_back({plane->normal, plane->height_of(center), part, part->first_number});
-    near.clear();
-    find_solids(*part, center, reach, after, near);
-    const auto in_solid = [&](const PlacedSolid& placed) {
-      return Vec3(placed.orientation.conjugate() * (center - placed.position));
-    };
-    const std::size_t before = found.size();
-    for (const PlacedSolid& placed : near) {
-      const auto nearest = find_nearest(*placed.solid, in_solid(placed));
-      if (!nearest || std::abs(nearest->height) >= reach) continue;
+    bool any = false;
+    const std::size_t first = i;
+    for (; i < near.size() && near[i].part == part; ++i) {
+      const PlacedSolid& placed = near[i];
+      if (!nearest[i] || std::abs(nearest[i]->height) >= reach) continue;
+      any = true;
+      if (nearest[i]->at_edge) {
+        const Vec3 edge = center - nearest[i]->height * (placed.orientation * nearest[i]->normal);
+        if (lies_in_one(faces, edge, reach) || lies_in_one(ground.planes(), edge, reach)) continue;
+      }
       planes.clear();
       if (hull)
-        find_planes_to_hull(*hull, placed, *nearest, planes);
+        find_planes_to_hull(*hull, placed, *nearest[i], planes);
       else
-        planes.push_back(*nearest);
+        planes.push_back(*nearest[i]);
       for (const Nearest& plane : planes)
         found.push_back(
             {placed.orientation * plane.normal, plane.height, part, placed.number, plane.at_edge});
     }
-    if (found.size() > before) continue;
+    if (any) continue;
     std::optional<GroundNear> beyond;
-    for (const PlacedSolid& placed : near) {
-      const auto nearest = find_nearest_beyond(*placed.solid, in_solid(placed));
-      if (nearest && nearest->height < (beyond ? beyond->height : reach))
-        beyond = {placed.orientation * nearest->normal, nearest->height, part, placed.number, true};
+    for (std::size_t k = first; k < i; ++k) {
+      const auto met = find_nearest_beyond(*near[k].solid, in_solid(near[k]));
+      if (met && met->height < (beyond ? beyond->height : reach))
+        beyond = {near[k].orientation * met->normal, met->height, part, near[k].number, true};
     }
     if (beyond) found.push_back(*beyond);
   }
@@ -178,6 +211,11 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
       continue;
     if (sieve && solid.solid->surface && sieve->is_beyond(solid)) continue;
     meet_solid(self, solid, seeker.touching + seeker.way, search, over);
+    if (search.contacts.empty()) continue;
+    const Vec3 way = (body.velocity - solid.part->velocity_at(body.position)) * time;
+    const auto passed = find_passed_face(self, solid, way, seeker.touching);
+    if (passed)
+      std::erase_if(search.contacts, [&](const PairContact& c) { return !passed->holds(c.normal); });
     for (const PairContact& contact : search.contacts)
       if (wanted == SolidSearch::one_of_a_part ? may_close(contact, *solid.part, seeker, time)
                                                : closes(contact, *solid.part, seeker, time))

@@ -39,6 +39,13 @@ std::size_t nearest_edge(const SurfaceTriangle& t, const Vec3& point) {
   return nearest;
 }
 
+// Whether what is met across an edge along `normal` (in the part's axes) is the triangle's: what is steeper
+// than the triangle beyond the edge is met by that one.
+bool stands_out(const SurfaceTriangle& t, std::size_t edge, const Vec3& normal) {
+  constexpr double kRounding = 0.01;  // of a cosine
+  return t.ridge[edge] && t.normal.dot(normal) >= t.cosine[edge] - kRounding;
+}
+
 // A point that looks for the solid's nearest one.
 const Shape& point_shape() {
   static const Shape point = [] {
@@ -162,8 +169,9 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   const std::optional<PairContact> contact = meet_as_hulls();
   if (!contact) return {};
   const double along = contact->normal.dot(normal);
-  const bool over_ridge =
-      along > 0.0 && along < 0.999 && t.ridge[nearest_edge(t, in_part(placed, middle_of(contact->manifold)))];
+  const bool over_ridge = along > 0.0 && along < 0.999 &&
+                          stands_out(t, nearest_edge(t, in_part(placed, middle_of(contact->manifold))),
+                                     placed.orientation.conjugate() * contact->normal);
   if (over_ridge) return contact;
   if (any_ridge) find_flat();
   // What straddles a hill top is lowest, along each triangle's normal, over another: its own features hold
@@ -205,6 +213,8 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
     if (t->normal.cross(along).dot(at - from) >= 0.0)
       return is_behind(*t, at) ? std::nullopt : std::optional(Nearest{t->normal, height});
     if (!t->ridge[edge] || height < 0.0) return {};
+    const Nearest nearest = find_nearest_of_faces(solid, point);
+    return stands_out(*t, edge, nearest.normal) ? std::optional(nearest) : std::nullopt;
   }
   return find_nearest_of_faces(solid, point);
 }
@@ -215,11 +225,38 @@ std::optional<Nearest> find_nearest_beyond(const GroundSolid& solid, const Vec3&
   return find_nearest_of_faces(solid, point);
 }
 
+std::optional<PassedFace> find_passed_face(const PairBody& body, const PlacedSolid& placed, const Vec3& way,
+                                           double touching) {
+  constexpr std::size_t kMostFaces = 32;
+  if (placed.solid->surface || placed.solid->faces.size() > kMostFaces) return {};
+  const Vec3 center = placed.orientation.conjugate() * (body.position - placed.position);
+  std::optional<PassedFace> passed;
+  double most = -touching;  // m
+  for (const SolidFace& face : placed.solid->faces) {
+    const double height = face.normal.dot(center) - face.offset;
+    if (height <= 0.0) continue;
+    const Vec3 normal = placed.orientation * face.normal;
+    const double gap = height + find_farthest_arm(body, -normal).dot(normal);
+    if (const double least = std::min(gap, gap + way.dot(normal)); least >= most)
+      most = least, passed = PassedFace{normal, gap};
+  }
+  return passed;
+}
+
 void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const Nearest& nearest,
                          std::vector<Nearest>& found) {
-  constexpr double kOverlap = 0.01;  // over R: less of it may be the planes' own error
-  const Nearest best = nearest.at_edge ? find_farthest_apart(body, placed, nearest) : nearest;
+  constexpr double kOverlap = 0.01, kFlush = 0.05;  // over R: less of it may be the planes' own error
   const double most = kOverlap * body.shape->radius;
+  const double flush = kFlush * body.shape->radius;
+  const auto level = nearest.at_edge ? find_passed_face(body, placed, Vec3::Zero(), flush) : std::nullopt;
+  if (level && level->gap <= flush) {
+    const Vec3 arm = find_farthest_arm(body, -level->normal),
+               normal = placed.orientation.conjugate() * level->normal;
+    if (is_over_face(placed, normal, body.position + arm))
+      found.push_back({normal, level->gap - arm.dot(level->normal), true});
+    return;
+  }
+  const Nearest best = nearest.at_edge ? find_farthest_apart(body, placed, nearest) : nearest;
   const Vec3 along = placed.orientation * best.normal, arm = find_farthest_arm(body, -along);
   if (best.height + arm.dot(along) >= -most || is_over_face(placed, best.normal, body.position + arm))
     return found.push_back(best);

@@ -22,6 +22,18 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
 /// has the point behind such an edge. None below it.
 std::optional<Nearest> find_nearest_beyond(const GroundSolid& solid, const Vec3& point);
 
+/// A face of a solid that a body passes along.
+struct PassedFace {
+  Vec3 normal;  ///< world
+  double gap;   ///< m: how far the body is over the face's plane
+  bool holds(const Vec3& along) const { return along.dot(normal) > 0.99; }  ///< a contact with that normal
+};
+/// That which the body is farthest over, by -`touching` m at least, now and once it has gone on by `way`, m.
+/// No other face of the solid, and no edge, can be in its way: as little below the face of a flush neighbour
+/// bodies would trip over the seam. None of a triangle of a surface.
+std::optional<PassedFace> find_passed_face(const PairBody& body, const PlacedSolid& placed, const Vec3& way,
+                                           double touching);
+
 /// Appends the planes that stand for a solid to a hull: as a rule one, across the way to what its centre is
 /// `nearest` to, or the face that it lies on though an edge is nearer. Where it hangs over an edge and below
 /// the face beside that, those of their contacts, or none.

@@ -83,6 +83,7 @@ class PointSearch {
   SolidPoints& found_;
   Mat3 turn_;          // body axes to the world's
   double over_ = 0.0;  // m: how far the whole body is over one of the faces
+  std::optional<PassedFace> passed_;
 };
 
 void PointSearch::find_faces(const PlacedSolid& solid) {
@@ -151,9 +152,10 @@ void PointSearch::find_vertices_over(const PlacedSolid& solid, std::size_t face)
   const auto look_at = [&](std::int32_t vertex, const Vec3& point, double gap) {
     const Vec3 way = (shape.sphere_radius ? body.velocity : seeker_.velocity_at(point)) * time_;
     const double least = std::min(gap, gap + way.dot(plane.normal));
-    if (least > near || gap < -deepest || !is_out_of(point, face)) return;
-    const bool meets = is_over(point, plane) ? !passes_its_end(point, gap, way, plane)
-                                             : is_over(point + way, plane) && enters_last(point, way, plane);
+    if (least > near || gap < -deepest || !(passed_ || is_out_of(point, face))) return;
+    const bool meets = is_over(point, plane)
+                           ? !passes_its_end(point, gap, way, plane)
+                           : is_over(point + way, plane) && (passed_ || enters_last(point, way, plane));
     if (!meets) return;
     add(vertex, point, plane.normal, gap, least, solid);
   };
@@ -186,7 +188,7 @@ void PointSearch::add_features(const PairContact& contact, const PlacedSolid& so
   const Vec3& normal = contact.normal;
   const bool along_face =
       std::ranges::any_of(faces_, [&](const Face& f) { return f.normal.dot(normal) > kSame; });
-  if (!along_face && over_ >= -seeker_.touching) return;
+  if (passed_ ? !passed_->holds(normal) : !along_face && over_ >= -seeker_.touching) return;
   for (int i = 0; i < contact.manifold.count; ++i) {
     const double gap = contact.manifold.points[std::size_t(i)].gap;
     const Vec3 point = contact.manifold.points[std::size_t(i)].point + 0.5 * gap * normal;  // the body's own
@@ -203,7 +205,9 @@ void PointSearch::meet(const PlacedSolid& solid, double ball_is_over) {
   if (sieve_ && solid.solid->surface && sieve_->is_beyond(solid)) return;
   find_faces(solid);
   over_ = -1e300;
-  for (std::size_t face = 0; face < faces_.size(); ++face) find_vertices_over(solid, face);
+  passed_ = find_passed_face(self_, solid, seeker_.body.velocity * time_, seeker_.touching);
+  for (std::size_t face = 0; face < faces_.size(); ++face)
+    if (!passed_ || passed_->holds(faces_[face].normal)) find_vertices_over(solid, face);
   find_features(solid, ball_is_over);
 }
 

@@ -18,6 +18,8 @@ struct SurfaceTriangle {
   std::array<Vec3, 3> corner;  ///< m, in the part's frame
   std::array<bool, 3>
       ridge{};  ///< whether the edge from corner i to the next stands out, or is the surface's border
+  std::array<double, 3> cosine{-1, -1,
+                               -1};  ///< from its normal to that of the triangle beyond that edge; −1: none
   std::array<double, 3> thickness{1e300, 1e300, 1e300};  ///< m: below each corner to the other side, where
                                                          ///< the surface has one
   double depth = 0.0;                                    ///< m: so far below its surface it is solid, at most

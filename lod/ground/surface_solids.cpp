@@ -42,6 +42,15 @@ bool is_ridge(const Mesh& mesh, std::span<const EdgeUse> uses) {
   return true;
 }
 
+// Between the normals on both sides of an edge.
+double find_cosine(const Mesh& mesh, std::span<const EdgeUse> uses) {
+  if (uses.size() != 2) return -1.0;
+  const auto normal = [&](const EdgeUse& use) {
+    return area_vector(mesh, mesh.faces[std::size_t(use.face)]).normalized();
+  };
+  return normal(uses[0]).dot(normal(uses[1]));
+}
+
 // The place in `face` of the edge that it uses.
 std::size_t edge_of(const std::array<int, 3>& face, const EdgeUse& use) {
   const int from = use.forward ? use.low : use.high;
@@ -71,13 +80,16 @@ SurfaceSolids::SurfaceSolids(const Mesh& mesh) : vertices_(mesh.vertices) {
   size_ = box.diagonal().norm();
   depth_ = kDepth * size_;
   std::vector<std::array<bool, 3>> ridge(mesh.faces.size(), {true, true, true});
+  std::vector<std::array<double, 3>> cosine(mesh.faces.size(), {-1, -1, -1});
   visit_edges(mesh, [&](std::span<const EdgeUse> uses) {
-    for (const EdgeUse& use : uses)
-      ridge[std::size_t(use.face)][edge_of(mesh.faces[std::size_t(use.face)], use)] = is_ridge(mesh, uses);
+    for (const EdgeUse& use : uses) {
+      const auto face = std::size_t(use.face), edge = edge_of(mesh.faces[face], use);
+      ridge[face][edge] = is_ridge(mesh, uses), cosine[face][edge] = find_cosine(mesh, uses);
+    }
   });
   triangles_.reserve(mesh.faces.size());
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
-    if (has_area(mesh, mesh.faces[i])) triangles_.push_back({mesh.faces[i], ridge[i]});
+    if (has_area(mesh, mesh.faces[i])) triangles_.push_back({mesh.faces[i], ridge[i], cosine[i]});
   solids_ = std::make_unique<std::atomic<const GroundSolid*>[]>(size());
   bounds_.reserve(size());
   for (const Triangle& triangle : triangles_) {
@@ -228,8 +240,9 @@ GroundSolid SurfaceSolids::make(const Triangle& triangle) const {
   const Vec3 middle = bounds_of(corner, down).center();
   GroundSolid solid = make_ground_solid(
       make_prism_hull({corner[0] - middle, corner[1] - middle, corner[2] - middle}, down), middle);
-  solid.surface = SurfaceTriangle{normal, corner, triangle.ridge, thickness,
-                                  std::min(depth_, *std::ranges::max_element(thickness))};
+  solid.surface =
+      SurfaceTriangle{normal,          corner,    triangle.ridge,
+                      triangle.cosine, thickness, std::min(depth_, *std::ranges::max_element(thickness))};
   return solid;
 }
 

@@ -35,7 +35,8 @@ class SurfaceSolids {
   struct Triangle {
     std::array<int, 3> corner;  // in vertices_
     std::array<bool, 3> ridge;
-    bool reversed = false;  // there again, seen from the other side
+    std::array<double, 3> cosine;  // as of SurfaceTriangle
+    bool reversed = false;         // there again, seen from the other side
   };
 
   std::array<Vec3, 3> corners_of(const Triangle& triangle) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "reference/error.h"
 #include "reference/mass_bounds.h"
@@ -61,6 +62,9 @@ void check_policy(const PolicySettings& policy) {
   if (const auto* distance = std::get_if<DistancePolicy>(&policy.policy)) {
     check_number(distance->full_within, 0.0, "full_within");
     check_number(distance->support_within, 0.0, "support_within");
+    if (distance->support_within < distance->full_within)
+      throw_input_error("support_within", fmt::format("{:g}", distance->support_within),
+                        fmt::format("full_within ({:g}) or more", distance->full_within));
   }
   if (const auto* budget = std::get_if<BudgetPolicy>(&policy.policy))
     check_number(budget->budget_ms, 0.0, "budget_ms");
@@ -73,6 +77,9 @@ void check_policy(const PolicySettings& policy) {
   if (const auto* size = std::get_if<ProjectedSizePolicy>(&policy.policy)) {
     check_number(size->full_above_px, 0.0, "full_above_px");
     check_number(size->support_above_px, 0.0, "support_above_px");
+    if (size->support_above_px > size->full_above_px)
+      throw_input_error("support_above_px", fmt::format("{:g}", size->support_above_px),
+                        fmt::format("full_above_px ({:g}) or less", size->full_above_px));
   }
   check_number(policy.out_of_view_factor, 1.0, "out_of_view_factor");
   check_number(policy.look_ahead_s, 0.0, "look_ahead_s");
@@ -99,8 +106,8 @@ Viewpoint checked(const Viewpoint& viewpoint) {
   if (viewpoint.direction) check_vector(*viewpoint.direction, "direction of a viewpoint");
   check_vector(viewpoint.up, "up of a viewpoint");
   check_positive(viewpoint.vertical_fov_rad, "vertical_fov_rad");
-  if (viewpoint.vertical_fov_rad > 3.1)
-    throw_input_error("vertical_fov_rad", fmt::format("{:g}", viewpoint.vertical_fov_rad), "3.1 or less");
+  if (viewpoint.vertical_fov_rad >= std::numbers::pi)
+    throw_input_error("vertical_fov_rad", fmt::format("{:g}", viewpoint.vertical_fov_rad), "less than π");
   check_positive(viewpoint.height_px, "height_px");
   check_positive(viewpoint.aspect, "aspect");
   return viewpoint;

@@ -88,10 +88,11 @@ void Choose::look_at_those_concerned(StepReport& report) {
   full_in_crowd_ = 0.0;
   counts_.added = int(levels_.bodies.newcomers().size());
   BodyTable& bodies = levels_.bodies;
-  std::vector<std::uint32_t> some = std::exchange(wishing_, {});
-  for (const std::uint32_t body : std::exchange(support_sleepers_, {})) some.push_back(body);
-  some.insert(some.end(), changed_.begin(), changed_.end());
-  changed_.clear();
+  concerned_.clear();
+  for (std::vector<std::uint32_t>* noted : {&wishing_, &support_sleepers_, &changed_}) {
+    concerned_.insert(concerned_.end(), noted->begin(), noted->end());
+    noted->clear();
+  }
   const bool all = std::exchange(look_at_all_, true);  // until the step has done what was decided
   if (all) {
     far_.clear();
@@ -100,24 +101,24 @@ void Choose::look_at_those_concerned(StepReport& report) {
     return;
   }
   if (turned_ || policy_.visible) {
-    some.insert(some.end(), seen_or_not_.begin(), seen_or_not_.end());
+    concerned_.insert(concerned_.end(), seen_or_not_.begin(), seen_or_not_.end());
     seen_or_not_.clear();
   }
   if (!budgeted())  // before any are put in again
-    while (far_.next_due() <= traveled_) far_.take_next(some);
-  for (const FullLevel::Member& member : levels_.full.members()) some.push_back(member.owner);
-  for (const BodyTable::Newcomer& newcomer : bodies.newcomers()) some.push_back(newcomer.index);
+    while (far_.next_due() <= traveled_) far_.take_next(concerned_);
+  for (const FullLevel::Member& member : levels_.full.members()) concerned_.push_back(member.owner);
+  for (const BodyTable::Newcomer& newcomer : bodies.newcomers()) concerned_.push_back(newcomer.index);
   if (levels_.statistical && sees_places()) {
-    levels_.statistical->find_awake(some);
-    for (const std::uint32_t body : levels_.statistical->fell_asleep()) some.push_back(body);
+    levels_.statistical->find_awake(concerned_);
+    for (const std::uint32_t body : levels_.statistical->fell_asleep()) concerned_.push_back(body);
   }
-  std::ranges::sort(some);  // sooner than the candidates, which are large
-  for (const std::uint32_t body : some) look_at(body, report);
+  std::ranges::sort(concerned_);  // sooner than the candidates, which are large
+  for (const std::uint32_t body : concerned_) look_at(body, report);
 }
 
 // Of the sleepers the nearest as well, until as many are known as may become full.
 void Choose::look_at_nearest(StepReport& report) {
-  std::vector<std::uint32_t> next;
+  std::vector<std::uint32_t>& next = concerned_;  // who have been looked at
   for (std::size_t known = candidates_.size();; known = candidates_.size()) {
     const double least =
         (far_.next_due() - traveled_) / levels_.bodies.greatest_importance();  // of those that are left

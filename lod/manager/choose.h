@@ -134,6 +134,7 @@ class Choose {
   std::vector<std::uint32_t> seen_or_not_;       // sleepers whose rung depends on whether they are in view
   std::vector<std::uint32_t> waiting_;           // for their signature
   std::size_t next_waiting_ = 0;                 // to be asked about
+  std::vector<std::uint32_t> concerned_;         // this step
   FarBodies far_;
   double traveled_ = 0.0;             // m: how far viewpoints came, at most
   std::vector<std::uint32_t> asked_;  // bodies of the candidates

@@ -100,12 +100,12 @@ void ContactEvents::take_touches() {
       return !asking_.contains(r.first) &&
              (r.second == ContactRecord::kGround || !asking_.contains(r.second));
     });
-  std::vector<std::pair<Key, std::uint32_t>> order;  // those of a pair in the order in which they came
-  for (std::uint32_t i = 0; i < records.size(); ++i) order.emplace_back(key_of(records[i]), i);
-  std::ranges::sort(order);
+  order_.clear();
+  for (std::uint32_t i = 0; i < records.size(); ++i) order_.emplace_back(key_of(records[i]), i);
+  std::ranges::sort(order_);
   touches_.clear();
   double most = 0.0;  // N s, of a touch of the last pair
-  for (const auto& [key, index] : order) {
+  for (const auto& [key, index] : order_) {
     const ContactRecord& record = records[index];
     if (touches_.empty() || touches_.back().key != key) {
       touches_.push_back({.key = key,
@@ -175,7 +175,7 @@ void ContactEvents::finish(double dt, std::span<const BodyId> woke) {
   for (const BodyId body : woke) bring_back(body.index);
   std::ranges::sort(live_, {}, &Pair::key);
   take_touches();
-  std::vector<Pair> now;
+  kept_.clear();
   const auto keep = [&](Pair pair) {
     const bool there =
         levels_.bodies.valid(pair.last.first.body) &&
@@ -187,7 +187,7 @@ void ContactEvents::finish(double dt, std::span<const BodyId> woke) {
     else if (rests(pair.last.first) && rests(pair.last.second))
       set_aside(pair);
     else
-      now.push_back(pair);
+      kept_.push_back(pair);
   };
   auto before = live_.begin();
   for (Pair& touch : touches_) {
@@ -208,7 +208,7 @@ void ContactEvents::finish(double dt, std::span<const BodyId> woke) {
     keep(touch);
   }
   for (; before != live_.end(); ++before) keep(*before);
-  live_ = std::move(now);
+  std::swap(live_, kept_);
 }
 
 }  // namespace lodestone

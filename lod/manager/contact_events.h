@@ -73,9 +73,10 @@ class ContactEvents {
   ContactLog log_;
   std::unordered_set<std::uint32_t> asking_;
   std::unordered_map<const void*, std::uint32_t>
-      number_of_callers_;      // of geoms and bodies, in the order in which they were first touched
-  std::vector<Pair> touches_;  // of this step, by key
-  std::vector<Pair> live_;     // by key
+      number_of_callers_;  // of geoms and bodies, in the order in which they were first touched
+  std::vector<std::pair<Key, std::uint32_t>> order_;            // of this step's records
+  std::vector<Pair> touches_;                                   // of this step, by key
+  std::vector<Pair> live_, kept_;                               // by key; what is left of them
   std::unordered_map<std::uint32_t, std::vector<Pair>> aside_;  // of each body that sleeps on something
   std::vector<ContactEvent> events_;
 };

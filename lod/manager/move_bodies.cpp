@@ -110,6 +110,7 @@ void MoveBodies::promote(const RungChanges::Change& change, bool blocked, StepRe
     place(levels_, body, to);
   } else {
     transfer(levels_, body, to);
+    if (to != wanted) levels_.bodies.level(body).reason = Rule::overlap_put_off;
     if (to == Rung::full)
       levels_.bodies.forget_retries(body);
     else

@@ -75,7 +75,7 @@ void SupportLevel::put_to_sleep(StatisticalBody& body) const {
   body.motion = Motion::asleep;
   body.velocity.setZero();
   body.spin.setZero();
-  body.on_solid = false;
+  body.on_solid = body.alone_on_solid = false;
 }
 
 void SupportLevel::end_step() {

@@ -93,9 +93,14 @@ struct EndLoop {
                    by_z = kept * (spun_z + double(s[i].z));
       // What only takes a near-still body out of an overlap is no motion.
       const F3 out{d[i].x, d[i].y, d[i].z};
-      const float against =
-          -dot(F3{float(solved_x), float(solved_y), float(solved_z)}, out) / most(dot(out, out), 1e-20f);
-      const float undone = choose(calms, least(most(against, 0.0f), 1.0f / c.time), 0.0f);
+      const float out_squared = most(dot(out, out), 1e-20f),
+                  against = -dot(F3{float(solved_x), float(solved_y), float(solved_z)}, out) / out_squared;
+      // By what drives it in at most, its weight and friction: on ice others do, and keep their momentum.
+      const float driven = choose(
+          published, 1e20f,
+          (absolute(dot(F3{c.gx, c.gy, c.gz}, out)) + friction[k] * c.gravity * square_root(out_squared)) *
+              c.time / out_squared);
+      const float undone = choose(calms, least(least(most(against, 0.0f), 1.0f / c.time), driven), 0.0f);
       const double to_vx = select(flight, fallen_x, stopping * (solved_x + double(undone * out.x))),
                    to_vy = select(flight, fallen_y, stopping * (solved_y + double(undone * out.y)));
       const double to_vz = select(flight, fallen_z, stopping * (solved_z + double(undone * out.z)));

@@ -59,9 +59,6 @@ void check_belongs(const MeasurementPart& part, const std::string& name, const M
   if (a.shape.content_hash != b.shape.content_hash)
     fail(name, fmt::format("shape {} ({:016x})", a.shape.name, a.shape.content_hash),
          fmt::format("{} ({:016x}), as {}", b.shape.name, b.shape.content_hash, first_name));
-  if (a.shape.radius != b.shape.radius)
-    fail(name, fmt::format("a radius of {} m", a.shape.radius),
-         fmt::format("{} m, as {}", b.shape.radius, first_name));
   if (bytes_of(a.settings) != bytes_of(b.settings))
     fail(name, "other settings", "the restitution, friction, seed, grid and trials of " + first_name);
   if (a.share.count != b.share.count)
@@ -145,7 +142,6 @@ Signature merge_parts(std::span<const std::filesystem::path> files) {
   double seconds = 0.0;
   for (MeasurementPart& part : parts) shares.push_back(std::move(part.measurement)), seconds += part.seconds;
   Signature signature = make_signature(identity.shape, identity.settings, merge_measurements(shares));
-  signature.mesh_vertices = identity.mesh_vertices, signature.mesh_faces = identity.mesh_faces;
   signature.measuring_seconds = seconds;
   return signature;
 }

@@ -1,4 +1,5 @@
-// The size at which shapes are measured.
+// What is measured of a shape: a copy of one size, the same to the bit whatever the size of the shape that
+// asked.
 #pragma once
 
 #include <memory>
@@ -11,7 +12,7 @@ inline constexpr double kMeasurementRadius =
     0.2;  ///< m: a signature is the same for all sizes because it is measured at this one
 
 inline std::shared_ptr<const Shape> make_measurement_shape(const Shape& shape) {
-  return std::make_shared<const Shape>(scale_shape(shape, kMeasurementRadius / shape.radius));
+  return std::make_shared<const Shape>(make_hashed_copy(shape, kMeasurementRadius));
 }
 
 }  // namespace lodestone

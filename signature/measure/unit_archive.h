@@ -50,15 +50,10 @@ void archive(Archive& a, Archived<Share> auto& s) {
   a(s.index, s.count);
 }
 
-template <class Archive>
-void archive(Archive& a, Archived<Hull> auto& h) {
-  a(h.vertices, h.faces, h.neighbor_start, h.neighbor, h.face_start, h.incident_face);
-}
-
-/// What make_signature looks at; not the mesh.
+/// What a measured copy is made of (make_hashed_copy); not the hull.
 template <class Archive>
 void archive(Archive& a, Archived<Shape> auto& s) {
-  a(s.name, s.hull, s.inertia_per_mass, s.inverse_inertia_per_mass, s.radius, s.sphere_radius,
+  a(s.name, s.mesh.vertices, s.mesh.faces, s.convex, s.volume, s.inertia_per_mass, s.radius, s.sphere_radius,
     s.content_hash);
 }
 

@@ -12,13 +12,12 @@
 namespace lodestone {
 namespace {
 
-constexpr std::uint64_t kPartMagic = 0x0a545250'45444f4cull;  // "LODEPRT\n" in a file
+constexpr std::uint64_t kPartMagic = 0x0a325250'45444f4cull;  // "LODEPR2\n" in a file
 constexpr std::size_t kHeadNumbers = 3 * sizeof(std::uint64_t), kRecordNumbers = 4 * sizeof(std::uint64_t);
 
 template <class Archive>
 void archive(Archive& a, Archived<MeasurementIdentity> auto& identity) {
-  a(identity.versions, identity.settings, identity.share, identity.shape, identity.mesh_vertices,
-    identity.mesh_faces);
+  a(identity.versions, identity.settings, identity.share, identity.shape);
 }
 
 std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }

@@ -18,8 +18,7 @@ struct MeasurementIdentity {
   std::string versions;  ///< measurement_versions()
   SignatureSettings settings;
   Share share;
-  Shape shape;  ///< what make_signature looks at; without its mesh
-  std::uint32_t mesh_vertices = 0, mesh_faces = 0;
+  Shape shape;  ///< as it is measured (make_measurement_shape); of a file without its hull
 };
 
 /// One unit: numbers, its own bytes, and a checksum of all of them.

@@ -72,6 +72,30 @@ TEST(ContentHash, IsEqualForScaledCopies) {
   EXPECT_EQ(make_sphere_shape(0.1).content_hash, make_sphere_shape(3.0).content_hash);
 }
 
+// What a signature is measured on: whoever asks first, all copies then have the same trials.
+TEST(ContentHash, OfScaledCopiesStandsForTheSameShapeToTheBit) {
+  for (const Mesh& mesh : {make_box({0.2, 0.3, 0.4}), make_l(0.3, 0.2, 0.05, 0.1), make_needle(1, 0.02),
+                           make_bunny_shape(0.2).mesh}) {
+    const Shape original = make_shape("original", mesh);
+    const Shape expected = make_hashed_copy(original, 0.2);
+    EXPECT_EQ(expected.content_hash, original.content_hash);
+    EXPECT_EQ(expected.radius, 0.2);
+    EXPECT_EQ(make_hashed_copy(expected, 0.2).mesh.vertices, expected.mesh.vertices);
+    EXPECT_LT(
+        (expected.inertia_per_mass / 0.04 - original.inertia_per_mass / std::pow(original.radius, 2)).norm(),
+        1e-7);
+    for (double scale : {1e-3, 0.013, 0.3, 1.7, 10.0}) {
+      Mesh scaled = mesh;
+      for (Vec3& vertex : scaled.vertices) vertex *= scale;
+      const Shape copy = make_hashed_copy(make_shape("copy", scaled), 0.2);
+      EXPECT_EQ(copy.mesh.vertices, expected.mesh.vertices) << scale;
+      EXPECT_EQ(copy.hull.faces, expected.hull.faces);
+      EXPECT_EQ(copy.inertia_per_mass, expected.inertia_per_mass);
+      EXPECT_EQ(copy.radius, expected.radius);
+    }
+  }
+}
+
 TEST(ContentHash, DiffersForOtherShapesAndOtherMass) {
   const Mesh box = make_box({0.2, 0.3, 0.4});
   const Mat3 inertia = make_shape("box", box).inertia_per_mass;

@@ -12,7 +12,7 @@ using SceneFile = SceneFixture;
 
 // The format's example with every key of it, the meshes replaced by one that the test brings.
 const char* const kEveryKey = R"(version: 1
-step: {dt_s: 0.01, full_substeps: 3, gravity_m_per_s2: [0, 1, -5], seed: 7, steps: 12}
+step: {dt_s: 1/100, full_substeps: 3, gravity_m_per_s2: [0, 1, -5], seed: 7, steps: 12}
 materials:
   wood: {density_kg_per_m3: 500}
   default: {restitution: 0.4, friction: 0.5, density_kg_per_m3: 1000}
@@ -221,6 +221,9 @@ TEST_F(SceneFile, TopLevelErrors) {
       {"step: {dt: 0.1}", "s.yaml:4: step.dt: found an unknown key, expected one of dt_s, steps,"},
       {"step: {dt_s: 0}", "s.yaml:4: step.dt_s: found 0, expected a number in [1e-09, 0.1]"},
       {"step: {dt_s: -1}", "s.yaml:4: step.dt_s: found -1, expected"},
+      {"step: {dt_s: 1/5}", "s.yaml:4: step.dt_s: found 1/5, expected a number in [1e-09, 0.1], or"},
+      {"step: {dt_s: 1/0}", "s.yaml:4: step.dt_s: found 1/0, expected"},
+      {"step: {dt_s: 1/60s}", "s.yaml:4: step.dt_s: found 1/60s, expected"},
       {"step: {dt_s: .nan}", "s.yaml:4: step.dt_s: found .nan, expected"},
       {"step: {dt_s: nan}", "s.yaml:4: step.dt_s: found nan, expected"},
       {"step: {dt_s: .inf}", "s.yaml:4: step.dt_s: found .inf, expected"},

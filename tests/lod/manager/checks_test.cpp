@@ -94,6 +94,14 @@ TEST(Checks, PoliciesAreRefusedByTheNameOfWhatIsWrong) {
               p.policy = DistancePolicy{1.0, -1.0};
             }),
             "support_within: found -1, expected 0 or more");
+  EXPECT_EQ(fault([](P& p) {
+              p.policy = DistancePolicy{4.0, 2.0};
+            }),
+            "support_within: found 2, expected full_within (4) or more");
+  EXPECT_EQ(fault([](P& p) {
+              p.policy = ProjectedSizePolicy{50.0, 60.0};
+            }),
+            "support_above_px: found 60, expected full_above_px (50) or less");
   EXPECT_EQ(fault([](P& p) { p.policy = BudgetPolicy{-1.0}; }), "budget_ms: found -1, expected 0 or more");
   EXPECT_EQ(fault([](P& p) { p.policy = WorkPolicy{-1.0}; }), "budget_work: found -1, expected 0 or more");
   EXPECT_EQ(fault([](P& p) { p.policy = ErrorBudgetPolicy{.budget_ms = 1.0, .budget_work = -2.0}; }),
@@ -131,7 +139,7 @@ TEST(Checks, ViewpointsNeedAPictureAndAPlace) {
   EXPECT_EQ(fault([](V& v) { v.up = Vec3::Zero(); }),
             "up of a viewpoint: found (0, 0, 0), expected a vector other than 0");
   EXPECT_EQ(fault([](V& v) { v.vertical_fov_rad = 3.2; }),
-            "vertical_fov_rad: found 3.2, expected 3.1 or less");
+            "vertical_fov_rad: found 3.2, expected less than π");
   EXPECT_EQ(fault([](V& v) { v.height_px = 0; }), "height_px: found 0, expected a positive, finite number");
   EXPECT_EQ(fault([](V& v) { v.aspect = kEndless; }),
             "aspect: found inf, expected a positive, finite number");

@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "tests/allocations.h"
 #include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
@@ -50,6 +51,23 @@ class Touching {
   std::map<std::tuple<std::uint32_t, ContactSide::Kind, std::uint32_t, std::uint32_t>, bool> touching_;
   int begins_ = 0, ends_ = 0;
 };
+
+// Twenty that stay awake, on two rungs by distance: whose events are told and who is looked at is kept in
+// place.
+TEST(ContactEvents, AWarmStepWithAPolicyAllocatesNothing) {
+  ManagerSettings settings = telling({.policy = DistancePolicy{.full_within = 0.0, .support_within = 3.0}});
+  settings.sleeping = false, settings.signatures = coarse_signature;
+  Manager manager = on_floor(settings);
+  const auto box = box_shape(kSides);
+  for (int i = 0; i < 20; ++i) add(manager, box, testing::at({0.31 * i, 0, 0.2}));
+  view_from(manager, {0, -1, 1});
+  run(manager, 2.0);
+  const std::int64_t before = allocations();
+  for (int i = 0; i < 60; ++i) manager.step(kFrame);
+  EXPECT_EQ(allocations() - before, 0);
+  EXPECT_GT(manager.report().support, 0);
+  EXPECT_GT(manager.report().tables, 0);
+}
 
 class ContactEventsOnRungs : public ::testing::TestWithParam<LevelChoice> {};
 

@@ -329,6 +329,7 @@ TEST(Transfer, WhatOverlapsOnItsWayUpFromTablesTakesSupportFirst) {
   manager.set_state(inside, at({0.2, 0, 0}));
   manager.step(kFrame);
   EXPECT_EQ(manager.rung(inside), Rung::support) << manager.why(inside);
+  EXPECT_EQ(manager.explain(inside).rule, Rule::overlap_put_off);
   EXPECT_EQ(manager.report().promotions, 1);
   EXPECT_EQ(manager.report().counters.promotions_put_off, 0);
 }

@@ -64,18 +64,24 @@ TEST(Tipping, HeapsOfWhatIsLongOrFlatAreAboutAsHighAsThoseOfHulls) {
   }
 }
 
-// It takes potential energy away, which spheres among others may gain a little of as they part.
+// It takes potential energy away, which spheres among others may gain a little of as they part. From bin to
+// bin that differs tenfold.
 TEST(Tipping, AddsNoEnergy) {
-  for (const auto& [sides, bound] : {std::pair{Vec3(0.5, 0.3, 0.04), 2e-3}, {Vec3(0.2, 0.3, 0.4), 2e-4}}) {
-    Bin bin(box_shape(sides), 30, LevelChoice::tables, 3);
-    const double whole = bin.energy();
-    double least = whole, rise = 0.0;
-    for (int i = 0; i < 600; ++i) {
-      bin.manager.step(testing::kFrame);
-      const double now = bin.energy();
-      least = std::min(least, now), rise = std::max(rise, now - least);
+  constexpr int kBins = 12;
+  for (const auto& [sides, bound] : {std::pair{Vec3(0.5, 0.3, 0.04), 7e-4}, {Vec3(0.2, 0.3, 0.4), 5e-4}}) {
+    double mean_rise = 0.0;  // over the whole energy
+    for (std::uint64_t seed = 1; seed <= kBins; ++seed) {
+      Bin bin(box_shape(sides), 30, LevelChoice::tables, seed);
+      const double whole = bin.energy();
+      double least = whole, rise = 0.0;
+      for (int i = 0; i < 600; ++i) {
+        bin.manager.step(testing::kFrame);
+        const double now = bin.energy();
+        least = std::min(least, now), rise = std::max(rise, now - least);
+      }
+      mean_rise += rise / whole / kBins;
     }
-    EXPECT_LT(rise, bound * whole) << sides.transpose();
+    EXPECT_LT(mean_rise, bound) << sides.transpose();
   }
 }
 

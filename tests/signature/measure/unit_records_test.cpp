@@ -14,7 +14,6 @@ MeasurementIdentity some_identity() {
   identity.settings.seed = 77, identity.settings.law = {0.3, 0.6};
   identity.share = {.index = 2, .count = 5};
   identity.shape = *testing::box_shape({0.2, 0.3, 0.4});
-  identity.mesh_vertices = 8, identity.mesh_faces = 12;
   return identity;
 }
 
@@ -38,10 +37,10 @@ TEST(UnitRecords, AHeadComesBackAndIsTakenOff) {
   EXPECT_TRUE(back.settings == some_identity().settings);
   EXPECT_EQ(back.share.index, 2);
   EXPECT_EQ(back.share.count, 5);
-  EXPECT_EQ(back.mesh_vertices, 8U);
   EXPECT_EQ(back.shape.content_hash, some_identity().shape.content_hash);
   EXPECT_EQ(back.shape.radius, some_identity().shape.radius);
-  EXPECT_EQ(back.shape.hull.vertices, some_identity().shape.hull.vertices);
+  EXPECT_EQ(back.shape.mesh.vertices, some_identity().shape.mesh.vertices);
+  EXPECT_EQ(back.shape.mesh.faces, some_identity().shape.mesh.faces);
 }
 
 TEST(UnitRecords, AHeadCutOrDamagedAnywhereIsRefusedByName) {

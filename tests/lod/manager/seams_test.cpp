@@ -1,0 +1,109 @@
+// Where solids of the ground lie flush, and where triangles of terrain meet, is nothing that anyone trips
+// over.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "lod/manager.h"
+#include "reference/random.h"
+#include "tests/hills.h"
+#include "tests/lod/manager/manager_fixture.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kCube = 0.3;  // m
+
+std::shared_ptr<const Shape> cube(double side = kCube) { return testing::box_shape({side, side, side}); }
+
+class Seams : public ::testing::TestWithParam<LevelChoice> {
+ protected:
+  Seams() { manager_.materials().replace(0, {.restitution = 0.4, .friction = 0.5}); }
+  // Of a metre each, their tops at z = 0.
+  void make_tiles() {
+    for (int x = -3; x < 12; ++x)
+      for (int y = -2; y < 2; ++y)
+        manager_.add_static_box({1, 1, 1}, {x + 0.5, y + 0.5, -0.5}, Quat::Identity());
+  }
+  BodyId throw_cube(const Vec3& from, double speed) {
+    RigidState state;
+    state.position = from, state.velocity.x() = speed;
+    return testing::add(manager_, cube(), state, GetParam());
+  }
+  bool is_support() const { return GetParam() == LevelChoice::support; }
+
+  Manager manager_{{.events = {.all_bodies = true}, .signatures = testing::coarse_signature}};
+};
+
+// .8 m while every seam was met as a wall.
+TEST_P(Seams, OfTilesDoNotStopWhatSlides) {
+  make_tiles();
+  double sum = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const BodyId body = throw_cube({0.1 * i, 0.3 * i - 0.5, 0.5 * kCube}, 4.0);
+    testing::run(manager_, 2.0);
+    sum += manager_.state(body).position.x() - 0.1 * i;
+    EXPECT_NEAR(manager_.state(body).position.z(), 0.5 * kCube, 2e-3);
+    manager_.remove_body(body);
+  }
+  EXPECT_NEAR(sum / 4, 1.63, 0.05);  // ODE in steps of 1/480 s
+}
+
+// Of two, the hind one runs into the other. `support` went 3.1 m, `tables`, whose cubes turn as they land,
+// .9.
+TEST_P(Seams, OfTilesDoNotStopTwoThatSlideBehindEachOther) {
+  make_tiles();
+  double sum = 0.0;
+  constexpr int kPairs = 10;
+  for (int i = 0; i < kPairs; ++i) {
+    const Vec3 from(0.09 * i - 0.4, 0.2 * i - 1.0, 0.16);
+    const std::vector<BodyId> pair{throw_cube(from, 7.0), throw_cube(from + 0.31 * Vec3::UnitX(), 7.0)};
+    testing::run(manager_, 2.0);
+    for (const BodyId body : pair) sum += 0.5 * (manager_.state(body).position.x() - from.x());
+    for (const BodyId body : pair) manager_.remove_body(body);
+  }
+  EXPECT_NEAR(sum / kPairs, 5.15, is_support() ? 0.2 : 0.8);  // ODE in steps of 1/480 s
+}
+
+// Here the tile ahead is a step up.
+TEST_P(Seams, AKerbStopsWhatSlides) {
+  manager_.add_static_box({4, 4, 1}, {-2, 0, -0.5}, Quat::Identity());
+  manager_.add_static_box({4, 4, 1}, {2, 0, -0.45}, Quat::Identity());
+  const BodyId body = throw_cube({-1.0, 0, 0.5 * kCube}, 3.5);
+  testing::run(manager_, 2.0);
+  EXPECT_LT(manager_.state(body).position.x(), 0.0);
+}
+
+// Slopes of .2 at most, ridges of up to 11°: what strikes them strikes upwards.
+TEST_P(Seams, RidgesOfHillsAreNoWalls) {
+  manager_.add_static_mesh(testing::make_hills(40, 20));
+  int walls = 0;
+  double sum = 0.0;
+  constexpr int kStarts = 12;
+  for (int start = 0; start < kStarts; ++start) {
+    RandomStream random(11, std::uint64_t(start), 0);
+    const Vec3 from(random.uniform(-8, -4), random.uniform(-4, 4), 1.0);
+    const std::vector<BodyId> pair{throw_cube(from, 20.0), throw_cube(from + 0.31 * Vec3::UnitZ(), 20.0)};
+    for (int i = 0; i < 90; ++i) {
+      manager_.step(testing::kFrame);
+      for (const ContactEvent& event : manager_.contact_events())
+        walls += event.second.kind != ContactSide::Kind::body && event.impulse > 5.0 &&
+                 std::abs(event.normal.z()) < 0.5;
+    }
+    for (const BodyId body : pair) {
+      sum += 0.5 * (manager_.state(body).position.x() - from.x());
+      manager_.remove_body(body);
+    }
+  }
+  EXPECT_EQ(walls, 0);
+  EXPECT_GT(sum / kStarts, 17.0);  // of ODE's 20.6
+}
+
+INSTANTIATE_TEST_SUITE_P(Rungs, Seams, ::testing::Values(LevelChoice::support, LevelChoice::tables),
+                         [](const auto& instance) {
+                           return instance.param == LevelChoice::support ? "support" : "tables";
+                         });
+
+}  // namespace
+}  // namespace lodestone
