@@ -22,7 +22,8 @@ double find_free_way(const MetGround& ground, const Vec3& center, const Vec3& wa
     const Vec3 left = (1.0 - gone) * way;
     double free = 1.0;
     near.clear();
-    find_ground_near(ground, center + gone * way, (1.0 + kTouching) * radius + left.norm(), 0.0, near);
+    find_ground_near(ground, center + gone * way, (1.0 + kTouching) * radius + left.norm(), 0.0, near,
+                     nullptr, Seams::there);
     for (const GroundNear& n : near) {
       const double gap = n.height - reach_of(-n.normal), closing = -n.normal.dot(left);
       const std::pair solid(n.part, n.number);

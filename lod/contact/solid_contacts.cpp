@@ -23,33 +23,44 @@ bool may_close(const PairContact& contact, const GroundPart& part, const GroundS
   return contact.gap <= seeker.touching + std::max(0.0, approach + turn) * time;
 }
 
-// Faces that `center` lies over.
-const std::vector<HalfSpace>& find_faces_straight_below(std::span<const PlacedSolid> near,
-                                                        std::span<const std::optional<Nearest>> nearest,
-                                                        const Vec3& center, double reach) {
-  thread_local std::vector<HalfSpace> faces;
-  faces.clear();
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    if (!nearest[i] || nearest[i]->at_edge || nearest[i]->height < 0.0 || nearest[i]->height >= reach)
-      continue;
-    const Vec3 normal = near[i].orientation * nearest[i]->normal;
-    faces.push_back({.normal = normal, .offset = normal.dot(center) - nearest[i]->height});
+// Whether `point` lies in the `face` of a solid that `center` is over.
+bool lies_in_face(const PlacedSolid& placed, const Nearest& face, const Vec3& point, const Vec3& center,
+                  double rounding) {
+  const Vec3 at = placed.orientation.conjugate() * (point - placed.position),
+             over = placed.orientation.conjugate() * (center - point);
+  if (std::abs(face.height - over.dot(face.normal)) > rounding) return false;
+  if (const auto& t = placed.solid->surface) {
+    const Vec3 in_part = at + placed.solid->center;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 inward = t->normal.cross(t->corner[(i + 1) % 3] - t->corner[i]).normalized();
+      if (inward.dot(in_part - t->corner[i]) < -rounding) return false;
+    }
+    return true;
   }
-  return faces;
+  return std::ranges::all_of(placed.solid->faces,
+                             [&](const SolidFace& f) { return f.normal.dot(at) - f.offset <= rounding; });
 }
 
-// A seam: an edge of a solid in the face of another, which whoever lies over that meets first, and would trip
-// over.
-bool lies_in_one(std::span<const HalfSpace> faces, const Vec3& edge, double reach) {
-  constexpr double kFlush = 0.01;
+// Whether an edge of a solid lies in a face of another that `center` is over: a seam, which whoever is over
+// that face meets first, and would trip over.
+bool is_seam(const Vec3& edge, std::span<const PlacedSolid> near,
+             std::span<const std::optional<Nearest>> nearest, std::span<const HalfSpace> planes,
+             const Vec3& center, double reach) {
+  constexpr double kFlush = 0.01;  // over the reach
+  const double rounding = kFlush * reach;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto& face = nearest[i];
+    if (!face || face->at_edge || face->height < 0.0 || face->height >= reach) continue;
+    if (lies_in_face(near[i], *face, edge, center, rounding)) return true;
+  }
   return std::ranges::any_of(
-      faces, [&](const HalfSpace& face) { return std::abs(face.height_of(edge)) <= kFlush * reach; });
+      planes, [&](const HalfSpace& plane) { return std::abs(plane.height_of(edge)) <= rounding; });
 }
 
 }  // namespace
 
 void find_ground_near(const MetGround& ground, const Vec3& center, double reach, double after,
-                      std::vector<GroundNear>& found, const PairBody* hull) {
+                      std::vector<GroundNear>& found, const PairBody* hull, Seams seams) {
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
   thread_local std::vector<std::optional<Nearest>> nearest;  // of each
@@ -61,7 +72,6 @@ void find_ground_near(const MetGround& ground, const Vec3& center, double reach,
     return Vec3(placed.orientation.conjugate() * (center - placed.position));
   };
   for (const PlacedSolid& placed : near) nearest.push_back(find_nearest(*placed.solid, in_solid(placed)));
-  const std::vector<HalfSpace>& faces = find_faces_straight_below(near, nearest, center, reach);
   std::size_t i = 0;
   for (const GroundPart* part : parts) {
     if (const auto plane = probe_below(*part, center, reach))
@@ -72,9 +82,11 @@ void find_ground_near(const MetGround& ground, const Vec3& center, double reach,
       const PlacedSolid& placed = near[i];
       if (!nearest[i] || std::abs(nearest[i]->height) >= reach) continue;
       any = true;
-      if (nearest[i]->at_edge) {
+      // Across triangles that are small beside a hull it lies on their edges.
+      const bool may_lie_on = hull && placed.solid->surface && nearest[i]->height <= hull->shape->radius;
+      if (seams == Seams::left_out && nearest[i]->at_edge && !may_lie_on) {
         const Vec3 edge = center - nearest[i]->height * (placed.orientation * nearest[i]->normal);
-        if (lies_in_one(faces, edge, reach) || lies_in_one(ground.planes(), edge, reach)) continue;
+        if (nearest[i]->beyond || is_seam(edge, near, nearest, ground.planes(), center, reach)) continue;
       }
       planes.clear();
       if (hull)

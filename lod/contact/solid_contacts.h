@@ -56,10 +56,14 @@ struct GroundNear {
   }
 };
 
+/// Whether edges count over which, at a seam, a face that is nearer goes on: they hold nobody, but end a way.
+enum class Seams : std::uint8_t { left_out, there };
+
 /// Appends what a ball of radius `reach` about `center` meets of the ground's parts, `after` so many seconds
 /// of the step. With a `hull` in it, the planes that stand for the ground to this.
 void find_ground_near(const MetGround& ground, const Vec3& center, double reach, double after,
-                      std::vector<GroundNear>& found, const PairBody* hull = nullptr);
+                      std::vector<GroundNear>& found, const PairBody* hull = nullptr,
+                      Seams seams = Seams::left_out);
 
 /// Whether, of the ground within `reach` of `center`, two faces look different ways: a corner or a wedge.
 bool is_held_several_ways(std::span<const GroundNear> near, std::span<const HalfSpace> planes,

@@ -46,6 +46,14 @@ bool stands_out(const SurfaceTriangle& t, std::size_t edge, const Vec3& normal) 
   return t.ridge[edge] && t.normal.dot(normal) >= t.cosine[edge] - kRounding;
 }
 
+// Whether a normal leads away from the edge itself: from a corner, where many triangles meet, it slants along
+// it.
+bool is_across(const SurfaceTriangle& t, std::size_t edge, const Vec3& normal) {
+  constexpr double kSlant = 0.02;  // sine
+  const Vec3 along = (t.corner[(edge + 1) % 3] - t.corner[edge]).normalized();
+  return std::abs(along.dot(normal)) <= kSlant;
+}
+
 // A point that looks for the solid's nearest one.
 const Shape& point_shape() {
   static const Shape point = [] {
@@ -66,14 +74,15 @@ Vec3 find_farthest_arm(const PairBody& body, const Vec3& direction) {
 
 /// How the lowest point of a body lies to a triangle, along its normal.
 struct LowestPoint {
-  double gap = 0.0;  ///< m
+  Vec3 place = Vec3::Zero();  ///< m, world
+  double gap = 0.0;           ///< m
   bool is_over = false;
 };
 
 LowestPoint find_lowest_over(const PairBody& body, const PlacedSolid& placed, const Vec3& normal) {
   const SurfaceTriangle& t = *placed.solid->surface;
-  const Vec3 point = in_part(placed, body.position + find_farthest_arm(body, -normal));
-  return {t.normal.dot(point - t.corner[0]), is_over(t, point)};
+  const Vec3 place = body.position + find_farthest_arm(body, -normal), point = in_part(placed, place);
+  return {place, t.normal.dot(point - t.corner[0]), is_over(t, point)};
 }
 
 // From the nearest edge of a triangle to a point, in its part's axes; zero: the point lies in it.
@@ -138,6 +147,13 @@ Vec3 find_start_axis(const PairBody& body, const PlacedSolid& placed) {
   return placed.orientation * find_farthest_apart(body, placed, *nearest).normal;
 }
 
+PairContact contact_with_plane(const Vec3& normal, const LowestPoint& lowest) {
+  PairContact contact{.normal = normal, .gap = lowest.gap, .manifold = {}};
+  contact.manifold.count = 1;
+  contact.manifold.points[0] = {lowest.place - 0.5 * lowest.gap * normal, lowest.gap};
+  return contact;
+}
+
 std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed, double margin,
                                 double ball_is_over, MeetAhead how_far) {
   const PairBody ground = pair_body(placed);
@@ -169,10 +185,12 @@ std::optional<PairContact> meet(const PairBody& body, const PlacedSolid& placed,
   const std::optional<PairContact> contact = meet_as_hulls();
   if (!contact) return {};
   const double along = contact->normal.dot(normal);
-  const bool over_ridge = along > 0.0 && along < 0.999 &&
-                          stands_out(t, nearest_edge(t, in_part(placed, middle_of(contact->manifold))),
-                                     placed.orientation.conjugate() * contact->normal);
-  if (over_ridge) return contact;
+  const std::size_t edge = nearest_edge(t, in_part(placed, middle_of(contact->manifold)));
+  if (along > 0.0 && along < 0.999 && t.ridge[edge]) {
+    if (stands_out(t, edge, placed.orientation.conjugate() * contact->normal)) return contact;
+    // What flies on past its neighbour comes down on the triangle itself.
+    if (contact->gap > 0.0 && lowest.gap > 0.0) return contact_with_plane(normal, lowest);
+  }
   if (any_ridge) find_flat();
   // What straddles a hill top is lowest, along each triangle's normal, over another: its own features hold
   // it. Not so a ball in a hollow, which lies over a triangle that is nearer.
@@ -213,8 +231,9 @@ std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point)
     if (t->normal.cross(along).dot(at - from) >= 0.0)
       return is_behind(*t, at) ? std::nullopt : std::optional(Nearest{t->normal, height});
     if (!t->ridge[edge] || height < 0.0) return {};
-    const Nearest nearest = find_nearest_of_faces(solid, point);
-    return stands_out(*t, edge, nearest.normal) ? std::optional(nearest) : std::nullopt;
+    Nearest nearest = find_nearest_of_faces(solid, point);
+    nearest.beyond = is_across(*t, edge, nearest.normal) && !stands_out(*t, edge, nearest.normal);
+    return nearest;
   }
   return find_nearest_of_faces(solid, point);
 }

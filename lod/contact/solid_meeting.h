@@ -15,6 +15,7 @@ struct Nearest {
   Vec3 normal;           ///< in the part's axes
   double height = 0.0;   ///< m
   bool at_edge = false;  ///< of a solid's faces none is straight below: across an edge or a corner
+  bool beyond = false;   ///< of a triangle, across an edge, beyond which its neighbour is nearer
 };
 /// `point` in the frame of the solid's shape. None behind the edge of a surface, where a neighbour is nearer.
 std::optional<Nearest> find_nearest(const GroundSolid& solid, const Vec3& point);

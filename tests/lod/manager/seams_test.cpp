@@ -2,7 +2,9 @@
 // over.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "lod/manager.h"
@@ -98,6 +100,48 @@ TEST_P(Seams, RidgesOfHillsAreNoWalls) {
   }
   EXPECT_EQ(walls, 0);
   EXPECT_GT(sum / kStarts, 17.0);  // of ODE's 20.6
+}
+
+// Past the ridge that it would strike in passing it comes down on the triangle behind.
+TEST_P(Seams, NorDoFastBallsPassThroughHills) {
+  manager_.add_static_mesh(testing::make_hills(40, 20));
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.08));
+  int through = 0;
+  for (int start = 0; start < 300; ++start) {
+    RandomStream random(12, std::uint64_t(start), 0);
+    RigidState state;
+    state.position = {random.uniform(-1.5, -0.5), random.uniform(3.6, 4.6), random.uniform(0.17, 0.37)};
+    state.velocity = {-22.3, 39.5, -8.3};
+    const BodyId body = testing::add(manager_, ball, state, GetParam());
+    for (int i = 0; i < 5; ++i) manager_.step(testing::kFrame);
+    const Vec3 end = manager_.state(body).position;
+    through += end.y() < 9.0 && end.z() < testing::height_of_hills(end.x(), end.y()) - 0.05;
+    manager_.remove_body(body);
+  }
+  EXPECT_EQ(through, 0);
+}
+
+// Across the corner of sixteen triangles, all of which turn less from each other than from what it meets.
+TEST_P(Seams, APeakHoldsABall) {
+  constexpr int kSides = 16;
+  constexpr double kHeight = 0.6, kRadius = 0.2;  // m
+  Mesh cone;
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kSides;
+    cone.vertices.push_back({std::cos(angle), std::sin(angle), 0});
+    cone.faces.push_back({i, (i + 1) % kSides, kSides});
+  }
+  const Vec3 apex(0, 0, kHeight);
+  cone.vertices.push_back(apex);
+  manager_.add_static_mesh(cone);
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kRadius));
+  const BodyId body = testing::add(manager_, ball, testing::at({0.001, 0.0005, 1.2}), GetParam());
+  double least = 1e300;
+  for (int i = 0; i < 60; ++i) {
+    manager_.step(testing::kFrame);
+    least = std::min(least, (manager_.state(body).position - apex).norm());
+  }
+  EXPECT_GT(least, 0.98 * kRadius);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rungs, Seams, ::testing::Values(LevelChoice::support, LevelChoice::tables),

@@ -167,6 +167,24 @@ TEST_F(UnevenGround, ABallRollsOverWavesAsInOde) {
   EXPECT_NEAR(way, manager_.state(truth).position.x(), 0.2);
 }
 
+// On edges to both sides of the triangle that its centre is over.
+TEST_F(UnevenGround, OnSmallTrianglesBoxesOfTablesComeToRest) {
+  Manager manager({.signatures = testing::coarse_signature});
+  manager.add_static_mesh(make_waves(0.02));
+  std::vector<BodyId> boxes;
+  for (int i = 0; i < 9; ++i) {
+    RigidState state;
+    state.position = {1.2 * (i % 3) - 1.0, 1.2 * (i / 3) - 1.2, 0.5};
+    state.orientation = Quat(Eigen::AngleAxisd(0.7 * i, Vec3(1, 0.5, 0.2).normalized()));
+    boxes.push_back(testing::add(manager, testing::box_shape({0.2, 0.3, 0.4}), state, LevelChoice::tables));
+  }
+  testing::run(manager, 6.0);
+  for (const BodyId box : boxes) {
+    EXPECT_TRUE(manager.asleep(box));
+    EXPECT_GT(manager.state(box).position.z(), 0.05);
+  }
+}
+
 // In no frame, but for what overlaps are moved out by: before, up to .03 m g R.
 TEST_F(UnevenGround, NothingThatRollsDownStairsGains) {
   make_stairs();
