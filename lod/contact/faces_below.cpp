@@ -9,9 +9,11 @@ Vec3 in_part(const PlacedSolid& placed, const Vec3& point) {
   return placed.orientation.conjugate() * (point - placed.position) + placed.solid->center;
 }
 
-bool is_over(const SurfaceTriangle& t, const Vec3& point) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (t.normal.cross(t.corner[(i + 1) % 3] - t.corner[i]).dot(point - t.corner[i]) < 0.0) return false;
+bool is_over(const SurfaceTriangle& t, const Vec3& point, double rounding) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 along = t.corner[(i + 1) % 3] - t.corner[i];
+    if (t.normal.cross(along).dot(point - t.corner[i]) < -rounding * along.norm()) return false;
+  }
   return true;
 }
 

@@ -12,8 +12,9 @@ namespace lodestone {
 /// A point of the world in the frame of the solid's part.
 Vec3 in_part(const PlacedSolid& placed, const Vec3& point);
 
-/// Whether a point, in the part's frame, lies over the triangle or below it, along its normal.
-bool is_over(const SurfaceTriangle& t, const Vec3& point);
+/// Whether a point, in the part's frame, lies over the triangle or below it, along its normal, or up to
+/// `rounding` m beside that.
+bool is_over(const SurfaceTriangle& t, const Vec3& point, double rounding = 0.0);
 /// Whether a point, in the part's frame, is beyond the other side of what is solid below the triangle: on the
 /// far side of a wall.
 bool is_behind(const SurfaceTriangle& t, const Vec3& point);

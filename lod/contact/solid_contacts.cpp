@@ -29,14 +29,7 @@ bool lies_in_face(const PlacedSolid& placed, const Nearest& face, const Vec3& po
   const Vec3 at = placed.orientation.conjugate() * (point - placed.position),
              over = placed.orientation.conjugate() * (center - point);
   if (std::abs(face.height - over.dot(face.normal)) > rounding) return false;
-  if (const auto& t = placed.solid->surface) {
-    const Vec3 in_part = at + placed.solid->center;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3 inward = t->normal.cross(t->corner[(i + 1) % 3] - t->corner[i]).normalized();
-      if (inward.dot(in_part - t->corner[i]) < -rounding) return false;
-    }
-    return true;
-  }
+  if (const auto& t = placed.solid->surface) return is_over(*t, at + placed.solid->center, rounding);
   return std::ranges::all_of(placed.solid->faces,
                              [&](const SolidFace& f) { return f.normal.dot(at) - f.offset <= rounding; });
 }
