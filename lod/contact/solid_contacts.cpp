@@ -50,6 +50,13 @@ bool is_seam(const Vec3& edge, std::span<const PlacedSolid> near,
       planes, [&](const HalfSpace& plane) { return std::abs(plane.height_of(edge)) <= rounding; });
 }
 
+// Across such triangles a hull lies on their edges: no one of them holds it.
+bool is_small_beside(const SurfaceTriangle& triangle, double radius) {
+  constexpr double kLongest = 3.0;  // over the radius, of an edge
+  const auto& [a, b, c] = triangle.corner;
+  return std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()}) <= kLongest * radius;
+}
+
 }  // namespace
 
 void find_ground_near(const MetGround& ground, const Vec3& center, double reach, double after,
@@ -65,31 +72,44 @@ void find_ground_near(const MetGround& ground, const Vec3& center, double reach,
     return Vec3(placed.orientation.conjugate() * (center - placed.position));
   };
   for (const PlacedSolid& placed : near) nearest.push_back(find_nearest(*placed.solid, in_solid(placed)));
+  const auto add = [&](std::size_t i) {
+    const PlacedSolid& placed = near[i];
+    planes.clear();
+    if (hull)
+      find_planes_to_hull(*hull, placed, *nearest[i], planes);
+    else
+      planes.push_back(*nearest[i]);
+    for (const Nearest& plane : planes)
+      found.push_back(
+          {placed.orientation * plane.normal, plane.height, placed.part, placed.number, plane.at_edge});
+  };
   std::size_t i = 0;
   for (const GroundPart* part : parts) {
     if (const auto plane = probe_below(*part, center, reach))
       found.push_back({plane->normal, plane->height_of(center), part, part->first_number});
     bool any = false;
     const std::size_t first = i;
+    double least = reach;                 // m, height over what is taken
+    std::optional<std::size_t> left_out;  // the nearest whose neighbour is nearer
     for (; i < near.size() && near[i].part == part; ++i) {
       const PlacedSolid& placed = near[i];
       if (!nearest[i] || std::abs(nearest[i]->height) >= reach) continue;
       any = true;
-      // Across triangles that are small beside a hull it lies on their edges.
-      const bool may_lie_on = hull && placed.solid->surface && nearest[i]->height <= hull->shape->radius;
+      const bool may_lie_on = hull && placed.solid->surface && nearest[i]->height <= hull->shape->radius &&
+                              is_small_beside(*placed.solid->surface, hull->shape->radius);
       if (seams == Seams::left_out && nearest[i]->at_edge && !may_lie_on) {
+        if (nearest[i]->beyond) {
+          if (!left_out || nearest[i]->height < nearest[*left_out]->height) left_out = i;
+          continue;
+        }
         const Vec3 edge = center - nearest[i]->height * (placed.orientation * nearest[i]->normal);
-        if (nearest[i]->beyond || is_seam(edge, near, nearest, ground.planes(), center, reach)) continue;
+        if (is_seam(edge, near, nearest, ground.planes(), center, reach)) continue;
       }
-      planes.clear();
-      if (hull)
-        find_planes_to_hull(*hull, placed, *nearest[i], planes);
-      else
-        planes.push_back(*nearest[i]);
-      for (const Nearest& plane : planes)
-        found.push_back(
-            {placed.orientation * plane.normal, plane.height, part, placed.number, plane.at_edge});
+      least = std::min(least, nearest[i]->height);
+      add(i);
     }
+    // Over a corner each may have a neighbour that is nearer, round in a circle.
+    if (left_out && nearest[*left_out]->height < least) add(*left_out);
     if (any) continue;
     std::optional<GroundNear> beyond;
     for (std::size_t k = first; k < i; ++k) {

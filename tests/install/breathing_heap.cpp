@@ -113,7 +113,7 @@ void sleepers() {
   const BodyId lowest = heap.lowest();
   heap.leap_m = 0.0;
   heap.manager.set_state(lowest, heap.manager.state(lowest));  // wakes it and what it carries
-  for (int i = 0; i < 600 && (i < 10 || heap.awake() > 0); ++i) heap.step(kNear);
+  for (int i = 0; i < 200 && (i < 10 || heap.awake() > 0); ++i) heap.step(kNear);
   check::within(heap.leap_m / heap.parting_m, 0.0, 1.0,
                 "longest leap in a frame beyond motion, over parting speed, as the full heap comes down onto "
                 "its meshes");

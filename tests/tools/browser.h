@@ -40,6 +40,7 @@ window.addEventListener("load", () => setTimeout(async () => {
   } catch (error) { say("THROWN " + error.message); }
   for (const error of errors) say("ERROR " + error);
   for (const request of requests) say("REQUEST " + request);
+  window.requestAnimationFrame = () => 0;  // nothing more is drawn in what is left of the page's time
   const result = document.createElement("pre");
   result.id = "test-result";
   result.textContent = "[begin]" + test.out + "[end]";

@@ -102,6 +102,42 @@ TEST_P(Seams, RidgesOfHillsAreNoWalls) {
   EXPECT_GT(sum / kStarts, 17.0);  // of ODE's 20.6
 }
 
+// Pressed down by the blow, they met the edges of triangles six times as long as they are: a tenth turned
+// back at `tables`.
+TEST_P(Seams, OfHillsDoNotTurnBackWhatIsStruckThere) {
+  manager_.add_static_mesh(testing::make_hills(20, 20));
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.08));
+  const auto small = cube(0.15);
+  constexpr double kSpeed = 40.0;  // m/s
+  int turned_back = 0;
+  for (int start = 0; start < 60; ++start) {
+    RandomStream random(13, std::uint64_t(start), 0);
+    const double x = random.uniform(-6, 6), y = random.uniform(-6, 6), heading = random.uniform(0, 6.28);
+    RigidState lying;
+    lying.position = {x, y, testing::height_of_hills(x, y) + 0.1};
+    lying.orientation = Eigen::AngleAxisd(random.uniform(0, 6), Vec3::UnitZ());
+    const BodyId struck = testing::add(manager_, small, lying, GetParam());
+    testing::run(manager_, 4.0);
+    const Vec3 level(std::cos(heading), std::sin(heading), 0), across(-level.y(), level.x(), 0);
+    const double down = random.uniform(0.15, 0.6);
+    const Vec3 along = std::cos(down) * level - std::sin(down) * Vec3::UnitZ();
+    RigidState coming;
+    coming.position = manager_.state(struck).position - random.uniform(0.6, 1.4) * along +
+                      random.uniform(-0.1, 0.1) * across + random.uniform(0, 0.08) * Vec3::UnitZ();
+    coming.velocity = kSpeed * along;
+    const BodyId striking =
+        manager_.add_body({.shape = ball, .state = coming, .mass = 5.0, .level = GetParam()});
+    double least = 0.0;  // m/s
+    for (int i = 0; i < 30; ++i) {
+      manager_.step(testing::kFrame);
+      least = std::min(least, manager_.state(struck).velocity.dot(level));
+    }
+    turned_back += least < -0.1 * kSpeed;
+    for (const BodyId body : {struck, striking}) manager_.remove_body(body);
+  }
+  EXPECT_EQ(turned_back, 0);
+}
+
 // Past the ridge that it would strike in passing it comes down on the triangle behind.
 TEST_P(Seams, NorDoFastBallsPassThroughHills) {
   manager_.add_static_mesh(testing::make_hills(40, 20));
@@ -119,6 +155,23 @@ TEST_P(Seams, NorDoFastBallsPassThroughHills) {
     manager_.remove_body(body);
   }
   EXPECT_EQ(through, 0);
+}
+
+// Where all triangles round a corner seemed to have a neighbour that was nearer.
+TEST_P(Seams, CornersOfHillsHoldWhatFallsOntoThem) {
+  manager_.add_static_mesh(testing::make_hills(20, 20));
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(0.08));
+  std::vector<BodyId> bodies;
+  for (int x = -9; x <= 9; ++x)
+    for (int y = -9; y <= 9; ++y)
+      bodies.push_back(testing::add(manager_, (x + y) % 2 ? ball : cube(0.15),
+                                    testing::at({double(x), double(y), testing::height_of_hills(x, y) + 0.5}),
+                                    GetParam()));
+  testing::run(manager_, 0.5);
+  for (const BodyId body : bodies) {
+    const Vec3 place = manager_.state(body).position;
+    EXPECT_GT(place.z(), testing::height_of_hills(place.x(), place.y()));
+  }
 }
 
 // Across the corner of sixteen triangles, all of which turn less from each other than from what it meets.
