@@ -1,6 +1,7 @@
 #include "lod/contact/contact_memory.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "lod/room.h"
@@ -17,9 +18,19 @@ void each_run(std::span<const ContactKey> keys, Visit visit) {
   }
 }
 
-CrowdPoint& find_nearest(std::span<CrowdPoint> points, const Vec3& arm) {
-  return *std::ranges::min_element(
-      points, {}, [&](const CrowdPoint& point) { return (point.arm_first - arm).squaredNorm(); });
+// Of those that the force does not pull. Two that are in each other push each other several ways, and what
+// held one way is no guess for another.
+CrowdPoint* find_nearest(std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points,
+                         const Vec3& arm, const Vec3& force) {
+  CrowdPoint* nearest = nullptr;
+  double least = std::numeric_limits<double>::max();
+  for (const CrowdManifold& m : manifolds) {
+    if (m.normal.dot(force) < 0.0) continue;
+    for (CrowdPoint& point : points.subspan(m.begin, m.count))
+      if (const double distance = (point.arm_first - arm).squaredNorm(); distance < least)
+        least = distance, nearest = &point;
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -39,16 +50,16 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdMani
   constexpr std::int64_t kGrain = 256;
   run_in_pieces(jobs, std::int64_t(recalled_.size()), kGrain, [&](std::int64_t from, std::int64_t to) {
     for (const Recalled& pair : std::span(recalled_).subspan(std::size_t(from), std::size_t(to - from))) {
-      for (std::uint32_t i = pair.first; i < pair.end; ++i) manifolds[i].known = true;
+      const auto now = manifolds.subspan(pair.first, pair.end - pair.first);
+      for (CrowdManifold& m : now) m.known = true;
       const Run& run = before.runs[std::size_t(pair.place)];
-      const std::uint32_t begin = manifolds[pair.first].begin,
-                          end = manifolds[pair.end - 1].begin + manifolds[pair.end - 1].count;
-      const auto now = points.subspan(begin, end - begin);
       for (const Load& load : std::span(before.loads).subspan(run.begin, run.count)) {
-        CrowdPoint& point = find_nearest(now, load.arm.cast<double>());
-        point.guess += step * load.force.cast<double>();
+        const Vec3 force = load.force.cast<double>();
+        CrowdPoint* point = find_nearest(now, points, load.arm.cast<double>(), force);
+        if (!point) continue;
+        point->guess += step * force;
         if (load.frictionless >= 0.0F)
-          point.frictionless = std::max(0.0F, point.frictionless) + float(step) * load.frictionless;
+          point->frictionless = std::max(0.0F, point->frictionless) + float(step) * load.frictionless;
       }
     }
   });

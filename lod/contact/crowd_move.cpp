@@ -284,7 +284,7 @@ void Crowd::keep_insiders_awake(const ContactScene& scene) {
     return scene.body(participants_[std::size_t(i.body)]);
   };
   const auto is_moved_out = [&](const Insider& i) {
-    return !i.uneven || (body_of(i).position - i.from).norm() > kStuck * i.asked;
+    return (body_of(i).position - i.from).norm() > kStuck * i.asked;
   };
   for (const Insider& i : insiders_) body_of(i).pinned = true;
   for (const Insider& i : insiders_)

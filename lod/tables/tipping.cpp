@@ -13,9 +13,12 @@ constexpr float kTippingRate = 2.0f;  // √(g/R), of what is pressed at its end
 // half as much again it comes there sooner, and does not go to and fro.
 constexpr float kFlush = 1.5f * kPatchAngle;
 // Tipping does work: its torque, over its weight, times its angle, m. That must come from its fall, so that a
-// heap does not work for ever against what holds it, but for a credit, which flight gives anew
-// (SphereKinds::tipping_work). What sinks more slowly than kCreep √(gR) creeps, and has nothing of it.
+// heap does not work for ever against what holds it, but for a credit, which a fall through the air gives
+// anew (SphereKinds::tipping_work). What sinks more slowly than kCreep √(gR) creeps, and has nothing of it.
 constexpr float kCreep = 0.03f;
+// Over √(gR), of a fall through the air: slower sinks what was lifted out of another, and gains no more than
+// that.
+constexpr float kFalls = 0.2f;
 // Variance over the squared radius: of where two corners touch.
 constexpr float kSharpest = 1e-5f;
 
@@ -188,8 +191,14 @@ void tip(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
     const auto i = std::size_t(at);
     const auto kind = std::size_t(spheres.kind[i]);
     if (kinds.tips[kind] <= 0.0f) continue;
-    if (!step.touches(at)) spheres.tipping_credit[i] = 1.0f;
-    if (!step.touches(at) || step.on_ground[i] == std::uint8_t(GroundState::moved)) continue;
+    if (!step.touches(at)) {
+      float& credit = spheres.tipping_credit[i];
+      const float sinks = most(0.0f, fall_of(spheres, step, constants, i)),
+                  falls = kFalls * square_root(constants.gravity * kinds.radius[kind]) * constants.time;
+      credit = sinks > falls ? 1.0f : least(1.0f, credit + sinks / kinds.tipping_work[kind]);
+      continue;
+    }
+    if (step.on_ground[i] == std::uint8_t(GroundState::moved)) continue;
     const float whole = kinds.tipping_work[kind];
     float& credit = spheres.tipping_credit[i];
     const float fallen = fall_of(spheres, step, constants, i) - creep_of(kinds, constants, kind);

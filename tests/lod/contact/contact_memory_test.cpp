@@ -63,6 +63,24 @@ TEST(ContactMemory, RecallsAPairWhereverItIsInTheList) {
   EXPECT_EQ(now.points[2].guess, Vec3(0, 5, 0));
 }
 
+// Two that are in each other push each other both ways: what held one way, added to the other, grew from step
+// to step.
+TEST(ContactMemory, GivesNoForceToAPointThatItWouldPull) {
+  Touching before;
+  before.add(contact_key(1, 2), {{0, 0, 3}});
+  before.points[0].frictionless = 4.0F;
+  ContactMemory memory = memory_of(before, 0.01);
+  Touching now;
+  now.add(contact_key(1, 2), {Vec3::Zero()});
+  now.add(contact_key(1, 2), {Vec3::Zero()});  // 1 m beside it
+  now.manifolds[0].normal = -Vec3::UnitZ();
+  memory.recall(now.keys, now.manifolds, now.points, 0.01, make_job_runner(1));
+  EXPECT_EQ(now.points[0].guess, Vec3::Zero());
+  EXPECT_LT(now.points[0].frictionless, 0.0F);
+  EXPECT_EQ(now.points[1].guess, Vec3(0, 0, 3));
+  EXPECT_FLOAT_EQ(now.points[1].frictionless, 4.0F);
+}
+
 TEST(ContactMemory, GivesEachForceToThePointNearestToWhereItWas) {
   Touching before;
   before.add(ground_key(3, 0), {{0, 0, 1}, {0, 0, 2}, {0, 0, 4}});  // at 1, 2 and 3 m along x
