@@ -1,7 +1,6 @@
 #include "lod/contact/contact_memory.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "lod/room.h"
@@ -18,19 +17,22 @@ void each_run(std::span<const ContactKey> keys, Visit visit) {
   }
 }
 
-// Of those that the force does not pull. Two that are in each other push each other several ways, and what
-// held one way is no guess for another.
-CrowdPoint* find_nearest(std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points,
+// Of those that the force does not pull, if there are any: two that are in each other push each other several
+// ways, and what held one way is no guess for another.
+CrowdPoint& find_nearest(std::span<const CrowdManifold> manifolds, std::span<CrowdPoint> points,
                          const Vec3& arm, const Vec3& force) {
   CrowdPoint* nearest = nullptr;
-  double least = std::numeric_limits<double>::max();
+  double least = 0.0;
+  bool pulled = true;
   for (const CrowdManifold& m : manifolds) {
-    if (m.normal.dot(force) < 0.0) continue;
-    for (CrowdPoint& point : points.subspan(m.begin, m.count))
-      if (const double distance = (point.arm_first - arm).squaredNorm(); distance < least)
-        least = distance, nearest = &point;
+    const bool pulls = m.normal.dot(force) < 0.0;
+    if (pulls && !pulled) continue;
+    for (CrowdPoint& point : points.subspan(m.begin, m.count)) {
+      const double distance = (point.arm_first - arm).squaredNorm();
+      if (!nearest || distance < least || pulls != pulled) least = distance, nearest = &point, pulled = pulls;
+    }
   }
-  return nearest;
+  return *nearest;
 }
 
 }  // namespace
@@ -55,11 +57,10 @@ void ContactMemory::recall(std::span<const ContactKey> keys, std::span<CrowdMani
       const Run& run = before.runs[std::size_t(pair.place)];
       for (const Load& load : std::span(before.loads).subspan(run.begin, run.count)) {
         const Vec3 force = load.force.cast<double>();
-        CrowdPoint* point = find_nearest(now, points, load.arm.cast<double>(), force);
-        if (!point) continue;
-        point->guess += step * force;
+        CrowdPoint& point = find_nearest(now, points, load.arm.cast<double>(), force);
+        point.guess += step * force;
         if (load.frictionless >= 0.0F)
-          point->frictionless = std::max(0.0F, point->frictionless) + float(step) * load.frictionless;
+          point.frictionless = std::max(0.0F, point.frictionless) + float(step) * load.frictionless;
       }
     }
   });

@@ -128,24 +128,33 @@ void TablesLevel::find_further_planes() {
   contacts_.add_ground(spheres_, plane_touches_, bounce_velocity(), constants_);
 }
 
-// Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way.
-// Out of ground without an underside it comes back; beyond the middle of a slab it would leave by the other
+// Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way:
+// out of a half-space it would come back slowly, beyond the middle of a slab it would leave by the other
 // side.
-void TablesLevel::keep_above_ground() {
+void TablesLevel::keep_above(std::int64_t place, const HalfSpace& plane) {
   constexpr double kLeast = 0.02;  // over R
+  const auto i = std::size_t(place);
+  const double lift =
+      kLeast * double(kinds_.radius[spheres_.kind[i]]) - plane.height_of(spheres_.position(place));
+  if (lift <= 0.0) return;
+  const Vec3 out = lift * plane.normal,
+             stop = std::max(0.0, -spheres_.velocity(place).dot(plane.normal)) * plane.normal;
+  spheres_.x[i] += out.x(), spheres_.y[i] += out.y(), spheres_.z[i] += out.z();
+  spheres_.vx[i] += stop.x(), spheres_.vy[i] += stop.y(), spheres_.vz[i] += stop.z();
+}
+
+void TablesLevel::keep_above_planes(std::int64_t begin, std::int64_t end) {
+  if (!constants_.hulls) return;
+  for (const HalfSpace& plane : ground_.planes())
+    for (std::int64_t i = begin; i < end; ++i)
+      if (step_.touches(i)) keep_above(i, plane);
+}
+
+void TablesLevel::keep_above_faces() {
   for (const NearFaces& near : near_faces_) {
-    const auto i = std::size_t(near.place);
     if (!near.above || near.place >= spheres_.awake || !step_.touches(near.place)) continue;
-    for (std::int32_t face = near.begin; face < near.end; ++face) {
-      const HalfSpace& plane = faces_[std::size_t(face)];
-      const double lift =
-          kLeast * double(kinds_.radius[spheres_.kind[i]]) - plane.height_of(spheres_.position(near.place));
-      if (lift <= 0.0) continue;
-      const Vec3 out = lift * plane.normal,
-                 stop = std::max(0.0, -spheres_.velocity(near.place).dot(plane.normal)) * plane.normal;
-      spheres_.x[i] += out.x(), spheres_.y[i] += out.y(), spheres_.z[i] += out.z();
-      spheres_.vx[i] += stop.x(), spheres_.vy[i] += stop.y(), spheres_.vz[i] += stop.z();
-    }
+    for (std::int32_t face = near.begin; face < near.end; ++face)
+      keep_above(near.place, faces_[std::size_t(face)]);
   }
 }
 

@@ -173,12 +173,13 @@ void TablesLevel::finish(ContactTally& tally) {
     }
     end_block(begin, end);
     if (tips_) tip(spheres_, kinds_, planes_, constants_, step_, begin, end, tipping_);
+    keep_above_planes(begin, end);
     step_.each(GroundState::unsound, begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
   remember_ground_friction();
   take_back_excess();
-  keep_above_ground();
+  keep_above_faces();
   stop_before_unseen_ground();
   update_clips();
   if (log_ && ground) write_ground();
