@@ -6,6 +6,12 @@
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
+namespace {
+
+// Over R, of a centre that was above the ground.
+constexpr double kLeastOfCenter = 0.02;
+
+}  // namespace
 
 // m: how far from its centre a body of that speed (m/s) looks for the ground.
 double TablesLevel::ground_reach(std::int64_t place, double speed) const {
@@ -131,30 +137,39 @@ void TablesLevel::find_further_planes() {
 // Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way:
 // out of a half-space it would come back slowly, beyond the middle of a slab it would leave by the other
 // side.
-void TablesLevel::keep_above(std::int64_t place, const HalfSpace& plane) {
-  constexpr double kLeast = 0.02;  // over R
+void TablesLevel::lift_out(std::int64_t place, const HalfSpace& plane, double lift) {
   const auto i = std::size_t(place);
-  const double lift =
-      kLeast * double(kinds_.radius[spheres_.kind[i]]) - plane.height_of(spheres_.position(place));
-  if (lift <= 0.0) return;
   const Vec3 out = lift * plane.normal,
              stop = std::max(0.0, -spheres_.velocity(place).dot(plane.normal)) * plane.normal;
   spheres_.x[i] += out.x(), spheres_.y[i] += out.y(), spheres_.z[i] += out.z();
   spheres_.vx[i] += stop.x(), spheres_.vy[i] += stop.y(), spheres_.vz[i] += stop.z();
 }
 
+// Its hull, but for what contacts undo themselves.
 void TablesLevel::keep_above_planes(std::int64_t begin, std::int64_t end) {
+  constexpr double kDeepest = 0.1;  // over R
   if (!constants_.hulls) return;
   for (const HalfSpace& plane : ground_.planes())
-    for (std::int64_t i = begin; i < end; ++i)
-      if (step_.touches(i)) keep_above(i, plane);
+    for (std::int64_t i = begin; i < end; ++i) {
+      if (!step_.touches(i)) continue;
+      const double radius = double(kinds_.radius[spheres_.kind[std::size_t(i)]]),
+                   height = plane.height_of(spheres_.position(i));
+      if (height >= (1.0 - kDeepest) * radius) continue;
+      const double least =
+          std::max(kLeastOfCenter * radius, double(ground_height(i, -plane.normal)) - kDeepest * radius);
+      if (height < least) lift_out(i, plane, least - height);
+    }
 }
 
 void TablesLevel::keep_above_faces() {
   for (const NearFaces& near : near_faces_) {
     if (!near.above || near.place >= spheres_.awake || !step_.touches(near.place)) continue;
-    for (std::int32_t face = near.begin; face < near.end; ++face)
-      keep_above(near.place, faces_[std::size_t(face)]);
+    const double least = kLeastOfCenter * double(kinds_.radius[spheres_.kind[std::size_t(near.place)]]);
+    for (std::int32_t face = near.begin; face < near.end; ++face) {
+      const HalfSpace& plane = faces_[std::size_t(face)];
+      const double height = plane.height_of(spheres_.position(near.place));
+      if (height < least) lift_out(near.place, plane, least - height);
+    }
   }
 }
 

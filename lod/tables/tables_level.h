@@ -193,7 +193,7 @@ class TablesLevel {
   void apply_pushes(double dt, ContactTally& tally);
   void note_pushes();
   void take_back_excess();
-  void keep_above(std::int64_t place, const HalfSpace& plane);
+  void lift_out(std::int64_t place, const HalfSpace& plane, double lift);
   void keep_above_planes(std::int64_t begin, std::int64_t end);
   void keep_above_faces();
   void note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const;
