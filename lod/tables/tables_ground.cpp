@@ -1,5 +1,6 @@
 // Of TablesLevel: the ground that its bodies are near, or come to be near within the step.
 #include <algorithm>
+#include <cmath>
 
 #include "lod/contact/free_way.h"
 #include "lod/contact/hull_contacts.h"
@@ -139,10 +140,14 @@ void TablesLevel::find_further_planes() {
 // side.
 void TablesLevel::lift_out(std::int64_t place, const HalfSpace& plane, double lift) {
   const auto i = std::size_t(place);
-  const Vec3 out = lift * plane.normal,
-             stop = std::max(0.0, -spheres_.velocity(place).dot(plane.normal)) * plane.normal;
+  const Vec3 out = lift * plane.normal;
+  Vec3 velocity = spheres_.velocity(place);
+  velocity += std::max(0.0, -velocity.dot(plane.normal)) * plane.normal;
+  // What that lifts it by it pays for, as far as it can.
+  const double squared = velocity.squaredNorm(), price = -2.0 * settings_.gravity.dot(out);
+  if (price > 0.0 && squared > 0.0) velocity *= std::sqrt(std::max(0.0, 1.0 - price / squared));
   spheres_.x[i] += out.x(), spheres_.y[i] += out.y(), spheres_.z[i] += out.z();
-  spheres_.vx[i] += stop.x(), spheres_.vy[i] += stop.y(), spheres_.vz[i] += stop.z();
+  spheres_.vx[i] = velocity.x(), spheres_.vy[i] = velocity.y(), spheres_.vz[i] = velocity.z();
 }
 
 // Its hull, but for what contacts undo themselves.
