@@ -150,13 +150,13 @@ void TablesLevel::lift_out(std::int64_t place, const HalfSpace& plane, double li
   spheres_.vx[i] = velocity.x(), spheres_.vy[i] = velocity.y(), spheres_.vz[i] = velocity.z();
 }
 
-// Its hull, but for what contacts undo themselves.
+// Its hull, but for what contacts undo themselves. What somebody brought from another rung goes slowly.
 void TablesLevel::keep_above_planes(std::int64_t begin, std::int64_t end) {
   constexpr double kDeepest = 0.1;  // over R
   if (!constants_.hulls) return;
   for (const HalfSpace& plane : ground_.planes())
     for (std::int64_t i = begin; i < end; ++i) {
-      if (!step_.touches(i)) continue;
+      if (!step_.touches(i) || spheres_.eased[std::size_t(i)] != 0) continue;
       const double radius = double(kinds_.radius[spheres_.kind[std::size_t(i)]]),
                    height = plane.height_of(spheres_.position(i));
       if (height >= (1.0 - kDeepest) * radius) continue;
