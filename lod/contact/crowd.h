@@ -88,8 +88,7 @@ class Crowd {
   struct Insider {
     std::int32_t body = 0;
     Vec3 from = Vec3::Zero();
-    double asked = 0.0;   ///< m: of both
-    bool uneven = false;  ///< the other weighs many times as much, or as little
+    double asked = 0.0;  ///< m: of both
   };
 
   void gather(const ContactScene& scene, const CrowdTouch& touch);

@@ -189,8 +189,7 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
           scene.body(p).eased = kEasedTime;  // for as long as there is some
         if (inside && p.is_statistical())
           insiders_.push_back({index, scene.position(p) - shift_of(index),
-                               touch.parting * push_out_overlap(point.gap, radius),
-                               std::max(first, second) >= kUnevenMasses * std::min(first, second)});
+                               touch.parting * push_out_overlap(point.gap, radius)});
       }
       const double parting =
           (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
@@ -276,8 +275,8 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
 }
 
 // Who is being moved out of another is not at rest, though it has no velocity. But a pebble between a boulder
-// and the ground is not moved, being moved back, nor is the boulder by a share of its lightness: they stay as
-// they are.
+// and the ground is moved back, the boulder by a share of its lightness alone, and a leg in a plate both
+// ways: they stay as they are.
 void Crowd::keep_insiders_awake(const ContactScene& scene) {
   constexpr double kStuck = 0.05;
   const auto body_of = [&](const Insider& i) -> StatisticalBody& {

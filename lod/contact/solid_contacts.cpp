@@ -95,9 +95,11 @@ void find_ground_near(const MetGround& ground, const Vec3& center, double reach,
       const PlacedSolid& placed = near[i];
       if (!nearest[i] || std::abs(nearest[i]->height) >= reach) continue;
       any = true;
-      const bool may_lie_on = hull && placed.solid->surface && nearest[i]->height <= hull->shape->radius &&
-                              is_small_beside(*placed.solid->surface, hull->shape->radius);
-      if (seams == Seams::left_out && nearest[i]->at_edge && !may_lie_on) {
+      const auto may_lie_on = [&] {
+        return hull && placed.solid->surface && nearest[i]->height <= hull->shape->radius &&
+               is_small_beside(*placed.solid->surface, hull->shape->radius);
+      };
+      if (seams == Seams::left_out && nearest[i]->at_edge && !may_lie_on()) {
         if (nearest[i]->beyond) {
           if (!left_out || nearest[i]->height < nearest[*left_out]->height) left_out = i;
           continue;
