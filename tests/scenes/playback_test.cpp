@@ -7,7 +7,7 @@
 #include "scenes/runner.h"
 #include "tests/scenes/scene_fixture.h"
 
-namespace lodestone {
+namespace lodestone::playback_test {
 namespace {
 
 // Two of three bodies full, which need no signature.
@@ -132,4 +132,4 @@ output: {every_n_steps: 1}
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::playback_test

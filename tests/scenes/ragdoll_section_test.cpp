@@ -2,7 +2,7 @@
 #include "scenes/runner.h"
 #include "tests/scenes/scene_fixture.h"
 
-namespace lodestone {
+namespace lodestone::ragdoll_section_test {
 namespace {
 
 using Joints = SceneFixture;
@@ -117,4 +117,4 @@ TEST_F(Joints, Errors) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::ragdoll_section_test

@@ -8,7 +8,7 @@
 #include "tests/scenes/scene_fixture.h"
 #include "tools/memory.h"
 
-namespace lodestone {
+namespace lodestone::runner_test {
 namespace {
 
 // Balls and boxes at the full level need no signature, so these runs are quick.
@@ -253,4 +253,4 @@ TEST_F(Runner, StopsAfterAStep) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::runner_test

@@ -5,7 +5,7 @@
 
 #include "tests/scenes/scene_fixture.h"
 
-namespace lodestone {
+namespace lodestone::scene_file_test {
 namespace {
 
 using SceneFile = SceneFixture;
@@ -484,4 +484,4 @@ TEST_F(SceneFile, LinksAndMeshPaths) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::scene_file_test

@@ -4,7 +4,7 @@
 
 #include "tests/scenes/scene_fixture.h"
 
-namespace lodestone {
+namespace lodestone::shape_source_test {
 namespace {
 
 using ShapeSource = SceneFixture;
@@ -53,4 +53,4 @@ TEST_F(ShapeSource, SimplifiesAndScales) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::shape_source_test

@@ -15,7 +15,7 @@
 #include "signature/measure/measure.h"
 #include "tests/message_of.h"
 
-namespace lodestone {
+namespace lodestone::shipped_scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -203,4 +203,4 @@ TEST(ShippedScenes, ArmadilloSaysWhereToGetTheMesh) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::shipped_scenes_test

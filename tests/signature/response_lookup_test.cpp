@@ -9,7 +9,7 @@
 #include "reference/shape.h"
 #include "signature/measure/measure.h"
 
-namespace lodestone {
+namespace lodestone::response_lookup_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi, kNan = std::numeric_limits<double>::quiet_NaN();
@@ -190,4 +190,4 @@ TEST(ResponseDraws, NoneMovesIntoThePlane) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::response_lookup_test

@@ -4,7 +4,7 @@
 
 #include "reference/random.h"
 
-namespace lodestone {
+namespace lodestone::settling_clips_test {
 namespace {
 
 constexpr int kClips = 600;
@@ -86,4 +86,4 @@ TEST(SettlingClips, BetweenFramesPosesAreBlended) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::settling_clips_test

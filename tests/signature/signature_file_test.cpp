@@ -15,7 +15,7 @@
 #include "signature/signature_view.h"
 #include "tests/temporary_folder.h"
 
-namespace lodestone {
+namespace lodestone::signature_file_test {
 namespace {
 
 SignatureSettings quick_settings() {
@@ -261,4 +261,4 @@ TEST(SignatureFile, AnotherMeshIsNamed) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::signature_file_test

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace lodestone {
+namespace lodestone::program_test {
 namespace {
 
 struct Ended {
@@ -156,4 +156,4 @@ TEST(Program, BenchHardCasesPrintsOneJsonObjectAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::program_test

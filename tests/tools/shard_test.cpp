@@ -3,7 +3,7 @@
 
 #include "tests/tools/cli_fixture.h"
 
-namespace lodestone {
+namespace lodestone::shard_test {
 namespace {
 
 using testing::Ended;
@@ -92,4 +92,4 @@ TEST_F(Shard, SharesThatAreNoneAreWrongUsage) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::shard_test

@@ -12,7 +12,7 @@
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/prism.h"
 
-namespace lodestone {
+namespace lodestone::odd_geoms_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -181,4 +181,4 @@ TEST_F(OddGeoms, OneThatIsNoNumberIsLeftOutAndOthersNeverNotice) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::odd_geoms_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace lodestone {
+namespace lodestone::contact_memory_test {
 namespace {
 
 // Two pairs, the first with two manifolds, and one pair with the ground.
@@ -185,4 +185,4 @@ TEST(ContactMemory, OfIslandsIsTheirLastSubstepThenTheLastStep) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::contact_memory_test

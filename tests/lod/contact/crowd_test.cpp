@@ -4,7 +4,7 @@
 
 #include "tests/lod/contact/crowd_scene.h"
 
-namespace lodestone {
+namespace lodestone::crowd_test {
 namespace {
 
 using testing::at;
@@ -141,4 +141,4 @@ TEST(CrowdOfBoxes, AKinematicBodyIsMovedByNothing) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::crowd_test

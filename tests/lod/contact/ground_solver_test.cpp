@@ -8,7 +8,7 @@
 #include "reference/shape.h"
 #include "tests/lod/contact/plain_solver.h"
 
-namespace lodestone {
+namespace lodestone::ground_solver_test {
 namespace {
 
 constexpr double kStep = 1.0 / 60;
@@ -83,4 +83,4 @@ TEST(GroundSolver, AlongChordsAContactKeepsItsPlace) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::ground_solver_test

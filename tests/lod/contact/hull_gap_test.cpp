@@ -5,7 +5,7 @@
 #include "reference/hull/hull_overlap.h"
 #include "reference/random.h"
 
-namespace lodestone {
+namespace lodestone::hull_gap_test {
 namespace {
 
 Shape random_shape(RandomStream& random, int corners) {
@@ -131,4 +131,4 @@ TEST_F(HullGapOfPairs, WhatIsEnoughHangsOnWhichWayTheyGo) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::hull_gap_test

@@ -4,7 +4,7 @@
 #include "lod/full/full_level.h"
 #include "tests/reference/ode/ode_fixture.h"
 
-namespace lodestone {
+namespace lodestone::full_level_filter_test {
 namespace {
 
 using namespace testing;
@@ -26,4 +26,4 @@ TEST(FullLevel, AsksTheFilterByTheManagersIndices) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::full_level_filter_test

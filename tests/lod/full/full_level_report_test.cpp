@@ -6,7 +6,7 @@
 
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::full_level_report_test {
 namespace {
 
 using namespace testing;
@@ -66,4 +66,4 @@ TEST(FullLevelReport, CountsUnevenContactsInALargePile) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::full_level_report_test

@@ -5,7 +5,7 @@
 
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::plates_test {
 namespace {
 
 using namespace testing;
@@ -87,4 +87,4 @@ TEST(Plates, SleepersElsewhereKeepStill) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::plates_test

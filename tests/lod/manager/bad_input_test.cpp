@@ -10,7 +10,7 @@
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/message_of.h"
 
-namespace lodestone {
+namespace lodestone::bad_input_test {
 namespace {
 
 using namespace testing;
@@ -321,4 +321,4 @@ TEST(AssertionDeathTest, HandlerIsCalledBeforeTheAbort) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::bad_input_test

@@ -8,7 +8,7 @@
 #include "tests/allocations.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::contact_events_test {
 namespace {
 
 using namespace testing;
@@ -197,4 +197,4 @@ TEST(ContactEvents, OfBodiesAtTablesAreOnBothBodies) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::contact_events_test

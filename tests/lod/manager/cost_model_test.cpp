@@ -8,7 +8,7 @@
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::cost_model_test {
 namespace {
 
 using namespace testing;
@@ -215,4 +215,4 @@ TEST(BudgetPolicy, TheReportTellsWhatAStepCost) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::cost_model_test

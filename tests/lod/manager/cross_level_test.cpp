@@ -7,7 +7,7 @@
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::cross_level_test {
 namespace {
 
 using namespace testing;
@@ -286,4 +286,4 @@ TEST(CrossLevel, T6PromotionInsideAPileDisturbsNobody) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::cross_level_test

@@ -8,7 +8,7 @@
 
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::eased_bodies_test {
 namespace {
 
 using namespace testing;
@@ -70,4 +70,4 @@ TEST(EasedBodies, GroundThatMovesTakesItAlong) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::eased_bodies_test

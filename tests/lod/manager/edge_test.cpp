@@ -8,7 +8,7 @@
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::edge_test {
 namespace {
 
 constexpr int kRows = 14;
@@ -227,4 +227,4 @@ TEST(Edge, ABallOnAGentleHillTopDoesNotFallThrough) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::edge_test

@@ -11,7 +11,7 @@
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::far_bodies_test {
 namespace {
 
 using testing::add;
@@ -164,4 +164,4 @@ TEST(LevelsOfSleepers, NobodyIsLookedAtWhileNothingChanges) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::far_bodies_test

@@ -19,7 +19,7 @@ struct SavedWorld {
     RandomStream random(91, seed, 0);
     for (int i = 0; i < 14; ++i) {
       BodyDefinition definition{
-          .shape = i % 3 ? box : ball,
+          .shape = shapes()[i % 3 ? 0 : 1],
           .state = testing::at({0.3 * (i % 4), 0.3 * (i / 4), 0.3 + 0.1 * i}, random.direction(),
                                random.direction(), random.orientation())};
       if (i % 5 == 0) definition.level = LevelChoice::full;
@@ -31,12 +31,15 @@ struct SavedWorld {
   void step(int steps) {
     for (int i = 0; i < steps; ++i) manager.step(kFrame);
   }
-  static inline const auto box = box_shape({0.2, 0.25, 0.3}), ball = sphere_shape(0.12);
+  /// A box and a ball.
+  static const std::vector<std::shared_ptr<const Shape>>& shapes() {
+    static const std::vector<std::shared_ptr<const Shape>> shapes = {box_shape({0.2, 0.25, 0.3}),
+                                                                     sphere_shape(0.12)};
+    return shapes;
+  }
   Manager manager;
   std::vector<BodyId> bodies;
 };
-
-const std::vector<std::shared_ptr<const Shape>> kShapes = {SavedWorld::box, SavedWorld::ball};
 
 // Taken at any time, read by a manager that is new, has other bodies, or goes back in time.
 TEST(ManagerSnapshot, WhoeverReadsItGoesOnToTheBit) {
@@ -56,7 +59,7 @@ TEST(ManagerSnapshot, WhoeverReadsItGoesOnToTheBit) {
         again.step(taken_after + 60);
         return again.manager.state_hash();
       }();
-      reader->manager.restore(snapshot, kShapes);
+      reader->manager.restore(snapshot, SavedWorld::shapes());
       reader->step(60);
       EXPECT_EQ(reader->manager.state_hash(), expected) << taken_after
                                                         << (reader == &empty   ? " empty"
@@ -74,7 +77,7 @@ TEST(ManagerSnapshot, OneFromBeforeTheFirstFullBodyIsGoneBackTo) {
     const int layer = i / 16;
     const Vec3 position(0.205 * (i % 4) + 0.1 * (layer % 2), 0.255 * (i / 4 % 4) + 0.12 * (layer % 2),
                         0.152 + 0.305 * layer);
-    bodies.push_back(add(manager, SavedWorld::box, testing::at(position), LevelChoice::support));
+    bodies.push_back(add(manager, SavedWorld::shapes()[0], testing::at(position), LevelChoice::support));
   }
   run(manager, 0.1);
   const Bytes snapshot = manager.snapshot();
@@ -96,7 +99,7 @@ TEST(ManagerSnapshot, ThreadsOfTheReaderDoNotMatter) {
   ManagerSettings threaded = unmeasured({.policy = DistancePolicy{2.0}});
   threaded.threads = 3;
   SavedWorld reader(threaded);
-  reader.manager.restore(writer.manager.snapshot(), kShapes);
+  reader.manager.restore(writer.manager.snapshot(), SavedWorld::shapes());
   writer.step(40), reader.step(40);
   EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash());
 }
@@ -108,7 +111,7 @@ TEST(ManagerSnapshot, IdsAreThoseOfTheSnapshot) {
   world.step(5);
   const Bytes snapshot = world.manager.snapshot();
   world.manager.remove_body(world.bodies[4]);
-  const BodyId late = world.manager.add_body({.shape = SavedWorld::box, .state = testing::at({9, 9, 9})});
+  const BodyId late = world.manager.add_body({.shape = SavedWorld::shapes()[0], .state = testing::at({9, 9, 9})});
   world.step(3);
   world.manager.restore(snapshot);
   EXPECT_TRUE(world.manager.valid(world.bodies[4]));
@@ -124,7 +127,7 @@ TEST(ManagerSnapshot, DamageAndOtherSettingsAreRefusedAndChangeNothing) {
   const Bytes sound = writer.manager.snapshot();
   const std::uint64_t before = reader.manager.state_hash();
   const auto refused = [&](const Bytes& bytes) {
-    const bool thrown = message_of([&] { reader.manager.restore(bytes, kShapes); }) != kNothingThrown;
+    const bool thrown = message_of([&] { reader.manager.restore(bytes, SavedWorld::shapes()); }) != kNothingThrown;
     EXPECT_EQ(reader.manager.state_hash(), before);
     return thrown;
   };
@@ -150,7 +153,7 @@ TEST(ManagerSnapshot, OfAnotherSceneIsRefused) {
   const auto fault = [&](ManagerSettings settings, const auto& change) {
     Manager other = on_floor(settings);
     change(other);
-    return message_of([&] { other.restore(snapshot, kShapes); });
+    return message_of([&] { other.restore(snapshot, SavedWorld::shapes()); });
   };
   const ManagerSettings plain = unmeasured({.policy = DistancePolicy{2.0}});
   EXPECT_EQ(fault(plain, [](Manager&) {}), kNothingThrown);
@@ -181,7 +184,7 @@ TEST(ManagerSnapshot, GravityIsPartOfIt) {
   writer.manager.set_gravity({0, 0, -3});
   writer.step(5);
   for (SavedWorld* world : {&writer, &reader}) {
-    world->manager.restore(snapshot, kShapes);
+    world->manager.restore(snapshot, SavedWorld::shapes());
     EXPECT_EQ(world->manager.gravity(), Vec3(0, 1, -7));
     EXPECT_EQ(go_on(*world), expected);
   }
@@ -194,12 +197,12 @@ TEST(ManagerSnapshot, WhatWaitsIsPartOfIt) {
   world.step(5);
   world.manager.add_force(world.bodies[1], {50, 0, 100});
   world.manager.sleep(world.bodies[2]);
-  world.manager.add_body({.shape = SavedWorld::ball, .state = testing::at({5, 5, 1}, {0, 0, 3})});
+  world.manager.add_body({.shape = SavedWorld::shapes()[1], .state = testing::at({5, 5, 1}, {0, 0, 3})});
   const Bytes snapshot = world.manager.snapshot();
   world.step(20);
   const std::uint64_t expected = world.manager.state_hash();
   SavedWorld reader;
-  reader.manager.restore(snapshot, kShapes);
+  reader.manager.restore(snapshot, SavedWorld::shapes());
   reader.step(20);
   EXPECT_EQ(reader.manager.state_hash(), expected);
 }
@@ -217,7 +220,7 @@ struct SavedCallersWorld {
     dBodySetKinematic(slide);
     for (int i = 0; i < 10; ++i) {
       RandomStream random(17, std::uint32_t(i), 0);
-      manager.add_body({.shape = SavedWorld::box,
+      manager.add_body({.shape = SavedWorld::shapes()[0],
                         .state = testing::at({0.2 * (i % 3) - 0.2, 0.1 * (i % 2), 0.3 + 0.3 * i}, {0, 0, 0},
                                              {0, 0, 0}, random.orientation()),
                         .level = i % 4 == 1 ? LevelChoice::full : LevelChoice::support});
@@ -277,7 +280,7 @@ TEST(ManagerSnapshot, WhatTouchesACallersBodyGoesOnToTheBit) {
         dBodySetGravityMode(body, 0);
       }
       for (int i = 0; i < 3; ++i)
-        row.push_back(manager.add_body({.shape = SavedWorld::box,
+        row.push_back(manager.add_body({.shape = SavedWorld::shapes()[0],
                                         .state = testing::at({0.45 * i, 0, 0.2}),
                                         .level = LevelChoice::support}));
     }

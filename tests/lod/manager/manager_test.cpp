@@ -12,7 +12,7 @@
 #include "signature/measure/measure.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::manager_test {
 namespace {
 
 using namespace testing;
@@ -427,4 +427,4 @@ TEST(Manager, AFastFullBallDoesNotGoThroughThePlane) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::manager_test

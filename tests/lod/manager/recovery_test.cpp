@@ -10,7 +10,7 @@
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/message_of.h"
 
-namespace lodestone {
+namespace lodestone::recovery_test {
 namespace {
 
 using namespace testing;
@@ -202,4 +202,4 @@ TEST(Recovery, WhatACallersStepGaveUpOnIsSolvedInTheNextOnes) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::recovery_test

@@ -9,7 +9,7 @@
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::step_changes_test {
 namespace {
 
 using namespace testing;
@@ -161,4 +161,4 @@ TEST_F(LivelyScene, RaysMeetTheBodiesWhereTheyAreNow) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::step_changes_test

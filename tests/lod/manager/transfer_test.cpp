@@ -9,7 +9,7 @@
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::transfer_test {
 namespace {
 
 using namespace testing;
@@ -370,4 +370,4 @@ TEST(Transfer, T12ChangeAtTheFrameOfAnImpact) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::transfer_test

@@ -5,7 +5,7 @@
 
 #include "reference/random.h"
 
-namespace lodestone {
+namespace lodestone::triangle_tree_test {
 namespace {
 
 const Vec3 kSides{0.2, 0.3, 0.4};
@@ -111,4 +111,4 @@ TEST(TriangleTree, BoxesAgainstPointsOfBoth) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::triangle_tree_test

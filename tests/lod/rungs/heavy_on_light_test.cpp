@@ -5,7 +5,7 @@
 
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::heavy_on_light_test {
 namespace {
 
 using namespace testing;
@@ -107,4 +107,4 @@ TEST(HeavyOnLight, APebbleThatIsCaughtUnderABoulderSleepsAndSoDoesThat) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::heavy_on_light_test

@@ -20,7 +20,7 @@ struct Crowd3 {
   explicit Crowd3(const StatisticalSettings& given = {}) : settings(given) {}
 
   void add(Rung rung, std::uint32_t owner, const RigidState& state, bool asleep) {
-    const auto& shape = owner % 3 ? testing::box() : large_;
+    const auto& shape = owner % 3 ? testing::box() : large();
     places.resize(std::max<std::size_t>(places.size(), owner + 1));
     places[owner] = {rung, state, shape->radius, asleep};
     if (rung == Rung::full) {
@@ -61,6 +61,15 @@ struct Crowd3 {
     return pairs;
   }
 
+  static Kinds& kinds_of_all() {  // what they are made of takes long to make
+    static Kinds kinds{true};
+    return kinds;
+  }
+  static const std::shared_ptr<const Shape>& large() {
+    static const auto shape = std::make_shared<const Shape>(scale_shape(*testing::box(), 1.7));
+    return shape;
+  }
+
   struct Place {
     Rung rung;
     RigidState state;
@@ -70,7 +79,7 @@ struct Crowd3 {
   std::vector<Place> places;  // by owner
   MaterialTable materials;
   Ground ground;
-  static inline Kinds kinds{true};  // what they are made of takes long to make
+  Kinds& kinds = kinds_of_all();
   Sleepers sleepers;
   StatisticalSettings settings;
   JobRunner jobs = make_job_runner(1);
@@ -78,8 +87,6 @@ struct Crowd3 {
   TablesLevel tables{settings, ground, materials, kinds, sleepers, jobs};
   NearSearch search{settings, sleepers, jobs};
   std::vector<FullNeighbor> full;
-  static inline const std::shared_ptr<const Shape> large_ =
-      std::make_shared<const Shape>(scale_shape(*testing::box(), 1.7));
 };
 
 /// m: how near the bounding spheres of two come within a step, at constant velocities.

@@ -6,7 +6,7 @@
 
 #include "reference/random.h"
 
-namespace lodestone {
+namespace lodestone::hull_flight_test {
 namespace {
 
 constexpr double kGravity = 9.81, kStep = 1.0 / 60;
@@ -105,4 +105,4 @@ TEST_F(HullFlightOfBox, WhatLiesInTheGroundFromTheStartStrikesAtOnce) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::hull_flight_test

@@ -32,7 +32,7 @@ struct OneSupportLevel {
     }
     level.end_step();
   }
-  static inline const auto box = testing::box_shape({0.2, 0.3, 0.4});
+  const std::shared_ptr<const Shape> box = testing::box_shape({0.2, 0.3, 0.4});
   MaterialTable materials;
   Ground ground;
   Kinds kinds;
@@ -202,7 +202,7 @@ TEST(SupportLevel, AnArchiveGoesOnAlike) {
     one.add(i, testing::at({2.0 * i, 0, 0.5}, random.direction(), random.direction(), random.orientation()));
   for (int i = 0; i < 20; ++i) one.step();
   for (std::uint32_t i = 0; i < 6; ++i)
-    other.kinds.take(StatisticalModel::support, OneSupportLevel::box, 0, nullptr);
+    other.kinds.take(StatisticalModel::support, other.box, 0, nullptr);
   StateArchive out;
   one.level.archive(out), one.sleepers.archive(out);
   StateArchive in(out.bytes(), {});

@@ -10,7 +10,7 @@
 #include "lod/statistical/flight.h"
 #include "reference/random.h"
 
-namespace lodestone {
+namespace lodestone::support_model_test {
 namespace {
 
 constexpr double kGravity = 9.81, kStep = 1.0 / 60, kSide = 0.2;
@@ -196,4 +196,4 @@ TEST_F(SupportModel, WhatIsLoggedOfASlidingBoxIsItsWeight) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::support_model_test

@@ -10,7 +10,7 @@
 #include "signature/settling_clips.h"
 #include "tests/lod/rungs/rung_fixture.h"
 
-namespace lodestone {
+namespace lodestone::hull_stand_test {
 namespace {
 
 using testing::box, testing::box_signature, testing::OneRung;
@@ -188,4 +188,4 @@ TEST_F(HullStand, ABodyThatIsStruckOrRemovedLeavesItsClip) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::hull_stand_test

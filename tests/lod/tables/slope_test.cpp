@@ -7,7 +7,7 @@
 #include "reference/random.h"
 #include "tests/lod/rungs/rung_fixture.h"
 
-namespace lodestone {
+namespace lodestone::slope_test {
 namespace {
 
 using testing::box, testing::box_signature;
@@ -241,4 +241,4 @@ TEST_F(Slope, EveryInstructionSetGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::slope_test

@@ -12,7 +12,7 @@
 #include "tests/allocations.h"
 #include "tests/lod/rungs/rung_fixture.h"
 
-namespace lodestone {
+namespace lodestone::tables_level_test {
 namespace {
 
 using testing::box, testing::box_signature;
@@ -461,4 +461,4 @@ TEST_F(SphereLevel, FarFromTheOriginBodiesFallAsHere) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::tables_level_test

@@ -10,7 +10,7 @@
 #include "reference/random.h"
 #include "reference/shape.h"
 
-namespace lodestone {
+namespace lodestone::hull_test {
 namespace {
 
 std::vector<Vec3> random_points(int count, std::uint64_t seed) {
@@ -221,4 +221,4 @@ TEST(SupportMap, SurvivesDirectionsThatPointNowhere) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::hull_test

@@ -11,7 +11,7 @@
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
-namespace lodestone {
+namespace lodestone::bad_mesh_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -187,4 +187,4 @@ TEST(LongBadMeshFile, AMillionFacesAreTaken) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::bad_mesh_files_test

@@ -11,7 +11,7 @@
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
-namespace lodestone {
+namespace lodestone::gltf_mesh_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -217,4 +217,4 @@ TEST_F(GltfMesh, WhoseTextIsNoJsonIsRefused) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::gltf_mesh_test

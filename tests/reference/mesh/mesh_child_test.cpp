@@ -15,7 +15,7 @@
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
-namespace lodestone {
+namespace lodestone::mesh_child_test {
 namespace {
 
 std::string error_of(const std::function<Mesh()>& read, const ChildLimits& limits = {},
@@ -93,4 +93,4 @@ TEST(MeshChild, ReadsFilesOfStrangers) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::mesh_child_test

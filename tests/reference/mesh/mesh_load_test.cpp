@@ -13,7 +13,7 @@
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
-namespace lodestone {
+namespace lodestone::mesh_load_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -284,4 +284,4 @@ TEST_F(MeshFile, CutShortIsNeverReadPastItsEnd) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::mesh_load_test

@@ -19,7 +19,7 @@ struct ArchivedScene {
     RandomStream random(9, 0, 0);
     for (int i = 0; i < 8; ++i)
       bodies.push_back(
-          world.add_body({.shape = i % 2 ? box : ball,
+          world.add_body({.shape = i % 2 ? box() : ball(),
                           .mass = 1.0 + i,
                           .state = at({0.15 * i, 0.1 * (i % 3), 0.3 + 0.2 * i}, random.direction(),
                                       random.direction(), random.orientation())}));
@@ -34,8 +34,14 @@ struct ArchivedScene {
     for (const OdeBodyId body : bodies) states.push_back(world.state(body));
     return states;
   }
-  static inline const std::shared_ptr<const Shape> box = box_shape({0.2, 0.3, 0.25}),
-                                                   ball = sphere_shape(0.12);
+  static const std::shared_ptr<const Shape>& box() {
+    static const auto shape = box_shape({0.2, 0.3, 0.25});
+    return shape;
+  }
+  static const std::shared_ptr<const Shape>& ball() {
+    static const auto shape = sphere_shape(0.12);
+    return shape;
+  }
   MaterialTable materials = material(0.4, 0.5);
   OdeWorld world;
   std::vector<OdeBodyId> bodies;
@@ -58,7 +64,7 @@ TEST(BodiesArchive, AReaderGoesOnAsTheWriter) {
       writer.fill();
       writer.run(40);
       if (reader_has == 1) reader.fill(), reader.run(7);
-      if (reader_has == 2) reader.world.add_body({.shape = ArchivedScene::ball, .state = at({9, 9, 9})});
+      if (reader_has == 2) reader.world.add_body({.shape = ArchivedScene::ball(), .state = at({9, 9, 9})});
       StateArchive out;
       writer.world.archive(out);
       StateArchive in(out.bytes(), out.shapes());
@@ -80,14 +86,14 @@ TEST(BodiesArchive, BodiesOfTheSameIdsThatAreOthersAreNotKept) {
       const bool other = scene == &reader;
       scene->materials.add({.restitution = 0.9, .friction = 0.0});
       OdeBodyDefinition definition{
-          .shape = ArchivedScene::box, .mass = 2.0, .state = at({0, 0, 0.6}, {1, 0, 0})};
-      if (other && differs == 0) definition.shape = ArchivedScene::ball;
+          .shape = ArchivedScene::box(), .mass = 2.0, .state = at({0, 0, 0.6}, {1, 0, 0})};
+      if (other && differs == 0) definition.shape = ArchivedScene::ball();
       if (other && differs == 1) definition.mass = 9.0;
       if (other && differs == 2) definition.material = 1;
       if (other && differs == 3) definition.geometry = OdeGeometry::sphere;
       scene->bodies.push_back(scene->world.add_body(definition));
       scene->bodies.push_back(
-          scene->world.add_body({.shape = ArchivedScene::box, .mass = 1.0, .state = at({0, 0, 0.2})}));
+          scene->world.add_body({.shape = ArchivedScene::box(), .mass = 1.0, .state = at({0, 0, 0.2})}));
     }
     ASSERT_EQ(writer.bodies[0], reader.bodies[0]);
     StateArchive out;
@@ -116,7 +122,7 @@ TEST(BodiesArchive, ABodyOnAJointIsNotMadeAnew) {
   writer.fill();
   StateArchive out;
   writer.world.archive(out);
-  const OdeBodyId held = reader.world.add_body({.shape = ArchivedScene::ball, .state = at({0, 0, 5})});
+  const OdeBodyId held = reader.world.add_body({.shape = ArchivedScene::ball(), .state = at({0, 0, 5})});
   const dJointID joint = dJointCreateBall(reader.world.ode_world(), nullptr);
   dJointAttach(joint, reader.world.ode_body(held), nullptr);
   StateArchive in(out.bytes(), out.shapes());

@@ -8,7 +8,7 @@
 #include "reference/random.h"
 #include "tests/reference/ode/ode_fixture.h"
 
-namespace lodestone {
+namespace lodestone::height_field_test {
 namespace {
 
 using namespace testing;
@@ -107,4 +107,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, OnHeightField,
                          [](const auto& shape) { return std::string(shape.param); });
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::height_field_test

@@ -6,7 +6,7 @@
 
 #include "tests/reference/ode/ode_fixture.h"
 
-namespace lodestone {
+namespace lodestone::timed_contacts_test {
 namespace {
 
 using namespace testing;
@@ -89,4 +89,4 @@ TEST(TimedContacts, ALateImpulseMovesTheBodyForTheRestOfTheStepOnly) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::timed_contacts_test

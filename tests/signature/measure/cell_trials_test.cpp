@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace lodestone {
+namespace lodestone::cell_trials_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -103,4 +103,4 @@ TEST(CellTrials, HeldOutConditionsCoverTheTable) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::cell_trials_test

@@ -12,7 +12,7 @@
 #include "signature/measure/collision_vectors.h"
 #include "signature/measure/response_grid.h"
 
-namespace lodestone {
+namespace lodestone::signature_from_trials_test {
 namespace {
 
 SignatureSettings quick_settings() {
@@ -170,4 +170,4 @@ TEST(MeasuredTrials, WhatIsWrongIsNamedWithItsLine) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::signature_from_trials_test

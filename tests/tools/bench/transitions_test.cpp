@@ -6,7 +6,7 @@
 #include "tools/bench/rungs_bench.h"
 #include "tools/bench/transitions_bench.h"
 
-namespace lodestone {
+namespace lodestone::transitions_test {
 namespace {
 
 // Crates fall beside each other; the camera comes near.
@@ -101,4 +101,4 @@ TEST_F(TransitionsCommand, PrintsJsonAndSaysWhatIsSeen) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::transitions_test

@@ -12,7 +12,7 @@
 #include "tests/tools/methods/box_job.h"
 #include "tools/compare/drop_report.h"
 
-namespace lodestone {
+namespace lodestone::drop_comparison_test {
 namespace {
 
 using testing::box_job;
@@ -136,4 +136,4 @@ TEST(DropComparison, WithoutRestitutionTheTruthBouncesByItsErrorReduction) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::drop_comparison_test

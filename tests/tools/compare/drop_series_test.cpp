@@ -8,7 +8,7 @@
 #include "reference/mass_bounds.h"
 #include "tests/tools/methods/box_job.h"
 
-namespace lodestone {
+namespace lodestone::drop_series_test {
 namespace {
 
 using testing::box_job;
@@ -89,4 +89,4 @@ TEST(DropSeries, TheTruthOfASmallBodyTakesShorterSteps) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::drop_series_test

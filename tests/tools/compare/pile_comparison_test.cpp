@@ -11,7 +11,7 @@
 #include "tests/tools/methods/box_job.h"
 #include "tools/compare/pile_report.h"
 
-namespace lodestone {
+namespace lodestone::pile_comparison_test {
 namespace {
 
 using testing::box_job;
@@ -147,4 +147,4 @@ TEST(PileReport, CsvHasALineForEachPileAndForEachSample) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::pile_comparison_test

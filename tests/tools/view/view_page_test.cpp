@@ -6,7 +6,7 @@
 #include "tests/scenes/scene_fixture.h"
 #include "tests/tools/browser.h"
 
-namespace lodestone {
+namespace lodestone::view_page_test {
 namespace {
 
 using testing::has_browser;
@@ -121,4 +121,4 @@ TEST_F(ViewPage, BlindTestCountsWithAnExactInterval) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::view_page_test
