@@ -277,8 +277,14 @@ void find_planes_to_hull(const PairBody& body, const PlacedSolid& placed, const 
   }
   const Nearest best = nearest.at_edge ? find_farthest_apart(body, placed, nearest) : nearest;
   const Vec3 along = placed.orientation * best.normal, arm = find_farthest_arm(body, -along);
-  if (best.height + arm.dot(along) >= -most || is_over_face(placed, best.normal, body.position + arm))
+  const Vec3 lowest = body.position + arm;
+  if (best.height + arm.dot(along) >= -most || is_over_face(placed, best.normal, lowest))
     return found.push_back(best);
+  // In a hollow it lies in a neighbour, which is no lower than this one's plane.
+  if (const auto& t = placed.solid->surface; t && !best.at_edge) {
+    const Vec3 at = in_part(placed, lowest);
+    if (!t->ridge[nearest_edge(*t, at)]) return found.push_back(best);
+  }
   thread_local HullContactSearch search;
   meet_solid(body, placed, most, search);
   for (const PairContact& contact : search.contacts)

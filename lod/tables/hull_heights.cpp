@@ -6,12 +6,13 @@
 #include <numbers>
 #include <vector>
 
+#include "reference/mesh/mass_properties.h"
+
 namespace lodestone {
 namespace {
 
-// Of the part of its hull that a concave shape fills, the power by which others meet it as smaller: so that
-// piles of L-shapes and bunnies are as high as ODE's.
-constexpr double kHollow = 1.0 / 3.0;
+// Of its hull's size, the least as which others meet a concave shape, whatever of its hull it fills.
+constexpr double kLeastSolid = 0.84;
 constexpr double kRolling = 0.2;  // that piles come to rest when ODE's do
 
 Vec3 direction_at(int column, int row) {
@@ -34,11 +35,15 @@ lane::Row find_way_out(const Hull& hull, const Vec3& direction) {
   return {float(out.x()), float(out.y()), float(out.z()), float(distance)};
 }
 
-double volume_of(const Hull& hull) {
-  double six_volumes = 0.0;
-  for (std::size_t face = 0; face < hull.faces.size(); ++face)
-    six_volumes += hull.area_vector(int(face)).dot(hull.vertices[std::size_t(hull.faces[face][0])]);
-  return six_volumes / 6.0;
+// Over its hull's, the size as which others meet it, who reach into its hollows: that of a solid of its
+// volume, larger where its mass lies farther out than its hull's does, as that of rings and frames. So piles
+// are about as high as those of meshes.
+double find_solid_size(const Shape& shape) {
+  if (shape.sphere_radius || shape.convex) return 1.0;
+  const MassProperties hull = measure_mass_properties({shape.hull.vertices, shape.hull.faces});
+  const double as_volume = std::cbrt(std::min(1.0, shape.volume / hull.volume)),
+               mass_out = std::sqrt(shape.inertia_per_mass.trace() / hull.inertia_per_mass.trace());
+  return std::clamp(as_volume * std::max(1.0, mass_out), kLeastSolid, 1.0);
 }
 
 SupportPatch find_patch_of(const Hull& hull, const Vec3& direction, int start) {
@@ -107,8 +112,7 @@ double find_rolling_lever(const Shape& shape) {
 }
 
 void sample_hull(const Shape& shape, const HullMaps& maps) {
-  const double solid =
-      shape.sphere_radius ? 1.0 : std::pow(std::min(1.0, shape.volume / volume_of(shape.hull)), kHollow);
+  const double solid = find_solid_size(shape);
   int vertex = 0;  // each climb begins where the last one ended
   std::size_t at = 0;
   for (int row = 0; row <= kHullHeightSide; ++row)

@@ -58,7 +58,7 @@ std::int64_t Spheres::add(std::uint32_t new_owner) {
   pose[last] = -1;
   clip[last] = -1;
   since_crowded[last] = 255;
-  tipping_credit[last] = 1.0f;
+  tipping_credit[last] = kWholeCredit;
   slot[last] = std::int32_t(last);
   grow(place_of_slot);
   place_of_slot.back() = std::uint32_t(last);

@@ -20,17 +20,18 @@ enum class HullStand : std::uint8_t {
   rises,  ///< out of the ground that its hull was in when it was a sphere
 };
 
+constexpr std::uint16_t kWholeCredit = 65535;
+
 struct Spheres {
   std::vector<double> x, y, z;       // m
   std::vector<double> vx, vy, vz;    // m/s
   std::vector<double> lx, ly, lz;    // spin: angular momentum over mass, m²/s, world
   std::vector<double> inverse_mass;  // 1/kg
   std::vector<float> qw, qx, qy, qz;
-  std::vector<float> radius;          // m, of the colliding sphere
-  std::vector<float> quiet;           // s below the sleeping threshold
-  std::vector<float> twice_energy;    // J/kg, of its turning at the start of its flight (free_turn.h)
-  std::vector<float> held;            // m/s: what the ground gave in the last step against what presses on it
-  std::vector<float> tipping_credit;  // 0 to 1: of the work that tipping may yet take (tipping.h)
+  std::vector<float> radius;        // m, of the colliding sphere
+  std::vector<float> quiet;         // s below the sleeping threshold
+  std::vector<float> twice_energy;  // J/kg, of its turning at the start of its flight (free_turn.h)
+  std::vector<float> held;          // m/s: what the ground gave in the last step against what presses on it
   std::vector<std::int32_t> slot;
   std::vector<std::uint32_t> owner, events;
   std::vector<std::uint32_t> known_begin;  // of its run of contacts known from the last step
@@ -44,6 +45,8 @@ struct Spheres {
   std::vector<std::int32_t> support_hint;  // hull vertex last found lowest
   std::vector<std::int32_t> clip;          // of the settling clips under way, −1: none
   std::vector<HullStand> on_hull;
+  std::vector<std::uint16_t>
+      tipping_credit;  // over kWholeCredit: of the work that tipping may yet take (tipping.h)
 
   std::vector<std::uint8_t>
       eased;  // 8 ms awake in which overlaps that it brought from another rung are undone slowly (parting.h)
@@ -58,11 +61,10 @@ struct Spheres {
   void each_array(const Visit& visit) {
     visit(x), visit(y), visit(z), visit(vx), visit(vy), visit(vz), visit(lx), visit(ly), visit(lz),
         visit(inverse_mass);
-    visit(qw), visit(qx), visit(qy), visit(qz), visit(radius), visit(quiet), visit(held), visit(twice_energy),
-        visit(tipping_credit);
+    visit(qw), visit(qx), visit(qy), visit(qz), visit(radius), visit(quiet), visit(held), visit(twice_energy);
     visit(slot), visit(owner), visit(events), visit(known_begin), visit(known_count);
     visit(kind), visit(pose), visit(motion), visit(since_crowded), visit(crowded_for), visit(eased);
-    visit(support_hint), visit(clip), visit(on_hull);
+    visit(support_hint), visit(clip), visit(on_hull), visit(tipping_credit);
   }
 
   template <class Visit>

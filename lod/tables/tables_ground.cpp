@@ -36,7 +36,8 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
     const PairBody hull{kind_of(i).shape.get(), center, spheres_.orientation(i)};
     if (!only_planes) find_ground_near(ground_, center, reach, 0.0, near, constants_.hulls ? &hull : nullptr);
     for (const GroundNear& n : near) faces_.push_back(n.plane(center));
-    if (faces_.size() == first) continue;
+    const bool by_hull = alone && !only_planes;
+    if (faces_.size() == first && !by_hull) continue;
     for (std::size_t face = first; face < faces_.size(); ++face) {
       const GroundPart* part = only_planes ? nullptr : near[face - first].part;  // which moves, perhaps
       planes_.add(faces_[face], materials_, kinds_, settings_.gravity,
@@ -44,7 +45,7 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
                   part ? part->pose.angular_velocity : Vec3(Vec3::Zero()));
     }
     const double margin = reach - double(kinds_.radius[spheres_.kind[std::size_t(i)]]);
-    const bool cornered = (alone && !only_planes) || is_cornered(i, near, margin);
+    const bool cornered = by_hull || is_cornered(i, near, margin);
     const bool above = std::ranges::none_of(near, [](const GroundNear& n) { return n.part->moves(); }) &&
                        std::all_of(faces_.begin() + std::ptrdiff_t(first), faces_.end(),
                                    [&](const HalfSpace& face) { return face.height_of(center) >= 0.0; });

@@ -125,6 +125,16 @@ PressingLoad load_of(const Spheres& spheres, const SphereKinds& kinds, const Sph
   return load;
 }
 
+// 0 to 1.
+float credit_of(const Spheres& spheres, std::size_t i) {
+  return float(spheres.tipping_credit[i]) / float(kWholeCredit);
+}
+
+void set_credit(Spheres& spheres, std::size_t i, float credit) {
+  const float within = most(0.0f, least(1.0f, credit));
+  spheres.tipping_credit[i] = std::uint16_t(within * float(kWholeCredit) + 0.5f);
+}
+
 // Its spin turns with it: so its energy stays, where its inertia differs from axis to axis.
 void turn_body(Spheres& spheres, std::size_t i, const Turn& by) {
   const Turn to = product(by, turn_of(spheres, i));
@@ -192,17 +202,16 @@ void tip(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
     const auto kind = std::size_t(spheres.kind[i]);
     if (kinds.tips[kind] <= 0.0f) continue;
     if (!step.touches(at)) {
-      float& credit = spheres.tipping_credit[i];
       const float sinks = most(0.0f, fall_of(spheres, step, constants, i)),
                   falls = kFalls * square_root(constants.gravity * kinds.radius[kind]) * constants.time;
-      credit = sinks > falls ? 1.0f : least(1.0f, credit + sinks / kinds.tipping_work[kind]);
+      set_credit(spheres, i, sinks > falls ? 1.0f : credit_of(spheres, i) + sinks / kinds.tipping_work[kind]);
       continue;
     }
     if (step.on_ground[i] == std::uint8_t(GroundState::moved)) continue;
     const float whole = kinds.tipping_work[kind];
-    float& credit = spheres.tipping_credit[i];
     const float fallen = fall_of(spheres, step, constants, i) - creep_of(kinds, constants, kind);
-    credit = least(1.0f, most(0.0f, credit + fallen / whole));
+    set_credit(spheres, i, credit_of(spheres, i) + fallen / whole);
+    const float credit = credit_of(spheres, i);
     const Turn turn = turn_of(spheres, i);
     const PressingLoad load = load_of(spheres, kinds, ground, step, tipping, i, turn);
     // Over what the impulses would do at the ends of the body: at most about 1.
@@ -215,7 +224,7 @@ void tip(Spheres& spheres, const SphereKinds& kinds, const SphereGround& ground,
                 willing = kinds.tips[kind] * least(beyond * least(rate, kFlush), kinds.thickness[kind]),
                 work = length(load.torque) / pressed;  // m a rad
     const float angle = least(willing, credit * whole / work);
-    credit -= angle * work / whole;
+    set_credit(spheres, i, credit - angle * work / whole);
     turn_body(spheres, i, turn_by((angle / size) * given, 1.0f));
     tipping.turned[i] = angle;
   }

@@ -15,6 +15,7 @@ namespace lodestone::ode {
 
 struct Body {
   dBodyID body = nullptr;  ///< null in a free slot
+  bool is_awake() const { return body && dBodyIsEnabled(body); }
   std::uint32_t generation = 0;
   OdeBodyId id{};
   MaterialId material = 0;
@@ -84,6 +85,7 @@ class Bodies {
 
   /// Every slot in order; those with a null `body` are free.
   std::span<Body> slots() { return slots_; }
+  std::span<const Body> slots() const { return slots_; }
   int count() const { return count_; }
   double greatest_reach() const { return greatest_reach_; }  ///< m, of any body so far
   std::int64_t created() const { return created_; }

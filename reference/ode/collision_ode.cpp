@@ -20,8 +20,6 @@ bool same_pair(const Candidate& a, const Candidate& b) {
   return a.first_order == b.first_order && a.second_order == b.second_order;
 }
 
-bool is_awake(const Body& body) { return body.body && dBodyIsEnabled(body.body); }
-
 Pieces pieces_of(const Body& body) { return {body.pieces, state_of(body.body)}; }
 
 void place(dGeomID geom, const RigidState& state) {
@@ -199,7 +197,7 @@ void Collision::end_step() {
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
   step_ = {h, joints.gravity()};
-  const bool any_awake = std::ranges::any_of(bodies.slots(), is_awake);
+  const bool any_awake = std::ranges::any_of(bodies.slots(), &Body::is_awake);
   // One body over planes needs no broad phase, nor do sleepers, except from a caller's bodies.
   std::span<const Candidate> candidates;
   if (callers_ || (any_awake && (bodies.count() > 1 || !ground_.empty())))
@@ -207,7 +205,7 @@ void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
   mark_company(bodies, candidates);
   if (callers_) note_callers_planes();
   for (Body& body : bodies.slots()) {
-    if (!is_awake(body) || dBodyIsKinematic(body.body)) continue;
+    if (!body.is_awake() || dBodyIsKinematic(body.body)) continue;
     for (const Plane& plane : planes_) collide_plane(body, plane, joints);
     for (const Plane& plane : callers_planes_) collide_plane(body, plane, joints);
   }

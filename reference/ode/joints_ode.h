@@ -66,6 +66,8 @@ class ContactJoints {
   void tell(Touches* touches) { touches_ = touches; }
 
   const Vec3& gravity() const { return gravity_; }
+  /// 1/s: what overlaps is pushed apart at so many times its depth a second.
+  double pushing() const { return joint_.surface.soft_erp / h_; }
   ContactLaw law(MaterialId first, MaterialId second) const { return materials_->law(first, second); }
   void check_known(MaterialId material) const { materials_->check_known(material); }  ///< throws InputError
   std::span<const OdeContact> contacts() const { return contacts_; }

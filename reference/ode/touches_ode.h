@@ -13,6 +13,7 @@ namespace lodestone::ode {
 class Touches {
  public:
   void begin_step();
+  /// Or begins it again: what was watched in one that is taken back has not happened.
   void begin_substep() { watched_.clear(); }
   /// A contact of the substep to come; the joint must live until end_substep.
   void watch(dJointID joint, const ContactSide& first, const ContactSide& second, const ContactPoint& point,
@@ -25,13 +26,12 @@ class Touches {
 
  private:
   struct Watched {
+    OdeTouch contact;  // one, which has given nothing yet
     dJointFeedback feedback;
-    std::size_t touch;
-    Vec3 point, normal;
   };
   using Pair = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, dGeomID>;
 
-  std::size_t touch_of(const ContactSide& ours, const ContactSide& other);
+  std::size_t place_of(const OdeTouch& contact);
 
   std::vector<OdeTouch> touches_;
   std::vector<double> hardest_;  // N s, of a single contact of each

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/ode/collision_ode.h"
+#include "reference/ode/energy_bound_ode.h"
 #include "reference/ode/held_forces_ode.h"
 #include "reference/ode/ode_world.h"
 #include "reference/ode/sleep_ode.h"
@@ -57,6 +58,7 @@ struct OdeWorld::Impl {
   ode::Collision collision;
   ode::Touches touches;
   bool records_touches = false;
+  ode::EnergyBound energy_bound;
   ode::Sweep sweep;
   ode::Sleep sleep;
   ode::TrimeshCache trimeshes;

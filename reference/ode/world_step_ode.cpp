@@ -133,6 +133,7 @@ void OdeWorld::Impl::substep(double h) {
 bool OdeWorld::Impl::try_substep(double h) {
   held_forces.give();
   held_forces.note_states();
+  energy_bound.begin(bodies);
   begin_substep(h);
   return advance(h, false);
 }
@@ -195,6 +196,7 @@ bool OdeWorld::Impl::advance(double h, bool by_quick_step) {
   const Timing timing(times.response_ms);
   const std::int64_t messages_before = messages_of_this_thread();
   const std::span<const OdeContact> contacts = joints.contacts();
+  energy_bound.note(bodies, contacts, joints.gravity(), joints.pushing(), h);
   const bool too_many = int(contacts.size()) > settings.direct_contacts_max &&
                         largest_island(contacts) > settings.direct_contacts_max;
   try {
@@ -210,7 +212,7 @@ bool OdeWorld::Impl::advance(double h, bool by_quick_step) {
   } catch (const AssertionFailed& failed) {
     fail(failed.message);
   }
-  return messages_of_this_thread() == messages_before;
+  return messages_of_this_thread() == messages_before && energy_bound.is_kept(bodies);
 }
 
 // ODE's step was left half-way. Suspected is a body whose state it has spoilt, else the lightest of those

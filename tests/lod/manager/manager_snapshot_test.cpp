@@ -111,7 +111,8 @@ TEST(ManagerSnapshot, IdsAreThoseOfTheSnapshot) {
   world.step(5);
   const Bytes snapshot = world.manager.snapshot();
   world.manager.remove_body(world.bodies[4]);
-  const BodyId late = world.manager.add_body({.shape = SavedWorld::shapes()[0], .state = testing::at({9, 9, 9})});
+  const BodyId late =
+      world.manager.add_body({.shape = SavedWorld::shapes()[0], .state = testing::at({9, 9, 9})});
   world.step(3);
   world.manager.restore(snapshot);
   EXPECT_TRUE(world.manager.valid(world.bodies[4]));
@@ -127,7 +128,8 @@ TEST(ManagerSnapshot, DamageAndOtherSettingsAreRefusedAndChangeNothing) {
   const Bytes sound = writer.manager.snapshot();
   const std::uint64_t before = reader.manager.state_hash();
   const auto refused = [&](const Bytes& bytes) {
-    const bool thrown = message_of([&] { reader.manager.restore(bytes, SavedWorld::shapes()); }) != kNothingThrown;
+    const bool thrown =
+        message_of([&] { reader.manager.restore(bytes, SavedWorld::shapes()); }) != kNothingThrown;
     EXPECT_EQ(reader.manager.state_hash(), before);
     return thrown;
   };

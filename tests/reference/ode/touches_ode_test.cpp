@@ -1,4 +1,6 @@
 // What a step says of touches, against what the bodies say by their velocities.
+#include "reference/ode/touches_ode.h"
+
 #include <gtest/gtest.h>
 
 #include "reference/random.h"
@@ -38,6 +40,36 @@ TEST(TouchesOfOde, ImpulsesAddUpToTheMomentum) {
     const double after = mass * world.state(body).velocity.z();
     EXPECT_NEAR(given, after - before + mass * kGravity * 0.5, 1e-6 * mass) << i;
   }
+}
+
+// Events of such contacts were told of at the origin.
+TEST(TouchesOfOde, NothingIsToldOfASubstepThatIsTakenBack) {
+  dInitODE2(0);
+  const dWorldID world = dWorldCreate();
+  const dBodyID body = dBodyCreate(world);
+  const dJointGroupID joints = dJointGroupCreate(0);
+  dContact contact{};
+  contact.geom.normal[2] = 1.0;
+  ode::Touches touches;
+  const auto watch = [&] {
+    const dJointID joint = dJointCreateContact(world, joints, &contact);
+    dJointAttach(joint, body, nullptr);
+    touches.watch(joint, {.body = body, .id = {1}}, {.ground = {1}}, {.point = {1, 2, 3}}, 0.5);
+  };
+  touches.begin_step();
+  touches.begin_substep();
+  watch();
+  touches.begin_substep();  // again
+  touches.end_substep(0.01);
+  EXPECT_TRUE(touches.all().empty());
+  touches.begin_substep();
+  watch();
+  touches.end_substep(0.01);
+  ASSERT_EQ(touches.all().size(), 1u);
+  EXPECT_EQ(touches.all()[0].point, Vec3(1, 2, 3));
+  EXPECT_EQ(touches.all()[0].approach, 0.5);
+  dJointGroupDestroy(joints);
+  dWorldDestroy(world);
 }
 
 // Of a head-on hit: one touch, both by name, the speed at which they met and (1 + e) of the momentum.

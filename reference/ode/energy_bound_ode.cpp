@@ -1,0 +1,110 @@
+#include "reference/ode/energy_bound_ode.h"
+
+#include <algorithm>
+
+namespace lodestone::ode {
+namespace {
+
+// Over what there is and what contacts may give: ODE's law of friction and restitution gains up to half of a
+// body's energy in a single hit at a restitution of 1.
+constexpr double kMost = 2.0;
+
+// Of which nothing is asked: a kinematic body is a surface that moves.
+bool is_free(const Body& body) { return body.is_awake() && !dBodyIsKinematic(body.body); }
+
+double mass_of(const Body& body) {
+  dMass mass;
+  dBodyGetMass(body.body, &mass);
+  return mass.mass;
+}
+
+// J, of what moves and turns so, m/s and rad/s.
+double energy_of(const Body& body, const Vec3& velocity, const Vec3& angular_velocity) {
+  const Vec3 turning = state_of(body.body).orientation.conjugate() * angular_velocity;
+  return 0.5 * mass_of(body) * (velocity.squaredNorm() + turning.dot(body.shape->inertia_per_mass * turning));
+}
+
+Vec3 velocity_at(const Body& body, const Vec3& point) {
+  const RigidState state = state_of(body.body);
+  return state.velocity + state.angular_velocity.cross(point - state.position);
+}
+
+}  // namespace
+
+// What pushes apart a column adds up from the lowest to the topmost, as far as a chain of few goes.
+double EnergyBound::Island::most() const { return kMost * (energy + driven + 0.5 * mass * squared_pushes); }
+
+void EnergyBound::begin(const Bodies& bodies) {
+  jointed_.clear();
+  for (const Body& body : bodies.slots())
+    jointed_.push_back(is_free(body) && dBodyGetNumJoints(body.body) > 0);
+}
+
+void EnergyBound::note(const Bodies& bodies, std::span<const OdeContact> contacts, const Vec3& gravity,
+                       double pushing, double h) {
+  islands_.assign(bodies.slots().size(), {});
+  sets_.set_all_apart(islands_.size());
+  const auto is_pushed = [&](OdeBodyId id) { return id && !dBodyIsKinematic(bodies.find(id).body); };
+  for (const OdeContact& contact : contacts)
+    if (is_pushed(contact.first) && is_pushed(contact.second))
+      sets_.join(std::int32_t(slot_of(contact.first)), std::int32_t(slot_of(contact.second)));
+  note_bodies(bodies, gravity, h);
+  for (const OdeContact& contact : contacts) note_contact(bodies, contact, pushing * contact.depth);
+}
+
+void EnergyBound::note_bodies(const Bodies& bodies, const Vec3& gravity, double h) {
+  noted_.assign(islands_.size(), false);
+  for (std::size_t slot = 0; slot < islands_.size(); ++slot) {
+    const Body& body = bodies.slots()[slot];
+    if (!is_free(body)) continue;
+    noted_[slot] = true;
+    const RigidState state = state_of(body.body);
+    const double mass = mass_of(body);
+    const Vec3 pull = dBodyGetGravityMode(body.body) ? gravity : Vec3::Zero(),
+               torque = state.orientation.conjugate() * to_vec3(dBodyGetTorque(body.body)),
+               turning = state.orientation * (body.shape->inverse_inertia_per_mass * torque) / mass;
+    Island& island = island_of(slot);
+    island.energy += energy_of(body, state.velocity + h * (pull + to_vec3(dBodyGetForce(body.body)) / mass),
+                               state.angular_velocity + h * turning);
+    island.mass += mass;
+    if (jointed_[slot]) island.jointed = true;
+  }
+}
+
+/// `push`: m/s.
+void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, double push) {
+  Vec3 driven = contact.velocity;  // m/s, of what nothing pushes
+  double mass = 0.0;               // kg, of what is driven
+  Island* island = nullptr;
+  for (const OdeBodyId id : {contact.first, contact.second}) {
+    if (!id) continue;
+    const Body& body = bodies.find(id);
+    if (dBodyIsKinematic(body.body))
+      driven += velocity_at(body, contact.point);
+    else
+      mass = std::max(mass, mass_of(body)), island = &island_of(slot_of(id));
+  }
+  if (!island) return;
+  island->any_touches = true;
+  island->squared_pushes += push * push;
+  island->driven += 2.0 * mass * driven.squaredNorm();  // at twice its speed
+}
+
+bool EnergyBound::is_kept(const Bodies& bodies) {
+  energies_.assign(islands_.size(), 0.0);
+  for (std::size_t slot = 0; slot < islands_.size(); ++slot) {
+    if (!noted_[slot]) continue;
+    const Body& body = bodies.slots()[slot];
+    const RigidState state = state_of(body.body);
+    energies_[std::size_t(sets_.root_of(std::int32_t(slot)))] +=
+        energy_of(body, state.velocity, state.angular_velocity);
+  }
+  for (std::size_t root = 0; root < islands_.size(); ++root) {
+    const Island& island = islands_[root];
+    if (!island.any_touches || island.jointed) continue;
+    if (!(energies_[root] <= island.most())) return false;  // nor where ODE spoilt one
+  }
+  return true;
+}
+
+}  // namespace lodestone::ode

@@ -1,0 +1,47 @@
+// No contact gives energy, but what pushes overlaps apart and surfaces that move: a substep that leaves
+// bodies which hang together with much more has met contacts that contradict each other, as of a leg that is
+// pushed out of a plate on both of its sides, which ODE's solver answers without bound.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "reference/disjoint_sets.h"
+#include "reference/ode/bodies_ode.h"
+
+namespace lodestone::ode {
+
+class EnergyBound {
+ public:
+  /// Before contacts are known. What hangs on joints may gain any energy, by their motors.
+  void begin(const Bodies& bodies);
+  /// Before ODE's solver runs: `bodies` as they are, with the forces that act on them, and their contacts,
+  /// which push what overlaps apart at `pushing` (1/s) times its depth, in a step of `h` s.
+  void note(const Bodies& bodies, std::span<const OdeContact> contacts, const Vec3& gravity, double pushing,
+            double h);
+  /// Whether they have no more energy now than they may.
+  bool is_kept(const Bodies& bodies);
+
+ private:
+  /// Of bodies that touch, directly or through others.
+  struct Island {
+    double energy = 0.0;          ///< J, with what gravity and forces give
+    double driven = 0.0;          ///< J: at most, from surfaces that move
+    double mass = 0.0;            ///< kg
+    double squared_pushes = 0.0;  ///< m²/s², of all contacts
+    bool any_touches = false, jointed = false;
+    double most() const;
+  };
+  Island& island_of(std::size_t slot) { return islands_[std::size_t(sets_.root_of(std::int32_t(slot)))]; }
+  void note_bodies(const Bodies& bodies, const Vec3& gravity, double h);
+  void note_contact(const Bodies& bodies, const OdeContact& contact, double push);
+
+  std::vector<bool> noted_;       // by slot: those that were awake
+  std::vector<bool> jointed_;     // by slot
+  DisjointSets sets_;             // of slots
+  std::vector<Island> islands_;   // by root
+  std::vector<double> energies_;  // J, after the step, by root
+};
+
+}  // namespace lodestone::ode
