@@ -24,6 +24,14 @@ void hold(dxBody* second, const Vec3& point, std::vector<JointRow>& rows) {
     rows.push_back({second, point, direction});
 }
 
+// Of a wheel's joint: but for the way along which it is sprung.
+void hold_wheel(dJointID joint, dxBody* second, std::vector<JointRow>& rows) {
+  const Vec3 anchor = read(joint, dJointGetHinge2Anchor2);
+  if (!is_sprung(joint)) return hold(second, anchor, rows);
+  const Vec3 up = read(joint, dJointGetHinge2Axis1), across = up.unitOrthogonal();
+  rows.push_back({second, anchor, across}), rows.push_back({second, anchor, up.cross(across)});
+}
+
 struct JointParameters {
   dReal (*read)(dJointID, int) = nullptr;
   int axes = 1;
@@ -87,7 +95,7 @@ void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
         hold(second, read(joint, dJointGetUniversalAnchor), rows);
         break;
       case dJointTypeHinge2:
-        hold(second, read(joint, dJointGetHinge2Anchor), rows);
+        hold_wheel(joint, second, rows);
         break;
       case dJointTypeHinge: {
         const Vec3 anchor = read(joint, dJointGetHingeAnchor),
@@ -128,12 +136,18 @@ void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& moto
       const double way = first ? 1.0 : -1.0;  // ODE turns a slider round whose only body is its second
       motors.push_back({second, at, way * read(joint, dJointGetSliderAxis),
                         dJointGetSliderParam(joint, dParamVel), dJointGetSliderParam(joint, dParamFMax)});
-    } else {
-      const Vec3 axis = read(joint, dJointGetHingeAxis), across = axis.unitOrthogonal();
-      motors.push_back({second, read(joint, dJointGetHingeAnchor) + reach * across, axis.cross(across),
-                        dJointGetHingeParam(joint, dParamVel) * reach,
-                        dJointGetHingeParam(joint, dParamFMax) / reach});
+      continue;
     }
+    const auto add = [&](const Vec3& anchor, const Vec3& axis, double speed, double torque) {
+      const Vec3 across = axis.unitOrthogonal();
+      motors.push_back({second, anchor + reach * across, axis.cross(across), speed * reach, torque / reach});
+    };
+    if (dJointGetType(joint) == dJointTypeHinge2)
+      add(read(joint, dJointGetHinge2Anchor2), read(joint, dJointGetHinge2Axis2),
+          dJointGetHinge2Param(joint, dParamVel2), dJointGetHinge2Param(joint, dParamFMax2));
+    else
+      add(read(joint, dJointGetHingeAnchor), read(joint, dJointGetHingeAxis),
+          dJointGetHingeParam(joint, dParamVel), dJointGetHingeParam(joint, dParamFMax));
   }
 }
 
@@ -145,8 +159,16 @@ bool has_motor(dxJoint* joint) {
   if (!dJointIsEnabled(joint)) return false;
   if (dJointGetType(joint) == dJointTypeSlider)
     return moves_freely(dJointGetSliderParam, dJointGetSliderPosition(joint));
+  if (dJointGetType(joint) == dJointTypeHinge2)  // on a spring it would drive the wheel too slowly
+    return !is_sprung(joint) && dJointGetHinge2Param(joint, dParamFMax2) > 0.0;
   return dJointGetType(joint) == dJointTypeHinge &&
          moves_freely(dJointGetHingeParam, dJointGetHingeAngle(joint));
+}
+
+bool is_sprung(dxJoint* joint) {
+  const dBodyID first = dJointGetBody(joint, 0), body = first ? first : dJointGetBody(joint, 1);
+  return dJointGetType(joint) == dJointTypeHinge2 && body &&
+         dJointGetHinge2Param(joint, dParamSuspensionCFM) > dWorldGetCFM(dBodyGetWorld(body));
 }
 
 std::vector<dxBody*> joined_bodies(dxBody* body) {

@@ -26,8 +26,9 @@ struct JointRow {
 
 /// Appends what the joints hold whose first body is `body`, or whose only one: of a ball joint its anchor, of
 /// a hinge two points of its axis, of a fixed joint three points, of a slider all but the way along its axis;
-/// a universal joint and a wheel's (hinge 2) count as ball joints. Others, limits, motors, and joints that
-/// are disabled are left out. Points are `reach` m apart. To be asked outside of a step.
+/// a universal joint and a wheel's (hinge 2) count as ball joints, the latter but for the way along which it
+/// is sprung. Others, limits, motors, and joints that are disabled are left out. Points are `reach` m apart.
+/// To be asked outside of a step.
 void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows);
 
 /// A motor that drives a point of one body along a direction, against a point of another.
@@ -38,11 +39,16 @@ struct JointMotor {
   double speed = 0.0, force = 0.0;  ///< m/s along it, N at most
 };
 
-/// Appends those of sliders and hinges whose first body is `body`, or whose only one; a hinge's at a point
-/// `reach` m from its axis. Not of those that stand at a stop. To be asked outside of a step.
+/// Appends those of sliders, hinges and unsprung wheels (hinge 2, which turn them) whose first body is
+/// `body`, or whose only one; a hinge's at a point `reach` m from its axis. Not of those that stand at a
+/// stop. To be asked outside of a step.
 void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& motors);
 /// Whether find_joint_motors() has the joint's.
 bool has_motor(dxJoint* joint);
+
+/// Whether a wheel's joint (hinge 2) gives way along its first axis: its suspension is softer than the
+/// world's joints.
+bool is_sprung(dxJoint* joint);
 
 /// Of what `body` hangs on, contacts left out: how many joints, and what the motors and stops of hinges (1
 /// and 2), sliders, pistons, universal joints and pure motors are set to. Another number, never 0, where that

@@ -41,8 +41,15 @@ JointForce free_part_of(dJointID joint, const JointForce& all, const Vec3& posit
       return {.torque = about(read_vector(joint, dJointGetBallAnchor))};
     case dJointTypeUniversal:
       return {.torque = about(read_vector(joint, dJointGetUniversalAnchor))};
-    case dJointTypeHinge2:
-      return {.torque = about(read_vector(joint, dJointGetHinge2Anchor))};
+    case dJointTypeHinge2: {
+      const Vec3 anchor = read_vector(joint, dJointGetHinge2Anchor2),
+                 up = read_vector(joint, dJointGetHinge2Axis1),
+                 turning = read_vector(joint, dJointGetHinge2Axis2);
+      const Vec3 spring = is_sprung(joint) ? Vec3(up.dot(all.force) * up) : Vec3(Vec3::Zero());
+      Vec3 torque = about(anchor);
+      if (has_motor(joint)) torque -= turning.dot(torque) * turning;
+      return {.force = spring, .torque = torque + (anchor - position).cross(spring)};
+    }
     default:
       return all;
   }

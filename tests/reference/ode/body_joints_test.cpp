@@ -94,6 +94,38 @@ TEST_F(BodyJoints, ASliderHoldsAllButItsAxis) {
   for (const JointRow& row : rows) EXPECT_NEAR(row.direction.y(), 0.0, 1e-12);
 }
 
+// At the wheel's own anchor, which the spring lets go away from the chassis'.
+TEST_F(BodyJoints, AWheelIsHeldButForTheWayOfItsSpring) {
+  const OdeBodyId chassis = add({0, 0, 1}), wheel = add({0.5, 0, 0.8});
+  const dJointID axle = dJointCreateHinge2(dBodyGetWorld(body(chassis)), nullptr);
+  dJointAttach(axle, body(chassis), body(wheel));
+  dJointSetHinge2Anchor(axle, 0.5, 0, 0.8);
+  const dVector3 up = {0, 0, 1}, across = {0, 1, 0};
+  dJointSetHinge2Axes(axle, up, across);
+  dJointSetHinge2Param(axle, dParamVel2, 3.0), dJointSetHinge2Param(axle, dParamFMax2, 5.0);
+  dBodySetPosition(body(wheel), 0.5, 0, 0.7);
+  const auto find = [&] {
+    std::vector<JointRow> rows;
+    find_joint_rows(body(chassis), 0.2, rows);
+    return rows;
+  };
+  std::vector<JointMotor> motors;
+  find_joint_motors(body(chassis), 0.2, motors);
+  ASSERT_EQ(motors.size(), 1u);
+  EXPECT_NEAR(motors[0].speed, 0.6, 1e-12);
+  EXPECT_NEAR(motors[0].force, 25.0, 1e-12);
+  EXPECT_NEAR(motors[0].direction.y(), 0.0, 1e-12);
+  EXPECT_EQ(find().size(), 3u);
+  dJointSetHinge2Param(axle, dParamSuspensionERP, 0.1), dJointSetHinge2Param(axle, dParamSuspensionCFM, 1e-3);
+  const std::vector<JointRow> sprung = find();
+  ASSERT_EQ(sprung.size(), 2u);
+  for (const JointRow& row : sprung) {
+    EXPECT_NEAR((row.point - Vec3(0.5, 0, 0.7)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR(row.direction.z(), 0.0, 1e-12);
+  }
+  EXPECT_FALSE(has_motor(axle));
+}
+
 // A pendulum swings about its anchor at a constant distance; a hinge lets it turn about one axis alone.
 TEST_F(BodyJoints, APendulumKeepsItsLength) {
   const Vec3 anchor(0, 0, 2);
