@@ -67,6 +67,7 @@ void EnergyBound::note_bodies(const Bodies& bodies, const Vec3& gravity, double 
     island.energy += energy_of(body, state.velocity + h * (pull + to_vec3(dBodyGetForce(body.body)) / mass),
                                state.angular_velocity + h * turning);
     island.mass += mass;
+    ++island.bodies;
     if (jointed_[slot]) island.jointed = true;
   }
 }
@@ -85,7 +86,6 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
       mass = std::max(mass, mass_of(body)), island = &island_of(slot_of(id));
   }
   if (!island) return;
-  island->any_touches = true;
   island->squared_pushes += push * push;
   island->driven += 2.0 * mass * driven.squaredNorm();  // at twice its speed
 }
@@ -101,7 +101,7 @@ bool EnergyBound::is_kept(const Bodies& bodies) {
   }
   for (std::size_t root = 0; root < islands_.size(); ++root) {
     const Island& island = islands_[root];
-    if (!island.any_touches || island.jointed) continue;
+    if (island.bodies < 2 || island.jointed) continue;  // a body alone is the truth's own
     if (!(energies_[root] <= island.most())) return false;  // nor where ODE spoilt one
   }
   return true;

@@ -30,7 +30,8 @@ class EnergyBound {
     double driven = 0.0;          ///< J: at most, from surfaces that move
     double mass = 0.0;            ///< kg
     double squared_pushes = 0.0;  ///< m²/s², of all contacts
-    bool any_touches = false, jointed = false;
+    int bodies = 0;
+    bool jointed = false;
     double most() const;
   };
   Island& island_of(std::size_t slot) { return islands_[std::size_t(sets_.root_of(std::int32_t(slot)))]; }
