@@ -20,7 +20,7 @@ class EnergyBound {
   /// which push what overlaps apart at `pushing` (1/s) times its depth, in a step of `h` s.
   void note(const Bodies& bodies, std::span<const OdeContact> contacts, const Vec3& gravity, double pushing,
             double h);
-  /// Whether they have no more energy now than they may.
+  /// Whether they have no more energy now than they may. A body that touches no other is not asked.
   bool is_kept(const Bodies& bodies);
 
  private:
