@@ -16,6 +16,11 @@ namespace lodestone::ode {
 struct Body {
   dBodyID body = nullptr;  ///< null in a free slot
   bool is_awake() const { return body && dBodyIsEnabled(body); }
+  double mass() const {  ///< kg
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    return mass.mass;
+  }
   std::uint32_t generation = 0;
   OdeBodyId id{};
   MaterialId material = 0;

@@ -12,16 +12,10 @@ constexpr double kMost = 2.0;
 // Of which nothing is asked: a kinematic body is a surface that moves.
 bool is_free(const Body& body) { return body.is_awake() && !dBodyIsKinematic(body.body); }
 
-double mass_of(const Body& body) {
-  dMass mass;
-  dBodyGetMass(body.body, &mass);
-  return mass.mass;
-}
-
 // J, of what moves and turns so, m/s and rad/s.
 double energy_of(const Body& body, const Vec3& velocity, const Vec3& angular_velocity) {
   const Vec3 turning = state_of(body.body).orientation.conjugate() * angular_velocity;
-  return 0.5 * mass_of(body) * (velocity.squaredNorm() + turning.dot(body.shape->inertia_per_mass * turning));
+  return 0.5 * body.mass() * (velocity.squaredNorm() + turning.dot(body.shape->inertia_per_mass * turning));
 }
 
 Vec3 velocity_at(const Body& body, const Vec3& point) {
@@ -59,7 +53,7 @@ void EnergyBound::note_bodies(const Bodies& bodies, const Vec3& gravity, double 
     if (!is_free(body)) continue;
     noted_[slot] = true;
     const RigidState state = state_of(body.body);
-    const double mass = mass_of(body);
+    const double mass = body.mass();
     const Vec3 pull = dBodyGetGravityMode(body.body) ? gravity : Vec3::Zero(),
                torque = state.orientation.conjugate() * to_vec3(dBodyGetTorque(body.body)),
                turning = state.orientation * (body.shape->inverse_inertia_per_mass * torque) / mass;
@@ -83,7 +77,7 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
     if (dBodyIsKinematic(body.body))
       driven += velocity_at(body, contact.point);
     else
-      mass = std::max(mass, mass_of(body)), island = &island_of(slot_of(id));
+      mass = std::max(mass, body.mass()), island = &island_of(slot_of(id));
   }
   if (!island) return;
   island->squared_pushes += push * push;
@@ -101,7 +95,7 @@ bool EnergyBound::is_kept(const Bodies& bodies) {
   }
   for (std::size_t root = 0; root < islands_.size(); ++root) {
     const Island& island = islands_[root];
-    if (island.bodies < 2 || island.jointed) continue;  // a body alone is the truth's own
+    if (island.bodies < 2 || island.jointed) continue;      // a body alone is the truth's own
     if (!(energies_[root] <= island.most())) return false;  // nor where ODE spoilt one
   }
   return true;

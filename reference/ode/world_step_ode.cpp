@@ -218,11 +218,6 @@ bool OdeWorld::Impl::advance(double h, bool by_quick_step) {
 // ODE's step was left half-way. Suspected is a body whose state it has spoilt, else the lightest of those
 // awake.
 void OdeWorld::Impl::fail(const std::string& message) {
-  const auto mass_of = [](const Body& body) {
-    dMass mass;
-    dBodyGetMass(body.body, &mass);
-    return mass.mass;
-  };
   const Body* suspect = nullptr;
   for (const Body& body : bodies.slots()) {
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
@@ -230,25 +225,21 @@ void OdeWorld::Impl::fail(const std::string& message) {
       suspect = &body;
       break;
     }
-    if (!suspect || mass_of(body) < mass_of(*suspect)) suspect = &body;
+    if (!suspect || body.mass() < suspect->mass()) suspect = &body;
   }
   failure = suspect
                 ? fmt::format("ODE gave up in a step ({}), most likely over the body of shape {} and {:g} kg",
-                              message, suspect->shape->name, mass_of(*suspect))
+                              message, suspect->shape->name, suspect->mass())
                 : fmt::format("ODE gave up in a step ({}), over a body of the caller's own", message);
   if (threading) threading->abandon();
   throw SimulationError(failure, suspect ? suspect->id.value : 0);
 }
 
 void OdeWorld::Impl::count_uneven_contacts() {
-  const auto mass_of = [this](OdeBodyId body) {
-    dMass mass;
-    dBodyGetMass(bodies.find(body).body, &mass);
-    return mass.mass;
-  };
   for (const OdeContact& contact : joints.contacts()) {
     if (!contact.second) continue;
-    const auto [lighter, heavier] = std::minmax({mass_of(contact.first), mass_of(contact.second)});
+    const auto [lighter, heavier] =
+        std::minmax({bodies.find(contact.first).mass(), bodies.find(contact.second).mass()});
     if (heavier >= kUneven * lighter) ++counters.uneven_contacts;
   }
 }
