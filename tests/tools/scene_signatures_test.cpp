@@ -7,7 +7,7 @@
 
 #include "tests/scenes/scene_fixture.h"
 
-namespace lodestone {
+namespace lodestone::scene_signatures_test {
 namespace {
 
 using SceneSignatures = SceneFixture;
@@ -52,4 +52,4 @@ TEST_F(SceneSignatures, ARunsOwnLevelCounts) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::scene_signatures_test

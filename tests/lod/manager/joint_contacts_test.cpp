@@ -11,7 +11,7 @@
 
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::joint_contacts_test {
 namespace {
 
 using namespace testing;
@@ -425,4 +425,4 @@ TEST(JointContacts, ASprungCarRollsOverABody) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::joint_contacts_test

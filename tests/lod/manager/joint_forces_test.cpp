@@ -9,7 +9,7 @@
 
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::joint_forces_test {
 namespace {
 
 using namespace testing;
@@ -208,4 +208,4 @@ TEST(JointForces, TheFeedbackOfJointsIsTheCallersAgain) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::joint_forces_test

@@ -7,7 +7,7 @@
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/message_of.h"
 
-namespace lodestone {
+namespace lodestone::manager_bodies_test {
 namespace {
 
 using namespace testing;
@@ -317,4 +317,4 @@ TEST(ManagerBodies, DampingIsExponentialOnEveryRung) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::manager_bodies_test

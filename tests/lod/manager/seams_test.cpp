@@ -12,7 +12,7 @@
 #include "tests/hills.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::seams_test {
 namespace {
 
 constexpr double kCube = 0.3;  // m
@@ -203,4 +203,4 @@ INSTANTIATE_TEST_SUITE_P(Rungs, Seams, ::testing::Values(LevelChoice::support, L
                          });
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::seams_test

@@ -6,7 +6,7 @@
 
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::struck_into_ground_test {
 namespace {
 
 using testing::add;
@@ -73,4 +73,4 @@ TEST(StruckIntoGround, WhoWasStruckOnceIsLeftAloneLater) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::struck_into_ground_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace lodestone {
+namespace lodestone::blow_reach_test {
 namespace {
 
 constexpr double kWakeSpeed = 0.1;  // m/s
@@ -80,4 +80,4 @@ TEST(BlowReach, SleepersStrikeNobody) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::blow_reach_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lodestone {
+namespace lodestone::step_lengths_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 60.0;  // s
@@ -43,4 +43,4 @@ TEST(StepLengths, AForceOfShortStepsIsNotExpectedToLast) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::step_lengths_test

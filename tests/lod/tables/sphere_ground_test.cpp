@@ -4,7 +4,7 @@
 
 #include "tests/lod/tables/sphere_fixture.h"
 
-namespace lodestone {
+namespace lodestone::sphere_ground_test {
 namespace {
 
 using testing::at;
@@ -263,4 +263,4 @@ TEST(SphereGround, IsTheSameToTheBitOnEveryProcessor) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::sphere_ground_test

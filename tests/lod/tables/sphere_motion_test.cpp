@@ -6,7 +6,7 @@
 
 #include "tests/lod/tables/sphere_fixture.h"
 
-namespace lodestone {
+namespace lodestone::sphere_motion_test {
 namespace {
 
 using testing::at;
@@ -204,4 +204,4 @@ TEST(SphereMotion, TakenImpulsesMoveIntoTheVelocity) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::sphere_motion_test

@@ -7,7 +7,7 @@
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
-namespace lodestone {
+namespace lodestone::thin_slab_test {
 namespace {
 
 using namespace testing;
@@ -57,4 +57,4 @@ TEST(PressedIntoAPlane, NobodyOfAHighColumnIsUnderIt) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::thin_slab_test

@@ -11,7 +11,7 @@
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/lod/tables/hull_maps.h"
 
-namespace lodestone {
+namespace lodestone::tipping_test {
 namespace {
 
 using testing::box_shape, testing::Maps;
@@ -172,4 +172,4 @@ TEST(Tipping, PatchesOfABallArePointsWhateverWasThereBefore) {
 }
 
 }  // namespace
-}  // namespace lodestone
+}  // namespace lodestone::tipping_test
