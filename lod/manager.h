@@ -50,7 +50,8 @@ struct ManagerSettings {
   Vec3 gravity{0, 0, -9.81};  ///< m/s², finite; not on a caller's world, which has its own
   std::uint64_t seed = 1;
   int threads = 1;             ///< ≥ 1, for the statistical level; the results do not depend on it
-  JobRunner jobs = {};         ///< an engine's own, for so many threads; empty: oneTBB's
+  JobRunner jobs = {};         ///< an engine's own, for so many threads; empty: oneTBB's. What it throws in a
+                               ///< step comes out of that once it has been taken
   int full_substeps = 4;       ///< ≥ 1, ODE steps per step; 16 while thin bodies are awake among others
   bool sleeping = true;        ///< bodies at rest cost nothing until something wakes them
   SleepThresholds sleep = {};  ///< on every rung
@@ -258,6 +259,7 @@ class Manager {
   /// Does again what a recording tells, from its snapshot on (see restore, also for `shapes`, which must have
   /// those of bodies that it adds), up to the first step that comes out otherwise than recorded, in the state
   /// of any body to the bit. Under a budget of milliseconds that is no fault, as rungs follow the clock.
+  /// What lay between before_world_step and after_world_step is done again as one dWorldStep.
   /// One that ends in the midst of a call, as where the program ended, is done as far as it goes.
   /// Throws InputError for what is no recording, where it comes to what is damaged, where restore does, and
   /// where it sets a policy with a function that the policy here lacks, whose functions are used.

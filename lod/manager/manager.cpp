@@ -21,12 +21,21 @@ JobRunner runner_of(const ManagerSettings& settings) {
   return settings.jobs ? settings.jobs : make_job_runner(settings.threads);
 }
 
-StatisticalSettings statistical_settings(const ManagerSettings& settings,
-                                         const std::shared_ptr<JobRunner>& jobs, const Vec3& gravity) {
+std::shared_ptr<CallersJobs> callers_of(const ManagerSettings& settings) {
+  return settings.jobs ? std::make_shared<CallersJobs>(settings.jobs) : nullptr;
+}
+
+JobRunner in_steps(const std::shared_ptr<JobRunner>& jobs, const std::shared_ptr<CallersJobs>& callers) {
+  if (callers) return [callers](std::int64_t count, TaskRef task) { (*callers)(count, task); };
+  return [jobs](std::int64_t count, TaskRef task) { (*jobs)(count, task); };
+}
+
+StatisticalSettings statistical_settings(const ManagerSettings& settings, JobRunner jobs,
+                                         const Vec3& gravity) {
   return {.gravity = gravity,
           .seed = settings.seed,
           .threads = settings.threads,
-          .jobs = [jobs](std::int64_t count, TaskRef task) { (*jobs)(count, task); },
+          .jobs = std::move(jobs),
           .tables = settings.tables,
           .sleeping = settings.sleeping,
           .sleep = settings.sleep};
@@ -53,8 +62,8 @@ void add_statistical(const Levels& levels, double ms, StepMeasurement& measured)
 
 Manager::Impl::Impl(const ManagerSettings& s)
     : jobs(std::make_shared<JobRunner>(runner_of(s))),
-      own_jobs(!s.jobs),
-      levels(statistical_settings(s, jobs, s.gravity), full_settings(s),
+      callers_jobs(callers_of(s)),
+      levels(statistical_settings(s, in_steps(jobs, callers_jobs), s.gravity), full_settings(s),
              SignatureStore(s.signatures, s.signature_timing)),
       choose(levels, s.policy, s.model),
       audit(levels, full_settings(s), s.audit_ms),
@@ -63,9 +72,9 @@ Manager::Impl::Impl(const ManagerSettings& s)
 }
 Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
     : jobs(std::make_shared<JobRunner>(runner_of(s))),
-      own_jobs(!s.jobs),
-      levels(world, space, statistical_settings(s, jobs, callers::gravity(world)), full_settings(s),
-             SignatureStore(s.signatures, s.signature_timing)),
+      callers_jobs(callers_of(s)),
+      levels(world, space, statistical_settings(s, in_steps(jobs, callers_jobs), callers::gravity(world)),
+             full_settings(s), SignatureStore(s.signatures, s.signature_timing)),
       choose(levels, s.policy, s.model),
       audit(levels, full_settings(s), s.audit_ms),
       events(levels, s.events),
@@ -111,7 +120,7 @@ const StepReport& Manager::step(double dt) {
     impl.step_divided(dt, parts);
   else
     impl.step_part(dt);
-  return impl.finish_lists(dt);
+  return impl.finish_lists(dt, WorldStepBy::manager);
 }
 
 void Manager::before_world_step(double dt) {
@@ -143,7 +152,7 @@ const StepReport& Manager::after_world_step() {
   impl.step_levels.end_callers_step(impl.report.counters);
   impl.end_stages();
   impl.changes.take_part();
-  return impl.finish_lists(dt);
+  return impl.finish_lists(dt, WorldStepBy::caller);
 }
 
 void Manager::Impl::begin_lists() {
@@ -151,14 +160,16 @@ void Manager::Impl::begin_lists() {
   events.begin();
 }
 
-const StepReport& Manager::Impl::finish_lists(double dt) {
+const StepReport& Manager::Impl::finish_lists(double dt, WorldStepBy by) {
   changes.finish();
   left_places.follow(levels, changes.fell_asleep(), changes.moved_and_slept(), changes.woke());
   for (const BodyId body : changes.fell_asleep()) choose.note(body.index);  // whoever laid it to sleep
   events.finish(dt, changes.woke());
   queries.finish(changes.fell_asleep(), changes.moved_and_slept());
   report.dt_s = dt;
-  if (recorder.on()) recorder.note(Call::step, dt, body_hashes(levels));
+  const Call call = by == WorldStepBy::manager ? Call::step : Call::callers_step;
+  if (recorder.on()) recorder.note(call, dt, body_hashes(levels));
+  if (callers_jobs) callers_jobs->rethrow();
   return report;
 }
 

@@ -5,6 +5,7 @@
 
 #include "lod/manager.h"
 #include "lod/manager/audit.h"
+#include "lod/manager/callers_jobs.h"
 #include "lod/manager/checks.h"
 #include "lod/manager/choose.h"
 #include "lod/manager/contact_events.h"
@@ -27,7 +28,7 @@ struct Manager::Impl {
   Impl(dxWorld* world, dxSpace* space, const ManagerSettings& settings);
 
   std::shared_ptr<JobRunner> jobs;  // behind the one that the levels have, so that it can be changed
-  bool own_jobs = true;             // not the caller's
+  std::shared_ptr<CallersJobs> callers_jobs;  // around these in a step, where they are the caller's
   Levels levels;
   CostModel costs;
   Choose choose;
@@ -80,7 +81,7 @@ struct Manager::Impl {
   void begin_stages(double dt, WorldStepBy by);
   void end_stages();
   void begin_lists();
-  const StepReport& finish_lists(double dt);
+  const StepReport& finish_lists(double dt, WorldStepBy by);
   void find_signatures(const RungChanges& changes);
 };
 

@@ -6,6 +6,7 @@
 
 #include "lod/manager/manager_impl.h"
 #include "reference/error.h"
+#include "reference/ode/callers_bodies.h"
 
 namespace lodestone {
 namespace {
@@ -167,6 +168,7 @@ void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk,
     case Call::set_policy:
       return manager.set_policy(read_policy(chunk, choose.policy()));
     case Call::step:
+    case Call::callers_step:
       break;
   }
 }
@@ -181,12 +183,18 @@ ReplayResult Manager::replay(std::span<const std::byte> recording,
     chunk(call);
     if (call > kLastCall || (!begun && call != Call::begin)) throw InputError("the recording is damaged");
     begun = true;
-    if (call != Call::step) {
+    if (call != Call::step && call != Call::callers_step) {
       impl_->do_call(*this, call, chunk, shapes);
       continue;
     }
     const auto [dt, recorded] = read<double, std::vector<std::uint32_t>>(chunk);
-    step(dt);
+    if (call == Call::step) {
+      step(dt);
+    } else {
+      before_world_step(dt);
+      callers::step(impl_->callers_world, dt);
+      after_world_step();
+    }
     ++result.steps;
     const std::optional<BodyId> other = find_other(impl_->levels, recorded);
     if (!other) continue;

@@ -24,7 +24,7 @@ void Manager::set_threads(int threads) {
   if (threads < 1) throw_input_error("threads", fmt::to_string(threads), "1 or more");
   impl_->levels.statistical_settings.threads = threads;
   if (impl_->levels.statistical) impl_->levels.statistical->set_threads(threads);
-  if (impl_->own_jobs) *impl_->jobs = make_job_runner(threads);
+  if (!impl_->callers_jobs) *impl_->jobs = make_job_runner(threads);
 }
 
 }  // namespace lodestone

@@ -41,9 +41,10 @@ enum class Call : std::uint8_t {
   dissolve_group,
   set_gravity,
   set_full_substeps,
-  set_policy,  ///< without its functions
+  set_policy,    ///< without its functions
+  callers_step,  ///< between before_world_step and after_world_step
 };
-inline constexpr auto kLastCall = Call::set_policy;
+inline constexpr auto kLastCall = Call::callers_step;
 
 /// What a recording starts with.
 inline constexpr std::array<char, 8> kRecordingMagic = {'L', 'O', 'D', 'E', 'R', 'E', 'C', '3'};

@@ -15,6 +15,7 @@ dxBody* body_of(dxGeom* geom) { return dGeomGetBody(geom); }
 void set_gravity(dxWorld* world, const Vec3& gravity) {
   dWorldSetGravity(world, gravity.x(), gravity.y(), gravity.z());
 }
+void step(dxWorld* world, double h) { dWorldStep(world, h); }
 
 RigidState state(dxBody* body) { return state_of(body); }
 Vec3 position(dxGeom* geom) { return to_vec3(dGeomGetPosition(geom)); }

@@ -11,6 +11,7 @@ namespace lodestone::callers {
 
 Vec3 gravity(dxWorld* world);  ///< m/s²
 void set_gravity(dxWorld* world, const Vec3& gravity);
+void step(dxWorld* world, double h);  ///< dWorldStep, s
 
 dxBody* body_of(dxGeom* geom);  ///< null: static
 RigidState state(dxBody* body);

@@ -337,6 +337,39 @@ TEST(Manager, AnEnginesOwnJobsGiveTheSameHash) {
   }
 }
 
+// Before any task and after half of them, in all kinds of stages: the step is taken as if it had not thrown.
+TEST(Manager, WhatAnEnginesOwnJobsThrowComesOutOfTheWholeStep) {
+  const auto hash_where_every = [](std::int64_t throwing, int& thrown) {
+    std::int64_t calls = 0;
+    ManagerSettings settings = unmeasured();
+    settings.jobs = [&](std::int64_t count, TaskRef task) {
+      const bool throws = throwing > 0 && ++calls % throwing == 0;
+      for (std::int64_t i = 0; i < count; ++i) {
+        if (throws && i == count / 2 * (calls % 2)) throw std::runtime_error("no thread is free");
+        task(i);
+      }
+    };
+    Manager manager = on_floor(settings);
+    const auto shape = box_shape(kSides);
+    for (int i = 0; i < 200; ++i)
+      add(manager, shape, at({0.5 * (i % 8), 0.5 * (i / 8 % 8), 0.3 + 0.3 * (i / 64)}),
+          LevelChoice::statistical);
+    for (int i = 0; i < 30; ++i) try {
+        manager.step(kFrame);
+      } catch (const std::runtime_error&) {
+        ++thrown;
+      }
+    return manager.state_hash();
+  };
+  int none = 0;
+  const std::uint64_t expected = hash_where_every(0, none);
+  for (const std::int64_t throwing : {7, 31, 100}) {
+    int thrown = 0;
+    EXPECT_EQ(hash_where_every(throwing, thrown), expected) << throwing;
+    EXPECT_GT(thrown, 1) << throwing;
+  }
+}
+
 TEST(Manager, HashSeesStateAndLevel) {
   Manager manager = on_floor();
   const BodyId body = add(manager, sphere_shape(0.1), at({0, 0, 1}));

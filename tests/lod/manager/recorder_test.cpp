@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "lod/manager.h"
+#include "tests/lod/callers/callers_scene.h"
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/message_of.h"
 
@@ -131,6 +132,33 @@ TEST(Recording, CallsOfEveryKindComeOutTheSame) {
   }
   EXPECT_EQ(calls, 2);
   EXPECT_EQ(noticed, calls);
+}
+
+// Of a loop of his own, too, in which the world is stepped once.
+TEST(Recording, ACallersOwnLoopComesOutTheSame) {
+  using namespace testing;
+  const auto box = box_shape({0.2, 0.3, 0.4});
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support}) {
+    CallersScene scene, other;
+    dWorldSetGravity(scene.world, 0, 0, -9.81), dWorldSetGravity(other.world, 0, 0, -9.81);
+    dCreatePlane(scene.space, 0, 0, 1, 0), dCreatePlane(other.space, 0, 0, 1, 0);
+    Tape tape;
+    Manager manager(scene.world, scene.space, unmeasured());
+    manager.set_record(tape.write);
+    for (int i = 0; i < 4; ++i) add(manager, box, at({0.05 * i, 0, 0.5 + 0.4 * i}), level);
+    for (int i = 0; i < 60; ++i) {
+      manager.before_world_step(kFrame);
+      dWorldStep(scene.world, kFrame);
+      manager.after_world_step();
+    }
+    manager.set_record({});
+    const std::shared_ptr<const Shape> shapes[] = {box};
+    Manager again(other.world, other.space, unmeasured());
+    const ReplayResult result = again.replay(tape.bytes, shapes);
+    EXPECT_TRUE(result.same) << result.text;
+    EXPECT_EQ(result.steps, 60);
+    EXPECT_EQ(again.state_hash(), manager.state_hash());
+  }
 }
 
 TEST(Recording, WhatIsRestoredMeanwhileIsRestoredAgain) {
