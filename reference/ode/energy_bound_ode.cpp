@@ -80,8 +80,12 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
       mass = std::max(mass, body.mass()), island = &island_of(slot_of(id));
   }
   if (!island) return;
-  island->squared_pushes += push * push;
+  if (island->bodies > 1)
+    island->squared_pushes += push * push;
+  else
+    island->squared_pushes = std::max(island->squared_pushes, push * push);
   island->driven += 2.0 * mass * driven.squaredNorm();  // at twice its speed
+  island->moved |= contact.moves || !driven.isZero(0.0);
 }
 
 bool EnergyBound::is_kept(const Bodies& bodies) {
@@ -95,8 +99,8 @@ bool EnergyBound::is_kept(const Bodies& bodies) {
   }
   for (std::size_t root = 0; root < islands_.size(); ++root) {
     const Island& island = islands_[root];
-    if (island.bodies < 2 || island.jointed) continue;      // a body alone is the truth's own
-    if (!(energies_[root] <= island.most())) return false;  // nor where ODE spoilt one
+    if (island.jointed || (island.bodies < 2 && !island.moved)) continue;  // alone, the truth's own
+    if (!(energies_[root] <= island.most())) return false;                 // nor where ODE spoilt one
   }
   return true;
 }

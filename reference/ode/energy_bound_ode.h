@@ -20,7 +20,8 @@ class EnergyBound {
   /// which push what overlaps apart at `pushing` (1/s) times its depth, in a step of `h` s.
   void note(const Bodies& bodies, std::span<const OdeContact> contacts, const Vec3& gravity, double pushing,
             double h);
-  /// Whether they have no more energy now than they may. A body that touches no other is not asked.
+  /// Whether they have no more energy now than they may. A body that touches nothing but what stands still is
+  /// not asked.
   bool is_kept(const Bodies& bodies);
 
  private:
@@ -29,9 +30,10 @@ class EnergyBound {
     double energy = 0.0;          ///< J, with what gravity and forces give
     double driven = 0.0;          ///< J: at most, from surfaces that move
     double mass = 0.0;            ///< kg
-    double squared_pushes = 0.0;  ///< m²/s², of all contacts
+    double squared_pushes = 0.0;  ///< m²/s², of all contacts; of a body by itself the greatest
     int bodies = 0;
     bool jointed = false;
+    bool moved = false;  ///< by what moves, or was moved
     double most() const;
   };
   Island& island_of(std::size_t slot) { return islands_[std::size_t(sets_.root_of(std::int32_t(slot)))]; }

@@ -95,7 +95,8 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second,
     const ContactSide& other = first.id ? second : first;
     contacts_.push_back({first.id ? first.id : second.id, other.id, point.point, side * point.normal,
                          std::max(0.0, point.depth),
-                         other.id ? Vec3(Vec3::Zero()) : velocity_at(other, point.point)});
+                         other.id ? Vec3(Vec3::Zero()) : velocity_at(other, point.point),
+                         !other.id && other.moves});
   }
   made_ += std::int64_t(points.size());
 }

@@ -130,6 +130,7 @@ struct OdeContact {
   Vec3 point, normal;            ///< world; the normal points from `second` into `first`
   double depth;                  ///< m, ≥ 0
   Vec3 velocity = Vec3::Zero();  ///< m/s, at the point, of what is no body of this world's
+  bool moves = false;            ///< that does, or was moved before this step
 };
 
 /// Ground of an OdeWorld; stays valid until removed. Zero is null.
