@@ -9,7 +9,10 @@ namespace lodestone {
 namespace {
 
 const Eigen::AlignedBox3d kEverywhere(Vec3::Constant(-1e9), Vec3::Constant(1e9));  // m
-constexpr double kLeap = 50.0;  // m/s: what seems faster was put elsewhere, and carries nothing along
+// A place that seems to move faster, or a rim that does in a turn of more than kFarTurn, was put elsewhere
+// and carries nothing along.
+constexpr double kLeap = 50.0;    // m/s
+constexpr double kFarTurn = 0.5;  // rad
 
 Eigen::AlignedBox3d in_own_frame(const MirroredGeom& geom) {
   // A height field that repeats itself has no bounds.
@@ -31,7 +34,7 @@ HalfSpace plane_of(const MirroredGeom& geom) {
 
 }  // namespace
 
-void CallersGround::follow(const SpaceMirror& mirror, double dt, const Wakes& wakes) {
+void CallersGround::follow(const SpaceMirror& mirror, double dt, const Vec3& up, const Wakes& wakes) {
   const std::span<const MirroredGeom> geoms = mirror.geoms();
   ids_.resize(geoms.size());
   for (const std::uint32_t slot : mirror.removed()) {
@@ -72,6 +75,8 @@ void CallersGround::follow(const SpaceMirror& mirror, double dt, const Wakes& wa
   }
   for (const std::uint32_t slot : carried_)
     if (!std::ranges::binary_search(mirror.moved(), slot)) move(slot, false);
+  for (const std::uint32_t slot : probed_)
+    ground_.set_up(ids_[slot], geoms[slot].orientation.conjugate() * up);
 }
 
 void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt) {
@@ -86,8 +91,10 @@ void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt)
         const std::optional<RayHit> hit = probe->cast(own, from, direction, length);
         return hit ? std::optional(GroundHit{hit->point, hit->normal, hit->distance}) : std::nullopt;
       };
-      shape.up = geom.kind == GeomKind::height_field ? Vec3(Vec3::UnitY())
-                                                     : Vec3(geom.orientation.conjugate() * Vec3::UnitZ());
+      if (geom.kind == GeomKind::height_field)
+        shape.up = Vec3::UnitY();
+      else
+        probed_.push_back(slot);
     } else {
       shape.make = [own = geom.geom] { return solids_of(read_geom(own)); };
     }
@@ -105,6 +112,7 @@ void CallersGround::remove(std::uint32_t slot) {
   ids_[slot] = {};
   std::erase(carried_, slot);
   std::erase(moving_, slot);
+  std::erase(probed_, slot);
 }
 
 // One that a kinematic body carries moves as that does; one that was put elsewhere since the last step came
@@ -119,9 +127,11 @@ GroundPose CallersGround::pose_of(const MirroredGeom& geom, bool moved, double d
   }
   if (pose.goes_on_s > 0.0 || !moved) return pose;
   const Vec3 velocity = (geom.position - geom.previous_position) / dt;
-  if (velocity.norm() > kLeap) return pose;
+  const Vec3 turn = rotation_between(geom.previous_orientation, geom.orientation);
+  const double rim = (geom.bounds.center() - geom.position).norm() + 0.5 * geom.bounds.sizes().norm();
+  if (velocity.norm() > kLeap || (turn.norm() > kFarTurn && turn.norm() * rim > kLeap * dt)) return pose;
   pose.velocity = velocity;
-  pose.angular_velocity = rotation_between(geom.previous_orientation, geom.orientation) / dt;
+  pose.angular_velocity = turn / dt;
   return pose;
 }
 

@@ -22,8 +22,9 @@ class CallersGround {
     std::function<void(const Eigen::AlignedBox3d&)> gone;       ///< what was there is elsewhere, or nowhere
     std::function<void(const HalfSpace&)> came;
   };
-  /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s.
-  void follow(const SpaceMirror& mirror, double dt, const Wakes& wakes);
+  /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s. `up` (unit, world)
+  /// is against gravity: what is known by rays alone is met from there.
+  void follow(const SpaceMirror& mirror, double dt, const Vec3& up, const Wakes& wakes);
 
   /// The geom that a part or plane is; null where it is none of the caller's.
   dxGeom* geom_of(GroundId id) const;
@@ -38,6 +39,7 @@ class CallersGround {
   std::vector<dxGeom*> geoms_;          // by the index of their ids
   std::vector<std::uint32_t> carried_;  // slots of those with a kinematic body
   std::vector<std::uint32_t> moving_;   // slots of those that had a velocity in the last step
+  std::vector<std::uint32_t> probed_;   // slots of those of other classes than ODE's own
   std::shared_ptr<GeomProbe> probe_ = std::make_shared<GeomProbe>();
 };
 

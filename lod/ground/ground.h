@@ -99,6 +99,8 @@ class Ground {
   void remove(GroundId id);
   void move_plane(GroundId id, const HalfSpace& plane);
   void move_part(GroundId id, const GroundPose& pose);
+  /// Of a part that is known by rays: where these come from.
+  void set_up(GroundId id, const Vec3& up) { parts_[std::size_t(entries_[id.index].part)]->shape.up = up; }
   /// Parts that come back move on in the next step, of `dt` s.
   void begin_step(double dt);
   const GroundPart& part(GroundId id) const { return *parts_[std::size_t(entries_[id.index].part)]; }

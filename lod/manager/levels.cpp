@@ -103,7 +103,9 @@ void Levels::follow_callers_space(double dt) {
   const SpaceMirror* mirror = full.world()->callers_space();
   if (!mirror) return;
   const auto wake = [this](const Eigen::AlignedBox3d& box) { wake_in(box); };
-  callers.ground.follow(*mirror, dt,
+  const Vec3& gravity = statistical_settings.gravity;
+  const Vec3 up = gravity.isZero(0.0) ? Vec3(Vec3::UnitZ()) : Vec3(-gravity.normalized());
+  callers.ground.follow(*mirror, dt, up,
                         {.disturbed = wake,
                          .gone = [this](const Eigen::AlignedBox3d& box) { wake_piled_in(box); },
                          .came = [this](const HalfSpace& plane) { wake_on(plane); }});

@@ -16,8 +16,11 @@ Vec3 any_across(const Vec3& up) {
 }  // namespace
 
 void HeightFieldContacts::find(const Body& body, dGeomID field, std::vector<ContactPoint>& points) {
-  const dReal* rotation = dGeomGetRotation(field);  // heights go along its own y
-  const Above above{field, Vec3(rotation[1], rotation[5], rotation[9]), 2.0 * body.reach};
+  Above above{field, Vec3::UnitY(), 2.0 * body.reach};  // heights go along its own y
+  if (is_placeable(field)) {
+    const dReal* rotation = dGeomGetRotation(field);
+    above.up = {rotation[1], rotation[5], rotation[9]};
+  }
   const RigidState at = state_of(body.body);
   if (body.spheres.empty()) return find_of_corners(body, at, above, points);
   for (const Sphere& part : body.spheres)

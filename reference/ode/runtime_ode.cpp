@@ -104,6 +104,20 @@ std::mutex& trimesh_mutex() {
 RecoverableScope::RecoverableScope() { recoverable = true; }
 RecoverableScope::~RecoverableScope() { recoverable = false; }
 
+bool is_placeable(dGeomID geom) {
+  const int geom_class = dGeomGetClass(geom);
+  if (geom_class != dHeightfieldClass || dGeomGetBody(geom)) return geom_class != dPlaneClass;
+  const std::int64_t before = messages;
+  try {
+    const RecoverableScope scope;
+    dGeomGetPosition(geom);
+    return true;
+  } catch (const AssertionFailed&) {
+    messages = before;
+    return false;
+  }
+}
+
 SeededRandom::SeededRandom(std::uint64_t seed) : lock_(random_mutex()), before_(dRandGetSeed()) {
   // ODE's generator keeps 32 bits; fold the rest in.
   dRandSetSeed((seed ^ (seed >> 32)) & 0xffffffffu);

@@ -43,6 +43,11 @@ class RecoverableScope {
   RecoverableScope& operator=(const RecoverableScope&) = delete;
 };
 
+/// Whether a geom has a place of its own. Planes have none, nor height fields that were made without, which
+/// are at the origin and not turned: ODE has no word for those, but an assertion where one asks for their
+/// place.
+bool is_placeable(dGeomID geom);
+
 /// Holds ODE's process-wide random generator for one scope, seeded by `seed`, and gives it back as it was
 /// found.
 class SeededRandom {

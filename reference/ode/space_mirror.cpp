@@ -25,8 +25,8 @@ struct Identity {
   bool dynamic = false;
   unsigned category = 0, collide = 0;
   std::array<dReal, 4> sizes{};  // m; of a plane, its parameters
-  const void* data = nullptr;    // of a trimesh
-  std::uint64_t content = 0;     // likewise: a print of some of its triangles
+  const void* data = nullptr;    // of a trimesh or height field
+  std::uint64_t content = 0;     // of a trimesh: a print of some of its triangles
   friend bool operator==(const Identity&, const Identity&) = default;
 };
 
@@ -102,17 +102,23 @@ std::array<dReal, 4> sizes_of(dGeomID geom, int geom_class) {
 }
 
 /// Whether the caller made something of it that is no number. Such a geom is left alone.
-bool is_spoilt(dGeomID geom, int geom_class) {
+bool is_spoilt(dGeomID geom, int geom_class, bool placeable) {
   const auto sum = [](const dReal* v) { return v[0] + v[1] + v[2]; };
   const std::array<dReal, 4> sizes = sizes_of(geom, geom_class);
   dReal all = sum(sizes.data()) + sizes[3];
-  if (geom_class == dPlaneClass) return !std::isfinite(all);  // which has no place
+  if (!placeable) return !std::isfinite(all);
   all += sum(dGeomGetPosition(geom));
   const dReal* rotation = dGeomGetRotation(geom);
   for (const int row : {0, 4, 8}) all += sum(rotation + row);
   if (const dBodyID body = dGeomGetBody(geom))
     all += sum(dBodyGetLinearVel(body)) + sum(dBodyGetAngularVel(body));
   return !std::isfinite(all);
+}
+
+// What a trimesh or a height field has its form from.
+const void* data_of(dGeomID geom, int geom_class) {
+  if (geom_class == dTriMeshClass) return dGeomTriMeshGetData(geom);
+  return geom_class == dHeightfieldClass ? dGeomHeightfieldGetHeightfieldData(geom) : nullptr;
 }
 
 Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned collide,
@@ -125,14 +131,14 @@ Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned c
           .category = category,
           .collide = collide,
           .sizes = sizes_of(geom, geom_class),
-          .data = geom_class == dTriMeshClass ? dGeomTriMeshGetData(geom) : nullptr,
+          .data = data_of(geom, geom_class),
           .content = content};
 }
 
-Pose pose_of(dGeomID geom, int geom_class) {
+Pose pose_of(dGeomID geom, bool placeable) {
   Pose pose;
   dGeomGetAABB(geom, pose.bounds.data());
-  if (geom_class == dPlaneClass) return pose;  // which has none
+  if (!placeable) return pose;
   std::copy_n(dGeomGetPosition(geom), 3, pose.position.begin());
   std::copy_n(dGeomGetRotation(geom), 12, pose.rotation.begin());
   return pose;
@@ -144,7 +150,7 @@ bool changes_within(const Pose& before, const Pose& now) {
 }
 
 // The bounds of the first few follow from their place and sizes.
-std::uint64_t print_of(dGeomID geom, int geom_class, unsigned category, unsigned collide,
+std::uint64_t print_of(dGeomID geom, int geom_class, bool placeable, unsigned category, unsigned collide,
                        std::uint64_t content) {
   Print print;
   const dBodyID body = dGeomGetBody(geom);
@@ -153,13 +159,15 @@ std::uint64_t print_of(dGeomID geom, int geom_class, unsigned category, unsigned
   print.add(std::uint64_t(category) << 32 | collide);
   for (const dReal size : sizes_of(geom, geom_class)) print.add(size);
   if (geom_class == dPlaneClass) return print.value();
-  const dReal *position = dGeomGetPosition(geom), *rotation = dGeomGetRotation(geom);
-  for (const int i : {0, 1, 2}) print.add(position[i]);
-  for (const int i : {0, 1, 2, 4, 5, 6, 8, 9, 10}) print.add(rotation[i]);
+  if (placeable) {
+    const dReal *position = dGeomGetPosition(geom), *rotation = dGeomGetRotation(geom);
+    for (const int i : {0, 1, 2}) print.add(position[i]);
+    for (const int i : {0, 1, 2, 4, 5, 6, 8, 9, 10}) print.add(rotation[i]);
+  }
   if (geom_class == dSphereClass || geom_class == dBoxClass || geom_class == dCapsuleClass ||
       geom_class == dCylinderClass)
     return print.value();
-  if (geom_class == dTriMeshClass) print.add(dGeomTriMeshGetData(geom)), print.add(content);
+  print.add(data_of(geom, geom_class)), print.add(content);
   std::array<dReal, 6> bounds;
   dGeomGetAABB(geom, bounds.data());
   for (const dReal side : bounds) print.add(side);
@@ -182,7 +190,7 @@ Eigen::AlignedBox3d box_of(const std::array<dReal, 6>& b) {
 
 void place(const Seen& seen, MirroredGeom& geom) {
   geom.bounds = box_of(seen.pose.bounds);
-  if (geom.kind == GeomKind::plane) return;
+  if (!is_placeable(seen.identity.geom)) return;
   geom.position = to_vec3(seen.pose.position.data());
   dQuaternion q;
   dGeomGetQuaternion(seen.identity.geom, q);
@@ -337,12 +345,13 @@ std::uint64_t SpaceMirror::Impl::content_of(dGeomID mesh) const {
 
 void SpaceMirror::Impl::look_at(dGeomID geom, int geom_class, unsigned category, unsigned collide) {
   if (cursor + kAhead < last_order.size()) fetch(last_order[cursor + kAhead].geom);
-  if (is_spoilt(geom, geom_class)) return;
+  const bool placeable = is_placeable(geom);
+  if (is_spoilt(geom, geom_class, placeable)) return;
   const std::uint64_t content = geom_class == dTriMeshClass ? content_of(geom) : 0,
-                      print = print_of(geom, geom_class, category, collide, content);
+                      print = print_of(geom, geom_class, placeable, category, collide, content);
   const Given* last = find_last(geom);
   if (last && last->print == print) return note(*last);
-  const Seen found{identity_of(geom, geom_class, category, collide, content), pose_of(geom, geom_class)};
+  const Seen found{identity_of(geom, geom_class, category, collide, content), pose_of(geom, placeable)};
   if (!last || seen[last->slot].identity != found.identity ||
       changes_within(seen[last->slot].pose, found.pose))
     return add(found, print);

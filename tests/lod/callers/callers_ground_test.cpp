@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "reference/random.h"
@@ -18,7 +20,7 @@ class GroundOfCaller : public ::testing::Test {
     disturbed_.clear(), planes_.clear();
     scene_.mirror->refresh();
     const auto note = [this](const Eigen::AlignedBox3d& box) { disturbed_.push_back(box); };
-    callers_.follow(*scene_.mirror, kCallersStep,
+    callers_.follow(*scene_.mirror, kCallersStep, Vec3::UnitZ(),
                     {.disturbed = note, .gone = note, .came = [this](const HalfSpace& plane) {
                        planes_.push_back(plane);
                      }});
@@ -124,6 +126,17 @@ TEST_F(GroundOfCaller, WhatHePutsElsewhereCarries) {
   dGeomSetPosition(box, 500, 0, 0);
   follow();
   EXPECT_FALSE(part_at({500, 0, 0}).moves());
+}
+
+// So has what turns, but for a great one whose rim would be beyond all speeds.
+TEST_F(GroundOfCaller, ATurnThatIsALeapHasNoVelocity) {
+  const dGeomID door = scene_.box({2, 0.1, 2}, {0, 0, 0}), fan = scene_.box({0.4, 0.4, 0.1}, {5, 0, 0});
+  const dQuaternion a_quarter = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
+  follow();
+  dGeomSetQuaternion(door, a_quarter), dGeomSetQuaternion(fan, a_quarter);
+  follow();
+  EXPECT_FALSE(part_at({0, 0, 0}).moves());
+  EXPECT_LT((part_at({5, 0, 0}).pose.angular_velocity - Vec3(0, 0, 30 * std::numbers::pi)).norm(), 1e-6);
 }
 
 // A kinematic body's geoms are ground that goes on as the body does; a dynamic body's are none.

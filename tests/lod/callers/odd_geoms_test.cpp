@@ -68,6 +68,89 @@ TEST_F(OddGeoms, AHeightFieldThatRepeatsItselfIsGroundFarOutToo) {
   dGeomHeightfieldDataDestroy(data);
 }
 
+// Gravity along its own −y, as where the world's y is up.
+TEST_F(OddGeoms, AHeightFieldWithoutAPlaceIsGroundAtTheOrigin) {
+  dWorldSetGravity(world_, 0, -9.81, 0);
+  const dHeightfieldDataID data = dGeomHeightfieldDataCreate();
+  dGeomHeightfieldDataBuildCallback(data, nullptr, flat, 20, 20, 9, 9, 1, 0, 1, 0);
+  dCreateHeightfield(space_, data, 0);
+  Manager& manager = start();
+  std::vector<BodyId> boxes;
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    boxes.push_back(add_box({2.0 * double(boxes.size()), 0.6, 0.3}, level));
+  for (int i = 0; i < 180; ++i) manager.step(kFrame);
+  for (const BodyId box : boxes) EXPECT_NEAR(manager.state(box).position.y(), 0.15, 0.01);
+  EXPECT_EQ(manager.report().counters.ode_messages, 0);
+  const auto hit = manager.cast_ray({.from = {0, 5, 0}, .direction = {0, -1, 0}});
+  ASSERT_TRUE(hit);
+  manager_.reset();
+  dGeomHeightfieldDataDestroy(data);
+}
+
+// Sleepers on it wake where it gets other data.
+TEST_F(OddGeoms, AHeightFieldWithOtherHeightsIsAnother) {
+  const dHeightfieldDataID high = dGeomHeightfieldDataCreate(), low = dGeomHeightfieldDataCreate();
+  dGeomHeightfieldDataBuildCallback(high, nullptr, flat, 20, 20, 9, 9, 1, 0.5, 1, 0);
+  dGeomHeightfieldDataBuildCallback(low, nullptr, flat, 20, 20, 9, 9, 1, 0.3, 1, 0);
+  const dGeomID field = dCreateHeightfield(space_, high, 1);
+  const dQuaternion up = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
+  dGeomSetQuaternion(field, up);
+  Manager& manager = start();
+  std::vector<BodyId> boxes;
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    boxes.push_back(add_box({2.0 * double(boxes.size()), 0, 0.7}, level));
+  for (int i = 0; i < 180; ++i) manager.step(kFrame);
+  for (const BodyId box : boxes) {
+    EXPECT_TRUE(manager.asleep(box));
+    EXPECT_NEAR(manager.state(box).position.z(), 0.65, 0.01);
+  }
+  dGeomHeightfieldSetHeightfieldData(field, low);
+  for (int i = 0; i < 180; ++i) manager.step(kFrame);
+  for (const BodyId box : boxes) EXPECT_NEAR(manager.state(box).position.z(), 0.45, 0.01);
+  manager_.reset();
+  dGeomHeightfieldDataDestroy(high), dGeomHeightfieldDataDestroy(low);
+}
+
+int meet_as_a_box(dGeomID own, dGeomID other, int flags, dContactGeom* contacts, int skip) {
+  const dGeomID box = dCreateBox(nullptr, 8, 8, 8);
+  const dReal* place = dGeomGetPosition(own);
+  dGeomSetPosition(box, place[0], place[1], place[2]);
+  const int count = dCollide(box, other, flags, contacts, skip);
+  for (int i = 0; i < count; ++i)
+    reinterpret_cast<dContactGeom*>(reinterpret_cast<char*>(contacts) + i * skip)->g1 = own;
+  dGeomDestroy(box);
+  return count;
+}
+
+void bounds_of_a_box(dGeomID own, dReal bounds[6]) {
+  const dReal* place = dGeomGetPosition(own);
+  for (int axis = 0; axis < 3; ++axis)
+    bounds[2 * axis] = place[axis] - 4, bounds[2 * axis + 1] = place[axis] + 4;
+}
+
+// A class of his own is known by rays: these come from above, wherever that is.
+TEST_F(OddGeoms, AnOwnClassHoldsWhicheverWayIsUp) {
+  dGeomClass own_class{};
+  own_class.collider = [](int) -> dColliderFn* { return meet_as_a_box; };
+  own_class.aabb = bounds_of_a_box;
+  static const int number = dCreateGeomClass(&own_class);
+  const dGeomID own = dCreateGeom(number);
+  dSpaceAdd(space_, own);
+  for (const Vec3& up :
+       {Vec3(Vec3::UnitZ()), Vec3(Vec3::UnitY()), Vec3(-Vec3::UnitX()), Vec3(-Vec3::UnitZ())}) {
+    const Vec3 gravity = -9.81 * up, center = -4.0 * up;
+    dWorldSetGravity(world_, gravity.x(), gravity.y(), gravity.z());
+    dGeomSetPosition(own, center.x(), center.y(), center.z());
+    for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+      Manager& manager = start();
+      const BodyId box = add_box(0.5 * up, level);
+      for (int i = 0; i < 120; ++i) manager.step(kFrame);
+      EXPECT_NEAR(manager.state(box).position.dot(up), 0.15, 0.01) << up.transpose() << ' ' << int(level);
+      manager_.reset();
+    }
+  }
+}
+
 // m, of a bowl about the middle of 81 × 81 samples that are .1 m apart.
 dReal bowl(void*, int x, int z) { return 2e-4 * ((x - 40) * (x - 40) + (z - 40) * (z - 40)); }
 
