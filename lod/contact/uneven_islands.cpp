@@ -26,27 +26,57 @@ constexpr double kUnevenTolerance = 1e-4;  // of what gravity adds to a velocity
 constexpr std::size_t kManyPoints = 40, kRelaxationsOfMany = 16'000;
 constexpr double kToleranceOfMany = 0.01;
 
-/// More of a point: its friction's bound; the way on which the impulses are led, and what a sweep changed.
+/// More of a point: its friction's bound; the way on which the impulses are led, what the last sweep changed,
+/// and the inverse of its effective masses, 0 in lanes without a point.
 struct alignas(64) LedPoint {
-  D4 bound, way[3], change[3];
+  D4 bound, way[3], change[3], inverse_mass[3];
 };
 
 struct BoundedRelaxation {
-  const LedPoint* led;
+  LedPoint* led;
 
   LODESTONE_INLINE bool operator()(const PointAtHand<D4>& at, V4& impulse) const {
     const V4 velocity = at.velocity();
     const D4 asked = at.point.effective_mass[0] * (at.point.target - dot(velocity, at.batch.normal));
-    impulse = relax(at, velocity, asked, all<D4>(1.0), FrictionWithin<D4>{led[at.index].bound});
+    LedPoint& own = led[at.index];
+    const D4* now = at.point.impulse;
+    const D4 before[3] = {now[0], now[1], now[2]};
+    impulse = relax(at, velocity, asked, all<D4>(1.0), FrictionWithin<D4>{own.bound});
+    for (int axis = 0; axis < 3; ++axis) own.change[axis] = now[axis] - before[axis];
     return true;
+  }
+};
+
+/// What a sweep changed in all: J over the unit of mass; m/s, the fastest point.
+struct SweepSize {
+  D4 sum{}, fastest{};
+};
+
+struct SizeLoop {
+  std::span<const BatchLanes<D4>> batches;
+  const LedPoint* led;
+  SweepSize& size;
+
+  LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
+    SweepSize all;
+    for (std::int64_t b = begin; b < end; ++b) {
+      const BatchLanes<D4>& batch = batches[std::size_t(b)];
+      for (const LedPoint* own = led + batch.begin; own != led + batch.begin + batch.count; ++own)
+        for (int axis = 0; axis < 3; ++axis) {
+          const D4 change = absolute(own->change[axis]), speed = change * own->inverse_mass[axis];
+          all.sum = all.sum + change * speed, all.fastest = most(all.fastest, speed);
+        }
+    }
+    size = all;
   }
 };
 
 }  // namespace
 
 struct UnevenIslands::Work {
-  explicit Work(Simd simd) : crowd(simd), lanes(crowd.lanes()) {}
+  explicit Work(Simd own_simd) : simd(own_simd), crowd(simd), lanes(crowd.lanes()) {}
 
+  Simd simd;
   CrowdLanes<D4> crowd;
   ContactLanes<D4>& lanes;
   std::vector<LedPoint> led;  // beside the points
@@ -68,27 +98,15 @@ struct UnevenIslands::Work {
 // much for a light body.
 void UnevenIslands::Work::sweep_led(int sweeps, double enough, const JobRunner& jobs) {
   double last = 0.0;
+  for (LedPoint& point : led) std::ranges::fill(point.way, D4{});
   for (int i = 0; i < sweeps; ++i) {
-    each_point([&](const BatchLanes<D4>&, const PointLanes<D4>& p, std::uint32_t at) {
-      std::ranges::copy(p.impulse, led[at].change);
-      if (i == 0) std::ranges::fill(led[at].way, D4{});
-    });
     crowd.sweep(BoundedRelaxation{led.data()}, jobs);
-    if (i + 1 == sweeps) return;       // within its bounds
-    double size = 0.0, fastest = 0.0;  // of the change: J over the unit of mass; m/s
-    each_point([&](const BatchLanes<D4>& batch, const PointLanes<D4>& p, std::uint32_t at) {
-      for (int axis = 0; axis < 3; ++axis) {
-        D4& of_axis = led[at].change[axis];
-        of_axis = p.impulse[axis] - of_axis;
-        for (int lane = 0; lane < batch.lanes; ++lane) {
-          const double mass = p.effective_mass[axis][lane], change = of_axis[lane];
-          if (mass <= 0.0) continue;
-          size += change * change / mass;
-          fastest = std::max(fastest, std::abs(change) / mass);
-        }
-      }
-    });
-    if (fastest <= enough) return;
+    if (i + 1 == sweeps) return;  // within its bounds
+    SweepSize changed;
+    run_wide(simd, SizeLoop{lanes.batches(), led.data(), changed}, 0, std::int64_t(lanes.batches().size()));
+    const D4 &sums = changed.sum, &fastest = changed.fastest;
+    const double size = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    if (std::max({fastest[0], fastest[1], fastest[2], fastest[3]}) <= enough) return;
     const D4 part = all<D4>(size <= last && last > 0.0 ? size / last : 0.0);
     crowd.sweep(Leading<D4, LedPoint>{led.data(), part}, jobs);
     last = size;
@@ -106,6 +124,10 @@ void UnevenIslands::Work::bound_friction(int sweeps, double enough, const JobRun
   each_point([&](const BatchLanes<D4>&, PointLanes<D4>& p, std::uint32_t at) {
     guesses[at] = {p.impulse[0], p.impulse[1], p.impulse[2]};
     led[at].bound = p.impulse[1] = p.impulse[2] = D4{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const D4& mass = p.effective_mass[axis];
+      led[at].inverse_mass[axis] = mass > D4{} ? all<D4>(1.0) / mass : D4{};
+    }
   });
   crowd.sweep(GuessesGiven<D4>{}, jobs);
   sweep_led(sweeps, enough, jobs);
