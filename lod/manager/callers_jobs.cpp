@@ -21,7 +21,10 @@ void CallersJobs::operator()(std::int64_t count, TaskRef task) {
   try {
     runner_(count, TaskRef(noted));
   } catch (...) {
-    if (task_threw) throw;
+    if (task_threw) {
+      thrown_ = nullptr;  // the step ends here
+      throw;
+    }
     if (!thrown_) thrown_ = std::current_exception();
     for (std::int64_t i = 0; i < count; ++i)
       if (begun[std::size_t(i)] == 0) task(i);

@@ -101,8 +101,8 @@ std::mutex& trimesh_mutex() {
   return mutex;
 }
 
-RecoverableScope::RecoverableScope() { recoverable = true; }
-RecoverableScope::~RecoverableScope() { recoverable = false; }
+RecoverableScope::RecoverableScope() : before_(recoverable) { recoverable = true; }
+RecoverableScope::~RecoverableScope() { recoverable = before_; }
 
 bool is_placeable(dGeomID geom) {
   const int geom_class = dGeomGetClass(geom);

@@ -41,6 +41,9 @@ class RecoverableScope {
   ~RecoverableScope();
   RecoverableScope(const RecoverableScope&) = delete;
   RecoverableScope& operator=(const RecoverableScope&) = delete;
+
+ private:
+  const bool before_;  // one may lie within another
 };
 
 /// Whether a geom has a place of its own. Planes have none, nor height fields that were made without, which
