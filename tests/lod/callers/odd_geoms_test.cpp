@@ -83,6 +83,7 @@ TEST_F(OddGeoms, AHeightFieldWithoutAPlaceIsGroundAtTheOrigin) {
   EXPECT_EQ(manager.report().counters.ode_messages, 0);
   const auto hit = manager.cast_ray({.from = {0, 5, 0}, .direction = {0, -1, 0}});
   ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->point.y(), 0.0, 1e-9);
   manager_.reset();
   dGeomHeightfieldDataDestroy(data);
 }

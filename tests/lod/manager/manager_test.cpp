@@ -354,11 +354,13 @@ TEST(Manager, WhatAnEnginesOwnJobsThrowComesOutOfTheWholeStep) {
     for (int i = 0; i < 200; ++i)
       add(manager, shape, at({0.5 * (i % 8), 0.5 * (i / 8 % 8), 0.3 + 0.3 * (i / 64)}),
           LevelChoice::statistical);
-    for (int i = 0; i < 30; ++i) try {
+    for (int i = 0; i < 30; ++i) {
+      try {
         manager.step(kFrame);
       } catch (const std::runtime_error&) {
         ++thrown;
       }
+    }
     return manager.state_hash();
   };
   int none = 0;
