@@ -18,6 +18,17 @@ double energy_of(const Body& body, const Vec3& velocity, const Vec3& angular_vel
   return 0.5 * body.mass() * (velocity.squaredNorm() + turning.dot(body.shape->inertia_per_mass * turning));
 }
 
+// J, with what `gravity` and forces give it in `h` s.
+double energy_with_forces(const Body& body, const Vec3& gravity, double h) {
+  const RigidState state = state_of(body.body);
+  const double mass = body.mass();
+  const Vec3 pull = dBodyGetGravityMode(body.body) ? gravity : Vec3::Zero(),
+             torque = state.orientation.conjugate() * to_vec3(dBodyGetTorque(body.body)),
+             turning = state.orientation * (body.shape->inverse_inertia_per_mass * torque) / mass;
+  return energy_of(body, state.velocity + h * (pull + to_vec3(dBodyGetForce(body.body)) / mass),
+                   state.angular_velocity + h * turning);
+}
+
 Vec3 velocity_at(const Body& body, const Vec3& point) {
   const RigidState state = state_of(body.body);
   return state.velocity + state.angular_velocity.cross(point - state.position);
@@ -42,25 +53,22 @@ void EnergyBound::note(const Bodies& bodies, std::span<const OdeContact> contact
   for (const OdeContact& contact : contacts)
     if (is_pushed(contact.first) && is_pushed(contact.second))
       sets_.join(std::int32_t(slot_of(contact.first)), std::int32_t(slot_of(contact.second)));
-  note_bodies(bodies, gravity, h);
+  count_bodies(bodies);
   for (const OdeContact& contact : contacts) note_contact(bodies, contact, pushing * contact.depth);
+  for (std::size_t slot = 0; slot < islands_.size(); ++slot)
+    if (asked_[slot] = noted_[slot] && island_of(slot).is_asked(); asked_[slot])
+      island_of(slot).energy += energy_with_forces(bodies.slots()[slot], gravity, h);
 }
 
-void EnergyBound::note_bodies(const Bodies& bodies, const Vec3& gravity, double h) {
+void EnergyBound::count_bodies(const Bodies& bodies) {
   noted_.assign(islands_.size(), false);
+  asked_.assign(islands_.size(), false);
   for (std::size_t slot = 0; slot < islands_.size(); ++slot) {
     const Body& body = bodies.slots()[slot];
     if (!is_free(body)) continue;
     noted_[slot] = true;
-    const RigidState state = state_of(body.body);
-    const double mass = body.mass();
-    const Vec3 pull = dBodyGetGravityMode(body.body) ? gravity : Vec3::Zero(),
-               torque = state.orientation.conjugate() * to_vec3(dBodyGetTorque(body.body)),
-               turning = state.orientation * (body.shape->inverse_inertia_per_mass * torque) / mass;
     Island& island = island_of(slot);
-    island.energy += energy_of(body, state.velocity + h * (pull + to_vec3(dBodyGetForce(body.body)) / mass),
-                               state.angular_velocity + h * turning);
-    island.mass += mass;
+    island.mass += body.mass();
     ++island.bodies;
     if (jointed_[slot]) island.jointed = true;
   }
@@ -91,17 +99,15 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
 bool EnergyBound::is_kept(const Bodies& bodies) {
   energies_.assign(islands_.size(), 0.0);
   for (std::size_t slot = 0; slot < islands_.size(); ++slot) {
-    if (!noted_[slot]) continue;
+    if (!asked_[slot]) continue;
     const Body& body = bodies.slots()[slot];
     const RigidState state = state_of(body.body);
     energies_[std::size_t(sets_.root_of(std::int32_t(slot)))] +=
         energy_of(body, state.velocity, state.angular_velocity);
   }
-  for (std::size_t root = 0; root < islands_.size(); ++root) {
-    const Island& island = islands_[root];
-    if (island.jointed || (island.bodies < 2 && !island.moved)) continue;  // alone, the truth's own
-    if (!(energies_[root] <= island.most())) return false;                 // nor where ODE spoilt one
-  }
+  for (std::size_t root = 0; root < islands_.size(); ++root)
+    if (islands_[root].is_asked() && !(energies_[root] <= islands_[root].most()))
+      return false;  // nor where ODE spoilt one
   return true;
 }
 

@@ -35,13 +35,15 @@ class EnergyBound {
     bool jointed = false;
     bool moved = false;  ///< by what moves, or was moved
     double most() const;
+    bool is_asked() const { return !jointed && (bodies > 1 || moved); }  ///< alone: the truth's own
   };
   Island& island_of(std::size_t slot) { return islands_[std::size_t(sets_.root_of(std::int32_t(slot)))]; }
-  void note_bodies(const Bodies& bodies, const Vec3& gravity, double h);
+  void count_bodies(const Bodies& bodies);
   void note_contact(const Bodies& bodies, const OdeContact& contact, double push);
 
   std::vector<bool> noted_;       // by slot: those that were awake
   std::vector<bool> jointed_;     // by slot
+  std::vector<bool> asked_;       // by slot: of those, who is in an island that is asked
   DisjointSets sets_;             // of slots
   std::vector<Island> islands_;   // by root
   std::vector<double> energies_;  // J, after the step, by root
