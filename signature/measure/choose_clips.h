@@ -13,7 +13,7 @@ namespace lodestone {
 struct SettlingRecord;
 
 /// Trials recorded whole for each clip that is kept of them.
-inline constexpr int kCandidatesPerClip = 2;
+inline constexpr int kCandidatesPerClip = 4;
 
 /// Indices, ascending, of at most `count` of the records that were recorded whole and rest. Of each rest pose
 /// as many as its frequency asks for, spread evenly over how long they take (strata of equal probability),
