@@ -70,7 +70,8 @@ nlohmann::ordered_json with_share(nlohmann::ordered_json json, const SeriesArgum
   series["methods"] = settings.methods;
   series["dt_s"] = settings.dt_s;
   series["seed"] = settings.seed;
-  if (settings.truth_push_m_per_s) series["truth_push_m_per_s"] = *settings.truth_push_m_per_s;
+  if (settings.truth.push_m_per_s) series["truth_push_m_per_s"] = *settings.truth.push_m_per_s;
+  if (settings.truth.substeps) series["truth_substeps"] = *settings.truth.substeps;
   series["only"] = arguments.only;
   json["trials"] = settings.trials;
   json["shard"] = fmt::format("{}/{}", arguments.share->index + 1, arguments.share->count);

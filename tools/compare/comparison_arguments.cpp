@@ -63,10 +63,14 @@ void add_comparison_arguments(Command& command, ComparisonArguments& arguments) 
   add_methods_argument(command, comparison.methods);
   command
       .add_option(
-          "--truth-push", comparison.truth_push_m_per_s,
+          "--truth-push", comparison.truth.push_m_per_s,
           "how fast the truth pushes overlap apart, m/s, at most; without, as ODE does, so that nothing "
           "bounces by less than a part of its speed, up to .2")
       .within(0.0, 1e9);
+  command
+      .add_option("--truth-substeps", comparison.truth.substeps,
+                  "how many steps the truth takes in 1/60 s; without 34, more for bodies below .2 m")
+      .within(1, 100'000);
   add_starts_arguments(command, comparison.seed, comparison.threads);
 }
 

@@ -32,8 +32,8 @@ void add_trials_argument(Command& command, int& trials, const std::string& what)
 /// Adds --seed and --threads to `command`.
 void add_starts_arguments(Command& command, std::uint64_t& seed, int& threads);
 
-/// Adds --dt, --trials, --methods, --truth-push, --seed, --threads and the options of signatures to
-/// `command`, with the defaults in `arguments`, which outlives the parsing.
+/// Adds --dt, --trials, --methods, --truth-push, --truth-substeps, --seed, --threads and the options of
+/// signatures to `command`, with the defaults in `arguments`, which outlives the parsing.
 void add_comparison_arguments(Command& command, ComparisonArguments& arguments);
 
 }  // namespace lodestone

@@ -29,11 +29,10 @@ class DropComparing {
 
  private:
   DropComparison compare_truth() {
-    const Method truth =
-        settings_.truth_push_m_per_s ? make_truth(job_, *settings_.truth_push_m_per_s) : make_truth(job_);
+    const Method truth = make_truth(job_, settings_.truth);
     DropComparison result{.shape = job_.shape->name, .trials = settings_.trials};
     result.truth_substeps = truth.substeps();
-    result.truth_push_m_per_s = settings_.truth_push_m_per_s;
+    result.truth_push_m_per_s = settings_.truth.push_m_per_s;
     result.truth_a = observe(truth, settings_.seed_of_truth_a(), kObservationStep, "truth");
     result.truth_b = observe(truth, settings_.seed_of_truth_b(), kObservationStep, "truth, second batch");
     result.floor = score_drops(result.truth_a, result.truth_b, settings_.seed);

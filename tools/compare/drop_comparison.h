@@ -16,8 +16,8 @@ namespace lodestone {
 struct DropComparisonSettings : ComparisonSettings {
   DropComparisonSettings()
       : ComparisonSettings{.methods = {"full", "full_1", "hull", "spheres7", "sphere", "statistical"}} {}
-  int trials = 300;                               ///< ≥ 2
-  std::optional<double> truth_push_m_per_s = {};  ///< see make_truth; none: ODE's own law
+  int trials = 300;  ///< ≥ 2
+  TruthSettings truth = {};
 };
 
 struct DropRow : MethodAtStep {
@@ -34,8 +34,8 @@ struct DropComparison {
   std::string shape = {};
   int trials = 0;
   ScoreWithInterval floor = {};
-  int truth_substeps = 0;  ///< in 1/60 s
-  std::optional<double> truth_push_m_per_s = {};
+  int truth_substeps = 0;                         ///< in 1/60 s
+  std::optional<double> truth_push_m_per_s = {};  ///< as in TruthSettings
   std::vector<DropObservation> truth_a = {}, truth_b = {};
   std::vector<DropRow> rows = {};
 };

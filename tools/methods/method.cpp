@@ -148,11 +148,12 @@ Method with_sleep(Method method, bool sleeping) {
 }
 
 // Small bodies move as fast in their own time, which is the shorter by √λ.
-Method make_truth(const DropJob& job, double push_m_per_s) {
+Method make_truth(const DropJob& job, const TruthSettings& settings) {
   const double scale = std::min(1.0, drop_scale(*job.shape));
-  return make_ode("truth", job,
-                  {.substeps = int(std::lround(kTruthSubsteps / std::sqrt(scale))),
-                   .settings = {.max_correcting_velocity = push_m_per_s}});
+  OdeMethod truth{.substeps =
+                      settings.substeps.value_or(int(std::lround(kTruthSubsteps / std::sqrt(scale))))};
+  if (settings.push_m_per_s) truth.settings.max_correcting_velocity = *settings.push_m_per_s;
+  return make_ode("truth", job, truth);
 }
 
 bool is_method_name(const std::string& name) {

@@ -64,11 +64,21 @@ void keep_model(std::vector<Method>& methods, const std::string& model);
 /// world.
 Method with_sleep(Method method, bool sleeping);
 
-/// The ground truth: ODE at 34 steps in 1/60 s, just under .5 ms, so that 60 Hz falls on whole steps; for
-/// bodies below .2 m at the more, the smaller they are. It pushes overlap apart by at most `push_m_per_s`;
-/// ODE's own law, without a bound, gives impacts up to its error reduction (.2) of their speed back, in steps
-/// of any length, which shows where the restitution is less.
-Method make_truth(const DropJob& job, double push_m_per_s = OdeSettings{}.max_correcting_velocity);
+/// The ground truth where it is not the usual one.
+struct TruthSettings {
+  std::optional<int> substeps =
+      {};  ///< in 1/60 s; none: 34, just under .5 ms each, so that 60 Hz falls on
+           ///< whole steps, and for bodies below .2 m the more, the smaller they are
+  std::optional<double> push_m_per_s =
+      {};  ///< at which overlap is pushed apart at most; none: ODE's own law,
+           ///< without a bound, which gives impacts up to its error reduction
+           ///< (.2) of their speed back, in steps of any length, as shows
+           ///< where the restitution is less
+  friend bool operator==(const TruthSettings&, const TruthSettings&) = default;
+};
+
+/// The ground truth: ODE.
+Method make_truth(const DropJob& job, const TruthSettings& settings = {});
 
 /// Whether `make_methods` knows it: one of method_names(), or full_2 to full_64, the full level at
 /// that many substeps.

@@ -127,7 +127,7 @@ TEST(DropComparison, WithoutRestitutionTheTruthBouncesByItsErrorReduction) {
     return sum;
   };
   const DropComparison by_its_law = compare_drops(job, settings);
-  settings.truth_push_m_per_s = 0.05;
+  settings.truth.push_m_per_s = 0.05;
   const DropComparison slowly = compare_drops(job, settings);
   EXPECT_GT(first_rebound(by_its_law), 3.0 * first_rebound(slowly));
   EXPECT_LT(slowly.rows[0].score->value.score, by_its_law.rows[0].score->value.score);

@@ -86,6 +86,7 @@ TEST(DropSeries, TheTruthOfASmallBodyTakesShorterSteps) {
                         .material = {}})
                 .substeps(),
             34);
+  EXPECT_EQ(make_truth(usual, {.substeps = 272}).substeps(), 272);
 }
 
 }  // namespace
