@@ -1,12 +1,14 @@
 #include "lod/callers/callers_bodies.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "lod/callers/geom_solids.h"
 #include "lod/contact/hull_contacts.h"
 #include "lod/contact/pair_contacts.h"
 #include "lod/ground/met_ground.h"
 #include "reference/error.h"
+#include "reference/ode/body_joints.h"
 #include "reference/ode/callers_bodies.h"
 
 namespace lodestone {
@@ -28,6 +30,23 @@ Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {
   shape.convex = true;
   for (const Vec3& v : shape.hull.vertices) shape.radius = std::max(shape.radius, v.norm());
   return shape;
+}
+
+void set_inertia(Shape& shape, dxBody* body) {
+  shape.inverse_inertia_per_mass = callers::inverse_inertia(body) * callers::mass(body);
+  shape.inertia_per_mass = shape.inverse_inertia_per_mass.inverse();
+}
+
+// For one without geoms: an octahedron as far from its middle as its mass is, which nobody meets.
+std::shared_ptr<const Shape> make_tied_shape(dxBody* body) {
+  const double reach =
+      std::sqrt(callers::inverse_inertia(body).inverse().trace() / (2.0 * callers::mass(body)));
+  std::vector<Vec3> corners;
+  for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
+    corners.push_back(reach * axis), corners.push_back(-reach * axis);
+  Shape shape = make_contact_shape(corners, Vec3::Zero());
+  set_inertia(shape, body);
+  return std::make_shared<const Shape>(std::move(shape));
 }
 
 }  // namespace
@@ -130,10 +149,48 @@ void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
     }
   }
   if (sphere) shape.sphere_radius = shape.radius = *sphere;
-  const double mass = callers::mass(entry.body);
-  shape.inverse_inertia_per_mass = callers::inverse_inertia(entry.body) * mass;
-  shape.inertia_per_mass = shape.inverse_inertia_per_mass.inverse();
+  set_inertia(shape, entry.body);
   entry.shape = std::make_shared<const Shape>(std::move(shape));
+}
+
+// In the order in which joints lead to them.
+std::vector<dxBody*> CallersBodies::find_tied(std::span<dxBody* const> full) const {
+  std::vector<dxBody*> waiting, tied;
+  const auto ask = [&](dxBody* body) {
+    if (has_joints(body)) waiting.push_back(body);
+  };
+  std::ranges::for_each(full, ask);
+  for (const Entry& entry : bodies_)
+    if (!entry.is_tied()) ask(entry.body);
+  if (waiting.empty()) return tied;
+  std::unordered_set<dxBody*> known(full.begin(), full.end());
+  for (const Entry& entry : bodies_)
+    if (!entry.is_tied()) known.insert(entry.body);
+  for (std::size_t i = 0; i < waiting.size(); ++i)
+    for (dxBody* const other : joined_bodies(waiting[i]))
+      if (other && !callers::is_kinematic(other) && known.insert(other).second)
+        waiting.push_back(other), tied.push_back(other);
+  return tied;
+}
+
+void CallersBodies::follow_tied(std::span<dxBody* const> full,
+                                const std::function<void(std::uint32_t, const GroundBits&)>& tell) {
+  const std::vector<dxBody*> tied = find_tied(full);
+  std::erase_if(bodies_, [&](const Entry& entry) {
+    const bool gone = entry.is_tied() && !std::ranges::count(tied, entry.body);
+    if (gone) tell(entry.owner, {});
+    return gone;
+  });
+  for (dxBody* const body : tied) {
+    if (std::ranges::count(bodies_, body, &Entry::body)) continue;
+    Entry& entry = bodies_.emplace_back();
+    entry.body = body;
+    entry.owner = kFirstOwner + owners_++;
+    entry.shape = make_tied_shape(body);
+    entry.bits = {0, 0};
+    entry.stale = entry.untold = false;
+    tell(entry.owner, entry.bits);
+  }
 }
 
 // What holds them up: the ground below, which the caller's own contacts act against.
@@ -185,7 +242,7 @@ void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vecto
     neighbor.asleep = !callers::is_enabled(entry.body);
     const auto index = std::int32_t(neighbors.size());
     neighbors.push_back(neighbor);
-    if (neighbor.asleep) continue;
+    if (neighbor.asleep || entry.is_tied()) continue;
     BodyProperties own;
     own.category = entry.bits.category, own.collide = entry.bits.collide;
     add_ground_contacts({ground, own}, neighbor, index, contacts);
@@ -212,17 +269,32 @@ void CallersBodies::hand_over(std::span<const FullNeighbor> neighbors, const Vec
   }
 }
 
-void CallersBodies::archive(StateArchive& a) {
+// Those whose body is as the mirror saw it last: of the others the caller may have destroyed any.
+std::vector<const CallersBodies::Entry*> CallersBodies::find_living(const SpaceMirror& mirror) const {
+  std::vector<std::uint32_t> held;
+  mirror.find_bodied_now(held);
+  std::vector<const Entry*> living;
+  for (const Entry& entry : bodies_)
+    if (std::ranges::any_of(entry.slots,
+                            [&](std::uint32_t slot) { return std::ranges::binary_search(held, slot); }))
+      living.push_back(&entry);
+  return living;
+}
+
+void CallersBodies::archive(StateArchive& a, const SpaceMirror* mirror) {
   struct Known {
     std::uint32_t owner;
     Vec3 position;
   };
   std::vector<Known> known;
-  for (const Entry& entry : bodies_) known.push_back({entry.owner, callers::state(entry.body).position});
+  if (mirror)
+    for (const Entry* entry : find_living(*mirror))
+      known.push_back({entry->owner, callers::state(entry->body).position});
   std::uint32_t owners = owners_;
   a(known, owners);
   if (!a.reading()) return;
   for (Entry& entry : bodies_) entry.untold = true;
+  std::ranges::stable_partition(bodies_, [](const Entry& entry) { return !entry.is_tied(); });
   const auto is_there = [](const Known& at) {
     return [&at](const Entry& entry) { return callers::state(entry.body).position == at.position; };
   };

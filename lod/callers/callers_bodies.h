@@ -1,5 +1,6 @@
 // The dynamic bodies of a caller's space, as statistical bodies meet them: with their own mass and the shape
-// of their geoms. They take impulses and give them.
+// of their geoms. They take impulses and give them. Those without geoms that joints tie to them, or to full
+// bodies, meet nobody, but pull and weigh.
 #pragma once
 
 #include <functional>
@@ -33,6 +34,10 @@ class CallersBodies {
   /// where it is gone.
   void follow(const SpaceMirror& mirror, const std::function<void(const Eigen::AlignedBox3d&)>& left,
               const std::function<void(std::uint32_t, const GroundBits&)>& tell);
+  /// After it: takes in which bodies without geoms hang by joints, through each other too, on `full`, the
+  /// full level's bodies, or on those that have geoms. To be called outside of ODE's step.
+  void follow_tied(std::span<dxBody* const> full,
+                   const std::function<void(std::uint32_t, const GroundBits&)>& tell);
   std::size_t size() const { return bodies_.size(); }
 
   /// Appends them as neighbours, as they are now, and what holds them up: `first` is the index that the first
@@ -44,9 +49,10 @@ class CallersBodies {
   /// Gives each what came back, for a step of `dt` s in `substeps`. `neighbors` are those that gather()
   /// appended, under the same gravity.
   void hand_over(std::span<const FullNeighbor> neighbors, const Vec3& gravity, double dt, int substeps) const;
-  /// Not the bodies themselves, but their order and by what numbers their contacts are remembered: of those
-  /// that the reader has in the same places, and of others in their order.
-  void archive(StateArchive& a);
+  /// Not the bodies themselves, of those that `mirror` (null: no space) has still, but their order and by
+  /// what numbers their contacts are remembered: of those that the reader has in the same places, and of
+  /// others in their order; not of those without geoms.
+  void archive(StateArchive& a, const SpaceMirror* mirror);
   /// Calls visit(shape, state) for each whose ball meets that of `radius` m about `center`, and whose bits
   /// meet `own`.
   void each_near(const Vec3& center, double radius, const BodyProperties& own,
@@ -59,15 +65,18 @@ class CallersBodies {
  private:
   struct Entry {
     dxBody* body = nullptr;
-    std::vector<std::uint32_t> slots;                         // of its geoms in the mirror, ascending
+    std::vector<std::uint32_t> slots;  // of its geoms in the mirror, ascending; none: it is tied
     std::vector<std::shared_ptr<const GroundSolids>> solids;  // of each geom; null: it has none
     std::shared_ptr<const Shape> shape;  // null: to be made anew, or none of its geoms is a solid
     std::uint32_t owner = 0;
     GroundBits bits;     // of all its geoms
     bool stale = true;   // a geom came or went
     bool untold = true;  // its bits
+    bool is_tied() const { return slots.empty(); }
   };
   static void make_shape(const SpaceMirror& mirror, Entry& entry);
+  std::vector<dxBody*> find_tied(std::span<dxBody* const> full) const;
+  std::vector<const Entry*> find_living(const SpaceMirror& mirror) const;
 
   std::vector<Entry> bodies_;  // in the order in which they came
   std::vector<dxBody*> body_of_slot_;

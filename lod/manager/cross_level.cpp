@@ -5,6 +5,7 @@
 
 #include "lod/manager/joint_contacts.h"
 #include "reference/ode/body_joints.h"
+#include "reference/ode/callers_bodies.h"
 
 namespace lodestone {
 namespace {
@@ -17,8 +18,9 @@ FullNeighbor neighbor_of(const Levels& levels, const FullLevel::Member& member) 
   neighbor.mass = record.mass;
   neighbor.material = record.material;
   neighbor.state = levels.full.world()->state(member.id);
-  neighbor.force = levels.bodies.force(member.owner).force;
-  neighbor.torque = levels.bodies.force(member.owner).torque;
+  dxBody* const body = levels.full.world()->ode_body(member.id);  // which its caller may push by himself
+  neighbor.force = levels.bodies.force(member.owner).force + callers::force(body);
+  neighbor.torque = levels.bodies.force(member.owner).torque + callers::torque(body);
   neighbor.asleep = levels.full.world()->asleep(member.id);
   return neighbor;
 }

@@ -109,8 +109,12 @@ void Levels::follow_callers_space(double dt) {
                         {.disturbed = wake,
                          .gone = [this](const Eigen::AlignedBox3d& box) { wake_piled_in(box); },
                          .came = [this](const HalfSpace& plane) { wake_on(plane); }});
-  callers.bodies.follow(
-      *mirror, wake, [this](std::uint32_t owner, const GroundBits& bits) { bodies.set_bits(owner, bits); });
+  const auto tell = [this](std::uint32_t owner, const GroundBits& bits) { bodies.set_bits(owner, bits); };
+  callers.bodies.follow(*mirror, wake, tell);
+  std::vector<dxBody*> full_bodies;
+  for (const FullLevel::Member& member : full.members())
+    full_bodies.push_back(full.world()->ode_body(member.id));
+  callers.bodies.follow_tied(full_bodies, tell);
 }
 
 void Levels::look_away() {

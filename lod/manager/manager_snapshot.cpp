@@ -129,8 +129,10 @@ void Manager::Impl::archive(StateArchive& a) {
   Vec3 gravity = levels.statistical_settings.gravity;
   a(gravity);
   if (a.reading() && !callers_world) levels.use_gravity(gravity);
-  a(levels.ground, levels.callers.bodies, levels.bodies, levels.now, levels.woken, levels.eased, report,
-    costs, choose, move_bodies, step_levels, changes, left_places, events);
+  a(levels.ground);
+  levels.callers.bodies.archive(a, levels.full.world() ? levels.full.world()->callers_space() : nullptr);
+  a(levels.bodies, levels.now, levels.woken, levels.eased, report, costs, choose, move_bodies, step_levels,
+    changes, left_places, events);
   if (a.reading()) queries.forget_all(), levels.forget_places(), audit.forget_watched();
   bool has_statistical = levels.statistical != nullptr;
   a(has_statistical);
