@@ -120,6 +120,8 @@ class Chooser {
       const LevelCandidate& c = candidates_[std::size_t(i)];
       if (c.decided())
         consider({0.0, i}, {});
+      else if (is_out_of_the_picture(c))
+        consider({kInfinity, i}, {c.open.lowest(), Rule::out_of_view, room.over()});
       else
         (may_be_full_now(c, settings_.min_dwell_frames) ? may_be_full : others)
             .push_back({rank_distance(c, views_, settings_.hysteresis), i});
@@ -146,6 +148,7 @@ class Chooser {
       const Rung to = wanted.empty() ? c.open.lowest() : wanted[std::size_t(i)];
       const Rule reason = to == c.open.highest() || to != c.open.lowest() ? Rule::in_budget
                           : views_.empty()                                ? Rule::far
+                          : is_out_of_the_picture(c)                      ? Rule::out_of_view
                                                                           : Rule::over_budget;
       const double nearness = 1.0 / std::max(1e-9, c.error_at(c.open.lowest()) -
                                                        c.error_at(to));  // what saves most goes up first
@@ -165,7 +168,7 @@ class Chooser {
     std::vector<Ranked> may_be_full;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      if (may_be_full_now(c, settings_.min_dwell_frames))
+      if (may_be_full_now(c, settings_.min_dwell_frames) && !is_out_of_the_picture(c))
         may_be_full.push_back({rank_distance(c, views_, settings_.hysteresis), i});
     }
     return share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()),

@@ -49,6 +49,12 @@ Rule reason_for_rung(const Limits& limits, const LevelCandidate& candidate);
 double travel_until_change(const LevelCandidate& candidate, const Views& views, const Limits& limits,
                            double hysteresis);
 
+/// Whether it is in no viewpoint's picture, where such bodies get their lowest rung, and comes to hit nothing
+/// full.
+inline bool is_out_of_the_picture(const LevelCandidate& c) {
+  return c.view_factor == kInfinity && c.no_farther_than == kInfinity;
+}
+
 /// Whether both statistical rungs are open to it.
 inline bool can_be_in_ring(const LevelCandidate& c) {
   return !c.decided() && c.open.has(Rung::tables) && c.open.has(Rung::support);

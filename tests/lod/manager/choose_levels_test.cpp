@@ -400,6 +400,18 @@ TEST(BudgetPolicy, ABodyThatIsPutOffGivesItsRoomToTheNext) {
   EXPECT_EQ(decision.reasons[0], Rule::overlap_put_off);
 }
 
+// Whatever room there is.
+TEST(BudgetPolicy, WhoIsOutOfEveryPictureForGoodGetsTheLowestRung) {
+  std::vector<LevelCandidate> candidates{on_ladder(1, Rung::full), on_ladder(2), on_ladder(3)};
+  for (LevelCandidate& c : candidates) c.view_factor = std::numeric_limits<double>::infinity();
+  candidates[2].view_factor = 10.0;
+  const auto decision = choose(candidates, by_budget(100.0));
+  EXPECT_EQ(who(decision.demote), (Indices{0}));
+  EXPECT_EQ(who(decision.promote), (Indices{2}));
+  EXPECT_EQ(decision.reasons[0], Rule::out_of_view);
+  EXPECT_EQ(decision.reasons[1], Rule::out_of_view);
+}
+
 TEST(BudgetPolicy, ReachOfFullIsWhereItsRoomEnds) {
   std::vector<LevelCandidate> candidates;
   for (int i = 0; i < 100; ++i) candidates.push_back(at(1 + i));
