@@ -87,7 +87,16 @@ void check_policy(const PolicySettings& policy) {
     throw_input_error("look_ahead_s", fmt::format("{:g}", policy.look_ahead_s), "10 s or less");
 }
 
+void check_level_choice(LevelChoice choice) {
+  if (choice > LevelChoice::tables)
+    throw_input_error("level choice", fmt::format("{}", int(choice)),
+                      fmt::format("0 … {}", int(LevelChoice::tables)));
+}
+
 void check_rung_range(Rung least, Rung greatest) {
+  for (const Rung rung : {least, greatest})
+    if (rung > Rung::full)
+      throw_input_error("rungs", fmt::format("{}", int(rung)), fmt::format("0 … {}", int(Rung::full)));
   if (least > greatest)
     throw_input_error("rungs",
                       fmt::format("{} as the least, {} as the greatest", name_of(least), name_of(greatest)),
@@ -169,6 +178,7 @@ double checked_mass(const BodyDefinition& definition, const MaterialTable& mater
   if (!definition.shape) throw_input_error("shape", "none", "one");
   materials.check_known(definition.material);
   check_positive(definition.importance, "importance");
+  check_level_choice(definition.level);
   check_rung_range(definition.least_rung, definition.greatest_rung);
   const double mass =
       definition.mass.value_or(materials[definition.material].density * definition.shape->volume);

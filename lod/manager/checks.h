@@ -16,6 +16,7 @@ void check_finite(const Vec3& value, std::string_view what);
 void check_positive(double value, std::string_view what);
 void check_step(double dt);
 void check_policy(const PolicySettings& policy);
+void check_level_choice(LevelChoice choice);
 void check_rung_range(Rung least, Rung greatest);
 Viewpoint checked(const Viewpoint& viewpoint);
 void check_properties(const BodyProperties& properties);

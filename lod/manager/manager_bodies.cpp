@@ -42,7 +42,9 @@ void Manager::remove_body(BodyId body) {
 
 void Manager::set_level(BodyId body, LevelChoice choice) {
   BodyTable& bodies = impl_->levels.bodies;
-  bodies.set_choice(bodies.index_of(body), choice);
+  const std::uint32_t index = bodies.index_of(body);
+  check_level_choice(choice);
+  bodies.set_choice(index, choice);
   impl_->choose.note(body.index);
   impl_->recorder.note(Call::set_level, body, choice);
 }

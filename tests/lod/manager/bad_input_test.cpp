@@ -50,6 +50,14 @@ TEST(BadInput, Steps) {
     scene.refuses([&] { scene.manager.step(dt); }, "", "0, or 1e-09 s or more");
 }
 
+TEST(BadInput, LevelsAndRungsThatAreNone) {
+  Scene scene;
+  Manager& manager = scene.manager;
+  scene.refuses([&] { manager.set_level(scene.full, LevelChoice(17)); }, "17", "0 … 4");
+  scene.refuses([&] { manager.set_rung_range(scene.full, Rung(9), Rung(9)); }, "9", "0 … 2");
+  scene.refuses([&] { add(manager, scene.shape, at({6, 0, 1}), LevelChoice(5)); }, "5", "0 … 4");
+}
+
 TEST(BadInput, StaleIds) {
   Scene scene;
   Manager& manager = scene.manager;

@@ -124,6 +124,13 @@ TEST(Checks, RungsBeginNoHigherThanTheyEnd) {
             "greatest");
 }
 
+TEST(Checks, RungsAndLevelsAreThoseThatThereAre) {
+  EXPECT_EQ(message_of([] { check_rung_range(Rung::tables, Rung(9)); }), "rungs: found 9, expected 0 … 2");
+  EXPECT_EQ(message_of([] { check_rung_range(Rung(3), Rung(3)); }), "rungs: found 3, expected 0 … 2");
+  EXPECT_EQ(message_of([] { check_level_choice(LevelChoice::tables); }), kNothingThrown);
+  EXPECT_EQ(message_of([] { check_level_choice(LevelChoice(5)); }), "level choice: found 5, expected 0 … 4");
+}
+
 TEST(Checks, ViewpointsNeedAPictureAndAPlace) {
   const auto fault = [](const auto& change) {
     Viewpoint view;
