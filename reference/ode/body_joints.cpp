@@ -165,6 +165,16 @@ bool has_motor(dxJoint* joint) {
          moves_freely(dJointGetHingeParam, dJointGetHingeAngle(joint));
 }
 
+bool is_driven(dxJoint* joint) {
+  const JointParameters parameters = parameters_of(dJointGetType(joint));
+  if (!parameters.read || !dJointIsEnabled(joint)) return false;
+  for (int axis = 0; axis < parameters.axes; ++axis)
+    if (parameters.read(joint, dParamFMax + axis * dParamGroup2) > 0.0 &&
+        parameters.read(joint, dParamVel + axis * dParamGroup2) != 0.0)
+      return true;
+  return false;
+}
+
 bool is_sprung(dxJoint* joint) {
   const dBodyID first = dJointGetBody(joint, 0), body = first ? first : dJointGetBody(joint, 1);
   return dJointGetType(joint) == dJointTypeHinge2 && body &&

@@ -46,6 +46,9 @@ void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& moto
 /// Whether find_joint_motors() has the joint's.
 bool has_motor(dxJoint* joint);
 
+/// Whether a motor of the joint, of any kind that has parameters, is to bring it to a speed other than 0.
+bool is_driven(dxJoint* joint);
+
 /// Whether a wheel's joint (hinge 2) gives way along its first axis: its suspension is softer than the
 /// world's joints.
 bool is_sprung(dxJoint* joint);

@@ -1,5 +1,7 @@
 #include "reference/ode/sleep_ode.h"
 
+#include "reference/ode/body_joints.h"
+
 namespace lodestone::ode {
 namespace {
 
@@ -46,19 +48,34 @@ bool Sleep::is_still(const Body& body) const {
          squared_norm(dBodyGetAngularVel(body.body)) <= square(law_.turning_speed / body.reach);
 }
 
-// Whether what it touches moves, or gives way to a force: put to rest again in each step, it would hold that
-// back, and of what the two exchange its share be lost. (What jitters in a heap moves nobody.)
+// Whether what it touches moves, or gives way to a force or a motor: put to rest again in each step, it would
+// hold that back, and of what the two exchange its share be lost. (What jitters in a heap moves nobody.)
 bool Sleep::is_drawn(const Body& body) const {
   constexpr double kMoves = 4.0, kGivesWay = 0.02;  // times the speed
   const Vec3 center = to_vec3(dBodyGetPosition(body.body));
+  const auto gives_way = [&](dBodyID other) {
+    const Vec3 velocity = to_vec3(dBodyGetLinearVel(other)), turning = to_vec3(dBodyGetAngularVel(other)),
+               force = to_vec3(dBodyGetForce(other)), torque = to_vec3(dBodyGetTorque(other));
+    const double arm = (center - to_vec3(dBodyGetPosition(other))).norm();
+    return velocity.dot(force) > kGivesWay * law_.speed * force.norm() ||
+           turning.dot(torque) * arm > kGivesWay * law_.speed * torque.norm();
+  };
   const auto draws = [&](dBodyID other) {
     if (!other || other == body.body || !dBodyIsEnabled(other)) return false;
     const Vec3 velocity = to_vec3(dBodyGetLinearVel(other)), turning = to_vec3(dBodyGetAngularVel(other)),
-               force = to_vec3(dBodyGetForce(other)), torque = to_vec3(dBodyGetTorque(other)),
                arm = center - to_vec3(dBodyGetPosition(other));
-    return (velocity + turning.cross(arm)).norm() > kMoves * law_.speed ||
-           velocity.dot(force) > kGivesWay * law_.speed * force.norm() ||
-           turning.dot(torque) * arm.norm() > kGivesWay * law_.speed * torque.norm();
+    const double speed = (velocity + turning.cross(arm)).norm();
+    if (speed > kMoves * law_.speed || gives_way(other)) return true;
+    if (speed < kGivesWay * law_.speed) return false;
+    for (int i = 0; i < dBodyGetNumJoints(other); ++i) {
+      const dJointID joint = dBodyGetJoint(other, i);
+      if (dJointGetType(joint) == dJointTypeContact) continue;
+      if (is_driven(joint)) return true;
+      for (const int end : {0, 1})  // who pulls it
+        if (const dBodyID third = dJointGetBody(joint, end); third && third != other && gives_way(third))
+          return true;
+    }
+    return false;
   };
   for (int i = 0; i < dBodyGetNumJoints(body.body); ++i) {
     const dJointID joint = dBodyGetJoint(body.body, i);
