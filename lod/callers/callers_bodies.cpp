@@ -154,18 +154,11 @@ void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
 }
 
 // In the order in which joints lead to them.
-std::vector<dxBody*> CallersBodies::find_tied(std::span<dxBody* const> full) const {
-  std::vector<dxBody*> waiting, tied;
-  const auto ask = [&](dxBody* body) {
-    if (has_joints(body)) waiting.push_back(body);
-  };
-  std::ranges::for_each(full, ask);
+std::vector<dxBody*> CallersBodies::find_tied(std::span<dxBody* const> jointed) const {
+  std::vector<dxBody*> waiting(jointed.begin(), jointed.end()), tied;
   for (const Entry& entry : bodies_)
-    if (!entry.is_tied()) ask(entry.body);
-  if (waiting.empty()) return tied;
-  std::unordered_set<dxBody*> known(full.begin(), full.end());
-  for (const Entry& entry : bodies_)
-    if (!entry.is_tied()) known.insert(entry.body);
+    if (!entry.is_tied() && has_joints(entry.body)) waiting.push_back(entry.body);
+  std::unordered_set<dxBody*> known(waiting.begin(), waiting.end());
   for (std::size_t i = 0; i < waiting.size(); ++i)
     for (dxBody* const other : joined_bodies(waiting[i]))
       if (other && !callers::is_kinematic(other) && known.insert(other).second)
@@ -173,9 +166,9 @@ std::vector<dxBody*> CallersBodies::find_tied(std::span<dxBody* const> full) con
   return tied;
 }
 
-void CallersBodies::follow_tied(std::span<dxBody* const> full,
+void CallersBodies::follow_tied(std::span<dxBody* const> jointed,
                                 const std::function<void(std::uint32_t, const GroundBits&)>& tell) {
-  const std::vector<dxBody*> tied = find_tied(full);
+  const std::vector<dxBody*> tied = find_tied(jointed);
   std::erase_if(bodies_, [&](const Entry& entry) {
     const bool gone = entry.is_tied() && !std::ranges::count(tied, entry.body);
     if (gone) tell(entry.owner, {});

@@ -34,9 +34,9 @@ class CallersBodies {
   /// where it is gone.
   void follow(const SpaceMirror& mirror, const std::function<void(const Eigen::AlignedBox3d&)>& left,
               const std::function<void(std::uint32_t, const GroundBits&)>& tell);
-  /// After it: takes in which bodies without geoms hang by joints, through each other too, on `full`, the
-  /// full level's bodies, or on those that have geoms. To be called outside of ODE's step.
-  void follow_tied(std::span<dxBody* const> full,
+  /// After it: takes in which bodies without geoms hang by joints, through each other too, on `jointed`,
+  /// those of the full level that have joints, or on his that have geoms. To be called outside of ODE's step.
+  void follow_tied(std::span<dxBody* const> jointed,
                    const std::function<void(std::uint32_t, const GroundBits&)>& tell);
   std::size_t size() const { return bodies_.size(); }
 
@@ -75,7 +75,7 @@ class CallersBodies {
     bool is_tied() const { return slots.empty(); }
   };
   static void make_shape(const SpaceMirror& mirror, Entry& entry);
-  std::vector<dxBody*> find_tied(std::span<dxBody* const> full) const;
+  std::vector<dxBody*> find_tied(std::span<dxBody* const> jointed) const;
   std::vector<const Entry*> find_living(const SpaceMirror& mirror) const;
 
   std::vector<Entry> bodies_;  // in the order in which they came

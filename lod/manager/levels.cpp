@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lod/contact/hull_contacts.h"
+#include "reference/ode/body_joints.h"
 
 namespace lodestone {
 namespace {
@@ -111,10 +112,10 @@ void Levels::follow_callers_space(double dt) {
                          .came = [this](const HalfSpace& plane) { wake_on(plane); }});
   const auto tell = [this](std::uint32_t owner, const GroundBits& bits) { bodies.set_bits(owner, bits); };
   callers.bodies.follow(*mirror, wake, tell);
-  std::vector<dxBody*> full_bodies;
+  std::vector<dxBody*> jointed;
   for (const FullLevel::Member& member : full.members())
-    full_bodies.push_back(full.world()->ode_body(member.id));
-  callers.bodies.follow_tied(full_bodies, tell);
+    if (dxBody* const body = full.world()->ode_body(member.id); has_joints(body)) jointed.push_back(body);
+  callers.bodies.follow_tied(jointed, tell);
 }
 
 void Levels::look_away() {

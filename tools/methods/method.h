@@ -66,14 +66,13 @@ Method with_sleep(Method method, bool sleeping);
 
 /// The ground truth where it is not the usual one.
 struct TruthSettings {
-  std::optional<int> substeps =
-      {};  ///< in 1/60 s; none: 34, just under .5 ms each, so that 60 Hz falls on
-           ///< whole steps, and for bodies below .2 m the more, the smaller they are
-  std::optional<double> push_m_per_s =
-      {};  ///< at which overlap is pushed apart at most; none: ODE's own law,
-           ///< without a bound, which gives impacts up to its error reduction
-           ///< (.2) of their speed back, in steps of any length, as shows
-           ///< where the restitution is less
+  /// In 1/60 s; none: 34, just under .5 ms each, so that 60 Hz falls on whole steps, and for bodies below .2
+  /// m the more, the smaller they are.
+  std::optional<int> substeps = {};
+  /// At which overlap is pushed apart at most; none: ODE's own law, without a bound, which gives impacts up
+  /// to its error reduction (.2) of their speed back, in steps of any length, as shows where the restitution
+  /// is less.
+  std::optional<double> push_m_per_s = {};
   friend bool operator==(const TruthSettings&, const TruthSettings&) = default;
 };
 
