@@ -25,8 +25,8 @@ void StepLevels::step_statistical(double dt, WorldStepBy by, StepReport& report)
   {
     const StageTimer timer(report.times.cross_level_ms);
     gather(levels_, neighborhood_);
+    driven_bodies_.mark(neighborhood_, levels_.statistical_settings.gravity, dt);
     joint_forces_.add_to(neighborhood_.bodies);
-    driven_bodies_.mark(neighborhood_, dt);
     levels_.give_forces();
   }
   levels_.statistical->step(dt, neighborhood_.bodies, report, neighborhood_.contacts);

@@ -1,5 +1,7 @@
 #include "reference/ode/sleep_ode.h"
 
+#include <algorithm>
+
 #include "reference/ode/body_joints.h"
 
 namespace lodestone::ode {
@@ -67,14 +69,19 @@ bool Sleep::is_drawn(const Body& body) const {
     const double speed = (velocity + turning.cross(arm)).norm();
     if (speed > kMoves * law_.speed || gives_way(other)) return true;
     if (speed < kGivesWay * law_.speed) return false;
-    for (int i = 0; i < dBodyGetNumJoints(other); ++i) {
-      const dJointID joint = dBodyGetJoint(other, i);
-      if (dJointGetType(joint) == dJointTypeContact) continue;
-      if (is_driven(joint)) return true;
-      for (const int end : {0, 1})  // who pulls it
-        if (const dBodyID third = dJointGetBody(joint, end); third && third != other && gives_way(third))
-          return true;
-    }
+    std::vector<dBodyID> pulling{other};  // and who pulls it by joints
+    for (std::size_t next = 0; next < pulling.size(); ++next)
+      for (int i = 0; i < dBodyGetNumJoints(pulling[next]); ++i) {
+        const dJointID joint = dBodyGetJoint(pulling[next], i);
+        if (dJointGetType(joint) == dJointTypeContact) continue;
+        if (is_driven(joint)) return true;
+        for (const int end : {0, 1}) {
+          const dBodyID by = dJointGetBody(joint, end);
+          if (!by || std::ranges::count(pulling, by)) continue;
+          if (gives_way(by)) return true;
+          pulling.push_back(by);
+        }
+      }
     return false;
   };
   for (int i = 0; i < dBodyGetNumJoints(body.body); ++i) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <array>
 
 #include "tests/lod/manager/manager_fixture.h"
@@ -88,6 +89,33 @@ TEST(TiedBodies, PullALoadedSledAsOnesWithGeomsDo) {
       loaded.manager.step(kFrame);
     }
     EXPECT_NEAR(loaded.apart(), loaded.apart_before, 0.02);
+  }
+}
+
+// By a rope of three links, once all have slept: what pulls is joints away from what it moves.
+TEST(TiedBodies, ARopePullsWhatHasSlept) {
+  constexpr double kLink = 0.2;  // kg
+  constexpr int kLinks = 3;
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+    LoadedSled loaded(level);
+    run(loaded.manager, 0.5);
+    dBodyID last = loaded.manager.ode_body(loaded.sled);
+    for (int i = 0; i < kLinks; ++i) {
+      const dBodyID link = loaded.theirs.add_bare(kLink, {0.55 + 0.1 * i, 0, 0.06});
+      const dJointID joint = dJointCreateBall(loaded.theirs.world, nullptr);
+      dJointAttach(joint, last, link);
+      dJointSetBallAnchor(joint, 0.5 + 0.1 * i, 0, 0.06);
+      last = link;
+    }
+    const double mass = kSledMass + kCargoMass + kLinks * kLink,
+                 start = loaded.manager.state(loaded.sled).position.x();
+    for (int frame = 0; frame < 60; ++frame) {
+      dBodyAddForce(last, force_to_pull(mass) * std::min(1.0, frame / 12.0), 0, 0);
+      loaded.manager.step(kFrame);
+    }
+    EXPECT_GT(loaded.manager.state(loaded.sled).position.x() - start, 0.6 * 0.5 * kBeyondFriction / mass)
+        << int(level);
+    EXPECT_NEAR(loaded.apart(), loaded.apart_before, 0.02) << int(level);
   }
 }
 
