@@ -1,50 +1,107 @@
 #include "lod/manager/joint_contacts.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "reference/ode/body_joints.h"
+#include "reference/ode/callers_bodies.h"
 
 namespace lodestone {
+namespace {
+
+constexpr double kReach = 0.5;      // over R
+constexpr double kToOneSide = 0.1;  // of that: along its normal, so that loads are remembered for each
+
+// Rows are counted from the oldest joint on, which ODE lists last: those that come change no number.
+constexpr std::uint32_t kMotors = 1U << 16, kByKinematics = 1U << 20;
+
+class JointContacts {
+ public:
+  JointContacts(std::span<const FullNeighbor> neighbors, std::span<dxBody* const> bodies,
+                std::vector<FullContact>& contacts)
+      : neighbors_(neighbors), bodies_(bodies), contacts_(contacts) {}
+
+  void add_all() {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (!has_joints(bodies_[i])) continue;
+      if (index_of_.empty())
+        for (std::size_t k = 0; k < bodies_.size(); ++k) index_of_.emplace(bodies_[k], std::int32_t(k));
+      add_of(i);
+      for (dxBody* const other : joined_bodies(bodies_[i]))
+        if (other && !index_of_.contains(other) && callers::is_kinematic(other) &&
+            !std::ranges::count(kinematic_, other))
+          kinematic_.push_back(other);
+    }
+    for (dxBody* const body : kinematic_) add_of_kinematic(body);
+  }
+
+ private:
+  // Of joints whose first body it is, or the only one.
+  void add_of(std::size_t i) {
+    rows_.clear(), motors_.clear();
+    find_joint_rows(bodies_[i], reach_of(i), rows_);
+    find_joint_motors(bodies_[i], reach_of(i), motors_);
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      add(i, rows_[r].second, rows_[r].point, rows_[r].direction, std::uint32_t(rows_.size() - r), nullptr);
+    for (std::size_t m = 0; m < motors_.size(); ++m)
+      add(i, motors_[m].second, motors_[m].point, motors_[m].direction,
+          kMotors + std::uint32_t(motors_.size() - m), &motors_[m]);
+  }
+
+  // Of joints whose first body it is; those that it is the second of are their first body's.
+  void add_of_kinematic(dxBody* body) {
+    rows_.clear();
+    find_joint_rows(body, kKinematicReach, rows_);
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      if (const auto held = index_of_.find(rows_[r].second); held != index_of_.end())
+        add(std::size_t(held->second), body, rows_[r].point, rows_[r].direction,
+            kByKinematics + std::uint32_t(rows_.size() - r), nullptr);
+  }
+
+  // What is kinematic holds as ground that moves does; others that are no neighbours are of no shape that is
+  // known.
+  void add(std::size_t first, dxBody* other, const Vec3& point, const Vec3& direction, std::uint32_t number,
+           const JointMotor* motor) {
+    const auto second = other ? index_of_.find(other) : index_of_.end();
+    const bool is_known = second != index_of_.end();
+    Vec3 velocity = Vec3::Zero();
+    if (other && !is_known) {
+      if (!callers::is_kinematic(other)) return;
+      const RigidState state = callers::state(other);
+      velocity = state.velocity + state.angular_velocity.cross(point - state.position);
+    }
+    for (const double sign : {1.0, -1.0}) {
+      FullContact& contact =
+          contacts_.emplace_back(FullContact{.first = std::int32_t(first),
+                                             .second = is_known ? second->second : -1,
+                                             .point = point + sign * kToOneSide * reach_of(first) * direction,
+                                             .normal = sign * direction,
+                                             .gap = 0.0,
+                                             .friction = 0.0,
+                                             .velocity = velocity,
+                                             .row = sign > 0.0 ? 2 * number + 1 : 2 * number + 2});
+      if (motor) contact.drive = Drive{.speed = sign * motor->speed, .force = motor->force};
+    }
+  }
+
+  double reach_of(std::size_t i) const { return kReach * neighbors_[i].shape->radius; }
+
+  static constexpr double kKinematicReach = 0.1;  // m
+
+  std::span<const FullNeighbor> neighbors_;
+  std::span<dxBody* const> bodies_;
+  std::vector<FullContact>& contacts_;
+  std::unordered_map<dxBody*, std::int32_t> index_of_;
+  std::vector<JointRow> rows_;
+  std::vector<JointMotor> motors_;
+  std::vector<dxBody*> kinematic_;
+};
+
+}  // namespace
 
 void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBody* const> bodies,
                         std::vector<FullContact>& contacts) {
-  constexpr double kReach = 0.5;      // over R
-  constexpr double kToOneSide = 0.1;  // of that: along its normal, so that loads are remembered for each
-  std::unordered_map<dxBody*, std::int32_t> index_of;
-  std::vector<JointRow> rows;
-  std::vector<JointMotor> motors;
-  for (std::size_t i = 0; i < neighbors.size(); ++i) {
-    const double reach = kReach * neighbors[i].shape->radius;
-    rows.clear(), motors.clear();
-    find_joint_rows(bodies[i], reach, rows);
-    find_joint_motors(bodies[i], reach, motors);
-    if (rows.empty() && motors.empty()) continue;
-    if (index_of.empty())
-      for (std::size_t k = 0; k < bodies.size(); ++k) index_of.emplace(bodies[k], std::int32_t(k));
-    const auto add = [&](dxBody* other, const Vec3& point, const Vec3& direction, std::uint32_t number,
-                         const JointMotor* motor) {
-      const auto second = other ? index_of.find(other) : index_of.end();
-      if (other && second == index_of.end()) return;  // without geoms: of no shape that is known
-      for (const double sign : {1.0, -1.0}) {
-        FullContact& contact =
-            contacts.emplace_back(FullContact{.first = std::int32_t(i),
-                                              .second = other ? second->second : -1,
-                                              .point = point + sign * kToOneSide * reach * direction,
-                                              .normal = sign * direction,
-                                              .gap = 0.0,
-                                              .friction = 0.0,
-                                              .row = sign > 0.0 ? 2 * number + 1 : 2 * number + 2});
-        if (motor) contact.drive = Drive{.speed = sign * motor->speed, .force = motor->force};
-      }
-    };
-    // Counted from the oldest joint on, which ODE lists last: those that come change no number.
-    constexpr std::uint32_t kMotors = 1U << 16;
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      add(rows[r].second, rows[r].point, rows[r].direction, std::uint32_t(rows.size() - r), nullptr);
-    for (std::size_t m = 0; m < motors.size(); ++m)
-      add(motors[m].second, motors[m].point, motors[m].direction, kMotors + std::uint32_t(motors.size() - m),
-          &motors[m]);
-  }
+  JointContacts(neighbors, bodies, contacts).add_all();
 }
 
 }  // namespace lodestone

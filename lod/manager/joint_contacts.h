@@ -13,7 +13,7 @@ struct dxBody;
 namespace lodestone {
 
 /// Appends two for each direction in which a joint holds or drives a body, without friction and against each
-/// other.
+/// other. Kinematic bodies that are no neighbours count as ground that moves.
 /// `bodies`: ODE's of each of the neighbours. To be asked outside of ODE's step.
 void add_joint_contacts(std::span<const FullNeighbor> neighbors, std::span<dxBody* const> bodies,
                         std::vector<FullContact>& contacts);

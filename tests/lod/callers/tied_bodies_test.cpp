@@ -119,6 +119,27 @@ TEST(TiedBodies, ARopePullsWhatHasSlept) {
   }
 }
 
+// By a kinematic body, which nothing slows down, whichever of the joint's bodies that is.
+TEST(TiedBodies, AKinematicTugTakesALoadedSledAlong) {
+  constexpr double kSpeed = 0.8;  // m/s
+  for (const LevelChoice level : kCheapRungs)
+    for (const bool is_first : {false, true}) {
+      LoadedSled loaded(level);
+      const dBodyID tug = loaded.theirs.add_bare(1.0, {0.6, 0, 0.06}),
+                    sled = loaded.manager.ode_body(loaded.sled);
+      dBodySetKinematic(tug);
+      const dJointID joint = dJointCreateBall(loaded.theirs.world, nullptr);
+      dJointAttach(joint, is_first ? tug : sled, is_first ? sled : tug);
+      dJointSetBallAnchor(joint, 0.54, 0, 0.06);
+      for (int frame = 1; frame <= 120; ++frame) {
+        dBodySetLinearVel(tug, kSpeed * std::min(1.0, frame / 60.0), 0, 0);
+        loaded.manager.step(kFrame);
+      }
+      EXPECT_NEAR(loaded.manager.state(loaded.crate).velocity.x(), kSpeed, 0.02) << is_first;
+      EXPECT_NEAR(loaded.apart(), loaded.apart_before, 0.01) << is_first;
+    }
+}
+
 // Whoever is on such a body's joints carries it: what stands below them, too.
 TEST(TiedBodies, WeighOnWhatBearsThem) {
   constexpr double kTop = 0.35;  // m, of the middle of the plate where it lies on the crates
