@@ -5,7 +5,14 @@
 namespace lodestone {
 namespace {
 
-void find_points(const ContactScene& scene, StatisticalBody& body, GroundMeeting& meeting) {
+Tipping find_tipping(const ContactScene& scene, const SolverBody& body, const Vec3& normal, double time) {
+  const double falling = std::max(0.0, -scene.world.gravity.dot(normal));
+  if (body.inverse_mass == 0.0) return {};
+  return {body.angular_velocity * time, body.inverse_inertia * (falling * time * time / body.inverse_mass)};
+}
+
+void find_points(const ContactScene& scene, const SolverBody& solver_body, double time, StatisticalBody& body,
+                 GroundMeeting& meeting) {
   const Vec3& normal = meeting.plane->normal;
   if (body.is_sphere()) {
     const double radius = body.sphere_radius;
@@ -13,7 +20,8 @@ void find_points(const ContactScene& scene, StatisticalBody& body, GroundMeeting
     meeting.found.count = 1;
   } else {
     meeting.found = find_hull_contacts(*scene.kind_of(body).shape, body.orientation, normal, meeting.height,
-                                       meeting.margin, body.support_hint);
+                                       meeting.margin, body.support_hint, {},
+                                       find_tipping(scene, solver_body, normal, time));
   }
 }
 
@@ -47,8 +55,10 @@ void GroundMeetings::find(const ContactScene& scene, std::span<const Participant
   constexpr std::int64_t kBodies =
       128;  // of a job: those of a body one after the other, as each leaves a hint
   run_in_pieces(jobs, std::int64_t(participants.size()), kBodies, [&](std::int64_t begin, std::int64_t end) {
-    for (std::uint32_t i = first_[std::size_t(begin)]; i < first_[std::size_t(end)]; ++i)
-      find_points(scene, scene.body(participants[std::size_t(meetings_[i].index)]), meetings_[i]);
+    for (std::uint32_t i = first_[std::size_t(begin)]; i < first_[std::size_t(end)]; ++i) {
+      const auto index = std::size_t(meetings_[i].index);
+      find_points(scene, bodies[index], time, scene.body(participants[index]), meetings_[i]);
+    }
   });
 }
 

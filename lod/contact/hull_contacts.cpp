@@ -143,10 +143,21 @@ std::array<std::int32_t, 2> find_ends(const Below& below, const Eigen::Vector3f&
   return {find_greatest(below, along), find_greatest(below, against)};
 }
 
+// The vertex that is lowest once the body has turned.
+std::int32_t find_lowest_after(const Below& below, const Vec3& normal_then) {
+  const Eigen::Vector3f down = -normal_then.cast<float>();
+  std::array<float, Below::kCapacity> depth;
+  for (std::size_t i = 0; i < below.count; ++i)
+    depth[i] = below.x[i] * down[0] + below.y[i] * down[1] + below.z[i] * down[2];
+  return find_greatest(below, depth);
+}
+
 }  // namespace
 
 HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal,
-                                double height, double margin, std::int32_t& hint, const GapChange& change) {
+                                double height, double margin, std::int32_t& hint, const GapChange& change,
+                                const Tipping& tipping) {
+  constexpr double kDeeper = 1e-3;  // over R
   HullContacts result;
   result.count = 1;
   result.contact[0] = find_lowest_point(shape, orientation, normal, height, hint);
@@ -173,6 +184,16 @@ HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, con
   keep(second);
   for (const std::int32_t vertex : find_ends(below, side.cast<float>()))
     if (vertex != lowest && vertex != second) keep(vertex);
+  if (tipping.is_none()) return result;
+  const Vec3 turn = tipping.turn + tipping.by_lever * result.contact[0].arm.cross(normal);
+  const Vec3 normal_then = normal_in_body + orientation.conjugate() * normal.cross(turn);
+  const std::int32_t then = find_lowest_after(below, normal_then);
+  const auto is_deeper_than = [&](const HullContact& contact) {
+    const Vec3 between =
+        shape.hull.vertices[std::size_t(contact.vertex)] - shape.hull.vertices[std::size_t(then)];
+    return between.dot(normal_then) > kDeeper * shape.radius;
+  };
+  if (std::all_of(result.contact.begin(), result.contact.begin() + result.count, is_deeper_than)) keep(then);
   return result;
 }
 

@@ -29,7 +29,7 @@ inline HullContact find_lowest_point(const Shape& shape, const Quat& orientation
 inline constexpr int kMaxGroundContacts = 4;
 
 struct HullContacts {
-  std::array<HullContact, kMaxGroundContacts> contact;
+  std::array<HullContact, kMaxGroundContacts + 1> contact;  ///< one more where the body may tip
   int count = 0;
 };
 
@@ -40,11 +40,19 @@ struct GapChange {
   bool is_none() const { return of_center == 0.0 && of_arm.isZero(0.0); }
 };
 
+/// How a body turns in a step, world axes, if nothing but its lowest point bears it.
+struct Tipping {
+  Vec3 turn = Vec3::Zero();      ///< rad, without what its weight adds
+  Mat3 by_lever = Mat3::Zero();  ///< rad/m: times that point's arm × the normal is what its weight adds
+  bool is_none() const { return turn.isZero(0.0) && by_lever.isZero(0.0); }
+};
+
 /// The lowest point, and up to three more vertices with a gap below `margin`, now or after the `change`,
-/// chosen to span the widest area of support.
+/// chosen to span the widest area of support; and of those below the margin the one onto which the body tips,
+/// where that would get deeper than all of them: a round body has vertices between those that lie widest.
 HullContacts find_hull_contacts(const Shape& shape, const Quat& orientation, const Vec3& normal,
                                 double height, double margin, std::int32_t& hint,
-                                const GapChange& change = {});
+                                const GapChange& change = {}, const Tipping& tipping = {});
 
 /// The lowest vertex of a hull, whose number is `lowest`, and all others with a gap below `margin`, at most
 /// as many as `found` holds: of more, those that lie outermost. Returns how many. `normal`: in body axes.

@@ -87,6 +87,38 @@ TEST(HullContacts, WhatComesWithinTheStepIsFound) {
     EXPECT_NEAR(found.contact[std::size_t(i)].gap, height + found.contact[std::size_t(i)].arm.z(), 1e-12);
 }
 
+// A round hull that tips rolls onto a vertex between those that lie widest, which is found beforehand.
+TEST(HullContacts, TheVertexOntoWhichABodyTipsIsFound) {
+  std::vector<Vec3> points;
+  RandomStream random(65, 0, 0);
+  for (int i = 0; i < 400; ++i) points.emplace_back(Vec3(0.1, 0.08, 0.09).cwiseProduct(random.direction()));
+  Shape shape;
+  shape.hull = make_hull(points);
+  for (const Vec3& v : shape.hull.vertices) shape.radius = std::max(shape.radius, v.norm());
+  int more = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Quat orientation = random.orientation();
+    std::int32_t hint = 0;
+    const double height = -find_lowest_point(shape, orientation, Vec3::UnitZ(), 0.0, hint).gap;
+    const Tipping tipping{.turn = 0.04 * random.direction(), .by_lever = 0.5 * Mat3::Identity()};
+    const HullContacts found =
+        find_hull_contacts(shape, orientation, Vec3::UnitZ(), height, 0.004, hint, {}, tipping);
+    const Vec3 lever = found.contact[0].arm.cross(Vec3::UnitZ()),
+               turn = tipping.turn + tipping.by_lever * lever;
+    const auto sinks_by = [&](const Vec3& arm) { return -height - arm.z() - turn.cross(arm).z(); };
+    double deepest = -1.0;  // m
+    for (int k = 0; k < found.count; ++k)
+      deepest = std::max(deepest, sinks_by(found.contact[std::size_t(k)].arm));
+    for (const Vec3& v : shape.hull.vertices) {
+      const Vec3 arm = orientation * v;
+      if (height + arm.z() >= 0.004) continue;
+      EXPECT_LE(sinks_by(arm), deepest + 1.001e-3 * shape.radius) << i;
+    }
+    more += found.count > kMaxGroundContacts;
+  }
+  EXPECT_GT(more, 100);
+}
+
 // Of very many vertices, too, those are kept that span the widest support.
 TEST(HullContacts, ADiscOfManyVerticesStandsWide) {
   std::vector<Vec3> rim;
