@@ -39,6 +39,8 @@ class ContactSteps {
 
  private:
   double step(double time, bool divided);
+  void begin_bound();
+  void keep_bound();
   void kick_to(double time);
   void note_touched(const HalfSpace& plane);
   void push_out(double time);
@@ -58,6 +60,12 @@ class ContactSteps {
   void take_held(const OnGround& on, const GroundMotion& unkicked);
   void log(const OnGround& on, std::span<const GroundContact> contacts,
            std::span<const HalfSpace* const> planes, const GroundMotion& before) const;
+  /// Of the ground, if it has no friction.
+  std::optional<Vec3> frictionless_normal() const {
+    return found_.count > 0 && found_.contact[0].law.friction == 0.0
+               ? std::optional(found_.plane[found_.count - 1]->normal)
+               : std::nullopt;
+  }
   ContactSolverSettings solver(const Mat3& rotation, double time, bool divided) const;
 
   static constexpr double kShortest = 0.25;  // of a step that ends where an edge may be struck
@@ -90,6 +98,8 @@ class ContactSteps {
   double behind_ = 0.0;  // s: how much older than the place the velocity is
   double kicked_ = 0.0;  // s: how much of gravity it has been given in this step
   HeldPoints held_;
+  std::optional<EnergyBound> bound_;  // on planes: since the step began, or the last strike
+  bool rolled_ = false;               // since then
   struct Due {
     TouchingPoint point;
     HalfSpace plane;
@@ -114,21 +124,35 @@ void ContactSteps::run(double time) {
   const int steps = std::clamp(int(std::ceil(time / longest)), 1, kMostSteps);
   const double usual = time / steps;
   int divisions = 2 * steps;
-  // On planes each step is bounded where it must be; of steps over ground that is none some gain what others
-  // lose: all of them together gain nothing but a torque's work.
-  std::optional<EnergyBound> energy;
-  if (world_.solids && world_.turning.isZero(0.0))
-    energy.emplace(body_, shape_, world_.gravity, settings_.energy_bounded);
+  begin_bound();
   for (double left = time; left > 1e-6 * time;)
     left -= step(left / std::ceil(left / usual - 1e-9), divisions-- > 0);
   catch_up();
-  if (energy) energy->keep();
+  keep_bound();
+}
+
+// Of steps some gain what others lose: all of them together, on planes from one strike to the next, gain
+// nothing but a torque's work. Over ground that is no plane each of them is bounded, too.
+void ContactSteps::begin_bound() {
+  bound_.reset(), rolled_ = false;
+  if (world_.turning.isZero(0.0)) bound_.emplace(body_, shape_, world_.gravity, settings_.energy_bounded);
+}
+
+void ContactSteps::keep_bound() {
+  if (!bound_) return;
+  if (world_.solids) return bound_->keep();
+  if (rolled_) bound_->keep(frictionless_normal());
 }
 
 // Returns how long it was, s: if it is divided until something strikes, else `time`, what strikes bouncing at
 // once.
 double ContactSteps::step(double time, bool divided) {
-  std::optional<EnergyBound> energy(std::in_place, body_, shape_, world_.gravity, settings_.energy_bounded);
+  const bool is_bounded = world_.solids || !bound_;
+  std::optional<EnergyBound> energy;
+  const auto begin = [&] {
+    if (is_bounded) energy.emplace(body_, shape_, world_.gravity, settings_.energy_bounded);
+  };
+  begin();
   kick_to(behind_ + 0.5 * time);
   OnGround on(body_, shape_);
   find_contacts(on, time);
@@ -142,7 +166,7 @@ double ContactSteps::step(double time, bool divided) {
     if (divided && is_struck(unkicked(on.rotation, on.motion))) {
       kick_to(0.0);
       strike(OnGround(body_, shape_));
-      energy.emplace(body_, shape_, world_.gravity, settings_.energy_bounded);
+      begin();
       kick_to(0.5 * time);
       on = OnGround(body_, shape_);
     }
@@ -155,10 +179,8 @@ double ContactSteps::step(double time, bool divided) {
   for (std::size_t k = 1; k < found_.count; ++k)
     held_.wedged |= found_.contact[k].normal.dot(found_.contact[0].normal) < 0.0;
   body_.position += body_.velocity * time;
-  if (held_.rolls)
-    energy->keep(found_.count > 0 && found_.contact[0].law.friction == 0.0
-                     ? std::optional(found_.plane[found_.count - 1]->normal)
-                     : std::nullopt);
+  rolled_ |= held_.rolls;
+  if (held_.rolls && energy) energy->keep(frictionless_normal());
   push_out(time);
   body_.orientation = advance_orientation(body_.orientation, body_.spin, kind_, time).normalized();
   return time;
@@ -288,8 +310,13 @@ void ContactSteps::strike(const OnGround& lagging) {
     log(on, contacts.first(holding), plane, lagging.motion);
   }
   behind_ = kicked_ = 0.0;
+  if (!world_.solids) {
+    keep_bound();
+    on = OnGround(body_, shape_);
+  }
   const GroundMotion before = on.motion;
   respond_together(body_, shape_, world_, on, contacts, settings_, tally_);
+  if (!world_.solids) begin_bound();
   log(on, contacts, plane, before);
 }
 
