@@ -98,7 +98,7 @@ class ContactSteps {
   double behind_ = 0.0;  // s: how much older than the place the velocity is
   double kicked_ = 0.0;  // s: how much of gravity it has been given in this step
   HeldPoints held_;
-  std::optional<EnergyBound> bound_;  // on planes: since the step began, or the last strike
+  std::optional<EnergyBound> bound_;  // since the frame's time began, on planes since the last strike
   bool rolled_ = false;               // since then
   struct Due {
     TouchingPoint point;

@@ -87,14 +87,20 @@ TEST(HullContacts, WhatComesWithinTheStepIsFound) {
     EXPECT_NEAR(found.contact[std::size_t(i)].gap, height + found.contact[std::size_t(i)].arm.z(), 1e-12);
 }
 
-// A round hull that tips rolls onto a vertex between those that lie widest, which is found beforehand.
-TEST(HullContacts, TheVertexOntoWhichABodyTipsIsFound) {
+// Of four hundred points on an ellipsoid of these half axes, m.
+Shape round_hull(RandomStream& random, const Vec3& half_axes) {
   std::vector<Vec3> points;
-  RandomStream random(65, 0, 0);
-  for (int i = 0; i < 400; ++i) points.emplace_back(Vec3(0.1, 0.08, 0.09).cwiseProduct(random.direction()));
+  for (int i = 0; i < 400; ++i) points.emplace_back(half_axes.cwiseProduct(random.direction()));
   Shape shape;
   shape.hull = make_hull(points);
   for (const Vec3& v : shape.hull.vertices) shape.radius = std::max(shape.radius, v.norm());
+  return shape;
+}
+
+// A round hull that tips rolls onto a vertex between those that lie widest, which is found beforehand.
+TEST(HullContacts, TheVertexOntoWhichABodyTipsIsFound) {
+  RandomStream random(65, 0, 0);
+  const Shape shape = round_hull(random, {0.1, 0.08, 0.09});
   int more = 0;
   for (int i = 0; i < 1000; ++i) {
     const Quat orientation = random.orientation();
@@ -141,12 +147,8 @@ TEST(HullContacts, ADiscOfManyVerticesStandsWide) {
 // Of a hull with many vertices only those are looked at that may be low (reference/hull/tip_map.h): to the
 // bit what a look at all finds, for thin margins and thick ones, and whatever changes within a step.
 TEST(HullContacts, AreTheSameWithALookAtAllVertices) {
-  std::vector<Vec3> points;
   RandomStream random(64, 0, 0);
-  for (int i = 0; i < 400; ++i) points.emplace_back(Vec3(0.2, 0.3, 0.25).cwiseProduct(random.direction()));
-  Shape shape;
-  shape.hull = make_hull(points);
-  for (const Vec3& v : shape.hull.vertices) shape.radius = std::max(shape.radius, v.norm());
+  const Shape shape = round_hull(random, {0.2, 0.3, 0.25});
   Shape with_map = shape;
   with_map.tips = TipMap(with_map.hull, with_map.radius);
   int several = 0;
