@@ -31,6 +31,7 @@ std::size_t StillGrid::place_of(const Key& key) const {
 void StillGrid::insert(std::uint32_t body, const Vec3& position, double radius) {
   if (2 * (used_ + 1) > cells_.size()) grow();
   const int level = level_of(radius);
+  announce(position, radius, level);
   Cell& cell = cells_[place_of(key_of(position, level))];
   if (!cell.used) {
     cell = {key_of(position, level), kNone, true};
@@ -58,6 +59,30 @@ void StillGrid::remove(std::uint32_t body, const Vec3& position, double radius) 
   if (cell.head == kNone) unmark(cell.key);
   --bodies_;
   --of_level_[level + 64];
+}
+
+void StillGrid::announce(const Vec3& position, double radius, int level) {
+  constexpr double kDrawn = 1.05;
+  arrivals_.resize(kRegions, 0);
+  const double inverse = 1.0 / edge_of_region(level), way = kDrawn * radius + 0.5 * edge_of_region(level);
+  const Vec3 low = (position - Vec3::Constant(way)) * inverse,
+             high = (position + Vec3::Constant(way)) * inverse;
+  for (std::int32_t z = along(low.z()); z <= along(high.z()); ++z)
+    for (std::int32_t y = along(low.y()); y <= along(high.y()); ++y)
+      for (std::int32_t x = along(low.x()); x <= along(high.x()); ++x)
+        ++arrivals_[place_of_region({x, y, z, level})];
+}
+
+std::optional<std::uint64_t> StillGrid::arrivals_near(const Vec3& center, double reach) const {
+  std::uint64_t sum = readings_ << 48;
+  if (arrivals_.empty()) return sum;
+  for (int level = lowest_level_; level <= highest_level_; ++level) {
+    const double edge = edge_of_region(level);
+    if (reach > 0.5 * edge) return {};
+    const Vec3 at = center * (1.0 / edge);
+    sum += arrivals_[place_of_region({along(at.x()), along(at.y()), along(at.z()), level})];
+  }
+  return sum;
 }
 
 // Cells that nobody lies in any more are left out.

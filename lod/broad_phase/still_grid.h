@@ -1,12 +1,14 @@
 // Where bodies lie that sleep: cells in a hash table, so that one falls asleep or wakes without a look at the
 // others. Bodies of other sizes have cells of other sizes, each edge twice the one before. Groups of cells
-// tell at a few looks where nobody lies about a place, as mostly nobody does.
+// tell at a few looks where nobody lies about a place, as mostly nobody does; and who has looked once need
+// not look again while nobody was laid down in his region.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "reference/geometry.h"
@@ -24,11 +26,17 @@ class StillGrid {
   std::uint64_t insertions() const { return insertions_; }  ///< ever; no part of the state
   void archive(StateArchive& a) {
     a(cells_, used_, bodies_, next_, of_level_);
-    if (a.reading()) count_groups(), find_levels();
+    if (a.reading()) count_groups(), find_levels(), ++readings_;
   }
   std::size_t bytes() const {
-    return cells_.capacity() * sizeof(Cell) + next_.capacity() * sizeof(std::uint32_t) + groups_.capacity();
+    return cells_.capacity() * sizeof(Cell) +
+           (next_.capacity() + arrivals_.capacity()) * sizeof(std::uint32_t) + groups_.capacity();
   }
+
+  /// A number that changes before a body is inserted that may come within `reach` m of `center`, about balls
+  /// drawn larger by a twentieth: as long as it stays, nobody new is there. None where the reach is too wide
+  /// for the regions of such bodies as these. No part of the state.
+  std::optional<std::uint64_t> arrivals_near(const Vec3& center, double reach) const;
 
   /// Calls found(body) for every body whose ball may meet this one, and for some a cell beyond, in an order
   /// that follows from what was inserted and removed.
@@ -48,6 +56,7 @@ class StillGrid {
   };
   static constexpr std::uint8_t kMany = 255;
   static constexpr std::size_t kGroups = 8;  // for each cell: so that few share their hash with another
+  static constexpr std::size_t kRegions = 4096;
   struct Range {
     std::array<std::int32_t, 3> low, high;
   };
@@ -64,6 +73,9 @@ class StillGrid {
   void grow();
   static Key group_of(const Key& cell) { return {cell.x >> 2, cell.y >> 2, cell.z >> 2, cell.level}; }
   std::size_t place_of_group(const Key& group) const { return hash_of(group) & (groups_.size() - 1); }
+  static double edge_of_region(int level) { return 4.0 * edge_of(level); }
+  std::size_t place_of_region(const Key& region) const { return hash_of(region) & (kRegions - 1); }
+  void announce(const Vec3& position, double radius, int level);
   void count_groups();
   void find_levels();
   void mark(const Key& cell);
@@ -83,6 +95,10 @@ class StillGrid {
   // By a group's hash, four cells wide along each axis: cells of it, and of others with that hash, that are
   // lived in; kMany for as many or more.
   std::vector<std::uint8_t> groups_;
+  // By a region's hash: how many were inserted that may come near a ball whose centre lies in it, half an
+  // edge wide at most.
+  std::vector<std::uint32_t> arrivals_;
+  std::uint64_t readings_ = 0;                   // of the archive
   std::vector<std::uint32_t> next_;              // of each body, the next one in its cell
   std::array<std::uint32_t, 128> of_level_{};    // bodies
   int lowest_level_ = 64, highest_level_ = -64;  // that any body was ever of

@@ -286,7 +286,7 @@ void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<cons
     for (std::int64_t i = 0; i < ball_pairs_.size(); ++i)
       add_pair(ball_pairs_.first(i), ball_pairs_.second(i), tables);
   }
-  find_still_pairs(support, neighbors, &tables);
+  find_still_pairs(support, neighbors, tables);
   find_woken_pairs(tables);
   filter_pairs(0, [&](Participant p) {
     if (p.is_full()) return neighbors[p.index()].owner;
@@ -295,37 +295,84 @@ void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<cons
   });
 }
 
+// Calls `found` for the sleepers of `support` whose balls meet this one.
+template <class Found>
+void NearSearch::each_still_hull(const Vec3& center, double reach, const SupportLevel& support,
+                                 const Found& found) const {
+  const std::span<const StatisticalBody> bodies = support.bodies();
+  sleepers_.of(StatisticalModel::support).find_near(center, reach, [&](std::uint32_t slot) {
+    const double limit = reach + kBall * support.kind_of(bodies[slot]).shape->radius;
+    if ((bodies[slot].position - center).squaredNorm() < limit * limit) found(std::int32_t(slot));
+  });
+}
+
+template <class Found>
+void NearSearch::each_still_sphere(const Vec3& center, double reach, const TablesLevel& tables,
+                                   const Found& found) const {
+  sleepers_.of(StatisticalModel::tables).find_near(center, reach, [&](std::uint32_t slot) {
+    const double limit = reach + kBall * tables.radius(int(slot));
+    if ((tables.position(int(slot)) - center).squaredNorm() < limit * limit) found(std::int32_t(slot));
+  });
+}
+
+// By what it knows; false: it has to look.
+bool NearSearch::add_known_still_pairs(std::size_t ball, const SupportLevel& support) {
+  const std::span<const StatisticalBody> bodies = support.bodies();
+  const std::int32_t mover = movers_[ball - spheres_];
+  const Vec3 center(x_[ball], y_[ball], z_[ball]);
+  const auto reach = double(reach_[ball]);
+  const auto known = known_sleepers_.near(sleepers_, mover, center, reach);
+  if (!known) return false;
+  still_near_.clear();
+  for (const std::int32_t slot : *known) {
+    if (slot >= support.size() || !support.asleep(slot)) continue;  // it woke
+    const double limit = reach + kBall * support.kind_of(bodies[std::size_t(slot)]).shape->radius;
+    if ((bodies[std::size_t(slot)].position - center).squaredNorm() < limit * limit)
+      still_near_.push_back(slot);
+  }
+  add_still_pairs(Participant::statistical(std::size_t(mover)), bodies);
+  return true;
+}
+
+// With those in still_near_.
+void NearSearch::add_still_pairs(Participant self, std::span<const StatisticalBody> bodies) {
+  sort_by_place(bodies, still_near_);
+  for (const std::int32_t slot : still_near_)
+    pairs_.emplace_back(self, Participant::statistical(std::size_t(slot)));
+}
+
 // Of moving hulls with those that sleep.
 void NearSearch::find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors,
-                                  const TablesLevel* tables) {
+                                  const TablesLevel& tables) {
   if (sleepers_.empty()) return;
   const std::span<const StatisticalBody> bodies = support.bodies();
+  known_sleepers_.make_place(std::size_t(support.size()));
   for (std::size_t i = spheres_; i < x_.size(); ++i) {
     const bool full = i >= spheres_ + movers_.size();
     if (full && neighbors[i - spheres_ - movers_.size()].asleep) continue;
+    if (!full && add_known_still_pairs(i, support)) continue;
     const Vec3 center(x_[i], y_[i], z_[i]);
     const auto own_reach = double(reach_[i]);
-    const auto is_near = [&](const Vec3& position, double radius) {
-      return (position - center).squaredNorm() < (own_reach + kBall * radius) * (own_reach + kBall * radius);
-    };
+    const auto note = [&](std::int32_t slot) { still_near_.push_back(slot); };
     const Participant self = full ? Participant::full(i - spheres_ - movers_.size())
                                   : Participant::statistical(std::size_t(movers_[i - spheres_]));
     still_near_.clear();
-    sleepers_.of(StatisticalModel::support).find_near(center, own_reach, [&](std::uint32_t slot) {
-      if (is_near(bodies[slot].position, support.kind_of(bodies[slot]).shape->radius))
-        still_near_.push_back(std::int32_t(slot));
-    });
-    sort_by_place(bodies, still_near_);
-    for (const std::int32_t slot : still_near_)
-      pairs_.emplace_back(self, Participant::statistical(std::size_t(slot)));
-    if (!tables) continue;
+    each_still_hull(center, own_reach, support, note);
+    add_still_pairs(self, bodies);
     still_near_.clear();
-    sleepers_.of(StatisticalModel::tables).find_near(center, own_reach, [&](std::uint32_t slot) {
-      if (is_near(tables->position(int(slot)), tables->radius(int(slot))))
-        still_near_.push_back(std::int32_t(slot));
-    });
+    each_still_sphere(center, own_reach, tables, note);
     std::ranges::sort(still_near_);
     for (const std::int32_t slot : still_near_) pairs_.emplace_back(self, guest(slot));
+    if (full) continue;
+    const double way =
+        2.0 * (center - bodies[self.index()].position).norm();  // the ball is half a step ahead
+    known_sleepers_.look(sleepers_, std::int32_t(self.index()), center, own_reach, way,
+                         [&](const Vec3& at, double reach, const auto& add) {
+                           bool spheres = false;
+                           each_still_hull(at, reach, support, add);
+                           each_still_sphere(at, reach, tables, [&](std::int32_t) { spheres = true; });
+                           return !spheres;
+                         });
   }
 }
 

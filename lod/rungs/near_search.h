@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lod/broad_phase/cell_grid.h"
+#include "lod/rungs/known_sleepers.h"
 #include "lod/rungs/lone_rooms.h"
 #include "lod/rungs/near_pairs.h"
 #include "lod/statistical/full_neighbor.h"
@@ -58,7 +59,7 @@ class NearSearch {
     if (!a.reading()) order_.assign(order_of_spheres().begin(), order_of_spheres().end());
     mixed_ = true;
     a(order_);
-    if (a.reading()) rooms_.give_up();
+    if (a.reading()) rooms_.give_up(), known_sleepers_.clear();
   }
 
  private:
@@ -98,7 +99,15 @@ class NearSearch {
   Participant guest(std::int32_t slot);
   void forget_guests();
   void find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors,
-                        const TablesLevel* tables);
+                        const TablesLevel& tables);
+  template <class Found>
+  void each_still_hull(const Vec3& center, double reach, const SupportLevel& support,
+                       const Found& found) const;
+  template <class Found>
+  void each_still_sphere(const Vec3& center, double reach, const TablesLevel& tables,
+                         const Found& found) const;
+  bool add_known_still_pairs(std::size_t ball, const SupportLevel& support);
+  void add_still_pairs(Participant self, std::span<const StatisticalBody> bodies);
   void find_woken_pairs(const TablesLevel& tables);
   void find_still_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables);
 
@@ -119,6 +128,7 @@ class NearSearch {
   std::vector<Placed> placed_;        // the same
   std::vector<char> kept_;            // of those awake: whether they moved before
   LoneRooms rooms_;
+  KnownSleepers known_sleepers_;
   bool apart_ = false;             // in this step no mover is near anybody, by rooms_
   bool mixed_ = false;             // spheres and others
   std::vector<BallPairs> others_;  // of parts of the cells: pairs that are not of two spheres

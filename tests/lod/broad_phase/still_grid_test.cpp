@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <set>
+#include <vector>
 
 #include "reference/random.h"
 
@@ -51,6 +53,61 @@ TEST(StillGrid, FindsWhatLiesNearWhoeverCameAndWent) {
   for (const std::uint32_t body : inside) grid.remove(body, lying(body).position, lying(body).radius);
   EXPECT_TRUE(grid.empty());
   EXPECT_TRUE(near(grid, Vec3::Zero(), 100.0).empty());
+}
+
+// Whoever looked once knows who is there until the number changes.
+TEST(StillGrid, NobodyArrivesUnannounced) {
+  struct Watch {
+    Vec3 center;
+    double reach;
+    std::optional<std::uint64_t> arrivals;
+  };
+  StillGrid grid;
+  std::vector<Watch> watches;
+  std::set<std::uint32_t> inside;
+  int told = 0, kept = 0, arrived = 0;
+  for (std::uint32_t round = 0; round < 3000; ++round) {
+    RandomStream random(11, round, 0);
+    const auto body = std::uint32_t(random.uniform() * 1000);
+    Lying l = lying(body);
+    l.position *= 0.2;  // close together
+    if (inside.erase(body))
+      grid.remove(body, l.position, l.radius);
+    else
+      inside.insert(body), grid.insert(body, l.position, l.radius);
+    for (Watch& watch : watches) {
+      const auto now = grid.arrivals_near(watch.center, watch.reach);
+      ASSERT_TRUE(now);
+      const bool comes =
+          inside.contains(body) && (l.position - watch.center).norm() < watch.reach + 1.02 * l.radius;
+      if (comes) {
+        EXPECT_NE(*now, *watch.arrivals) << round;
+        ++arrived;
+      }
+      told += *now != *watch.arrivals, kept += *now == *watch.arrivals;
+      watch.arrivals = now;
+    }
+    if (round % 60) continue;
+    const Vec3 center(random.uniform(-4, 4), random.uniform(-4, 4), 0);
+    const double reach = random.uniform(0.05, 0.24);  // beside bodies of a tenth at least
+    watches.push_back({center, reach, grid.arrivals_near(center, reach)});
+    EXPECT_TRUE(watches.back().arrivals);
+  }
+  EXPECT_GT(arrived, 300);
+  EXPECT_GT(kept, 5 * told);
+  EXPECT_FALSE(grid.arrivals_near(Vec3::Zero(), 10.0));
+}
+
+TEST(StillGrid, WhatWasReadFromASnapshotIsNew) {
+  StillGrid grid;
+  grid.insert(3, {0, 0, 0}, 0.1);
+  const auto before = grid.arrivals_near({0, 0, 0}, 0.1);
+  StateArchive writer;
+  grid.archive(writer);
+  EXPECT_EQ(grid.arrivals_near({0, 0, 0}, 0.1), before);
+  StateArchive reader(writer.bytes(), {});
+  grid.archive(reader);
+  EXPECT_NE(grid.arrivals_near({0, 0, 0}, 0.1), before);
 }
 
 // In the same order, too.

@@ -196,6 +196,40 @@ TEST(NearSearch, FindsThemAgainAfterTheBodiesMoved) {
   }
 }
 
+// While bodies rock in their places, fall asleep beside each other and wake, who knows of his sleepers finds
+// the same pairs, in the same order, as who looks for the first time.
+TEST(NearSearch, FindsWhatOneFindsThatNeverLookedBefore) {
+  Crowd3 crowd;
+  scatter(crowd, 23, 120, {Rung::support}, 1.6);
+  RandomStream random(93, 0, 0);
+  std::size_t pairs = 0, changes = 0;
+  for (int round = 0; round < 200; ++round) {
+    for (int slot = 0; slot < crowd.support.size(); ++slot) {
+      if (crowd.support.asleep(slot)) {
+        if (random.uniform() < 0.01) crowd.support.wake(slot), ++changes;
+        continue;
+      }
+      if (random.uniform() < 0.01) {
+        crowd.support.put_to_sleep(slot), ++changes;
+        continue;
+      }
+      RigidState state = crowd.support.state(slot);
+      state.position += (slot % 7 == 0 ? 0.03 : 0.003) * random.direction();
+      state.velocity = 0.3 * random.direction();
+      crowd.support.set_state(slot, state);
+    }
+    crowd.search_pairs();
+    NearSearch fresh(crowd.settings, crowd.sleepers, crowd.jobs);
+    fresh.fill(kSearchStep, crowd.tables, crowd.support, crowd.full);
+    fresh.find(crowd.tables, crowd.support, crowd.full);
+    const auto same = [](const NearPair& a, const NearPair& b) { return a == b; };
+    ASSERT_TRUE(std::ranges::equal(crowd.search.pairs(), fresh.pairs(), same)) << round;
+    pairs += fresh.pairs().size();
+  }
+  EXPECT_GT(pairs, 10000U);
+  EXPECT_GT(changes, 100U);
+}
+
 // Woken in two lots, within a step: with each lot all that a search at the step's beginning would have found
 // are there, once.
 TEST(NearSearch, FindsThePairsOfThoseThatAreWoken) {
