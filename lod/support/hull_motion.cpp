@@ -18,6 +18,13 @@ ContactRecord touch_of_clip(const StatisticalBody& body, const HalfSpace& ground
           .impulse = body.mass * std::max(0.0, given.dot(ground.normal))};
 }
 
+bool reaches_into(const HalfSpace& plane, const StatisticalBody& body, const Shape& shape) {
+  const double height = plane.height_of(body.position);
+  if (height >= shape.radius) return false;
+  std::int32_t hint = body.support_hint;
+  return find_lowest_point(shape, body.orientation, plane.normal, height, hint).gap < 0.0;
+}
+
 }  // namespace
 
 HullMotion move_on_hull(StatisticalBody& body, ClipPlayback& clip, const BodyKind& kind,
@@ -36,10 +43,19 @@ HullMotion move_on_hull(StatisticalBody& body, ClipPlayback& clip, const BodyKin
   if (body.motion == Motion::settling && std::ranges::none_of(world.planes, same))
     body.motion = Motion::dynamic;
   if (body.motion == Motion::settling) {
+    const StatisticalBody before = body;
     const Vec3 falling = body.velocity + world.gravity * time;
     const bool over = advance_clip(clip, body, kind, gravity, time, settings.clips);
-    if (world.log) world.log->add(touch_of_clip(body, clip.ground, body.velocity - falling));
-    return {.plays_clip = true, .clip_over = over};
+    // It was recorded where there is no wall.
+    const auto meets = [&](const HalfSpace& plane) {
+      return !same(plane) && reaches_into(plane, body, *kind.shape);
+    };
+    if (std::ranges::none_of(world.planes, meets)) {
+      if (world.log) world.log->add(touch_of_clip(body, clip.ground, body.velocity - falling));
+      return {.plays_clip = true, .clip_over = over};
+    }
+    body = before;
+    body.motion = Motion::dynamic;
   }
   const ContactTally tally = step_support_body(body, kind, world, time, settings.support, turned);
   if (tally.touched_plane < 0 || !may_settle || !kind.clips || kind.clips->empty()) return {.tally = tally};

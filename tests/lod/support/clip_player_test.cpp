@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lod/contact/hull_contacts.h"
+#include "lod/support/hull_motion.h"
 
 namespace lodestone {
 namespace {
@@ -130,6 +131,34 @@ TEST_F(ClipPlayer, WhatItDiffersByFadesAboveTheGround) {
   }
   EXPECT_GT(playback->residual_left, 0.0);
   EXPECT_LT(playback->residual_left, 0.01);
+}
+
+// A clip was recorded where there is no wall: it plays as far as there is none.
+TEST_F(ClipPlayer, AWallEndsIt) {
+  const MaterialTable materials;
+  for (const double ahead : {0.02, 0.06}) {  // over R: the clip goes .05 R
+    StatisticalBody body = body_like_clip(0.0);
+    const double face = body.position.x() + 0.5 * kSide, wall = face + ahead * radius();
+    std::optional<ClipPlayback> playback = find(body);
+    ASSERT_TRUE(playback);
+    body.motion = Motion::settling;
+    const HalfSpace planes[] = {kFloor, {.normal = -Vec3::UnitX(), .offset = -wall}};
+    const StepWorld world{.gravity = {0, 0, -kGravity}, .planes = planes, .materials = &materials};
+    double farthest = face;
+    bool played_on = true;
+    for (int i = 0; i < 20; ++i) {
+      const HullMotion moved = move_on_hull(body, *playback, kind_, world, world.gravity, 0.05 * time_unit(),
+                                            false, HullMotionSettings{.clips = settings_});
+      played_on = played_on && moved.plays_clip;
+      std::int32_t hint = 0;
+      farthest = std::max(farthest, wall - find_lowest_point(*kind_.shape, body.orientation, planes[1].normal,
+                                                             planes[1].height_of(body.position), hint)
+                                               .gap);
+    }
+    EXPECT_LT(farthest, wall + 1e-6) << ahead;
+    EXPECT_GT(farthest, face + 0.01 * radius()) << ahead;
+    EXPECT_EQ(played_on, ahead > 0.05);
+  }
 }
 
 TEST_F(ClipPlayer, NoneWhereItMovesTooFastOrOtherwise) {
