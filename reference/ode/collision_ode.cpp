@@ -278,6 +278,7 @@ void Collision::find_pair_points(const Body& body, const Body* other, std::span<
       if (dGeomGetClass(part.second) == dConvexClass) prepare_for_convex(part.first);
       narrow_phase_.find(part.first, part.second, size, points_);
     }
+  if (exact) points_.resize(std::size_t(drop_inner_contacts(points_, size)));
   drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
 }
 

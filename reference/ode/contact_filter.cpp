@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace lodestone {
@@ -217,6 +218,51 @@ int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutM
     left = turn_cleared(left, *way, kDepthSlack * size, places);
   }
   return int(contacts.size() - left.size());
+}
+
+int drop_inner_contacts(std::span<ContactPoint> contacts, double size) {
+  constexpr double kOneWay = 0.9999, kInside = 1e-2, kDeeper = 1e-4;  // cosine; over size
+  const auto count = int(contacts.size());
+  if (count < 4) return count;
+  const Vec3 normal = contacts[0].normal;
+  if (!std::ranges::all_of(contacts, [&](const ContactPoint& c) { return c.normal.dot(normal) > kOneWay; }))
+    return count;
+  const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
+  std::vector<Eigen::Vector2d> outline;  // counter-clockwise (Andrew's monotone chain)
+  for (const ContactPoint& c : contacts) outline.emplace_back(c.point.dot(x), c.point.dot(y));
+  std::ranges::sort(outline, {}, [](const Eigen::Vector2d& p) { return std::pair(p.x(), p.y()); });
+  const auto side = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::Vector2d& p) {
+    const Eigen::Vector2d along = to - from, out = p - from;
+    return along.x() * out.y() - along.y() * out.x();
+  };
+  const auto chain = [&](auto begin, auto end) {
+    std::vector<Eigen::Vector2d> corners;
+    for (auto p = begin; p != end; ++p) {
+      while (corners.size() > 1 && side(corners[corners.size() - 2], corners.back(), *p) <= 0.0)
+        corners.pop_back();
+      corners.push_back(*p);
+    }
+    corners.pop_back();  // the other one's first
+    return corners;
+  };
+  std::vector<Eigen::Vector2d> corners = chain(outline.begin(), outline.end());
+  const std::vector<Eigen::Vector2d> upper = chain(outline.rbegin(), outline.rend());
+  corners.insert(corners.end(), upper.begin(), upper.end());
+  const auto is_inside = [&](const ContactPoint& c) {
+    const Eigen::Vector2d p(c.point.dot(x), c.point.dot(y));
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Eigen::Vector2d &from = corners[i], &to = corners[(i + 1) % corners.size()];
+      if (side(from, to, p) < kInside * size * (to - from).norm()) return false;
+    }
+    return corners.size() > 2;
+  };
+  double deepest = 0.0;  // of the outline
+  for (const ContactPoint& c : contacts)
+    if (!is_inside(c)) deepest = std::max(deepest, c.depth);
+  const auto carries = [&](const ContactPoint& c) {
+    return !is_inside(c) || c.depth > deepest + kDeeper * size;
+  };
+  return int(std::stable_partition(contacts.begin(), contacts.end(), carries) - contacts.begin());
 }
 
 int reduce_contacts(std::span<ContactPoint> contacts, int max_contacts, double size) {

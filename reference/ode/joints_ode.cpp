@@ -173,7 +173,14 @@ Vec3 ContactJoints::unhindered_velocity(const ContactSide& side, const Vec3& poi
   dMass mass;
   dBodyGetMass(body, &mass);
   const Vec3 pull = dBodyGetGravityMode(body) ? gravity_ : Vec3::Zero();
-  return now + h_ * (pull + to_vec3(dBodyGetForce(body)) / mass.mass);
+  Vec3 gained = pull + to_vec3(dBodyGetForce(body)) / mass.mass;  // m/s²
+  if (const Vec3 torque = to_vec3(dBodyGetTorque(body)); !torque.isZero(0.0)) {
+    const RigidState state = state_of(body);
+    const Mat3 inertia = Eigen::Map<const Eigen::Matrix<dReal, 3, 4, Eigen::RowMajor>>(mass.I).leftCols<3>();
+    const Vec3 in_body = state.orientation.conjugate() * torque;
+    gained += (state.orientation * Vec3(inertia.ldlt().solve(in_body))).cross(point - state.position);
+  }
+  return now + h_ * gained;
 }
 
 }  // namespace lodestone::ode

@@ -26,7 +26,7 @@ void put_to_rest(dBodyID body) {
 }  // namespace
 
 void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
-  if (on_) find_carried(bodies, carried);
+  if (on_) find_carried(bodies, carried), find_pulled(bodies);
   for (Body& body : bodies.slots()) {
     body.fell_asleep = false;
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
@@ -50,45 +50,92 @@ bool Sleep::is_still(const Body& body) const {
          squared_norm(dBodyGetAngularVel(body.body)) <= square(law_.turning_speed / body.reach);
 }
 
+namespace {
+
+constexpr double kGivesWay = 0.02;  // times the law's speed
+
+double speed_at(dBodyID body, const Vec3& point) {
+  const Vec3 velocity = to_vec3(dBodyGetLinearVel(body)), turning = to_vec3(dBodyGetAngularVel(body)),
+             arm = point - to_vec3(dBodyGetPosition(body));
+  return (velocity + turning.cross(arm)).norm();
+}
+
+// To a force or torque on it; seen from `point`.
+bool gives_way(dBodyID body, const Vec3& point, double slow) {
+  const Vec3 velocity = to_vec3(dBodyGetLinearVel(body)), turning = to_vec3(dBodyGetAngularVel(body)),
+             force = to_vec3(dBodyGetForce(body)), torque = to_vec3(dBodyGetTorque(body));
+  const double arm = (point - to_vec3(dBodyGetPosition(body))).norm();
+  return velocity.dot(force) > slow * force.norm() || turning.dot(torque) * arm > slow * torque.norm();
+}
+
+// To these, or to a motor, or to what pulls it by joints.
+bool is_pulled(dBodyID body, const Vec3& point, double slow) {
+  if (gives_way(body, point, slow)) return true;
+  if (speed_at(body, point) < slow) return false;
+  std::vector<dBodyID> pulling{body};
+  for (std::size_t next = 0; next < pulling.size(); ++next)
+    for (int i = 0; i < dBodyGetNumJoints(pulling[next]); ++i) {
+      const dJointID joint = dBodyGetJoint(pulling[next], i);
+      if (dJointGetType(joint) == dJointTypeContact) continue;
+      if (is_driven(joint)) return true;
+      for (const int end : {0, 1}) {
+        const dBodyID by = dJointGetBody(joint, end);
+        if (!by || std::ranges::count(pulling, by)) continue;
+        if (gives_way(by, point, slow)) return true;
+        pulling.push_back(by);
+      }
+    }
+  return false;
+}
+
+}  // namespace
+
 // Whether what it touches moves, or gives way to a force or a motor: put to rest again in each step, it would
 // hold that back, and of what the two exchange its share be lost. (What jitters in a heap moves nobody.)
 bool Sleep::is_drawn(const Body& body) const {
-  constexpr double kMoves = 4.0, kGivesWay = 0.02;  // times the speed
+  constexpr double kMoves = 4.0;  // times the speed
+  if (pulled_.contains(body.body)) return true;
   const Vec3 center = to_vec3(dBodyGetPosition(body.body));
-  const auto gives_way = [&](dBodyID other) {
-    const Vec3 velocity = to_vec3(dBodyGetLinearVel(other)), turning = to_vec3(dBodyGetAngularVel(other)),
-               force = to_vec3(dBodyGetForce(other)), torque = to_vec3(dBodyGetTorque(other));
-    const double arm = (center - to_vec3(dBodyGetPosition(other))).norm();
-    return velocity.dot(force) > kGivesWay * law_.speed * force.norm() ||
-           turning.dot(torque) * arm > kGivesWay * law_.speed * torque.norm();
-  };
   const auto draws = [&](dBodyID other) {
     if (!other || other == body.body || !dBodyIsEnabled(other)) return false;
-    const Vec3 velocity = to_vec3(dBodyGetLinearVel(other)), turning = to_vec3(dBodyGetAngularVel(other)),
-               arm = center - to_vec3(dBodyGetPosition(other));
-    const double speed = (velocity + turning.cross(arm)).norm();
-    if (speed > kMoves * law_.speed || gives_way(other)) return true;
-    if (speed < kGivesWay * law_.speed) return false;
-    std::vector<dBodyID> pulling{other};  // and who pulls it by joints
-    for (std::size_t next = 0; next < pulling.size(); ++next)
-      for (int i = 0; i < dBodyGetNumJoints(pulling[next]); ++i) {
-        const dJointID joint = dBodyGetJoint(pulling[next], i);
-        if (dJointGetType(joint) == dJointTypeContact) continue;
-        if (is_driven(joint)) return true;
-        for (const int end : {0, 1}) {
-          const dBodyID by = dJointGetBody(joint, end);
-          if (!by || std::ranges::count(pulling, by)) continue;
-          if (gives_way(by)) return true;
-          pulling.push_back(by);
-        }
-      }
-    return false;
+    return speed_at(other, center) > kMoves * law_.speed || is_pulled(other, center, kGivesWay * law_.speed);
   };
   for (int i = 0; i < dBodyGetNumJoints(body.body); ++i) {
     const dJointID joint = dBodyGetJoint(body.body, i);
     if (draws(dJointGetBody(joint, 0)) || draws(dJointGetBody(joint, 1))) return true;
   }
   return false;
+}
+
+// And who lies on them, on those in turn, and so on.
+void Sleep::find_pulled(Bodies& bodies) {
+  pulled_.clear();
+  waiting_.clear();
+  for (const Body& body : bodies.slots()) {
+    if (!body.body || !dBodyIsEnabled(body.body) || body.properties.kinematic) continue;
+    const Vec3 turning = to_vec3(dBodyGetAngularVel(body.body));
+    Vec3 rim = to_vec3(dBodyGetPosition(body.body));
+    if (!turning.isZero(0.0)) rim += body.reach * turning.unitOrthogonal();
+    if (is_pulled(body.body, rim, kGivesWay * law_.speed) && pulled_.insert(body.body).second)
+      waiting_.push_back(body.body);
+  }
+  if (waiting_.empty()) return;
+  dVector3 gravity;
+  dWorldGetGravity(dBodyGetWorld(waiting_.front()), gravity);
+  const auto height = [&](dBodyID body) { return -to_vec3(gravity).dot(to_vec3(dBodyGetPosition(body))); };
+  while (!waiting_.empty()) {
+    const dBodyID body = waiting_.back();
+    waiting_.pop_back();
+    for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
+      const dJointID joint = dBodyGetJoint(body, i);
+      if (dJointGetType(joint) != dJointTypeContact) continue;
+      for (const int end : {0, 1})
+        if (const dBodyID other = dJointGetBody(joint, end);
+            other && other != body && dBodyIsEnabled(other) && height(other) > height(body) &&
+            pulled_.insert(other).second)
+          waiting_.push_back(other);
+    }
+  }
 }
 
 void Sleep::find_carried(Bodies& bodies, std::span<const dBodyID> carried) {

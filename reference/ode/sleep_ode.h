@@ -25,10 +25,11 @@ class Sleep {
   void find_carried(Bodies& bodies, std::span<const dBodyID> carried);
   bool is_still(const Body& body) const;
   bool is_drawn(const Body& body) const;
+  void find_pulled(Bodies& bodies);
 
   SleepLaw law_;
   bool on_;
-  std::unordered_set<dBodyID> carried_;
+  std::unordered_set<dBodyID> carried_, pulled_;
   std::vector<dBodyID> waiting_;
 };
 

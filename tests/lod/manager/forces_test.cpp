@@ -2,7 +2,9 @@
 // does not strike.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <numbers>
 
 #include "tests/lod/manager/manager_fixture.h"
 
@@ -107,6 +109,76 @@ TEST(Forces, ATorqueTooSmallToTipLeavesItLying) {
     }
     EXPECT_LT(fastest, 0.05) << int(level);
     EXPECT_LT(manager.state(cube).position.head<2>().norm(), 0.01) << int(level);
+  }
+}
+
+// At full, the diagonals of two squares cross in the middle: there, where nothing holds a turning, all of the
+// weight was borne.
+TEST(Forces, ATorqueThatFrictionHoldsTurnsNoStack) {
+  constexpr double kSide = 0.3;
+  for (const double of_bound : {0.25, 0.5}) {
+    Manager manager = on_rough_floor();
+    std::vector<BodyId> cubes;
+    for (int i = 0; i < 5; ++i)
+      cubes.push_back(add(manager, box_shape({kSide, kSide, kSide}), testing::at({0, 0, (i + 0.5) * kSide}),
+                          LevelChoice::full));
+    run(manager, 0.5);
+    const double bound = kMu * manager.mass(cubes[4]) * kG * kSide / std::numbers::sqrt2;  // N m, at corners
+    double turned = 0.0;
+    for (int i = 0; i < 60; ++i) {
+      manager.add_force(cubes[4], Vec3::Zero(), Vec3(0, 0, of_bound * bound));
+      manager.step(kFrame);
+    }
+    for (const BodyId cube : cubes)
+      turned = std::max(turned, manager.state(cube).orientation.angularDistance(Quat::Identity()));
+    EXPECT_LT(turned, 0.05) << of_bound;
+  }
+}
+
+// Friction opposes the slip that it would have without it, that of a torque too: along another way ODE's box
+// of friction holds up to √2 times as much.
+TEST(Forces, ATorqueBeyondFrictionTurnsACubeAsCoulombSays) {
+  constexpr double kSide = 0.3, kSeconds = 0.25;
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support}) {
+    Manager manager = on_rough_floor();
+    const BodyId cube =
+        add(manager, box_shape({kSide, kSide, kSide}), testing::at({0, 0, 0.5 * kSide}), level);
+    const double mass = manager.mass(cube), bound = kMu * mass * kG * kSide / std::numbers::sqrt2;
+    const auto turn_with = [&](double of_bound) {
+      for (int i = 0; i < int(kSeconds / kFrame); ++i) {
+        manager.add_force(cube, Vec3::Zero(), Vec3(0, 0, of_bound * bound));
+        manager.step(kFrame);
+      }
+      return manager.state(cube).angular_velocity.z();
+    };
+    run(manager, 0.2);
+    EXPECT_NEAR(turn_with(0.95), 0.0, 1e-3) << int(level);
+    const double moment = mass * kSide * kSide / 6.0, expected = 0.2 * bound / moment * kSeconds;
+    EXPECT_NEAR(turn_with(1.2), expected, 0.1 * expected) << int(level);
+  }
+}
+
+// Two layers on a full sled, which all slept: who lies on the first one was laid down again in each substep.
+TEST(Forces, ASledStartsUnderAStackThatSlept) {
+  for (const int layers : {1, 2, 4}) {
+    Manager manager = on_rough_floor();
+    const BodyId sled = manager.add_body({.shape = box_shape({3, 1.5, 0.2}),
+                                          .state = testing::at({0, 0, 0.1}),
+                                          .mass = 50.0,
+                                          .level = LevelChoice::full});
+    for (int i = 0; i < layers; ++i)
+      manager.add_body({.shape = box_shape({0.5, 0.5, 0.15}),
+                        .state = testing::at({0.005 * (i % 2), 0, 0.2 + 0.15 * (i + 0.5)}),
+                        .mass = 20.0,
+                        .level = LevelChoice::full});
+    run(manager, 2.0);
+    EXPECT_EQ(manager.report().asleep, layers + 1);
+    constexpr double kExcess = 1.0;  // m/s²
+    for (int i = 0; i < 60; ++i) {
+      manager.add_force(sled, {(50.0 + 20.0 * layers) * (kMu * kG + kExcess), 0, 0});
+      manager.step(kFrame);
+    }
+    EXPECT_NEAR(manager.state(sled).position.x(), 0.5 * kExcess, 0.05) << layers;
   }
 }
 

@@ -114,5 +114,30 @@ TEST(ContactReduction, TakesTheDeepestAndSpreadsTheRest) {
   EXPECT_EQ(reduce_contacts(std::span(contacts).first(3), 5, 1.0), 3);
 }
 
+TEST(ContactReduction, WhatLiesWithinAFaceCarriesNothingUnlessItIsDeeper) {
+  const auto square = [](const Vec3& inner, double depth) {
+    std::vector<ContactPoint> contacts{{inner, {0, 0, 1}, depth}};
+    for (const double x : {-0.1, 0.1})
+      for (const double y : {-0.1, 0.1}) contacts.push_back({{x, y, 0}, {0, 0, 1}, 1e-4});
+    contacts.push_back({{0.1, 0.02, 0}, {0, 0, 1}, 1e-4});  // on an edge
+    return contacts;
+  };
+  const auto kept = [](std::vector<ContactPoint> contacts) { return drop_inner_contacts(contacts, 0.17); };
+  auto contacts = square({0.01, -0.02, 0}, 1.00001e-4);
+  ASSERT_EQ(drop_inner_contacts(contacts, 0.17), 5);
+  for (int i = 0; i < 5; ++i) EXPECT_GT(contacts[std::size_t(i)].point.norm(), 0.1);
+  EXPECT_EQ(kept(square({0, 0, 0}, 2e-4)), 6);        // a bulge
+  EXPECT_EQ(kept(square({0.09999, 0, 0}, 1e-4)), 6);  // as good as on an edge
+  contacts = square({0, 0, 0}, 1e-4);
+  contacts.back().normal = Vec3(0, 1, 0);
+  EXPECT_EQ(kept(contacts), 6);
+  EXPECT_EQ(kept({{{0, 0, 0}, {0, 0, 1}, 0},
+                  {{1, 0, 0}, {0, 0, 1}, 0},
+                  {{2, 0, 0}, {0, 0, 1}, 0},
+                  {{1, 0, 0}, {0, 0, 1}, 0}}),
+            4);
+  EXPECT_EQ(kept({}), 0);
+}
+
 }  // namespace
 }  // namespace lodestone
