@@ -40,6 +40,9 @@ void Levels::set_state(std::uint32_t body, const RigidState& state) {
     wake_near(body, Level::full);
     wake_near(body, Level::statistical);
   };
+  const BodyRecord& record = bodies[body];
+  const bool goes_away = (this->state(body).position - state.position).norm() > bodies.shape(body)->radius;
+  if (goes_away && record.statistical) statistical->let_fall_near(record.statistical);
   wake_around();
   set_motion(body, state);
   wake_around();  // what it is put onto, or into

@@ -56,12 +56,19 @@ struct StatisticalLevel::Impl {
   }
   double share_of_support() const;
   double clock() const { return clocked ? thread_time_ms() : 0.0; }
+  void let_fall(StatisticalPlace place);
   void wake_touching(StatisticalPlace place);
   bool any_pairs(std::span<const FullNeighbor> neighbors) const;
   void count_bodies();
 };
 
-// What rests on a body, or it on, must find new support once it is gone.
+// Wakes it, though what bore it may be gone.
+void StatisticalLevel::Impl::let_fall(StatisticalPlace place) {
+  if (place.model == StatisticalModel::tables && tables.asleep(place.slot)) tables.let_tip(place.slot);
+  at(place, [&](auto& level) { level.wake(place.slot); });
+}
+
+// What rests on a body, or it on, must find new support once it is gone, or was put elsewhere.
 void StatisticalLevel::Impl::wake_touching(StatisticalPlace gone) {
   const Vec3 center = position(gone);
   const double own_radius = radius(gone);
@@ -72,7 +79,7 @@ void StatisticalLevel::Impl::wake_touching(StatisticalPlace gone) {
       touching.push_back(other);
   });
   std::ranges::sort(touching, {}, [](StatisticalPlace p) { return std::pair(p.model, p.slot); });
-  for (const StatisticalPlace other : touching) at(other, [&](auto& level) { level.wake(other.slot); });
+  for (const StatisticalPlace other : touching) let_fall(other);
 }
 
 bool StatisticalLevel::Impl::any_pairs(std::span<const FullNeighbor> neighbors) const {
@@ -262,6 +269,7 @@ double StatisticalLevel::sphere_radius(StatisticalPlace place) const {
 void StatisticalLevel::wake(StatisticalPlace place) {
   impl_->at(place, [&](auto& level) { level.wake(place.slot); });
 }
+void StatisticalLevel::let_fall_near(StatisticalPlace place) { impl_->wake_touching(place); }
 void StatisticalLevel::put_to_sleep(StatisticalPlace place) {
   impl_->at(place, [&](auto& level) { level.put_to_sleep(place.slot); });
 }

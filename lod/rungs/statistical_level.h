@@ -97,6 +97,8 @@ class StatisticalLevel {
   double sphere_radius(
       StatisticalPlace place) const;  ///< m, of the colliding sphere at `tables`; 0 at `support`
   void wake(StatisticalPlace place);
+  /// Wakes who touches it, as when it is removed: what bore them may be gone.
+  void let_fall_near(StatisticalPlace place);
   void put_to_sleep(StatisticalPlace place);  ///< where it is, at once
   void add_force(StatisticalPlace place, const Vec3& force,
                  const Vec3& torque);  ///< over the next step; wakes it

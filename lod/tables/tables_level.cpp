@@ -151,6 +151,8 @@ void TablesLevel::wake(int slot) {
   woke_.push_back(spheres_.owner[place_of(slot)]);
 }
 
+void TablesLevel::let_tip(int slot) { spheres_.tipping_credit[place_of(slot)] = kWholeCredit; }
+
 void TablesLevel::put_to_sleep(int slot) {
   if (asleep(slot)) return;
   std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });

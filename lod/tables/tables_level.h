@@ -67,6 +67,7 @@ class TablesLevel {
     return spheres_.since_crowded[place_of(slot)] == 0;
   }  ///< touched another body in the last step
   void wake(int slot);
+  void let_tip(int slot);       ///< as after a fall: where what bore it may be gone (tipping.h)
   void put_to_sleep(int slot);  ///< where it is, at once
   /// m/s², from the next step on. Who comes to rest begins anew.
   void set_gravity(const Vec3& gravity);

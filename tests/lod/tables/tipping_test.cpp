@@ -66,6 +66,30 @@ TEST(Tipping, HeapsOfWhatIsLongOrFlatAreAboutAsHighAsThoseOfHulls) {
 
 // It takes potential energy away, which spheres among others may gain a little of as they part. From bin to
 // bin that differs tenfold.
+// Asleep it had no fall to tip by: it sank a little on the one post that was left, and hung there.
+TEST(Tipping, APlankFallsWhoseOtherPostIsTakenAway) {
+  const auto post = box_shape({0.2, 0.2, 0.8});
+  for (const Vec3& sides : {Vec3(1.6, 0.3, 0.1), Vec3(2.0, 0.2, 0.05)}) {
+    const bool is_removed = sides.x() > 1.8;  // or put elsewhere
+    Manager manager({.signatures = testing::coarse_signature});
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    const double from_middle = 0.375 * sides.x();
+    testing::add(manager, post, testing::at({-from_middle, 0, 0.4}), LevelChoice::tables);
+    const BodyId other = testing::add(manager, post, testing::at({from_middle, 0, 0.4}), LevelChoice::tables);
+    const BodyId plank = testing::add(manager, box_shape(sides), testing::at({0, 0, 0.8 + 0.5 * sides.z()}),
+                                      LevelChoice::tables);
+    testing::run(manager, 2.0);
+    ASSERT_TRUE(manager.asleep(plank));
+    ASSERT_NEAR(manager.state(plank).position.z(), 0.8 + 0.5 * sides.z(), 0.03);
+    if (is_removed)
+      manager.remove_body(other);
+    else
+      manager.set_state(other, testing::at({9, 0, 0.4}));
+    testing::run(manager, 5.0);
+    EXPECT_LT(manager.state(plank).position.z(), 0.6) << sides.transpose();
+  }
+}
+
 TEST(Tipping, AddsNoEnergy) {
   constexpr int kBins = 12;
   for (const auto& [sides, bound] : {std::pair{Vec3(0.5, 0.3, 0.04), 7e-4}, {Vec3(0.2, 0.3, 0.4), 5e-4}}) {
