@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "lod/contact/hull_contacts.h"
+
 namespace lodestone {
 
 PairBody piece_of(const PairBody& body, int piece) {

@@ -130,15 +130,19 @@ RigidState state_of(dBodyID body) {
           to_vec3(dBodyGetLinearVel(body)), to_vec3(dBodyGetAngularVel(body))};
 }
 
-void set_state(dBodyID body, const RigidState& state) {
-  check_state(state);
-  const Quat& q = state.orientation;
+void set_orientation(dBodyID body, const Quat& orientation) {
+  const Quat& q = orientation;
   const dQuaternion quaternion = {q.w(), q.x(), q.y(), q.z()};
-  dBodySetPosition(body, state.position.x(), state.position.y(), state.position.z());
   dBodySetQuaternion(body, quaternion);
   // ODE normalizes what it is given, which can change the last bit; a body moved here from elsewhere keeps
   // all of them.
   std::copy_n(quaternion, 4, const_cast<dReal*>(dBodyGetQuaternion(body)));
+}
+
+void set_state(dBodyID body, const RigidState& state) {
+  check_state(state);
+  dBodySetPosition(body, state.position.x(), state.position.y(), state.position.z());
+  set_orientation(body, state.orientation);
   dBodySetLinearVel(body, state.velocity.x(), state.velocity.y(), state.velocity.z());
   dBodySetAngularVel(body, state.angular_velocity.x(), state.angular_velocity.y(),
                      state.angular_velocity.z());

@@ -66,6 +66,7 @@ std::uint32_t slot_of(OdeBodyId id);
 bool is_moving(dBodyID body);
 RigidState state_of(dBodyID body);
 void set_state(dBodyID body, const RigidState& state);
+void set_orientation(dBodyID body, const Quat& orientation);  ///< of unit norm
 
 class Bodies {
  public:

@@ -81,11 +81,14 @@ std::optional<double> append_timed_contacts(std::span<const NearPoint> near, con
   return TimedContacts(near, step).append(contacts);
 }
 
+Quat turned_on(const RigidState& start, double time) {
+  return (rotation_from_vector(time * start.angular_velocity) * start.orientation).normalized();
+}
+
 RigidState end_of_step(const RigidState& start, const RigidState& end, double time) {
   RigidState moved = end;
   moved.position -= time * (end.velocity - start.velocity);
-  const Vec3 turn = -time * (end.angular_velocity - start.angular_velocity);
-  moved.orientation = (rotation_from_vector(turn) * end.orientation).normalized();
+  moved.orientation = turned_on(end, -time);
   return moved;
 }
 

@@ -33,6 +33,7 @@ struct OdeWorld::Impl {
   bool retry_substep(double h, int attempt, bool by_quick_step);
   void begin_substep(double h, int attempt = 0);
   void find_contacts(double h, int attempt);
+  void turn_to_impacts();
   void begin_callers_substep(double h);
   void end_callers_substep(double h);
   bool advance(double h, bool by_quick_step);
