@@ -110,7 +110,10 @@ float TablesLevel::radius_at_ground(const StatisticalBody& body, const BodyKind&
     if (height > shape.radius + least_gap) continue;
     std::int32_t hint = 0;
     const HullContact lowest = find_lowest_point(shape, body.orientation, plane.normal, height, hint);
-    if (lowest.gap < least_gap) least_gap = lowest.gap, radius = -lowest.arm.dot(plane.normal);
+    if (lowest.gap < least_gap)
+      least_gap = lowest.gap, radius = -lowest.arm.dot(plane.normal);
+    else if (lowest.gap > kNear * shape.radius)  // not to be touched by what lies on something else
+      least_height = std::min(least_height, height - 0.5 * lowest.gap);
   }
   return float(std::max(std::min(radius, least_height), kLeast * shape.radius));
 }
