@@ -68,24 +68,40 @@ bool gives_way(dBodyID body, const Vec3& point, double slow) {
   return velocity.dot(force) > slow * force.norm() || turning.dot(torque) * arm > slow * torque.norm();
 }
 
-// To these, or to a motor, or to what pulls it by joints.
+// Whether one that hangs together with `joined` by joints does, or is driven by a motor. Adds these, as far
+// as it looks.
+bool is_pulled_together(std::vector<dBodyID>& joined, const Vec3& point, double slow) {
+  for (std::size_t next = 0; next < joined.size(); ++next) {
+    if (gives_way(joined[next], point, slow)) return true;
+    for (int i = 0; i < dBodyGetNumJoints(joined[next]); ++i) {
+      const dJointID joint = dBodyGetJoint(joined[next], i);
+      if (dJointGetType(joint) == dJointTypeContact) continue;
+      if (is_driven(joint)) return true;
+      for (const int end : {0, 1})
+        if (const dBodyID by = dJointGetBody(joint, end); by && !std::ranges::count(joined, by))
+          joined.push_back(by);
+    }
+  }
+  return false;
+}
+
+// To a force, a motor, or to what pulls it by joints.
 bool is_pulled(dBodyID body, const Vec3& point, double slow) {
   if (gives_way(body, point, slow)) return true;
   if (speed_at(body, point) < slow) return false;
-  std::vector<dBodyID> pulling{body};
-  for (std::size_t next = 0; next < pulling.size(); ++next)
-    for (int i = 0; i < dBodyGetNumJoints(pulling[next]); ++i) {
-      const dJointID joint = dBodyGetJoint(pulling[next], i);
-      if (dJointGetType(joint) == dJointTypeContact) continue;
-      if (is_driven(joint)) return true;
-      for (const int end : {0, 1}) {
-        const dBodyID by = dJointGetBody(joint, end);
-        if (!by || std::ranges::count(pulling, by)) continue;
-        if (gives_way(by, point, slow)) return true;
-        pulling.push_back(by);
-      }
-    }
+  std::vector<dBodyID> joined{body};
+  return is_pulled_together(joined, point, slow);
+}
+
+bool has_own_joints(dBodyID body) {
+  for (int i = 0; i < dBodyGetNumJoints(body); ++i)
+    if (dJointGetType(dBodyGetJoint(body, i)) != dJointTypeContact) return true;
   return false;
+}
+
+Vec3 rim_of(const Body& body) {
+  const Vec3 turning = to_vec3(dBodyGetAngularVel(body.body)), center = to_vec3(dBodyGetPosition(body.body));
+  return turning.isZero(0.0) ? center : Vec3(center + body.reach * turning.unitOrthogonal());
 }
 
 }  // namespace
@@ -107,17 +123,26 @@ bool Sleep::is_drawn(const Body& body) const {
   return false;
 }
 
-// And who lies on them, on those in turn, and so on.
+// And who lies on them, on those in turn, and so on. What hangs together by joints is looked through once.
 void Sleep::find_pulled(Bodies& bodies) {
-  pulled_.clear();
-  waiting_.clear();
+  const double slow = kGivesWay * law_.speed;
+  pulled_.clear(), unpulled_.clear(), waiting_.clear();
+  const auto add = [&](dBodyID body) {
+    if (pulled_.insert(body).second) waiting_.push_back(body);
+  };
   for (const Body& body : bodies.slots()) {
     if (!body.body || !dBodyIsEnabled(body.body) || body.properties.kinematic) continue;
-    const Vec3 turning = to_vec3(dBodyGetAngularVel(body.body));
-    Vec3 rim = to_vec3(dBodyGetPosition(body.body));
-    if (!turning.isZero(0.0)) rim += body.reach * turning.unitOrthogonal();
-    if (is_pulled(body.body, rim, kGivesWay * law_.speed) && pulled_.insert(body.body).second)
-      waiting_.push_back(body.body);
+    const Vec3 rim = rim_of(body);
+    if (!has_own_joints(body.body)) {
+      if (gives_way(body.body, rim, slow)) add(body.body);
+    } else if (!unpulled_.contains(body.body)) {
+      joined_.assign(1, body.body);
+      if (!is_pulled_together(joined_, rim, slow)) {
+        unpulled_.insert(joined_.begin(), joined_.end());
+        continue;
+      }
+      if (speed_at(body.body, rim) >= slow) add(body.body);
+    }
   }
   if (waiting_.empty()) return;
   dVector3 gravity;

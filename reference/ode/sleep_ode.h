@@ -29,8 +29,8 @@ class Sleep {
 
   SleepLaw law_;
   bool on_;
-  std::unordered_set<dBodyID> carried_, pulled_;
-  std::vector<dBodyID> waiting_;
+  std::unordered_set<dBodyID> carried_, pulled_, unpulled_;
+  std::vector<dBodyID> waiting_, joined_;
 };
 
 }  // namespace lodestone::ode
