@@ -221,7 +221,8 @@ int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutM
 }
 
 int drop_inner_contacts(std::span<ContactPoint> contacts, double size) {
-  constexpr double kOneWay = 0.9999, kInside = 1e-2, kDeeper = 1e-4;  // cosine; over size
+  constexpr double kOneWay = 0.9999,                  // cosine
+      kInside = 1e-2, kFlush = 1e-3, kDeeper = 1e-4;  // over size
   const auto count = int(contacts.size());
   if (count < 4) return count;
   const Vec3 normal = contacts[0].normal;
@@ -256,9 +257,10 @@ int drop_inner_contacts(std::span<ContactPoint> contacts, double size) {
     }
     return corners.size() > 2;
   };
-  double deepest = 0.0;  // of the outline
+  double deepest = 0.0, shallowest = std::numeric_limits<double>::infinity();  // of the outline
   for (const ContactPoint& c : contacts)
-    if (!is_inside(c)) deepest = std::max(deepest, c.depth);
+    if (!is_inside(c)) deepest = std::max(deepest, c.depth), shallowest = std::min(shallowest, c.depth);
+  if (deepest - shallowest > kFlush * size) return count;
   const auto carries = [&](const ContactPoint& c) {
     return !is_inside(c) || c.depth > deepest + kDeeper * size;
   };

@@ -42,9 +42,10 @@ int filter_contacts(std::span<ContactPoint> contacts, double size, const WayOutM
 /// shallow.
 bool plainly_believable(std::span<const ContactPoint> contacts, double size);
 
-/// Where all contacts have one direction, moves to the front those on their outline, and within it what is
-/// deeper: a point in the midst of a face that touches, as where the diagonals of two squares cross, would
-/// carry what the corners should, and on one point a body turns freely. Returns how many they are.
+/// Where all contacts have one direction and those on their outline are as deep as each other, moves these to
+/// the front, and within it what is deeper: a point in the midst of a face that touches, as where the
+/// diagonals of two squares cross, would carry what the corners should, and on one point a body turns freely.
+/// Returns how many they are.
 int drop_inner_contacts(std::span<ContactPoint> contacts, double size);
 
 /// Moves to the front the at most `max_contacts` that hold the bodies apart best: the deepest, then each time

@@ -136,6 +136,9 @@ TEST(ContactReduction, WhatLiesWithinAFaceCarriesNothingUnlessItIsDeeper) {
                   {{2, 0, 0}, {0, 0, 1}, 0},
                   {{1, 0, 0}, {0, 0, 1}, 0}}),
             4);
+  contacts = square({0, 0, 0}, 1e-4);
+  contacts.back().depth = 5e-4;  // no faces that are flush
+  EXPECT_EQ(kept(contacts), 6);
   EXPECT_EQ(kept({}), 0);
 }
 
