@@ -3,16 +3,22 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "lod/body.h"
 #include "reference/geometry.h"
 
 namespace lodestone {
 
 class LoneRooms {
  public:
-  void make_place(std::size_t bodies) { rooms_.resize(std::max(rooms_.size(), bodies)); }
+  /// Of the slots below `bodies`.
+  void make_place(StatisticalModel model, std::size_t bodies) {
+    std::vector<Room>& rooms = rooms_[std::size_t(model)];
+    rooms.resize(std::max(rooms.size(), bodies));
+  }
 
   /// Whether there are rooms: none of them meets another, nor what slept when they were given.
   bool stand() const { return stand_; }
@@ -26,8 +32,8 @@ class LoneRooms {
   double time(double dt) const { return steps_ * dt; }
   /// Those of before are none any more.
   void begin() { ++number_, stand_ = false; }
-  void give(std::int32_t body, const Vec3& center, double reach) {
-    rooms_[std::size_t(body)] = {center, reach, number_};
+  void give(StatisticalModel model, std::int32_t slot, const Vec3& center, double reach) {
+    rooms_[std::size_t(model)][std::size_t(slot)] = {center, reach, number_};
   }
   /// All have theirs: `apart` if none meets another.
   void end(bool apart) {
@@ -38,9 +44,11 @@ class LoneRooms {
   }
   void give_up() { stand_ = false; }
 
-  /// Whether the ball lies within the room of `body`.
-  bool holds(std::int32_t body, const Vec3& center, double reach) const {
-    const Room& room = rooms_[std::size_t(body)];
+  /// Whether the ball lies within the room of the body of that slot.
+  bool holds(StatisticalModel model, std::int32_t slot, const Vec3& center, double reach) const {
+    const std::vector<Room>& rooms = rooms_[std::size_t(model)];
+    if (std::size_t(slot) >= rooms.size()) return false;
+    const Room& room = rooms[std::size_t(slot)];
     const double left = room.reach - reach;
     return room.number == number_ && left >= 0.0 && (center - room.center).squaredNorm() <= left * left;
   }
@@ -52,7 +60,7 @@ class LoneRooms {
     double reach = 0.0;          // m
     std::uint64_t number = 0;    // of the rooms that were given together
   };
-  std::vector<Room> rooms_;  // by body
+  std::array<std::vector<Room>, 2> rooms_;  // of each statistical rung, by slot
   std::uint64_t number_ = 1;
   bool stand_ = false;
   int steps_ = 8;

@@ -100,8 +100,7 @@ void NearSearch::forget_guests() {
 void NearSearch::clear() {
   pairs_.clear();
   forget_guests();
-  order_.clear();
-  mixed_ = true;  // no order
+  any_near_ = false;  // no order
 }
 
 void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& support,
@@ -109,10 +108,8 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
   const Spheres& s = tables.spheres();
   spheres_ = std::size_t(s.awake);
   own_bodies_ = std::size_t(support.size());
-  rooms_.make_place(own_bodies_);
-  const bool hulls_alone = spheres_ == 0 && neighbors.empty();
-  apart_ = hulls_alone && stay_apart(dt, support);
-  if (!hulls_alone) rooms_.give_up();
+  apart_ = neighbors.empty() && stay_apart(dt, tables, support);
+  if (!neighbors.empty()) rooms_.give_up();
   take_movers(support);
   mixed_ = spheres_ > 0 && movers_.size() + neighbors.size() > 0;
   x_.clear(), y_.clear(), z_.clear(), reach_.clear();
@@ -125,13 +122,13 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
         jobs_, std::min(threads_, kSharesMost), lent);
   };
   if (apart_) return;
-  if (spheres_ > 0 && !mixed_) return cells_of_spheres(s.x, s.y, s.z, tables.reach(), tables.free_rows());
-
-  sort_movers(support.bodies());
-  if (hulls_alone && pairs_.empty() && rooms_.are_due() && find_rooms(dt, support)) {
+  const bool nobody_near = !any_near_ && pairs_.empty();
+  if (mixed_ || spheres_ == 0) sort_movers(support.bodies());
+  if (neighbors.empty() && nobody_near && rooms_.are_due() && find_rooms(dt, tables, support)) {
     apart_ = true;
     return;
   }
+  if (spheres_ > 0 && !mixed_) return cells_of_spheres(s.x, s.y, s.z, tables.reach(), tables.free_rows());
   if (!mixed_) {
     add_hull_balls(dt, support.bodies(), support, neighbors);
     return cells_.fill({x_, y_, z_, reach_});
@@ -148,15 +145,21 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
   add_hull_balls(dt, support.bodies(), support, neighbors);
   drawn_reach_ = reach_;
   for (std::size_t i = spheres_; i < reach_.size(); ++i) drawn_reach_[i] += float(standing_out);
-  for (std::size_t i = 0; i < spheres_; ++i)
-    reach_[i] += float(std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i])));
+  for (std::size_t i = 0; i < spheres_; ++i) reach_[i] = float(reach_of(tables, std::int64_t(i)));
   cells_of_spheres(x_, y_, z_, drawn_reach_, {});
   note_order(spheres_);
 }
 
+// m: of a sphere awake, and of its hull.
+double NearSearch::reach_of(const TablesLevel& tables, std::int64_t place) const {
+  const Spheres& s = tables.spheres();
+  const auto i = std::size_t(place);
+  return double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
+}
+
 // Whoever moves does so within his room; whoever fell asleep since the last step did so there, and nobody
 // else was laid to sleep.
-bool NearSearch::stay_apart(double dt, const SupportLevel& support) {
+bool NearSearch::stay_apart(double dt, const TablesLevel& tables, const SupportLevel& support) {
   if (!rooms_.stand()) return false;
   const std::span<const StatisticalBody> bodies = support.bodies();
   const auto radius = [&](const StatisticalBody& body) { return support.kind_of(body).shape->radius; };
@@ -164,46 +167,70 @@ bool NearSearch::stay_apart(double dt, const SupportLevel& support) {
   for (const std::int32_t index : movers_) {
     if (index >= support.size() || support.is_among_awake(index)) continue;
     const StatisticalBody& body = bodies[std::size_t(index)];
-    hold = hold && rooms_.holds(index, body.position, kBall * radius(body));
+    hold = hold && rooms_.holds(StatisticalModel::support, index, body.position, kBall * radius(body));
     ++rooms_.laid;
   }
+  std::erase_if(lone_spheres_, [&](std::int32_t slot) {
+    if (slot < tables.size() && !tables.asleep(slot)) return false;
+    hold = hold && slot < tables.size() &&
+           rooms_.holds(StatisticalModel::tables, slot, tables.position(slot), kBall * tables.radius(slot));
+    ++rooms_.laid;
+    return true;
+  });
   hold = hold && rooms_.laid == sleepers_.insertions();
   for (const std::int32_t index : support.awake()) {
     if (!hold) break;
     const StatisticalBody& body = bodies[std::size_t(index)];
     const Ball ball = ball_of(body.position, body.velocity, radius(body), dt);
-    hold = rooms_.holds(index, ball.center, double(ball.reach));
+    hold = rooms_.holds(StatisticalModel::support, index, ball.center, double(ball.reach));
   }
+  const Spheres& s = tables.spheres();
+  for (std::int64_t i = 0; hold && i < s.awake; ++i)
+    hold = rooms_.holds(StatisticalModel::tables, s.slot[std::size_t(i)], s.position(i), reach_of(tables, i));
   if (!hold) rooms_.give_up();
   return hold;
 }
 
+bool NearSearch::is_near_sleepers(const Vec3& center, double reach, const TablesLevel& tables,
+                                  const SupportLevel& support) const {
+  bool near = false;
+  const auto note = [&](std::int32_t) { near = true; };
+  each_still_hull(center, reach, support, note);
+  if (!near) each_still_sphere(center, reach, tables, note);
+  return near;
+}
+
 // Rooms for the next steps, for all movers: whether each has one to himself.
-bool NearSearch::find_rooms(double dt, const SupportLevel& support) {
+bool NearSearch::find_rooms(double dt, const TablesLevel& tables, const SupportLevel& support) {
   constexpr double kSpare = 0.25;  // over R: for what an impact gives
-  const std::span<const StatisticalBody> bodies = support.bodies();
   const double time = rooms_.time(dt), fall = 0.5 * gravity_.norm() * time * time;
-  rooms_.begin();
-  for (const std::int32_t index : movers_) {
-    const StatisticalBody& body = bodies[std::size_t(index)];
-    const Ball room{body.position, float((kBall + kSpare) * support.kind_of(body).shape->radius +
-                                         body.velocity.norm() * time + fall)};
+  const auto add_room = [&](StatisticalModel model, std::int32_t slot, const Vec3& center, double radius,
+                            double reach, double speed) {
+    const Ball room{center, float(reach + kSpare * radius + speed * time + fall)};
     add_ball(room);
-    rooms_.give(index, room.center, (1.0 - 1e-3) * double(room.reach));
+    rooms_.give(model, slot, center, (1.0 - 1e-3) * double(room.reach));
+  };
+  rooms_.make_place(StatisticalModel::support, std::size_t(support.size()));
+  rooms_.make_place(StatisticalModel::tables, std::size_t(tables.size()));
+  rooms_.begin();
+  const Spheres& s = tables.spheres();
+  for (std::int64_t i = 0; i < s.awake; ++i) {
+    const std::int32_t slot = s.slot[std::size_t(i)];
+    add_room(StatisticalModel::tables, slot, s.position(i), tables.radius(slot), reach_of(tables, i),
+             s.velocity(i).norm());
   }
-  cells_.fill({x_, y_, z_, reach_});
-  find_hull_pairs();
+  for (const std::int32_t index : movers_) {
+    const StatisticalBody& body = support.bodies()[std::size_t(index)];
+    const double radius = support.kind_of(body).shape->radius;
+    add_room(StatisticalModel::support, index, body.position, radius, kBall * radius, body.velocity.norm());
+  }
+  cells_.fill({x_, y_, z_, reach_}, jobs_, std::min(threads_, kSharesMost));
+  find_ball_pairs();
   bool apart = ball_pairs_.size() == 0;
-  for (std::size_t i = 0; apart && i < x_.size(); ++i) {
-    const Vec3 center(x_[i], y_[i], z_[i]);
-    const auto reach = double(reach_[i]);
-    sleepers_.of(StatisticalModel::support).find_near(center, reach, [&](std::uint32_t slot) {
-      const double limit = reach + kBall * support.kind_of(bodies[slot]).shape->radius;
-      apart = apart && (bodies[slot].position - center).squaredNorm() >= limit * limit;
-    });
-    sleepers_.of(StatisticalModel::tables).find_near(center, reach, [&](std::uint32_t) { apart = false; });
-  }
+  for (std::size_t i = 0; apart && i < x_.size(); ++i)
+    apart = !is_near_sleepers(Vec3(x_[i], y_[i], z_[i]), double(reach_[i]), tables, support);
   rooms_.laid = sleepers_.insertions();
+  lone_spheres_.assign(tables.awake().begin(), tables.awake().end());
   rooms_.end(apart);
   x_.clear(), y_.clear(), z_.clear(), reach_.clear();
   return apart;
@@ -215,7 +242,7 @@ void NearSearch::note_order(std::size_t spheres) {
     if (ball < spheres) order_.push_back(ball);
 }
 
-void NearSearch::find_hull_pairs() {
+void NearSearch::find_ball_pairs() {
   ball_pairs_.clear();
   for (std::int64_t part = 0; part < cells_.parts(); ++part) cells_.find_pairs(part, ball_pairs_);
 }
@@ -269,12 +296,13 @@ void NearSearch::filter_pairs(std::size_t from, const Owner& owner) {
 void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
   pairs_.clear();
   forget_guests();
-  if (apart_) return tables.forget_contacts();
+  any_near_ = false;
+  if (apart_) return tables.find_ground_contacts();
   const bool hulls =
       movers_.size() + neighbors.size() > 0 || !sleepers_.of(StatisticalModel::support).empty();
   if (hulls) guest_of_slot_.resize(std::size_t(tables.size()), -1);
   if (spheres_ > 0) {
-    tables.find_contacts(cells_, mixed_ ? &others_ : nullptr);
+    any_near_ = tables.find_contacts(cells_, mixed_ ? &others_ : nullptr);
     if (mixed_)
       for (std::int64_t part = 0; part < cells_.parts(); ++part)
         for (std::int64_t i = 0; i < others_[std::size_t(part)].size(); ++i)
@@ -282,7 +310,8 @@ void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<cons
     find_still_hulls_near_spheres(support, tables);
   } else {
     tables.forget_contacts();
-    find_hull_pairs();
+    find_ball_pairs();
+    any_near_ = ball_pairs_.size() > 0;
     for (std::int64_t i = 0; i < ball_pairs_.size(); ++i)
       add_pair(ball_pairs_.first(i), ball_pairs_.second(i), tables);
   }
@@ -400,8 +429,7 @@ void NearSearch::find_still_hulls_near_spheres(const SupportLevel& support, cons
   const Spheres& s = tables.spheres();
   for (std::size_t i = 0; i < std::size_t(s.awake); ++i) {  // with those that others have just woken
     const Vec3 center = s.position(std::int64_t(i));
-    const double own_reach =
-        double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
+    const double own_reach = reach_of(tables, std::int64_t(i));
     still_near_.clear();
     still.find_near(center, own_reach, [&](std::uint32_t slot) {
       const double limit = own_reach + kBall * support.kind_of(bodies[slot]).shape->radius;

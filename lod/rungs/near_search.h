@@ -51,15 +51,18 @@ class NearSearch {
   std::span<const NearPair> pairs() const { return pairs_; }
   std::span<Guest> guests() { return guests_; }
   std::span<const Guest> guests() const { return guests_; }
-  /// Of the awake spheres, in the cells.
-  std::span<const std::uint32_t> order_of_spheres() const { return mixed_ ? order_ : cells_.order(); }
+  /// Of the awake spheres, in the cells; none where nobody was near another.
+  std::span<const std::uint32_t> order_of_spheres() const {
+    if (!any_near_) return {};
+    return mixed_ ? order_ : cells_.order();
+  }
   std::size_t bytes() const { return cells_.bytes(); }
   /// Of what it found only the order of spheres counts for the next step.
   void archive(StateArchive& a) {
     if (!a.reading()) order_.assign(order_of_spheres().begin(), order_of_spheres().end());
-    mixed_ = true;
+    mixed_ = any_near_ = true;
     a(order_);
-    if (a.reading()) rooms_.give_up(), known_sleepers_.clear();
+    if (a.reading()) rooms_.give_up(), known_sleepers_.clear(), lone_spheres_.clear();
   }
 
  private:
@@ -85,10 +88,13 @@ class NearSearch {
   void take_movers(const SupportLevel& support);
   void sort_movers(std::span<const StatisticalBody> bodies);
   void sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const;
-  bool stay_apart(double dt, const SupportLevel& support);
-  bool find_rooms(double dt, const SupportLevel& support);
+  double reach_of(const TablesLevel& tables, std::int64_t place) const;
+  bool stay_apart(double dt, const TablesLevel& tables, const SupportLevel& support);
+  bool find_rooms(double dt, const TablesLevel& tables, const SupportLevel& support);
+  bool is_near_sleepers(const Vec3& center, double reach, const TablesLevel& tables,
+                        const SupportLevel& support) const;
   void note_order(std::size_t spheres);
-  void find_hull_pairs();
+  void find_ball_pairs();
   void add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables);
   bool meet(std::uint32_t first, std::uint32_t second) const;
   bool lets_meet(std::uint32_t first, std::uint32_t second) const;
@@ -128,8 +134,10 @@ class NearSearch {
   std::vector<Placed> placed_;        // the same
   std::vector<char> kept_;            // of those awake: whether they moved before
   LoneRooms rooms_;
+  std::vector<std::int32_t> lone_spheres_;  // slots: of those with rooms that have not fallen asleep in them
   KnownSleepers known_sleepers_;
   bool apart_ = false;             // in this step no mover is near anybody, by rooms_
+  bool any_near_ = false;          // movers whose balls meet, in the step before until find()
   bool mixed_ = false;             // spheres and others
   std::vector<BallPairs> others_;  // of parts of the cells: pairs that are not of two spheres
   BallPairs ball_pairs_;

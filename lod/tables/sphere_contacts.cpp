@@ -53,7 +53,7 @@ void ContactArrays::clear() {
 }
 
 void SphereContacts::clear() {
-  for (std::size_t i = 0; i < used_parts_; ++i) parts_[i].run = {};
+  for (std::size_t i = 0; i < used_parts_; ++i) parts_[i].any_near = false, parts_[i].run = {};
   used_parts_ = 0;
   for (auto& colour : of_colour_) colour.clear();
   free_arrays_.clear();
@@ -64,6 +64,10 @@ std::int64_t SphereContacts::count() const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < used_parts_; ++i) count += parts_[i].run.size();
   return std::int64_t(count);
+}
+
+bool SphereContacts::any_near() const {
+  return std::ranges::any_of(std::span(parts_).first(used_parts_), &Part::any_near);
 }
 
 ContactArrays& SphereContacts::take_arrays() {
@@ -95,6 +99,7 @@ void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, cons
   jobs(grid.parts(), TaskRef([&](std::int64_t i) {
          BallPairs& pairs = empty_pairs();
          grid.find_pairs(i, pairs);
+         parts_[std::size_t(i)].any_near = pairs.size() > 0;
          if (others) set_apart(pairs, std::uint32_t(spheres.awake), (*others)[std::size_t(i)]);
          if (pair_filter_)
            pairs.filter([&](std::uint32_t first, std::uint32_t second) {

@@ -163,6 +163,7 @@ class SphereContacts {
   void archive(StateArchive& a) { a(known_, known_apart_, known_friction_); }
   const SphereContactSettings& settings() const { return settings_; }
   std::int64_t count() const;
+  bool any_near() const;  ///< whether find() met any pair, of spheres or with others
   std::size_t bytes() const;
   /// Of a contact, in all its arrays.
   std::size_t bytes_each() const;
@@ -184,6 +185,7 @@ class SphereContacts {
  private:
   struct Part {
     int colour = 0;
+    bool any_near = false;
     ContactRun run;
     std::uint32_t known_begin = 0;  // of its contacts in known_
     SweepOutcome outcome;           // of the last round

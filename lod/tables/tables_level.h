@@ -83,8 +83,11 @@ class TablesLevel {
   const Spheres& spheres() const { return spheres_; }
   std::span<const float> reach() const { return step_.reach; }  ///< m, of those awake
   CellGrid::Lent free_rows() { return step_.free_rows(); }      ///< to search in, until respond()
-  /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given.
-  void find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
+  /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given. Returns
+  /// whether any balls there meet.
+  bool find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
+  /// In their place, where no sphere is near another body: those with further planes alone.
+  void find_ground_contacts();
   /// In their place, where there are none.
   void forget_contacts() { contacts_.clear(), plane_touches_.clear(), left_asleep_.clear(); }
   /// Slots of those in this step that are at an edge of the ground or between parts of it that move, or,
@@ -293,8 +296,9 @@ class TablesLevel {
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;
-  bool one_mass_ = true;       // all bodies have, since there last were none
-  std::int64_t eased_ = 0;     // bodies that are, asleep or not
+  bool one_mass_ = true;    // all bodies have, since there last were none
+  std::int64_t eased_ = 0;  // bodies that are, asleep or not
+  const CellGrid no_cells_{Simd::portable};
   std::int64_t searched_ = 0;  // awake bodies at the step's start; 0 once the places of any have changed
   std::vector<std::uint32_t> fell_asleep_, woke_;  // owners
 

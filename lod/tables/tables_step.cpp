@@ -113,7 +113,7 @@ void TablesLevel::update_radii_one_by_one() {
           float(find_sphere_radius(spheres_.body(i), kind_of(i), settings_.tables, settings_.seed));
 }
 
-void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
+bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
   const std::int64_t were_awake = spheres_.awake;
   note_pushes();
   contacts_.set_pushes(pushes_by_place_);
@@ -127,6 +127,15 @@ void TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
   for (auto& touch : still_touches_) touch.second = spheres_.place_of_slot[touch.second];
   if (!still_touches_.empty())
     contacts_.add(spheres_, kinds_, still_touches_, bounce_velocity(), constants_, simd_);
+  find_further_planes();
+  return contacts_.any_near();
+}
+
+void TablesLevel::find_ground_contacts() {
+  forget_contacts();
+  note_pushes();
+  contacts_.set_pushes(pushes_by_place_);
+  contacts_.find(spheres_, kinds_, no_cells_, bounce_velocity(), constants_, simd_, jobs_, nullptr);
   find_further_planes();
 }
 
