@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kBall = 1.02;   // over R: of the ball about a hull
 constexpr int kSharesMost = 16;  // of the work of filling the cells
+constexpr int kMostLone = 4096;  // spheres: more of them are hardly ever all apart, and rooms take memory
 
 }  // namespace
 
@@ -122,9 +123,9 @@ void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& suppor
         jobs_, std::min(threads_, kSharesMost), lent);
   };
   if (apart_) return;
-  const bool nobody_near = !any_near_ && pairs_.empty();
+  const bool may_be_apart = neighbors.empty() && !any_near_ && pairs_.empty() && tables.size() <= kMostLone;
   if (mixed_ || spheres_ == 0) sort_movers(support.bodies());
-  if (neighbors.empty() && nobody_near && rooms_.are_due() && find_rooms(dt, tables, support)) {
+  if (may_be_apart && rooms_.are_due() && find_rooms(dt, tables, support)) {
     apart_ = true;
     return;
   }
