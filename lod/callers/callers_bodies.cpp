@@ -287,7 +287,7 @@ void CallersBodies::archive(StateArchive& a, const SpaceMirror* mirror) {
   a(known, owners);
   if (!a.reading()) return;
   for (Entry& entry : bodies_) entry.untold = true;
-  std::ranges::stable_partition(bodies_, [](const Entry& entry) { return !entry.is_tied(); });
+  std::stable_partition(bodies_.begin(), bodies_.end(), [](const Entry& entry) { return !entry.is_tied(); });
   const auto is_there = [](const Known& at) {
     return [&at](const Entry& entry) { return callers::state(entry.body).position == at.position; };
   };
