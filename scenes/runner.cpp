@@ -398,13 +398,14 @@ class Run {
     add("max_tables_penetration_m", result_.max_tables_penetration_m, of_tables);
   }
 
-  /// Its value is when the last body fell asleep; a body that is awake after the bound fails it, even where
-  /// it slept before.
+  /// Its value is when somebody was last awake: who is so at the bound or after it fails it, even where he slept
+  /// before.
   CheckResult asleep_check(double bound_s) const {
+    constexpr double kRounding = 1e-9;  // s, of times that are sums of steps
     const double end_s = end_step() * dt_s_;
-    const bool all_asleep = last_awake_s_ < end_s;
-    return {"all_asleep_by_s", last_awake_s_, bound_s, last_awake_s_ <= bound_s,
-            all_asleep || end_s >= bound_s};
+    const bool all_asleep = last_awake_s_ < end_s,
+               in_time = last_awake_s_ < std::max(bound_s, dt_s_) - kRounding;
+    return {"all_asleep_by_s", last_awake_s_, bound_s, in_time, all_asleep || end_s >= bound_s - kRounding};
   }
 
   const Scene& scene_;

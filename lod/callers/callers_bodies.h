@@ -59,6 +59,10 @@ class CallersBodies {
                  const std::function<void(const Shape&, const RigidState&)>& visit) const;
   /// Their geoms as they are now, at any time; of those that the mirror saw in its last refresh.
   std::vector<CallersPart> find_parts(const SpaceMirror& mirror) const;
+  /// Whose geom the mirror has in that slot; null where it is none of a dynamic body.
+  dxBody* body_of_slot(std::size_t slot) const {
+    return slot < body_of_slot_.size() ? body_of_slot_[slot] : nullptr;
+  }
   /// The body that a neighbour's owner names (FullNeighbor::owner); null where it is none of the caller's.
   dxBody* body_of(std::uint32_t owner) const;
 

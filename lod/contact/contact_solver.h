@@ -32,8 +32,9 @@ struct ContactSolverSettings {
                                     ///< as dWorldStep with Approx1 has it; crowds choose that
                                     ///< themselves
   double bounce_velocity = 0.05;    ///< m/s, slower approaches do not bounce (as in ODE)
-  bool along_chords = false;  ///< of one body on the ground: in a step contacts keep their places while it
-                              ///< turns about them, as they do not where each moves along its tangent
+  bool along_chords = false;   ///< of one body on the ground: in a step contacts keep their places while it
+                               ///< turns about them, as they do not where each moves along its tangent
+  double sliding_speed = 0.0;  ///< m/s: but for those that go faster than so, and than friction can stop
   Vec3 fall = Vec3::Zero();  ///< m/s, what gravity has given the velocities for this step: an impact on what
                              ///< stands still is answered as fast as it is when it happens, within the step
 };

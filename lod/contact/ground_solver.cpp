@@ -128,11 +128,15 @@ inline double GroundSolver::relax(GroundContact& c, PairedMotion& motion) {
   const double bound = friction_bound(c);
   if (bound == 0.0 && c.rows[1].impulse == 0.0 && c.rows[2].impulse == 0.0) return changed;
   find_tangents(c);
-  const double slip[2] = {now.along(c.rows[1]) - c.rows[1].target, now.along(c.rows[2]) - c.rows[2].target};
-  for (std::size_t t = 0; t < 2; ++t) {
-    GroundContact::Row& row = c.rows[t + 1];
-    changed += change_to(row, std::clamp(row.impulse - row.effective_mass * slip[t], -bound, bound));
-  }
+  // The first tangent is the way that the point goes. What slides keeps no place: friction is bounded along
+  // that way, and across it must not draw the point to the side.
+  const double speed = now.along(c.rows[1]),
+               along = c.rows[1].impulse - c.rows[1].effective_mass * (speed - c.rows[1].target);
+  const bool slides = std::abs(along) > bound && std::abs(speed) > settings_.sliding_speed;
+  const double aside = now.along(c.rows[2]) - (slides ? 0.0 : c.rows[2].target),
+               across = c.rows[2].impulse - c.rows[2].effective_mass * aside;
+  changed += change_to(c.rows[1], std::clamp(along, -bound, bound));
+  changed += change_to(c.rows[2], std::clamp(across, -bound, bound));
   return changed;
 }
 

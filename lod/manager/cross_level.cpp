@@ -1,7 +1,9 @@
 #include "lod/manager/cross_level.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
+#include <tuple>
 
 #include "lod/manager/joint_contacts.h"
 #include "reference/ode/body_joints.h"
@@ -35,7 +37,7 @@ double friction_between(const Levels& levels, const Neighborhood& neighborhood, 
 void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Seen>& seen) {
   constexpr int kStepsSeen = 3;
   const auto pair_of = [](const Neighborhood::Seen& s) {
-    return std::pair(s.contact.first.value, s.contact.second.value);
+    return std::tuple(s.contact.first.value, s.contact.second.value, s.contact.callers_slot);
   };
   std::vector<Neighborhood::Seen> now;
   for (const OdeContact& contact : found) now.push_back({contact});
@@ -52,17 +54,48 @@ void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Se
   seen = std::move(now);
 }
 
+/// Of the neighbour that is the contact's second; −1: the ground. None where it is gone.
+std::optional<std::int32_t> second_of(const Levels& levels, const Neighborhood& neighborhood,
+                                      const OdeContact& contact) {
+  if (contact.second) {
+    const std::int32_t member = levels.full.index_of(contact.second);
+    return member >= 0 ? std::optional(member) : std::nullopt;
+  }
+  if (contact.callers_slot < 0) return -1;
+  dxBody* const body = levels.callers.bodies.body_of_slot(std::size_t(contact.callers_slot));
+  if (!body) return {};
+  const auto found = std::ranges::find(neighborhood.ode_bodies, body);  // none, if it has no shape
+  return found == neighborhood.ode_bodies.end() ? -1 : std::int32_t(found - neighborhood.ode_bodies.begin());
+}
+
+// Two bodies were moved since ODE found it: what they have parted by is a gap. (What nothing moves takes
+// along what lies on it.)
+FullContact full_contact_of(const Levels& levels, const Neighborhood& neighborhood, std::int32_t first,
+                            std::int32_t second, const OdeContact& contact) {
+  FullContact full{first, second, contact.point, contact.normal, -contact.depth};
+  if (second < 0) full.velocity = contact.velocity;
+  const auto is_kinematic = [&](std::int32_t body) {
+    return levels.bodies.properties(neighborhood.bodies[std::size_t(body)].owner).kinematic;
+  };
+  if (second < 0 || is_kinematic(first) || (contact.second && is_kinematic(second))) return full;
+  const auto place_on = [&](std::int32_t body, const Vec3& arm) {
+    const RigidState& state = neighborhood.bodies[std::size_t(body)].state;
+    return Vec3(state.position + state.orientation * arm);
+  };
+  full.gap += std::max(
+      0.0, (place_on(first, contact.first_arm) - place_on(second, contact.second_arm)).dot(contact.normal));
+  return full;
+}
+
 void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
   update_seen(levels.full.world()->contacts(), neighborhood.seen);
   for (const auto& [contact, age] : neighborhood.seen) {
-    const std::int32_t first = levels.full.index_of(contact.first),
-                       second = contact.second ? levels.full.index_of(contact.second) : -1;
-    const bool gone = first < 0 || (contact.second && second < 0);
-    if (gone) continue;
-    FullContact& full = neighborhood.contacts.emplace_back(
-        FullContact{first, second, contact.point, contact.normal, -contact.depth});
+    const std::int32_t first = levels.full.index_of(contact.first);
+    const std::optional<std::int32_t> second = second_of(levels, neighborhood, contact);
+    if (first < 0 || !second) continue;
+    FullContact& full =
+        neighborhood.contacts.emplace_back(full_contact_of(levels, neighborhood, first, *second, contact));
     full.friction = friction_between(levels, neighborhood, full);
-    full.velocity = contact.velocity;
   }
 }
 
@@ -109,10 +142,11 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
     neighborhood.bodies.push_back(neighbor_of(levels, member));
     neighborhood.ode_bodies.push_back(levels.full.world()->ode_body(member.id));
   }
-  if (!neighborhood.bodies.empty()) gather_contacts(levels, neighborhood);
+  const bool any_full = !neighborhood.bodies.empty();
   levels.callers.bodies.gather(levels.ground, levels.statistical_settings.gravity, neighborhood.bodies,
                                neighborhood.contacts);
   levels.callers.bodies.append_ode_bodies(neighborhood.ode_bodies);
+  if (any_full) gather_contacts(levels, neighborhood);
   add_joint_contacts(neighborhood.bodies, neighborhood.ode_bodies, neighborhood.contacts);
   for (const FullContact& contact : neighborhood.contacts)
     for (const std::int32_t end : {contact.first, contact.second})

@@ -61,6 +61,7 @@ void step_at_once(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
   if (const auto contacts = found.contacts(); !contacts.empty()) {
     ContactSolverSettings solver = settings.solver;
     solver.along_chords = true;
+    solver.sliding_speed = settings.sliding_speed * std::sqrt(shape.radius * world.gravity_strength());
     // What gravity gives it in a step is no impact.
     solver.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;
     solver.fall = on.rotation.transpose() * (kick * world.gravity);

@@ -409,6 +409,7 @@ double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicke
 ContactSolverSettings ContactSteps::solver(const Mat3& rotation, double time, bool divided) const {
   ContactSolverSettings solver = settings_.solver;
   solver.along_chords = !shape_.sphere_radius;  // whose lowest point is never the same
+  solver.sliding_speed = settings_.sliding_speed * shape_.radius / fall_time_;
   if (divided) {
     solver.bounce_velocity = kUnbounded;
     return solver;

@@ -13,6 +13,8 @@ struct SupportSettings {
   double uneven_step = 0.045;     ///< the same over ground that is no plane
   double step_at_once = 0.07;     ///< the same of an angular hull on planes (contact_at_once.h)
   double contact_margin = 0.002;  ///< over R: vertices this near the ground can carry
+  double sliding_speed =
+      0.04;  ///< over √(gR): what goes faster along the ground, and than friction can stop, slides
   ContactSolverSettings solver{.sweeps = 8, .tolerance = 1e-2, .frictionless_bound = true};
   bool energy_bounded = true;  ///< no contact step, and no lift out of the ground, adds energy: without, a
                                ///< body of many vertices that rocks is kept rocking by those that sink in

@@ -25,7 +25,10 @@ constexpr double kForesight = 8.0;  // moves like the last one that the tree nee
 
 Point point_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Box box_of(const Eigen::AlignedBox3d& box) { return {point_of(box.min()), point_of(box.max())}; }
-bool is_finite(const Eigen::AlignedBox3d& box) { return box.min().allFinite() && box.max().allFinite(); }
+// Without a floating-point exception: an endless box is none.
+bool is_finite(const Eigen::AlignedBox3d& box) {
+  return box.min().array().isFinite().all() && box.max().array().isFinite().all();
+}
 
 }  // namespace
 

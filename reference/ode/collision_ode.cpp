@@ -339,6 +339,7 @@ ContactSide Collision::side_of(const Candidate& candidate, const Body* other) co
   }
   const MirroredGeom& geom = callers_->geoms()[candidate.second_number()];
   ContactSide side = ode::side_of(geom.body, 0, {}, geom.geom);
+  if (side.body) side.callers_slot = std::int32_t(candidate.second_number());
   side.moves |= !geom.body && std::ranges::binary_search(callers_->moved(), candidate.second_number());
   return side;
 }

@@ -29,16 +29,23 @@ Vec3 velocity_at(const ContactSide& side, const Vec3& point) {
   return to_vec3(dBodyGetLinearVel(side.body)) + to_vec3(dBodyGetAngularVel(side.body)).cross(arm);
 }
 
+/// m, body axes; zero of what is no body that can be pushed.
+Vec3 arm_on(const ContactSide& side, const Vec3& point) {
+  if (!side.body) return Vec3::Zero();
+  const RigidState state = state_of(side.body);
+  return state.orientation.conjugate() * (point - state.position);
+}
+
 Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - v.dot(normal) * normal; }
 
 }  // namespace
 
 ContactSide side_of(dBodyID body, MaterialId material, OdeBodyId id, dGeomID callers_geom) {
-  if (!body || !dBodyIsKinematic(body)) return {body, material, id, {}, false, callers_geom, {}};
-  if (!is_moving(body)) return {nullptr, material, id, {}, false, callers_geom, {}};
+  if (!body || !dBodyIsKinematic(body)) return {body, material, id, {}, false, callers_geom};
+  if (!is_moving(body)) return {nullptr, material, id, {}, false, callers_geom};
   const RigidState state = state_of(body);
-  return {nullptr, material,     id, SurfaceMotion{state.position, state.velocity, state.angular_velocity},
-          true,    callers_geom, {}};
+  return {nullptr, material,    id, SurfaceMotion{state.position, state.velocity, state.angular_velocity},
+          true,    callers_geom};
 }
 
 ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const MaterialTable& materials)
@@ -93,10 +100,11 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second,
     add_joint(first, second, point);
     const double side = first.id ? 1.0 : -1.0;  // contacts() names this world's body first
     const ContactSide& other = first.id ? second : first;
-    contacts_.push_back({first.id ? first.id : second.id, other.id, point.point, side * point.normal,
-                         std::max(0.0, point.depth),
+    const ContactSide& own = first.id ? first : second;
+    contacts_.push_back({own.id, other.id, point.point, side * point.normal, std::max(0.0, point.depth),
                          other.id ? Vec3(Vec3::Zero()) : velocity_at(other, point.point),
-                         !other.id && other.moves});
+                         !other.id && other.moves, arm_on(own, point.point), arm_on(other, point.point),
+                         other.callers_slot});
   }
   made_ += std::int64_t(points.size());
 }

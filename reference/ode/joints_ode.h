@@ -38,6 +38,7 @@ struct ContactSide {
   bool moves = false;  ///< does so, or was moved before this step
   dGeomID callers_geom = nullptr;
   OdeGroundId ground = {};
+  std::int32_t callers_slot = -1;  ///< in the mirror, of a geom of a dynamic body of the caller's
 };
 
 /// `body` as a side: one that is kinematic is a surface that moves. ODE would else make one island of all

@@ -131,6 +131,9 @@ struct OdeContact {
   double depth;                  ///< m, ≥ 0
   Vec3 velocity = Vec3::Zero();  ///< m/s, at the point, of what is no body of this world's
   bool moves = false;            ///< that does, or was moved before this step
+  Vec3 first_arm = Vec3::Zero(),
+       second_arm = Vec3::Zero();  ///< m, body axes: where the point was on each; none of what is no body
+  std::int32_t callers_slot = -1;  ///< of its geom in the mirror: of a dynamic body of the caller's
 };
 
 /// Ground of an OdeWorld; stays valid until removed. Zero is null.

@@ -91,6 +91,14 @@ TEST_F(Runner, ChecksCanFail) {
   EXPECT_TRUE(result.checks[1].decided);
 }
 
+TEST_F(Runner, WhoIsAwakeWhenTheTimeIsUpFailsTheCheck) {
+  Scene scene = load(kFalling);
+  scene.checks.all_asleep_by_s = 6 * scene.step.dt_s;
+  const RunResult result = run_scene(scene, {.steps = 6});
+  EXPECT_FALSE(result.checks[1].pass);
+  EXPECT_TRUE(result.checks[1].decided);
+}
+
 std::shared_ptr<const Signature> coarse_signature(const Shape& shape, const ContactLaw&) {
   SignatureSettings coarse;
   coarse.n_theta = 4, coarse.n_phi = 4, coarse.n_alpha = 6, coarse.trials_per_cell = 8,

@@ -70,7 +70,8 @@ struct Checked {
 };
 
 nlohmann::ordered_json json_of(const Checked& checked) {
-  const auto& [now, kept] = checked;
+  const ScoreRow& now = checked.now;
+  const ScoreRow* const kept = checked.kept;
   const auto of_kept = [&](double ScoreRow::*value) {
     return or_null(kept ? std::optional(kept->*value) : std::nullopt);
   };
