@@ -398,8 +398,8 @@ class Run {
     add("max_tables_penetration_m", result_.max_tables_penetration_m, of_tables);
   }
 
-  /// Its value is when somebody was last awake: who is so at the bound or after it fails it, even where he slept
-  /// before.
+  /// Its value is when somebody was last awake: who is so at the bound or after it fails it, even where he
+  /// slept before.
   CheckResult asleep_check(double bound_s) const {
     constexpr double kRounding = 1e-9;  // s, of times that are sums of steps
     const double end_s = end_step() * dt_s_;

@@ -89,6 +89,7 @@ class Crowd {
     std::int32_t body = 0;
     Vec3 from = Vec3::Zero();
     double asked = 0.0;  ///< m: of both
+    bool placed = false;
   };
 
   void gather(const ContactScene& scene, const CrowdTouch& touch);

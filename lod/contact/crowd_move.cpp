@@ -35,6 +35,10 @@ bool is_eased(const ContactScene& scene, Participant p) {
   return p.is_statistical() && scene.body(p).eased > 0.0f;
 }
 
+bool is_placed(const ContactScene& scene, Participant p) {
+  return p.is_statistical() && scene.body(p).placed;
+}
+
 bool is_sphere(const ContactScene& scene, Participant p) {
   return p.is_statistical() && scene.body(p).is_sphere();
 }
@@ -181,15 +185,16 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
     const double by_others = m.second < 0 ? std::max(0.0, shift_of(m.first).dot(m.normal)) : 0.0;
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
-      const bool inside =
-          point.gap < -kWakingOverlap * radius && !is_sphere(scene, one) && !is_sphere(scene, other);
+      const bool placed = is_placed(scene, one) || is_placed(scene, other),
+                 inside = point.gap < -(placed ? kBroughtOverlap : kWakingOverlap) * radius &&
+                          !is_sphere(scene, one) && !is_sphere(scene, other);
       for (const std::int32_t index : {m.first, m.second}) {
         const Participant p = index < 0 ? Participant::ground() : participants_[std::size_t(index)];
         if (is_eased(scene, p) && point.gap < -kBroughtOverlap * radius)
           scene.body(p).eased = kEasedTime;  // for as long as there is some
         if (inside && p.is_statistical())
           insiders_.push_back({index, scene.position(p) - shift_of(index),
-                               touch.parting * push_out_overlap(point.gap, radius)});
+                               touch.parting * push_out_overlap(point.gap, radius), placed});
       }
       const double parting =
           (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
@@ -285,7 +290,10 @@ void Crowd::keep_insiders_awake(const ContactScene& scene) {
   const auto is_moved_out = [&](const Insider& i) {
     return (body_of(i).position - i.from).norm() > kStuck * i.asked;
   };
-  for (const Insider& i : insiders_) body_of(i).pinned = true;
+  each_participant([&](std::size_t i) {
+    if (participants_[i].is_statistical()) scene.body(participants_[i]).placed = false;
+  });
+  for (const Insider& i : insiders_) body_of(i).pinned = true, body_of(i).placed |= i.placed;
   for (const Insider& i : insiders_)
     if (is_moved_out(i)) body_of(i).pinned = false, body_of(i).quiet_time = 0.0f;
 }

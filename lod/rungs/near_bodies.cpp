@@ -346,11 +346,16 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
   // Two hulls, one of which was put where the other is, are to part; no sleeper is to hold them together.
   inside_.clear();
   const auto is_pinned = [&](Participant p) { return p.is_statistical() && scene.body(p).pinned; };
+  const auto is_placed = [&](Participant p) { return p.is_statistical() && scene.body(p).placed; };
   for (const CrowdContact& c : pairs_.contacts())
-    if (overlap_by(scene, c, kWakingOverlap) && !(is_pinned(c.first) && is_pinned(c.second)))
+    if (overlap_by(scene, c, is_placed(c.first) || is_placed(c.second) ? kBroughtOverlap : kWakingOverlap) &&
+        !(is_pinned(c.first) && is_pinned(c.second)))
       inside_.insert(inside_.end(), {c.first, c.second});
+  constexpr double kPressed = 0.25;  // who lies in the way of one that is put where others are
   const auto are_to_part = [&](const CrowdContact& c) {
-    return !inside_.empty() && overlap_by(scene, c, kBroughtOverlap) &&
+    const double least =
+        is_placed(c.first) || is_placed(c.second) ? kPressed * kBroughtOverlap : kBroughtOverlap;
+    return !inside_.empty() && overlap_by(scene, c, least) &&
            (std::ranges::find(inside_, c.first) != inside_.end() ||
             std::ranges::find(inside_, c.second) != inside_.end());
   };

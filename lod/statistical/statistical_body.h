@@ -62,6 +62,7 @@ struct StatisticalBody {
   bool borne_up = false;        ///< of a guest of `support`: what bears it was reckoned with a load to come
   bool in_great_heap = false;  ///< many bodies hang together with it (IslandKind::great); asleep: did so last
   bool on_edge = false;        ///< slow and in a crowd, but not over an area of what it stands on (Footing)
+  bool placed = false;  ///< put where it overlaps others, or pressed into them by such a one: not to rest so
   bool pinned =
       false;  ///< deep in one of many times its mass, or the other way round, and not to be moved out
   float since_crowded = 1e9f;  ///< s since it last did

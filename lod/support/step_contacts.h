@@ -76,8 +76,14 @@ struct HeldPoints {
 GroundContact point_contact(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
                             const Mat3& rotation, const TouchingPoint& point, const HalfSpace& plane);
 
+/// Over R: of a body that does not touch a face yet, those vertices strike it first that are no farther from
+/// it than so beyond the nearest. Of all that may strike within a step only the outermost are looked at,
+/// which may leave out one of two in front: the other alone would tilt the body.
+inline constexpr double kFront = 1e-3;
+
 /// Calls `visit(contact, normal in body axes)` for the vertices of `body` that may meet `plane` within `time`
-/// seconds, and those that are nearer to it than `least_margin` m. Gravity has been given to it.
+/// seconds, and those that are nearer to it than `least_margin` m; where none is as near, for those in front.
+/// Gravity has been given to it.
 template <class Visit>
 void visit_vertices_near(const HalfSpace& plane, StatisticalBody& body, const Shape& shape,
                          const OnGround& on, double time, double least_margin, const Visit& visit) {
@@ -88,8 +94,13 @@ void visit_vertices_near(const HalfSpace& plane, StatisticalBody& body, const Sh
   const GapChange change{drop, normal.cross(on.motion.angular_velocity) * time};
   const double reach = margin + fall + change.of_arm.norm() * shape.radius;
   if (height > shape.radius + reach) return;
-  const HullContacts low =
-      find_hull_contacts(shape, body.orientation, plane.normal, height, margin, body.support_hint, change);
+  const double first =
+      find_lowest_point(shape, body.orientation, plane.normal, height, body.support_hint).gap;
+  const HullContacts low = first > least_margin
+                               ? find_hull_contacts(shape, body.orientation, plane.normal, height,
+                                                    first + kFront * shape.radius, body.support_hint)
+                               : find_hull_contacts(shape, body.orientation, plane.normal, height, margin,
+                                                    body.support_hint, change);
   for (const HullContact& contact : std::span(low.contact).first(std::size_t(low.count)))
     if (contact.gap <= reach) visit(contact, normal);
 }

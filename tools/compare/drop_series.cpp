@@ -44,7 +44,8 @@ std::vector<Condition> make_conditions() {
     job.material.density = std::max(job.material.density, kLeastMass / job.shape->volume * (1.0 + 1e-9));
   });
   for (const auto& [ground, name] : kUnevenGrounds)
-    list.push_back({fmt::format("ground={}", name), [ground = ground](DropJob& job) { job.ground = ground; }});
+    list.push_back(
+        {fmt::format("ground={}", name), [ground = ground](DropJob& job) { job.ground = ground; }});
   return list;
 }
 

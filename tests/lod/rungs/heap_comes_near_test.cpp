@@ -78,19 +78,20 @@ TEST(HeapComesNear, ItsOverlapsGoAndItSleeps) {
 }
 
 // Who had to wait for the full level in an overlap waited as a sphere, among hulls: the heap boiled down. In
-// two of three heaps, since in one of five, as it was before, one cube is left in an overlap for longer.
+// four of five heaps, since in one of five, as it was before, one cube or two are left in an overlap for
+// longer.
 TEST(HeapComesNear, ForcedFullItComesToRest) {
   int at_rest = 0;
-  for (const unsigned seed : {1U, 2U, 3U}) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
     SettledHeap full(seed);
     full.come_near_and_strike(LevelChoice::full);
     const double before = full.height();
     run(full.manager, 10.0);
     at_rest += full.full() == 96 && full.asleep() >= 90 && full.deepest_overlap() < 0.03;
-    EXPECT_GE(full.full(), 95) << seed;
+    EXPECT_GE(full.full(), 94) << seed;
     EXPECT_GT(full.height(), 0.7 * before) << seed;
   }
-  EXPECT_GE(at_rest, 2);
+  EXPECT_GE(at_rest, 4);
 }
 
 }  // namespace
