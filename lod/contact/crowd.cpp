@@ -27,7 +27,7 @@ ContactTally Crowd::move(const ContactScene& scene, const CrowdTouch& touch) {
   give_to_full(scene, touch);
   move_apart(scene, touch);
   lift_off_ground(scene, touch);
-  keep_insiders_awake(scene);
+  keep_insiders_awake(scene, touch.time);
   ContactTally tally;
   tally.contacts = std::int64_t(points_.size());
   return tally;

@@ -88,8 +88,8 @@ class Crowd {
   struct Insider {
     std::int32_t body = 0;
     Vec3 from = Vec3::Zero();
-    double asked = 0.0;  ///< m: of both
-    bool placed = false;
+    double asked = 0.0;   ///< m: of both
+    float placed = 0.0f;  ///< s left, as StatisticalBody has it: the longer of the two
   };
 
   void gather(const ContactScene& scene, const CrowdTouch& touch);
@@ -130,7 +130,7 @@ class Crowd {
   }
   void keep_full_apart(const ContactScene& scene);
   void lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) const;
-  void keep_insiders_awake(const ContactScene& scene);
+  void keep_insiders_awake(const ContactScene& scene, double time);
 
   CrowdSettings settings_;
   JobRunner jobs_;

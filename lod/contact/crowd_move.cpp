@@ -35,8 +35,8 @@ bool is_eased(const ContactScene& scene, Participant p) {
   return p.is_statistical() && scene.body(p).eased > 0.0f;
 }
 
-bool is_placed(const ContactScene& scene, Participant p) {
-  return p.is_statistical() && scene.body(p).placed;
+float placed_time(const ContactScene& scene, Participant p) {
+  return p.is_statistical() ? scene.body(p).placed : 0.0f;
 }
 
 bool is_sphere(const ContactScene& scene, Participant p) {
@@ -185,8 +185,8 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
     const double by_others = m.second < 0 ? std::max(0.0, shift_of(m.first).dot(m.normal)) : 0.0;
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
-      const bool placed = is_placed(scene, one) || is_placed(scene, other),
-                 inside = point.gap < -(placed ? kBroughtOverlap : kWakingOverlap) * radius &&
+      const float placed = std::max(placed_time(scene, one), placed_time(scene, other));
+      const bool inside = point.gap < -(placed > 0.0f ? kBroughtOverlap : kWakingOverlap) * radius &&
                           !is_sphere(scene, one) && !is_sphere(scene, other);
       for (const std::int32_t index : {m.first, m.second}) {
         const Participant p = index < 0 ? Participant::ground() : participants_[std::size_t(index)];
@@ -282,7 +282,7 @@ void Crowd::lift_off_ground(const ContactScene& scene, const CrowdTouch& touch) 
 // Who is being moved out of another is not at rest, though it has no velocity. But a pebble between a boulder
 // and the ground is moved back, the boulder by a share of its lightness alone, and a leg in a plate both
 // ways: they stay as they are.
-void Crowd::keep_insiders_awake(const ContactScene& scene) {
+void Crowd::keep_insiders_awake(const ContactScene& scene, double time) {
   constexpr double kStuck = 0.05;
   const auto body_of = [&](const Insider& i) -> StatisticalBody& {
     return scene.body(participants_[std::size_t(i.body)]);
@@ -291,9 +291,13 @@ void Crowd::keep_insiders_awake(const ContactScene& scene) {
     return (body_of(i).position - i.from).norm() > kStuck * i.asked;
   };
   each_participant([&](std::size_t i) {
-    if (participants_[i].is_statistical()) scene.body(participants_[i]).placed = false;
+    if (participants_[i].is_statistical()) scene.body(participants_[i]).placed = 0.0f;
   });
-  for (const Insider& i : insiders_) body_of(i).pinned = true, body_of(i).placed |= i.placed;
+  for (const Insider& i : insiders_) {
+    StatisticalBody& body = body_of(i);
+    body.pinned = true;
+    body.placed = std::max(body.placed, i.placed - float(time));
+  }
   for (const Insider& i : insiders_)
     if (is_moved_out(i)) body_of(i).pinned = false, body_of(i).quiet_time = 0.0f;
 }

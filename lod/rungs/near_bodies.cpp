@@ -346,7 +346,7 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
   // Two hulls, one of which was put where the other is, are to part; no sleeper is to hold them together.
   inside_.clear();
   const auto is_pinned = [&](Participant p) { return p.is_statistical() && scene.body(p).pinned; };
-  const auto is_placed = [&](Participant p) { return p.is_statistical() && scene.body(p).placed; };
+  const auto is_placed = [&](Participant p) { return p.is_statistical() && scene.body(p).placed > 0.0f; };
   for (const CrowdContact& c : pairs_.contacts())
     if (overlap_by(scene, c, is_placed(c.first) || is_placed(c.second) ? kBroughtOverlap : kWakingOverlap) &&
         !(is_pinned(c.first) && is_pinned(c.second)))

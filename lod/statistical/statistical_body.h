@@ -62,10 +62,11 @@ struct StatisticalBody {
   bool borne_up = false;        ///< of a guest of `support`: what bears it was reckoned with a load to come
   bool in_great_heap = false;  ///< many bodies hang together with it (IslandKind::great); asleep: did so last
   bool on_edge = false;        ///< slow and in a crowd, but not over an area of what it stands on (Footing)
-  bool placed = false;  ///< put where it overlaps others, or pressed into them by such a one: not to rest so
   bool pinned =
       false;  ///< deep in one of many times its mass, or the other way round, and not to be moved out
   float since_crowded = 1e9f;  ///< s since it last did
+  float placed = 0.0f;  ///< s left in which it is not to rest in overlaps, since it was put where it has
+                        ///< some, or pressed into others by one that was
   float eased = 0.0f;  ///< s left in which overlaps that it brought from another rung are undone slowly
 
   bool is_sphere() const { return sphere_radius > 0.0f; }

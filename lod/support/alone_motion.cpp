@@ -9,7 +9,7 @@ namespace lodestone {
 void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> faces, double time,
                               ContactTally& tally, const Quat* turned) {
   StatisticalBody& body = bodies_[std::size_t(slot)];
-  body.placed = false;
+  body.placed = 0.0f;
   const BodyKind& kind = kind_of(body);
   StepWorld step_world = world();
   step_world.planes = join_planes(ground_.planes(), faces);

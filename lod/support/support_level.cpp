@@ -21,9 +21,10 @@ int SupportLevel::add(std::uint32_t owner, std::uint32_t kind, double mass, cons
   place_awake_.push_back(-1);
   add_awake(slot);
   set_state(slot, state);
+  if (asleep || eased)
+    bodies_[std::size_t(slot)].placed = 0.0f;  // what comes from another rung parts by itself
   if (asleep) {
     put_to_sleep(bodies_[std::size_t(slot)]);
-    bodies_[std::size_t(slot)].placed = false;
     angular_velocity_given_[std::size_t(slot)].reset();
     drop_awake(slot);
     lay_still(slot);
@@ -116,7 +117,7 @@ void SupportLevel::set_state(int slot, const RigidState& state) {
   if (!given_before) note_given(slot);
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
-  body.placed = true;  // until a step has seen that it overlaps nobody
+  body.placed = kPlacedTime;  // until a step has seen that it overlaps nobody
   // What no level can hold is mended, and counted, before the next step looks at it.
   if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape)))
     pushes_.push_back({slot, Vec3::Zero(), Vec3::Zero()});

@@ -11,11 +11,12 @@ constexpr double kLeft = 0.02 * kSide;            // m
 
 struct Column {
   Column() { ground.add_plane({}); }
-  void add(double height) {
+  void add(double height) { add(Vec3(0.0, 0.0, height)); }
+  void add(const Vec3& place) {
     static const auto cube =
         std::make_shared<const Shape>(make_shape("cube", make_box({kSide, kSide, kSide})));
     RigidState state;
-    state.position.z() = height;
+    state.position = place;
     level.add(std::uint32_t(level.size()), cube, 27.0, 0, state, false, nullptr);
   }
   /// s until all sleep; at most that.
@@ -60,6 +61,17 @@ TEST(PlacedBodies, OneThatIsPutIntoAColumnFindsRoom) {
   column.level.set_state(0, state);
   EXPECT_LT(column.run(20.0), 3.0);
   EXPECT_LT(column.deepest_overlap(), kLeft);
+}
+
+// Three rows of .9 m in a bin of .88.
+TEST(PlacedBodies, WhereThereIsNoRoomTheySleepAllTheSame) {
+  constexpr double kBin = 0.88, kApart = 0.29;  // m
+  Column bin;
+  for (const Vec3& way : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY())})
+    for (const double sign : {-1.0, 1.0}) bin.ground.add_plane({.normal = sign * way, .offset = -0.5 * kBin});
+  for (int i = 0; i < 36; ++i)
+    bin.add({kApart * (i % 3 - 1), kApart * (i / 3 % 3 - 1), 0.5 * kSide + kApart * (i / 9)});
+  EXPECT_LT(bin.run(20.0), 7.0);
 }
 
 }  // namespace lodestone::placed_bodies_test
