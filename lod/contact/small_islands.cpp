@@ -226,7 +226,9 @@ void SmallIslands::Work::sweep_led(const Group& group, const Answer& answer, L& 
   each_point(group, [&](const BatchLanes<L>&, const PointLanes<L>& p, std::uint32_t at, std::uint32_t) {
     for (int axis = 0; axis < 3; ++axis) {
       led[at].way[axis] = L{};
-      led[at].inverse_mass[axis] = p.effective_mass[axis] > L{} ? 1.0F / p.effective_mass[axis] : L{};
+      const L mass = p.effective_mass[axis];
+      led[at].inverse_mass[axis] =
+          mass > L{} ? 1.0F / most(mass, all<L>(1e-30F)) : L{};  // divides by no zero
     }
   });
   L last{};

@@ -69,11 +69,13 @@ LODESTONE_INLINE V4 turn_to(const V4& own, const V4& inverse, const D4& twice_en
   const V4 omega = times(inverse, own);
   const D4 now = dot(own, omega), excess = now - twice_energy, square = dot(own, own);
   const Mask4 none = ~(lane::absolute(excess) > 1e-14 * now);
-  const D4 inverse_square = 1.0 / square;
+  const D4 one = lane::all<D4>(1.0);
+  const auto divisor = [&](const D4& d) { return d > 0.0 ? d : one; };  // who has none there is not turned so
+  const D4 inverse_square = 1.0 / divisor(square);
   const V4 across = omega - (now * inverse_square) * own;
   const D4 slope = dot(across, across),
            curve = dot(across, times(inverse, across)) - twice_energy * slope * inverse_square;
-  const D4 inverse_slope = 1.0 / slope, bend = curve * excess * inverse_slope * inverse_slope;
+  const D4 inverse_slope = 1.0 / divisor(slope), bend = curve * excess * inverse_slope * inverse_slope;
   known &= none | ((slope * square > 1e-18 * now * now) & (bend <= 1.0));
   const D4 zero = {};
   const D4 far = 1.0 / (1.0 + lane::square_root(lane::most(zero, 1.0 - bend)));
