@@ -3,11 +3,20 @@
 
 #include <memory>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "reference/shape.h"
 
 namespace lodestone::testing {
+
+inline std::shared_ptr<const Shape> make_convex(const char* name, std::span<const Vec3> corners) {
+  const Hull hull = make_hull(corners);
+  Mesh mesh;
+  mesh.vertices = hull.vertices;
+  mesh.faces = hull.faces;
+  return std::make_shared<const Shape>(make_shape(name, mesh));
+}
 
 /// About z, its corners on a circle of `radius` m.
 inline std::shared_ptr<const Shape> make_prism(int sides, double radius, double thickness) {
@@ -17,11 +26,7 @@ inline std::shared_ptr<const Shape> make_prism(int sides, double radius, double 
     for (const double z : {-0.5, 0.5})
       corners.push_back({radius * std::cos(angle), radius * std::sin(angle), z * thickness});
   }
-  const Hull hull = make_hull(corners);
-  Mesh mesh;
-  mesh.vertices = hull.vertices;
-  mesh.faces = hull.faces;
-  return std::make_shared<const Shape>(make_shape("prism", mesh));
+  return make_convex("prism", corners);
 }
 
 }  // namespace lodestone::testing

@@ -56,11 +56,7 @@ std::shared_ptr<const Shape> make_puck(int sides, double radius, double thicknes
       const double angle = 2.0 * std::numbers::pi * (i + 0.5) / sides;
       corners.push_back({radius * std::cos(angle), radius * std::sin(angle), z * thickness});
     }
-  const Hull hull = make_hull(corners);
-  Mesh mesh;
-  mesh.vertices = hull.vertices;
-  mesh.faces = hull.faces;
-  return std::make_shared<const Shape>(make_shape("puck", mesh));
+  return testing::make_convex("puck", corners);
 }
 
 // Some tipped up and came off the floor: only one of the two corners in front was known to strike.
