@@ -126,7 +126,8 @@ void UnevenIslands::Work::bound_friction(int sweeps, double enough, const JobRun
     led[at].bound = p.impulse[1] = p.impulse[2] = D4{};
     for (int axis = 0; axis < 3; ++axis) {
       const D4& mass = p.effective_mass[axis];
-      led[at].inverse_mass[axis] = mass > D4{} ? all<D4>(1.0) / mass : D4{};
+      led[at].inverse_mass[axis] =
+          mass > D4{} ? 1.0 / most(mass, all<D4>(1e-30)) : D4{};  // divides by no zero
     }
   });
   crowd.sweep(GuessesGiven<D4>{}, jobs);

@@ -6,13 +6,16 @@
 namespace lodestone {
 namespace {
 
-
 /// What a body's remoteness is measured by: (distance − offset) / scale.
 struct Yardstick {
   double offset, scale;
   Yardstick(const LevelCandidate& c, Measure measure)
       : offset(measure == Measure::distance ? c.radius : 0.0),
         scale((measure == Measure::distance ? 1.0 : 2.0 * c.radius) * c.importance / c.view_factor) {}
+  double of(double beyond) const {
+    if (beyond == 0.0) return 0.0;
+    return scale > 0.0 ? beyond / scale : kInfinity;
+  }
   double reach(double within) const { return within == kInfinity ? kInfinity : within * scale + offset; }
 };
 
@@ -28,7 +31,7 @@ double remoteness(const LevelCandidate& c, const Views& views, Measure measure) 
   const Yardstick yardstick(c, measure);
   const double beyond =
       std::max(0.0, std::sqrt(views.squared(c.position, c.ahead, measure)) - yardstick.offset);
-  return std::min(beyond == 0.0 ? 0.0 : beyond / yardstick.scale, c.no_farther_than);
+  return std::min(yardstick.of(beyond), c.no_farther_than);
 }
 
 double rank_distance(const LevelCandidate& c, const Views& views, double hysteresis, Measure measure) {

@@ -63,7 +63,8 @@ inline Vec3 turn_to_energy(const Vec3& own, const Vec3& inverse_moments, double 
   }
   const int pole = excess > 0.0 ? 0 : 2;
   const double of_pole = inverse_moments[pole] * square,
-               share = std::clamp((twice_energy - of_pole) / (now - of_pole), 0.0, 1.0);
+               share =
+                   now != of_pole ? std::clamp((twice_energy - of_pole) / (now - of_pole), 0.0, 1.0) : 0.0;
   Vec3 to = std::sqrt(share) * own;
   to[pole] =
       std::copysign(std::sqrt(std::max(0.0, square - share * (square - own[pole] * own[pole]))), own[pole]);

@@ -264,8 +264,8 @@ struct LieLoop {
       const F3 ask = angle / (most(sine, 1e-9f) * blend) * axis, ask_spin = in_world(hard, k, q, ask);
       const float cost = 0.5f * dot(ask, ask_spin), budget = most(0.0f, moving - 0.5f * dot(v, v));
       const float slowest = least(1.0f, 0.25f / (blend * most(length(ask), 1e-12f)));
-      const float scale =
-          choose(cost > budget, most(square_root(budget / most(cost, 1e-30f)), slowest), 1.0f);
+      const float part = least(budget, cost) / most(cost, 1e-30f);  // of the energy asked for
+      const float scale = choose(cost > budget, most(square_root(part), slowest), 1.0f);
       spin = choose(rests, scale * ask_spin, spin);
 
       // Coulomb friction of the lowest point: the impulse that ends its slip, at most μ times the normal one.
