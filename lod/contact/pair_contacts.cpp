@@ -397,4 +397,35 @@ std::optional<PairContact> find_contact_along(const PairBody& first, const PairB
   return contact;
 }
 
+std::optional<Vec3> find_passed_normal(const PairBody& first, const PairBody& second,
+                                       const PairContact& contact, const PairWay& way, double touching) {
+  constexpr std::size_t kMostFaces = 64;  // triangles
+  const PlacedHull a = place(first), b = place(second);
+  const ManifoldPoint& p = contact.manifold.points[0];
+  const Vec3 apart = first.position - second.position;
+  std::optional<Vec3> passed;
+  double most = -touching;  // m
+  // A `face` of `one`, the other being at `point`, from the centre of `one`, among other places.
+  const auto look_at = [&](const PlacedHull& one, std::size_t face, const Vec3& point, double sign) {
+    const Hull& hull = one.shape->hull;
+    const Vec3 outward = one.rotation * hull.face_normals[face], normal = sign * outward;
+    const double turning = normal.cross(way.first_turn).norm() * first.shape->radius +
+                           normal.cross(way.second_turn).norm() * second.shape->radius,
+                 least_change = std::min(0.0, way.first.dot(normal) - turning),
+                 plane = hull.face_normals[face].dot(hull.vertices[std::size_t(hull.faces[face][0])]);
+    if (outward.dot(point) - plane + least_change < most || normal.dot(apart) <= 0.0) return;
+    if (passed && passed->dot(normal) > 0.9999) return;
+    const double gap = measure_hull_gap(a, b, normal).gap;
+    if (gap + least_change >= most) most = gap + least_change, passed = normal;
+  };
+  const auto look_at_all = [&](const PlacedHull& one, const Vec3& point, double sign) {
+    const std::size_t count = one.shape->hull.face_normals.size();
+    if (one.shape->sphere_radius || count > kMostFaces) return;
+    for (std::size_t face = 0; face < count; ++face) look_at(one, face, point, sign);
+  };
+  look_at_all(b, p.point + 0.5 * p.gap * contact.normal - second.position, 1.0);
+  look_at_all(a, p.point - 0.5 * p.gap * contact.normal - first.position, -1.0);
+  return passed;
+}
+
 }  // namespace lodestone

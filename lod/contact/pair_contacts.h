@@ -95,4 +95,17 @@ std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBo
 std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second,
                                               const Vec3& normal, double margin, double ahead = 0.0);
 
+/// How two bodies go on.
+struct PairWay {
+  Vec3 first = Vec3::Zero();                                   ///< m, the first one's, seen from the second
+  Vec3 first_turn = Vec3::Zero(), second_turn = Vec3::Zero();  ///< rad
+};
+
+/// Along which the two, which have this contact, pass each other all the same: of a face of either hull that
+/// the other lies over, but for `touching` m, now and once they have gone on (unit, from `second` into
+/// `first`). No edge beside that face can be in the way: who is as little below the face of a flush neighbour
+/// would trip over the seam. None of hulls of many faces.
+std::optional<Vec3> find_passed_normal(const PairBody& first, const PairBody& second,
+                                       const PairContact& contact, const PairWay& way, double touching);
+
 }  // namespace lodestone

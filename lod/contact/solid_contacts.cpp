@@ -5,6 +5,7 @@
 
 #include "lod/contact/faces_below.h"
 #include "lod/contact/hull_contacts.h"
+#include "lod/contact/near_faces.h"
 #include "lod/contact/solid_meeting.h"
 #include "lod/contact/solid_search.h"
 
@@ -48,6 +49,27 @@ bool is_seam(const Vec3& edge, std::span<const PlacedSolid> near,
   }
   return std::ranges::any_of(
       planes, [&](const HalfSpace& plane) { return std::abs(plane.height_of(edge)) <= rounding; });
+}
+
+// In place of contacts with edges and faces that another solid covers those with the faces beside them.
+void meet_uncovered(const PairBody& body, const PlacedSolid& solid, double margin, NearFaces& faces,
+                    std::vector<PairContact>& contacts) {
+  if (faces.solids().size() < 2) return;
+  thread_local std::vector<Vec3> ways;
+  ways.clear();
+  std::erase_if(contacts, [&](const PairContact& contact) {
+    std::optional<Vec3> way;
+    for (const ManifoldPoint& p :
+         std::span(contact.manifold.points).first(std::size_t(contact.manifold.count))) {
+      const auto uncovered =
+          faces.find_uncovered(solid, p.point - 0.5 * p.gap * contact.normal, contact.normal);
+      if (uncovered == contact.normal) return false;
+      if (uncovered) way = uncovered;
+    }
+    if (way && std::ranges::find(ways, *way) == ways.end()) ways.push_back(*way);
+    return true;
+  });
+  for (const Vec3& way : ways) meet_along(body, solid, way, margin, contacts);
 }
 
 // Across such triangles a hull lies on their edges: no one of them holds it.
@@ -231,6 +253,8 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
   thread_local HullContactSearch search;
   const double over = shape.sphere_radius ? find_height_over_triangles(near, body.position) : 1e300;
   std::optional<TriangleSieve> sieve = sieve_of(seeker, time);
+  thread_local NearFaces faces;
+  faces.take(near, body.position, shape.radius);
   const std::size_t before = found.size();
   for (const PlacedSolid& solid : near) {
     // Those of one part stand together.
@@ -241,7 +265,9 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
     if (search.contacts.empty()) continue;
     const Vec3 way = (body.velocity - solid.part->velocity_at(body.position)) * time;
     const auto passed = find_passed_face(self, solid, way, seeker.touching);
-    if (passed)
+    if (wanted == SolidSearch::all)
+      meet_uncovered(self, solid, seeker.touching + seeker.way, faces, search.contacts);
+    if (passed && faces.find_uncovered(solid, passed->lowest, passed->normal))
       std::erase_if(search.contacts, [&](const PairContact& c) { return !passed->holds(c.normal); });
     for (const PairContact& contact : search.contacts)
       if (wanted == SolidSearch::one_of_a_part ? may_close(contact, *solid.part, seeker, time)

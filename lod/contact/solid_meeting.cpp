@@ -255,9 +255,10 @@ std::optional<PassedFace> find_passed_face(const PairBody& body, const PlacedSol
     const double height = face.normal.dot(center) - face.offset;
     if (height <= 0.0) continue;
     const Vec3 normal = placed.orientation * face.normal;
-    const double gap = height + find_farthest_arm(body, -normal).dot(normal);
+    const Vec3 arm = find_farthest_arm(body, -normal);
+    const double gap = height + arm.dot(normal);
     if (const double least = std::min(gap, gap + way.dot(normal)); least >= most)
-      most = least, passed = PassedFace{normal, gap};
+      most = least, passed = PassedFace{normal, gap, body.position + arm};
   }
   return passed;
 }
@@ -306,6 +307,16 @@ void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, 
   for (int piece = 0; piece < int(body.shape->pieces.size()); ++piece)
     of_pieces.emplace_back().axis.normal = find_start_axis(piece_of(body, piece), placed);
   find_pair_contacts(body, pair_body(placed), whole, of_pieces, margin, search);
+}
+
+void meet_along(const PairBody& body, const PlacedSolid& placed, const Vec3& normal, double margin,
+                std::vector<PairContact>& found) {
+  const PairBody ground = pair_body(placed);
+  const auto meet_one = [&](const PairBody& convex) {
+    if (const auto contact = find_contact_along(convex, ground, normal, margin)) found.push_back(*contact);
+  };
+  if (body.shape->pieces.empty()) return meet_one(body);
+  for (int piece = 0; piece < int(body.shape->pieces.size()); ++piece) meet_one(piece_of(body, piece));
 }
 
 }  // namespace lodestone

@@ -27,6 +27,7 @@ std::optional<Nearest> find_nearest_beyond(const GroundSolid& solid, const Vec3&
 struct PassedFace {
   Vec3 normal;  ///< world
   double gap;   ///< m: how far the body is over the face's plane
+  Vec3 lowest;  ///< of the body over it, world
   bool holds(const Vec3& along) const { return along.dot(normal) > 0.99; }  ///< a contact with that normal
 };
 /// That which the body is farthest over, by -`touching` m at least, now and once it has gone on by `way`, m.
@@ -54,5 +55,9 @@ enum class MeetAhead : std::uint8_t { nothing, near };
 /// that is farther.
 void meet_solid(const PairBody& body, const PlacedSolid& placed, double margin, HullContactSearch& search,
                 double ball_is_over = 1e300, MeetAhead ahead = MeetAhead::near);
+
+/// Appends those contacts of the body, or of its convex pieces, that are along `normal` (unit, world).
+void meet_along(const PairBody& body, const PlacedSolid& placed, const Vec3& normal, double margin,
+                std::vector<PairContact>& found);
 
 }  // namespace lodestone

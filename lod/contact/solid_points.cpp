@@ -7,6 +7,7 @@
 
 #include "lod/contact/faces_below.h"
 #include "lod/contact/hull_contacts.h"
+#include "lod/contact/near_faces.h"
 #include "lod/contact/solid_meeting.h"
 #include "lod/contact/solid_search.h"
 
@@ -15,48 +16,46 @@ namespace {
 
 constexpr std::size_t kMostBelow = 256;  // vertices that may meet one plane; of more the outermost
 
-/// A face of a solid, in the world.
-struct Face {
-  Vec3 normal;
-  double offset;  // m
-  double height_of(const Vec3& point) const { return normal.dot(point) - offset; }
-};
-
 /// What a search works in, kept from one to the next.
 struct Work {
   std::vector<PlacedSolid> near;
   std::vector<SolidContact> probed;
-  std::vector<Face> faces, walls;  // of the solid at hand; of a triangle the planes across its edges
-  std::vector<bool> held;          // of each point
+  NearFaces faces;
+  std::vector<bool> held;  // of each point
+  std::vector<std::size_t> bearing;
 };
 
 /// The points of one body, solid by solid.
 class PointSearch {
  public:
-  PointSearch(const GroundSeeker& seeker, double time, double margin, Work& work, SolidPoints& found)
+  /// `planes`: of the ground, valid as long as this.
+  PointSearch(const GroundSeeker& seeker, std::span<const HalfSpace> planes, double time, double margin,
+              Work& work, SolidPoints& found)
       : seeker_(seeker),
+        planes_(planes),
         self_{&seeker.shape, seeker.body.position, seeker.body.orientation},
         sieve_(sieve_of(seeker, time)),
         time_(time),
         margin_(margin),
         hint_(seeker.body.support_hint),
-        faces_(work.faces),
-        walls_(work.walls),
+        near_(work.faces),
         held_(work.held),
+        bearing_(work.bearing),
         found_(found),
         turn_(seeker.body.orientation.toRotationMatrix()) {}
 
   void meet(const PlacedSolid& solid, double ball_is_over);
   void add_probed(const SolidContact& contact);
-  void drop_held();  ///< crossings in one plane, over several solids, that vertices hold on both sides
+  void drop_held();   ///< crossings in one plane, over several solids, that vertices hold on both sides
+  void drop_inner();  ///< where many bear the body in one plane, those that lie within
 
  private:
-  void find_faces(const PlacedSolid& solid);
-  bool is_over(const Vec3& point, const Face& face, double rounding = 1e-3) const;
-  bool passes_its_end(const Vec3& point, double gap, const Vec3& way, const Face& face) const;
-  bool is_out_of(const Vec3& point, std::size_t face) const;
-  bool enters_last(const Vec3& point, const Vec3& way, const Face& face) const;
-  void find_vertices_over(const PlacedSolid& solid, std::size_t face);
+  Vec3 way_along_what_carries(const Vec3& point, Vec3 way, const PlacedSolid& but) const;
+  bool passes_its_end(const Vec3& point, double gap, const Vec3& way, const Face& face,
+                      const PlacedSolid& solid) const;
+  bool is_out_of(const Vec3& point, const Face& face, const PlacedSolid& solid) const;
+  bool enters_last(const Vec3& point, const Vec3& way, const Face& face, const PlacedSolid& solid) const;
+  void find_vertices_over(const PlacedSolid& solid, const Face& face);
   void add_features(const PairContact& contact, const PlacedSolid& solid);
   bool is_held(const SolidPoint& crossing) const;
   void find_features(const PlacedSolid& solid, double ball_is_over);
@@ -74,73 +73,76 @@ class PointSearch {
   }
 
   const GroundSeeker& seeker_;
+  std::span<const HalfSpace> planes_;
   PairBody self_;
   std::optional<TriangleSieve> sieve_;
   double time_, margin_;  // s, m
+  double nearly_ = 1e-3 * seeker_.shape.radius,
+         rounding_ = 1e-6 * seeker_.shape.radius;  // m: over a face; of a point's place
   std::int32_t hint_;
-  std::vector<Face>&faces_, &walls_;
+  NearFaces& near_;
   std::vector<bool>& held_;
+  std::vector<std::size_t>& bearing_;
   SolidPoints& found_;
   Mat3 turn_;          // body axes to the world's
   double over_ = 0.0;  // m: how far the whole body is over one of the faces
   std::optional<PassedFace> passed_;
 };
 
-void PointSearch::find_faces(const PlacedSolid& solid) {
-  faces_.clear(), walls_.clear();
-  const auto add = [&](std::vector<Face>& to, const Vec3& normal, double offset) {
-    const Vec3 outward = solid.orientation * normal;
-    to.push_back({outward, offset + outward.dot(solid.position)});
-  };
-  const auto& t = solid.solid->surface;
-  for (std::size_t i = 0; t && i < 3; ++i) {
-    const Vec3 from = t->corner[i] - solid.solid->center,
-               outward = (t->corner[(i + 1) % 3] - t->corner[i]).cross(t->normal).normalized();
-    if (i == 0) add(faces_, t->normal, t->normal.dot(from));
-    add(walls_, outward, outward.dot(from));
-  }
-  for (std::size_t i = 0; !t && i < solid.solid->faces.size(); ++i)
-    add(faces_, solid.solid->faces[i].normal, solid.solid->faces[i].offset);
-}
-
-// Along the face's normal. `rounding`: over R.
-bool PointSearch::is_over(const Vec3& point, const Face& face, double rounding) const {
-  rounding *= seeker_.shape.radius;
-  const auto is_within = [&](const Vec3& at) {
-    return [&, rounding](const Face& f) { return f.height_of(at) <= rounding; };
-  };
-  if (!walls_.empty()) return std::ranges::all_of(walls_, is_within(point));
-  return std::ranges::all_of(faces_, is_within(point - face.height_of(point) * face.normal));
-}
-
-// What is inside leaves through the face that is nearest.
-bool PointSearch::is_out_of(const Vec3& point, std::size_t face) const {
-  const double height = faces_[face].height_of(point);
-  return height >= 0.0 ||
-         std::ranges::all_of(faces_, [&](const Face& f) { return f.height_of(point) <= height; });
+// What is inside leaves through the face that is nearest, of those that no other solid covers.
+bool PointSearch::is_out_of(const Vec3& point, const Face& face, const PlacedSolid& solid) const {
+  const double height = face.height_of(point);
+  return height >= 0.0 || std::ranges::all_of(near_.of(solid).faces, [&](const Face& f) {
+           return f.height_of(point) <= height + nearly_ || near_.is_covered(solid, f, point);
+         });
 }
 
 // Of the planes of several faces that a point is beyond, the one that it crosses last on its way into the
 // solid.
-bool PointSearch::enters_last(const Vec3& point, const Vec3& way, const Face& face) const {
+bool PointSearch::enters_last(const Vec3& point, const Vec3& way, const Face& face,
+                              const PlacedSolid& solid) const {
   const double height = face.height_of(point), fall = -way.dot(face.normal);
-  return !walls_.empty() || std::ranges::all_of(faces_, [&](const Face& other) {
+  const SolidFaces& own = near_.of(solid);
+  return !own.walls.empty() || std::ranges::all_of(own.faces, [&](const Face& other) {
     const double beside = other.height_of(point), nearing = -way.dot(other.normal);
-    return beside <= 0.0 || beside * fall <= height * nearing;
+    return beside <= 0.0 || beside * fall <= height * nearing ||
+           (beside <= nearing && near_.is_covered(solid, other, point + beside / nearing * way));
   });
+}
+
+// Gravity's kick would have a point go into what bears it.
+Vec3 PointSearch::way_along_what_carries(const Vec3& point, Vec3 way, const PlacedSolid& but) const {
+  const auto keep_out_of = [&](const auto& plane) {
+    way -= std::min(0.0, way.dot(plane.normal)) * plane.normal;
+  };
+  const auto touches = [&](const auto& plane) { return std::abs(plane.height_of(point)) < seeker_.touching; };
+  for (const HalfSpace& plane : planes_)
+    if (touches(plane)) keep_out_of(plane);
+  for (const PlacedSolid& other : near_.solids()) {
+    if (&other == &but) continue;
+    for (const Face& face : near_.of(other).faces)
+      if (touches(face) && near_.of(other).are_under(point, face, nearly_)) keep_out_of(face);
+  }
+  return way;
 }
 
 // Over the face now, but where it comes down no more: a corner that slides off an edge goes along the body's
 // own face, which the edge is on, and would strike nothing.
-bool PointSearch::passes_its_end(const Vec3& point, double gap, const Vec3& way, const Face& face) const {
-  constexpr double kRounding = 1e-6;  // over R
-  const double fall = -way.dot(face.normal);
-  return gap > 0.0 && fall > gap && !is_over(point + gap / fall * way, face, kRounding);
+bool PointSearch::passes_its_end(const Vec3& point, double gap, const Vec3& way, const Face& face,
+                                 const PlacedSolid& solid) const {
+  const auto goes_past = [&](const Vec3& along) {
+    const double fall = -along.dot(face.normal);
+    if (fall <= gap) return false;
+    const Vec3 foot = point - gap * face.normal, end = point + gap / fall * along;
+    return std::ranges::any_of(near_.of(solid).bounds(), [&](const Face& beside) {
+      return beside.height_of(end) > rounding_ + std::max(0.0, beside.height_of(foot));
+    });
+  };
+  return gap > 0.0 && goes_past(way) && goes_past(way_along_what_carries(point, way, solid));
 }
 
 // Vertices that lie over the face, now or at the step's end, and meet its plane.
-void PointSearch::find_vertices_over(const PlacedSolid& solid, std::size_t face) {
-  const Face& plane = faces_[face];
+void PointSearch::find_vertices_over(const PlacedSolid& solid, const Face& plane) {
   const StatisticalBody& body = seeker_.body;
   const Shape& shape = seeker_.shape;
   const double height = plane.height_of(body.position);
@@ -149,14 +151,18 @@ void PointSearch::find_vertices_over(const PlacedSolid& solid, std::size_t face)
                turn = plane.normal.cross(seeker_.omega).norm() * time_ * shape.radius, near = margin_ + fall,
                reach = near + fall + turn;
   const double deepest = kDeepestBelow * shape.inner_radius;
+  const auto is_over = [&](const Vec3& point) { return near_.of(solid).are_under(point, plane, nearly_); };
+  const auto meets = [&](const Vec3& point, double gap, const Vec3& way) {
+    if (is_over(point)) return !passes_its_end(point, gap, way, plane, solid);
+    return is_over(point + way) && (passed_ || enters_last(point, way, plane, solid));
+  };
   const auto look_at = [&](std::int32_t vertex, const Vec3& point, double gap) {
     const Vec3 way = (shape.sphere_radius ? body.velocity : seeker_.velocity_at(point)) * time_;
-    const double least = std::min(gap, gap + way.dot(plane.normal));
-    if (least > near || gap < -deepest || !(passed_ || is_out_of(point, face))) return;
-    const bool meets = is_over(point, plane)
-                           ? !passes_its_end(point, gap, way, plane)
-                           : is_over(point + way, plane) && (passed_ || enters_last(point, way, plane));
-    if (!meets) return;
+    const double then = gap + way.dot(plane.normal), least = std::min(gap, then);
+    if (least > near || gap < -deepest || !(passed_ || is_out_of(point, plane, solid))) return;
+    if (!meets(point, gap, way)) return;
+    const double part = gap > 0.0 && then < 0.0 ? gap / (gap - then) : 0.0;  // of the way, to the face
+    if (near_.is_covered(solid, plane, point + part * way)) return;
     add(vertex, point, plane.normal, gap, least, solid);
   };
   const HullContact lowest = find_lowest_point(shape, body.orientation, plane.normal, height, hint_);
@@ -187,13 +193,14 @@ void PointSearch::add_features(const PairContact& contact, const PlacedSolid& so
   constexpr double kSame = 0.999;  // cosine
   const Vec3& normal = contact.normal;
   const bool along_face =
-      std::ranges::any_of(faces_, [&](const Face& f) { return f.normal.dot(normal) > kSame; });
+      std::ranges::any_of(near_.of(solid).faces, [&](const Face& f) { return f.normal.dot(normal) > kSame; });
   if (passed_ ? !passed_->holds(normal) : !along_face && over_ >= -seeker_.touching) return;
   for (int i = 0; i < contact.manifold.count; ++i) {
     const double gap = contact.manifold.points[std::size_t(i)].gap;
     const Vec3 point = contact.manifold.points[std::size_t(i)].point + 0.5 * gap * normal;  // the body's own
     const double then = gap_then(point, normal, gap);
-    if (std::min(gap, then) > seeker_.touching) continue;
+    if (std::min(gap, then) > seeker_.touching || near_.find_uncovered(solid, point, normal) != normal)
+      continue;
     if (along_face || gap <= seeker_.touching)
       add(-1, point, normal, gap, std::min(gap, then), solid, along_face);
     else
@@ -203,11 +210,11 @@ void PointSearch::add_features(const PairContact& contact, const PlacedSolid& so
 
 void PointSearch::meet(const PlacedSolid& solid, double ball_is_over) {
   if (sieve_ && solid.solid->surface && sieve_->is_beyond(solid)) return;
-  find_faces(solid);
   over_ = -1e300;
   passed_ = find_passed_face(self_, solid, seeker_.body.velocity * time_, seeker_.touching);
-  for (std::size_t face = 0; face < faces_.size(); ++face)
-    if (!passed_ || passed_->holds(faces_[face].normal)) find_vertices_over(solid, face);
+  if (passed_ && !near_.find_uncovered(solid, passed_->lowest, passed_->normal)) passed_.reset();
+  for (const Face& face : near_.of(solid).faces)
+    if (!passed_ || passed_->holds(face.normal)) find_vertices_over(solid, face);
   find_features(solid, ball_is_over);
 }
 
@@ -254,6 +261,35 @@ void PointSearch::drop_held() {
   std::erase_if(found_.points, [&](const SolidPoint&) { return held_[i++]; });
 }
 
+void PointSearch::drop_inner() {
+  constexpr int kMostOfPlane = 12;
+  constexpr double kSameWay = 0.9999;  // cosine
+  std::vector<SolidPoint>& points = found_.points;
+  std::vector<bool>& inner = held_;
+  inner.assign(points.size(), false);
+  for (std::size_t first = 0; first + kMostOfPlane < points.size(); ++first) {
+    const Vec3 &normal = points[first].plane.normal, from = points[first].point;
+    bearing_.clear();
+    for (std::size_t i = first; i < points.size(); ++i) {
+      const SolidPoint& p = points[i];
+      if (!inner[i] && std::abs(p.plane.height_of(p.point)) < seeker_.touching &&
+          p.plane.normal.dot(normal) > kSameWay && std::abs((p.point - from).dot(normal)) < seeker_.touching)
+        bearing_.push_back(i);
+    }
+    if (bearing_.size() <= kMostOfPlane || bearing_[0] != first) continue;
+    for (const std::size_t i : bearing_) inner[i] = true;
+    const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
+    for (int i = 0; i < kMostOfPlane; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kMostOfPlane;
+      const Vec3 way = std::cos(angle) * x + std::sin(angle) * y;
+      inner[*std::ranges::max_element(
+          bearing_, {}, [&](std::size_t at) { return way.dot(points[at].point - from); })] = false;
+    }
+  }
+  std::size_t i = 0;
+  std::erase_if(points, [&](const SolidPoint&) { return inner[i++]; });
+}
+
 }  // namespace
 
 void find_solid_points(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,
@@ -264,13 +300,15 @@ void find_solid_points(const StatisticalBody& body, const BodyKind& kind, const 
   found.until = time;
   const GroundSeeker seeker = seeker_of(body, *kind.shape, 0, time);
   const bool uneven = find_uneven_ground(seeker, ground, 0.0, time, work.near, work.probed, found.planes);
-  PointSearch search(seeker, time, margin, work, found);
+  work.faces.take(work.near, body.position, kind.shape->radius);
+  PointSearch search(seeker, ground.planes(), time, margin, work, found);
   for (const SolidContact& contact : work.probed) search.add_probed(contact);
   if (uneven) {
     const double over =
         kind.shape->sphere_radius ? find_height_over_triangles(work.near, body.position) : 1e300;
     for (const PlacedSolid& solid : work.near) search.meet(solid, over);
     search.drop_held();
+    search.drop_inner();
   }
   std::ranges::sort(found.points, {}, &SolidPoint::least_gap);
 }

@@ -85,6 +85,7 @@ class NearPairs {
   /// m: the gap of a pair, at least, now. None where that was never looked for.
   double gap_left(const ContactScene& scene, const FoundPair& pair) const;
   /// m/s, of a point that goes with the body.
+  Vec3 turning_of(const ContactScene& scene, Participant p) const;  // rad/s
   Vec3 point_velocity(const ContactScene& scene, Participant p, const Vec3& point) const;
 
  private:

@@ -293,14 +293,19 @@ void ContactSteps::strike(const OnGround& lagging) {
   auto& contact = some_kept();
   std::array<const HalfSpace*, StepContacts::kCapacity> plane;
   std::size_t count = 0, holding = 0;
-  for (const bool now : {false, true}) {
+  enum class Does { hold, come, strike };
+  const auto does = [&](std::size_t i) {
+    if (strikes_now(i, lagging.motion)) return Does::strike;
+    return found_.contact[i].gap <= touching_ ? Does::hold : Does::come;
+  };
+  for (const Does which : {Does::hold, Does::come, Does::strike}) {
     for (std::size_t i = 0; i < found_.count; ++i) {
       const GroundContact& c = found_.contact[i];
-      if (strikes_now(i, lagging.motion) != now || (!now && c.gap > margin)) continue;
+      if (does(i) != which || (which == Does::come && c.gap > margin)) continue;
       plane[count] = found_.plane[i];
       contact[count++] = {.normal = c.normal, .arm = c.arm, .law = c.law};
     }
-    if (!now) holding = count;
+    if (which == Does::hold) holding = count;
   }
   const auto contacts = std::span(contact).first(count);
   kick_to(behind_);

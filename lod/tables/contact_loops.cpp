@@ -101,12 +101,15 @@ struct TouchLoop {
         std::int64_t left = 0;
         for (std::int64_t i = 0; i < n; ++i) kept[left] = std::int32_t(i), left += touches[i];
         const std::int64_t whole = (left + kLanes - 1) / kLanes * kLanes;
+        const float per_gravity = -1.0f / most(c.gravity, 1e-30f);
+        const F3 up{c.gx * per_gravity, c.gy * per_gravity, c.gz * per_gravity};
 #pragma GCC ivdep
         for (std::int64_t k = 0; k < whole; ++k) {
           const std::int32_t i = kept[k];
           const HullSeparation found =
               separate_hulls(height, face, unsteady, first_hull(i), second_hull(i), {nx[i], ny[i], nz[i]},
-                             apart_by[i], {gap[i], first_face[i], second_face[i]});
+                             apart_by[i], {gap[i], first_face[i], second_face[i]},
+                             {up, {ux[i] * c.time, uy[i] * c.time, uz[i] * c.time}, limit[i]});
           const F3 normal = found.normal;
           const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
           const float down = dot(normal, {c.gx, c.gy, c.gz});

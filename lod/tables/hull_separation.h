@@ -33,11 +33,40 @@ struct HullSeparation {
   bool flush;  ///< face lies on face, the line of the centres goes through both, and on these both stand
                ///< firmly
 };
+/// m along the normal of the lower one's face that looks up the most, negative: overlap. What passes over it
+/// is apart from it that way, though the line of the centres leaves through a side.
+struct SeparationUpwards {
+  F3 normal;  ///< from the second to the first
+  float gap;
+};
+LODESTONE_INLINE SeparationUpwards separate_upwards(const float* heights, const Row* faces,
+                                                    const MappedHull& first, const MappedHull& second,
+                                                    F3 line, float distance, F3 up) {
+  const bool on_second = dot(line, up) > 0.0f;
+  const auto pick = [&](const MappedHull& a, const MappedHull& b) {
+    return MappedHull{choose(on_second, a.map, b.map),
+                      {choose(on_second, a.turn.w, b.turn.w), choose(on_second, a.turn.v, b.turn.v)}};
+  };
+  const MappedHull lower = pick(second, first), upper = pick(first, second);
+  const Row& face = faces[lower.map + place_in_map(turned(back(lower.turn), up)).nearest];
+  const F3 out = turned(lower.turn, {face.x, face.y, face.z}), normal = choose(on_second, 1.0f, -1.0f) * out;
+  return {normal, distance * dot(normal, line) - face.w -
+                      read_map(heights, upper.map, place_in_map(turned(back(upper.turn), -1.0f * out)))};
+}
+
+/// What says whether one passes over the other.
+struct Passing {
+  F3 up;       ///< unit; zero without gravity
+  F3 way;      ///< m, of the first, seen from the second, in the time that is looked at
+  float hair;  ///< m: an overlap that is none
+};
 /// The best of three separating axes, the line and the normals of the two faces, so that what lies on a face
-/// is held by that face. `unsteady` is that of the kinds (SphereKinds).
+/// is held by that face; or upwards, where that is better still, or keeps them apart to the end of the way.
+/// `unsteady` is that of the kinds (SphereKinds).
 LODESTONE_INLINE HullSeparation separate_hulls(const float* heights, const Row* faces, const float* unsteady,
                                                const MappedHull& first, const MappedHull& second, F3 line,
-                                               float distance, const LineSeparation& along) {
+                                               float distance, const LineSeparation& along,
+                                               const Passing& passing) {
   const Row &by_first = faces[along.first], &by_second = faces[along.second];
   const F3 of_first = -1.0f * turned(first.turn, {by_first.x, by_first.y, by_first.z}),
            of_second = turned(second.turn, {by_second.x, by_second.y, by_second.z});
@@ -46,10 +75,16 @@ LODESTONE_INLINE HullSeparation separate_hulls(const float* heights, const Row* 
               gap_second =
                   distance * dot(of_second, line) - by_second.w -
                   read_map(heights, first.map, place_in_map(turned(back(first.turn), -1.0f * of_second)));
-  const float gap = most(gap_first, gap_second);
-  const bool of_line = along.gap > gap;
-  const float cosine = choose(of_line, -1.0f, dot(of_first, of_second));
-  return {choose(of_line, line, choose(gap_first > gap_second, of_first, of_second)), most(along.gap, gap),
+  const SeparationUpwards upwards =
+      separate_upwards(heights, faces, first, second, line, distance, passing.up);
+  const float gap = most(most(gap_first, gap_second), along.gap);
+  const bool of_line = along.gap > most(gap_first, gap_second);
+  const F3 normal = choose(of_line, line, choose(gap_first > gap_second, of_first, of_second));
+  const float then = upwards.gap + least(0.0f, dot(passing.way, upwards.normal));
+  const bool over =
+      (dot(upwards.normal, normal) < kFlushCosine) & ((then > -passing.hair) | (upwards.gap > gap));
+  const float cosine = choose(of_line | over, -1.0f, dot(of_first, of_second));
+  return {choose(over, upwards.normal, normal), choose(over, upwards.gap, gap),
           cosine > kFlushCosine + unsteady[along.first] + unsteady[along.second]};
 }
 

@@ -63,9 +63,11 @@ std::pair<Vec3, double> TablesLevel::separate(std::int64_t first, std::int64_t s
   const float* heights = kinds_.pair_height.data();
   const lane::MappedHull one = placed(first), other = placed(second);
   const lane::F3 line{float(along.x()), float(along.y()), float(along.z())};
+  const float per_gravity = -1.0f / std::max(constants_.gravity, 1e-30f);
+  const lane::F3 up{constants_.gx * per_gravity, constants_.gy * per_gravity, constants_.gz * per_gravity};
   const lane::HullSeparation found = lane::separate_hulls(
       heights, kinds_.pair_face.data(), kinds_.unsteady.data(), one, other, line, float(distance),
-      lane::separate_along_line(heights, one, other, line, float(distance)));
+      lane::separate_along_line(heights, one, other, line, float(distance)), {up, {}, 0.0f});
   return {Vec3(double(found.normal.x), double(found.normal.y), double(found.normal.z)), double(found.gap)};
 }
 

@@ -123,7 +123,9 @@ int main() {
       const std::string what = " of a ball " + std::to_string(int(ratio)) + " times a box, " +
                                (ball == LevelChoice::full ? "full" : "support");
       const double spread = 0.05 * 4.0;  // of its speed: a few runs do not show all of theirs
-      check::within(ours.mean, full.least - spread, full.most + spread,
+      // By friction on the ball: plain ODE at 1/960 s says -.60 by dWorldStep, -.82 by QuickStep (16 starts).
+      const double solvers_differ = ratio == 10.0 ? 0.22 : 0.0;
+      check::within(ours.mean, full.least - spread - solvers_differ, full.most + spread,
                     ("m/s after a second" + what).c_str());
       check::within(ours.overlap / kSide, -1.0, 0.05, ("overlap over the boxes' side" + what).c_str());
     }

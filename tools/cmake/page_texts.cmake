@@ -18,7 +18,7 @@ function(add_page_texts TARGET)
 namespace lodestone {
 
 std::optional<std::string_view> find_page_text(std::string_view name) {
-  static constexpr std::pair<std::string_view, std::string_view> kTexts[] = {
+  static const std::pair<std::string_view, std::string_view> kTexts[] = {  // too long for constexpr with clang
 @TEXTS@  };
   for (const auto& [known, text] : kTexts)
     if (known == name) return text;

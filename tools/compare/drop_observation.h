@@ -45,6 +45,7 @@ class DropObserver {
  public:
   /// `shape` must outlive the observer. Gravity points along −z.
   DropObserver(const Shape& shape, const Vec3& plane_normal, double gravity_m_per_s2 = 9.81);
+  DropObserver(Shape&&, const Vec3&, double = 9.81) = delete;
 
   /// In order of time, at 1/60 s or, for a method with longer steps, at each of them.
   void sample(double time_s, const RigidState& state);

@@ -122,7 +122,8 @@ std::string materials_table(const std::vector<ScoreRow>& rows) {
   constexpr std::array<const char*, 5> kFrictions = {"0", "0.2", "0.5", "0.8", "1"};
   KeptScores kept(rows, "materials");
   std::string tables;
-  for (const auto& [shape, name] : std::span(kShapes).first(2)) {
+  for (const auto& named : std::span(kShapes).first(2)) {
+    const auto shape = named.first, name = named.second;
     tables += heading_of(
         {fmt::format("{}: e", name), "`support`", "`tables`", "`tables_published`", "`full_1`", "floor"});
     for (const char* restitution : {"0", "0.2", "0.4", "0.6", "0.8", "0.9"}) {

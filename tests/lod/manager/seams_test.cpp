@@ -77,6 +77,111 @@ TEST_P(Seams, AKerbStopsWhatSlides) {
   EXPECT_LT(manager_.state(body).position.x(), 0.0);
 }
 
+// 20° down to x = 0, z = 0, on a base of .3 m.
+Mesh make_ramp() {
+  constexpr double kLength = 3.0, kBase = 0.3, kWidth = 2.0, kRise = 0.36397;  // m; of 20°
+  Mesh ramp;
+  for (const double y : {-0.5 * kWidth, 0.5 * kWidth})
+    for (const auto& [x, z] :
+         {std::pair{-kLength, -kBase}, {0.0, -kBase}, {0.0, 0.0}, {-kLength, kRise * kLength}})
+      ramp.vertices.push_back({x, y, z});
+  const auto add = [&](int a, int b, int c, int d) {
+    ramp.faces.push_back({a, b, c});
+    ramp.faces.push_back({a, c, d});
+  };
+  add(0, 1, 2, 3), add(4, 7, 6, 5), add(0, 4, 5, 1), add(1, 5, 6, 2), add(2, 6, 7, 3), add(3, 7, 4, 0);
+  return ramp;
+}
+
+// The least part of its speed, of a few starts, that a crate keeps from .6 m before a ramp's foot to .25 m
+// behind it, the floor a box whose top is at `floor` (m).
+double slide_over_foot(Manager& manager, LevelChoice level, bool down, bool two, double floor) {
+  manager.materials().replace(0, {.restitution = 0.3, .friction = 0.1});
+  manager.add_static_mesh(make_ramp());
+  manager.add_static_box({12, 2, 0.3}, {6, 0, floor - 0.15}, Quat::Identity());
+  const auto crate = testing::box_shape({0.2, 0.3, 0.15});
+  const Quat along(Eigen::AngleAxisd(down ? std::numbers::pi / 9 : 0.0, Vec3::UnitY()));
+  double least = 1e300;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    RandomStream random(5, i, 0);
+    RigidState state;
+    const double from = random.uniform(0.6, 0.66), speed = down ? random.uniform(2.5, 3.5) : 4.0;
+    const Quat turn(Eigen::AngleAxisd(two ? 0.0 : random.uniform(-1.5, 1.5), Vec3::UnitZ()));
+    state.position = along * Vec3(down ? -from : from, 0, 0.0751) + (down ? 0.0 : floor) * Vec3::UnitZ();
+    state.velocity = along * Vec3(down ? speed : -speed, 0, 0);
+    state.orientation = along * turn;
+    std::vector<BodyId> bodies{testing::add(manager, crate, state, level)};
+    state.position += state.orientation * Vec3(0, 0.3005, 0);
+    if (two) bodies.push_back(testing::add(manager, crate, state, level));
+    const auto place = [&] { return manager.state(bodies[0]).position.x() * (down ? 1.0 : -1.0); };
+    for (int k = 0; k < 36 && place() < 0.25; ++k) manager.step(testing::kFrame);
+    least = std::min(least, place() < 0.25 ? 0.0 : manager.state(bodies[0]).velocity.norm() / speed);
+    for (const BodyId body : bodies) manager.remove_body(body);
+  }
+  return least;
+}
+
+// The tile's upper edge, which the ramp covers, was met as any other: two in three tripped and lost most of
+// their speed. At full 24 starts keep 1.02 of it down, .78 up, none less than .75. Of two of `tables` some
+// still trip.
+TEST_P(Seams, FeetOfRampsDoNotStopWhatSlides) {
+  for (const bool down : {true, false})
+    for (const bool two : {false, is_support()})
+      for (const double floor : {0.0, 1e-4, -1e-4}) {
+        Manager manager({.signatures = testing::coarse_signature});
+        EXPECT_GT(slide_over_foot(manager, GetParam(), down, two, floor), down ? 0.9 : 0.7)
+            << down << two << floor;
+      }
+}
+
+TEST_P(Seams, AKerbAtTheFootOfARampStopsWhatSlides) {
+  Manager manager({.signatures = testing::coarse_signature});
+  EXPECT_EQ(slide_over_foot(manager, GetParam(), true, false, 0.06), 0.0);
+}
+
+// The part of its speed that a crate keeps over 1.5 m of a row of bodies that lie flush, .3 m high and each
+// .3 m long (m, x from -.15 on), a mean of a few starts; none where it does not come so far.
+double slide_over_row(Manager& manager, LevelChoice level) {
+  const auto crate = testing::box_shape({0.2, 0.3, 0.15});
+  double sum = 0.0;
+  constexpr std::uint32_t kStarts = 6;
+  for (std::uint32_t i = 0; i < kStarts; ++i) {
+    RandomStream random(6, i, 0);
+    RigidState state;
+    const double speed = random.uniform(2.5, 3.5);
+    state.position = {0, 0, 0.3751}, state.velocity.x() = speed;
+    state.orientation = Quat(Eigen::AngleAxisd(random.uniform(-1.5, 1.5), Vec3::UnitZ()));
+    const BodyId body = testing::add(manager, crate, state, level);
+    const auto place = [&] { return manager.state(body).position.x(); };
+    for (int k = 0; k < 90 && place() < 1.5; ++k) manager.step(testing::kFrame);
+    if (place() >= 1.5) sum += manager.state(body).velocity.norm() / speed / kStarts;
+    manager.remove_body(body);
+  }
+  return sum;
+}
+
+// Each stopped at the first seam: the next cube's side, over which it was already, was met as a wall. At full
+// .82 of the speed is left at friction .1.
+TEST_P(Seams, OfBodiesInARowDoNotStopWhatSlides) {
+  manager_.materials().replace(0, {.restitution = 0.3, .friction = 0.1});
+  manager_.add_plane(Vec3::UnitZ(), 0.0);
+  for (int k = 0; k < 10; ++k)
+    for (int j = -1; j <= 1; ++j)
+      testing::add(manager_, cube(), {.position = {kCube * k, kCube * j, 0.5 * kCube}}, GetParam());
+  testing::run(manager_, 1.0);
+  EXPECT_NEAR(slide_over_row(manager_, GetParam()), 0.82, 0.03);
+}
+
+TEST_P(Seams, OfKinematicBodiesDoNotStopWhatSlides) {
+  manager_.materials().replace(0, {.restitution = 0.3, .friction = 0.1});
+  for (int k = 0; k < 4; ++k)
+    manager_.add_body({.shape = testing::box_shape({0.9, 2.0, 0.3}),
+                       .state = {.position = {0.9 * k, 0, 0.15}},
+                       .level = GetParam(),
+                       .properties = {.kinematic = true}});
+  EXPECT_NEAR(slide_over_row(manager_, GetParam()), 0.82, 0.03);
+}
+
 // Slopes of .2 at most, ridges of up to 11°: what strikes them strikes upwards.
 TEST_P(Seams, RidgesOfHillsAreNoWalls) {
   manager_.add_static_mesh(testing::make_hills(40, 20));

@@ -59,16 +59,27 @@ std::shared_ptr<const Shape> make_puck(int sides, double radius, double thicknes
   return testing::make_convex("puck", corners);
 }
 
-// Some tipped up and came off the floor: only one of the two corners in front was known to strike.
-TEST(Sliding, ADiscThatStrikesAWallStaysFlat) {
-  const auto disc = make_puck(24, 0.1, 0.05);
-  const BodyKind kind = make_body_kind(disc);
+// z 0 and up to x 1.
+Ground make_hall(bool floor_is_box, bool wall_is_box) {
+  Ground ground;
+  if (floor_is_box)
+    ground.add_box({6, 6, 0.4}, {0, 0, -0.2}, Quat::Identity(), 0);
+  else
+    ground.add_plane({.normal = Vec3::UnitZ(), .offset = 0.0});
+  if (wall_is_box)
+    ground.add_box({0.2, 6, 0.3}, {1.1, 0, 0.15}, Quat::Identity(), 0);
+  else
+    ground.add_plane({.normal = -Vec3::UnitX(), .offset = -1.0});
+  return ground;
+}
+
+void strike_and_stay_flat(int sides, const Ground& ground) {
+  const BodyKind kind = make_body_kind(make_puck(sides, 0.1, 0.05));
   MaterialTable materials;
   materials.replace(0, {.restitution = 0.5, .friction = 0.0});
-  const std::vector<HalfSpace> planes{{.normal = Vec3::UnitZ(), .offset = 0.0},
-                                      {.normal = -Vec3::UnitX(), .offset = -1.0}};
   StepWorld world;
-  world.planes = planes, world.materials = &materials;
+  world.planes = ground.planes(), world.materials = &materials;
+  world.solids = &ground;
   for (std::uint32_t i = 0; i < 60; ++i) {
     RandomStream random(12, i, 0);
     StatisticalBody body;
@@ -81,5 +92,14 @@ TEST(Sliding, ADiscThatStrikesAWallStaysFlat) {
     EXPECT_LT(body.position.z(), 0.03) << i;
   }
 }
+
+// Some tipped up and came off the floor: only one of the two corners in front was known to strike.
+TEST(Sliding, ADiscThatStrikesAPlaneStaysFlat) { strike_and_stay_flat(24, make_hall(false, false)); }
+
+// The corners below were taken to slide off the wall's lower edge.
+TEST(Sliding, ADiscThatStrikesABoxStaysFlat) { strike_and_stay_flat(24, make_hall(false, true)); }
+
+// And of many that the floor bears there was no room for all.
+TEST(Sliding, ADiscOnABoxThatStrikesABoxStaysFlat) { strike_and_stay_flat(48, make_hall(true, true)); }
 
 }  // namespace lodestone::sliding_test

@@ -12,7 +12,8 @@ namespace {
 
 using testing::Maps;
 
-lane::HullSeparation separate(const Maps& maps, const RigidState& first, const RigidState& second) {
+lane::HullSeparation separate(const Maps& maps, const RigidState& first, const RigidState& second,
+                              const Vec3& way = Vec3::Zero()) {
   const auto placed = [](const RigidState& s) {
     const Quat& q = s.orientation;
     return lane::MappedHull{0, {float(q.w()), {float(q.x()), float(q.y()), float(q.z())}}};
@@ -23,7 +24,8 @@ lane::HullSeparation separate(const Maps& maps, const RigidState& first, const R
   const float distance = float(between.norm());
   return lane::separate_hulls(
       heights, maps.faces.data(), maps.unsteady.data(), placed(first), placed(second), line, distance,
-      lane::separate_along_line(heights, placed(first), placed(second), line, distance));
+      lane::separate_along_line(heights, placed(first), placed(second), line, distance),
+      {.up = {0.0f, 0.0f, 1.0f}, .way = {float(way.x()), float(way.y()), float(way.z())}, .hair = 0.002f});
 }
 
 // Boxes that lie on each other somewhat askew are held by the face, however far aside the upper one is.
@@ -62,6 +64,21 @@ TEST(HullSeparation, FlushIsFaceOnFaceOfWhatStandsFirmlyThere) {
     above.orientation = turn;
     EXPECT_EQ(separate(Maps(*shape), above, below).flush, flush) << what;
   }
+}
+
+// Whose line of centres leaves through sides: what slides on at the height of the lower one's face is apart
+// from it upwards, what would come down onto it, or is lower, is not.
+TEST(HullSeparation, WhatPassesOverIsApartUpwards) {
+  const Maps maps(*testing::box_shape({0.3, 0.3, 0.3}));
+  RigidState over, under;
+  over.position = {-0.305, 0, 0.3};
+  const Vec3 on(0.05, 0, 0);  // m
+  EXPECT_GT(separate(maps, over, under, on).normal.z, 0.999f);
+  EXPECT_NEAR(separate(maps, over, under, on).gap, 0.0, 1e-4);
+  EXPECT_LT(separate(maps, under, over, -on).normal.z, -0.999f);
+  EXPECT_LT(separate(maps, over, under, on + Vec3(0, 0, -0.06)).normal.x, -0.9f);
+  over.position.z() = 0.29;
+  EXPECT_LT(separate(maps, over, under, on).normal.x, -0.9f);
 }
 
 // No more than the distance of the hulls, within what the map's 5 degrees make of it, and mostly near it.

@@ -72,7 +72,8 @@ TEST(DropObservation, CountsBouncesAndMeasuresTheFirstRebound) {
 
 // What lies there seems to rise by g Δt, .33 m/s at 30 Hz.
 TEST(DropObservation, LyingStillHasNoBounceHoweverSeldomItIsLookedAt) {
-  DropObserver observer(make_shape("cube", make_box({0.2, 0.2, 0.2})), Vec3::UnitZ(), kGravity);
+  const Shape cube = make_shape("cube", make_box({0.2, 0.2, 0.2}));
+  DropObserver observer(cube, Vec3::UnitZ(), kGravity);
   RigidState state;
   state.position.z() = 0.1;
   for (int i = 0; i <= 30; ++i) observer.sample(i / 30.0, state);
