@@ -195,6 +195,55 @@ void drop_internal_points(const PairBody& first, int i, const PairBody& second, 
   contact.manifold = kept;
 }
 
+// Of a face of either hull that the other lies over, from the second into the first; none of hulls of many
+// faces.
+std::optional<Vec3> find_passed_normal(const PairBody& first, const PairBody& second,
+                                       const PairContact& contact, const PairWay& way) {
+  constexpr std::size_t kMostFaces = 64;  // triangles
+  const PlacedHull a = place(first), b = place(second);
+  const ManifoldPoint& p = contact.manifold.points[0];
+  const Vec3 apart = first.position - second.position;
+  std::optional<Vec3> passed;
+  double most = -way.hair;  // m
+  // A `face` of `one`, the other being at `point`, from the centre of `one`, among other places.
+  const auto look_at = [&](const PlacedHull& one, std::size_t face, const Vec3& point, double sign) {
+    const Hull& hull = one.shape->hull;
+    const Vec3 outward = one.rotation * hull.face_normals[face], normal = sign * outward;
+    const double turning = normal.cross(way.first_turn).norm() * first.shape->radius +
+                           normal.cross(way.second_turn).norm() * second.shape->radius,
+                 least_change = std::min(0.0, way.first.dot(normal) - turning),
+                 plane = hull.face_normals[face].dot(hull.vertices[std::size_t(hull.faces[face][0])]);
+    if (outward.dot(point) - plane + least_change < most || normal.dot(apart) <= 0.0) return;
+    if (passed && passed->dot(normal) > 0.9999) return;
+    const double gap = measure_hull_gap(a, b, normal).gap;
+    if (gap + least_change >= most) most = gap + least_change, passed = normal;
+  };
+  const auto look_at_all = [&](const PlacedHull& one, const Vec3& point, double sign) {
+    const std::size_t count = one.shape->hull.face_normals.size();
+    if (one.shape->sphere_radius || count > kMostFaces) return;
+    for (std::size_t face = 0; face < count; ++face) look_at(one, face, point, sign);
+  };
+  look_at_all(b, p.point + 0.5 * p.gap * contact.normal - second.position, 1.0);
+  look_at_all(a, p.point - 0.5 * p.gap * contact.normal - first.position, -1.0);
+  return passed;
+}
+
+// In place of a contact across a face along which one passes the other that with the face, where they lie
+// over each other; none is left where they do not. The next search begins at `axis`.
+std::optional<PairContact> pass_over(const PairBody& first, const PairBody& second, const PairWay& way,
+                                     const PairContact& contact, HullGap& axis) {
+  constexpr double kSameWay = 0.99;  // cosine
+  const auto passed = find_passed_normal(first, second, contact, way);
+  if (!passed || contact.normal.dot(*passed) > kSameWay) return contact;
+  const HullGap along = measure_hull_gap(place(first), place(second), *passed);
+  TouchingFeature upper, lower;
+  const PairContact with_face{*passed, along.gap, clip_features(first, second, along, {}, upper, lower)};
+  const bool is_over = with_face.manifold.count > 0 && along.gap <= way.hair;
+  if (!is_over && contact.gap < 0.0) return contact;
+  axis = along;
+  return is_over ? std::optional(with_face) : std::nullopt;
+}
+
 // Pieces overlap, so that one contact of the bodies may be several of theirs.
 void add_contact(const PairContact& contact, double grain, std::vector<PairContact>& contacts) {
   for (PairContact& other : contacts)
@@ -217,6 +266,15 @@ double gap_of_pieces(const PairBody& a, const PairBody& b, KnownGap& known, doub
   return known.axis.gap;
 }
 
+// Which go on as their bodies turn, too.
+PairWay way_of_pieces(const PairWay& way, const PairBody& first, const PairBody& of_first,
+                      const PairBody& second, const PairBody& of_second) {
+  PairWay own = way;
+  own.first += way.first_turn.cross(of_first.position - first.position) -
+               way.second_turn.cross(of_second.position - second.position);
+  return own;
+}
+
 void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std::span<KnownGap> known,
                              double margin, HullContactSearch& search) {
   search.gap = 1e300;
@@ -227,10 +285,13 @@ void find_contacts_of_pieces(const PairBody& first, const PairBody& second, std:
       const double gap = gap_of_pieces(a, b, of_pieces, margin, search.exact);
       search.gap = std::min(search.gap, gap);
       if (gap > margin) continue;
-      PairContact contact = contact_to_hold(a, b, of_pieces.axis, margin);
-      drop_internal_points(first, i, second, k, contact);
-      if (contact.manifold.count > 0)
-        add_contact(contact, kWithin * std::min(a.shape->radius, b.shape->radius), search.contacts);
+      std::optional<PairContact> contact = contact_to_hold(a, b, of_pieces.axis, margin);
+      if (search.way)
+        contact = pass_over(a, b, way_of_pieces(*search.way, first, a, second, b), *contact, of_pieces.axis);
+      if (!contact) continue;
+      drop_internal_points(first, i, second, k, *contact);
+      if (contact->manifold.count > 0)
+        add_contact(*contact, kWithin * std::min(a.shape->radius, b.shape->radius), search.contacts);
     }
 }
 
@@ -240,8 +301,10 @@ void search_relative(const PairBody& first, const PairBody& second, HullGap& who
   if (first.shape->pieces.empty() && second.shape->pieces.empty()) {
     whole = find_hull_gap(place(first), place(second), whole, margin, search.exact);
     search.gap = whole.gap;
-    if (search.gap <= margin.along(whole.normal))
-      search.contacts.push_back(contact_to_hold(first, second, whole, margin.along(whole.normal)));
+    if (search.gap > margin.along(whole.normal)) return;
+    std::optional<PairContact> contact = contact_to_hold(first, second, whole, margin.along(whole.normal));
+    if (search.way) contact = pass_over(first, second, *search.way, *contact, whole);
+    if (contact) search.contacts.push_back(*contact);
     return;
   }
   const bool apart = are_apart(place(first), place(second), margin, whole);
@@ -395,37 +458,6 @@ std::optional<PairContact> find_contact_along(const PairBody& first, const PairB
   if (contact.manifold.count == 0) return {};
   for (ManifoldPoint& p : contact.manifold.points) p.point += second.position;
   return contact;
-}
-
-std::optional<Vec3> find_passed_normal(const PairBody& first, const PairBody& second,
-                                       const PairContact& contact, const PairWay& way, double touching) {
-  constexpr std::size_t kMostFaces = 64;  // triangles
-  const PlacedHull a = place(first), b = place(second);
-  const ManifoldPoint& p = contact.manifold.points[0];
-  const Vec3 apart = first.position - second.position;
-  std::optional<Vec3> passed;
-  double most = -touching;  // m
-  // A `face` of `one`, the other being at `point`, from the centre of `one`, among other places.
-  const auto look_at = [&](const PlacedHull& one, std::size_t face, const Vec3& point, double sign) {
-    const Hull& hull = one.shape->hull;
-    const Vec3 outward = one.rotation * hull.face_normals[face], normal = sign * outward;
-    const double turning = normal.cross(way.first_turn).norm() * first.shape->radius +
-                           normal.cross(way.second_turn).norm() * second.shape->radius,
-                 least_change = std::min(0.0, way.first.dot(normal) - turning),
-                 plane = hull.face_normals[face].dot(hull.vertices[std::size_t(hull.faces[face][0])]);
-    if (outward.dot(point) - plane + least_change < most || normal.dot(apart) <= 0.0) return;
-    if (passed && passed->dot(normal) > 0.9999) return;
-    const double gap = measure_hull_gap(a, b, normal).gap;
-    if (gap + least_change >= most) most = gap + least_change, passed = normal;
-  };
-  const auto look_at_all = [&](const PlacedHull& one, const Vec3& point, double sign) {
-    const std::size_t count = one.shape->hull.face_normals.size();
-    if (one.shape->sphere_radius || count > kMostFaces) return;
-    for (std::size_t face = 0; face < count; ++face) look_at(one, face, point, sign);
-  };
-  look_at_all(b, p.point + 0.5 * p.gap * contact.normal - second.position, 1.0);
-  look_at_all(a, p.point - 0.5 * p.gap * contact.normal - first.position, -1.0);
-  return passed;
 }
 
 }  // namespace lodestone

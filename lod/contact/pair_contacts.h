@@ -70,8 +70,18 @@ struct KnownGap {
   std::optional<PairPose> when;             ///< how they lay then; none: never looked for
 };
 
+/// How two bodies go on, and over what they pass: who lies over a face of the other's hull, but for `hair`,
+/// and will at the end, meets that face, or nothing. No edge beside it can be in the way: who is as little
+/// below the face of a flush neighbour would trip over the seam.
+struct PairWay {
+  Vec3 first = Vec3::Zero();                                   ///< m, the first one's, seen from the second
+  Vec3 first_turn = Vec3::Zero(), second_turn = Vec3::Zero();  ///< rad
+  double hair = 0.0;                                           ///< m
+};
+
 struct HullContactSearch {
   bool exact = true;                  ///< in: see find_hull_gap
+  std::optional<PairWay> way;         ///< in; none: they pass over nothing
   double gap = 0.0;                   ///< m: the true distance is at least this
   std::vector<PairContact> contacts;  ///< those with a gap of at most the margin: one for hulls, one for each
                                       ///< two convex pieces that meet
@@ -94,18 +104,5 @@ std::optional<PairContact> find_hull_contact(const PairBody& first, const PairBo
 /// features do not overlap across it.
 std::optional<PairContact> find_contact_along(const PairBody& first, const PairBody& second,
                                               const Vec3& normal, double margin, double ahead = 0.0);
-
-/// How two bodies go on.
-struct PairWay {
-  Vec3 first = Vec3::Zero();                                   ///< m, the first one's, seen from the second
-  Vec3 first_turn = Vec3::Zero(), second_turn = Vec3::Zero();  ///< rad
-};
-
-/// Along which the two, which have this contact, pass each other all the same: of a face of either hull that
-/// the other lies over, but for `touching` m, now and once they have gone on (unit, from `second` into
-/// `first`). No edge beside that face can be in the way: who is as little below the face of a flush neighbour
-/// would trip over the seam. None of hulls of many faces.
-std::optional<Vec3> find_passed_normal(const PairBody& first, const PairBody& second,
-                                       const PairContact& contact, const PairWay& way, double touching);
 
 }  // namespace lodestone

@@ -29,21 +29,6 @@ bool meet_on_their_way(const PairBody& first, const PairBody& second, const Vec3
   return true;
 }
 
-// In place of a contact across a face along which one passes the other that with the face, where they lie
-// over each other. `whole`: where the next search begins.
-void pass_over_seams(const PairBody& first, const PairBody& second, const PairWay& way, double touching,
-                     std::vector<PairContact>& contacts, HullGap& whole) {
-  constexpr double kSameWay = 0.99;  // cosine
-  const auto passed = find_passed_normal(first, second, contacts[0], way, touching);
-  if (!passed || contacts[0].normal.dot(*passed) > kSameWay) return;
-  const auto along = find_contact_along(first, second, *passed, touching);
-  if (!along && contacts[0].gap < 0.0) return;
-  contacts.clear();
-  if (along) contacts.push_back(*along);
-  whole = {.normal = *passed};
-  look_along(whole, first, second);
-}
-
 // Into the cache, for who reads it soon.
 template <class T>
 void fetch_ahead(const T& value) {
@@ -219,6 +204,8 @@ void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, 
   thread_local HullContactSearch search;
   search.exact =
       !is_sphere(pair.first) && !is_sphere(pair.second) && !is_eased(pair.first) && !is_eased(pair.second);
+  search.way = {reach.way, time * turning_of(scene, pair.first), time * turning_of(scene, pair.second),
+                touching};
   find_pair_contacts(a, b, pair.whole, pair.of_pieces, margin, search);
   pair.gap = search.gap;
   pair.when = pose_of(a, b);
@@ -226,10 +213,6 @@ void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, 
   const auto meet = [&](const PairContact& contact) {
     return contact.gap < kFar * least_radius || meet_on_their_way(a, b, closing, contact, touching, time);
   };
-  if (pair.of_pieces.empty() && !search.contacts.empty()) {
-    const PairWay way{reach.way, time * turning_of(scene, pair.first), time * turning_of(scene, pair.second)};
-    pass_over_seams(a, b, way, touching, search.contacts, pair.whole);
-  }
   for (const PairContact& contact : search.contacts)
     if (meet(contact)) pair.contacts.push_back(hold(contact, a, b));
 }

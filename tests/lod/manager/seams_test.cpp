@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -169,6 +170,38 @@ TEST_P(Seams, OfBodiesInARowDoNotStopWhatSlides) {
     for (int j = -1; j <= 1; ++j)
       testing::add(manager_, cube(), {.position = {kCube * k, kCube * j, 0.5 * kCube}}, GetParam());
   testing::run(manager_, 1.0);
+  EXPECT_NEAR(slide_over_row(manager_, GetParam()), 0.82, 0.03);
+}
+
+// Its top is .3 m long, from x = -.15 on, and at z = .3; below it is hollow but for a wall.
+std::shared_ptr<const Shape> make_bracket() {
+  Mesh bracket;
+  const std::vector<std::pair<double, double>> outline{{-0.15, 0.0}, {-0.05, 0.0}, {-0.05, 0.2},
+                                                       {0.15, 0.2},  {0.15, 0.3},  {-0.15, 0.3}};
+  const int count = int(outline.size());
+  for (const double y : {-0.45, 0.45})
+    for (const auto& [x, z] : outline) bracket.vertices.push_back({x, y, z});
+  for (const auto& [a, b, c] : {std::array{0, 1, 2}, {0, 2, 5}, {2, 3, 4}, {2, 4, 5}}) {
+    bracket.faces.push_back({a, b, c});
+    bracket.faces.push_back({count + a, count + c, count + b});
+  }
+  for (int i = 0; i < count; ++i) {
+    const int next = (i + 1) % count;
+    bracket.faces.push_back({i, count + i, next});
+    bracket.faces.push_back({next, count + i, count + next});
+  }
+  return std::make_shared<const Shape>(make_shape("bracket", bracket));
+}
+
+// Whose bodies meet in their convex pieces.
+TEST_P(Seams, OfConcaveBodiesDoNotStopWhatSlides) {
+  manager_.materials().replace(0, {.restitution = 0.3, .friction = 0.1});
+  const auto bracket = make_bracket();
+  for (int k = 0; k < 10; ++k)
+    manager_.add_body({.shape = bracket,
+                       .state = {.position = bracket->center_of_mass_in_mesh + Vec3(kCube * k, 0, 0)},
+                       .level = GetParam(),
+                       .properties = {.kinematic = true}});
   EXPECT_NEAR(slide_over_row(manager_, GetParam()), 0.82, 0.03);
 }
 
