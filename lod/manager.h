@@ -200,7 +200,7 @@ class Manager {
   std::span<const BodyId> fell_asleep() const;  ///< asleep now, and not after the step before
   std::span<const BodyId> woke() const;         ///< awake now, and asleep after the step before
   std::span<const RungChange> rung_changes()
-      const;  ///< in the order in which they were made; not of new bodies
+      const;  ///< in the order in which they were made, from the end of the step before on; not of new bodies
 
   /// What touched what in the last step, between any two rungs, ground and the caller's geoms: see events.h.
   /// By the bodies' indices; in the same order in every run.
@@ -248,7 +248,8 @@ class Manager {
   /// full bodies are not those that the snapshot has, all ODE bodies of the manager are made anew, in a
   /// caller's world after his own. Throws InputError, and nothing has changed, where the snapshot is damaged
   /// or of another build, seed, material table or set of planes, in a caller's world of another gravity than
-  /// it has now, where a shape is missing, or a body that is made anew hangs on a joint.
+  /// it has now, where a shape or a signature is missing, or a body that is made anew hangs on a
+  /// joint. What its bodies move by is asked for as in a step, and waited for.
   void restore(std::span<const std::byte> snapshot,
                std::span<const std::shared_ptr<const Shape>> shapes = {});
 

@@ -1,6 +1,6 @@
 // The state of a running simulation as bytes, and back to the bit. Each owner of state names what it holds
 // once, in a function `archive(StateArchive&)` beside its members, for both ways. Values go as they lie in
-// memory: only the build that wrote them reads them (see snapshot.h, which checks that).
+// memory: only the build that wrote them reads them, which whoever keeps the bytes must check.
 #pragma once
 
 #include <algorithm>

@@ -317,11 +317,20 @@ Playback load_playback(const fs::path& file) {
   Playback playback;
   const char* text = reinterpret_cast<const char*>(bytes.data() + head);
   playback.header = ordered_json::parse(text, text + sizes[1], nullptr, false);
-  if (playback.header.is_discarded() || !playback.header.contains("blobs")) fail("a damaged playback file");
+  const auto& header = playback.header;
+  const bool has_label = header.is_object() && header.contains("label") && header["label"].is_string();
+  if (!has_label || !header.contains("blobs") || !header["blobs"].is_object())
+    fail("a damaged playback file");
   playback.blobs.assign(bytes.begin() + std::ptrdiff_t(head + sizes[1]), bytes.end());
-  for (const auto& [name, place] : playback.header["blobs"].items())
-    if (place.value("offset", std::size_t(0)) + place.value("bytes", std::size_t(0)) > playback.blobs.size())
-      fail("a playback file cut short");
+  for (const auto& [name, place] : playback.header["blobs"].items()) {
+    const auto number = [&](const char* key) {
+      if (!place.is_object() || !place.contains(key) || !place[key].is_number_unsigned())
+        fail(fmt::format("a damaged playback file: no {} of {}", key, name));
+      return place[key].get<std::size_t>();
+    };
+    const std::size_t offset = number("offset"), size = number("bytes"), held = playback.blobs.size();
+    if (offset > held || size > held - offset) fail("a playback file cut short");
+  }
   return playback;
 }
 

@@ -209,11 +209,12 @@ lodestone_result lodestone_why(const lodestone_manager* manager, lodestone_body 
                                size_t* length) {
   return guarded([&] {
     const std::string why = of(manager).why(body(id));
+    if (size > 0) {
+      const std::size_t kept = std::min(why.size(), size - 1);
+      std::memcpy(&need(text, "text"), why.data(), kept);
+      text[kept] = '\0';
+    }
     give(length, why.size());
-    if (size == 0) return;
-    const std::size_t kept = std::min(why.size(), size - 1);
-    std::memcpy(&need(text, "text"), why.data(), kept);
-    text[kept] = '\0';
   });
 }
 

@@ -32,8 +32,10 @@ Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {
   return shape;
 }
 
+Mat3 inverse_inertia_per_mass(dxBody* body) { return callers::inverse_inertia(body) * callers::mass(body); }
+
 void set_inertia(Shape& shape, dxBody* body) {
-  shape.inverse_inertia_per_mass = callers::inverse_inertia(body) * callers::mass(body);
+  shape.inverse_inertia_per_mass = inverse_inertia_per_mass(body);
   shape.inertia_per_mass = shape.inverse_inertia_per_mass.inverse();
 }
 
@@ -95,7 +97,10 @@ void CallersBodies::follow(const SpaceMirror& mirror,
       tell(entry.owner, entry.bits);
       entry.untold = false;
     }
-    if (!entry.stale) continue;
+    if (!entry.stale) {
+      follow_inertia(entry);
+      continue;
+    }
     entry.stale = false;
     entry.shape = nullptr;
     entry.solids.assign(entry.slots.size(), nullptr);
@@ -105,6 +110,14 @@ void CallersBodies::follow(const SpaceMirror& mirror,
       continue;  // flat: nothing that a solid could be
     }
   }
+}
+
+// He may give it another mass at any time.
+void CallersBodies::follow_inertia(Entry& entry) {
+  if (!entry.shape || entry.shape->inverse_inertia_per_mass == inverse_inertia_per_mass(entry.body)) return;
+  Shape shape = *entry.shape;
+  set_inertia(shape, entry.body);
+  entry.shape = std::make_shared<const Shape>(std::move(shape));
 }
 
 // Each geom a convex piece, or several; of a trimesh that has no pieces, its hull.

@@ -78,6 +78,7 @@ class CallersBodies {
     bool untold = true;  // its bits
     bool is_tied() const { return slots.empty(); }
   };
+  static void follow_inertia(Entry& entry);
   static void make_shape(const SpaceMirror& mirror, Entry& entry);
   std::vector<dxBody*> find_tied(std::span<dxBody* const> jointed) const;
   std::vector<const Entry*> find_living(const SpaceMirror& mirror) const;

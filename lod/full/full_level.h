@@ -59,6 +59,7 @@ class FullLevel {
   /// Of the owners of two bodies: whether they may meet; empty: all may.
   void set_pair_filter(std::function<bool(std::uint32_t, std::uint32_t)> filter);
   void set_substeps(int substeps) { settings_.substeps = substeps; }
+  int substeps() const { return settings_.substeps; }
   int substeps_of(double dt) const;  ///< in a step of `dt` seconds
 
   OdeBodyId add(std::uint32_t owner, const OdeBodyDefinition& definition, bool asleep);

@@ -18,7 +18,7 @@ double energy_per_mass(const Shape& shape, const RigidState& state) {
   return 0.5 * (state.velocity.squaredNorm() + spin.dot(shape.inertia_per_mass * spin));
 }
 
-/// Parts of the ground, and the caller's bodies, that the body may touch.
+/// Parts of the ground that the body may touch.
 bool near_solids(const Levels& levels, const Vec3& position, double radius) {
   std::vector<const GroundPart*> found;
   if (levels.ground.has_parts()) levels.ground.find_parts(position, 1.5 * radius, found);
@@ -26,7 +26,8 @@ bool near_solids(const Levels& levels, const Vec3& position, double radius) {
 }
 
 bool same(const RigidState& a, const RigidState& b) {
-  return a.position == b.position && a.velocity == b.velocity && a.angular_velocity == b.angular_velocity;
+  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs() &&
+         a.velocity == b.velocity && a.angular_velocity == b.angular_velocity;
 }
 
 }  // namespace
@@ -56,7 +57,8 @@ double WayToRest::distance_m(const Vec3& up) const {
 }
 
 void Audit::watch(std::uint32_t body, const RigidState& state) {
-  if (!on() || watched_.size() >= kMostWatched) return;
+  const bool as_others = levels_.bodies.properties(body) == BodyProperties{};
+  if (!on() || watched_.size() >= kMostWatched || !as_others) return;
   const BodyRecord& record = levels_.bodies[body];
   const std::shared_ptr<const Shape>& shape = levels_.bodies.shape(body);
   watched_.push_back({.body = body,
@@ -87,7 +89,9 @@ void Audit::begin_step() {
   const auto disturbed = [this](const Watched& w) {
     if (w.demoted.done()) return false;
     const bool there = levels_.bodies[w.body].birth == w.birth;
-    return !there || !levels_.bodies.force(w.body).force.isZero(0.0) || !same(levels_.state(w.body), w.seen);
+    if (!there || levels_.bodies.properties(w.body) != BodyProperties{}) return true;
+    const auto& given = levels_.bodies.force(w.body);
+    return !given.force.isZero(0.0) || !given.torque.isZero(0.0) || !same(levels_.state(w.body), w.seen);
   };
   left_out_ += int(std::erase_if(watched_, disturbed));
 }
@@ -122,11 +126,18 @@ void Audit::end_step(double dt, StepReport& report) {
   fill(report.audit);
 }
 
+bool Audit::world_is_current() const {
+  const auto alike = [](const HalfSpace& a, const HalfSpace& b) {
+    return a.normal == b.normal && a.offset == b.offset && a.material == b.material;
+  };
+  return world_ && full_.gravity == levels_.statistical_settings.gravity &&
+         std::ranges::equal(levels_.ground.planes(), planes_, alike);
+}
+
 void Audit::begin(const Watched& w) {
-  const std::span<const HalfSpace> planes = levels_.ground.planes();
-  if (!world_ || !std::ranges::equal(planes, planes_, [](const HalfSpace& a, const HalfSpace& b) {
-        return a.normal == b.normal && a.offset == b.offset && a.material == b.material;
-      })) {
+  full_.substeps = levels_.full.substeps();
+  if (!world_is_current()) {
+    const std::span<const HalfSpace> planes = levels_.ground.planes();
     world_.reset();
     full_.gravity = levels_.statistical_settings.gravity;
     world_.emplace(ode_settings_of(full_), levels_.materials);

@@ -79,6 +79,7 @@ class Audit {
   bool still_watched(const Watched& watched) const;
   void look_at(Watched& watched, double dt);
   void simulate(double dt);
+  bool world_is_current() const;
   void begin(const Watched& watched);
   void compare(const Watched& watched);
   void fill(AuditReport& report) const;

@@ -11,6 +11,24 @@ constexpr double kApart = 0.1;  // s: then they touch no more
 
 }  // namespace
 
+void ContactEvents::archive(StateArchive& a) {
+  const auto is_callers = [](const ContactEvent& event) {
+    return event.second.kind == ContactSide::Kind::callers;
+  };
+  const auto own_of = [&](std::vector<Pair> pairs) {
+    std::erase_if(pairs, [&](const Pair& pair) { return is_callers(pair.last); });
+    return pairs;
+  };
+  std::vector<Pair> live = own_of(live_);
+  std::unordered_map<std::uint32_t, std::vector<Pair>> aside;
+  for (const auto& [body, pairs] : aside_)
+    if (auto own = own_of(pairs); !own.empty()) aside.emplace(body, std::move(own));
+  std::vector<ContactEvent> events = events_;
+  std::erase_if(events, is_callers);
+  a(asking_, live, aside, events);
+  if (a.reading()) live_ = std::move(live), aside_ = std::move(aside), events_ = std::move(events);
+}
+
 void ContactEvents::ask(std::uint32_t body, bool asks) {
   if (asks)
     asking_.insert(body);
@@ -171,7 +189,7 @@ bool ContactEvents::bring_back(const Key& key, Pair& pair) {
 }
 
 void ContactEvents::finish(double dt, std::span<const BodyId> woke) {
-  if (!wanted() && live_.empty()) return;
+  if (!wanted() && live_.empty()) return aside_.clear();  // asked again, they begin anew
   for (const BodyId body : woke) bring_back(body.index);
   std::ranges::sort(live_, {}, &Pair::key);
   take_touches();

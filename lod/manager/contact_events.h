@@ -35,8 +35,9 @@ class ContactEvents {
   /// After a step of `dt` seconds, in which these woke.
   void finish(double dt, std::span<const BodyId> woke);
   std::span<const ContactEvent> events() const { return events_; }
-  /// Of the last step, and of what touches still.
-  void archive(StateArchive& a) { a(asking_, live_, aside_, events_); }
+  /// Of the last step, and of what touches still, but not with what is the caller's: he may have other things
+  /// where it is read, and contacts with them begin anew there.
+  void archive(StateArchive& a);
 
  private:
   /// Who touch. The second is a body, something of the caller's by number, or a piece of the ground.

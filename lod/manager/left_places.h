@@ -17,8 +17,8 @@ struct Levels;
 
 class LeftPlaces {
  public:
-  /// A new body, which may sleep.
-  void add(const Levels& levels, BodyId body) { note_place(levels, body); }
+  /// Where a body is that is new or was laid to sleep by the caller.
+  void note_place(const Levels& levels, BodyId body);
   /// After a step: these fell asleep in it, or slept in another place, and these woke.
   void follow(const Levels& levels, std::span<const BodyId> slept, std::span<const BodyId> moved_and_slept,
               std::span<const BodyId> woke);
@@ -36,7 +36,6 @@ class LeftPlaces {
     Vec3 place;     // m
     double radius;  // m
   };
-  void note_place(const Levels& levels, BodyId body);
   void watch(const Levels& levels, BodyId body, const Vec3& from);
   void watch_full_ones_at(const Levels& levels, BodyId sleeper);
 

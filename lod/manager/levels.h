@@ -48,7 +48,7 @@ struct Levels {
     CallersBodies bodies = {};
   } callers;
   std::int64_t now = 0;                  ///< steps so far
-  std::vector<RungChange> rung_changes;  ///< of this step
+  std::vector<RungChange> rung_changes;  ///< since the last step was over
   std::vector<std::uint32_t> woken;      ///< by wake(), until somebody takes note
 
   /// The law between a body and the ground that it most likely meets: the first plane, else ground of the

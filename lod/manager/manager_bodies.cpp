@@ -13,9 +13,10 @@ BodyId Manager::add_body(const BodyDefinition& definition) {
   check_properties(definition.properties);
   BodyDefinition sound = definition;
   sound.state = checked(definition.state);
+  impl_->changes.keep_moved();
   const BodyId body = levels.bodies.add(sound, mass);
   impl_->changes.add(body.index);
-  impl_->left_places.add(impl_->levels, body);
+  impl_->left_places.note_place(impl_->levels, body);
   impl_->queries.touch();
   if (definition.events) impl_->events.ask(body.index, true);
   if (definition.level == LevelChoice::full &&
@@ -31,7 +32,9 @@ BodyId Manager::add_body(const BodyDefinition& definition) {
 }
 
 void Manager::remove_body(BodyId body) {
-  take_out(impl_->levels, impl_->index_of(body));
+  const std::uint32_t index = impl_->index_of(body);
+  impl_->changes.keep_moved();
+  take_out(impl_->levels, index);
   impl_->events.forget(body.index);
   impl_->queries.forget(body.index);
   impl_->levels.bodies.remove(body);
@@ -65,6 +68,7 @@ void Manager::set_user_data(BodyId body, std::uintptr_t user_data) {
 void Manager::set_properties(BodyId body, const BodyProperties& properties) {
   const std::uint32_t index = impl_->index_of(body);
   check_properties(properties);
+  impl_->changes.keep_moved();
   Levels& levels = impl_->levels;
   const BodyProperties before = levels.bodies.properties(index);
   const bool shows_to_others = before.category != properties.category ||
@@ -86,6 +90,7 @@ void Manager::set_properties(BodyId body, const BodyProperties& properties) {
 void Manager::set_state(BodyId body, const RigidState& state) {
   const std::uint32_t index = impl_->index_of(body);
   const RigidState sound = checked(state);
+  impl_->changes.keep_moved();
   impl_->levels.set_state(index, sound);
   impl_->queries.touch();
   impl_->choose.note(index);
@@ -96,6 +101,7 @@ void Manager::add_force(BodyId body, const Vec3& force, const Vec3& torque) {
   const std::uint32_t index = impl_->index_of(body);
   check_finite(force, "force");
   check_finite(torque, "torque");
+  impl_->changes.keep_moved();
   impl_->levels.bodies.add_force(index, {force, torque});
   impl_->levels.wake(index);
   impl_->recorder.note(Call::add_force, body, force, torque);
@@ -110,6 +116,7 @@ void Manager::add_impulse(BodyId body, const Vec3& impulse, const Vec3& point) {
   const std::uint32_t index = impl_->index_of(body);
   check_finite(impulse, "impulse");
   check_finite(point, "point of an impulse");
+  impl_->changes.keep_moved();
   Levels& levels = impl_->levels;
   RigidState state = levels.state(index);
   if (levels.bodies.properties(index).kinematic) {
@@ -126,13 +133,19 @@ void Manager::add_impulse(BodyId body, const Vec3& impulse, const Vec3& point) {
 }
 
 void Manager::sleep(BodyId body) {
-  impl_->levels.put_to_sleep(impl_->index_of(body));
-  impl_->changes.note(body.index);
+  const std::uint32_t index = impl_->index_of(body);
+  impl_->changes.keep_moved();
+  impl_->levels.put_to_sleep(index);
+  impl_->changes.note(index);
+  impl_->left_places.note_place(impl_->levels, body);
+  impl_->queries.lay_down(index);
   impl_->recorder.note(Call::sleep, body);
 }
 
 void Manager::wake(BodyId body) {
-  impl_->levels.wake(impl_->index_of(body));
+  const std::uint32_t index = impl_->index_of(body);
+  impl_->changes.keep_moved();
+  impl_->levels.wake(index);
   impl_->recorder.note(Call::wake, body);
 }
 

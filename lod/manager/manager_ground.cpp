@@ -29,6 +29,7 @@ GroundId Manager::add_plane(const Vec3& normal, double offset, MaterialId materi
     throw_input_error("offset of a plane", fmt::format("{:g} m", offset), "a finite number");
   impl_->levels.materials.check_known(material);
   const HalfSpace plane{unit, offset, material};
+  impl_->changes.keep_moved();
   const GroundId id = impl_->levels.ground.add_plane(plane);
   impl_->levels.full.add_plane(id, plane);
   impl_->levels.wake_on(plane);
@@ -40,6 +41,7 @@ GroundId Manager::add_plane(const Vec3& normal, double offset, MaterialId materi
 GroundId Manager::add_static_mesh(const Mesh& mesh, MaterialId material) {
   check_ground_mesh(mesh);
   impl_->levels.materials.check_known(material);
+  impl_->changes.keep_moved();
   const GroundId id = impl_->levels.ground.add_mesh(mesh, material);
   impl_->levels.full.add_static_mesh(id, mesh, material);
   impl_->levels.wake_all_in(impl_->levels.ground.bounds(id));
@@ -53,6 +55,7 @@ GroundId Manager::add_static_box(const Vec3& sides, const Vec3& position, const 
   for (const double side : sides) check_positive(side, "side of a static box");
   const RigidState pose = checked(RigidState{position, orientation, Vec3::Zero(), Vec3::Zero()});
   impl_->levels.materials.check_known(material);
+  impl_->changes.keep_moved();
   const GroundId id = impl_->levels.ground.add_box(sides, position, pose.orientation, material);
   impl_->levels.full.add_static_box(id, sides, position, pose.orientation, material);
   impl_->levels.wake_all_in(impl_->levels.ground.bounds(id));
@@ -66,6 +69,7 @@ void Manager::move_ground(GroundId id, const RigidState& state) {
   check_valid(levels.ground, id);
   if (levels.ground.is_plane(id)) throw_input_error("ground to be moved", "a plane", "a static box or mesh");
   const RigidState sound = checked(state);
+  impl_->changes.keep_moved();
   const Eigen::AlignedBox3d before = levels.ground.bounds(id);
   levels.ground.move_part(id, {.position = sound.position,
                                .orientation = sound.orientation,
@@ -86,6 +90,7 @@ void Manager::move_ground(GroundId id, const RigidState& state) {
 void Manager::remove_ground(GroundId id) {
   Levels& levels = impl_->levels;
   check_valid(levels.ground, id);
+  impl_->changes.keep_moved();
   if (levels.ground.is_plane(id))
     levels.wake_all();
   else

@@ -64,6 +64,7 @@ void Manager::dissolve_group(GroupId group) {
   Groups& groups = impl_->choose.groups();
   if (!groups.valid(group))
     throw InputError("a group's id: expected one that make_group returned and that was not dissolved");
+  impl_->changes.keep_moved();
   if (groups.detached(group)) groups.bring_back(group, Groups::Return::asleep);
   for (const std::uint32_t member : groups.members(group)) impl_->choose.note(member);
   groups.dissolve(group);

@@ -8,6 +8,7 @@ namespace lodestone {
 
 void Manager::set_gravity(const Vec3& gravity) {
   check_finite(gravity, "gravity");
+  impl_->changes.keep_moved();
   impl_->levels.set_gravity(gravity);
   impl_->recorder.note(Call::set_gravity, gravity);
 }

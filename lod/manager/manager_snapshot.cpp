@@ -28,7 +28,7 @@ struct Circumstances {
 
 struct Header {
   std::array<char, 8> magic = {'L', 'O', 'D', 'E', 'S', 'N', 'A', 'P'};
-  std::uint32_t format = 12, version = LODESTONE_VERSION;
+  std::uint32_t format = 13, version = LODESTONE_VERSION;
   // Sizes of what goes as it lies in memory: a build with other ones is no reader.
   std::array<std::uint16_t, 8> layout = {sizeof(void*),           sizeof(BodyRecord),   sizeof(BodyLevel),
                                          sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport),
@@ -115,6 +115,35 @@ Shapes find_shapes(std::span<const std::byte> bytes, std::size_t count,
   return found;
 }
 
+// What the statistical bodies move by, found under the laws under which it was before.
+std::vector<std::shared_ptr<const Signature>> archive_signatures(StateArchive& a, Levels& levels) {
+  struct Asked {
+    std::shared_ptr<const Shape> shape;
+    ContactLaw law;
+    bool tables = false;
+    void archive(StateArchive& b) { b(shape, law, tables); }
+  };
+  std::vector<Asked> asked;
+  std::vector<std::shared_ptr<const Signature>> found;
+  if (!a.reading() && levels.statistical)
+    for (const KindSignature& kind : levels.statistical->signatures()) {
+      asked.push_back({kind.shape, levels.signatures.law_of(*kind.signature), kind.tables});
+      found.push_back(kind.signature);
+    }
+  a(asked);
+  if (!a.reading()) return found;
+  for (const Asked& one : asked) {
+    found.push_back(levels.signatures.find(*one.shape, one.law));
+    if (found.back() && !(one.tables && found.back()->collision_heights.mean.empty())) continue;
+    throw InputError(fmt::format(
+        "the snapshot has bodies that move by the signature of shape {} (restitution {}, friction {}): found "
+        "{}",
+        one.shape->name, one.law.restitution, one.law.friction,
+        found.back() ? "one without collision heights, which tables needs" : "none here"));
+  }
+  return found;
+}
+
 void append(std::vector<std::byte>& bytes, const void* from, std::size_t count) {
   const std::size_t before = bytes.size();
   bytes.resize(before + count);
@@ -123,8 +152,9 @@ void append(std::vector<std::byte>& bytes, const void* from, std::size_t count) 
 
 }  // namespace
 
-// The full level first: it refuses what does not fit before anything has changed.
+// First the signatures, then the full level: these refuse what does not fit before anything has changed.
 void Manager::Impl::archive(StateArchive& a) {
+  const auto signatures = archive_signatures(a, levels);
   a(levels.full);
   Vec3 gravity = levels.statistical_settings.gravity;
   a(gravity);
@@ -140,9 +170,7 @@ void Manager::Impl::archive(StateArchive& a) {
   if (!levels.statistical)
     levels.statistical =
         std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
-  levels.statistical->archive(a, [this](const Shape& shape, MaterialId material) {
-    return levels.signatures.find(shape, levels.ground_law(material));
-  });
+  levels.statistical->archive(a, signatures);
 }
 
 std::vector<std::byte> Manager::snapshot() const {

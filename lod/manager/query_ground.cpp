@@ -26,12 +26,19 @@ double height_of(const HalfSpace& plane, const Volume& volume) {
 
 const TriangleTree& ShapeTrees::of(const std::shared_ptr<const Shape>& shape) {
   const std::lock_guard lock(access_);
+  if (trees_.size() >= most_ && !trees_.contains(shape.get())) drop_unused();
   Entry& entry = trees_[shape.get()];
   if (!entry.tree)
     entry = {shape, std::make_unique<const TriangleTree>(shape->mesh.faces.empty()
                                                              ? Mesh{shape->hull.vertices, shape->hull.faces}
                                                              : shape->mesh)};
   return *entry.tree;
+}
+
+// What a question is about is not unused: its body or piece of the ground has the shape.
+void ShapeTrees::drop_unused() {
+  std::erase_if(trees_, [](const auto& known) { return known.second.shape.use_count() == 1; });
+  most_ = std::max(most_, 2 * trees_.size());
 }
 
 std::optional<SurfaceHit> meet(const PosedSurface& surface, const Sweep& sweep) {

@@ -12,7 +12,8 @@
 
 namespace lodestone {
 
-/// Trees of shapes, each made when it is first asked for. From any thread.
+/// Trees of shapes, each made when it is first asked for, and kept while others have the shape. From any
+/// thread.
 class ShapeTrees {
  public:
   const TriangleTree& of(const std::shared_ptr<const Shape>& shape);
@@ -22,8 +23,11 @@ class ShapeTrees {
     std::shared_ptr<const Shape> shape;  // its address stays its own
     std::unique_ptr<const TriangleTree> tree;
   };
+  void drop_unused();
+
   std::mutex access_;
   std::unordered_map<const Shape*, Entry> trees_;
+  std::size_t most_ = 64;  // until those that are no longer used are looked for
 };
 
 /// A ray of unit direction and the radius of the sphere that moves along it, 0: none.

@@ -42,9 +42,16 @@ QueryHit hit_of(const ContactSide& who, const SurfaceHit& hit) {
 
 void QueryScene::finish(std::span<const BodyId> fell_asleep, std::span<const BodyId> moved_and_slept) {
   stale_ = true;
-  if (!in_use_) return;
   for (const auto& list : {fell_asleep, moved_and_slept})
-    for (const BodyId body : list) slept_.push_back(body.index);
+    for (const BodyId body : list) lay_down(body.index);
+}
+
+// Where nobody asks for long it is cheaper to begin anew.
+void QueryScene::lay_down(std::uint32_t body) {
+  stale_ = true;
+  if (!in_use_) return;
+  slept_.push_back(body);
+  if (slept_.size() > levels_.bodies.indices()) forget_all();
 }
 
 void QueryScene::put(std::uint32_t body) {

@@ -22,6 +22,8 @@ class QueryScene {
   /// Something moved, came or went.
   void touch() { stale_ = true; }
   void forget(std::uint32_t body) { grid_.forget(body), stale_ = true; }
+  /// Where it is now it was laid to sleep.
+  void lay_down(std::uint32_t body);
   /// A step is over in which these moved that sleep now.
   void finish(std::span<const BodyId> fell_asleep, std::span<const BodyId> moved_and_slept);
   /// All may be elsewhere.

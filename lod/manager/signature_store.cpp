@@ -80,6 +80,13 @@ std::shared_ptr<const Signature> SignatureStore::logged(const Shape& shape, cons
   }
 }
 
+const ContactLaw& SignatureStore::law_of(const Signature& signature) const {
+  const auto entry =
+      std::ranges::find_if(entries_, [&](const Entry& e) { return e.signature.get() == &signature; });
+  check_that(entry != entries_.end(), "what bodies move by was found here");
+  return entry->law;
+}
+
 const RungErrors& SignatureStore::errors(const Shape& shape, const ContactLaw& law) const {
   static const RungErrors kAverages;
   const Entry* entry = find_entry(shape, law);

@@ -24,6 +24,8 @@ class SignatureStore {
   bool ready(const Shape& shape, const ContactLaw& law);
   /// The signature of `shape`, or of a scaled copy of it, under `law`; null where the source has none.
   std::shared_ptr<const Signature> find(const Shape& shape, const ContactLaw& law);
+  /// Under which find() found it.
+  const ContactLaw& law_of(const Signature& signature) const;
   /// Of what was found; else the averages. Asks for nothing.
   const RungErrors& errors(const Shape& shape, const ContactLaw& law) const;
   std::int64_t loaded() const { return loaded_; }

@@ -5,7 +5,7 @@
 namespace lodestone {
 
 void StepChanges::begin() {
-  levels_.rung_changes.clear();
+  rung_changes_.clear();
   fell_asleep_.clear();
   woke_.clear();
   moved_.clear();
@@ -53,6 +53,8 @@ void StepChanges::finish() {
     slept_[body] = now;
   }
   noted_.clear();
+  std::swap(rung_changes_, levels_.rung_changes);
+  levels_.rung_changes.clear();
   moved_known_ = false;
 }
 

@@ -27,17 +27,19 @@ class StepChanges {
 
   /// Forgets the last step where it reads.
   void archive(StateArchive& a) {
-    a(slept_, noted_, lies_at_);
+    a(slept_, noted_, lies_at_, levels_.rung_changes);
     if (a.reading()) begin();
   }
 
   std::span<const BodyId> moved() const;
+  /// Before anything is woken, laid to sleep, added or removed between steps.
+  void keep_moved() const { moved(); }
   std::span<const BodyId> fell_asleep() const { return fell_asleep_; }
   std::span<const BodyId> woke() const { return woke_; }
   std::span<const BodyId> moved_and_slept() const {
     return moved_and_slept_;
   }  ///< woke in the step and fell asleep again
-  std::span<const RungChange> rung_changes() const { return levels_.rung_changes; }
+  std::span<const RungChange> rung_changes() const { return rung_changes_; }
 
  private:
   void find_moved() const;
@@ -50,6 +52,7 @@ class StepChanges {
   std::vector<std::uint32_t> settled_;  // who fell asleep in some part of the step
   std::vector<BodyId> fell_asleep_, woke_;
   std::vector<BodyId> moved_and_slept_;
+  std::vector<RungChange> rung_changes_;
   // Found when first asked for.
   mutable std::mutex access_;
   mutable bool moved_known_ = true;

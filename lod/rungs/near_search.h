@@ -59,10 +59,12 @@ class NearSearch {
   std::size_t bytes() const { return cells_.bytes(); }
   /// Of what it found only the order of spheres counts for the next step.
   void archive(StateArchive& a) {
-    if (!a.reading()) order_.assign(order_of_spheres().begin(), order_of_spheres().end());
+    std::vector<std::uint32_t> order(order_of_spheres().begin(), order_of_spheres().end());
+    a(order);
+    if (!a.reading()) return;
+    order_ = std::move(order);
     mixed_ = any_near_ = true;
-    a(order_);
-    if (a.reading()) rooms_.give_up(), known_sleepers_.clear(), lone_spheres_.clear();
+    rooms_.give_up(), known_sleepers_.clear(), lone_spheres_.clear();
   }
 
  private:

@@ -213,6 +213,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
 void StatisticalLevel::forget_contacts() {
   impl_->tables.forget_contacts();
   impl_->near_bodies.forget_pairs();
+  impl_->fell_asleep.clear();
 }
 
 std::size_t StatisticalLevel::bytes() const {
@@ -285,11 +286,12 @@ void StatisticalLevel::find_sleepers(const Vec3& center, double reach,
   });
 }
 
-void StatisticalLevel::archive(
-    StateArchive& a,
-    const std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>& signature_of) {
+std::vector<KindSignature> StatisticalLevel::signatures() const { return impl_->kinds.signatures(); }
+
+void StatisticalLevel::archive(StateArchive& a,
+                               std::span<const std::shared_ptr<const Signature>> signatures) {
   Impl& s = *impl_;
-  s.kinds.archive(a, signature_of);
+  s.kinds.archive(a, signatures);
   a(s.sleepers, s.support, s.tables, s.search, s.near_bodies, s.fell_asleep, s.reach, s.cost, s.clocked);
   s.near_bodies.make_room(std::size_t(s.support.size()));
 }

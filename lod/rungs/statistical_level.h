@@ -16,6 +16,7 @@
 #include "lod/ground/ground.h"
 #include "lod/statistical/contact_log.h"
 #include "lod/statistical/full_neighbor.h"
+#include "lod/statistical/kinds.h"
 #include "lod/statistical/statistical_settings.h"
 #include "lod/step_report.h"
 #include "reference/state_archive.h"
@@ -111,9 +112,9 @@ class StatisticalLevel {
   /// Appends the contacts of the last step in which one of the two bodies met as a hull.
   void find_contacts(std::vector<PairContact>& contacts) const;
 
-  /// All that its next steps depend on. Where it reads, `signature_of` tells the signatures that bodies had.
-  void archive(StateArchive& a,
-               const std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>& signature_of);
+  /// What its bodies move by, each once, and all that its next steps depend on, with these: see Kinds.
+  std::vector<KindSignature> signatures() const;
+  void archive(StateArchive& a, std::span<const std::shared_ptr<const Signature>> signatures);
 
   /// What it did in the last step.
   Activity activity(StatisticalPlace place) const;

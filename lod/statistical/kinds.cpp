@@ -1,5 +1,6 @@
 #include "lod/statistical/kinds.h"
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 
@@ -71,17 +72,31 @@ void Kinds::give_back(std::uint32_t number) {
     parts_.erase(parts);
 }
 
-void Kinds::archive(StateArchive& a, const SignatureOf& signature_of) {
+std::vector<KindSignature> Kinds::signatures() const {
+  std::vector<KindSignature> found;
+  for (const BodyKind& kind : kinds_) {
+    if (!kind.signature) continue;
+    auto known = std::ranges::find(found, kind.signature, &KindSignature::signature);
+    if (known == found.end()) known = found.insert(found.end(), {kind.signature, kind.shape});
+    known->tables |= kind.faces != nullptr;
+  }
+  return found;
+}
+
+void Kinds::archive(StateArchive& a, std::span<const std::shared_ptr<const Signature>> signatures) {
   struct Known {
     std::shared_ptr<const Shape> shape;  // null: a number that no kind has
     MaterialId material = 0;
-    bool has_signature = false, tables = false, support = false;
-    void archive(StateArchive& b) { b(shape, material, has_signature, tables, support); }
+    std::uint32_t signature = 0;  // 0: none; else its place, from 1 on
+    bool tables = false, support = false;
+    void archive(StateArchive& b) { b(shape, material, signature, tables, support); }
   };
   std::vector<Known> known;
-  for (const BodyKind& kind : kinds_)
-    known.push_back(
-        {kind.shape, kind.material, kind.signature != nullptr, kind.faces != nullptr, kind.clips != nullptr});
+  for (const BodyKind& kind : kinds_) {
+    const auto place = std::ranges::find(signatures, kind.signature) - signatures.begin();
+    known.push_back({kind.shape, kind.material, kind.signature ? std::uint32_t(place) + 1 : 0,
+                     kind.faces != nullptr, kind.clips != nullptr});
+  }
   a(known, uses_, free_, births_);
   if (!a.reading()) return;
   kinds_.assign(known.size(), {});
@@ -89,8 +104,9 @@ void Kinds::archive(StateArchive& a, const SignatureOf& signature_of) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     const Known& kind = known[i];
     if (!kind.shape) continue;
-    kinds_[i] = make_body_kind(
-        kind.shape, kind.has_signature ? signature_of(*kind.shape, kind.material) : nullptr, kind.material);
+    check_that(kind.signature <= signatures.size(), "a snapshot has the signatures that it names");
+    kinds_[i] = make_body_kind(kind.shape, kind.signature > 0 ? signatures[kind.signature - 1] : nullptr,
+                               kind.material);
     known_.emplace(key_of(kinds_[i]), std::uint32_t(i));
     if (kind.tables) prepare(StatisticalModel::tables, kinds_[i]);
     if (kind.support) prepare(StatisticalModel::support, kinds_[i]);

@@ -2,7 +2,8 @@
 // A kind is kept for as long as a body has it.
 #pragma once
 
-#include <functional>
+#include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -11,6 +12,13 @@
 #include "reference/state_archive.h"
 
 namespace lodestone {
+
+/// A signature that bodies move by.
+struct KindSignature {
+  std::shared_ptr<const Signature> signature;
+  std::shared_ptr<const Shape> shape;  ///< of one of its kinds
+  bool tables = false;                 ///< some are at `tables`
+};
 
 class Kinds {
  public:
@@ -23,9 +31,10 @@ class Kinds {
   /// A body less has it. A number that no body has is given to another kind in time.
   void give_back(std::uint32_t kind);
 
-  /// Where it reads, `signature_of` tells the signatures that the kinds had.
-  using SignatureOf = std::function<std::shared_ptr<const Signature>(const Shape&, MaterialId)>;
-  void archive(StateArchive& a, const SignatureOf& signature_of);
+  /// The signatures that kinds have, each once. They must be known when kinds are read.
+  std::vector<KindSignature> signatures() const;
+  /// `signatures`: those of signatures(), where it reads as they were when that was written.
+  void archive(StateArchive& a, std::span<const std::shared_ptr<const Signature>> signatures);
 
   /// Numbers below it are, or were, those of kinds.
   std::size_t size() const { return kinds_.size(); }

@@ -47,6 +47,8 @@ class ContactSteps {
   const HalfSpace* plane_of(const HalfSpace& plane);
   GroundMotion unkicked(const Mat3& rotation, const GroundMotion& kicked) const;
   void find_contacts(const OnGround& on, double time);
+  void add_due(const OnGround& on);
+  void add_stood_on(const OnGround& on);
   bool ends_somewhere(const HalfSpace& plane) const;
   std::size_t find_moved(const TouchingPoint& point, const OnGround& on) const;
   bool strikes_now(std::size_t contact, const GroundMotion& unkicked) const;
@@ -73,7 +75,7 @@ class ContactSteps {
   // What rolls over many corners would lose energy by each that stops it a little too soon; on the few of a
   // box, slow ones save nothing that counts.
   static constexpr std::size_t kFew = 24;
-  static constexpr double kSlow = 0.5;  // over bounce_velocity
+  static constexpr double kSlow = 0.25;  // over bounce_velocity
 
   // Kept from step to step, since to make all of them takes longer than to solve a few.
   static StepContacts& kept() {
@@ -100,12 +102,18 @@ class ContactSteps {
   HeldPoints held_;
   std::optional<EnergyBound> bound_;  // since the frame's time began, on planes since the last strike
   bool rolled_ = false;               // since then
-  struct Due {
+  struct PointOnPlane {
     TouchingPoint point;
     HalfSpace plane;
   };
-  std::array<Due, StepContacts::kCapacity> due_;  // what strikes where this step ends
-  std::size_t due_count_ = 0;
+  struct PointsOnPlanes {
+    std::array<PointOnPlane, StepContacts::kCapacity> all;
+    std::size_t count = 0;
+    void add(const TouchingPoint& point, const HalfSpace& plane) { all[count++] = {point, plane}; }
+    std::span<const PointOnPlane> get() const { return std::span(all).first(count); }
+  };
+  PointsOnPlanes due_;       // what strikes where this step ends
+  PointsOnPlanes stood_on_;  // vertices that carried the body in the step before
 };
 
 bool is_same(const HalfSpace& a, const HalfSpace& b) {
@@ -123,7 +131,7 @@ void ContactSteps::run(double time) {
   const double longest = (world_.solids ? settings_.uneven_step : settings_.contact_step) * fall_time_;
   const int steps = std::clamp(int(std::ceil(time / longest)), 1, kMostSteps);
   const double usual = time / steps;
-  int divisions = 2 * steps;
+  int divisions = 4 * steps;
   begin_bound();
   for (double left = time; left > 1e-6 * time;)
     left -= step(left / std::ceil(left / usual - 1e-9), divisions-- > 0);
@@ -220,11 +228,17 @@ GroundMotion ContactSteps::unkicked(const Mat3& rotation, const GroundMotion& ki
               shape_.inverse_inertia_per_mass * (rotation.transpose() * (kicked_ * world_.turning))};
 }
 
-// With the vertices that strike now, which of many near the ground may be none of those found. Who was to
-// strike what ends somewhere may have passed its end.
+// With the vertices that strike now and those that the body stood on, which of many near the ground may be
+// none of those found.
 void ContactSteps::find_contacts(const OnGround& on, double time) {
   find_step_contacts(body_, kind_, world_, on, time, settings_.contact_margin * shape_.radius, held_, found_);
-  for (const Due& due : std::span(due_).first(due_count_)) {
+  add_due(on);
+  add_stood_on(on);
+}
+
+// Who was to strike what ends somewhere may have passed its end.
+void ContactSteps::add_due(const OnGround& on) {
+  for (const PointOnPlane& due : due_.get()) {
     std::size_t i = 0;
     const auto is_it = [&](std::size_t k) {
       return found_.point[k].stands_for(due.point, shape_) && is_same(*found_.plane[k], due.plane);
@@ -241,7 +255,26 @@ void ContactSteps::find_contacts(const OnGround& on, double time) {
     }
     found_.due[i] = true;
   }
-  due_count_ = 0;
+  due_.count = 0;
+}
+
+// Without what it turns about a body falls until it strikes.
+void ContactSteps::add_stood_on(const OnGround& on) {
+  for (const PointOnPlane& vertex : stood_on_.get()) {
+    const auto is_known = [&] {
+      for (std::size_t i = 0; i < found_.count; ++i)
+        if (found_.point[i].vertex == vertex.point.vertex && is_same(*found_.plane[i], vertex.plane))
+          return true;
+      return false;
+    };
+    if (is_known() || ends_somewhere(vertex.plane)) continue;
+    GroundContact contact = point_contact(body_, kind_, world_, on.rotation, vertex.point, vertex.plane);
+    if (contact.gap > touching_) continue;
+    const HalfSpace* plane = found_.is_full() ? nullptr : plane_of(vertex.plane);
+    if (!plane) return;
+    contact.guess = on.rotation.transpose() * held_.find(vertex.point, shape_);
+    found_.add(contact, vertex.point, *plane);
+  }
 }
 
 // Unless it is under the whole body.
@@ -403,7 +436,7 @@ double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicke
   constexpr double kTogether = 1.1;
   for (std::size_t i = 0; i < found_.count; ++i) {
     if (until[i] >= std::min(time, kTogether * first)) continue;
-    due_[due_count_++] = {found_.point[i], *found_.plane[i]};
+    due_.add(found_.point[i], *found_.plane[i]);
     found_.contact[i].gap = kUnbounded, found_.contact[i].guess = Vec3::Zero();
   }
   return first;
@@ -456,8 +489,11 @@ double ContactSteps::hold(OnGround& on, double time, bool divided) {
 void ContactSteps::take_held(const OnGround& on, const GroundMotion& unkicked) {
   const Vec3 velocity = body_.velocity, spin = body_.spin;
   take_impulses(body_, on, found_.contacts());
+  stood_on_.count = 0;
   for (std::size_t k = 0; k < found_.count; ++k) {
     const GroundContact& c = found_.contact[k];
+    if (c.rows[0].impulse > 0.0 && found_.point[k].vertex != TouchingPoint::kNoVertex)
+      stood_on_.add(found_.point[k], *found_.plane[k]);
     held_.impulse[k] = {found_.point[k], c.bounces ? Vec3(Vec3::Zero()) : Vec3(on.rotation * c.impulse())};
   }
   log(on, found_.contacts(), found_.plane, unkicked);

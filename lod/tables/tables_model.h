@@ -16,10 +16,9 @@ struct RestingRecord {
 
 struct TablesSettings {
   TablesOptions options;
-  int max_impacts = 4;            ///< a step; then the body slides on for the rest of the step
-  double resting_energy = 0.25;   ///< J/kg over g R: the first threshold of 3.4
-  double sleeping_energy = 5e-4;  ///< J/kg over g R: the second
-  double blend_time = 1.2;        ///< over √(R/g): in which height and orientation approach the rest pose
+  int max_impacts = 4;           ///< a step; then the body slides on for the rest of the step
+  double resting_energy = 0.25;  ///< J/kg over g R: the first threshold of 3.4; the second is RestLaw's
+  double blend_time = 1.2;       ///< over √(R/g): in which height and orientation approach the rest pose
 };
 
 /// Mean (or drawn) collision height for how `body` moves: the sphere's radius, m.

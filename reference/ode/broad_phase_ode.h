@@ -20,7 +20,6 @@ struct Candidate {
   std::uint32_t first_part, second_part;  ///< of a body of several geoms
 
   bool with_ground() const { return second_order >= kGround && second_order < kCallers; }
-  bool with_callers() const { return second_order >= kCallers; }
   std::uint32_t second_number() const { return std::uint32_t(second_order & (kGround - 1)); }
 };
 

@@ -63,9 +63,21 @@ TrimeshData::~TrimeshData() { dGeomTriMeshDataDestroy(id_); }
 
 dTriMeshDataID TrimeshCache::find(Entries& entries, const std::shared_ptr<const Shape>& shape,
                                   std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {
-  Entry& entry = entries[shape.get()];
-  if (!entry.data) entry = {shape, std::make_unique<TrimeshData>(vertices, faces)};
-  return entry.data->id();
+  if (const auto known = entries.find(shape.get()); known != entries.end()) return known->second.data->id();
+  if (meshes_.size() + hulls_.size() >= most_) drop_unused();
+  ++built_;
+  Entry made{shape, std::make_unique<TrimeshData>(vertices, faces)};
+  return entries.emplace(shape.get(), std::move(made)).first->second.data->id();
+}
+
+// A body that has one of these in its geom has the shape, too.
+void TrimeshCache::drop_unused() {
+  const auto is_used = [this](const std::shared_ptr<const Shape>& shape) {
+    return shape.use_count() > long(meshes_.count(shape.get()) + hulls_.count(shape.get()));
+  };
+  for (Entries* const entries : {&meshes_, &hulls_})
+    std::erase_if(*entries, [&](const auto& known) { return !is_used(known.second.shape); });
+  most_ = std::max(most_, 2 * (meshes_.size() + hulls_.size()));
 }
 
 std::vector<Sphere> spheres_of(const OdeBodyDefinition& definition) {

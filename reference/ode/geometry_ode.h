@@ -26,7 +26,8 @@ class TrimeshData {
   dTriMeshDataID id_;
 };
 
-/// The trimesh data of each shape and of each shape's hull, built on first use.
+/// The trimesh data of each shape and of each shape's hull, built on first use, and kept while bodies have
+/// the shape.
 class TrimeshCache {
  public:
   dTriMeshDataID mesh_of(const std::shared_ptr<const Shape>& shape) {
@@ -35,7 +36,7 @@ class TrimeshCache {
   dTriMeshDataID hull_of(const std::shared_ptr<const Shape>& shape) {
     return find(hulls_, shape, shape->hull.vertices, shape->hull.faces);
   }
-  std::int64_t built() const { return std::int64_t(meshes_.size() + hulls_.size()); }
+  std::int64_t built() const { return built_; }  ///< so far
 
  private:
   struct Entry {
@@ -43,9 +44,13 @@ class TrimeshCache {
     std::unique_ptr<TrimeshData> data;
   };
   using Entries = std::unordered_map<const Shape*, Entry>;
-  static dTriMeshDataID find(Entries& entries, const std::shared_ptr<const Shape>& shape,
-                             std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces);
+  dTriMeshDataID find(Entries& entries, const std::shared_ptr<const Shape>& shape,
+                      std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces);
+  void drop_unused();
+
   Entries meshes_, hulls_;
+  std::int64_t built_ = 0;
+  std::size_t most_ = 64;  // until those that are no longer used are looked for
 };
 
 /// The spheres that stand for a body, about its centre of mass: those given for OdeGeometry::spheres, one for

@@ -55,6 +55,15 @@ const OdeSettings& checked(const OdeSettings& settings) {
   return settings;
 }
 
+// As corners, which go as they lie in memory.
+void archive_boxes(StateArchive& a, std::vector<Eigen::AlignedBox3d>& boxes) {
+  std::vector<Vec3> corners;
+  for (const Eigen::AlignedBox3d& box : boxes) corners.push_back(box.min()), corners.push_back(box.max());
+  a(corners);
+  boxes.clear();
+  for (std::size_t i = 0; i + 1 < corners.size(); i += 2) boxes.emplace_back(corners[i], corners[i + 1]);
+}
+
 }  // namespace
 
 OdeWorld::OdeWorld(const OdeSettings& settings, const MaterialTable& materials) {
@@ -236,7 +245,7 @@ void OdeWorld::archive(StateArchive& a) {
   if (a.reading())
     for (const Body& body : impl.bodies.slots())
       if (body.body) impl.collision.broad_phase().note_sleep(body);
-  if (a.reading()) impl.vacated.clear();
+  archive_boxes(a, impl.vacated);
   a(impl.joints, impl.quick_steps, impl.callers_attempt, impl.callers_calm);
   double cfm = dWorldGetCFM(impl.world);
   a(cfm);

@@ -24,9 +24,10 @@ struct Identity {
   int geom_class = 0;
   bool dynamic = false;
   unsigned category = 0, collide = 0;
-  std::array<dReal, 4> sizes{};  // m; of a plane, its parameters
-  const void* data = nullptr;    // of a trimesh or height field
-  std::uint64_t content = 0;     // of a trimesh: a print of some of its triangles
+  std::array<dReal, 4> sizes{};   // m; of a plane, its parameters
+  std::array<dReal, 7> offset{};  // of a dynamic body's: m, and a quaternion
+  const void* data = nullptr;     // of a trimesh or height field
+  std::uint64_t content = 0;      // of a trimesh: a print of some of its triangles
   friend bool operator==(const Identity&, const Identity&) = default;
 };
 
@@ -121,16 +122,27 @@ const void* data_of(dGeomID geom, int geom_class) {
   return geom_class == dHeightfieldClass ? dGeomHeightfieldGetHeightfieldData(geom) : nullptr;
 }
 
+std::array<dReal, 7> offset_of(dGeomID geom) {
+  std::array<dReal, 7> offset{};
+  std::copy_n(dGeomGetOffsetPosition(geom), 3, offset.begin());
+  dQuaternion turn;
+  dGeomGetOffsetQuaternion(geom, turn);
+  std::copy_n(turn, 4, offset.begin() + 3);
+  return offset;
+}
+
 Identity identity_of(dGeomID geom, int geom_class, unsigned category, unsigned collide,
                      std::uint64_t content) {
   const dBodyID body = dGeomGetBody(geom);
+  const bool dynamic = body && !dBodyIsKinematic(body);
   return {.geom = geom,
           .body = body,
           .geom_class = geom_class,
-          .dynamic = body && !dBodyIsKinematic(body),
+          .dynamic = dynamic,
           .category = category,
           .collide = collide,
           .sizes = sizes_of(geom, geom_class),
+          .offset = dynamic ? offset_of(geom) : std::array<dReal, 7>{},
           .data = data_of(geom, geom_class),
           .content = content};
 }

@@ -51,8 +51,9 @@ class SpaceMirror {
   /// By slot; removed ones among them.
   std::span<const MirroredGeom> geoms() const;
   /// Slots, ascending, of what the last refresh found. A geom that became another (its size, mesh data, bits,
-  /// body, dynamic or kinematic) is removed and added, in another slot; one in the same state as before, at
-  /// the same address, is taken for the same, and so is a mesh of which four triangles are the same.
+  /// body, dynamic or kinematic, of a dynamic body its offset) is removed and added, in another slot; one in
+  /// the same state as before, at the same address, is taken for the same, and so is a mesh of which four
+  /// triangles are the same.
   std::span<const std::uint32_t> added() const;
   std::span<const std::uint32_t> removed() const;
   std::span<const std::uint32_t> moved() const;  ///< position, orientation or bounds

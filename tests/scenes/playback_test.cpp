@@ -92,6 +92,21 @@ TEST_F(SavedPlayback, WhatIsNoneIsRefused) {
   EXPECT_NE(error_of_loading(), "no error");
 }
 
+// Of the same length, but with words where numbers are expected.
+TEST_F(SavedPlayback, ADamagedHeadIsRefused) {
+  for (const auto& [from, to] :
+       {std::pair("\"offset\":", "\"offsat\":"), std::pair("\"label\":", "\"labol\":"),
+        std::pair("\"blobs\":{", "\"blobs\":[")}) {
+    run();
+    std::ifstream in(file(), std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    ASSERT_NE(bytes.find(from), std::string::npos) << from;
+    bytes.replace(bytes.find(from), std::string(from).size(), to);
+    std::ofstream(file(), std::ios::binary) << bytes;
+    EXPECT_NE(error_of_loading().find("a damaged playback file"), std::string::npos) << error_of_loading();
+  }
+}
+
 TEST_F(SavedPlayback, EndsWithTheLastStep) {
   std::string text = kFalling;
   text.replace(text.find("every_n_steps: 2"), 16, "every_n_steps: 7");

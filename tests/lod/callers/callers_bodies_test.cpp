@@ -189,5 +189,23 @@ TEST_F(BodiesOfCaller, PartsAreWhereTheyAreNow) {
   dBodyDestroy(b);
 }
 
+TEST_F(BodiesOfCaller, HaveTheirGeomsAndMassesAsTheyAreNow) {
+  const dBodyID body = scene_.body(2.0, {1, 2, 3});
+  const dGeomID geom = dBodyGetFirstGeom(body);
+  follow();
+  auto neighbors = gather();
+  const Vec3 before = of(neighbors, body).shape->hull.vertices[0];
+  dGeomSetOffsetPosition(geom, 0.5, 0, 0);
+  follow();
+  neighbors = gather();
+  EXPECT_LT((of(neighbors, body).shape->hull.vertices[0] - before - Vec3(0.5, 0, 0)).norm(), 1e-9);
+  dMass mass;
+  dMassSetBoxTotal(&mass, 2.0, 1, 2, 3);
+  dBodySetMass(body, &mass);
+  follow();
+  neighbors = gather();
+  EXPECT_NEAR(of(neighbors, body).shape->inertia_per_mass(0, 0), (2 * 2 + 3 * 3) / 12.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace lodestone

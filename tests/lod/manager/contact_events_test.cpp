@@ -196,5 +196,21 @@ TEST(ContactEvents, OfBodiesAtTablesAreOnBothBodies) {
   EXPECT_GT(begun, 20);
 }
 
+TEST(ContactEvents, AskedForAgainTheyBeginAnew) {
+  Manager manager = on_floor();
+  const auto box = box_shape(kSides);
+  const BodyId body = add(manager, box, testing::at({0, 0, 0.2}), LevelChoice::support);
+  manager.set_events(body, true);
+  run(manager, 3.0);
+  ASSERT_EQ(manager.report().asleep, 1);
+  manager.set_events(body, false);
+  run(manager, 0.5);
+  manager.set_events(body, true);
+  manager.wake(body);
+  manager.step(kFrame);
+  ASSERT_EQ(manager.contact_events().size(), 1U);
+  EXPECT_EQ(manager.contact_events()[0].phase, ContactPhase::begin);
+}
+
 }  // namespace
 }  // namespace lodestone::contact_events_test

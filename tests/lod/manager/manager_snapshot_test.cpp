@@ -315,5 +315,61 @@ TEST(ManagerSnapshot, WhatTouchesACallersBodyGoesOnToTheBit) {
   EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash());
 }
 
+// A body of `tables`, which cannot be without one.
+TEST(ManagerSnapshot, WithoutItsSignatureNothingChanges) {
+  const auto box = box_shape({0.2, 0.3, 0.4});
+  ManagerSettings settings = unmeasured();
+  settings.signatures = coarse_signature;
+  Manager writer = on_floor(settings);
+  add(writer, box, testing::at({0, 0, 1}), LevelChoice::tables);
+  run(writer, 0.2);
+  const Bytes snapshot = writer.snapshot();
+
+  Manager reader = on_floor();
+  const BodyId own = add(reader, box, testing::at({3, 0, 1}), LevelChoice::support);
+  run(reader, 0.1);
+  const std::uint64_t before = reader.state_hash();
+  const std::string message = testing::message_of([&] { reader.restore(snapshot); });
+  EXPECT_NE(message.find("signature of shape"), std::string::npos) << message;
+  EXPECT_NE(message.find("found none here"), std::string::npos) << message;
+  EXPECT_EQ(reader.state_hash(), before);
+  EXPECT_EQ(reader.bodies(), 1);
+  reader.step(kFrame);
+  EXPECT_LT(reader.state(own).position.z(), 1.0);
+}
+
+// It was measured under the law of the plane that was the first one when its body came.
+TEST(ManagerSnapshot, GoesOnWithTheSignatureThatItHad) {
+  const auto box = box_shape({0.2, 0.3, 0.4});
+  ManagerSettings settings = unmeasured();
+  std::vector<double> asked;
+  settings.signatures = [&](const Shape& shape, const ContactLaw& law) {
+    asked.push_back(law.friction);
+    return coarse_signature(shape, law);
+  };
+  const auto with_planes = [&] {
+    Manager manager(settings);
+    manager.materials().add({.restitution = 0.1, .friction = 0.9});
+    manager.add_plane(Vec3::UnitX(), -50.0, 1);
+    return manager;
+  };
+  Manager writer = with_planes();
+  const GroundId floor = writer.add_plane(Vec3::UnitZ(), 0.0, 1);
+  add(writer, box, testing::at({0, 0, 1}), LevelChoice::tables);
+  run(writer, 0.1);
+  const double first = asked.front();
+  writer.materials().replace(1, {.restitution = 0.1, .friction = 0.2});
+  run(writer, 0.1);
+  const Bytes snapshot = writer.snapshot();
+  asked.clear();
+  Manager reader = with_planes();
+  reader.materials().replace(1, {.restitution = 0.1, .friction = 0.2});
+  EXPECT_EQ(reader.add_plane(Vec3::UnitZ(), 0.0, 1), floor);
+  reader.restore(snapshot, {{box}});
+  EXPECT_EQ(asked, std::vector<double>{first});
+  run(writer, 1.0), run(reader, 1.0);
+  EXPECT_EQ(reader.state_hash(), writer.state_hash());
+}
+
 }  // namespace
 }  // namespace lodestone

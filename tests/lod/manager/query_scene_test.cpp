@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "lod/manager/query_ground.h"
 #include "lod/queries.h"
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
@@ -271,6 +272,40 @@ TEST(QueryScene, AMeshOfTheGroundIsMetOnce) {
   manager.sweep_spheres_through({&sweep, 1}, hits);
   ASSERT_EQ(hits[0].size(), 2U);
   EXPECT_LE(hits[0][0].distance, hits[0][1].distance);
+}
+
+// It lies where it was put, though no step saw it go there.
+TEST(QueryScene, FindsWhatWasPutElsewhereAndLaidToSleep) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support}) {
+    Manager manager = on_floor();
+    const BodyId box = add(manager, box_shape({0.4, 0.4, 0.4}), testing::at({0, 0, 0.2}), level);
+    run(manager, 0.1);
+    const auto down_at = [&](double x) {
+      const auto hit = manager.cast_ray({.from = {x, 0, 5}, .direction = {0, 0, -1}, .length = 10});
+      return hit && hit->who.kind == ContactSide::Kind::body;
+    };
+    EXPECT_TRUE(down_at(0));
+    manager.set_state(box, testing::at({7, 0, 0.2}));
+    manager.sleep(box);
+    EXPECT_TRUE(down_at(7));
+    manager.set_state(box, testing::at({-7, 0, 0.2}));
+    manager.sleep(box);
+    manager.step(kFrame);
+    EXPECT_TRUE(down_at(-7));
+    EXPECT_FALSE(down_at(7));
+  }
+}
+
+// The rows of tiles of a world that is streamed.
+TEST(QueryScene, KeepsNoTreesOfGroundThatIsGone) {
+  std::weak_ptr<const Shape> first;
+  ShapeTrees trees;
+  for (int i = 0; i < 200; ++i) {
+    const auto tile = std::make_shared<const Shape>(make_shape("tile", l_mesh()));
+    trees.of(tile);
+    if (i == 0) first = tile;
+  }
+  EXPECT_TRUE(first.expired());
 }
 
 }  // namespace

@@ -160,5 +160,57 @@ TEST_F(LivelyScene, RaysMeetTheBodiesWhereTheyAreNow) {
   EXPECT_GT(met, 100);
 }
 
+// A body of `tables` with properties of its own goes to `support` at once.
+TEST(StepChanges, WhatChangesRungBetweenStepsIsToldAfterTheNext) {
+  ManagerSettings settings = unmeasured();
+  settings.signatures = coarse_signature;
+  Manager manager = on_floor(settings);
+  const auto box = box_shape({0.2, 0.3, 0.4});
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 3; ++i)
+    bodies.push_back(add(manager, box, at({2.0 * i, 0, 1}), LevelChoice::statistical));
+  manager.set_policy({.policy = DistancePolicy{.full_within = 0.0, .support_within = 0.0}});
+  view_from(manager, {100, 0, 0});
+  manager.step(kFrame);
+  ASSERT_EQ(manager.report().tables, 3);
+  const auto told = manager.rung_changes();
+  const std::vector<RungChange> before(told.begin(), told.end());
+  for (const BodyId body : bodies) manager.set_properties(body, {.linear_damping = 0.1});
+  EXPECT_TRUE(std::ranges::equal(manager.rung_changes(), before));
+  manager.step(kFrame);
+  ASSERT_EQ(manager.rung_changes().size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(manager.rung_changes()[i], (RungChange{bodies[i], Rung::tables, Rung::support}));
+}
+
+// Whatever the caller does to bodies before he asks.
+TEST(StepChanges, WhoMovedIsOfTheStepNotOfTheQuestion) {
+  Manager manager = on_floor();
+  const auto box = box_shape({0.3, 0.3, 0.3});
+  const BodyId removed = add(manager, box, at({0, 0, 1})), laid = add(manager, box, at({2, 0, 1})),
+               still = add(manager, box, at({4, 0, 0.15}));
+  manager.sleep(still);
+  manager.step(kFrame);
+  manager.step(kFrame);
+  const Ids expected{{removed.index, removed.generation}, {laid.index, laid.generation}};
+  manager.remove_body(removed);
+  manager.sleep(laid);
+  manager.wake(still);
+  add(manager, box, at({6, 0, 1}), LevelChoice::full);
+  EXPECT_EQ(ids_of(manager.moved()), expected);
+}
+
+TEST(StepChanges, TheLastStatisticalBodyFallsAsleepOnce) {
+  Manager manager = on_floor();
+  const BodyId box = add(manager, box_shape({0.3, 0.3, 0.3}), at({0, 0, 0.2}), LevelChoice::support);
+  while (manager.fell_asleep().empty()) manager.step(kFrame);
+  manager.set_level(box, LevelChoice::full);
+  manager.step(kFrame);
+  for (int i = 0; i < 3; ++i) {
+    manager.step(kFrame);
+    EXPECT_TRUE(manager.moved().empty());
+  }
+}
+
 }  // namespace
 }  // namespace lodestone::step_changes_test

@@ -93,6 +93,17 @@ TEST_F(GeometryOfOde, BodiesOfAShapeShareItsTriangles) {
   EXPECT_EQ(cache_.built(), 3);
 }
 
+TEST_F(GeometryOfOde, TrianglesOfShapesThatAreGoneAreForgotten) {
+  std::weak_ptr<const Shape> first;
+  for (int i = 0; i < 200; ++i) {
+    const auto box = lodestone::testing::box_shape({1, 1, 1});
+    cache_.mesh_of(box), cache_.hull_of(box);
+    if (i == 0) first = box;
+  }
+  EXPECT_TRUE(first.expired());
+  EXPECT_EQ(cache_.built(), 400);
+}
+
 TEST_F(GeometryOfOde, WhatOpcodeWouldCrashOnIsRefused) {
   Mesh mesh = make_box({1, 1, 1});
   const auto fault = [&] { return message_of([&] { TrimeshData(mesh.vertices, mesh.faces); }); };
