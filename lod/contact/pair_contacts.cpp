@@ -417,15 +417,31 @@ HeldContact hold(const PairContact& contact, const PairBody& first, const PairBo
   return held;
 }
 
+// A ball rolls over its contact: that stays under its centre, where a point that turns with it would push it
+// from behind.
 PairContact follow(const HeldContact& held, const PairBody& first, const PairBody& second) {
+  const std::optional<double>&first_ball = first.shape->sphere_radius,
+        &second_ball = second.shape->sphere_radius;
   const Mat3 turn_first = first.orientation.toRotationMatrix(),
              turn_second = second.orientation.toRotationMatrix();
-  PairContact contact{held.normal, 1e300, {}};
+  const Vec3 apart = first.position - second.position;
+  PairContact contact{
+      first_ball && second_ball && apart.squaredNorm() > 0.0 ? Vec3(apart.normalized()) : held.normal,
+      1e300,
+      {}};
+  const Vec3& normal = contact.normal;
   contact.manifold.count = held.count;
   for (int i = 0; i < held.count; ++i) {
-    const Vec3 on_first = first.position + turn_first * held.on_first[std::size_t(i)].cast<double>();
-    const Vec3 on_second = second.position + turn_second * held.on_second[std::size_t(i)].cast<double>();
-    const double gap = (on_first - on_second).dot(held.normal);
+    Vec3 on_first = first.position, on_second = second.position;
+    on_first += first_ball ? Vec3(-*first_ball * normal)
+                           : Vec3(turn_first * held.on_first[std::size_t(i)].cast<double>());
+    on_second += second_ball ? Vec3(*second_ball * normal)
+                             : Vec3(turn_second * held.on_second[std::size_t(i)].cast<double>());
+    const double gap = (on_first - on_second).dot(normal);
+    if (first_ball)
+      on_second = on_first - gap * normal;
+    else if (second_ball)
+      on_first = on_second + gap * normal;
     contact.manifold.points[std::size_t(i)] = {0.5 * (on_first + on_second), gap};
     contact.gap = std::min(contact.gap, gap);
   }

@@ -89,6 +89,9 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
                   [&](std::int32_t index) { return step.scene.bodies[std::size_t(index)].is_sphere(); });
     move_alone(step, dt);
   }
+  balls_.resize(step.scene.bodies.size());
+  for (const std::int32_t index : near_.marked())
+    note_ball(step, Participant::statistical(std::size_t(index)));
   crowd_.begin_step(dt);
   for (const Pace pace : plan_.paces()) move_islands(step, pace);
   crowd_.end_step();
@@ -139,6 +142,7 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
     const StageTimer timer(step.times.crowd_ms);
     if (with_full) full_before_.assign(full_.begin(), full_.end());
     move_crowded(step, pace, i);
+    find_driven(step, step.dt - (i + 1) * time);
     if (with_full) move_full_on(time, i);
   }
   crowd_.end_islands();
@@ -148,15 +152,21 @@ void NearBodies::move_islands(const Step& step, Pace pace) {
 // Who is crowded is decided anew.
 void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   const double time = step.dt / pace;
-  if (!woken_.empty()) {  // at the end of the substep before
-    choose_movers(step.support, pace);
-    pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
-  }
+  if (!woken_.empty()) choose_movers(step.support, pace);  // at the end of the substep before
+  woken_.insert(woken_.end(), driven_.begin(), driven_.end());
+  driven_.clear();
+  if (!woken_.empty()) look_up_woken(step);
   if (substep > 0) pairs_.find_turning(step.scene, movers_);
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
   find_ground_solids(step, movers_, substep * time, time);
   wake_touched(step, pace);
   meet_woken(step, pace, substep);
+}
+
+// Whom they are near, with those that were driven away.
+void NearBodies::look_up_woken(const Step& step) {
+  pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
+  for (const Participant p : woken_) note_ball(step, p);
 }
 
 // They may touch others, who wake, and so on.
@@ -165,7 +175,7 @@ void NearBodies::meet_woken(const Step& step, Pace pace, int substep) {
   for (; !woken_.empty(); wake_touched(step, pace)) {
     known_movers_ = movers_;
     choose_movers(step.support, pace);
-    pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
+    look_up_woken(step);
     pairs_.find_more_contacts(step.scene, time, near_, pace);
     find_more_ground_solids(step, known_movers_, substep * time, time);
   }
@@ -420,6 +430,28 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
     if (const StatisticalBody& body = scene.bodies[std::size_t(index)];
         body.is_solved_in_crowd() && body.motion != Motion::asleep && !step.support.is_guest(index))
       step.support.update_quiet(index, faces_.of(index), time, step.tally);
+}
+
+void NearBodies::note_ball(const Step& step, Participant p) {
+  if (!p.is_statistical()) return;
+  const StatisticalBody& body = step.scene.body(p);
+  balls_[p.index()] =
+      step.search.ball_of(body.position, body.velocity, kinds_[body.kind].shape->radius, step.dt);
+}
+
+// Whom others struck may pass who was out of its reach when near pairs were looked for: `left` s are.
+void NearBodies::find_driven(const Step& step, double left) {
+  constexpr double kFar = 0.25;  // over the inner radius: whoever goes less far beyond passes nothing
+  if (pairs_.contacts().empty() || left < 1e-6 * step.dt) return;
+  for (const std::int32_t index : movers_) {
+    const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+    if (!body.crowded || body.motion == Motion::asleep) continue;
+    const Shape& shape = *kinds_[body.kind].shape;
+    const NearSearch::Ball& ball = balls_[std::size_t(index)];
+    const double most = double(ball.reach) - shape.radius + kFar * shape.inner_radius;
+    if ((body.position + left * body.velocity - ball.center).squaredNorm() > most * most)
+      driven_.push_back(Participant::statistical(std::size_t(index)));
+  }
 }
 
 // Of those that touch others.

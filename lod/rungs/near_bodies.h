@@ -88,8 +88,11 @@ class NearBodies {
   static void keep_awake(const Step& step, Participant p);
   void wake(const Step& step, Participant p, Pace pace);
   void wake_touched(const Step& step, Pace pace);
+  void look_up_woken(const Step& step);
   void meet_woken(const Step& step, Pace pace, int substep);
   void move_crowded(const Step& step, Pace pace, int substep);
+  void note_ball(const Step& step, Participant p);
+  void find_driven(const Step& step, double left);
   void note_places(const Step& step);
   void stop_before_unseen_ground(const Step& step);
   void take_crowded(const Step& step);
@@ -115,8 +118,10 @@ class NearBodies {
   std::vector<std::int32_t> movers_;                   // indices: who is awake and moves at the pace in hand
   std::vector<Participant> woken_;                     // by contacts, those that were found or solved last
   std::vector<Participant> struck_;                    // of these, those that blows reach through others
-  std::vector<Participant> inside_;                    // others, so deep that these were added there
-  std::vector<FullNeighbor> full_, full_before_;       // the neighbours, moved on between substeps
+  std::vector<Participant> driven_;                    // out of their balls, in the substep before
+  std::vector<NearSearch::Ball> balls_;           // of each statistical body that is near others, by index
+  std::vector<Participant> inside_;               // others, so deep that these were added there
+  std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
   std::vector<SolidContact> solid_contacts_, known_contacts_;
   FacesBelow faces_, known_faces_;
   std::vector<std::int32_t> known_movers_;

@@ -63,7 +63,6 @@ void NearSearch::sort_movers(std::span<const StatisticalBody> bodies) {
   for (std::size_t i = 0; i < placed_.size(); ++i) movers_[i] = placed_[i].index;
 }
 
-// As far as the hull may reach in the step.
 NearSearch::Ball NearSearch::ball_of(const Vec3& position, const Vec3& velocity, double radius,
                                      double dt) const {
   const Vec3 half_way = (0.5 * dt) * velocity;

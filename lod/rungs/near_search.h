@@ -37,11 +37,18 @@ class NearSearch {
             std::span<const FullNeighbor> neighbors);
   /// The contacts of spheres, then the near pairs of all others; spheres among these are guests().
   void find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors);
-  /// Of bodies that were woken within a step of `dt` seconds: the near pairs that were not known while they
-  /// slept. Guests stay who they are. Adds them to pairs().
+  /// Of bodies that were woken, or left their balls, within a step of `dt` seconds: the near pairs that were
+  /// not known before. Guests stay who they are. Adds them to pairs().
   std::span<const NearPair> find_woken(double dt, const SupportLevel& support,
                                        std::span<const FullNeighbor> neighbors,
                                        std::span<const Participant> woken);
+  struct Ball {
+    Vec3 center;  // m
+    float reach;  // m
+  };
+  /// Within which a hull stays in `dt` seconds, if nothing strikes it: with whoever may come there it is
+  /// near.
+  Ball ball_of(const Vec3& position, const Vec3& velocity, double radius, double dt) const;
   void clear();
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
   void set_threads(int threads) { threads_ = threads; }
@@ -81,11 +88,6 @@ class NearSearch {
   static void sort_nearly_sorted(std::vector<Placed>& placed);
   void add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support,
                       std::span<const FullNeighbor> neighbors);
-  struct Ball {
-    Vec3 center;
-    float reach;
-  };
-  Ball ball_of(const Vec3& position, const Vec3& velocity, double radius, double dt) const;
   void add_ball(const Ball& ball);
   void take_movers(const SupportLevel& support);
   void sort_movers(std::span<const StatisticalBody> bodies);

@@ -32,7 +32,8 @@ class ContactSteps {
         tally_(tally),
         fall_time_(std::sqrt(shape_.radius / std::max(1e-9, world.gravity_strength()))),
         touching_(kTouching * shape_.radius),
-        slowest_((shape_.hull.vertices.size() > kFew ? kSlow : 1.0) * world.bounce_velocity) {}
+        has_many_(shape_.hull.vertices.size() > kFew),
+        slowest_((has_many_ ? kSlow : 1.0) * world.bounce_velocity) {}
 
   void run(double time);
   const HeldPoints& held() const { return held_; }
@@ -72,10 +73,13 @@ class ContactSteps {
 
   static constexpr double kShortest = 0.25;  // of a step that ends where an edge may be struck
 
-  // What rolls over many corners would lose energy by each that stops it a little too soon; on the few of a
-  // box, slow ones save nothing that counts.
+  // What rolls over many corners would lose energy by each that stops it a little too soon, and by what the
+  // solver leaves over of an edge that it turns about, which rocks it from end to end; on the few of a box,
+  // slow ones save nothing that counts.
   static constexpr std::size_t kFew = 24;
-  static constexpr double kSlow = 0.25;  // over bounce_velocity
+  static constexpr double kSlow = 0.1;  // over bounce_velocity
+  static constexpr int kSweepsOfMany = 20;
+  static constexpr double kToleranceOfMany = 1e-3;
 
   // Kept from step to step, since to make all of them takes longer than to solve a few.
   static StepContacts& kept() {
@@ -96,6 +100,7 @@ class ContactSteps {
   StepContacts& found_ = kept();
   double fall_time_;     // s, √(R/g)
   double touching_;      // m: no farther from the ground
+  bool has_many_;        // corners
   double slowest_;       // m/s: what ends a step by striking
   double behind_ = 0.0;  // s: how much older than the place the velocity is
   double kicked_ = 0.0;  // s: how much of gravity it has been given in this step
@@ -261,19 +266,20 @@ void ContactSteps::add_due(const OnGround& on) {
 // Without what it turns about a body falls until it strikes.
 void ContactSteps::add_stood_on(const OnGround& on) {
   for (const PointOnPlane& vertex : stood_on_.get()) {
-    const auto is_known = [&] {
-      for (std::size_t i = 0; i < found_.count; ++i)
-        if (found_.point[i].vertex == vertex.point.vertex && is_same(*found_.plane[i], vertex.plane))
-          return true;
-      return false;
-    };
-    if (is_known() || ends_somewhere(vertex.plane)) continue;
-    GroundContact contact = point_contact(body_, kind_, world_, on.rotation, vertex.point, vertex.plane);
-    if (contact.gap > touching_) continue;
-    const HalfSpace* plane = found_.is_full() ? nullptr : plane_of(vertex.plane);
-    if (!plane) return;
-    contact.guess = on.rotation.transpose() * held_.find(vertex.point, shape_);
-    found_.add(contact, vertex.point, *plane);
+    std::size_t i = 0;
+    while (i < found_.count &&
+           !(found_.point[i].vertex == vertex.point.vertex && is_same(*found_.plane[i], vertex.plane)))
+      ++i;
+    if (i == found_.count) {
+      if (ends_somewhere(vertex.plane)) continue;
+      GroundContact contact = point_contact(body_, kind_, world_, on.rotation, vertex.point, vertex.plane);
+      if (contact.gap > touching_) continue;
+      const HalfSpace* plane = found_.is_full() ? nullptr : plane_of(vertex.plane);
+      if (!plane) return;
+      contact.guess = on.rotation.transpose() * held_.find(vertex.point, shape_);
+      found_.add(contact, vertex.point, *plane);
+    }
+    found_.stood_on[i] = true;
   }
 }
 
@@ -306,7 +312,9 @@ bool ContactSteps::strikes_now(std::size_t contact, const GroundMotion& unkicked
   const GroundContact& c = found_.contact[contact];
   const double approach = approach_of(unkicked, c);
   if (found_.due[contact]) return c.gap <= kNear * shape_.radius && approach > 0.0;
-  return c.gap <= touching_ && approach > world_.bounce_velocity;
+  // What the body came to stand on anew bore nothing of the half step that its velocity is behind.
+  const bool is_new = has_many_ && !world_.solids && behind_ > 0.0 && !found_.stood_on[contact];
+  return c.gap <= touching_ && approach > (is_new ? slowest_ : world_.bounce_velocity);
 }
 
 bool ContactSteps::is_struck(const GroundMotion& unkicked) const {
@@ -446,6 +454,7 @@ double ContactSteps::find_strike(const Mat3& rotation, const GroundMotion& kicke
 // own time.
 ContactSolverSettings ContactSteps::solver(const Mat3& rotation, double time, bool divided) const {
   ContactSolverSettings solver = settings_.solver;
+  if (has_many_) solver.sweeps = kSweepsOfMany, solver.tolerance = kToleranceOfMany;
   solver.along_chords = !shape_.sphere_radius;  // whose lowest point is never the same
   solver.sliding_speed = settings_.sliding_speed * shape_.radius / fall_time_;
   if (divided) {

@@ -35,7 +35,8 @@ struct StepContacts {
   std::array<GroundContact, kCapacity> contact;
   std::array<TouchingPoint, kCapacity> point;
   std::array<const HalfSpace*, kCapacity> plane;
-  std::array<bool, kCapacity> due;  ///< it was to strike where the step begins
+  std::array<bool, kCapacity> due;       ///< it was to strike where the step begins
+  std::array<bool, kCapacity> stood_on;  ///< it carried the body in the contact step before
   std::size_t count = 0;
   double deepest = 0.0;  ///< m, 0 or less
   const HalfSpace* deepest_plane = nullptr;
@@ -49,7 +50,7 @@ struct StepContacts {
   void add(const GroundContact& c, const TouchingPoint& of, const HalfSpace& with) {
     contact[count] = c;
     point[count] = of;
-    due[count] = false;
+    due[count] = stood_on[count] = false;
     plane[count++] = &with;
   }
   /// Where there is no room any more its address would change.

@@ -106,6 +106,7 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   thickness[k] = thin / far;
   tipping_ += tips[k] > 0.0f;
   farthest_reach[k] = std::ranges::max(map_of(pair_height));
+  most_reach = std::max({most_reach, farthest_reach[k], radius[k]});
   rolling_lever[k] = float(find_rolling_lever(shape));
   blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
   find_unsteady(kind.faces.get(), map_of(pair_face), map_of(unsteady));

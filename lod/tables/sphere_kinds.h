@@ -28,6 +28,7 @@ struct SphereKinds {
   std::vector<float> gxx, gyy, gzz, gxy, gxz, gyz;  // 1/m, body axes: one over how far it reaches beside an
                                                     // axis, as a rod with its inertia would
   std::vector<float> farthest_reach;                // m, of pair_height
+  float most_reach = 0.0f;                          // m: no kind's was ever farther, nor its sphere's
   std::vector<float> own_friction;                  // coefficient, of two bodies of the kind, in this step
   std::vector<float> rolling_lever;                 // m, of rolling resistance
   std::vector<float> blend_time;                    // s, of the approach to a rest pose

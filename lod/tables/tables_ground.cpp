@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lod/contact/free_way.h"
 #include "lod/contact/hull_contacts.h"
 #include "lod/tables/tables_level.h"
 
@@ -177,33 +176,6 @@ void TablesLevel::keep_above_faces() {
       if (height < least) lift_out(near.place, plane, least - height);
     }
   }
-}
-
-// Of the spheres at places [begin, end): whom contacts made faster than it was when the ground near it was
-// looked for.
-void TablesLevel::note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const {
-  driven.clear();
-  if (!ground_.has_parts()) return;
-  for (std::int64_t i = begin; i < end; ++i) {
-    if (!step_.touches(i)) continue;
-    const double before = spheres_.velocity(i).norm();
-    if (step_.velocity(i).norm() > before) driven.push_back({i, spheres_.position(i), before});
-  }
-}
-
-// What is struck within a step may come to ground that was out of its reach, on whose other side it would be
-// before anybody looks. It stops there, and strikes it in the next step.
-void TablesLevel::stop_before_unseen_ground() {
-  for (const std::vector<Driven>& of_block : std::span(driven_).first(tallies_.size()))  // of this step
-    for (const Driven& driven : of_block) {
-      const double radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
-      const Vec3 way = spheres_.position(driven.place) - driven.from;
-      if (way.norm() + radius <= ground_reach(driven.place, driven.speed)) continue;
-      const double free = find_free_way(ground_, driven.from, way, radius, [&](const Vec3& direction) {
-        return double(ground_height(driven.place, direction));
-      });
-      if (free < 1.0) spheres_.set_position(driven.place, driven.from + free * way);
-    }
 }
 
 }  // namespace lodestone

@@ -201,7 +201,15 @@ class TablesLevel {
   void keep_above_planes(std::int64_t begin, std::int64_t end);
   void keep_above_faces();
   void note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const;
-  void stop_before_unseen_ground();
+  void stop_before_unseen();
+  double find_way_to_ground(const Driven& driven, const Vec3& way) const;
+  double find_way_to_others(const Driven& driven, const Vec3& way);
+  void sort_by_x();
+  void find_awake_near(const Vec3& center, double reach, std::vector<std::int64_t>& found) const;
+  bool leaves_its_reach(const Driven& driven) const;
+  double farthest_reach(std::int64_t place) const;
+  double find_way_to(const Driven& driven, const Vec3& way, std::int64_t other);
+  Vec3 find_start_of(std::int64_t place) const;
   void give_pushes(double share);
   void start(double dt, std::span<const std::uint32_t> order);
   double ground_reach(std::int64_t place, double speed) const;
@@ -314,6 +322,8 @@ class TablesLevel {
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::vector<Driven>> driven_;       // likewise
+  std::vector<std::int64_t> in_the_way_;          // places
+  std::vector<std::pair<double, std::int64_t>> by_x_;  // m, and place: those awake, in the order of x
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
       still_touches_,  // place awake, slot asleep; then both places
       left_asleep_;    // those of them that touch too gently to wake the sleeper

@@ -189,7 +189,7 @@ void TablesLevel::finish(ContactTally& tally) {
   remember_ground_friction();
   take_back_excess();
   keep_above_faces();
-  stop_before_unseen_ground();
+  stop_before_unseen();
   update_clips();
   if (log_ && ground) write_ground();
 }

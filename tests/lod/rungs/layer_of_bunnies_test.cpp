@@ -27,7 +27,10 @@ int asleep_after(double seconds, std::uint64_t seed) {
 TEST(LayerOfBunnies, ComesToRest) {
   int asleep = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4}) asleep += asleep_after(4.0, seed);
-  EXPECT_GT(asleep, 380);  // of 600; so 432, else 325
+  // Of 600. In ODE, in eight substeps with the first seed, 99 of 150; here 370, 227 without these vertices,
+  // and 460 while what rolled lost too much.
+  EXPECT_GT(asleep, 320);
+  EXPECT_LT(asleep, 430);
 }
 
 }  // namespace

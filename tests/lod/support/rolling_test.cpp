@@ -85,6 +85,23 @@ TEST_F(Rolling, APrismLosesAtEachSideWhatTheImpactTakes) {
     }
 }
 
+// On the full level it goes 1.40 m; .40 where what the solver leaves over rocks it about the edge's middle
+// (tried).
+TEST_F(Rolling, ASlowWheelGoesOn) {
+  constexpr int kSides = 100;
+  constexpr double kRadius = 0.3, kSpeed = 0.15, kFrame = 1.0 / 60;  // m, m/s, s
+  const auto shape = testing::make_prism(kSides, kRadius, 0.24);
+  put(shape, 0.0);
+  body_.orientation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX())) *
+                      Quat(Eigen::AngleAxisd(std::numbers::pi * (0.5 + 1.0 / kSides), Vec3::UnitZ()));
+  body_.position.z() = kRadius * std::cos(std::numbers::pi / kSides);
+  body_.velocity.x() = kSpeed;
+  body_.spin.y() = shape->inertia_per_mass(2, 2) * kSpeed / kRadius;
+  for (int i = 0; i < 600; ++i) step(kFrame);
+  EXPECT_GT(body_.position.x(), 1.0);
+  EXPECT_LT(body_.position.x(), 1.45);
+}
+
 // A ball of 2,562 vertices, its centre of mass a quarter of its radius off its middle. In ODE .55 of the
 // energy is left after eight seconds, in steps of 1/960 and of 1/15360 s (tried). Here most is lost where an
 // impact ends a step: what the ball turned about until then is near the ground with many other vertices.
@@ -105,7 +122,7 @@ TEST_F(Rolling, AFineBallThatRocksGoesOnAsLong) {
     for (int i = 0; i < kFrames; ++i) step(kFrame);
     left += energy(kRadius - kOff) / before / kStarts;
   }
-  EXPECT_GT(left, 0.42);  // .25 without it
+  EXPECT_GT(left, 0.45);  // .25 without it
   EXPECT_LT(left, 0.60);
 }
 

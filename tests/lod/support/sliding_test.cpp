@@ -40,11 +40,11 @@ TEST(Sliding, ABoxThatSpinsGoesStraight) {
   }
 }
 
-// 11.57 m in ODE, where support went 2.1 m aside.
+// 12.05 m on the full level in sixteen substeps, where support went 2.1 m aside.
 TEST(Sliding, ADiscThatSpinsGoesStraight) {
   const auto disc = testing::make_prism(24, 0.2, 0.1);
   const Vec3 end = slide(disc, 0.1, 0.02, 2.0, 10.0);
-  EXPECT_NEAR(end.x(), 11.57, 0.5);
+  EXPECT_NEAR(end.x(), 12.05, 0.25);
   EXPECT_NEAR(end.y(), 0.0, 0.1);
 }
 

@@ -201,8 +201,7 @@ TEST(SupportLevel, AnArchiveGoesOnAlike) {
   for (std::uint32_t i = 0; i < 6; ++i)
     one.add(i, testing::at({2.0 * i, 0, 0.5}, random.direction(), random.direction(), random.orientation()));
   for (int i = 0; i < 20; ++i) one.step();
-  for (std::uint32_t i = 0; i < 6; ++i)
-    other.kinds.take(StatisticalModel::support, other.box, 0, nullptr);
+  for (std::uint32_t i = 0; i < 6; ++i) other.kinds.take(StatisticalModel::support, other.box, 0, nullptr);
   StateArchive out;
   one.level.archive(out), one.sleepers.archive(out);
   StateArchive in(out.bytes(), {});

@@ -1,0 +1,143 @@
+// Of TablesLevel: who is struck within a step may come to what was out of its reach when the ground and
+// others were looked for, and would be behind it before anybody looks again. It stops there, and strikes it
+// in the next step.
+#include <algorithm>
+
+#include "lod/contact/free_way.h"
+#include "lod/tables/tables_level.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double kFar = 0.25;  // over R: whoever is driven less far passes no other
+
+}  // namespace
+
+// Of the spheres at places [begin, end): whom contacts made faster.
+void TablesLevel::note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const {
+  driven.clear();
+  for (std::int64_t i = begin; i < end; ++i) {
+    if (!step_.touches(i)) continue;
+    const double before = spheres_.velocity(i).norm(), more = step_.velocity(i).norm() - before,
+                 far = kFar * double(kinds_.radius[spheres_.kind[std::size_t(i)]]);
+    if (more > 0.0 && (ground_.has_parts() || more * constants_.wide_time > far))
+      driven.push_back({i, spheres_.position(i), before});
+  }
+}
+
+// m: of what it has to others.
+double TablesLevel::farthest_reach(std::int64_t place) const {
+  return double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[std::size_t(place)]]
+                                 : spheres_.radius[std::size_t(place)]);
+}
+
+// Within which all were looked for that it might touch.
+bool TablesLevel::leaves_its_reach(const Driven& driven) const {
+  const double way = (spheres_.position(driven.place) - driven.from).norm(),
+               radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
+  return way > kFar * radius &&
+         way + farthest_reach(driven.place) > double(step_.reach[std::size_t(driven.place)]);
+}
+
+void TablesLevel::stop_before_unseen() {
+  constexpr std::ptrdiff_t kFew = 32;  // for whom it is not worth while to sort all
+  const auto of_step = std::span(driven_).first(tallies_.size());
+  std::ptrdiff_t leaving = 0;
+  for (const std::vector<Driven>& of_block : of_step)
+    leaving += std::ranges::count_if(of_block, [&](const Driven& d) { return leaves_its_reach(d); });
+  by_x_.clear();
+  if (leaving > kFew) sort_by_x();
+  for (const std::vector<Driven>& of_block : of_step)
+    for (const Driven& driven : of_block) {
+      const Vec3 way = spheres_.position(driven.place) - driven.from;
+      double free = find_way_to_ground(driven, way);
+      if (leaves_its_reach(driven)) free = std::min(free, find_way_to_others(driven, way));
+      if (free < 1.0) spheres_.set_position(driven.place, driven.from + free * way);
+    }
+}
+
+void TablesLevel::sort_by_x() {
+  for (std::int64_t i = 0; i < spheres_.awake; ++i) by_x_.emplace_back(spheres_.x[std::size_t(i)], i);
+  std::ranges::sort(by_x_);
+}
+
+// And others. (The cells are gone by then.)
+void TablesLevel::find_awake_near(const Vec3& center, double reach, std::vector<std::int64_t>& found) const {
+  const double least = center.x() - reach - kinds_.most_reach, most = center.x() + reach + kinds_.most_reach;
+  if (by_x_.empty()) {
+    for (std::int64_t i = 0; i < spheres_.awake; ++i)
+      if (const double x = spheres_.x[std::size_t(i)]; x >= least && x <= most) found.push_back(i);
+    return;
+  }
+  const auto x_of = [](const auto& other) { return other.first; };
+  for (auto other = std::ranges::lower_bound(by_x_, least, {}, x_of);
+       other != by_x_.end() && other->first <= most; ++other)
+    found.push_back(other->second);
+}
+
+// The part of the way, 0 to 1.
+double TablesLevel::find_way_to_ground(const Driven& driven, const Vec3& way) const {
+  const double radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
+  if (!ground_.has_parts() || way.norm() + radius <= ground_reach(driven.place, driven.speed)) return 1.0;
+  return find_free_way(ground_, driven.from, way, radius,
+                       [&](const Vec3& direction) { return double(ground_height(driven.place, direction)); });
+}
+
+// m: where it was when the step began.
+Vec3 TablesLevel::find_start_of(std::int64_t place) const {
+  if (place >= spheres_.awake) return spheres_.position(place);
+  const std::vector<Driven>& of_block = driven_[std::size_t(place / kBlock)];
+  const auto driven = std::ranges::lower_bound(of_block, place, {}, &Driven::place);
+  if (driven != of_block.end() && driven->place == place) return driven->from;
+  return spheres_.position(place) - constants_.wide_time * spheres_.velocity(place);
+}
+
+double TablesLevel::find_way_to_others(const Driven& driven, const Vec3& way) {
+  const std::int64_t self = driven.place;
+  const Vec3 middle = driven.from + 0.5 * way;
+  const double reach = 0.5 * way.norm() + farthest_reach(self);
+  in_the_way_.clear();
+  find_awake_near(middle, reach, in_the_way_);
+  still().find_near(middle, reach,
+                    [&](std::uint32_t slot) { in_the_way_.push_back(spheres_.place_of_slot[slot]); });
+  const auto may_be_met = [&](std::int64_t other) {
+    const double limit = reach + farthest_reach(other);
+    return other != self && (spheres_.position(other) - middle).squaredNorm() < limit * limit &&
+           (!settings_.pair_filter ||
+            settings_.pair_filter(spheres_.owner[std::size_t(self)], spheres_.owner[std::size_t(other)]));
+  };
+  double free = 1.0;
+  for (const std::int64_t other : in_the_way_)
+    if (may_be_met(other)) free = std::min(free, find_way_to(driven, way, other));
+  return free;
+}
+
+// By conservative advancement of both (Mirtich, Impulse-based dynamic simulation of rigid body systems,
+// 1996); what it touches where it begins only if it would go deep into that.
+double TablesLevel::find_way_to(const Driven& driven, const Vec3& way, std::int64_t other) {
+  constexpr int kMostSteps = 12;
+  constexpr double kTouching = 0.01;  // over the lesser R
+  const std::int64_t self = driven.place;
+  const double radius = std::min(double(kinds_.radius[spheres_.kind[std::size_t(self)]]),
+                                 double(kinds_.radius[spheres_.kind[std::size_t(other)]]));
+  const Vec3 own_end = spheres_.position(self), end = spheres_.position(other), start = find_start_of(other);
+  const Vec3 relative = way - (end - start);
+  double free = 1.0, gone = 0.0;
+  for (int i = 0; i < kMostSteps && gone < 1.0; ++i) {
+    spheres_.set_position(self, driven.from + gone * relative);
+    spheres_.set_position(other, start);
+    const auto [normal, gap] = separate(self, other);
+    const double closing = -relative.dot(normal);  // m, on all of the way
+    if (closing <= 0.0) break;
+    if (gap <= kTouching * radius) {
+      if (i > 0 || closing > kFar * radius + gap) free = gone;
+      break;
+    }
+    gone += gap / closing;
+  }
+  spheres_.set_position(self, own_end);
+  spheres_.set_position(other, end);
+  return free;
+}
+
+}  // namespace lodestone
