@@ -89,10 +89,11 @@ class Manager {
   /// Materials are added before the bodies that use them.
   MaterialTable& materials();
 
+  // Ground of bodies on every rung, not of the caller's own, who makes these' contacts with his geoms alone;
+  // what comes to lie in it wakes.
   GroundId add_plane(
       const Vec3& normal, double offset,
       MaterialId material = 0);  ///< normal·x = offset (m); the normal's length within 1e-3 of 1
-  // Ground on every rung; what comes to lie in it wakes.
   GroundId add_static_mesh(const Mesh& mesh,
                            MaterialId material = 0);  ///< vertices in the world frame, m; two faces or more
   GroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,

@@ -129,6 +129,23 @@ void Crowd::note_impulses(ContactLog& log, std::size_t known) const {
   records.resize(kept);
 }
 
+// Through those awake that touch each other.
+template <class Sleeps>
+void Crowd::pass_forces_on(const ContactScene& scene, const Sleeps& sleeps) {
+  const auto manifolds = std::span(manifolds_).first(pair_manifolds_);
+  const auto passes = [&](std::int32_t body) {
+    return body >= 0 && !sleeps(body) &&
+           (pushes_[std::size_t(body)].forced || scene.is_forced(participants_[std::size_t(body)]));
+  };
+  for (bool any = true; any;) {
+    any = false;
+    for (const CrowdManifold& m : manifolds)
+      for (const auto& [from, to] : {std::pair{m.first, m.second}, std::pair{m.second, m.first}})
+        if (to >= 0 && !pushes_[std::size_t(to)].forced && passes(from))
+          pushes_[std::size_t(to)].forced = any = true;
+  }
+}
+
 // A sleeper stands like ground, and what is between it and the ground is held as in a vice: by impulses that
 // need no weight, and are the next step's guesses. Who is pushed up by more than before and than it weighs,
 // or along by more than friction under what is left of its weight holds, is to wake, and of what held it
@@ -158,13 +175,7 @@ void Crowd::find_pressed(const ContactScene& scene, double time) {
       first.now += point.impulse, first.before += point.guess;
       second.now -= point.impulse, second.before -= point.guess;
     }
-  const auto is_forced = [&](std::int32_t body) {
-    return body >= 0 && !sleeps(body) && scene.is_forced(participants_[std::size_t(body)]);
-  };
-  for (const CrowdManifold& m : manifolds) {
-    pushes_[std::size_t(m.first)].forced |= is_forced(m.second);
-    if (m.second >= 0) pushes_[std::size_t(m.second)].forced |= is_forced(m.first);
-  }
+  pass_forces_on(scene, sleeps);
   const auto friction_under = [&](Participant p) {  // of planes that it may lie on
     double least = kUnbounded;
     if (!p.is_statistical()) return least;

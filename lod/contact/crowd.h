@@ -74,7 +74,7 @@ class Crowd {
   /// What all its contacts give a body, and what the solver started from, N s.
   struct Push {
     Vec3 now = Vec3::Zero(), before = Vec3::Zero();
-    bool forced = false;  ///< a force acts on one that it touches
+    bool forced = false;  ///< a force acts on one that it touches, perhaps through others
   };
 
   /// How overlaps that came from another rung move a body out of them, m.
@@ -118,6 +118,8 @@ class Crowd {
                     for (std::int64_t i = begin; i < end; ++i) visit(std::size_t(i));
                   });
   }
+  template <class Sleeps>
+  void pass_forces_on(const ContactScene& scene, const Sleeps& sleeps);
   void find_pressed(const ContactScene& scene, double time);
   void find_footing(const ContactScene& scene, const CrowdTouch& touch);
   void find_impacts();

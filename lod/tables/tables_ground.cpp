@@ -1,6 +1,7 @@
 // Of TablesLevel: the ground that its bodies are near, or come to be near within the step.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lod/contact/hull_contacts.h"
 #include "lod/tables/tables_level.h"
@@ -34,17 +35,19 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
     const bool alone = is_alone(i), only_planes = alone && find_planes_of(i);
     const PairBody hull{kind_of(i).shape.get(), center, spheres_.orientation(i)};
     if (!only_planes) find_ground_near(ground_, center, reach, 0.0, near, constants_.hulls ? &hull : nullptr);
+    const bool bridges = !alone && find_bridged_plane(i, near);
+    if (bridges) near.clear();
     for (const GroundNear& n : near) faces_.push_back(n.plane(center));
     const bool by_hull = alone && !only_planes;
     if (faces_.size() == first && !by_hull) continue;
     for (std::size_t face = first; face < faces_.size(); ++face) {
-      const GroundPart* part = only_planes ? nullptr : near[face - first].part;  // which moves, perhaps
+      const GroundPart* part = only_planes || bridges ? nullptr : near[face - first].part;  // which may move
       planes_.add(faces_[face], materials_, kinds_, settings_.gravity,
                   part ? part->carrying_velocity(center, time) : Vec3(Vec3::Zero()),
                   part ? part->pose.angular_velocity : Vec3(Vec3::Zero()));
     }
     const double margin = reach - double(kinds_.radius[spheres_.kind[std::size_t(i)]]);
-    const bool cornered = by_hull || is_cornered(i, near, margin);
+    const bool cornered = by_hull || (!bridges && is_cornered(i, near, margin));
     const bool above = std::ranges::none_of(near, [](const GroundNear& n) { return n.part->moves(); }) &&
                        std::all_of(faces_.begin() + std::ptrdiff_t(first), faces_.end(),
                                    [&](const HalfSpace& face) { return face.height_of(center) >= 0.0; });
@@ -58,6 +61,50 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
           {i, mover->part->carrying_velocity(center, time), mover->part->pose.angular_velocity});
     if (cornered) cornered_.push_back(spheres_.slot[i]);
   }
+}
+
+// Where nothing is straight below a body, but parts of the ground on different sides of it are under its
+// hull, as under a plank on two blocks, the plane that they hold it by. False: there is none.
+bool TablesLevel::find_bridged_plane(std::int64_t place, std::span<const GroundNear> near) {
+  constexpr double kUpright = 0.98;  // cosine, of what holds it
+  const BodyKind& kind = kind_of(place);
+  const double strength = settings_.gravity.norm();
+  if (!constants_.hulls || strength == 0.0 || kind.shape->sphere_radius) return false;
+  const Vec3 up = -settings_.gravity / strength, u = up.unitOrthogonal(), v = up.cross(u);
+  const auto is_below = [&](const GroundNear& n) { return !n.at_edge && n.normal.dot(up) > kUpright; };
+  if (std::ranges::any_of(near, is_below)) return false;
+  const StatisticalBody body = spheres_.body(place);
+  thread_local std::vector<SolidContact> contacts;
+  contacts.clear();
+  const std::size_t faces = faces_.size();
+  find_solid_contacts(body, kind, spheres_.slot[std::size_t(place)], ground_, 0.0, constants_.wide_time,
+                      contacts, faces_, SolidSearch::all);
+  faces_.resize(faces);
+  std::erase_if(contacts, [&](const SolidContact& c) {
+    return c.part->moves() || c.contact.normal.dot(up) < kUpright;
+  });
+  thread_local std::vector<double> ways;  // rad, to where it is held
+  ways.clear();
+  double gap = 1e300;  // m
+  Vec3 normal = Vec3::Zero();
+  for (const SolidContact& c : contacts) {
+    gap = std::min(gap, c.contact.gap), normal += c.contact.normal;
+    for (const ManifoldPoint& p :
+         std::span(c.contact.manifold.points).first(std::size_t(c.contact.manifold.count)))
+      ways.push_back(std::atan2((p.point - body.position).dot(v), (p.point - body.position).dot(u)));
+  }
+  std::ranges::sort(ways);
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const double next = i + 1 < ways.size() ? ways[i + 1] : ways[0] + 2.0 * std::numbers::pi;
+    if (next - ways[i] >= std::numbers::pi) return false;  // its middle is beyond all of these
+  }
+  if (ways.size() < 3) return false;
+  normal.normalize();
+  // Over it the map of its heights, which is coarse, is to tell that gap.
+  const double height = double(ground_height(place, -normal)) + gap;
+  faces_.push_back({normal, normal.dot(body.position) - height, contacts.front().part->material,
+                    contacts.front().part->id});
+  return true;
 }
 
 // Among others, of what is nearer than it reaches, `margin` m around. A published sphere meets one plane; one

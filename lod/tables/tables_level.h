@@ -193,6 +193,7 @@ class TablesLevel {
   void remember_ground_friction();
   bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
   bool rolls_on_ground(std::int64_t place) const;
+  double ground_friction(std::int64_t place) const;
 
   void apply_pushes(double dt, ContactTally& tally);
   void note_pushes();
@@ -215,6 +216,7 @@ class TablesLevel {
   double ground_reach(std::int64_t place, double speed) const;
   void find_near_faces(std::int64_t begin, std::int64_t end);
   bool find_planes_of(std::int64_t place);
+  bool find_bridged_plane(std::int64_t place, std::span<const GroundNear> near);
   bool is_cornered(std::int64_t place, std::span<const GroundNear> near, double margin) const;
   void update_radii_one_by_one();
   void find_still_contacts();
@@ -297,9 +299,9 @@ class TablesLevel {
   std::vector<std::int32_t> cornered_;  // slots
   std::vector<Carried> carried_;        // by place: near ground that moves
   std::vector<std::int64_t> carried_guests_,
-      leaning_;                      // places: of guests; of those on their hulls that touch
-  std::vector<std::int32_t> drawn_;  // places awake, in finish()
-  DisjointSets riders_;              // of the places awake, and what nothing stops
+      leaning_;                                  // places: of guests; of those on their hulls that touch
+  std::vector<std::int32_t> drawn_, drawn_off_;  // places awake, in finish()
+  DisjointSets riders_;                          // of the places awake, and what nothing stops
   StepConstants constants_;
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
@@ -322,7 +324,9 @@ class TablesLevel {
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::vector<Driven>> driven_;       // likewise
-  std::vector<std::int64_t> in_the_way_;          // places
+  enum class LetGo : std::uint8_t { no, on, off };
+  std::vector<LetGo> let_go_;                          // of each place awake, by let_driven_go()
+  std::vector<std::int64_t> in_the_way_;               // places
   std::vector<std::pair<double, std::int64_t>> by_x_;  // m, and place: those awake, in the order of x
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
       still_touches_,  // place awake, slot asleep; then both places

@@ -10,7 +10,8 @@ namespace {
 constexpr float kPartingTime = 0.05f;      // of the time
 constexpr double kWedged = 4.0;            // over the energy of who is still: no more in any frame
 constexpr double kFallingInterval = 0.05;  // s; less than anybody must lie still for
-constexpr double kDraws = 0.2;             // of gravity, across it: a force that draws what it acts on along
+constexpr double kDraws = 0.2;             // of gravity, across it: a force that draws what it acts on along,
+constexpr double kDrawsOnIce = 0.005;      // at least; less where the ground's friction holds less
 constexpr double kCarries = 0.05;  // sine of a plane's angle to the vertical: a steeper one carries nobody
 
 }  // namespace
@@ -36,25 +37,41 @@ void TablesLevel::join_carried() {
   for (const std::int64_t place : carried_guests_) riders_.join(std::int32_t(place), nothing_stops);
 }
 
+// Of the plane that it may touch; of none more than any.
+double TablesLevel::ground_friction(std::int64_t place) const {
+  if (place >= spheres_.awake || step_.on_ground[std::size_t(place)] == std::uint8_t(GroundState::free))
+    return kUnbounded;
+  return materials_.law(kind_of(place).material, plane(step_.plane[std::size_t(place)]).material).friction;
+}
+
 // What lies near-still on others is brought to a stop in the world, but not with what carries it, and not
-// where a force draws it or them on.
+// where a force draws it or them on. Where the ground's friction does not hold that force, nobody is to
+// sleep.
 void TablesLevel::let_driven_go() {
-  std::vector<std::int32_t>& drawn = drawn_;
-  drawn.clear();
+  drawn_.clear(), drawn_off_.clear();
+  let_go_.assign(std::size_t(spheres_.awake), LetGo::no);
   const double strength = settings_.gravity.norm();
   for (const ActingForce& force : acting_.all()) {
     const Vec3 aside = strength > 0.0 ? Vec3(force.acceleration.cross(settings_.gravity) / strength)
                                       : Vec3(force.acceleration);  // as long as what is across gravity
-    if (aside.norm() > kDraws * strength) drawn.push_back(std::int32_t(place_of(force.slot)));
+    const auto place = std::int32_t(place_of(force.slot));
+    const double held = std::max(ground_friction(place), kDrawsOnIce);
+    if (aside.norm() > std::min(held, kDraws) * strength)
+      (aside.norm() > held * strength ? drawn_off_ : drawn_).push_back(place);
   }
-  if (drawn.empty() && carried_.empty() && carried_guests_.empty()) return;
+  if (drawn_.empty() && drawn_off_.empty() && carried_.empty() && carried_guests_.empty()) return;
   join_touching();
-  join_carried();
   const auto driven = std::int32_t(spheres_.awake);
-  for (const std::int32_t place : drawn)
-    if (place < driven) riders_.join(place, driven);
-  for (std::int32_t i = 0; i < driven; ++i)
-    if (riders_.root_of(i) == riders_.root_of(driven)) spheres_.crowded_for[std::size_t(i)] = 0;
+  const auto let_go = [&](std::span<const std::int32_t> places, LetGo how) {
+    for (const std::int32_t place : places)
+      if (place < driven) riders_.join(place, driven);
+    for (std::int32_t i = 0; i < driven; ++i)
+      if (let_go_[std::size_t(i)] == LetGo::no && riders_.root_of(i) == riders_.root_of(driven))
+        let_go_[std::size_t(i)] = how, spheres_.crowded_for[std::size_t(i)] = 0;
+  };
+  if (!drawn_off_.empty()) let_go(drawn_off_, LetGo::off);
+  join_carried();
+  let_go(drawn_, LetGo::on);
 }
 
 // What falls with all that it touches does not lie on it, however long they touch.
@@ -109,7 +126,12 @@ void TablesLevel::rest() {
   const auto rides = [&](std::int64_t place) {
     return any_rides && riders_.root_of(std::int32_t(place)) == riders_.root_of(nothing_stops);
   };
-  std::erase_if(left_asleep_, [&](const auto& touch) { return !rides(std::int64_t(touch.first)); });
+  const auto is_drawn_off = [&](std::int64_t place) {
+    return std::size_t(place) < let_go_.size() && let_go_[std::size_t(place)] == LetGo::off;
+  };
+  std::erase_if(left_asleep_, [&](const auto& touch) {
+    return !rides(std::int64_t(touch.first)) && !is_drawn_off(std::int64_t(touch.first));
+  });
   const double gravity = settings_.gravity.norm();
   for (std::int64_t i = spheres_.awake - 1; i >= 0;
        --i) {  // from the end: the last one takes the place of one that falls asleep
@@ -131,7 +153,7 @@ void TablesLevel::rest() {
                                    rest_law_.sleep_speed(radius) * constants_.wide_time;
     const bool parts = tips || spheres_.on_hull[i] == HullStand::rises ||
                        (step_.touches(i) && out >= rest_law_.sleep_speed(radius));
-    if (rides(i) || step_.s[std::size_t(i)].w >= kSlides) {
+    if (rides(i) || is_drawn_off(i) || step_.s[std::size_t(i)].w >= kSlides) {
       spheres_.quiet[i] = 0.0f;
       continue;
     }

@@ -255,5 +255,33 @@ TEST(Forces, ABoardAtTablesTakesItsLoadAlong) {
     }
 }
 
+// A row and a stack, pushed by the first for two seconds: nothing holds them, however weak that is.
+TEST(Forces, AWeakPushOnIceMovesAllThatTouch) {
+  constexpr int kCubes = 3;
+  for (const LevelChoice level : kPushedRungs)
+    for (const bool stacked : {false, true})
+      for (const double push : {0.02, 0.05, 0.3}) {  // over the weight of all
+        Manager manager({.signatures = coarse_signature});
+        manager.materials().replace(0, {.restitution = 0.0, .friction = 0.5});
+        const MaterialId ice = manager.materials().add({.restitution = 0.0, .friction = 0.0});
+        manager.add_plane(Vec3::UnitZ(), 0.0, ice);
+        const auto box = box_shape({kCubeSide, kCubeSide, kCubeSide});
+        std::vector<BodyId> cubes;
+        for (int i = 0; i < kCubes; ++i)
+          cubes.push_back(add(manager, box,
+                              testing::at(Vec3(0, 0, 0.5 * kCubeSide) +
+                                          i * kCubeSide * (stacked ? Vec3::UnitZ() : Vec3::UnitX())),
+                              level));
+        run(manager, 1.0);
+        run_pushed(
+            manager, std::span(cubes).first(1), [&](std::size_t) { return Vec3(kCubes * push, 0, 0); }, 2.0);
+        double mean = 0.0;
+        for (const BodyId cube : cubes) mean += manager.state(cube).velocity.x() / kCubes;
+        const double expected = push * kG * 2.0;
+        EXPECT_NEAR(mean, expected, 0.03 * expected)
+            << int(level) << (stacked ? " stack, " : " row, ") << push;
+      }
+}
+
 }  // namespace
 }  // namespace lodestone
