@@ -67,12 +67,14 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
 // hull, as under a plank on two blocks, the plane that they hold it by. False: there is none.
 bool TablesLevel::find_bridged_plane(std::int64_t place, std::span<const GroundNear> near) {
   constexpr double kUpright = 0.98;  // cosine, of what holds it
+  constexpr double kFlat = 0.3;  // over R: what reaches down so far is not looked at, since that takes long
   const BodyKind& kind = kind_of(place);
   const double strength = settings_.gravity.norm();
   if (!constants_.hulls || strength == 0.0 || kind.shape->sphere_radius) return false;
   const Vec3 up = -settings_.gravity / strength, u = up.unitOrthogonal(), v = up.cross(u);
   const auto is_below = [&](const GroundNear& n) { return !n.at_edge && n.normal.dot(up) > kUpright; };
   if (std::ranges::any_of(near, is_below)) return false;
+  if (double(ground_height(place, -up)) > kFlat * kind.shape->radius) return false;
   const StatisticalBody body = spheres_.body(place);
   thread_local std::vector<SolidContact> contacts;
   contacts.clear();
