@@ -42,18 +42,24 @@ bool TablesLevel::leaves_its_reach(const Driven& driven) const {
 void TablesLevel::stop_before_unseen() {
   constexpr std::ptrdiff_t kFew = 32;  // for whom it is not worth while to sort all
   const auto of_step = std::span(driven_).first(tallies_.size());
-  std::ptrdiff_t leaving = 0;
-  for (const std::vector<Driven>& of_block : of_step)
-    leaving += std::ranges::count_if(of_block, [&](const Driven& d) { return leaves_its_reach(d); });
+  const auto count_leaving = [&](std::span<const Driven> all) {
+    return std::ranges::count_if(all, [&](const Driven& driven) { return leaves_its_reach(driven); });
+  };
+  std::ptrdiff_t leaving = count_leaving(driven_guests_);
+  for (const std::vector<Driven>& of_block : of_step) leaving += count_leaving(of_block);
   by_x_.clear();
   if (leaving > kFew) sort_by_x();
   for (const std::vector<Driven>& of_block : of_step)
-    for (const Driven& driven : of_block) {
-      const Vec3 way = spheres_.position(driven.place) - driven.from;
-      double free = find_way_to_ground(driven, way);
-      if (leaves_its_reach(driven)) free = std::min(free, find_way_to_others(driven, way));
-      if (free < 1.0) spheres_.set_position(driven.place, driven.from + free * way);
-    }
+    for (const Driven& driven : of_block) stop_before_unseen(driven);
+  for (const Driven& driven : driven_guests_) stop_before_unseen(driven);
+  driven_guests_.clear();
+}
+
+void TablesLevel::stop_before_unseen(const Driven& driven) {
+  const Vec3 way = spheres_.position(driven.place) - driven.from;
+  double free = find_way_to_ground(driven, way);
+  if (leaves_its_reach(driven)) free = std::min(free, find_way_to_others(driven, way));
+  if (free < 1.0) spheres_.set_position(driven.place, driven.from + free * way);
 }
 
 void TablesLevel::sort_by_x() {

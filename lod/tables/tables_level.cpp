@@ -296,6 +296,7 @@ void TablesLevel::keep_load(std::int64_t place, const Vec3& before, StatisticalB
 void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> before,
                               std::span<const StatisticalBody> bodies) {
   const std::int64_t were_awake = spheres_.awake;
+  driven_guests_.clear();
   for (const Guest& guest : guests)
     if (guest.moved) wake(guest.slot);
   if (spheres_.awake > were_awake) {
@@ -310,6 +311,9 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     const std::size_t i = place_of(guest.slot);
     if (guest.carried) carried_guests_.push_back(std::int64_t(i));
     StatisticalBody body = bodies[k];
+    // What nothing stops would only go through it.
+    if (guest.touched && !guest.carried && body.velocity.squaredNorm() > before[k].velocity.squaredNorm())
+      driven_guests_.push_back({std::int64_t(i), before[k].position, before[k].velocity.norm()});
     if (guest.touched && !guest.on_hull && step_.touches(std::int64_t(i)))
       keep_load(std::int64_t(i), before[k].velocity, body);
     end_clip(std::int64_t(i));

@@ -203,6 +203,7 @@ class TablesLevel {
   void keep_above_faces();
   void note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const;
   void stop_before_unseen();
+  void stop_before_unseen(const Driven& driven);
   double find_way_to_ground(const Driven& driven, const Vec3& way) const;
   double find_way_to_others(const Driven& driven, const Vec3& way);
   void sort_by_x();
@@ -324,6 +325,7 @@ class TablesLevel {
   std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
   std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::vector<Driven>> driven_;       // likewise
+  std::vector<Driven> driven_guests_;             // in this step, by hulls
   enum class LetGo : std::uint8_t { no, on, off };
   std::vector<LetGo> let_go_;                          // of each place awake, by let_driven_go()
   std::vector<std::int64_t> in_the_way_;               // places

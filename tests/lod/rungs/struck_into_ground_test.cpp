@@ -76,7 +76,7 @@ TEST(StruckIntoGround, WhoWasStruckOnceIsLeftAloneLater) {
 
 // One flies at two that sleep one behind the other, a little apart: the second is out of the first one's
 // reach until that is struck. How many of 40 rows are in another order half a second later.
-int pass_in_a_row(LevelChoice level, bool is_ball, double speed) {
+int pass_in_a_row(LevelChoice striker, LevelChoice level, bool is_ball, double speed) {
   constexpr double kRadius = 0.05;  // m
   const auto shape = is_ball ? std::make_shared<const Shape>(make_sphere_shape(kRadius))
                              : testing::box_shape({2 * kRadius, 2 * kRadius, 2 * kRadius});
@@ -88,7 +88,7 @@ int pass_in_a_row(LevelChoice level, bool is_ball, double speed) {
     const double y = 2.0 * i, gap = 0.002 + 0.0004 * i;  // m
     RigidState coming = testing::at({-0.6 - 0.025 * i, y, kRadius});
     coming.velocity.x() = speed;
-    rows.push_back({add(manager, shape, coming, level),
+    rows.push_back({add(manager, shape, coming, striker),
                     add(manager, shape, testing::at({0, y, kRadius}), level),
                     add(manager, shape, testing::at({2 * kRadius + gap, y, kRadius}), level)});
     manager.sleep(rows.back()[1]), manager.sleep(rows.back()[2]);
@@ -103,8 +103,13 @@ TEST(StruckIntoOthers, NothingPassesAnother) {
   for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
     for (const bool is_ball : {false, true})
       for (const double speed : {10.0, 15.0, 30.0})
-        EXPECT_EQ(pass_in_a_row(level, is_ball, speed), 0)
+        EXPECT_EQ(pass_in_a_row(level, level, is_ball, speed), 0)
             << int(level) << (is_ball ? " ball, " : " box, ") << speed << " m/s";
+}
+
+TEST(StruckIntoOthers, NoBallStruckByAHullPassesAnother) {
+  for (const double speed : {10.0, 15.0})
+    EXPECT_EQ(pass_in_a_row(LevelChoice::support, LevelChoice::tables, true, speed), 0) << speed << " m/s";
 }
 
 }  // namespace
