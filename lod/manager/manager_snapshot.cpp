@@ -177,6 +177,7 @@ std::vector<std::byte> Manager::snapshot() const {
   if (impl_->waits_for_world_step)
     throw_input_error("snapshot", "one between before_world_step and after_world_step", "none");
   StateArchive state;
+  const auto held = impl_->queries.hold_ground();
   impl_->archive(state);  // which changes nothing where it writes
   std::vector<std::byte> body;
   for (const std::shared_ptr<const Shape>& shape : state.shapes()) {

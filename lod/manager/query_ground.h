@@ -63,6 +63,8 @@ class QueryGround {
   // thread.
   void meet(const Sweep& sweep, const Found& found);
   void overlap(const Volume& volume, const Found& found);
+  /// While it lasts no question makes solids of the ground.
+  std::unique_lock<std::mutex> hold() { return std::unique_lock(access_); }
 
  private:
   ContactSide side_of(GroundId id, MaterialId material) const;

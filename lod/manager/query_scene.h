@@ -34,6 +34,8 @@ class QueryScene {
     QueryFilter filter;
     std::vector<CallersPart> callers;
   };
+  /// For who reads the ground meanwhile.
+  std::unique_lock<std::mutex> hold_ground() { return ground_.hold(); }
   /// Before any number of questions.
   Asked prepare(const QueryFilter& filter);
   // From any thread. Lists are appended to.

@@ -92,6 +92,9 @@ double TablesLevel::find_way_to_ground(const Driven& driven, const Vec3& way) co
 // m: where it was when the step began.
 Vec3 TablesLevel::find_start_of(std::int64_t place) const {
   if (place >= spheres_.awake) return spheres_.position(place);
+  if (const auto guest = std::ranges::find(driven_guests_, place, &Driven::place);
+      guest != driven_guests_.end())
+    return guest->from;
   const std::vector<Driven>& of_block = driven_[std::size_t(place / kBlock)];
   const auto driven = std::ranges::lower_bound(of_block, place, {}, &Driven::place);
   if (driven != of_block.end() && driven->place == place) return driven->from;

@@ -296,7 +296,6 @@ void TablesLevel::keep_load(std::int64_t place, const Vec3& before, StatisticalB
 void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> before,
                               std::span<const StatisticalBody> bodies) {
   const std::int64_t were_awake = spheres_.awake;
-  driven_guests_.clear();
   for (const Guest& guest : guests)
     if (guest.moved) wake(guest.slot);
   if (spheres_.awake > were_awake) {

@@ -60,6 +60,7 @@ void archive_boxes(StateArchive& a, std::vector<Eigen::AlignedBox3d>& boxes) {
   std::vector<Vec3> corners;
   for (const Eigen::AlignedBox3d& box : boxes) corners.push_back(box.min()), corners.push_back(box.max());
   a(corners);
+  if (!a.reading()) return;
   boxes.clear();
   for (std::size_t i = 0; i + 1 < corners.size(); i += 2) boxes.emplace_back(corners[i], corners[i + 1]);
 }
