@@ -4,8 +4,8 @@
  * Every function that can fail returns LODESTONE_OK or why it failed, lodestone_error() says it in words;
  * nothing has changed then, and what it would have given is left alone. No exception leaves the library. SI
  * units, world frame right-handed. Pointers to input may be null only where their count is 0 or it is said;
- * an output that is null is not given. Lists that a function hands out belong to the manager and last until
- * its next step. Handles are used by one thread at a time. */
+ * an output of one thing that is null is not given. Lists that a function hands out belong to the manager and
+ * last until its next step. Handles are used by one thread at a time. */
 #ifndef LODESTONE_C_H
 #define LODESTONE_C_H
 

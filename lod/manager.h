@@ -95,9 +95,11 @@ class Manager {
       const Vec3& normal, double offset,
       MaterialId material = 0);  ///< normal·x = offset (m); the normal's length within 1e-3 of 1
   GroundId add_static_mesh(const Mesh& mesh,
-                           MaterialId material = 0);  ///< vertices in the world frame, m; two faces or more
+                           MaterialId material = 0);  ///< vertices in the world frame, m, within 1e6 of its
+                                                      ///< axes' origin; two faces or more
   GroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
-                          MaterialId material = 0);  ///< full sides, m
+                          MaterialId material = 0);  ///< full sides, 1e-4 … 1e6 m, none below 2e-6 of the
+                                                     ///< longest
   /// Puts a box or mesh elsewhere (a mesh was made at the origin, unturned) and wakes what is near. With a
   /// velocity it carries what lies on it, on every rung: `state` is that at the beginning of the step to
   /// come, within which it goes on from there; after it it stands where it was put again, as queries see it,

@@ -43,8 +43,9 @@ struct Why {
                         ///< in view; 0 without viewpoints
   bool in_view = true;
   double predicted_error = 0.0;  ///< score of its rung for its shape (see RungErrors); 0 while it sleeps
-  double predicted_error_pixels = 0.0;  ///< how far it drifts in a second (RungError::drift) × pixels; over
-                                        ///< out_of_view_factor where it is not in view; 0 while it sleeps
+  double predicted_error_pixels = 0.0;  ///< how far it drifts in a second (RungError::drift, among others
+                                        ///< with RungOverlaps) × pixels; over out_of_view_factor where it is
+                                        ///< not in view; 0 while it sleeps
   double cost_work = 0.0;  ///< of a step on its rung as it is now, in work units (see RungCost::work),
                            ///< without pairs of full bodies
   double cost_ms = 0.0;    ///< the same as learnt from measured steps; 0 unless the budget is in milliseconds

@@ -37,9 +37,14 @@ GroundPlane load_ground_plane(const YamlCursor& plane) {
 
 GroundBox load_ground_box(const YamlCursor& box) {
   box.expect_keys({"sides_m", "position_m", "orientation"});
-  GroundBox ground{.sides_m = box.at("sides_m").vector(kPositive),
-                   .position_m = Vec3::Zero(),
-                   .orientation = Quat::Identity()};
+  const YamlCursor sides = box.at("sides_m");
+  GroundBox ground{
+      .sides_m = sides.vector(kPositive), .position_m = Vec3::Zero(), .orientation = Quat::Identity()};
+  try {
+    check_box_sides(ground.sides_m);
+  } catch (const InputError& error) {
+    fail_at(sides, error);
+  }
   if (auto key = box.find("position_m")) ground.position_m = key->vector();
   if (auto key = box.find("orientation")) ground.orientation = key->rotation();
   return ground;
@@ -74,12 +79,22 @@ GroundMesh load_terrain(const YamlCursor& place) {
   const std::vector<double> size = place.at("size_m").numbers(2, {1e-2, 1e5});
   grid.size_m = {size[0], size[1]};
   if (auto key = place.find("position_m")) grid.middle_m = key->vector();
-  if (place.one_key_of({"hills", "heights_m"}) == "heights_m")
-    return {.mesh = make_terrain(grid,
-                                 load_heights(place.at("heights_m"), grid.cells[0] + 1, grid.cells[1] + 1))};
-  std::vector<Hill> hills;
-  for (const YamlCursor& hill : place.at("hills").items()) hills.push_back(load_hill(hill));
-  return {.mesh = make_terrain(grid, heights_of(grid, hills))};
+  const YamlCursor key = place.at(place.one_key_of({"hills", "heights_m"}));
+  std::vector<double> heights;
+  if (place.find("heights_m")) {
+    heights = load_heights(key, grid.cells[0] + 1, grid.cells[1] + 1);
+  } else {
+    std::vector<Hill> hills;
+    for (const YamlCursor& hill : key.items()) hills.push_back(load_hill(hill));
+    heights = heights_of(grid, hills);
+  }
+  GroundMesh terrain{.mesh = make_terrain(grid, heights)};
+  try {
+    check_ground_mesh(terrain.mesh);
+  } catch (const InputError& error) {
+    fail_at(key, error);
+  }
+  return terrain;
 }
 
 std::vector<GroundBox> load_stairs(const YamlCursor& place) {

@@ -26,7 +26,8 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 constexpr std::array<char, 8> kMagic{'L', 'O', 'D', 'E', 'P', 'L', 'A', 'Y'};
 constexpr double kMostFaces = 3e6;       // of all bodies together
 constexpr int kLeastFaces = 60;          // of one, where it had more
-constexpr double kUnitsOfRadius = 8192;  // positions are kept to this part of the smallest body's radius
+constexpr double kUnitsOfRadius = 8192;  // positions are kept to this part of the smallest body's radius, or
+constexpr double kMostUnits = 2e9;       // more roughly where a body goes farther than so many of that
 constexpr int kLastRule = int(Rule::carries_full);
 
 // The blobs, and their places for the header.
@@ -83,7 +84,7 @@ std::vector<std::byte> encode_poses(const Trajectory& trajectory, double unit_m)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t body = 0; body < bodies; ++body) {
         const double units = double(trajectory.position(frame, int(body))[axis]) / unit_m;
-        lengths[body] = std::uint32_t(std::int32_t(std::lround(std::clamp(units, -2e9, 2e9))));
+        lengths[body] = std::uint32_t(std::int32_t(std::lround(std::clamp(units, -kMostUnits, kMostUnits))));
       }
       positions[axis].add_frame(lengths, frame == 0, planes);
     }
@@ -164,12 +165,25 @@ std::vector<double> rounded(const Values& values) {
   return result;
 }
 
+/// m, along an axis, of any body at any time.
+double farthest_coordinate(const Trajectory& trajectory) {
+  double farthest = 0.0;
+  for (int frame = 0; frame < trajectory.frames(); ++frame)
+    for (int body = 0; body < trajectory.bodies(); ++body)
+      for (const double at : trajectory.position(frame, body))
+        if (std::isfinite(at)) farthest = std::max(farthest, std::abs(double(at)));
+  return farthest;
+}
+
 std::vector<double> numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 class Header {
  public:
   Header(const Trajectory& trajectory, const Scene& scene, const PlaybackTitle& title, Meshes& meshes)
-      : trajectory_(trajectory), scene_(scene), meshes_(meshes) {
+      : trajectory_(trajectory),
+        scene_(scene),
+        meshes_(meshes),
+        farthest_m_(farthest_coordinate(trajectory)) {
     json_["version"] = kPlaybackVersion;
     json_["label"] = title.label;
     json_["from_step"] = title.from_step;
@@ -189,7 +203,7 @@ class Header {
   double unit_m() const {
     double smallest = 1e9;
     for (const SceneBody& body : scene_.bodies) smallest = std::min(smallest, body.definition.shape->radius);
-    return scene_.bodies.empty() ? 1e-4 : smallest / kUnitsOfRadius;
+    return scene_.bodies.empty() ? 1e-4 : std::max(smallest / kUnitsOfRadius, farthest_m_ / kMostUnits);
   }
 
  private:
@@ -259,6 +273,7 @@ class Header {
   const Trajectory& trajectory_;
   const Scene& scene_;
   Meshes& meshes_;
+  double farthest_m_;
   ordered_json json_;
 };
 
@@ -289,7 +304,7 @@ void save_playback(const fs::path& file, const Trajectory& trajectory, const Sce
   header.json()["mesh_vertices"] = meshes.vertices();
   header.json()["mesh_faces"] = meshes.faces();
   header.json()["blobs"] = blobs.places();
-  const std::string text = header.json().dump();
+  const std::string text = header.json().dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   const std::array<std::uint32_t, 2> sizes{std::uint32_t(kPlaybackVersion), std::uint32_t(text.size())};
   std::vector<std::byte> bytes;
   append(bytes, kMagic);

@@ -103,12 +103,9 @@ Manager make_manager(const Scene& scene, const RunSettings& settings, const Sign
   return manager;
 }
 
-RecordFunction open_recording(const fs::path& file) {
-  const auto out = std::make_shared<OutputFile>(file, "room for the recording");
-  return [out](std::span<const std::byte> bytes) {
-    out->write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    out->flush();
-  };
+void write_recording(OutputFile& out, std::span<const std::byte> bytes) {
+  out.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  out.flush();
 }
 
 std::vector<std::byte> bytes_of(const fs::path& file) {
@@ -151,7 +148,10 @@ class Run {
         budget_(policy_of(scene, settings)) {
     open_output();
     move_viewpoints(0);
-    if (!settings.record.empty()) manager_.set_record(open_recording(settings.record));
+    if (!settings.record.empty())
+      manager_.set_record(
+          [this, out = std::make_shared<OutputFile>(settings.record, "room for the recording")](
+              std::span<const std::byte> bytes) { write([&] { write_recording(*out, bytes); }); });
     add_bodies();
     result_.bodies = int(bodies_.size());
     observe();
@@ -170,6 +170,7 @@ class Run {
     for (const BodyId body : bodies_) manager_.set_level(body, settings_.level);
     trajectory_ = Trajectory(int(scene_.bodies.size()));
     from_step_ = step;
+    sample_ = other.sample_, last_awake_s_ = other.last_awake_s_;
     observe();
     result_.energy_start_j = result_.energy_max_j = sample_.energy_j;
     record(step);
@@ -293,7 +294,7 @@ class Run {
     try {
       write_file();
       return true;
-    } catch (const InputError& error) {
+    } catch (const std::exception& error) {  // too little memory to put it together, too
       if (result_.write_error.empty()) result_.write_error = error.what();
       return false;
     }
@@ -438,8 +439,10 @@ RunResult run_forked(const Scene& scene, const RunSettings& settings, int steps,
   const auto forked = std::make_shared<ForkedRun>();
   forked->step = step;
   if (first.goes_on(step)) second.fork_from(first, step);
-  for (; first.goes_on(step) && second.goes_on(step); ++step) {
+  for (bool together = true; first.goes_on(step); ++step) {
+    together = together && second.goes_on(step);
     first.advance(step);
+    if (!together) continue;
     second.advance(step);
     forked->mean_distance_m.push_back(second.mean_distance_m(first));
   }

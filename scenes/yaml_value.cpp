@@ -26,17 +26,18 @@ int line_of(const YAML::Mark& mark) { return std::max(mark.line, 0) + 1; }
 /// How many values a tree holds, and how deep it goes.
 struct TreeSize {
   int values = 1, depth = 1;
+  std::uintmax_t bytes = 0;  // of its texts and keys
 };
 
 TreeSize size_of(const YamlValue& value) {
-  TreeSize size;
+  TreeSize size{.bytes = value.text.size()};
   const auto include = [&](const YamlValue& part) {
     const TreeSize inner = size_of(part);
-    size.values += inner.values;
+    size.values += inner.values, size.bytes += inner.bytes;
     size.depth = std::max(size.depth, 1 + inner.depth);
   };
   for (const YamlValue& item : value.items) include(item);
-  for (const YamlEntry& entry : value.entries) include(entry.value);
+  for (const YamlEntry& entry : value.entries) size.bytes += entry.key.size(), include(entry.value);
   return size;
 }
 
@@ -87,6 +88,9 @@ class TreeBuilder : public YAML::EventHandler {
     const TreeSize size = size_of(found->second);
     if (int(open_.size()) + size.depth > limits_.max_depth) fail_depth(mark);
     count(mark, size.values);
+    bytes_ += size.bytes;
+    if (bytes_ > limits_.max_bytes)
+      fail(mark, "size", "more text by aliases", fmt::format("at most {} bytes", limits_.max_bytes));
     place(found->second, mark);
   }
 
@@ -174,6 +178,7 @@ class TreeBuilder : public YAML::EventHandler {
   YamlLimits limits_;
   YamlValue root_;
   int documents_ = 0, values_ = 0;
+  std::uintmax_t bytes_ = 0;  // of what aliases stand for
   std::vector<Open> open_;
   std::vector<YAML::Mark> open_marks_;
   std::map<YAML::anchor_t, YamlValue> anchors_;  // finished ones only: an alias to an open one is a cycle

@@ -198,9 +198,9 @@ std::string measurement_versions() {
 
 SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw& law,
                                            const SignatureSourceSettings& settings) {
-  MaterialTable{law};  // throws where it is out of range, before anything is written
   SignatureSettings measuring = settings.measuring;
   measuring.law = law;
+  check_settings(measuring);  // before anything is written
   if (settings.use_cache)
     return find_or_measure_in(cache_file(shape, measuring, settings), shape, measuring, settings);
   return measure_uncached(shape, measuring, settings);
@@ -208,9 +208,9 @@ SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw&
 
 MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Share& share,
                              const SignatureSourceSettings& settings) {
-  MaterialTable{law};
   SignatureSettings measuring = settings.measuring;
   measuring.law = law;
+  check_settings(measuring);
   MeasurementPart part{.identity = identity_of(shape, measuring, share), .measurement = {}};
   std::unique_ptr<MeasurementJournal> journal;
   if (settings.use_cache) {

@@ -181,6 +181,8 @@ void check_content(const SignatureView& view, const Failure& fail) {
               {s.by_speed.n_theta, s.by_speed.n_phi, std::int64_t(speeds.size()), std::int64_t(spins.size())},
               s.by_speed.cells.sample_range, fail);
   const bool scale_free = !view.list(3).empty() && view.list(3).size() == view.list(10).size();
+  if (view.list(7).empty() != view.list(14).empty() || view.list(8).empty() != view.list(15).empty())
+    fail("covariances or samples of one scale-free table alone", "those of both or of neither");
   if (scale_free == !view.list(17).empty())
     fail("response tables of neither kind or both", "two scale-free tables or one by speed");
   for (const TableCertificate* c :

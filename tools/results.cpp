@@ -52,7 +52,7 @@ ordered_json or_null(const std::optional<int>& value) {
 
 void print_json(ordered_json json) {
   if (is_interrupted()) json["incomplete"] = true;
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 void save_csv(const ordered_json& rows, const ordered_json& example, const std::filesystem::path& file) {

@@ -4,8 +4,8 @@
 
 #include <charconv>
 #include <cmath>
-#include <thread>
 
+#include "reference/allowed_threads.h"
 #include "tools/scene_signatures.h"
 #include "tools/shape_arguments.h"
 #include "tools/step_argument.h"
@@ -23,9 +23,7 @@ std::string find_budget_fault(const std::string& text) {
              : fmt::format("found '{}', expected a number above 0", text);
 }
 
-int threads_of(int asked) {
-  return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
-}
+int threads_of(int asked) { return asked > 0 ? asked : allowed_threads(0); }
 
 }  // namespace
 

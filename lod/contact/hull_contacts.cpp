@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 
 #include "lod/statistical/parting.h"
@@ -13,11 +14,36 @@ namespace {
 
 // Vertices with a gap below `margin`, now or after the change, in the hull's order.
 struct Below {
-  static constexpr std::size_t kCapacity = 256;  // of more, the first ones serve
+  static constexpr std::size_t kCapacity = 256;  // of more, the outermost ones serve
   std::array<std::int32_t, kCapacity> vertex;
   std::array<float, kCapacity> x, y, z;  // m, body axes
   std::size_t count = 0;
 };
+
+// Those of all ways about the normal, in their order.
+void keep_outermost(Below& below, const Vec3& normal) {
+  constexpr int kWays = 64;
+  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+  std::array<bool, Below::kCapacity> is_kept{};
+  for (int i = 0; i < kWays; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kWays;
+    const Eigen::Vector3f way = (std::cos(angle) * u + std::sin(angle) * v).cast<float>();
+    std::size_t best = 0;
+    float farthest = -std::numeric_limits<float>::max();
+    for (std::size_t k = 0; k < below.count; ++k) {
+      const float along = below.x[k] * way[0] + below.y[k] * way[1] + below.z[k] * way[2];
+      if (along > farthest) farthest = along, best = k;
+    }
+    is_kept[best] = true;
+  }
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < below.count; ++k) {
+    if (!is_kept[k]) continue;
+    below.vertex[count] = below.vertex[k];
+    below.x[count] = below.x[k], below.y[count] = below.y[k], below.z[count++] = below.z[k];
+  }
+  below.count = count;
+}
 
 // The lesser gap, now or then, of each vertex.
 void find_gaps(const float* x, const float* y, const float* z, std::size_t size,
@@ -39,7 +65,7 @@ void find_below(const Hull& hull, const Vec3& normal_in_body, double height, dou
   const VertexLanes& lanes = hull.lanes;
   for (std::size_t begin = 0; begin < lanes.x.size(); begin += kBlock) {
     const std::size_t size = std::min(kBlock, lanes.x.size() - begin);
-    if (below.count + size > Below::kCapacity) return;
+    if (below.count + size > Below::kCapacity) keep_outermost(below, normal_in_body);
     find_gaps(lanes.x.data() + begin, lanes.y.data() + begin, lanes.z.data() + begin, size, normal,
               float(height), of_arm, float(change.of_center), gap.data());
     std::fill(gap.begin() + std::ptrdiff_t(size), gap.end(), limit);

@@ -7,11 +7,11 @@
 namespace lodestone {
 namespace {
 
-constexpr int kFarthestPassed = 32;   // a row's blow goes on by one body in each
-constexpr int kMostRoundSweeps = 10;  // over the contacts of a round
-constexpr double kAnswered = 1e-3;    // of the greatest impulse: a smaller change is none
-constexpr double kAsFast = 0.99;      // of the fastest on its bodies: is answered with it
-constexpr double kAtOnce = 0.01;      // of the step: blows as close in time are ordered by their speed
+constexpr std::size_t kMostAnswers = 32;  // of each contact, on average: a row's blow takes one
+constexpr int kMostRoundSweeps = 10;      // over the contacts of a round
+constexpr double kAnswered = 1e-3;        // of the greatest impulse: a smaller change is none
+constexpr double kAsFast = 0.99;          // of the fastest on its bodies: is answered with it
+constexpr double kAtOnce = 0.01;          // of the step: blows as close in time are ordered by their speed
 constexpr std::uint8_t kOpen = 1, kBlow = 2, kStruck = 4;  // of a manifold
 
 }  // namespace
@@ -235,8 +235,10 @@ void ImpactWaves::pass_on(std::span<SolverBody> bodies, std::span<const CrowdMan
   active_.clear();
   for (const std::uint32_t i : blows_)
     if (is_passed_on(scene, i)) active_.push_back(i);
-  for (int round = 0; round < kFarthestPassed && !active_.empty(); ++round) {
+  for (std::size_t answered = 0; !active_.empty() && answered < kMostAnswers * manifolds.size();
+       answered += foremost_.size()) {
     find_foremost(scene);
+    if (foremost_.empty()) return;
     for (const std::uint32_t i : foremost_)
       for (CrowdPoint& point : points.subspan(manifolds[i].begin, manifolds[i].count)) {
         const Vec3& n = manifolds[i].normal;

@@ -33,6 +33,7 @@ class PairMemory {
   void add(ContactKey key) {
     keys_.push_back(key);
     mark(key);
+    made_ = false;
   }
   void add(const PairMemory& others) {
     for (const ContactKey key : others.keys_) add(key);

@@ -231,7 +231,7 @@ bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const 
     return uneven.empty();
   };
   if (std::ranges::all_of(parts, is_planes)) {
-    const std::optional<HalfSpace> mean = find_mean_plane(near, body.position, reach, kGentleToTables);
+    const std::optional<HalfSpace> mean = find_plane_half_way(seeker, near, reach, kGentleToTables, time);
     if (mean) planes.push_back(*mean);
     if (mean || (find_faces_below(near, body.position, kind.shape->radius, reach, planes) &&
                  !are_wedge(std::span(planes).subspan(before))))

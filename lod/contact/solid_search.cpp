@@ -56,7 +56,8 @@ void find_probed_contacts(const GroundSeeker& s, const GroundPart& part, double 
   const auto hit_below = [&](const Vec3& point) {
     return part.shape.probe(point + reach * up, -up, 2.0 * reach);
   };
-  const std::optional<GroundHit> below = hit_below(s.body.position);
+  const Vec3 ahead = s.shape.sphere_radius ? s.half_way(time) : Vec3(Vec3::Zero());
+  const std::optional<GroundHit> below = hit_below(s.body.position + ahead);
   const Vec3 normal = below ? below->normal : up;
   std::int32_t hint = s.body.support_hint;
   const double height = below ? normal.dot(s.body.position - below->point) : 0.0,
@@ -66,7 +67,7 @@ void find_probed_contacts(const GroundSeeker& s, const GroundPart& part, double 
   std::array<std::optional<GroundHit>, kMaxGroundContacts> hits;
   bool even = below.has_value();
   for (int i = 0; i < low.count; ++i) {
-    hits[std::size_t(i)] = hit_below(s.body.position + low.contact[std::size_t(i)].arm);
+    hits[std::size_t(i)] = hit_below(s.body.position + low.contact[std::size_t(i)].arm + ahead);
     const auto& hit = hits[std::size_t(i)];
     even = even && hit && (hit->normal - normal).squaredNorm() < 1e-12 &&
            std::abs(normal.dot(hit->point - below->point)) < 1e-6 * s.shape.radius;
@@ -129,9 +130,19 @@ bool find_uneven_ground(const GroundSeeker& seeker, const MetGround& ground, dou
     planes.resize(before);
   }
   if (!is_smooth(near, center, reach)) return true;
-  const auto mean = find_mean_plane(near, center, reach, kGentle);
+  const auto mean = find_plane_half_way(seeker, near, reach, kGentle, time);
   if (mean) planes.push_back(*mean);
   return !mean;
+}
+
+std::optional<HalfSpace> find_plane_half_way(const GroundSeeker& seeker, std::span<const PlacedSolid> near,
+                                             double reach, double least_cosine, double time) {
+  const auto mean = find_mean_plane(near, seeker.body.position, reach, least_cosine);
+  if (!mean) return {};
+  constexpr double kNear = 1e-3;  // over the reach: the same plane
+  const Vec3 ahead = seeker.half_way(time), along = ahead - ahead.dot(mean->normal) * mean->normal;
+  if (along.norm() < kNear * reach) return mean;
+  return find_mean_plane(near, seeker.body.position + along, reach, least_cosine);
 }
 
 std::optional<TriangleSieve> sieve_of(const GroundSeeker& seeker, double time) {

@@ -19,12 +19,19 @@ struct GroundSeeker {
   double touching = 0.0, way = 0.0;  ///< m: as near as what carries; as far as a point of it may move
   std::int32_t slot = 0;
   double reach() const { return shape.radius + touching + way; }  // m
+  /// m, where it will be in the middle of a step of `time` seconds: over curved ground one plane stands for
+  /// the whole step, and that of its beginning would give what rolls in a hollow energy by lifting it.
+  Vec3 half_way(double time) const { return 0.5 * time * body.velocity; }
   /// m/s, world.
   Vec3 velocity_at(const Vec3& point) const { return body.velocity + omega.cross(point - body.position); }
 };
 
 /// For a step of `time` seconds.
 GroundSeeker seeker_of(const StatisticalBody& body, const Shape& shape, std::int32_t slot, double time);
+
+/// find_mean_plane() where the body will be half way of its step.
+std::optional<HalfSpace> find_plane_half_way(const GroundSeeker& seeker, std::span<const PlacedSolid> near,
+                                             double reach, double least_cosine, double time);
 
 /// Whether the contact closes within `time` seconds.
 bool closes(const PairContact& contact, const GroundPart& part, const GroundSeeker& seeker, double time);

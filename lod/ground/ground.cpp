@@ -179,6 +179,13 @@ void Ground::rebuild() const {
               : std::make_shared<const Tree>(indices.begin(), indices.end(), boxes.begin(), boxes.end());
 }
 
+Eigen::AlignedBox3d Ground::bounds_of_parts() const {
+  Eigen::AlignedBox3d all;
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (parts_[i]) all.extend(bounds_[i]);
+  return all;
+}
+
 void Ground::find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const {
   if (parts_used_ == 0) return;
   constexpr std::size_t kFewLoose = 16;

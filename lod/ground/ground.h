@@ -115,6 +115,8 @@ class Ground {
   /// parts.
   void archive(StateArchive& a);
   bool has_parts() const { return parts_used_ > 0; }
+  /// Of all parts, m, world.
+  Eigen::AlignedBox3d bounds_of_parts() const;
   /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making.
   /// Not for several threads at once, as it makes solids.
   void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const;

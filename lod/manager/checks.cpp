@@ -16,6 +16,7 @@ constexpr double kUnitWithin = 1e-3;  // of 1: by so much a length may be off th
 constexpr double kFarthest = 1e8;     // m, from the origin
 constexpr double kLongestStep = 10.0,
                  kShortestStep = 1e-9;  // s; over a shorter one solvers divide by what is no longer a number
+constexpr double kFarthestVertex = 1e6, kShortestSide = 1e-4, kLongestSide = 1e6;  // m, of ground
 constexpr double kFarthestView =
     1e12;  // m, from the origin: beyond, the squares of distances lose what is near
 
@@ -188,10 +189,27 @@ double checked_mass(const BodyDefinition& definition, const MaterialTable& mater
   return mass;
 }
 
+void check_box_sides(const Vec3& sides) {
+  constexpr double kThinnest = 2e-6;  // of the longest: thinner than so it has no volume, to rounding
+  for (const double side : sides) check_positive(side, "side of a static box");
+  const double longest = sides.maxCoeff();
+  if (!(longest >= kShortestSide && longest <= kLongestSide))
+    throw_input_error("longest side of a static box", fmt::format("{:g} m", longest),
+                      fmt::format("{:g} … {:g} m (beyond, a plane)", kShortestSide, kLongestSide));
+  if (sides.minCoeff() < kThinnest * longest)
+    throw_input_error("shortest side of a static box", fmt::format("{:g} m", sides.minCoeff()),
+                      fmt::format("{:g} of the longest, {:g} m, or more", kThinnest, longest));
+}
+
 void check_ground_mesh(const Mesh& mesh) {
   const auto vertices = int(mesh.vertices.size());
   bool any_area = false;
-  for (const Vec3& vertex : mesh.vertices) check_finite(vertex, "vertex of a static mesh");
+  for (const Vec3& vertex : mesh.vertices) {
+    check_finite(vertex, "vertex of a static mesh");
+    if (vertex.cwiseAbs().maxCoeff() > kFarthestVertex)  // ODE's triangles are of floats
+      throw_input_error("vertex of a static mesh", text(vertex),
+                        fmt::format("coordinates within {:g} m", kFarthestVertex));
+  }
   for (const auto& face : mesh.faces) {
     for (const int i : face)
       if (i < 0 || i >= vertices)

@@ -170,6 +170,7 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   if (pinned) candidate.decided_by = Rule::joined;
   if (carries) candidate.decided_by = Rule::carries_full;
   candidate.mesh = mesh;
+  if (by_error()) predict_errors(body, does, candidate);
   if (budgeted()) candidate.cost = costs_->cost_of(does, costs_->full_share(mesh));
   if (budgeted() && open.one() && open.has(Rung::full) && !level.newcomer)
     candidate.cost[std::size_t(Rung::full)] =

@@ -101,7 +101,7 @@ class Choose {
   void look_ahead();
   void look_ahead(LevelCandidate& candidate, std::span<const std::size_t> full) const;
   double significance(std::uint32_t body) const;
-  void predict_errors(std::uint32_t body, LevelCandidate& candidate) const;
+  void predict_errors(std::uint32_t body, Activity does, LevelCandidate& candidate) const;
   void count(Rung rung, Activity does, bool arriving, float mesh, double bodies);
   void count_held(Activity does, double share);
   bool arrives(const BodyLevel& level, Activity does) const;

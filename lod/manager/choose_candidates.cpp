@@ -97,7 +97,6 @@ LevelCandidate Choose::make_candidate(std::uint32_t body, RungSet open, bool asl
   if (policy_.out_of_view_factor > 1.0 && views_differ && !views_.empty() &&
       !in_view(candidate.position, candidate.radius))
     candidate.view_factor = policy_.out_of_view_factor;
-  if (by_error()) predict_errors(body, candidate);
   if (budgeted() && record.ode && !asleep)
     candidate.motion = kFrame_s * levels_.full.world()->state(record.ode).velocity;
   return candidate;
@@ -157,8 +156,8 @@ double Choose::pixels(const LevelCandidate& seen) const {
   return std::min(kMostPixels, diameter / std::sqrt(squared));  // infinite at a viewpoint itself
 }
 
-void Choose::predict_errors(std::uint32_t body, LevelCandidate& candidate) const {
-  const std::array<RungError, kRungs> errors = levels_.errors_of(body);
+void Choose::predict_errors(std::uint32_t body, Activity does, LevelCandidate& candidate) const {
+  const std::array<RungError, kRungs> errors = levels_.errors_of(body, does);
   const double weight = pixels(candidate) * candidate.importance / candidate.view_factor *
                         (candidate.asleep ? kErrorOfSleepers : 1.0);
   for (std::size_t rung = 0; rung < kRungs; ++rung)

@@ -114,9 +114,11 @@ bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepTh
   return still_s >= still_time;
 }
 
-void put_to_sleep(OdeWorld& world, OdeBodyId body, RigidState state) {
+void put_to_sleep(OdeWorld& world, OdeBodyId body, const FullNeighbor& neighbor, double dt) {
+  RigidState state = neighbor.state;
   state.velocity = state.angular_velocity = Vec3::Zero();
   world.set_state(body, state);
+  world.hold(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
   world.set_asleep(body, true);
 }
 
@@ -125,7 +127,7 @@ void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, dou
   OdeWorld& world = *levels.full.world();
   if (world.asleep(body) || neighbor.carried) world.set_asleep(body, false);  // ODE's clock begins anew
   if (neighbor.carried) world.keep_awake(body);
-  if (!neighbor.push.is_zero()) world.add_force(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
+  world.hold(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
   const BodyProperties& own = levels.bodies.properties(neighbor.owner);
   if (own.kinematic || (!neighbor.is_touched() && neighbor.shift.isZero(0.0))) return;
   const Vec3 gravity = own.gravity ? levels.statistical_settings.gravity : Vec3(Vec3::Zero());
@@ -163,7 +165,7 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt, int 
     const bool sleeps = falls_asleep(levels.bodies, neighbor, levels.statistical_settings.sleep, dt) &&
                         levels.statistical_settings.sleeping && !has_joints(neighborhood.ode_bodies[i]);
     if (sleeps)
-      put_to_sleep(*levels.full.world(), id, neighbor.state);
+      put_to_sleep(*levels.full.world(), id, neighbor, dt);
     else
       hand_over(levels, id, neighbor, dt, substeps);
   }

@@ -17,8 +17,14 @@ ContactLaw Levels::ground_law(MaterialId material) const {
   return materials.law(material, ground.planes().empty() ? 0 : ground.planes().front().material);
 }
 
-std::array<RungError, kRungs> Levels::errors_of(std::uint32_t body) const {
-  const RungErrors& errors = signatures.errors(*bodies.shape(body), ground_law(bodies[body].material));
+std::array<RungError, kRungs> Levels::errors_of(std::uint32_t body, Activity does) const {
+  RungErrors errors = signatures.errors(*bodies.shape(body), ground_law(bodies[body].material));
+  if (does == Activity::crowded) {
+    constexpr RungOverlaps kOverlaps;
+    errors.tables.drift += kOverlaps.tables;
+    errors.support.drift += kOverlaps.support;
+    errors.full.drift += kOverlaps.full;
+  }
   return {errors.tables, errors.support, errors.full};
 }
 

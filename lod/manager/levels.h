@@ -56,7 +56,8 @@ struct Levels {
   ContactLaw ground_law(MaterialId material) const;
 
   /// Of a body's shape at each rung, by Rung.
-  std::array<RungError, kRungs> errors_of(std::uint32_t body) const;
+  /// Of its shape; the drifts of a body that touches others with their overlaps.
+  std::array<RungError, kRungs> errors_of(std::uint32_t body, Activity does) const;
 
   RigidState state(std::uint32_t body) const;
   bool asleep(std::uint32_t body) const;

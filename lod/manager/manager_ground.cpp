@@ -52,7 +52,7 @@ GroundId Manager::add_static_mesh(const Mesh& mesh, MaterialId material) {
 
 GroundId Manager::add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
                                  MaterialId material) {
-  for (const double side : sides) check_positive(side, "side of a static box");
+  check_box_sides(sides);
   const RigidState pose = checked(RigidState{position, orientation, Vec3::Zero(), Vec3::Zero()});
   impl_->levels.materials.check_known(material);
   impl_->changes.keep_moved();

@@ -89,7 +89,7 @@ Why Manager::explain(BodyId body) const {
   }
   const Activity does = choose.activity(index);
   if (does != Activity::asleep) {
-    const RungError error = levels.errors_of(index)[std::size_t(level.rung)];
+    const RungError error = levels.errors_of(index, does)[std::size_t(level.rung)];
     why.predicted_error = error.score;
     why.predicted_error_pixels =
         error.drift * why.pixels / (why.in_view ? 1.0 : choose.policy().out_of_view_factor);

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kPiece = 2.0;  // m: of a ray, for which solids are looked up at a time
 constexpr double kMostPieces = 256.0;
-constexpr double kFarthestPiece = 1e6;  // m: beyond, rays meet no piece of the ground but planes
+constexpr double kFarthestPiece =
+    1e6;  // m, from where a ray comes to the ground: beyond, it meets planes alone
 
 SurfaceHit in_world(const PosedSurface& surface, SurfaceHit hit) {
   hit.point = surface.position + surface.orientation * hit.point;
@@ -123,13 +124,36 @@ std::vector<PlacedSolid> QueryGround::find_near(const Vec3& center, double reach
   return solids;
 }
 
-// Piece by piece of a ray that is not too long.
+// m, of a ray: where it comes within `margin` of the box, and where it leaves that. None: nowhere.
+std::optional<std::pair<double, double>> find_within(const Eigen::AlignedBox3d& box, const Sweep& sweep,
+                                                     double margin) {
+  double begin = 0.0, end = sweep.length;
+  for (int a = 0; a < 3; ++a) {
+    const double low = box.min()[a] - margin - sweep.from[a], high = box.max()[a] + margin - sweep.from[a],
+                 way = sweep.direction[a];
+    if (way == 0.0) {
+      if (low > 0.0 || high < 0.0) return {};
+      continue;
+    }
+    begin = std::max(begin, std::min(low / way, high / way));
+    end = std::min(end, std::max(low / way, high / way));
+  }
+  return begin <= end ? std::optional(std::pair(begin, end)) : std::nullopt;
+}
+
+// Piece by piece, of a long ray what is near any ground.
 std::vector<PlacedSolid> QueryGround::find_along(const Sweep& sweep, std::vector<const GroundPart*>& probed) {
   std::vector<PlacedSolid> all;
-  const double length = std::min(sweep.length, kFarthestPiece),
-               piece = std::max(kPiece, length / kMostPieces);
-  for (double at = 0.0; at <= length; at += piece) {
-    const double half = 0.5 * std::min(piece, length - at);
+  double begin = 0.0, end = sweep.length;
+  if (end > kMostPieces * kPiece) {
+    const std::lock_guard lock(access_);
+    const auto within = find_within(ground_.bounds_of_parts(), sweep, sweep.radius);
+    if (!within) return all;
+    begin = within->first, end = std::min(within->second, begin + kFarthestPiece);
+  }
+  const double piece = std::max(kPiece, (end - begin) / kMostPieces);
+  for (double at = begin; at <= end; at += piece) {
+    const double half = 0.5 * std::min(piece, end - at);
     for (const PlacedSolid& solid :
          find_near(sweep.from + (at + half) * sweep.direction, half + sweep.radius, probed))
       all.push_back(solid);

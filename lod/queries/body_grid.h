@@ -104,7 +104,9 @@ void BodyGrid::find_along(const Vec3& from, const Vec3& direction, double length
     if (of_level_[std::size_t(level)] == 0) continue;
     const double edge = edge_of(level);
     double left = length;
-    if (!(length / edge < 4.0 * double(cells_.size()))) {  // farther than it is worth
+    constexpr double kFarthestCell = 1e9;  // along() knows no farther ones
+    if (!(length / edge < 4.0 * double(cells_.size())) ||
+        !(from.cwiseAbs().maxCoeff() < kFarthestCell * edge)) {  // farther than it is worth
       for (std::uint32_t body = 0; body < places_.size(); ++body)
         if (places_[body].radius > 0.0 && level_of(places_[body].radius) == level)
           left = std::min(left, found(body));

@@ -23,7 +23,8 @@ struct Making {
 struct Motion {
   RigidState state, last_good;
   std::array<dReal, 12> rotation{};
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero(), given_force = Vec3::Zero(), given_torque = Vec3::Zero();
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero(), given_force = Vec3::Zero(), given_torque = Vec3::Zero(),
+       held_force = Vec3::Zero(), held_torque = Vec3::Zero();
   double to_sleep_s = 0.0;
   std::uint64_t joints_at_rest = 0;
   int last_support = 0;
@@ -54,6 +55,7 @@ Motion motion_of(const Body& body) {
   std::copy_n(dBodyGetRotation(body.body), 12, motion.rotation.begin());
   motion.force = to_vec3(dBodyGetForce(body.body)), motion.torque = to_vec3(dBodyGetTorque(body.body));
   motion.given_force = body.force, motion.given_torque = body.torque;
+  motion.held_force = body.held_force, motion.held_torque = body.held_torque;
   motion.last_support = body.last_support;
   motion.to_sleep_s = body.to_sleep_s;
   motion.joints_at_rest = body.joints_at_rest;
@@ -68,6 +70,7 @@ void set_motion(Body& body, const Motion& motion) {
   dBodySetForce(body.body, motion.force.x(), motion.force.y(), motion.force.z());
   dBodySetTorque(body.body, motion.torque.x(), motion.torque.y(), motion.torque.z());
   body.force = motion.given_force, body.torque = motion.given_torque;
+  body.held_force = motion.held_force, body.held_torque = motion.held_torque;
   body.last_good = motion.last_good;
   body.last_support = motion.last_support;
   body.impact_time.reset();

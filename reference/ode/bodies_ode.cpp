@@ -90,6 +90,13 @@ void destroy(dBodyID body, dSpaceID space) {
 
 }  // namespace
 
+bool is_held(const Body& body) { return !body.held_force.isZero(0.0) || !body.held_torque.isZero(0.0); }
+
+void set_force(dBodyID body, const Vec3& force, const Vec3& torque) {
+  dBodySetForce(body, force.x(), force.y(), force.z());
+  dBodySetTorque(body, torque.x(), torque.y(), torque.z());
+}
+
 bool is_sound(const RigidState& state) {
   return within_limit(state.position) && within_limit(state.velocity) &&
          within_limit(state.angular_velocity) && std::abs(state.orientation.squaredNorm() - 1.0) <= 1e-6;

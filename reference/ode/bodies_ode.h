@@ -34,6 +34,7 @@ struct Body {
   Vec3 before = Vec3::Zero();  ///< m, its place before the substep
   int last_support = 0;        ///< the hull vertex deepest in a plane last time
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  Vec3 held_force = Vec3::Zero(), held_torque = Vec3::Zero();  ///< see OdeWorld::hold
   RigidState last_good;
   BodyProperties properties;
   double to_sleep_s = 0.0;           ///< how much longer it has to be still to fall asleep
@@ -55,6 +56,9 @@ struct Body {
 void set_properties(Body& body, const BodyProperties& properties);
 /// Of steps of `h` s.
 void set_damping(Body& body, double h);
+
+bool is_held(const Body& body);
+void set_force(dBodyID body, const Vec3& force, const Vec3& torque);
 
 /// Whether every part is finite and within ODE's reach: 1e8 m, m/s and rad/s; the squared norm of the
 /// quaternion within 1e-6 of one.

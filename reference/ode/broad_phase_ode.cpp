@@ -15,10 +15,10 @@ std::uint32_t part_of(dGeomID geom) {
 
 bool is_dynamic(dBodyID body) { return body && !dBodyIsKinematic(body); }
 
-bool may_touch(dBodyID first, dBodyID second) {
-  if (first == second || !(is_moving(first) || is_moving(second)) ||
-      !(is_dynamic(first) || is_dynamic(second)))
-    return false;
+// Of two of which one moves; or `asleep`, of two of which none does.
+bool may_touch(dBodyID first, dBodyID second, bool asleep = false) {
+  const bool any_moves = is_moving(first) || is_moving(second);
+  if (first == second || any_moves == asleep || !(is_dynamic(first) || is_dynamic(second))) return false;
   return !(first && second && dAreConnectedExcluding(first, second, dJointTypeContact));
 }
 
@@ -88,6 +88,32 @@ std::span<const Candidate> BroadPhase::find(Bodies& bodies) {
   return candidates_;
 }
 
+std::span<const Candidate> BroadPhase::find_of_sleeper(Bodies& bodies, const Body& body,
+                                                       const std::function<bool(const Body&)>& wanted) {
+  candidates_.clear();
+  bodies_ = &bodies;
+  of_sleepers_ = true;
+  const Body* const slots = bodies.slots().data();
+  found_.clear();
+  sleepers_.find(bounds_of(body), found_);
+  for (const std::uint32_t sleeper : found_) {
+    const Body& other = slots[sleeper];
+    if (&other == &body || other.is_awake() || !wanted(other)) continue;
+    const Body &first = std::min(body, other, [](const Body&a, const Body&b) { return &a < &b; }),
+               &second = &first == &body ? other : body;
+    for (dGeomID a = dBodyGetFirstGeom(first.body); a; a = dBodyGetNextGeom(a))
+      for (dGeomID b = dBodyGetFirstGeom(second.body); b; b = dBodyGetNextGeom(b))
+        if (bits_let_meet(first, second))
+          add({a, b, std::uint64_t(&first - slots), std::uint64_t(&second - slots), part_of(a), part_of(b)},
+              ~0u, ~0u);
+  }
+  drop_filtered(bodies);
+  find_around(body, std::uint64_t(&body - slots));
+  of_sleepers_ = false;
+  std::ranges::stable_sort(candidates_, {}, sorted_by);
+  return candidates_;
+}
+
 void BroadPhase::meet_ours(void* data, dGeomID a, dGeomID b) {
   BroadPhase& self = *static_cast<BroadPhase*>(data);
   if (!may_touch(dGeomGetBody(a), dGeomGetBody(b))) return;
@@ -135,7 +161,7 @@ void BroadPhase::add(const Candidate& pair, unsigned category, unsigned collide)
                 category, collide))
     return;
   if (bounds_of(pair.first).intersects(bounds_of(pair.second)) &&
-      may_touch(dGeomGetBody(pair.first), dGeomGetBody(pair.second)))
+      may_touch(dGeomGetBody(pair.first), dGeomGetBody(pair.second), of_sleepers_))
     candidates_.push_back(pair);
 }
 

@@ -51,6 +51,10 @@ class BroadPhase {
   /// Sorted; valid until the next call. Planes are not among them. The mirror has followed what moves
   /// (SpaceMirror::follow).
   std::span<const Candidate> find(Bodies& bodies);
+  /// What a sleeper may touch besides who is awake: the ground, what the caller's space holds, and those
+  /// other sleepers for which `wanted` holds; else likewise.
+  std::span<const Candidate> find_of_sleeper(Bodies& bodies, const Body& body,
+                                             const std::function<bool(const Body&)>& wanted);
   /// The ground and the caller's geoms, save planes, whose boxes meet `box` (m, world) and that a body of
   /// these bits meets; valid until the next call.
   std::span<const dGeomID> find_others(const Eigen::AlignedBox3d& box, const BodyProperties& properties);
@@ -79,6 +83,7 @@ class BroadPhase {
   BoxTree sleepers_;          // bodies that sleep, and some that slept
   std::vector<Slept> slept_;  // by slot: whether it is in the tree, and at its place
   Bodies* bodies_ = nullptr;  // while finding
+  bool of_sleepers_ = false;  // while finding: of those that sleep
   std::vector<Candidate> candidates_;
   std::vector<dGeomID> others_;
   std::vector<std::uint32_t> found_;

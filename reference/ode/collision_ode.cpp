@@ -35,6 +35,15 @@ RigidState moved_on(RigidState state, double time) {
   return state;
 }
 
+/// Longer, too, than bodies may be.
+Shape box_of_any_size(const Vec3& sides) {
+  constexpr double kLongest = 1e4;  // m
+  const double longest = sides.maxCoeff();
+  const auto make = [](const Vec3& s) { return make_shape("static box", make_box(s)); };
+  return longest <= kLongest ? make(sides)
+                             : scale_shape(make(sides * (kLongest / longest)), longest / kLongest);
+}
+
 /// Whether two meshes whose surfaces do not cross are one inside the other.
 bool is_inside_other(const Body& first, const Body& second) {
   const auto& [inner, outer] = first.reach < second.reach ? std::tie(first, second) : std::tie(second, first);
@@ -101,12 +110,7 @@ OdeGroundId Collision::add_box(const Vec3& sides, const Vec3& position, const Qu
     throw InputError("a static box: expected positive sides and a finite pose, below 1e8 m");
   const dGeomID box = dCreateBox(nullptr, sides.x(), sides.y(), sides.z());
   place(box, state);
-  return add_ground({{},
-                     box,
-                     material,
-                     std::make_shared<const Shape>(make_shape("static box", make_box(sides))),
-                     state,
-                     state});
+  return add_ground({{}, box, material, std::make_shared<const Shape>(box_of_any_size(sides)), state, state});
 }
 
 OdeGroundId Collision::add_mesh(const Mesh& mesh, MaterialId material) {
@@ -209,7 +213,37 @@ void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
     for (const Plane& plane : planes_) collide_plane(body, plane, joints);
     for (const Plane& plane : callers_planes_) collide_plane(body, plane, joints);
   }
+  woken_.clear(), waking_.assign(bodies.slots().size(), Waking::no);
   collide_candidates(bodies, candidates, joints);
+  collide_woken(bodies, joints);
+}
+
+// ODE wakes who hangs together with one that is awake: without his own contacts he would fall in that
+// substep.
+void Collision::collide_woken(Bodies& bodies, ContactJoints& joints) {
+  const auto is_left = [&](const Body& other) {
+    return waking_[std::size_t(&other - bodies.slots().data())] != Waking::met;
+  };
+  for (std::size_t i = 0; i < woken_.size(); ++i) {
+    Body& body = bodies.slots()[woken_[i]];
+    body.in_company = true;
+    waking_[woken_[i]] = Waking::met;
+    for (const Plane& plane : planes_) collide_plane(body, plane, joints);
+    for (const Plane& plane : callers_planes_) collide_plane(body, plane, joints);
+    collide_candidates(bodies, broad_phase_.find_of_sleeper(bodies, body, is_left), joints);
+    for (int joint = 0; joint < dBodyGetNumJoints(body.body); ++joint)
+      for (const int end : {0, 1})
+        if (const dBodyID other = dJointGetBody(dBodyGetJoint(body.body, joint), end))
+          note_woken(bodies, bodies.owner(other));
+  }
+}
+
+void Collision::note_woken(Bodies& bodies, const Body* body) {
+  if (!body || body->is_awake() || dBodyIsKinematic(body->body)) return;
+  const auto slot = std::size_t(body - bodies.slots().data());
+  if (waking_[slot] != Waking::no) return;
+  waking_[slot] = Waking::to_meet;
+  woken_.push_back(slot);
 }
 
 void Collision::note_changes(Bodies& bodies) {
@@ -255,7 +289,9 @@ void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> ca
     for (next = i; next < candidates.size() && same_pair(candidates[i], candidates[next]); ++next) {
     }
     find_pair_points(body, other, candidates.subspan(i, next - i));
-    if (!points_.empty()) joints.add(side_of_ours(body), side_of(candidates[i], other), points_);
+    if (points_.empty()) continue;
+    joints.add(side_of_ours(body), side_of(candidates[i], other), points_);
+    note_woken(bodies, &body), note_woken(bodies, other);
   }
 }
 

@@ -65,6 +65,8 @@ class Collision {
   void note_callers_planes();
   void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);
   void collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints);
+  void collide_woken(Bodies& bodies, ContactJoints& joints);
+  void note_woken(Bodies& bodies, const Body* body);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
   void find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size);
   void prepare_for_convex(dGeomID geom);
@@ -86,6 +88,9 @@ class Collision {
   std::uint32_t last_ground_id_ = 0;
   std::int64_t ground_meshes_ = 0;
   std::vector<ContactPoint> points_;  // of the pair at hand
+  enum class Waking : char { no, to_meet, met };
+  std::vector<Waking> waking_;      // by slot: sleepers that touch one that is awake, in this substep
+  std::vector<std::size_t> woken_;  // their slots
   const SpaceMirror* callers_;
   CallersShapes callers_shapes_;
   PlaneStep step_;                                  // the one to come

@@ -189,6 +189,11 @@ void OdeWorld::add_force(OdeBodyId id, const Vec3& force, const Vec3& torque) {
   body.torque += torque;
 }
 
+void OdeWorld::hold(OdeBodyId id, const Vec3& force, const Vec3& torque) {
+  Body& body = impl_->bodies.find(id);
+  body.held_force = force, body.held_torque = torque;
+}
+
 bool OdeWorld::asleep(OdeBodyId body) const { return !dBodyIsEnabled(impl_->bodies.find(body).body); }
 
 void OdeWorld::set_asleep(OdeBodyId id, bool asleep) {
@@ -206,8 +211,10 @@ void OdeWorld::Impl::wake(dBodyID body) {
   while (!waiting.empty()) {
     const dBodyID next = waiting.back();
     waiting.pop_back();
+    Body* const own = bodies.owner(next);
+    if (own && !dBodyIsEnabled(next)) own->held_force = own->held_torque = Vec3::Zero();
     if (next == body || !dBodyIsEnabled(next)) dBodyEnable(next);
-    if (Body* own = bodies.owner(next)) {
+    if (own) {
       own->to_sleep_s = sleep.law().time;
       collision.broad_phase().note_sleep(*own);
     }

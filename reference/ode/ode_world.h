@@ -227,6 +227,9 @@ class OdeWorld {
   void set_state(OdeBodyId body, const RigidState& state);  ///< leaves sleep as it is
   void add_force(OdeBodyId body, const Vec3& force,
                  const Vec3& torque);  ///< N and N m, over the whole of the next step(); does not wake
+  /// N and N m, by what holds the body up besides ODE's contacts and joints: over the whole of the next
+  /// step(), and while the body sleeps. (In the step in which ODE wakes it, it would fall.)
+  void hold(OdeBodyId body, const Vec3& force, const Vec3& torque);
   bool asleep(OdeBodyId body) const;
   void set_asleep(OdeBodyId body, bool asleep);  ///< wakes what is joined to it, too
   const BodyProperties& properties(OdeBodyId body) const;

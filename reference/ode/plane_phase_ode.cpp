@@ -25,7 +25,8 @@ double approach_of(const Body& body, const Vec3& arm, const Vec3& normal) {
 double pressing(const Body& body, const Vec3& normal, const Vec3& gravity) {
   dMass mass;
   dBodyGetMass(body.body, &mass);
-  return -normal.dot(gravity + to_vec3(dBodyGetForce(body.body)) / mass.mass);
+  const double pull = dBodyGetGravityMode(body.body) ? 1.0 : 0.0;
+  return -normal.dot(pull * gravity + to_vec3(dBodyGetForce(body.body)) / mass.mass);
 }
 
 Mat3 rotation_of(const Body& body) {

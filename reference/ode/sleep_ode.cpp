@@ -14,13 +14,13 @@ double square(double x) { return x * x; }
 // Summed as ODE does.
 double squared_norm(const dReal* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
-// ODE would keep what acts on it until it wakes, and then give it at once.
-void put_to_rest(dBodyID body) {
-  dBodyDisable(body);
-  dBodySetForce(body, 0, 0, 0);
-  dBodySetTorque(body, 0, 0, 0);
-  dBodySetLinearVel(body, 0, 0, 0);
-  dBodySetAngularVel(body, 0, 0, 0);
+// ODE would keep what acts on it until it wakes, and then give it at once: that is right for what holds it
+// up.
+void put_to_rest(const Body& body) {
+  dBodyDisable(body.body);
+  set_force(body.body, body.held_force, body.held_torque);
+  dBodySetLinearVel(body.body, 0, 0, 0);
+  dBodySetAngularVel(body.body, 0, 0, 0);
 }
 
 }  // namespace
@@ -38,9 +38,9 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
         body.properties.kinematic)
       continue;
     body.to_sleep_s = is_still(body) ? body.to_sleep_s - h : law_.time;
-    if (body.to_sleep_s <= 0.0 && is_drawn(body)) body.to_sleep_s = kDrawn * law_.time;
+    if (body.to_sleep_s <= 0.0 && is_drawn(bodies, body)) body.to_sleep_s = kDrawn * law_.time;
     body.fell_asleep = body.to_sleep_s <= 0.0;
-    if (body.fell_asleep) put_to_rest(body.body);
+    if (body.fell_asleep) put_to_rest(body);
   }
 }
 
@@ -60,19 +60,21 @@ double speed_at(dBodyID body, const Vec3& point) {
   return (velocity + turning.cross(arm)).norm();
 }
 
-// To a force or torque on it; seen from `point`.
-bool gives_way(dBodyID body, const Vec3& point, double slow) {
-  const Vec3 velocity = to_vec3(dBodyGetLinearVel(body)), turning = to_vec3(dBodyGetAngularVel(body)),
-             force = to_vec3(dBodyGetForce(body)), torque = to_vec3(dBodyGetTorque(body));
+// To a force or torque on it, other than what holds it up; seen from `point`.
+bool gives_way(Bodies& bodies, dBodyID body, const Vec3& point, double slow) {
+  const Vec3 velocity = to_vec3(dBodyGetLinearVel(body)), turning = to_vec3(dBodyGetAngularVel(body));
+  Vec3 force = to_vec3(dBodyGetForce(body)), torque = to_vec3(dBodyGetTorque(body));
+  if (const Body* own = bodies.owner(body); own && is_held(*own))
+    force -= own->held_force, torque -= own->held_torque;
   const double arm = (point - to_vec3(dBodyGetPosition(body))).norm();
   return velocity.dot(force) > slow * force.norm() || turning.dot(torque) * arm > slow * torque.norm();
 }
 
 // Whether one that hangs together with `joined` by joints does, or is driven by a motor. Adds these, as far
 // as it looks.
-bool is_pulled_together(std::vector<dBodyID>& joined, const Vec3& point, double slow) {
+bool is_pulled_together(Bodies& bodies, std::vector<dBodyID>& joined, const Vec3& point, double slow) {
   for (std::size_t next = 0; next < joined.size(); ++next) {
-    if (gives_way(joined[next], point, slow)) return true;
+    if (gives_way(bodies, joined[next], point, slow)) return true;
     for (int i = 0; i < dBodyGetNumJoints(joined[next]); ++i) {
       const dJointID joint = dBodyGetJoint(joined[next], i);
       if (dJointGetType(joint) == dJointTypeContact) continue;
@@ -86,11 +88,11 @@ bool is_pulled_together(std::vector<dBodyID>& joined, const Vec3& point, double 
 }
 
 // To a force, a motor, or to what pulls it by joints.
-bool is_pulled(dBodyID body, const Vec3& point, double slow) {
-  if (gives_way(body, point, slow)) return true;
+bool is_pulled(Bodies& bodies, dBodyID body, const Vec3& point, double slow) {
+  if (gives_way(bodies, body, point, slow)) return true;
   if (speed_at(body, point) < slow) return false;
   std::vector<dBodyID> joined{body};
-  return is_pulled_together(joined, point, slow);
+  return is_pulled_together(bodies, joined, point, slow);
 }
 
 bool has_own_joints(dBodyID body) {
@@ -108,13 +110,14 @@ Vec3 rim_of(const Body& body) {
 
 // Whether what it touches moves, or gives way to a force or a motor: put to rest again in each step, it would
 // hold that back, and of what the two exchange its share be lost. (What jitters in a heap moves nobody.)
-bool Sleep::is_drawn(const Body& body) const {
+bool Sleep::is_drawn(Bodies& bodies, const Body& body) const {
   constexpr double kMoves = 4.0;  // times the speed
   if (pulled_.contains(body.body)) return true;
   const Vec3 center = to_vec3(dBodyGetPosition(body.body));
   const auto draws = [&](dBodyID other) {
     if (!other || other == body.body || !dBodyIsEnabled(other)) return false;
-    return speed_at(other, center) > kMoves * law_.speed || is_pulled(other, center, kGivesWay * law_.speed);
+    return speed_at(other, center) > kMoves * law_.speed ||
+           is_pulled(bodies, other, center, kGivesWay * law_.speed);
   };
   for (int i = 0; i < dBodyGetNumJoints(body.body); ++i) {
     const dJointID joint = dBodyGetJoint(body.body, i);
@@ -134,10 +137,10 @@ void Sleep::find_pulled(Bodies& bodies) {
     if (!body.body || !dBodyIsEnabled(body.body) || body.properties.kinematic) continue;
     const Vec3 rim = rim_of(body);
     if (!has_own_joints(body.body)) {
-      if (gives_way(body.body, rim, slow)) add(body.body);
+      if (gives_way(bodies, body.body, rim, slow)) add(body.body);
     } else if (!unpulled_.contains(body.body)) {
       joined_.assign(1, body.body);
-      if (!is_pulled_together(joined_, rim, slow)) {
+      if (!is_pulled_together(bodies, joined_, rim, slow)) {
         unpulled_.insert(joined_.begin(), joined_.end());
         continue;
       }

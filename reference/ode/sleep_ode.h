@@ -24,7 +24,7 @@ class Sleep {
  private:
   void find_carried(Bodies& bodies, std::span<const dBodyID> carried);
   bool is_still(const Body& body) const;
-  bool is_drawn(const Body& body) const;
+  bool is_drawn(Bodies& bodies, const Body& body) const;
   void find_pulled(Bodies& bodies);
 
   SleepLaw law_;

@@ -93,7 +93,13 @@ void OdeWorld::Impl::begin_step(double h) {
 }
 
 void OdeWorld::Impl::end_step() {
-  for (Body& body : bodies.slots()) body.force = body.torque = Vec3::Zero(), body.kept_awake = false;
+  for (Body& body : bodies.slots()) {
+    body.force = body.torque = Vec3::Zero(), body.kept_awake = false;
+    if (body.is_awake())
+      body.held_force = body.held_torque = Vec3::Zero();
+    else if (is_held(body))
+      set_force(body.body, Vec3::Zero(), Vec3::Zero());
+  }
   collision.end_step();
   has_looked = false;
 }
@@ -193,10 +199,14 @@ void OdeWorld::Impl::take_back_bodies() {
 
 void OdeWorld::Impl::push_bodies() {
   for (const Body& body : bodies.slots()) {
-    if (!body.body || !dBodyIsEnabled(body.body)) continue;
-    if (!body.force.isZero(0.0)) dBodyAddForce(body.body, body.force.x(), body.force.y(), body.force.z());
-    if (!body.torque.isZero(0.0))
-      dBodyAddTorque(body.body, body.torque.x(), body.torque.y(), body.torque.z());
+    if (!body.body) continue;
+    if (!dBodyIsEnabled(body.body)) {
+      if (is_held(body)) set_force(body.body, body.held_force, body.held_torque);
+      continue;
+    }
+    const Vec3 force = body.force + body.held_force, torque = body.torque + body.held_torque;
+    if (!force.isZero(0.0)) dBodyAddForce(body.body, force.x(), force.y(), force.z());
+    if (!torque.isZero(0.0)) dBodyAddTorque(body.body, torque.x(), torque.y(), torque.z());
   }
 }
 

@@ -11,7 +11,7 @@ namespace lodestone {
 /// How the cells of a table are sampled.
 struct CellSampling {
   std::uint64_t seed = 1;
-  int trials = 60;     ///< of each cell; where `error` is asked for, the first batch
+  int trials = 60;     ///< of each cell, unless `error` is asked for
   double error = 0.0;  ///< above 0: batches until no mean has a greater standard error, over s
   int most_trials = 4000;
   bool every_psi = true;  ///< ψ is drawn; else the centre's

@@ -1,5 +1,6 @@
 #include "signature/measure/measure.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -11,6 +12,7 @@
 #include <numbers>
 
 #include "reference/allowed_threads.h"
+#include "reference/error.h"
 #include "reference/random.h"
 #include "signature/measure/cell_trials.h"
 #include "signature/measure/choose_clips.h"
@@ -175,9 +177,30 @@ class Measuring {
 
 }  // namespace
 
+void check_settings(const SignatureSettings& settings) {
+  MaterialTable{settings.law};  // which throws where it is out of range
+  constexpr double kMost = 1e7;
+  const auto check = [](const char* what, double value, double least, double most) {
+    if (!(value >= least && value <= most))
+      throw_input_error(fmt::format("{} of a signature", what), fmt::format("{:g}", value),
+                        fmt::format("{:g} … {:g}", least, most));
+  };
+  for (const int n : {settings.n_theta, settings.n_phi, settings.n_alpha, settings.n_psi})
+    check("an axis", n, 1, 1000);
+  check("trials_per_cell", settings.trials_per_cell, 1, kMost);
+  check("most_trials_per_cell", settings.most_trials_per_cell, 1, kMost);
+  check("table_error", settings.table_error, 0, 1);
+  check("held_out_conditions", settings.held_out_conditions, 0, kMost);
+  check("height_samples", settings.height_samples, 2, kMost);
+  check("height_trials", settings.height_trials, 1, kMost);
+  check("settling_trials", settings.settling_trials, 1, kMost);
+  check("clips", settings.clips, 0, kMost);
+  check("rest_pose_frequency_min", settings.rest_pose_frequency_min, 0, 1);
+}
+
 Measurement measure_units(const Shape& shape, const SignatureSettings& settings, const Share& share,
                           const MeasureOptions& options) {
-  MaterialTable{settings.law};  // which throws where it is out of range
+  check_settings(settings);
   tbb::task_arena arena(allowed_threads(options.threads));
   Measurement measurement;
   arena.execute([&] { measurement = Measuring(shape, settings, share, options).measure(); });

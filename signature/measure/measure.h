@@ -10,6 +10,9 @@
 
 namespace lodestone {
 
+/// Throws InputError for an impossible law and for numbers by which nothing can be measured.
+void check_settings(const SignatureSettings& settings);
+
 /// The signature of `shape`: collision heights, response tables, rest poses and settling clips. Every trial
 /// is keyed by (seed, cell, trial), so the result is the same for any number of threads (0: all cores).
 Signature measure_signature(const Shape& shape, const SignatureSettings& settings, int threads = 0,

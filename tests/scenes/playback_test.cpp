@@ -70,6 +70,17 @@ TEST_F(SavedPlayback, HoldsEveryFrameOfEveryBody) {
               header["unit_m"].get<double>());
 }
 
+// Places are kept in parts of the smallest body: what was too far for that was shown where it never was.
+TEST_F(SavedPlayback, FarFromATinyBodyNothingIsElsewhere) {
+  std::string text = kFalling;
+  text.replace(text.find("sphere_m: 0.1"), 13, "sphere_m: 0.001");
+  text.replace(text.find("position_m: [3, 0, 0.5]"), 23, "position_m: [9000, 0, 0.5]");
+  run_scene(load(text), {.out = folder() / "out"});
+  const double unit_m = load_playback(file()).header["unit_m"].get<double>();
+  EXPECT_GT(2e9 * unit_m, 9000.0);
+  EXPECT_LT(unit_m, 1e-5);
+}
+
 TEST_F(SavedPlayback, SceneWithoutViewpointIsFramed) {
   run();
   const auto header = load_playback(file()).header;

@@ -87,6 +87,10 @@ TEST(YamlValue, LimitsExpansion) {
     text += "]\n";
   }
   EXPECT_NE(error_of(text).find("size: found more values"), std::string::npos);
+  // Few, but long ones.
+  std::string long_ones = "a: &a '" + std::string(1 << 20, 'x') + "'\nb: [*a";
+  for (int i = 0; i < 70; ++i) long_ones += ", *a";
+  EXPECT_NE(error_of(long_ones + "]\n").find("size: found more text by aliases"), std::string::npos);
 }
 
 TEST(YamlValue, RefusesWhatIsNoFile) {

@@ -227,6 +227,12 @@ TEST(SignatureFile, ImpossibleContentIsAnError) {
   expect_impossible("samples outside of their cells", [&](Signature& s) {
     s.bouncing.cells.first_sample.assign(s.bouncing.cells.mean.size() + 1, 7);
   });
+  expect_impossible("covariances or samples of one scale-free table alone",
+                    [&](Signature& s) { s.bouncing.cells.factor.resize(s.bouncing.cells.mean.size()); });
+  expect_impossible("covariances or samples of one scale-free table alone", [&](Signature& s) {
+    s.bouncing.cells.first_sample.assign(s.bouncing.cells.mean.size() + 1, 1);
+    s.bouncing.cells.first_sample.front() = 0, s.bouncing.cells.sample.resize(1);
+  });
   expect_impossible("an axis that does not rise", [&](Signature& s) { s.by_speed.speeds = {1.0f, 1.0f}; });
   expect_impossible("an axis that does not rise", [&](Signature& s) { s.by_speed.spins = {1.0f, nan}; });
   expect_impossible("response tables of neither kind",

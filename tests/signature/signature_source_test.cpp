@@ -105,6 +105,26 @@ TEST_F(SignatureCache, ALawOutOfRangeIsRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(files(""), 0);
 }
 
+TEST_F(SignatureCache, WhatNothingCanBeMeasuredByIsRefusedBeforeAnythingIsWritten) {
+  const auto refused = [&](auto change) {
+    SignatureSourceSettings wrong = settings();
+    change(wrong.measuring);
+    return testing::message_of([&] { find_or_measure_signature(box_, {}, wrong); });
+  };
+  const auto names = [](const std::string& message, const std::string& what) {
+    return message.starts_with(what + " of a signature: found ") &&
+           message.find(", expected ") != message.npos;
+  };
+  EXPECT_TRUE(names(refused([](auto& s) { s.n_theta = 0; }), "an axis"));
+  EXPECT_TRUE(names(refused([](auto& s) { s.n_psi = -1; }), "an axis"));
+  EXPECT_TRUE(names(refused([](auto& s) { s.trials_per_cell = 0; }), "trials_per_cell"));
+  EXPECT_TRUE(names(refused([](auto& s) { s.height_samples = 1; }), "height_samples"));
+  EXPECT_TRUE(names(refused([](auto& s) { s.settling_trials = 0; }), "settling_trials"));
+  EXPECT_TRUE(names(refused([](auto& s) { s.clips = -1; }), "clips"));
+  EXPECT_TRUE(names(refused([](auto& s) { s.table_error = std::nan(""); }), "table_error"));
+  EXPECT_EQ(files(""), 0);
+}
+
 // Stopped before it began there is none; the next goes on and comes to the same bytes.
 TEST_F(SignatureCache, StoppedThereIsNoneAndTheNextGoesOn) {
   SignatureSourceSettings stopping = settings();

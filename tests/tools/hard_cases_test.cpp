@@ -5,10 +5,22 @@
 #include <string>
 #include <vector>
 
+#include "tools/hard_cases/case_parts.h"
 #include "tools/hard_cases/hard_case_report.h"
 
 namespace lodestone {
 namespace {
+
+TEST(HardCaseFigures, OneThatIsNoneIsNotHidden) {
+  const double nan = std::nan("");
+  EXPECT_EQ(worse(1.0, 2.0), 2.0);
+  EXPECT_EQ(worse(2.0, 1.0), 2.0);
+  EXPECT_EQ(lesser(2.0, 1.0), 1.0);
+  for (const double later : {0.0, 3.0}) {
+    EXPECT_TRUE(std::isnan(worse(worse(1.0, nan), later)));
+    EXPECT_TRUE(std::isnan(lesser(lesser(1.0, nan), later)));
+  }
+}
 
 void expect_kept(const HardCase& one, const HardCaseSettings& settings) {
   const auto rows = one.measure(settings);

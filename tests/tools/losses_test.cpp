@@ -105,6 +105,33 @@ TEST_F(Losses, ARunKeepsWhatIsCompleteAndSaysWhatItHas) {
       << testing::bytes_of(at("errors"));
 }
 
+TEST_F(Losses, ARunWhoseRecordingHasNoRoomKeepsItsResults) {
+  const Ended ended = testing::run_shell(
+      "trap '' XFSZ; ulimit -f 8; " + command("run " + kScene + " --level full --steps 400 --json --record " +
+                                              name("a.rec") + " 2>" + name("errors")));
+  EXPECT_EQ(ended.exit_code, 3);
+  EXPECT_EQ(nlohmann::json::parse(ended.out)["incomplete"], true);
+  EXPECT_NE(testing::bytes_of(at("errors")).find("a.rec: found file too large"), std::string::npos)
+      << testing::bytes_of(at("errors"));
+}
+
+// Of nothing there is nothing to drop: said before the scene has run.
+TEST_F(Losses, ADemoOfNoBodiesIsRefused) {
+  testing::run_shell("echo 'version: 1\nbodies: []' >" + name("empty.yaml"));
+  const Ended ended = run("demo " + name("empty.yaml") + " --out " + name("report"));
+  EXPECT_EQ(ended.exit_code, 3) << ended.out;
+  EXPECT_NE(ended.out.find("empty.yaml: bodies: found none, expected one or more to drop"), std::string::npos)
+      << ended.out;
+}
+
+// Names are bytes; JSON is UTF-8.
+TEST_F(Losses, AFolderWhoseNameIsNoTextLosesNothing) {
+  const Ended ended = run(kRun + "--json --out " + quoted(at("out\xff").string()));
+  EXPECT_EQ(ended.exit_code, 0) << ended.out;
+  EXPECT_NE(ended.out.find("state_hash"), std::string::npos) << ended.out;
+  EXPECT_TRUE(std::filesystem::exists(at("out\xff/run.play")));
+}
+
 TEST_F(Losses, AnOutputThatIsNoFileIsWrittenThrough) {
   ASSERT_EQ(run(kSign + "--no-cache -o " + name("plain.sig")).exit_code, 0);
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);

@@ -42,6 +42,14 @@ TEST_F(Shard, MergedPartsAreTheBytesOfOneRun) {
   }
 }
 
+TEST_F(Shard, APartIsNotWrittenOver) {
+  sign_parts(1);
+  const std::string before = testing::bytes_of(at("part1"));
+  const Ended ended = run("merge " + name("part1") + " -o " + name("part1"));
+  EXPECT_EQ(ended.exit_code, 3) << ended.out;
+  EXPECT_EQ(testing::bytes_of(at("part1")), before);
+}
+
 TEST_F(Shard, APartSaysWhatItMeasured) {
   std::uint64_t trials = 0;
   for (const std::string part : {"1/2", "2/2"}) {

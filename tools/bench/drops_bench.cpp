@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 #include "tools/compare/drop_trials.h"
 #include "tools/compare/processor_time.h"
 #include "tools/interrupt.h"
@@ -30,7 +32,7 @@ class DropsBench {
       throw_if_interrupted();
       if (step % 20 == 0) show(row, step);
       row.awake_body_steps += awake;
-      ns += measure_processor_ns([&] { world.step(kDropsStep); });
+      ns += measure_ns([&] { world.step(kDropsStep); });
       awake = count_awake(world);
     }
     row.seconds = 1e-9 * ns;
@@ -40,6 +42,15 @@ class DropsBench {
   }
 
  private:
+  /// Of this thread's processor; with others beside it, of the wall clock.
+  template <typename Work>
+  double measure_ns(Work work) const {
+    if (settings_.threads == 1) return measure_processor_ns(work);
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
+  }
+
   void show(const DropsRow& row, int step) const {
     if (settings_.progress)
       settings_.progress(fmt::format("{} {}", row.method, row.model), double(step) / kDropsSteps);

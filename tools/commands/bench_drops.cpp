@@ -54,9 +54,10 @@ void run_drops(const BenchDropsArguments& arguments) {
   json["rows"] = ordered_json::array();
   for (const DropsRow& row : rows) json["rows"].push_back(json_of(row));
   print_table(arguments.results, json, json_of(DropsRow{}),
-              fmt::format("{} of {} too far apart to touch, {} steps of 1/60 s, sleep on: processor time of "
+              fmt::format("{} of {} too far apart to touch, {} steps of 1/60 s, sleep on: {} time of "
                           "whole steps, per body that is awake; how many are, on average\n\n{}",
-                          arguments.bench.bodies, shape->name, kDropsSteps, text_of(rows)));
+                          arguments.bench.bodies, shape->name, kDropsSteps,
+                          arguments.bench.threads == 1 ? "processor" : "wall", text_of(rows)));
 }
 
 }  // namespace

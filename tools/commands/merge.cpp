@@ -40,14 +40,15 @@ ordered_json read_json(const std::filesystem::path& file) {
 // Of a series of comparisons.
 void merge_comparison(const MergeArguments& arguments) {
   std::vector<ordered_json> parts;
-  for (const auto& file : arguments.parts) parts.push_back(read_json(file));
-  const ordered_json merged = merge_series(parts);
-  OutputFile out(arguments.out, "the comparison");
-  out.write(merged.dump(2) + '\n');
-  out.close();
+  std::vector<std::string> names;
+  for (const auto& file : arguments.parts) parts.push_back(read_json(file)), names.push_back(file.string());
+  const ordered_json merged = merge_series(parts, names);
   std::string text = fmt::format("{} rows in {}\n", merged["rows"].size(), arguments.out.string());
   if (!merged["rows"].empty() && merged["rows"][0].contains("materials"))
     text += '\n' + material_tables_of(merged);
+  OutputFile out(arguments.out, "the comparison");
+  out.write(merged.dump(2) + '\n');
+  out.close();
   print_results(arguments.results, merged, text);
 }
 
@@ -68,7 +69,9 @@ void add_merge_command(Command& program) {
   auto [command, arguments] = program.add<MergeArguments>(
       "merge", "join what --shard measured in parts: a signature, or the JSON of a comparison", merge);
   command.add_option("FILES", arguments.parts, "every part, in any order").required();
-  command.add_option("-o", arguments.out, "the file of the signature, or of the comparison").required();
+  command.add_option("-o", arguments.out, "the file of the signature, or of the comparison")
+      .required()
+      .written();
   add_json_argument(command, arguments.results);
 }
 

@@ -16,26 +16,41 @@ namespace {
 
 using nlohmann::ordered_json;
 
+struct Part {
+  const ordered_json& json;
+  const std::string& name;
+  [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
+    throw_input_error(name, found, expected);
+  }
+};
+
 // "2/4" as {2, 4}.
-std::pair<int, int> share_of(const ordered_json& part) {
+std::pair<int, int> share_of(const Part& part) {
   int index = 0, count = 0;
-  if (part.contains("shard") && part["shard"].is_string()) {
-    const auto text = part["shard"].get<std::string>();
+  if (part.json.contains("shard") && part.json["shard"].is_string()) {
+    const auto text = part.json["shard"].get<std::string>();
     if (std::sscanf(text.c_str(), "%d/%d", &index, &count) != 2) index = count = 0;
   }
-  if (index < 1 || index > count || !part.contains("rows") || !part["rows"].is_array())
-    throw InputError(
-        "found a file that is no part of a comparison, "
-        "expected what `compare … --shard I/N --json` prints");
-  if (part.value("incomplete", false))
-    throw InputError(
-        fmt::format("found part {}/{} incomplete, expected one that ran to its end", index, count));
+  if (index < 1 || index > count || !part.json.contains("rows") || !part.json["rows"].is_array())
+    part.fail("a file that is no part of a comparison", "what `compare … --shard I/N --json` prints");
+  if (part.json.value("incomplete", false))
+    part.fail(fmt::format("part {}/{} incomplete", index, count), "one that ran to its end");
   return {index, count};
 }
 
-int case_of(const ordered_json& row) {
-  if (!row.is_object() || !row.contains("case") || !row["case"].is_number_integer())
-    throw InputError(fmt::format("found the row {}, expected one with the number of its case", row.dump()));
+// A row as the tables read it.
+int case_of(const Part& part, const ordered_json& row) {
+  const auto is = [&](const char* key, auto holds) { return row.contains(key) && (row[key].*holds)(); };
+  using Json = ordered_json;
+  const bool sound =
+      row.is_object() && is("case", &Json::is_number_integer) &&
+      (!row.contains("materials") ||
+       (is("restitution", &Json::is_number) && is("friction", &Json::is_number) &&
+        is("method", &Json::is_string) && is("dt_s", &Json::is_number) &&
+        (is("model", &Json::is_null) || is("model", &Json::is_string)) &&
+        (is("score", &Json::is_null) || (is("score", &Json::is_number) && is("floor", &Json::is_number)))));
+  if (!sound)
+    part.fail(fmt::format("the row {}", row.dump()), "one of a comparison, with the number of its case");
   return row["case"].get<int>();
 }
 
@@ -45,17 +60,16 @@ ordered_json identity_of(ordered_json part) {
   return part;
 }
 
-void check_whole(std::span<const ordered_json> parts) {
+void check_whole(std::span<const Part> parts) {
   std::set<int> there;
   const int count = share_of(parts.front()).second;
-  for (const ordered_json& part : parts) {
+  for (const Part& part : parts) {
     const auto [index, of] = share_of(part);
-    if (of != count)
-      throw InputError(fmt::format("found part {}/{}, expected one of {} parts", index, of, count));
-    if (!there.insert(index).second) throw InputError(fmt::format("found part {}/{} twice", index, of));
-    if (identity_of(part) != identity_of(parts.front()))
-      throw InputError(fmt::format("found part {}/{} of {}, expected {}", index, of, identity_of(part).dump(),
-                                   identity_of(parts.front()).dump()));
+    if (of != count) part.fail(fmt::format("part {}/{}", index, of), fmt::format("one of {} parts", count));
+    if (!there.insert(index).second) part.fail(fmt::format("part {}/{} twice", index, of), "each once");
+    if (identity_of(part.json) != identity_of(parts.front().json))
+      part.fail(fmt::format("part {}/{} of {}", index, of, identity_of(part.json).dump()),
+                identity_of(parts.front().json).dump());
   }
   for (int index = 1; index <= count; ++index)
     if (!there.contains(index))
@@ -64,16 +78,19 @@ void check_whole(std::span<const ordered_json> parts) {
 
 }  // namespace
 
-ordered_json merge_series(std::span<const ordered_json> parts) {
-  if (parts.empty()) throw InputError("found no parts, expected at least one");
+ordered_json merge_series(std::span<const ordered_json> jsons, std::span<const std::string> names) {
+  check_that(jsons.size() == names.size(), "each part has a name");
+  if (jsons.empty()) throw InputError("found no parts, expected at least one");
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < jsons.size(); ++i) parts.push_back({jsons[i], names[i]});
   check_whole(parts);
   std::map<int, std::vector<ordered_json>> rows;  // by case; the first case may be in every part
-  for (const ordered_json& part : parts) {
+  for (const Part& part : parts) {
     std::map<int, std::vector<ordered_json>> own;
-    for (const ordered_json& row : part["rows"]) own[case_of(row)].push_back(row);
+    for (const ordered_json& row : part.json["rows"]) own[case_of(part, row)].push_back(row);
     rows.merge(own);
   }
-  ordered_json merged = identity_of(parts.front());
+  ordered_json merged = identity_of(jsons.front());
   merged["rows"] = ordered_json::array();
   for (const auto& [number, of_case] : rows)
     for (const ordered_json& row : of_case) merged["rows"].push_back(row);

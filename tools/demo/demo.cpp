@@ -130,6 +130,8 @@ class Demo {
 }  // namespace
 
 DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials, const Progress& progress) {
+  if (scene.bodies.empty())
+    throw_input_error(scene.file.string() + ": bodies", "none", "one or more to drop");
   return Demo(scene, settings, progress).run(trials);
 }
 

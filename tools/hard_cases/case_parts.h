@@ -1,6 +1,7 @@
 // What most hard cases are made of.
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include "lod/manager.h"
@@ -43,6 +44,14 @@ inline double kinetic_energy(const Shape& shape, double mass, const RigidState& 
 inline Vec3 angular_momentum(const Shape& shape, double mass, const RigidState& state) {
   return mass * (state.orientation *
                  (shape.inertia_per_mass * (state.orientation.conjugate() * state.angular_velocity)));
+}
+
+/// The greater, the lesser, or NaN once there was one: a figure that must not hide that it is none.
+inline double worse(double worst, double value) {
+  return std::isnan(worst) || value <= worst ? worst : value;
+}
+inline double lesser(double least, double value) {
+  return std::isnan(least) || value >= least ? least : value;
 }
 
 }  // namespace lodestone

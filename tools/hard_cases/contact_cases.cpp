@@ -115,9 +115,9 @@ void add_excess(Excess& excess, const Pair& pair, double oracle, MeshContacts wa
   world.add_body({.shape = pair.second, .state = pair.second_state});
   world.step(1e-6);
   double deepest = -1.0;
-  for (const OdeContact& contact : world.contacts()) deepest = std::max(deepest, contact.depth);
+  for (const OdeContact& contact : world.contacts()) deepest = worse(deepest, contact.depth);
   const double over = (deepest - oracle) / pair.size();
-  excess.worst = std::max(excess.worst, over);
+  excess.worst = worse(excess.worst, over);
   excess.too_deep += over > kTolerance;
   excess.missed += deepest < 0.0;
   ++excess.poses;
@@ -203,7 +203,7 @@ RigidState place_mesh(const Shape& shape, const Vec3& origin, const Quat& orient
 
 double deepest(const OdeWorld& world) {
   double depth = 0.0;
-  for (const OdeContact& contact : world.contacts()) depth = std::max(depth, contact.depth);
+  for (const OdeContact& contact : world.contacts()) depth = worse(depth, contact.depth);
   return depth;
 }
 
@@ -223,8 +223,8 @@ Figures push(const Vec3& origin, const Quat& orientation, const Vec3& force) {
     world.add_force(pulled, mass * kGravity * force, Vec3::Zero());
     world.step(kStep);
     if (i < 420) continue;
-    figures.depth = std::max(figures.depth, deepest(world));
-    figures.speed = std::max(figures.speed, world.state(pulled).velocity.norm());
+    figures.depth = worse(figures.depth, deepest(world));
+    figures.speed = worse(figures.speed, world.state(pulled).velocity.norm());
   }
   figures.moved = (world.state(pulled).position - start.position).norm();
   return figures;
@@ -269,11 +269,11 @@ Figures drop_bunny_on_bunny(std::uint32_t trial) {
   double least = energy();
   for (int i = 0; i < 960; ++i) {
     world.step(kStep);
-    figures.gain = std::max(figures.gain, energy() - least);
-    least = std::min(least, energy());
+    figures.gain = worse(figures.gain, energy() - least);
+    least = lesser(least, energy());
     if (i < 900) continue;
     for (const OdeContact& contact : world.contacts())
-      if (contact.second) figures.depth = std::max(figures.depth, contact.depth);
+      if (contact.second) figures.depth = worse(figures.depth, contact.depth);
   }
   return figures;
 }
@@ -286,8 +286,8 @@ std::vector<HardCaseRow> measure_case(const HardCaseSettings& settings) {
   const double corrected = 0.5 * kDensity * bunny.volume * kCorrectingVelocity * kCorrectingVelocity;
   for (int i = 0; i < trials; ++i) {
     const Figures trial = drop_bunny_on_bunny(i);
-    bunnies.depth = std::max(bunnies.depth, trial.depth);
-    bunnies.gain = std::max(bunnies.gain, trial.gain);
+    bunnies.depth = worse(bunnies.depth, trial.depth);
+    bunnies.gain = worse(bunnies.gain, trial.gain);
   }
   return {{"L hooked into an L, pulled by 10 times its weight for 2 s: moved", 1e3 * hooked.moved,
            2e3 * kSlack, "mm"},

@@ -61,7 +61,7 @@ class Pile {
       const Energies now = energies();
       figures_.energy_gain = worse(figures_.energy_gain, (now.total - total) / first);
       total = now.total;
-      greatest = std::max(greatest, now.kinetic);
+      greatest = worse(greatest, now.kinetic);
       figures_.kinetic_left = now.kinetic / greatest;
       sum += now.kinetic;
       if (second % tenth == 0) {

@@ -200,11 +200,11 @@ PileRun run_pile(LevelChoice level, double dt, double seconds) {
   for (int i = 0; i < int(std::lround(seconds / dt)); ++i) {
     manager.step(dt);
     for (const BodyId body : bodies)
-      run.top_speed = std::max(run.top_speed, manager.state(body).velocity.norm());
-    run.energy_gain = std::max(run.energy_gain, energy() / first - 1.0);
+      run.top_speed = worse(run.top_speed, manager.state(body).velocity.norm());
+    run.energy_gain = worse(run.energy_gain, energy() / first - 1.0);
   }
   run.lowest = manager.state(bodies[0]).position.z();
-  for (const BodyId body : bodies) run.lowest = std::min(run.lowest, manager.state(body).position.z());
+  for (const BodyId body : bodies) run.lowest = lesser(run.lowest, manager.state(body).position.z());
   return run;
 }
 

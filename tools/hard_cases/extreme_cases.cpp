@@ -193,7 +193,7 @@ std::vector<Vec3> stack_at(const Vec3& origin) {
 
 double greatest_offset(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double greatest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) greatest = std::max(greatest, (a[i] - b[i]).norm());
+  for (std::size_t i = 0; i < a.size(); ++i) greatest = worse(greatest, (a[i] - b[i]).norm());
   return greatest;
 }
 

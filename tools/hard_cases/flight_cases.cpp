@@ -242,7 +242,7 @@ Heights measure_heights(const Shape& prism, double ratio, int trials) {
     state.angular_velocity.y() = trial % 2 ? ratio : -ratio;
     if (!contact_time.advance(state)) continue;
     heights.mean += state.position.z(), ++count;
-    heights.least = std::min(heights.least, state.position.z());
+    heights.least = lesser(heights.least, state.position.z());
     heights.greatest = worse(heights.greatest, state.position.z());
   }
   heights.mean /= count;
@@ -257,7 +257,7 @@ std::vector<HardCaseRow> measure_case(const HardCaseSettings& settings) {
   double fall = 0.0, before = 0.0, last = 0.0, first = 0.0;
   for (const double ratio : {0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0}) {
     const Heights heights = measure_heights(prism, ratio, trials);
-    all.least = std::min(all.least, heights.least), all.greatest = worse(all.greatest, heights.greatest);
+    all.least = lesser(all.least, heights.least), all.greatest = worse(all.greatest, heights.greatest);
     fall = worse(fall, before - heights.mean);
     before = last = heights.mean;
     if (ratio == 0.0) first = heights.mean;

@@ -70,12 +70,12 @@ Figures measure(const Stack& stack, const std::shared_ptr<const Shape>& cube, Od
   for (int i = 0; i < int(std::lround(kSeconds / stack.dt)); ++i) {
     world.step(stack.dt);
     for (const OdeBodyId body : bodies)
-      figures.top_speed = std::max(figures.top_speed, world.state(body).velocity.norm());
+      figures.top_speed = worse(figures.top_speed, world.state(body).velocity.norm());
   }
   for (int i = 0; i < stack.cubes; ++i) {
     const Vec3 moved = world.state(bodies[i]).position - start_of(i).position;
-    figures.sag = std::max(figures.sag, kSide * (0.5 + i) - world.state(bodies[i]).position.z());
-    figures.drift = std::max(figures.drift, moved.head<2>().norm());
+    figures.sag = worse(figures.sag, kSide * (0.5 + i) - world.state(bodies[i]).position.z());
+    figures.drift = worse(figures.drift, moved.head<2>().norm());
   }
   return figures;
 }
@@ -162,7 +162,7 @@ class PileRun {
     world_.add_plane(Vec3::UnitZ(), 0.0, 0);
     for (int i = 0; i < pile.bodies; ++i) {
       const RigidState state = start_of(pile, i);
-      figures_.height = std::max(figures_.height, state.position.z());
+      figures_.height = worse(figures_.height, state.position.z());
       bodies_.push_back(
           world_.add_body({.shape = pile.shape, .mass = kDensity * pile.shape->volume, .state = state}));
     }
@@ -174,13 +174,13 @@ class PileRun {
     for (double t = 0.0; t < kSeconds; t += kStep) {
       world_.step(kStep, kSubsteps);
       const double now = energy();
-      figures_.gain = std::max(figures_.gain, (now - least) / at_first);
-      least = std::min(least, now);
-      figures_.top_speed = std::max(figures_.top_speed, top_speed());
+      figures_.gain = worse(figures_.gain, (now - least) / at_first);
+      least = lesser(least, now);
+      figures_.top_speed = worse(figures_.top_speed, top_speed());
     }
     for (const OdeBodyId body : bodies_) {
       figures_.mean_speed_at_end += world_.state(body).velocity.norm() / pile_.bodies;
-      figures_.lowest = std::min(figures_.lowest, lowest_point(*pile_.shape, world_.state(body)));
+      figures_.lowest = lesser(figures_.lowest, lowest_point(*pile_.shape, world_.state(body)));
     }
     return figures_;
   }
@@ -204,7 +204,7 @@ class PileRun {
   }
   double top_speed() const {
     double top = 0.0;
-    for (const OdeBodyId body : bodies_) top = std::max(top, world_.state(body).velocity.norm());
+    for (const OdeBodyId body : bodies_) top = worse(top, world_.state(body).velocity.norm());
     return top;
   }
 

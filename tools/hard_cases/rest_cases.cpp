@@ -52,7 +52,7 @@ Figures drop_on(const Subject& subject, double tilt, LevelChoice level = LevelCh
     for (int i = 0; i < kSeconds * 60; ++i) manager.step(kCaseStep);
     const RigidState state = manager.state(body);
     figures.asleep += manager.asleep(body);
-    figures.slowest = std::min(figures.slowest, state.velocity.dot(down));
+    figures.slowest = lesser(figures.slowest, state.velocity.dot(down));
     const Vec3 up = state.orientation.conjugate() * normal;
     for (const RestPose& pose : subject.signature->rest_poses)
       if (pose.normal.dot(up) > std::cos(kNearPose)) {

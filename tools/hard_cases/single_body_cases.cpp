@@ -74,7 +74,7 @@ double rebound_from(double height, double dt) {
   const auto speed = [&] { return world.state(ball).velocity.z(); };
   for (int i = 0; i < int(2.0 / dt) && speed() <= 0.0; ++i) world.step(dt);
   double top = 0.0;
-  for (; speed() > 0.0; world.step(dt)) top = std::max(top, world.state(ball).position.z());
+  for (; speed() > 0.0; world.step(dt)) top = worse(top, world.state(ball).position.z());
   return (top - kRadius) / height;
 }
 
@@ -128,8 +128,8 @@ Drift drift_of(double dt) {
     world.step(dt);
     const RigidState state = world.state(body);
     const double gain = kinetic_energy(*box, 1.0, state) / energy - 1.0;
-    drift.energy_gain = std::max(drift.energy_gain, gain);
-    drift.energy_loss = std::max(drift.energy_loss, -gain);
+    drift.energy_gain = worse(drift.energy_gain, gain);
+    drift.energy_loss = worse(drift.energy_loss, -gain);
     drift.momentum_change = std::max(
         drift.momentum_change, (angular_momentum(*box, 1.0, state) - momentum).norm() / momentum.norm());
   }
@@ -185,12 +185,12 @@ Fall fall_of(const std::shared_ptr<const Shape>& shape, double dt, std::uint32_t
   Fall fall;
   for (int i = 0; i < int(std::lround(kSeconds / dt)); ++i) {
     world.step(dt);
-    fall.energy_gain = std::max(fall.energy_gain, energy() / first - 1.0);
+    fall.energy_gain = worse(fall.energy_gain, energy() / first - 1.0);
   }
   const RigidState end = world.state(body);
   fall.speed_at_end = end.velocity.norm() + shape->radius * end.angular_velocity.norm();
   for (const Vec3& vertex : shape->hull.vertices)
-    fall.depth_at_end = std::max(fall.depth_at_end, -(end.position + end.orientation * vertex).z());
+    fall.depth_at_end = worse(fall.depth_at_end, -(end.position + end.orientation * vertex).z());
   if (world.counters().states_recovered > 0) fall.energy_gain = std::nan("");
   return fall;
 }
@@ -201,9 +201,9 @@ void add_rows(std::vector<HardCaseRow>& rows, const std::string& name,
   Fall worst;
   for (int trial = 0; trial < kTrials; ++trial) {
     const Fall fall = fall_of(shape, dt, trial);
-    worst.energy_gain = std::max(worst.energy_gain, fall.energy_gain);
-    worst.speed_at_end = std::max(worst.speed_at_end, fall.speed_at_end);
-    worst.depth_at_end = std::max(worst.depth_at_end, fall.depth_at_end);
+    worst.energy_gain = worse(worst.energy_gain, fall.energy_gain);
+    worst.speed_at_end = worse(worst.speed_at_end, fall.speed_at_end);
+    worst.depth_at_end = worse(worst.depth_at_end, fall.depth_at_end);
   }
   const std::string what = fmt::format("20 drops of a {}, dt {:.3g} s: ", name, dt);
   rows.push_back({.what = what + "energy gained", .value = worst.energy_gain, .bound = 0.01});

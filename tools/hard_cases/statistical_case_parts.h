@@ -43,7 +43,4 @@ BodyId add_case_body(Manager& manager, const std::shared_ptr<const Shape>& shape
 /// How far its centre of mass is from a plane that its lowest point touches, m.
 double resting_height(const Shape& shape, const Quat& orientation, const Vec3& normal = Vec3::UnitZ());
 
-/// The greater, or NaN once there was one: a figure that must not hide that it is none.
-inline double worse(double worst, double value) { return value <= worst ? worst : value; }
-
 }  // namespace lodestone

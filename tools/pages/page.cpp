@@ -53,7 +53,7 @@ std::string escaped(std::string_view text) {
 /// so.
 std::string script_json(const nlohmann::ordered_json& data) {
   std::string result;
-  for (const char c : data.dump()) {
+  for (const char c : data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) {
     if (c == '<')
       result += "\\u003c";
     else

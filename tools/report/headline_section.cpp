@@ -111,9 +111,12 @@ void add_heap_facts(const ordered_json& rows, ordered_json& facts) {
 
 void add_budget_fact(const ordered_json& runs, ordered_json& facts) {
   std::vector<std::string> budgets, over;
-  std::int64_t steps = 0;
+  std::int64_t steps = 0, bodies = 0;
+  std::string scene;
   for (const ordered_json& run : runs) {
     if (run["budget_ms"].is_null()) continue;
+    scene = run["scene"].get<std::string>(), bodies = 0;
+    for (const char* rung : {"full", "support", "tables"}) bodies += run[rung].front().get<std::int64_t>();
     budgets.push_back(fmt::format("{:g}", run["budget_ms"].get<double>()));
     over.push_back(fmt::format("{}", run["over"].get<int>()));
     steps = run["counted_steps"].get<std::int64_t>();
@@ -121,8 +124,8 @@ void add_budget_fact(const ordered_json& runs, ordered_json& facts) {
   if (budgets.empty()) return;
   facts.push_back(
       fact(fmt::format("{} of {} steps", fmt::join(over, ", "), steps),
-           fmt::format("took longer than allowed, where 2,000 falling bunnies were given {} ms a step.",
-                       fmt::join(budgets, ", "))));
+           fmt::format("took longer than allowed, where the {} bodies of {} were given {} ms a step.", bodies,
+                       scene, fmt::join(budgets, ", "))));
 }
 
 }  // namespace

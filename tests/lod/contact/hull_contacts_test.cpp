@@ -127,21 +127,25 @@ TEST(HullContacts, TheVertexOntoWhichABodyTipsIsFound) {
 
 // Of very many vertices, too, those are kept that span the widest support.
 TEST(HullContacts, ADiscOfManyVerticesStandsWide) {
-  std::vector<Vec3> rim;
-  for (int i = 0; i < 120; ++i)
-    for (const double z : {-0.1, 0.1})
-      rim.push_back({std::cos(i * std::numbers::pi / 60), std::sin(i * std::numbers::pi / 60), z});
-  Shape disc;
-  disc.hull = make_hull(rim);
-  disc.radius = std::hypot(1.0, 0.1);
-  std::int32_t hint = 0;
-  const HullContacts found = find_hull_contacts(disc, Quat::Identity(), Vec3::UnitZ(), 0.1, 0.001, hint);
-  ASSERT_EQ(found.count, 4);
-  Vec3 sum = Vec3::Zero();
-  for (const HullContact& c : found.contact) sum += c.arm;
-  EXPECT_LT(sum.head<2>().norm(), 0.1);
-  EXPECT_NEAR((found.contact[0].arm - found.contact[1].arm).norm(), 2.0, 0.01);
-  EXPECT_NEAR((found.contact[2].arm - found.contact[3].arm).norm(), 2.0, 0.01);
+  for (const int sides : {120, 800}) {
+    std::vector<Vec3> rim;
+    for (int i = 0; i < sides; ++i)
+      for (const double z : {-0.1, 0.1}) {
+        const double angle = 2.0 * std::numbers::pi * i / sides;
+        rim.push_back({std::cos(angle), std::sin(angle), z});
+      }
+    Shape disc;
+    disc.hull = make_hull(rim);
+    disc.radius = std::hypot(1.0, 0.1);
+    std::int32_t hint = 0;
+    const HullContacts found = find_hull_contacts(disc, Quat::Identity(), Vec3::UnitZ(), 0.1, 0.001, hint);
+    ASSERT_EQ(found.count, 4);
+    Vec3 sum = Vec3::Zero();
+    for (const HullContact& c : found.contact) sum += c.arm;
+    EXPECT_LT(sum.head<2>().norm(), 0.1) << sides;
+    EXPECT_NEAR((found.contact[0].arm - found.contact[1].arm).norm(), 2.0, 0.01) << sides;
+    EXPECT_NEAR((found.contact[2].arm - found.contact[3].arm).norm(), 2.0, 0.01) << sides;
+  }
 }
 
 // Of a hull with many vertices only those are looked at that may be low (reference/hull/tip_map.h): to the

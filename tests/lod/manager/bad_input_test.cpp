@@ -190,6 +190,21 @@ TEST(BadInput, SettingsAndGround) {
   scene.refuses([&] { manager.add_static_box({1, 1, 1}, {0, 0, 0}, Quat::Identity(), 3); }, "3", "0 … 0");
   scene.refuses(
       [&] {
+        manager.add_static_box({9000, 9000, 1e-4}, {0, 0, 0}, Quat::Identity());
+      },
+      "0.0001 m", "2e-06 of the longest");
+  scene.refuses(
+      [&] {
+        manager.add_static_box({1e7, 1e7, 100}, {0, 0, 0}, Quat::Identity());
+      },
+      "1e+07 m", "0.0001 … 1e+06 m");
+  scene.refuses(
+      [&] {
+        manager.add_static_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1e300}}, {{0, 1, 2}, {0, 2, 1}}});
+      },
+      "(0, 0, 1e+300)", "coordinates within 1e+06 m");
+  scene.refuses(
+      [&] {
         manager.add_static_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}});
       },
       "vertex 3", "0 … 2");

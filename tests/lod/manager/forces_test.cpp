@@ -283,5 +283,20 @@ TEST(Forces, AWeakPushOnIceMovesAllThatTouch) {
       }
 }
 
+// Without a pull nothing is pressed on: restitution is what it is, whenever in a step a body strikes.
+TEST(Forces, ABodyWithoutGravityReboundsAsItShould) {
+  for (int phase = 0; phase < 12; ++phase) {
+    Manager manager({.sleeping = false});
+    manager.materials().replace(0, {.restitution = 0.4, .friction = 0.5});
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    const BodyId body = manager.add_body({.shape = testing::box_shape({0.2, 0.2, 0.2}),
+                                          .state = testing::at({0, 0, 0.5 + 0.004 * phase}, {0, 0, -3}),
+                                          .level = LevelChoice::full,
+                                          .properties = {.gravity = false}});
+    testing::run(manager, 0.4);
+    EXPECT_NEAR(manager.state(body).velocity.z(), 1.2, 1e-6) << phase;
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -74,5 +74,18 @@ INSTANTIATE_TEST_SUITE_P(All, GroundThatComes,
                                            NewGround::their_plane, NewGround::their_box,
                                            NewGround::their_plane_moved));
 
+// Longer than a body may be: `support` stood on it, and who became full was lost with the step.
+TEST(ManagerGround, AFloorOfManyKilometresHoldsOnEachRung) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+    Manager manager({.signatures = testing::coarse_signature});
+    manager.add_static_box({20'000, 30'000, 2}, {0, 0, -1}, Quat::Identity());
+    const BodyId body =
+        testing::add(manager, testing::box_shape({0.4, 0.4, 0.4}), testing::at({70, 30, 0.3}), level);
+    testing::run(manager, 2.0);
+    EXPECT_NEAR(manager.state(body).position.z(), 0.2, 0.01) << int(level);
+    EXPECT_TRUE(manager.asleep(body)) << int(level);
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

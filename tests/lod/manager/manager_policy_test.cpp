@@ -88,6 +88,24 @@ TEST(Explain, CostsRiseWithTheRung) {
   EXPECT_GT(manager.explain(full).predicted_error, 0.0);
 }
 
+// What touches another is out of place by how deep the two are in each other, too: most at `tables`.
+TEST(Explain, ErrorsAreGreaterAmongOthers) {
+  const auto error = [](LevelChoice level, double apart) {
+    Manager manager({.sleeping = false, .signatures = testing::coarse_signature});
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    manager.set_viewpoints({Viewpoint{.position = {0, -3, 1}, .direction = Vec3(0, 1, 0)}});
+    const auto box = box_shape({0.3, 0.3, 0.3});
+    const BodyId body = add(manager, box, testing::at({0, 0, 0.15}), level);
+    add(manager, box, testing::at({0, 0, 0.45 + apart}), level);
+    for (int i = 0; i < 3; ++i) manager.step(kFrame);
+    return manager.explain(body).predicted_error_pixels;
+  };
+  const double tables = error(LevelChoice::tables, 0.0) - error(LevelChoice::tables, 5.0),
+               support = error(LevelChoice::support, 0.0) - error(LevelChoice::support, 5.0);
+  EXPECT_GT(support, 0.0);
+  EXPECT_GT(tables, 4.0 * support);
+}
+
 // Neither the dwell nor the cap on changes keeps a body on a rung that its caller has closed.
 TEST(LevelChoices, WhatIsNotToBeFullLeavesInTheNextStep) {
   const auto refused = [](Manager& manager, BodyId body, bool range) {

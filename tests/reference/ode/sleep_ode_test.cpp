@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
+#include <vector>
+
 #include "reference/ode/ode_world.h"
 #include "tests/reference/ode/ode_fixture.h"
 
@@ -42,6 +44,40 @@ TEST(OdeSleep, IsAQuestionOfSpeed) {
     for (int i = 0; i < 90; ++i) world.step(1.0 / 60, 4);
     EXPECT_EQ(world.asleep(box), speed > 0.1) << speed;
   }
+}
+
+// Woken by ODE's own step, by one that comes to lie on it, it fell for a substep, since sleepers had no
+// contacts.
+TEST(OdeSleep, WhoIsWokenStandsOnWhatBoreHim) {
+  Bed bed({});
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  std::vector<OdeBodyId> tower;
+  for (int i = 0; i < 3; ++i) {
+    tower.push_back(bed.world.add_body({.shape = box, .state = at({0, 0, 0.0999 + 0.1999 * i})}));
+    bed.world.set_asleep(tower.back(), true);
+  }
+  bed.world.add_body({.shape = box, .state = at({0, 0, 0.0999 + 0.1999 * 3}, {0, 0, -1e-3})});
+  bed.world.step(1.0 / 240);
+  for (const OdeBodyId body : tower) {
+    EXPECT_FALSE(bed.world.asleep(body));
+    EXPECT_NEAR(bed.world.state(body).velocity.z(), 0.01, 0.015);  // parted from its overlap
+  }
+}
+
+TEST(OdeSleep, WhatHoldsASleeperUpActsInTheStepThatWakesIt) {
+  Bed bed({});
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  const OdeBodyId held = bed.world.add_body({.shape = box, .mass = 2.0, .state = at({0, 0, 1})}),
+                  other = bed.world.add_body({.shape = box, .mass = 2.0, .state = at({5, 0, 1})});
+  bed.world.hold(held, {0, 0, 2.0 * kGravity}, Vec3::Zero());
+  bed.world.set_asleep(held, true);
+  for (int i = 0; i < 30; ++i) bed.world.step(1.0 / 60, 4);
+  ASSERT_TRUE(bed.world.asleep(held));
+  bed.world.set_state(other, at({0.1999, 0, 1}));
+  bed.world.add_force(other, {0, 0, 2.0 * kGravity}, Vec3::Zero());
+  bed.world.step(1.0 / 60, 4);
+  EXPECT_FALSE(bed.world.asleep(held));
+  EXPECT_NEAR(bed.world.state(held).velocity.z(), 0.0, 0.01);
 }
 
 // In the air, at the top of its flight, nobody sleeps: nothing holds it.
