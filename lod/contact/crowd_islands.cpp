@@ -39,12 +39,12 @@ void CrowdIslands::find(std::span<const SolverBody> bodies, std::span<const Crow
     if (a > 0.0 && b > 0.0) island.unevenness = std::max({island.unevenness, float(a / b), float(b / a)});
   }
   kinds_.clear();
-  most_uneven_ = most_uneven_of_great_ = 1.0;
+  most_uneven_of_great_ = 1.0;
   for (const std::int32_t i : island_of_) {
     const Island& island = islands_[std::size_t(i)];
     kinds_.push_back(kind_of(island));
-    double& most = kinds_.back() == IslandKind::uneven ? most_uneven_ : most_uneven_of_great_;
-    if (kinds_.back() != IslandKind::small) most = std::max(most, double(island.unevenness));
+    if (kinds_.back() == IslandKind::great)
+      most_uneven_of_great_ = std::max(most_uneven_of_great_, double(island.unevenness));
   }
 }
 

@@ -30,9 +30,11 @@ class CrowdIslands {
     const Island& island = islands_[std::size_t(sets_.root_of(body))];
     return island.on_great_heap || kind_of(island) == IslandKind::great;
   }
-  /// Greatest ratio of the masses of two that touch, of those in uneven islands; 1: there are none.
-  double most_uneven() const { return most_uneven_; }
-  /// The same of great islands.
+  /// Greatest ratio of the masses of two that touch in the island of a manifold.
+  double unevenness_of(std::size_t manifold) const {
+    return double(islands_[std::size_t(island_of_[manifold])].unevenness);
+  }
+  /// The same of all great islands; 1: there are none.
   double most_uneven_of_great() const { return most_uneven_of_great_; }
 
  private:
@@ -47,7 +49,7 @@ class CrowdIslands {
   std::vector<Island> islands_;  // of each body, where it stands for its island
   std::vector<std::int32_t> island_of_;
   std::vector<IslandKind> kinds_;
-  double most_uneven_ = 1.0, most_uneven_of_great_ = 1.0;
+  double most_uneven_of_great_ = 1.0;
 };
 
 }  // namespace lodestone

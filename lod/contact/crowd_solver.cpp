@@ -1,5 +1,6 @@
 #include "lod/contact/crowd_solver.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "lod/contact/crowd_islands.h"
@@ -23,6 +24,7 @@ struct CrowdSolver::Work {
   std::vector<std::uint32_t> uneven, great;  // manifolds
 
   void sort_manifolds(std::size_t count);
+  void solve_uneven_islands(const CrowdContacts& contacts, const JobRunner& jobs);
   void solve_great_islands(const CrowdContacts& contacts, const JobRunner& jobs);
 };
 
@@ -32,6 +34,17 @@ void CrowdSolver::Work::sort_manifolds(std::size_t count) {
     const IslandKind kind = islands.kind_of(i);
     if (kind == IslandKind::uneven) uneven.push_back(i);
     if (kind == IslandKind::great) great.push_back(i);
+  }
+}
+
+// One by one: how often one is swept is no other's matter.
+void CrowdSolver::Work::solve_uneven_islands(const CrowdContacts& contacts, const JobRunner& jobs) {
+  const auto island_of = [&](std::uint32_t manifold) { return islands.island_of(manifold); };
+  std::ranges::stable_sort(uneven, {}, island_of);
+  for (auto begin = uneven.begin(), end = begin; begin != uneven.end(); begin = end) {
+    end = std::ranges::find_if(begin, uneven.end(),
+                               [&](std::uint32_t m) { return island_of(m) != island_of(*begin); });
+    uneven_islands.solve(contacts, {begin, end}, islands.unevenness_of(*begin), jobs);
   }
 }
 
@@ -61,7 +74,7 @@ void CrowdSolver::solve(std::span<SolverBody> bodies, std::span<const CrowdManif
   work.islands.find(bodies, manifolds);
   work.sort_manifolds(manifolds.size());
   work.small_islands.solve(contacts, work.islands, jobs);
-  work.uneven_islands.solve(contacts, work.uneven, work.islands.most_uneven(), jobs);
+  work.solve_uneven_islands(contacts, jobs);
   work.solve_great_islands(contacts, jobs);
   work.waves.add_impulses(points);
   for (std::size_t i = 0; i < bodies.size(); ++i)

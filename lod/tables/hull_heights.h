@@ -3,6 +3,7 @@
 // independent unit vectors, 2014), which needs no trigonometry to read.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "lod/simd/lane_math.h"
@@ -101,6 +102,12 @@ inline SupportPatch read_patch(const SupportPatch* patches, const lane::MapPlace
   };
   const SupportPatch *low = patches + place.first, *high = low + kHullHeightSide + 1;
   return between(between(low[0], low[1], place.s), between(high[0], high[1], place.s), place.t);
+}
+
+/// m: no lower over what bears it is the centre of a body whose hull is above that; and none is taken for so.
+inline double least_height(const Shape& shape) {
+  constexpr double kLeast = 0.02;  // over R
+  return std::min(kLeast * shape.radius, shape.inner_radius);
 }
 
 }  // namespace lodestone

@@ -7,12 +7,6 @@
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
-namespace {
-
-// Over R, of a centre that was above the ground.
-constexpr double kLeastOfCenter = 0.02;
-
-}  // namespace
 
 // m: how far from its centre a body of that speed (m/s) looks for the ground.
 double TablesLevel::ground_reach(std::int64_t place, double speed) const {
@@ -209,8 +203,8 @@ void TablesLevel::keep_above_planes(std::int64_t begin, std::int64_t end) {
       const double radius = double(kinds_.radius[spheres_.kind[std::size_t(i)]]),
                    height = plane.height_of(spheres_.position(i));
       if (height >= (1.0 - kDeepest) * radius) continue;
-      const double least =
-          std::max(kLeastOfCenter * radius, double(ground_height(i, -plane.normal)) - kDeepest * radius);
+      const double least = std::max(least_height(*kind_of(i).shape),
+                                    double(ground_height(i, -plane.normal)) - kDeepest * radius);
       if (height < least) lift_out(i, plane, least - height);
     }
 }
@@ -218,7 +212,7 @@ void TablesLevel::keep_above_planes(std::int64_t begin, std::int64_t end) {
 void TablesLevel::keep_above_faces() {
   for (const NearFaces& near : near_faces_) {
     if (!near.above || near.place >= spheres_.awake || !step_.touches(near.place)) continue;
-    const double least = kLeastOfCenter * double(kinds_.radius[spheres_.kind[std::size_t(near.place)]]);
+    const double least = least_height(*kind_of(near.place).shape);
     for (std::int32_t face = near.begin; face < near.end; ++face) {
       const HalfSpace& plane = faces_[std::size_t(face)];
       const double height = plane.height_of(spheres_.position(near.place));

@@ -7,7 +7,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kSunk = 0.01, kLeastHeight = 0.02;  // over R
+constexpr double kSunk = 0.01;  // over R
 
 bool is_sunk(const StatisticalBody& body, const Shape& shape, std::span<const HalfSpace> planes) {
   return std::ranges::any_of(planes, [&](const HalfSpace& p) {
@@ -140,7 +140,7 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   for (const HalfSpace& p : around.planes) height = std::min(height, p.height_of(body.position));
   const bool touches = moved.plays_clip || moved.tally.touched_plane >= 0;
   if (!touches) height = std::min(height, double(body.sphere_radius));
-  body.sphere_radius = float(std::max(height, kLeastHeight * radius));
+  body.sphere_radius = float(std::max(height, least_height(*kind_of(place).shape)));
   return moved.tally;
 }
 
@@ -162,7 +162,7 @@ float TablesLevel::height_over_ground(std::int64_t place, const StatisticalBody&
   double height = radius;
   for (const HalfSpace& plane : join_planes(ground_.planes(), faces_of(place)))
     height = std::min(height, plane.height_of(body.position));
-  return float(std::max(height, kLeastHeight * radius));
+  return float(std::max(height, least_height(*kind_of(place).shape)));
 }
 
 // Of a guest that was moved on its hull.

@@ -93,11 +93,11 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
 // The height that its hull has over the plane that it is nearest to, where it is near one: it neither sinks
 // nor rises as it arrives, or while it is a guest. Else as it moves, but into no plane.
 float TablesLevel::radius_at_ground(const StatisticalBody& body, const BodyKind& kind) const {
-  constexpr double kNear = 0.3, kLeast = 0.02;  // over R: a gap; a radius
+  constexpr double kNear = 0.3;  // over R: a gap
   const Shape& shape = *kind.shape;
   double least_gap = kNear * shape.radius,
          radius = find_sphere_radius(body, kind, settings_.tables, settings_.seed),
-         least_height = shape.radius;
+         lowest_height = shape.radius;
   thread_local std::vector<GroundNear> near;
   thread_local std::vector<HalfSpace> faces;
   near.clear(), faces.clear();
@@ -106,16 +106,16 @@ float TablesLevel::radius_at_ground(const StatisticalBody& body, const BodyKind&
   for (const GroundNear& n : near) faces.push_back(n.plane(body.position));
   for (const HalfSpace& plane : join_planes(ground_.planes(), faces)) {
     const double height = plane.height_of(body.position);
-    least_height = std::min(least_height, height);
+    lowest_height = std::min(lowest_height, height);
     if (height > shape.radius + least_gap) continue;
     std::int32_t hint = 0;
     const HullContact lowest = find_lowest_point(shape, body.orientation, plane.normal, height, hint);
     if (lowest.gap < least_gap)
       least_gap = lowest.gap, radius = -lowest.arm.dot(plane.normal);
     else if (lowest.gap > kNear * shape.radius)  // not to be touched by what lies on something else
-      least_height = std::min(least_height, height - 0.5 * lowest.gap);
+      lowest_height = std::min(lowest_height, height - 0.5 * lowest.gap);
   }
-  return float(std::max(std::min(radius, least_height), kLeast * shape.radius));
+  return float(std::max(std::min(radius, lowest_height), least_height(shape)));
 }
 
 RigidState TablesLevel::state(int slot) const {

@@ -34,7 +34,8 @@ TEST(CrowdIslands, AreOfThoseThatTouchDirectlyOrThroughOthers) {
   EXPECT_NE(scene.islands.island_of(ab), scene.islands.island_of(ground));
   for (const std::size_t manifold : {ab, bc, ground})
     EXPECT_EQ(scene.islands.kind_of(manifold), IslandKind::small);
-  EXPECT_EQ(scene.islands.most_uneven(), 1.0);
+  EXPECT_EQ(scene.islands.unevenness_of(ab), 2.0);
+  EXPECT_EQ(scene.islands.unevenness_of(ground), 0.0);
 }
 
 TEST(CrowdIslands, WhatSleepsJoinsNobody) {
@@ -52,7 +53,8 @@ TEST(CrowdIslands, AreUnevenWhereAWeightMeetsALightBody) {
   scene.find();
   EXPECT_EQ(scene.islands.kind_of(uneven), IslandKind::uneven);
   EXPECT_EQ(scene.islands.kind_of(with_them), IslandKind::uneven);
-  EXPECT_NEAR(scene.islands.most_uneven(), 50.0, 1e-4);
+  for (const std::size_t manifold : {uneven, with_them})
+    EXPECT_NEAR(scene.islands.unevenness_of(manifold), 50.0, 1e-4);
 }
 
 // A hundred bodies in a row; and two on one of a heap that sleeps, which are a part of that heap.
