@@ -129,6 +129,8 @@ class TablesLevel {
     std::uint32_t slot = 0, owner = 0;
     Vec3 last = Vec3::Zero();    // m/s², in the last step
     Vec3 steady = Vec3::Zero();  // m/s²: what of it was there in the step before, too
+    Vec3 place = Vec3::Zero();   // m, of its centre, at the step's end
+    double moved = 1e300;        // m, since the end of the one before
   };
   struct GroundFriction {
     std::uint32_t slot = 0, owner = 0;
@@ -192,6 +194,8 @@ class TablesLevel {
   void end_rubbing(std::vector<GroundFriction>& rubs) const;
   void remember_ground_friction();
   bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
+  void note_moved();
+  bool stays_in_place(std::int64_t place) const;
   bool rolls_on_ground(std::int64_t place) const;
   double ground_friction(std::int64_t place) const;
 

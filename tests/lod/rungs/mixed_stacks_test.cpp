@@ -264,5 +264,14 @@ TEST(MixedHeap, ComesToRest) {
             4);
 }
 
+// Those of `tables` at the border keep a part of gravity's step, by which they do not move: of these 19 never
+// slept.
+TEST(MixedHeap, ComesToRestAtTheBorderOfTables) {
+  EXPECT_LE(count_restless([](int) { return LevelChoice::automatic; },
+                           {.policy = {.policy = DistancePolicy{.full_within = 1e-9, .support_within = 5.0}},
+                            .signatures = coarse_signature}),
+            5);
+}
+
 }  // namespace
 }  // namespace lodestone
