@@ -4,7 +4,8 @@
 // third too low). After Macklin et al., Small steps in physics simulation, 2019. A heap that has slowed down
 // meets nothing new on its way: it takes the step at once, with the sweeps of three substeps. Each island,
 // the bodies that may touch within the step, directly or through others, has a pace of its own: what goes on
-// elsewhere changes nothing for it.
+// elsewhere changes nothing for it. (But all that touches sleepers or full bodies is one island, since these
+// may wake, or hand on what they are given.)
 #pragma once
 
 #include <algorithm>
