@@ -44,9 +44,9 @@ void add_compare_pile_command(Command& compare) {
   PileComparisonSettings& comparison = arguments.comparison;
   add_shape_arguments(pile, arguments.shape);
   add_signature_arguments(pile, arguments.signature);
-  pile.add_option("--bodies", comparison.conditions.bodies, "in a pile").within(1, 1000);
+  pile.add_option("--bodies", comparison.conditions.bodies, "in a pile").within(1, 10'000);
   pile.add_option("--side", comparison.conditions.side, "of the bin's square floor, m").within(1e-3, 1e3);
-  pile.add_option("--seeds", comparison.piles, "piles of each method").within(1, 10'000);
+  pile.add_option("--seeds", comparison.piles, "piles of each method").within(1, 1000);
   add_steps_argument(pile, arguments.steps);
   add_methods_argument(pile, comparison.methods);
   pile.add_option("--check-truth", comparison.check_truth,
