@@ -1,6 +1,7 @@
 #include "lod/contact/crowd_solver.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "lod/contact/crowd_islands.h"
@@ -40,7 +41,7 @@ void CrowdSolver::Work::sort_manifolds(std::size_t count) {
 // One by one: how often one is swept is no other's matter.
 void CrowdSolver::Work::solve_uneven_islands(const CrowdContacts& contacts, const JobRunner& jobs) {
   const auto island_of = [&](std::uint32_t manifold) { return islands.island_of(manifold); };
-  std::ranges::stable_sort(uneven, {}, island_of);
+  std::ranges::sort(uneven, {}, [&](std::uint32_t m) { return std::pair(island_of(m), m); });
   for (auto begin = uneven.begin(), end = begin; begin != uneven.end(); begin = end) {
     end = std::ranges::find_if(begin, uneven.end(),
                                [&](std::uint32_t m) { return island_of(m) != island_of(*begin); });

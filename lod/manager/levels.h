@@ -55,8 +55,7 @@ struct Levels {
   /// default material.
   ContactLaw ground_law(MaterialId material) const;
 
-  /// Of a body's shape at each rung, by Rung.
-  /// Of its shape; the drifts of a body that touches others with their overlaps.
+  /// Of a body's shape at each rung, by Rung; the drifts of one that touches others with their overlaps.
   std::array<RungError, kRungs> errors_of(std::uint32_t body, Activity does) const;
 
   RigidState state(std::uint32_t body) const;

@@ -152,8 +152,10 @@ std::vector<PlacedSolid> QueryGround::find_along(const Sweep& sweep, std::vector
     begin = within->first, end = std::min(within->second, begin + kFarthestPiece);
   }
   const double piece = std::max(kPiece, (end - begin) / kMostPieces);
-  for (double at = begin; at <= end; at += piece) {
-    const double half = 0.5 * std::min(piece, end - at);
+  const auto pieces =
+      int(std::floor((end - begin) / piece)) + 1;  // counted: far away a piece may add nothing
+  for (int i = 0; i < pieces; ++i) {
+    const double at = begin + i * piece, half = 0.5 * std::clamp(end - at, 0.0, piece);
     for (const PlacedSolid& solid :
          find_near(sweep.from + (at + half) * sweep.direction, half + sweep.radius, probed))
       all.push_back(solid);

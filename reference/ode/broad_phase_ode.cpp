@@ -99,8 +99,8 @@ std::span<const Candidate> BroadPhase::find_of_sleeper(Bodies& bodies, const Bod
   for (const std::uint32_t sleeper : found_) {
     const Body& other = slots[sleeper];
     if (&other == &body || other.is_awake() || !wanted(other)) continue;
-    const Body &first = std::min(body, other, [](const Body&a, const Body&b) { return &a < &b; }),
-               &second = &first == &body ? other : body;
+    const bool is_first = &body < &other;
+    const Body &first = is_first ? body : other, &second = is_first ? other : body;
     for (dGeomID a = dBodyGetFirstGeom(first.body); a; a = dBodyGetNextGeom(a))
       for (dGeomID b = dBodyGetFirstGeom(second.body); b; b = dBodyGetNextGeom(b))
         if (bits_let_meet(first, second))

@@ -151,6 +151,11 @@ TEST_F(QueryGrounds, EndlessRaysEnd) {
   const auto low = manager_.cast_ray({{5, 0, 0}, Vec3(1, 0, -1e-6)});
   ASSERT_TRUE(low);
   EXPECT_NEAR(low->distance, 1e7, 1e7 * 1e-5);
+  // From afar, what lies 2,000 km away is met, too; and 1e20 m away a step of two metres changes nothing.
+  const auto far = manager_.cast_ray({{-2e6, 0, 0}, {1, 0, 0}});
+  ASSERT_TRUE(far);
+  EXPECT_NEAR(far->distance, 2e6 - 0.5, 1e-6);
+  EXPECT_NO_THROW(manager_.cast_ray({{-1e20, 0, 0}, {1, 0, 0}}));
 }
 
 }  // namespace
