@@ -34,7 +34,8 @@ struct ContactSide {
   GroundId ground = {};    ///< of the manager's ground; null where it is not known which piece
   dxGeom* geom = nullptr;  ///< dGeomID, of the caller's ground, and of his bodies where a query meets them;
                            ///< at a contact null for a body of his
-  dxBody* callers = nullptr;  ///< dBodyID, of a dynamic body of the caller's
+  dxBody* callers = nullptr;  ///< dBodyID, of a dynamic body of the caller's; at the end of a contact it, as
+                              ///< geom, is perhaps one that he has destroyed
   MaterialId material = 0;
 };
 

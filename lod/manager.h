@@ -251,8 +251,10 @@ class Manager {
   /// full bodies are not those that the snapshot has, all ODE bodies of the manager are made anew, in a
   /// caller's world after his own. Throws InputError, and nothing has changed, where the snapshot is damaged
   /// or of another build, seed, material table or set of planes, in a caller's world of another gravity than
-  /// it has now, where a shape or a signature is missing, or a body that is made anew hangs on a
-  /// joint. What its bodies move by is asked for as in a step, and waited for.
+  /// it has now, where a shape or a signature is missing, a group whose joints are off has no functions here
+  /// (make it before: a group of the same id lends it its own), or a body that is made anew hangs on a joint
+  /// (there the caller's geoms count as having stood still since the last step). What its bodies move by is
+  /// asked for as in a step, and waited for.
   void restore(std::span<const std::byte> snapshot,
                std::span<const std::shared_ptr<const Shape>> shapes = {});
 

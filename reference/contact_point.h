@@ -10,7 +10,8 @@ struct ContactPoint {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
   double depth = 0.0;
-  double lift = 0.0;  ///< m/s along the normal, added to the velocity that the solver leaves the contact with
+  double lift =
+      0.0;  ///< m/s along the normal, of the surface met; what bounces leaves it 1 + e times as fast
 };
 
 }  // namespace lodestone

@@ -98,7 +98,7 @@ void CallersBodies::follow(const SpaceMirror& mirror,
       entry.untold = false;
     }
     if (!entry.stale) {
-      follow_inertia(entry);
+      if (!entry.is_tied()) follow_inertia(entry);  // those may be gone: follow_tied() knows
       continue;
     }
     entry.stale = false;
@@ -188,7 +188,10 @@ void CallersBodies::follow_tied(std::span<dxBody* const> jointed,
     return gone;
   });
   for (dxBody* const body : tied) {
-    if (std::ranges::count(bodies_, body, &Entry::body)) continue;
+    if (const auto known = std::ranges::find(bodies_, body, &Entry::body); known != bodies_.end()) {
+      follow_inertia(*known);
+      continue;
+    }
     Entry& entry = bodies_.emplace_back();
     entry.body = body;
     entry.owner = kFirstOwner + owners_++;

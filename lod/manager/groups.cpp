@@ -1,9 +1,12 @@
 #include "lod/manager/groups.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "lod/manager/transfer.h"
+#include "reference/error.h"
 #include "reference/ode/body_joints.h"
 
 namespace lodestone {
@@ -24,6 +27,19 @@ GroupId Groups::make(std::span<const std::uint32_t> bodies, GroupJoints joints) 
   group.members = std::move(members), group.generation = generation, group.joints = std::move(joints);
   for (const std::uint32_t body : group.members) group_of_[body] = std::uint32_t(index);
   return id_of(index);
+}
+
+void Groups::archive_detached(StateArchive& a) const {
+  std::vector<GroupId> detached;
+  for (std::size_t i = 0; i < groups_.size() && !a.reading(); ++i)
+    if (groups_[i].detached) detached.push_back(id_of(i));
+  a(detached);
+  for (const GroupId id : a.reading() ? detached : std::vector<GroupId>())
+    if (!valid(id) || !groups_[id.index].joints.after_promotion)
+      throw InputError(fmt::format(
+          "the snapshot has a group whose joints are off (index {}, generation {}): found none here, "
+          "expected it with the functions that put them on again",
+          id.index, id.generation));
 }
 
 void Groups::archive(StateArchive& a) {

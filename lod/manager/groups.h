@@ -23,6 +23,9 @@ class Groups {
   void dissolve(GroupId group);
   void forget(std::uint32_t body);
 
+  /// Comes before archive(). Throws InputError where joints are off that no functions here would put on
+  /// again.
+  void archive_detached(StateArchive& a) const;
   /// A group's functions are the reader's, where he has the group.
   void archive(StateArchive& a);
 

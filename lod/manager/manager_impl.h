@@ -2,6 +2,8 @@
 #pragma once
 
 #include <exception>
+#include <memory>
+#include <span>
 
 #include "lod/manager.h"
 #include "lod/manager/audit.h"
@@ -55,7 +57,8 @@ struct Manager::Impl {
 
   void set_up(const ManagerSettings& settings);
   /// All that the next steps depend on.
-  void archive(StateArchive& a);
+  /// Of what its statistical bodies move by, in a list of their own, `signatures`.
+  void archive(StateArchive& a, std::span<const std::shared_ptr<const Signature>> signatures);
   /// Does what a chunk of a recording tells, but for steps.
   void do_call(Manager& manager, Call call, StateArchive& chunk,
                std::span<const std::shared_ptr<const Shape>> shapes);

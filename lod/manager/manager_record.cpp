@@ -23,11 +23,11 @@ class Chunks {
   }
   bool next() {
     ChunkHead head;
-    if (left_.size() < sizeof head) return false;
+    if (left_.size() < sizeof head) return breaks_off_ = !left_.empty(), false;
     std::memcpy(&head, left_.data(), sizeof head);
     left_ = left_.subspan(sizeof head);
     if (!head.has_true_length()) throw InputError(damage());
-    if (head.length > left_.size()) return false;
+    if (head.length > left_.size()) return breaks_off_ = true, false;
     chunk_ = left_.first(head.length);
     left_ = left_.subspan(head.length);
     if (!head.fits(chunk_)) throw InputError(damage());
@@ -37,10 +37,12 @@ class Chunks {
   /// Of the chunk that is being read, or was to be read next.
   std::string damage() const { return fmt::format("the recording is damaged in its chunk {}", number_); }
   StateArchive chunk() const { return {chunk_, {}}; }
+  bool breaks_off() const { return breaks_off_; }  ///< known once there is no next one
 
  private:
   std::span<const std::byte> left_, chunk_;
   int number_ = 1;
+  bool breaks_off_ = false;
 };
 
 template <class... T>
@@ -177,7 +179,8 @@ ReplayResult Manager::replay(std::span<const std::byte> recording,
                              std::span<const std::shared_ptr<const Shape>> shapes) {
   ReplayResult result;
   bool begun = false;
-  for (Chunks chunks(recording); chunks.next();) {
+  Chunks chunks(recording);
+  while (chunks.next()) {
     StateArchive chunk = chunks.chunk();
     Call call = Call::begin;
     chunk(call);
@@ -206,7 +209,9 @@ ReplayResult Manager::replay(std::span<const std::byte> recording,
     return result;
   }
   if (!begun) throw InputError("the recording has no beginning");
-  result.text = fmt::format("all {} steps are as they were recorded", result.steps);
+  result.text = result.steps == 0 ? "no step is recorded"
+                                  : fmt::format("all {} steps are as they were recorded", result.steps);
+  if (chunks.breaks_off()) result.text += "; the recording breaks off after that";
   return result;
 }
 

@@ -28,7 +28,7 @@ struct Circumstances {
 
 struct Header {
   std::array<char, 8> magic = {'L', 'O', 'D', 'E', 'S', 'N', 'A', 'P'};
-  std::uint32_t format = 14, version = LODESTONE_VERSION;
+  std::uint32_t format = 15, version = LODESTONE_VERSION;
   // Sizes of what goes as it lies in memory: a build with other ones is no reader.
   std::array<std::uint16_t, 8> layout = {sizeof(void*),           sizeof(BodyRecord),   sizeof(BodyLevel),
                                          sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport),
@@ -152,9 +152,8 @@ void append(std::vector<std::byte>& bytes, const void* from, std::size_t count) 
 
 }  // namespace
 
-// First the signatures, then the full level: these refuse what does not fit before anything has changed.
-void Manager::Impl::archive(StateArchive& a) {
-  const auto signatures = archive_signatures(a, levels);
+// The full level first: it refuses what does not fit before anything has changed.
+void Manager::Impl::archive(StateArchive& a, std::span<const std::shared_ptr<const Signature>> signatures) {
   a(levels.full);
   Vec3 gravity = levels.statistical_settings.gravity;
   a(gravity);
@@ -178,7 +177,9 @@ std::vector<std::byte> Manager::snapshot() const {
     throw_input_error("snapshot", "one between before_world_step and after_world_step", "none");
   StateArchive state;
   const auto held = impl_->queries.hold_ground();
-  impl_->archive(state);  // which changes nothing where it writes
+  const auto signatures = archive_signatures(state, impl_->levels);
+  impl_->choose.groups().archive_detached(state);
+  impl_->archive(state, signatures);  // which changes nothing where it writes
   std::vector<std::byte> body;
   for (const std::shared_ptr<const Shape>& shape : state.shapes()) {
     const ShapeName name = name_of(*shape);
@@ -207,9 +208,11 @@ void Manager::restore(std::span<const std::byte> snapshot,
   const std::span<const std::byte> body = snapshot.subspan(sizeof header);
   StateArchive state(body.subspan(header.shapes * sizeof(ShapeName)),
                      find_shapes(body, header.shapes, shapes, levels.bodies));
+  const auto signatures = archive_signatures(state, levels);
+  impl_->choose.groups().archive_detached(state);
   levels.follow_callers_space(kAnyStep);  // contacts are remembered with the parts of his ground
   levels.look_away();
-  impl_->archive(state);
+  impl_->archive(state, signatures);
   check_that(state.at_end(), "a snapshot is read to its end");
   if (impl_->recorder.on())
     impl_->recorder.note(Call::begin, std::vector<std::byte>(snapshot.begin(), snapshot.end()));

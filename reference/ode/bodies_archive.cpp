@@ -73,7 +73,7 @@ void set_motion(Body& body, const Motion& motion) {
   body.held_force = motion.held_force, body.held_torque = motion.held_torque;
   body.last_good = motion.last_good;
   body.last_support = motion.last_support;
-  body.impact_time.reset();
+  body.impact.reset();
   body.joints_at_rest = motion.joints_at_rest;
   body.to_sleep_s = motion.to_sleep_s, body.was_enabled = motion.was_enabled,
   body.disturbed = motion.disturbed;

@@ -9,6 +9,7 @@
 #include "reference/ode/ode_world.h"
 #include "reference/ode/piece_contacts.h"
 #include "reference/ode/runtime_ode.h"
+#include "reference/ode/timed_contacts.h"
 #include "reference/state_archive.h"
 
 namespace lodestone::ode {
@@ -47,9 +48,8 @@ struct Body {
   OdeGeometry geometry = OdeGeometry::trimesh;
   std::uint64_t birth =
       0;  ///< bodies of this world made before it: ODE goes through them from the last to the first
-  bool in_company = false;  ///< in this substep: it may touch more than planes
-  std::optional<double> impact_time =
-      {};  ///< in this substep: s after its start, of an impact that is answered at its own time
+  bool in_company = false;                 ///< in this substep: it may touch more than planes
+  std::optional<TimedImpact> impact = {};  ///< in this substep, that is answered at its own time
 };
 
 /// Tells ODE, but of the damping, which depends on the step.

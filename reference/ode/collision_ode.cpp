@@ -262,7 +262,7 @@ void Collision::note_callers_planes() {
 // Those that may touch more than planes, or hang on a joint.
 void Collision::mark_company(Bodies& bodies, std::span<const Candidate> candidates) {
   for (Body& body : bodies.slots()) {
-    body.impact_time.reset();
+    body.impact.reset();
     body.in_company = body.body && dBodyGetNumJoints(body.body) > 0;
   }
   for (const Candidate& candidate : candidates) {

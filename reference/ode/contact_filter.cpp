@@ -184,10 +184,9 @@ std::span<ContactPoint> turn_cleared(std::span<ContactPoint> contacts, const Dis
     const auto compared = places.measure(contact.point, way.direction,
                                          kToCompare);  // as in the search, which cleared at least one
     if (compared && !clears(compared->depth)) return false;
-    // Against that direction it comes out, so it is inside; ground that is a sheet has no other side.
-    if (!compared && contact.normal.dot(way.direction) < 0.0 &&
-        places.measure(contact.point, contact.normal, kToCompare))
-      return false;
+    // It comes out its own way, so it is inside; ground that is a sheet has no other side, nor an end that a
+    // way along it would reach.
+    if (!compared && places.measure(contact.point, contact.normal, kToCompare)) return false;
     const auto measured = places.measure(contact.point, way.direction, kToMeasure);
     contact = {contact.point, way.direction, measured ? measured->depth : 0.0};
     return true;

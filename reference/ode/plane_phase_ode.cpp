@@ -22,11 +22,11 @@ double approach_of(const Body& body, const Vec3& arm, const Vec3& normal) {
 }
 
 /// m/s², by gravity and by what else acts on it in the substep.
-double pressing(const Body& body, const Vec3& normal, const Vec3& gravity) {
+Vec3 acceleration_of(const Body& body, const Vec3& gravity) {
   dMass mass;
   dBodyGetMass(body.body, &mass);
   const double pull = dBodyGetGravityMode(body.body) ? 1.0 : 0.0;
-  return -normal.dot(pull * gravity + to_vec3(dBodyGetForce(body.body)) / mass.mass);
+  return pull * gravity + to_vec3(dBodyGetForce(body.body)) / mass.mass;
 }
 
 Mat3 rotation_of(const Body& body) {
@@ -54,7 +54,8 @@ void PlanePhase::find(Body& body, const Plane& plane, const ContactLaw& law, con
 double PlanePhase::nearing(const Body& body, const Plane& plane, const PlaneStep& step) const {
   const bool timed = is_timed(body, step);
   if (!timed && settings_.plane_depth_max > 1.0) return 0.0;
-  const double fall = timed ? std::max(0.0, pressing(body, plane.normal, step.gravity)) * step.duration : 0.0;
+  const double fall =
+      timed ? std::max(0.0, -plane.normal.dot(acceleration_of(body, step.gravity))) * step.duration : 0.0;
   const double approach = approach_of(body, Vec3::Zero(), plane.normal) +
                           to_vec3(dBodyGetAngularVel(body.body)).norm() * body.reach;
   return (std::max(0.0, approach) + fall) * step.duration;
@@ -63,7 +64,7 @@ double PlanePhase::nearing(const Body& body, const Plane& plane, const PlaneStep
 bool PlanePhase::is_timed(const Body& body, const PlaneStep& step) const {
   const bool fits =
       step.duration > settings_.timed_contacts_above && step.duration <= settings_.timed_contacts_up_to;
-  return fits && !body.in_company && !body.impact_time;
+  return fits && !body.in_company && !body.impact;
 }
 
 void PlanePhase::find_hull_points(Body& body, const Plane& plane, const ContactLaw& law,
@@ -86,14 +87,15 @@ void PlanePhase::find_hull_points(Body& body, const Plane& plane, const ContactL
 
 void PlanePhase::append_timed(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step,
                               std::vector<ContactPoint>& points) const {
-  body.impact_time = append_timed_contacts(near_,
-                                           {.body = state_of(body.body),
-                                            .normal = plane.normal,
-                                            .gravity = pressing(body, plane.normal, step.gravity),
-                                            .duration = step.duration,
-                                            .restitution = law.restitution,
-                                            .bounce_velocity = settings_.bounce_velocity},
-                                           points);
+  body.impact = append_timed_contacts(near_,
+                                      {.body = state_of(body.body),
+                                       .normal = plane.normal,
+                                       .acceleration = acceleration_of(body, step.gravity),
+                                       .duration = step.duration,
+                                       .restitution = law.restitution,
+                                       .bounce_velocity = settings_.bounce_velocity,
+                                       .turns = body.spheres.empty()},
+                                      points);
 }
 
 void PlanePhase::append_early_and_deep(const Body& body, const Plane& plane, const PlaneStep& step,

@@ -31,7 +31,7 @@ class PlanePhase {
   explicit PlanePhase(const OdeSettings& settings) : settings_(settings) {}
 
   /// Appends to `points` the contacts of `body`; `law` is that of the body and the plane. Where `body` is
-  /// answered at its own time (Body::impact_time) that is set, for the first of its planes only.
+  /// answered at its own time (Body::impact) that is set, for the first of its planes only.
   void find(Body& body, const Plane& plane, const ContactLaw& law, const PlaneStep& step,
             std::vector<ContactPoint>& points);
 

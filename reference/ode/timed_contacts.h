@@ -24,11 +24,12 @@ namespace lodestone {
 /// What of a body, a plane and a step to come its contacts depend on.
 struct TimedStep {
   RigidState body;
-  Vec3 normal = Vec3::UnitZ();  ///< of the plane
-  double gravity = 9.81;        ///< m/s² into the plane
-  double duration = 0.0;        ///< s
+  Vec3 normal = Vec3::UnitZ();            ///< of the plane
+  Vec3 acceleration = Vec3(0, 0, -9.81);  ///< m/s², by gravity and by what else acts on the body
+  double duration = 0.0;                  ///< s
   double restitution = 0.0;
   double bounce_velocity = 0.05;  ///< m/s, slower contacts do not bounce
+  bool turns = true;              ///< its points go round with it; a ball's lowest one does not
 };
 
 /// A point of a body near a plane.
@@ -37,17 +38,22 @@ struct NearPoint {
   double depth;  ///< m below the plane; negative above it
 };
 
-/// Appends the contacts among `near` to `contacts`. Returns when within the step they strike (s after its
-/// start, negative for one noticed late); nothing where none strikes.
-std::optional<double> append_timed_contacts(std::span<const NearPoint> near, const TimedStep& step,
-                                            std::vector<ContactPoint>& contacts);
+/// When in a step a body strikes, and what is not contacts' doing of that step's change of its velocity.
+struct TimedImpact {
+  double time = 0.0;         ///< s after its start; negative for one noticed late
+  Vec3 fall = Vec3::Zero();  ///< m/s
+};
+
+/// Appends the contacts among `near` to `contacts`; nothing where none of them strikes within the step.
+std::optional<TimedImpact> append_timed_contacts(std::span<const NearPoint> near, const TimedStep& step,
+                                                 std::vector<ContactPoint>& contacts);
 
 /// How a body that nothing acts on is turned `time` after `start`.
 Quat turned_on(const RigidState& start, double time);
 
-/// A step takes its impulses at its start. Where it ends if they came `time` after the start instead, of a
-/// body that was turned on by `time` for them. It is turned back about the axis that it turns about at the
-/// end, which leaves it the energy that the solver gave it.
-RigidState end_of_step(const RigidState& start, const RigidState& end, double time);
+/// A step takes its impulses at its start. Where it ends if they came at the `impact` instead, of a body that
+/// was turned on by its time for them. It is turned back about the axis that it turns about at the end, which
+/// leaves it the energy that the solver gave it.
+RigidState end_of_step(const RigidState& start, const RigidState& end, const TimedImpact& impact);
 
 }  // namespace lodestone

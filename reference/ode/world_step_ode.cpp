@@ -172,8 +172,8 @@ void OdeWorld::Impl::find_contacts(double h, int attempt) {
 // Not moved: the solver looks at contacts from the centre of mass only. recover_bodies turns them back.
 void OdeWorld::Impl::turn_to_impacts() {
   for (const Body& body : bodies.slots())
-    if (body.is_awake() && body.impact_time)
-      ode::set_orientation(body.body, turned_on(state_of(body.body), *body.impact_time));
+    if (body.is_awake() && body.impact)
+      ode::set_orientation(body.body, turned_on(state_of(body.body), body.impact->time));
 }
 
 void OdeWorld::Impl::end_substep(double h) {
@@ -275,8 +275,7 @@ void OdeWorld::Impl::recover_bodies() {
     if (!body.was_enabled) continue;
     RigidState now = state_of(body.body);
     if (is_sound(now)) {
-      if (body.impact_time)
-        ode::set_state(body.body, now = end_of_step(body.last_good, now, *body.impact_time));
+      if (body.impact) ode::set_state(body.body, now = end_of_step(body.last_good, now, *body.impact));
       body.last_good = now;
       continue;
     }

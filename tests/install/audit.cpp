@@ -71,8 +71,8 @@ int main() {
                 "support: distance over that of full ones");
   check::within(support.audit.drift, 0.0, 1.0, "support: sizes apart after a second");
   check::within(tables.audit.drift / support.audit.drift, 0.5, 2.0, "tables drift so many times as far");
-  check::within(spheres.audit.drift / support.audit.drift, 1.2, 20.0,
-                "the paper's spheres drift so many times as far");
+  check::that(spheres.audit.drift > 1.2 * support.audit.drift, "the paper's spheres drift farther");
+  check::within(spheres.audit.drift, 0.2, 3.0, "the paper's spheres: sizes apart after a second");
   check::that(spheres.audit.drift_interval[0] > support.audit.drift_interval[1],
               "with intervals that do not meet");
   return check::result();

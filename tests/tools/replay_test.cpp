@@ -1,4 +1,5 @@
 // `lodestone run --record` and `lodestone replay`, as a user calls them.
+#include <filesystem>
 #include <fstream>
 
 #include "tests/tools/cli_fixture.h"
@@ -26,6 +27,17 @@ TEST_F(ReplayTest, WhatWasRecordedIsDoneAgain) {
   const Ended replayed = run("replay " + name("run.rec") + " " + name("scene.yaml") + " --threads 2");
   EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
   EXPECT_NE(replayed.out.find("all 60 steps are as they were recorded"), std::string::npos) << replayed.out;
+}
+
+TEST_F(ReplayTest, OneThatBreaksOffSaysSo) {
+  ASSERT_EQ(run("run " + name("scene.yaml") + " --record " + name("run.rec")).exit_code, 0);
+  const auto file = at("run.rec");
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 5);
+  const Ended replayed = run("replay " + name("run.rec") + " " + name("scene.yaml"));
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
+  EXPECT_NE(replayed.out.find("all 59 steps are as they were recorded; the recording breaks off"),
+            std::string::npos)
+      << replayed.out;
 }
 
 TEST_F(ReplayTest, WhatComesOutOtherwiseIsNamed) {

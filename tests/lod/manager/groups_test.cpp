@@ -77,6 +77,50 @@ TEST(Groups, AMemberKeepsToItsOwnRungs) {
   EXPECT_EQ(manager.rung(sphere), Rung::tables);
 }
 
+// Woken in a manager that has none it threw std::bad_function_call, and stayed without its joints.
+TEST(Groups, ASnapshotOfOneWhoseJointsAreOffGoesWhereItsFunctionsAre) {
+  const auto box = box_shape({0.5, 0.5, 0.5});
+  struct Pair {
+    Manager manager = on_floor(unmeasured(by_distance()));
+    BodyId left, right;
+    dJointID joint = nullptr;
+    explicit Pair(const std::shared_ptr<const Shape>& shape)
+        : left(add(manager, shape, at({0, 0, 0.25}))), right(add(manager, shape, at({0.6, 0, 0.25}))) {
+      view_from(manager, Vec3::Zero());
+      manager.step(kFrame);
+      join();
+      const BodyId both[] = {left, right};
+      manager.make_group(both, {.before_demotion = [this](GroupId) { dJointDestroy(joint); },
+                                .after_promotion = [this](GroupId) { join(); }});
+    }
+    void join() {
+      const dBodyID first = manager.ode_body(left);
+      joint = dJointCreateBall(dBodyGetWorld(first), nullptr);
+      dJointAttach(joint, first, manager.ode_body(right));
+      dJointSetBallAnchor(joint, 0.3, 0, 0.25);
+    }
+    void leave() {
+      run(manager, 2.0);
+      view_from(manager, Vec3(100, 0, 0));
+      run(manager, 1.0);
+    }
+  };
+  Pair first(box), second(box);
+  first.leave(), second.leave();
+  ASSERT_NE(first.manager.rung(first.left), Rung::full);
+  const std::vector<std::byte> snapshot = first.manager.snapshot();
+  Manager without = on_floor(unmeasured(by_distance()));
+  const std::uint64_t before = without.state_hash();
+  EXPECT_THROW(without.restore(snapshot, {&box, 1}), InputError);
+  EXPECT_EQ(without.state_hash(), before);
+
+  second.manager.restore(snapshot, {&box, 1});
+  second.manager.wake(first.left);
+  second.manager.step(kFrame);
+  EXPECT_EQ(second.manager.rung(first.right), Rung::full);
+  EXPECT_EQ(dBodyGetNumJoints(second.manager.ode_body(first.right)), 1);
+}
+
 // Without GroupJoints a joined member stays full; another one that is told to leave may.
 TEST(Groups, AMemberLeavesThoughAnotherIsOnJoints) {
   dWorldID world = dWorldCreate();

@@ -99,5 +99,24 @@ TEST(NarrowPhase, ABallOverAnEdgeIsPushedToItsCentre) {
   EXPECT_NEAR(contact.depth, 1e-3, 1e-4);
 }
 
+// Its contacts with the wall were turned to the floor's: along an upright sheet no way out is found.
+TEST(NarrowPhase, NothingPassesAWallOfTheMeshThatItSlidesOn) {
+  const MaterialTable table = material(0.4, 0.1);
+  Mesh corner;  // floor z = 0, wall x = 0
+  corner.vertices = {{-4, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-4, 2, 0}, {0, -2, 2}, {0, 2, 2}};
+  corner.faces = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
+  for (const double speed : {2.0, 4.0, 12.0})
+    for (const double turn : {0.0, 0.3, 0.7}) {
+      OdeWorld world({}, table);
+      world.add_static_mesh(corner, 0);
+      const OdeBodyId cube = world.add_body(
+          {.shape = box_shape(Vec3::Constant(0.2)),
+           .mass = 8.0,
+           .state = at({-0.6, 0, 0.1}, {speed, 0, 0}, Vec3::Zero(), rotation_from_vector({0, 0, turn}))});
+      for (int i = 0; i < 240; ++i) world.step(1.0 / 240.0);
+      EXPECT_LT(world.state(cube).position.x(), 0.0) << speed << " m/s, turned by " << turn;
+    }
+}
+
 }  // namespace
 }  // namespace lodestone
