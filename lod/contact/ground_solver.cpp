@@ -96,9 +96,11 @@ void GroundSolver::prepare(GroundContact& c) const {
   const double approach = before_.velocity_at(c.arm).dot(c.normal), closing = std::min(0.0, -c.gap / step_),
                fall = std::min(0.0, settings_.fall.dot(c.normal));
   c.bounces = approach < -settings_.bounce_velocity && c.gap + approach * step_ < 0.0;
-  c.rows[0].target += c.bounces
-                          ? std::max(bounce_in_fall(c.law.restitution, c.gap, approach, fall, step_), closing)
-                          : closing;
+  const double leaving = c.bounces ? bounce_in_fall(c.law.restitution, c.gap, approach, fall, step_) : 0.0;
+  if (leaving > 0.0)  // then no chord keeps it in its place
+    c.rows[0].target = leaving;
+  else
+    c.rows[0].target += c.bounces ? std::max(leaving, closing) : closing;
 }
 
 // Once it carries something: most of the points that may touch never do.

@@ -56,8 +56,8 @@ struct Manager::Impl {
   dxWorld* callers_world = nullptr;
 
   void set_up(const ManagerSettings& settings);
-  /// All that the next steps depend on, but for what its statistical bodies move by: `signatures`, which stand
-  /// before it.
+  /// All that the next steps depend on, but for what its statistical bodies move by: `signatures`, which
+  /// stand before it.
   void archive(StateArchive& a, std::span<const std::shared_ptr<const Signature>> signatures);
   /// Does what a chunk of a recording tells, but for steps.
   void do_call(Manager& manager, Call call, StateArchive& chunk,

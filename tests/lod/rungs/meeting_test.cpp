@@ -237,7 +237,7 @@ TEST_F(Meeting, AWarmMixedStepAllocatesNothing) {
   add_heap(level);
   StepReport report;
   // Every few hundred steps two hulls touch for the first time, whose contact then takes its memory.
-  for (int i = 0; i < 1000; ++i) level.step(kFrame, {}, report);
+  for (int i = 0; i < 1600; ++i) level.step(kFrame, {}, report);
   const std::int64_t before = allocations();
   report.contacts = 0;
   for (int i = 0; i < 30; ++i) level.step(kFrame, {}, report);
