@@ -148,6 +148,7 @@ const ManagerSettings& checked(const ManagerSettings& settings) {
   check_positive(settings.sleep.speed, "sleep speed");
   check_number(settings.sleep.time, 0.0, "sleep time");
   check_policy(settings.policy);
+  check_number(settings.tables.radius_update_interval, 1.0, "radius_update_interval");
   check_number(settings.audit_ms, 0.0, "audit_ms");
   checked(settings.events);
   return settings;

@@ -53,10 +53,10 @@ struct BudgetRoom {
   }
 };
 
-/// Moves the nearest to the front, as many as there is room for and no more than `most`, and returns how many
-/// they are. Halves in place of a sort.
+/// Moves the nearest to the front, as many as there is room for, and returns how many they are. Halves in
+/// place of a sort.
 template <class Cost>
-std::size_t take_nearest(std::span<Ranked> ranked, double room, std::int64_t most, const Cost& cost) {
+std::size_t take_nearest(std::span<Ranked> ranked, double room, const Cost& cost) {
   std::size_t begin = 0, end = ranked.size();
   while (end - begin > 16) {
     const std::size_t middle = begin + (end - begin) / 2;
@@ -64,7 +64,7 @@ std::size_t take_nearest(std::span<Ranked> ranked, double room, std::int64_t mos
                      ranked.begin() + std::ptrdiff_t(end), nearer);
     double taken = 0.0;
     for (std::size_t i = begin; i < middle; ++i) taken += cost(ranked[i].index);
-    if (taken > room || std::int64_t(middle) > most) {
+    if (taken > room) {
       end = middle;
     } else {
       room -= taken;
@@ -72,9 +72,31 @@ std::size_t take_nearest(std::span<Ranked> ranked, double room, std::int64_t mos
     }
   }
   std::sort(ranked.begin() + std::ptrdiff_t(begin), ranked.begin() + std::ptrdiff_t(end), nearer);
-  for (; begin < end && std::int64_t(begin) < most; ++begin)
+  for (; begin < end; ++begin)
     if ((room -= cost(ranked[begin].index)) < 0.0) break;
   return begin;
+}
+
+/// Moves the nearest to the front, of no more than `most` bodies, and returns how many they are. A group of
+/// more than are left is passed over, but nobody beyond the `most` nearest is looked at.
+template <class Bodies>
+std::size_t keep_nearest(std::span<Ranked> ranked, std::int64_t most, const Bodies& bodies) {
+  const auto looked_at = std::size_t(std::min(most, std::int64_t(ranked.size())));
+  if (looked_at < ranked.size())
+    std::ranges::nth_element(ranked, ranked.begin() + std::ptrdiff_t(looked_at), nearer);
+  const std::span<Ranked> nearest = ranked.first(looked_at);
+  std::int64_t sum = 0;
+  for (const Ranked& r : nearest) sum += bodies(r.index);
+  if (sum <= most) return looked_at;
+  std::ranges::sort(nearest, nearer);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < looked_at; ++i) {
+    const std::int64_t left = most - bodies(ranked[i].index);
+    if (left < 0) continue;
+    most = left;
+    std::swap(ranked[kept++], ranked[i]);
+  }
+  return kept;
 }
 
 class Chooser {
@@ -224,7 +246,6 @@ class Chooser {
     else
       share = share_full(candidates_, std::move(may_be_full), forced_, room.for_full(has_ring()),
                          settings_.most_full);
-    const bool most_full = !share.rest.empty() && std::int64_t(share.taken.size()) == settings_.most_full;
     for (const Ranked& r : share.taken) consider(r, {Rung::full, Rule::in_budget});
     rest.insert(rest.end(), share.rest.begin(), share.rest.end());
     const std::span<Ranked> lowest(
@@ -236,16 +257,18 @@ class Chooser {
     for (const Ranked& r : may_be_in_ring)
       if (candidate(r).present() != Rung::tables) ring_now += raise(candidate(r), Rung::support);
     const double room_of_ring = std::min(room.keep - share.used, std::max(ring_now, room.grow - share.used));
+    const std::size_t allowed = keep_nearest(may_be_in_ring, settings_.most_support, [this](std::int32_t i) {
+      return std::int64_t(candidates_[std::size_t(i)].bodies);
+    });
     const std::size_t support =
-        take_nearest(may_be_in_ring, room_of_ring, settings_.most_support,
+        take_nearest(may_be_in_ring.first(allowed), room_of_ring,
                      [this](std::int32_t i) { return raise(candidates_[std::size_t(i)], Rung::support); });
-    const bool most_support =
-        support < may_be_in_ring.size() && std::int64_t(support) == settings_.most_support;
+    const bool most_support = support == allowed && allowed < may_be_in_ring.size();
     for (const Ranked& r : may_be_in_ring.first(support))
       consider(r, {Rung::support, Rule::in_budget, room.over()});
     const Rule reason = views_.empty() ? Rule::far : Rule::over_budget;
     for (const Ranked& r : std::span(rest).subspan(support)) {
-      const bool limited = can_be_in_ring(candidate(r)) ? most_support : most_full;
+      const bool limited = can_be_in_ring(candidate(r)) ? most_support : share.most_reached;
       consider(r, {candidate(r).open.lowest(), limited ? Rule::most_reached : reason, room.over()});
     }
   }
@@ -259,15 +282,19 @@ class Chooser {
       for (std::size_t k = 0; k < ranked.size(); ++k) {
         const LevelCandidate& c = candidate(ranked[k]);
         if (c.decided()) continue;
-        there += !c.newcomer && c.rung == rung;
+        if (!c.newcomer && c.rung == rung) there += c.bodies;
         if (targets[k].rung == rung && c.open.lowest() < rung)
           wanted.push_back({rank_distance(c, views_, settings_.hysteresis, measure), std::int32_t(k)});
       }
-      if (std::int64_t(wanted.size()) <= most) continue;
-      std::ranges::nth_element(wanted, wanted.begin() + most, nearer);
-      for (auto w = wanted.begin() + most; w != wanted.end(); ++w)
-        targets[std::size_t(w->index)] = {
-            candidate(ranked[std::size_t(w->index)]).open.at_most(Rung(int(rung) - 1)), Rule::most_reached,
+      const auto bodies = [&](std::int32_t k) {
+        return std::int64_t(candidate(ranked[std::size_t(k)]).bodies);
+      };
+      std::int64_t sum = 0;
+      for (const Ranked& w : wanted) sum += bodies(w.index);
+      if (sum <= most) continue;
+      for (const Ranked& w : std::span(wanted).subspan(keep_nearest(wanted, most, bodies)))
+        targets[std::size_t(w.index)] = {
+            candidate(ranked[std::size_t(w.index)]).open.at_most(Rung(int(rung) - 1)), Rule::most_reached,
             there > most};
     }
     count_limits();
@@ -348,7 +375,8 @@ class Chooser {
         decision_.reasons[std::size_t(wish.index)] = Rule::over_budget;
 
     std::size_t up = 0, down = 0;
-    for (std::size_t left = turns; left > 0; --left) {
+    std::size_t left = turns;
+    for (; left > 0; --left) {
       for (; up < in_order && places_[std::size_t(promote_[up].to)] > 0 && !fits(promote_[up]) &&
              fits_but_for_pairs(promote_[up]);
            ++up)
@@ -362,6 +390,15 @@ class Chooser {
       else
         break;
     }
+    // The nearest may wait for a place that another leaves by rising farther.
+    if (up < in_order && places_[std::size_t(promote_[up].to)] < candidate(promote_[up]).bodies)
+      for (std::size_t k = up + 1; k < in_order && left > 0; ++k)
+        if (promote_[k].to != promote_[up].to && fits(promote_[k])) {
+          make(promote_[k], decision_.promote);
+          std::rotate(promote_.begin() + std::ptrdiff_t(up), promote_.begin() + std::ptrdiff_t(k),
+                      promote_.begin() + std::ptrdiff_t(k + 1));
+          ++up, --left;
+        }
     for (; up < promote_.size(); ++up) decision_.reasons[std::size_t(promote_[up].index)] = Rule::queued;
     for (; down < demote_.size(); ++down) decision_.reasons[std::size_t(demote_[down].index)] = Rule::queued;
   }

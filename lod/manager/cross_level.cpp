@@ -152,7 +152,11 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
   add_joint_contacts(neighborhood.bodies, neighborhood.ode_bodies, neighborhood.contacts);
   for (const FullContact& contact : neighborhood.contacts)
     for (const std::int32_t end : {contact.first, contact.second})
-      if (end >= 0) neighborhood.bodies[std::size_t(end)].touches_full = true;
+      if (end >= 0) {
+        FullNeighbor& body = neighborhood.bodies[std::size_t(end)];
+        body.touches_full = true;
+        body.on_motor |= contact.drive.has_value();
+      }
 }
 
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt, int substeps) {

@@ -48,24 +48,25 @@ ShareOfFull share_full(std::span<const LevelCandidate> candidates, std::vector<R
   const double before = bill.total();
   std::ranges::make_heap(ranked, farther);
   int passed_over = 0;
+  std::int64_t bodies = 0;
   share.reach = std::numeric_limits<double>::infinity();
   while (!ranked.empty()) {
     const Ranked nearest = ranked.front();
     const LevelCandidate& c = candidates[std::size_t(nearest.index)];
     const double left = room - (bill.total() - before), price = raise(c, Rung::full);
-    const bool fits = price + bill.price_of_pairs(c) <= left;
-    if (std::int64_t(share.taken.size()) >= most || price > left ||
-        (!fits && ++passed_over > int(kPassedOver))) {
+    const bool too_many = bodies + c.bodies > most,
+               fits = !too_many && price + bill.price_of_pairs(c) <= left;
+    share.most_reached |= too_many;
+    if (bodies >= most || price > left || (!fits && ++passed_over > int(kPassedOver))) {
       share.reach = nearest.distance;
       break;
     }
     std::ranges::pop_heap(ranked, farther);
     ranked.pop_back();
     (fits ? share.taken : share.rest).push_back(nearest);
-    if (fits) bill.add(c);
+    if (fits) bill.add(c), bodies += c.bodies;
   }
-  if (std::int64_t(share.taken.size()) >= most && ranked.empty())
-    share.reach = share.taken.empty() ? 0.0 : share.taken.back().distance;
+  if (bodies >= most && ranked.empty()) share.reach = share.taken.empty() ? 0.0 : share.taken.back().distance;
   share.rest.insert(share.rest.end(), ranked.begin(), ranked.end());
   share.used = bill.total() - before;
   return share;

@@ -63,9 +63,11 @@ struct ShareOfFull {
   std::vector<Ranked> taken, rest;
   double used = 0.0;
   double reach = 0.0;  ///< rank distance beyond which nobody was looked at; infinite where everybody was
+  bool most_reached = false;  ///< whether any is left out for being more than `most`
 };
 
-/// `bill` has those that must be full. One whose pairs do not fit is passed over.
+/// `bill` has those that must be full. One whose pairs do not fit, or that is a group of more than `most`
+/// bodies leaves, is passed over.
 ShareOfFull share_full(std::span<const LevelCandidate> candidates, std::vector<Ranked> ranked, FullBill bill,
                        double room, std::int64_t most);
 

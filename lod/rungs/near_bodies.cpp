@@ -193,7 +193,7 @@ void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32
   solid_contacts_.clear();
   faces_.faces.clear();
   if (!ground_.has_parts()) return faces_.run.clear();
-  faces_.run.resize(step.scene.bodies.size());  // nobody asks about others
+  faces_.run.assign(step.scene.bodies.size(), {});  // who is woken last is asked about, too
   for (const std::int32_t index : bodies) find_ground_solids_of(step, index, after, time, search);
 }
 
@@ -206,7 +206,7 @@ void NearBodies::find_more_ground_solids(const Step& step, std::span<const std::
   std::swap(faces_, known_faces_);
   solid_contacts_.clear();
   faces_.faces.clear();
-  faces_.run.resize(step.scene.bodies.size());
+  faces_.run.assign(step.scene.bodies.size(), {});
   place_of_known_.resize(step.scene.bodies.size(), -1);
   std::int32_t place = 0;
   const auto end = std::int32_t(known_contacts_.size());

@@ -200,7 +200,7 @@ void NearPairs::find_contact(const ContactScene& scene, double time, Pace pace, 
   const auto is_eased = [&](Participant p) { return p.is_statistical() && scene.body(p).eased > 0.0f; };
   const double held = is_sphere(pair.first) || is_sphere(pair.second) ? kHeldBySphere : kTakenAlong;
   if (!pair.contacts.empty() && find_motion_since(*pair.when, a, b) < held * least_radius) return;
-  const Vec3 closing = scene.velocity(pair.first) - scene.velocity(pair.second);
+  const Vec3 closing = reach.way / time;
   thread_local HullContactSearch search;
   search.exact =
       !is_sphere(pair.first) && !is_sphere(pair.second) && !is_eased(pair.first) && !is_eased(pair.second);

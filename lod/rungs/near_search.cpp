@@ -69,6 +69,12 @@ NearSearch::Ball NearSearch::ball_of(const Vec3& position, const Vec3& velocity,
   return {position + half_way, float(kBall * radius + half_way.norm() + 0.5 * gravity_.norm() * dt * dt)};
 }
 
+// A force acts on it within the step: to statistical bodies it is given before.
+NearSearch::Ball NearSearch::ball_of(const FullNeighbor& body, double dt) const {
+  return ball_of(body.state.position, body.state.velocity + (dt / body.mass) * body.force, body.shape->radius,
+                 dt);
+}
+
 void NearSearch::add_ball(const Ball& ball) {
   x_.push_back(ball.center.x()), y_.push_back(ball.center.y()), z_.push_back(ball.center.z());
   reach_.push_back(ball.reach);
@@ -80,8 +86,7 @@ void NearSearch::add_hull_balls(double dt, std::span<const StatisticalBody> bodi
     const StatisticalBody& body = bodies[std::size_t(index)];
     add_ball(ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, dt));
   }
-  for (const FullNeighbor& n : neighbors)
-    add_ball(ball_of(n.state.position, n.state.velocity, n.shape->radius, dt));
+  for (const FullNeighbor& n : neighbors) add_ball(ball_of(n, dt));
 }
 
 void NearSearch::invite_cornered(const TablesLevel& tables, const SupportLevel& support) {
@@ -483,10 +488,7 @@ std::span<const NearPair> NearSearch::find_woken(double dt, const SupportLevel& 
   std::ranges::sort(newly_woken, {}, place_of);
   for (const Participant p : newly_woken) {
     const Ball ball = [&] {
-      if (p.is_full()) {
-        const FullNeighbor& n = neighbors[p.index()];
-        return ball_of(n.state.position, n.state.velocity, n.shape->radius, dt);
-      }
+      if (p.is_full()) return ball_of(neighbors[p.index()], dt);
       const StatisticalBody& body = bodies[p.index()];
       return ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, dt);
     }();

@@ -49,6 +49,7 @@ class NearSearch {
   /// Within which a hull stays in `dt` seconds, if nothing strikes it: with whoever may come there it is
   /// near.
   Ball ball_of(const Vec3& position, const Vec3& velocity, double radius, double dt) const;
+  Ball ball_of(const FullNeighbor& body, double dt) const;
   void clear();
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
   void set_threads(int threads) { threads_ = threads; }

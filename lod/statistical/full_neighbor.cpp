@@ -20,48 +20,117 @@ double product(const FullNeighbor& body, const Impulse& a, const Impulse& b) {
 // whatever mass, does it by 1 + e of its approach at most.
 constexpr double kSqueezed = 2.0;
 
+// What presses on a body, over what is left of it and what backs it: of one that lies still, so many times
+// its weight.
+constexpr double kOverload = 20.0;
+
 double square(double x) { return x * x; }
 
-bool is_squeezed(const FullNeighbor& neighbor) {
-  const Impulse struck = neighbor.hit + neighbor.backed_hit;
-  return neighbor.fastest_hit > 0.0 &&
-         product(neighbor, struck, struck) > square(kSqueezed * neighbor.fastest_hit) * neighbor.mass;
+/// Whether `struck` is more than anything that struck it, or another, no faster than `fastest` (m/s) can do.
+bool is_squeezed(const FullNeighbor& neighbor, const Impulse& struck, double fastest) {
+  return fastest > 0.0 && product(neighbor, struck, struck) > square(kSqueezed * fastest) * neighbor.mass;
 }
 
-void answer_hit(FullNeighbor& neighbor) {
+/// Whether what presses on it, `by_full` by other full bodies, and what backs it all but cancel: ODE would
+/// answer a steady force with what is no more the opposite once the body has moved by a little, and roll it
+/// out from under its load. A motor goes on pressing.
+bool is_overloaded(const FullNeighbor& neighbor, const Impulse& by_full = {}) {
+  if (neighbor.on_motor) return false;
+  const Impulse pressed = neighbor.push + neighbor.backed_hit,
+                left = neighbor.hit + pressed + neighbor.backing, load = pressed + by_full;
+  return product(neighbor, load, load) > square(kOverload) * product(neighbor, left, left);
+}
+
+/// Of a step's full neighbours: those whose impulses are answered as the statistical level reckoned it, not
+/// by ODE, and what they give to others.
+class Burdened {
+ public:
+  Burdened(std::span<const FullNeighbor> neighbors, std::span<const FullExchange> exchanges)
+      : exchanges_(exchanges), burdens_(neighbors.size()), given_(neighbors.size()) {
+    for (std::size_t i = 0; i < neighbors.size(); ++i) {
+      const FullNeighbor& n = neighbors[i];
+      if (is_squeezed(n, n.hit + n.backed_hit, n.fastest_hit))
+        burdens_[i] = {Burden::squeezed, n.fastest_hit};
+      else if (is_overloaded(n))
+        burdens_[i].kind = Burden::overloaded;
+    }
+    for (bool more = !exchanges.empty(); more;) more = pass_on(neighbors);
+  }
+  bool is_squeezed_one(std::size_t neighbor) const { return burdens_[neighbor].kind == Burden::squeezed; }
+  bool is_overloaded_one(std::size_t neighbor) const { return burdens_[neighbor].kind == Burden::overloaded; }
+  /// By them, to one that is not among them.
+  const Impulse& hit_of(std::size_t neighbor) const { return given_[neighbor].hit; }
+  const Impulse& push_of(std::size_t neighbor) const { return given_[neighbor].push; }
+
+ private:
+  struct Burden {
+    enum Kind { none, squeezed, overloaded } kind = none;
+    double fastest = 0.0;  ///< m/s, of the hits that squeeze it
+  };
+  struct Given {
+    Impulse hit, push;
+    double fastest = 0.0;  ///< m/s, of the hits that squeeze those who give it
+  };
+  /// What is lighter than what gives to it may be no better off. False: nobody more is found.
+  bool pass_on(std::span<const FullNeighbor> neighbors) {
+    std::ranges::fill(given_, Given{});
+    for (const FullExchange& exchange : exchanges_) {
+      give(exchange.first, exchange.second, exchange.on_second);
+      give(exchange.second, exchange.first, exchange.on_first);
+    }
+    bool more = false;
+    for (std::size_t i = 0; i < neighbors.size(); ++i) {
+      const FullNeighbor& n = neighbors[i];
+      const Given& given = given_[i];
+      if (burdens_[i].kind == Burden::none && is_squeezed(n, given.hit, given.fastest))
+        burdens_[i] = {Burden::squeezed, given.fastest}, more = true;
+      else if (burdens_[i].kind == Burden::none && !given.push.is_zero() && is_overloaded(n, given.push))
+        burdens_[i].kind = Burden::overloaded, more = true;
+    }
+    return more;
+  }
+  void give(std::int32_t from, std::int32_t to, const Impulse& impulse) {
+    const Burden& burden = burdens_[std::size_t(from)];
+    if (burden.kind == Burden::none || burdens_[std::size_t(to)].kind != Burden::none) return;
+    Given& given = given_[std::size_t(to)];
+    Impulse& sum = burden.kind == Burden::squeezed ? given.hit : given.push;
+    sum = sum + impulse;
+    given.fastest = std::max(given.fastest, burden.fastest);
+  }
+
+  std::span<const FullExchange> exchanges_;
+  std::vector<Burden> burdens_;  // by neighbour
+  std::vector<Given> given_;     // by neighbour
+};
+
+void answer_hit(FullNeighbor& neighbor, const Burdened& burdened, std::size_t index) {
   Impulse &hit = neighbor.hit, &push = neighbor.push;
-  if (is_squeezed(neighbor)) {
+  if (burdened.is_squeezed_one(index)) {
     hit = hit + neighbor.backed_hit + push + neighbor.backing, push = {};
     return;
   }
-  push = push + neighbor.backed_hit;
+  push = push + neighbor.backed_hit + burdened.push_of(index);
+  if (burdened.is_overloaded_one(index)) push = push + neighbor.backing;
   const double energy = product(neighbor, hit, hit);
-  const double against = -product(neighbor, hit, push);
-  if (!(against > 0.0)) return;
-  const double share = std::min(1.0, against / energy);
-  push.linear += share * hit.linear, push.angular += share * hit.angular;
-  hit.linear *= 1.0 - share, hit.angular *= 1.0 - share;
+  if (const double against = -product(neighbor, hit, push); against > 0.0) {
+    const double share = std::min(1.0, against / energy);
+    push.linear += share * hit.linear, push.angular += share * hit.angular;
+    hit.linear *= 1.0 - share, hit.angular *= 1.0 - share;
+  }
+  hit = hit + burdened.hit_of(index);
 }
 
 }  // namespace
 
 void answer_hits(std::span<FullNeighbor> neighbors, std::span<const FullExchange> exchanges) {
-  struct Given {
-    FullNeighbor* to;
-    const Impulse* impulse;
-  };
-  std::vector<Given> given;  // by the squeezed to those that are not
   for (const FullExchange& exchange : exchanges) {
     FullNeighbor &first = neighbors[std::size_t(exchange.first)],
                  &second = neighbors[std::size_t(exchange.second)];
-    const bool squeezed = is_squeezed(first), other_squeezed = is_squeezed(second);
-    if (squeezed && !other_squeezed) given.push_back({&second, &exchange.on_second});
-    if (other_squeezed && !squeezed) given.push_back({&first, &exchange.on_first});
     first.backing = first.backing + exchange.on_first;
     second.backing = second.backing + exchange.on_second;
   }
-  for (FullNeighbor& neighbor : neighbors) answer_hit(neighbor);
-  for (const auto& [to, impulse] : given) to->hit = to->hit + *impulse;
+  const Burdened burdened(neighbors, exchanges);
+  for (std::size_t i = 0; i < neighbors.size(); ++i) answer_hit(neighbors[i], burdened, i);
 }
 
 // A hit changes the velocity before the first substep. Support is a force over the whole step: it then

@@ -28,6 +28,7 @@ struct FullNeighbor {
   Vec3 force = Vec3::Zero(),
        torque = Vec3::Zero();  ///< N and N m, acting on it over the step besides gravity
   bool touches_full = false;   ///< whether any FullContact is its own
+  bool on_motor = false;       ///< whether any is a motor's
   bool driven = false;         ///< by a motor
   bool asleep = false;         ///< stands still like ground; also out: false where a hit woke it
   bool carried = false;        ///< out: by what nothing stops (CarriedBodies), or touched by a statistical
@@ -53,7 +54,9 @@ struct FullExchange {
 /// Where push takes back what a hit gives, in terms of kinetic energy, that part of the hit is a push, too.
 /// And of a body that is struck again and again between others and what backs it, by impulses that all but
 /// cancel, only what is left of all of them is a hit: ODE would not answer each with the same opposite, and
-/// throw it out. Full bodies that back it have their part then, so that momentum is kept.
+/// throw it out. Of one that is pressed by twenty times what is left of all of them what is left is the push.
+/// Full bodies that back either have their part then, so that momentum is kept, and are no better off where
+/// they are as light.
 void answer_hits(std::span<FullNeighbor> neighbors, std::span<const FullExchange> exchanges);
 
 /// A kinematic statistical body that touched a full neighbour which is awake and not kinematic.

@@ -293,11 +293,29 @@ void TablesLevel::keep_load(std::int64_t place, const Vec3& before, StatisticalB
     after.velocity += std::max(0.0, 1.0 - last.dot(up) / borne) * borne * constants_.wide_time * up;
 }
 
+// Contacts with sleepers have their places, which change where others wake.
+void TablesLevel::wake_guests(std::span<const Guest> guests) {
+  const auto wakes = [&](const Guest& guest) { return guest.moved && asleep(guest.slot); };
+  if (std::ranges::none_of(guests, wakes)) return;
+  const auto were_awake = std::uint32_t(spheres_.awake);
+  const auto each_sleeper = [&](const auto& visit) {
+    contacts_.each_place([&](ContactArrays& c, std::size_t i, bool) {
+      if (std::uint32_t& place = c.second[i]; place >= were_awake && place < kGroundPlace) visit(place);
+    });
+  };
+  touched_sleepers_.clear();
+  each_sleeper(
+      [&](std::uint32_t place) { touched_sleepers_.push_back(std::uint32_t(spheres_.slot[place])); });
+  for (const Guest& guest : guests)
+    if (guest.moved) wake(guest.slot);
+  auto slot = touched_sleepers_.begin();
+  each_sleeper([&](std::uint32_t& place) { place = std::uint32_t(spheres_.place_of_slot[*slot++]); });
+}
+
 void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> before,
                               std::span<const StatisticalBody> bodies) {
   const std::int64_t were_awake = spheres_.awake;
-  for (const Guest& guest : guests)
-    if (guest.moved) wake(guest.slot);
+  wake_guests(guests);
   if (spheres_.awake > were_awake) {
     step_.resize(std::size_t(spheres_.awake));
     find_near_faces(were_awake, spheres_.awake);
@@ -327,7 +345,12 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     // It has moved: nothing is left to be added to what it has now.
     step_.p[i] = {float(body.velocity.x()), float(body.velocity.y()), float(body.velocity.z()),
                   guest.touched && !guest.on_hull ? std::max(1.0f, step_.p[i].w) : step_.p[i].w};
-    if (guest.on_hull && guest.touched) leaning_.push_back(std::int64_t(i));
+    if (guest.on_hull && guest.touched) {
+      leaning_.push_back(std::int64_t(i));
+      const double gain = body.velocity.norm() - before[k].velocity.norm();
+      if (gain > RestLaw::kSettingOut * settings_.gravity.norm() * constants_.wide_time)
+        set_out_.push_back(std::int64_t(i));
+    }
     step_.a[i] = step_.s[i] = step_.d[i] = {};
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
   }

@@ -182,6 +182,7 @@ class TablesLevel {
   void lay_still(std::int64_t place);
   void forget_all_given();
   void ease();
+  void wake_guests(std::span<const Guest> guests);
   bool find_riders();
   void join_touching();
   void join_carried();
@@ -196,6 +197,8 @@ class TablesLevel {
   bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
   void note_moved();
   bool stays_in_place(std::int64_t place) const;
+  double moving_speed(std::int64_t place) const;
+  bool hangs(std::int64_t place) const;
   bool rolls_on_ground(std::int64_t place) const;
   double ground_friction(std::int64_t place) const;
 
@@ -305,6 +308,7 @@ class TablesLevel {
   std::vector<Carried> carried_;        // by place: near ground that moves
   std::vector<std::int64_t> carried_guests_,
       leaning_;                                  // places: of guests; of those on their hulls that touch
+  std::vector<std::int64_t> set_out_;            // of these, who gains speed
   std::vector<std::int32_t> drawn_, drawn_off_;  // places awake, in finish()
   DisjointSets riders_;                          // of the places awake, and what nothing stops
   StepConstants constants_;
@@ -335,8 +339,9 @@ class TablesLevel {
   std::vector<std::int64_t> in_the_way_;               // places
   std::vector<std::pair<double, std::int64_t>> by_x_;  // m, and place: those awake, in the order of x
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
-      still_touches_,  // place awake, slot asleep; then both places
-      left_asleep_;    // those of them that touch too gently to wake the sleeper
+      still_touches_,                            // place awake, slot asleep; then both places
+      left_asleep_;                              // those of them that touch too gently to wake the sleeper
+  std::vector<std::uint32_t> touched_sleepers_;  // slots, of contacts in their order, while guests wake
   BlowReach blows_;
   std::vector<std::int32_t> numbered_;      // of each place awake: its number there; −1: none
   std::vector<std::int64_t> blown_places_;  // of each number

@@ -10,6 +10,8 @@ namespace {
 constexpr float kPartingTime = 0.05f;      // of the time
 constexpr double kWedged = 4.0;            // over the energy of who is still: no more in any frame
 constexpr double kFallingInterval = 0.05;  // s; less than anybody must lie still for
+constexpr double kHangs = 0.25;            // of what a fall gives in it: who is slower does not fall
+constexpr double kStandsStill = 1e-3;      // of the sleeping speed: nor does who is slower than that
 constexpr double kDraws = 0.2;             // of gravity, across it: a force that draws what it acts on along,
 constexpr double kDrawsOnIce = 0.005;      // at least; less where the ground's friction holds less
 constexpr double kCarries = 0.05;  // sine of a plane's angle to the vertical: a steeper one carries nobody
@@ -39,7 +41,8 @@ void TablesLevel::join_carried() {
 
 // Of the plane that it may touch; of none more than any.
 double TablesLevel::ground_friction(std::int64_t place) const {
-  if (place >= spheres_.awake || step_.on_ground[std::size_t(place)] == std::uint8_t(GroundState::free))
+  if (!has_planes() || place >= spheres_.awake ||
+      step_.on_ground[std::size_t(place)] == std::uint8_t(GroundState::free))
     return kUnbounded;
   return materials_.law(kind_of(place).material, plane(step_.plane[std::size_t(place)]).material).friction;
 }
@@ -96,7 +99,7 @@ void TablesLevel::note_who_falls() {
       riders_.join(std::int32_t(i), carries);
   }
   for (std::int64_t i = 0; i < spheres_.awake; ++i)
-    if (riders_.root_of(std::int32_t(i)) != riders_.root_of(carries))
+    if (riders_.root_of(std::int32_t(i)) != riders_.root_of(carries) && !hangs(i))
       spheres_.crowded_for[std::size_t(i)] = 0, spheres_.quiet[std::size_t(i)] = 0.0f;
 }
 
@@ -128,6 +131,17 @@ bool TablesLevel::stays_in_place(std::int64_t place) const {
   return load && load->moved < rest_law_.sleep_speed(kind_of(place).shape->radius) * constants_.wide_time;
 }
 
+// m/s, in this step, out of overlaps too.
+double TablesLevel::moving_speed(std::int64_t place) const {
+  return (step_.velocity(place) + step_.push_out(place) / constants_.wide_time).norm();
+}
+
+// By the friction of those around it, say: whatever its velocity, it goes nowhere.
+bool TablesLevel::hangs(std::int64_t place) const {
+  return moving_speed(place) < std::max(kHangs * settings_.gravity.norm() * kFallingInterval,
+                                        kStandsStill * rest_law_.sleep_speed(kind_of(place).shape->radius));
+}
+
 void TablesLevel::rest() {
   ++steps_;
   ease();
@@ -138,6 +152,7 @@ void TablesLevel::rest() {
   new_loads_.clear();
   if (!settings_.sleeping) return;
   std::ranges::sort(leaning_);
+  std::ranges::sort(set_out_);
   const bool any_rides = find_riders();
   const auto nothing_stops = std::int32_t(spheres_.awake);
   const auto rides = [&](std::int64_t place) {
@@ -163,18 +178,19 @@ void TablesLevel::rest() {
     const double still_energy = rest_law_.still_energy(among_others, radius, gravity);
     const bool still =
         has_less_energy(i, still_energy) || (has_less_energy(i, kWedged * still_energy) && stays_in_place(i));
-    // While it is still being taken out of an overlap its time hardly counts; one that is pressed in again as
-    // far as it is taken out stays where it is. In a wedge it may go to and fro for ever: the time in which
-    // it then stands still adds up.
-    const double out = (step_.velocity(i) + step_.push_out(i) / constants_.wide_time).norm();
+    // While it slides, or is still being taken out of an overlap, its time hardly counts; one that is pressed
+    // in again as far as it is taken out stays where it is. In a wedge it may go to and fro for ever: the
+    // time in which it then stands still adds up.
     const bool tips = tips_ && double(tipping_.turned[std::size_t(i)]) * radius >=
                                    rest_law_.sleep_speed(radius) * constants_.wide_time;
-    const bool parts = tips || spheres_.on_hull[i] == HullStand::rises ||
-                       (step_.touches(i) && out >= rest_law_.sleep_speed(radius));
-    if (rides(i) || is_drawn_off(i) || step_.s[std::size_t(i)].w >= kSlides) {
+    const bool parts = tips || step_.s[std::size_t(i)].w >= kSlides ||
+                       spheres_.on_hull[i] == HullStand::rises ||
+                       (step_.touches(i) && moving_speed(i) >= rest_law_.sleep_speed(radius));
+    if (rides(i) || is_drawn_off(i)) {
       spheres_.quiet[i] = 0.0f;
       continue;
     }
+    if (still && std::ranges::binary_search(set_out_, i)) continue;
     if (still)
       spheres_.quiet[i] += (parts ? kPartingTime : 1.0f) * constants_.time;
     else if (!among_others || tips || !has_less_energy(i, kWedged * still_energy))

@@ -88,7 +88,7 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   near_faces_.clear();
   cornered_.clear();
   carried_.clear();
-  carried_guests_.clear(), leaning_.clear();
+  carried_guests_.clear(), leaning_.clear(), set_out_.clear();
   find_near_faces(0, spheres_.awake);
   each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
 }

@@ -430,7 +430,11 @@ class GltfReader {
              "finite coordinates");
       mesh_.vertices[first + i] = vertex;
     });
+    const std::size_t faces = mesh_.faces.size();
     append_faces(*placed.primitive, corner_indices(*placed.primitive, count), int(first));
+    if (placed.transform.topLeftCorner<3, 3>().determinant() < 0.0)  // 3.7.4: mirrored, the winding turns
+      for (std::size_t i = faces; i < mesh_.faces.size(); ++i)
+        std::swap(mesh_.faces[i][1], mesh_.faces[i][2]);
   }
 
   std::vector<std::uint32_t> corner_indices(const JsonValue& primitive, std::size_t vertices) const {

@@ -1,6 +1,7 @@
 #include "reference/ode/energy_bound_ode.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lodestone::ode {
 namespace {
@@ -8,6 +9,7 @@ namespace {
 // Over what there is and what contacts may give: ODE's law of friction and restitution gains up to half of a
 // body's energy in a single hit at a restitution of 1.
 constexpr double kMost = 2.0;
+constexpr double kUnsteady = 1e-3;  // of what forces would give: what they do not hold quite still
 
 // Of which nothing is asked: a kinematic body is a surface that moves.
 bool is_free(const Body& body) { return body.is_awake() && !dBodyIsKinematic(body.body); }
@@ -18,15 +20,12 @@ double energy_of(const Body& body, const Vec3& velocity, const Vec3& angular_vel
   return 0.5 * body.mass() * (velocity.squaredNorm() + turning.dot(body.shape->inertia_per_mass * turning));
 }
 
-// J, with what `gravity` and forces give it in `h` s.
-double energy_with_forces(const Body& body, const Vec3& gravity, double h) {
+// J, with what it is pulled by, m/s² and N m, would give it in `h` s.
+double energy_with(const Body& body, const Vec3& acceleration, const Vec3& torque, double h) {
   const RigidState state = state_of(body.body);
-  const double mass = body.mass();
-  const Vec3 pull = dBodyGetGravityMode(body.body) ? gravity : Vec3::Zero(),
-             torque = state.orientation.conjugate() * to_vec3(dBodyGetTorque(body.body)),
-             turning = state.orientation * (body.shape->inverse_inertia_per_mass * torque) / mass;
-  return energy_of(body, state.velocity + h * (pull + to_vec3(dBodyGetForce(body.body)) / mass),
-                   state.angular_velocity + h * turning);
+  const Vec3 turning = state.orientation * (body.shape->inverse_inertia_per_mass *
+                                            (state.orientation.conjugate() * torque) / body.mass());
+  return energy_of(body, state.velocity + h * acceleration, state.angular_velocity + h * turning);
 }
 
 Vec3 velocity_at(const Body& body, const Vec3& point) {
@@ -37,7 +36,12 @@ Vec3 velocity_at(const Body& body, const Vec3& point) {
 }  // namespace
 
 // What pushes apart a column adds up from the lowest to the topmost, as far as a chain of few goes.
-double EnergyBound::Island::most() const { return kMost * (energy + driven + 0.5 * mass * squared_pushes); }
+double EnergyBound::Island::given() const { return energy + driven + 0.5 * mass * squared_pushes; }
+
+// A force that presses gives what it moves its body by: a light one under a great load nearly nothing.
+double EnergyBound::Island::most() const {
+  return kMost * given() + std::max(0.0, work) + kUnsteady * forced;
+}
 
 void EnergyBound::begin(const Bodies& bodies) {
   jointed_.clear();
@@ -55,9 +59,21 @@ void EnergyBound::note(const Bodies& bodies, std::span<const OdeContact> contact
       sets_.join(std::int32_t(slot_of(contact.first)), std::int32_t(slot_of(contact.second)));
   count_bodies(bodies);
   for (const OdeContact& contact : contacts) note_contact(bodies, contact, pushing * contact.depth);
-  for (std::size_t slot = 0; slot < islands_.size(); ++slot)
-    if (asked_[slot] = noted_[slot] && island_of(slot).is_asked(); asked_[slot])
-      island_of(slot).energy += energy_with_forces(bodies.slots()[slot], gravity, h);
+  pulled_.resize(islands_.size());
+  time_ = h;
+  for (std::size_t slot = 0; slot < islands_.size(); ++slot) {
+    asked_[slot] = noted_[slot] && island_of(slot).is_asked();
+    if (!asked_[slot]) continue;
+    const Body& body = bodies.slots()[slot];
+    const RigidState state = state_of(body.body);
+    const Pulled& pulled =
+        pulled_[slot] = {state.velocity, state.angular_velocity, to_vec3(dBodyGetForce(body.body)),
+                         to_vec3(dBodyGetTorque(body.body))};
+    const Vec3 pull = dBodyGetGravityMode(body.body) ? gravity : Vec3::Zero();
+    island_of(slot).energy += energy_with(body, pull, Vec3::Zero(), h);
+    if (!pulled.force.isZero(0.0) || !pulled.torque.isZero(0.0))
+      island_of(slot).forced += energy_with(body, pull + pulled.force / body.mass(), pulled.torque, h);
+  }
 }
 
 void EnergyBound::count_bodies(const Bodies& bodies) {
@@ -96,19 +112,67 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
   island->moved |= contact.moves || !driven.isZero(0.0);
 }
 
-bool EnergyBound::is_kept(const Bodies& bodies) {
+void EnergyBound::sum_up(const Bodies& bodies) {
   energies_.assign(islands_.size(), 0.0);
+  for (Island& island : islands_) island.work = 0.0;
   for (std::size_t slot = 0; slot < islands_.size(); ++slot) {
     if (!asked_[slot]) continue;
     const Body& body = bodies.slots()[slot];
     const RigidState state = state_of(body.body);
+    const Pulled& pulled = pulled_[slot];
     energies_[std::size_t(sets_.root_of(std::int32_t(slot)))] +=
         energy_of(body, state.velocity, state.angular_velocity);
+    island_of(slot).work += 0.5 * time_ *
+                            (pulled.force.dot(pulled.velocity + state.velocity) +
+                             pulled.torque.dot(pulled.angular_velocity + state.angular_velocity));
   }
+}
+
+bool EnergyBound::is_kept(const Bodies& bodies) {
+  sum_up(bodies);
   for (std::size_t root = 0; root < islands_.size(); ++root)
     if (islands_[root].is_asked() && !(energies_[root] <= islands_[root].most()))
       return false;  // nor where ODE spoilt one
   return true;
+}
+
+void EnergyBound::keep(Bodies& bodies) {
+  sum_up(bodies);
+  for (std::size_t root = 0; root < islands_.size(); ++root)
+    if (islands_[root].is_asked() && !(energies_[root] <= islands_[root].most())) slow_down(bodies, root);
+}
+
+// About their common velocity, so that momentum is kept; where that itself has too much, all of it.
+void EnergyBound::slow_down(Bodies& bodies, std::size_t root) {
+  std::vector<Body*> members;
+  Vec3 momentum = Vec3::Zero();  // kg m/s
+  for (std::size_t slot = 0; slot < islands_.size(); ++slot)
+    if (asked_[slot] && std::size_t(sets_.root_of(std::int32_t(slot))) == root) {
+      members.push_back(&bodies.slots()[slot]);
+      momentum += members.back()->mass() * state_of(members.back()->body).velocity;
+    }
+  const Island& island = islands_[root];
+  Vec3 common = momentum / island.mass;                              // m/s
+  const double together = 0.5 * island.mass * common.squaredNorm();  // J
+  double energy = energies_[root], left = island.given();            // J
+  if (together < left)
+    energy -= together, left -= together;
+  else
+    common.setZero();
+  const double share = std::sqrt(left / energy);
+  for (Body* body : members) {
+    const RigidState after = state_of(body->body);
+    RigidState state = body->last_good;
+    if (is_sound(after) && std::isfinite(share)) {
+      state.velocity = common + share * (after.velocity - common);
+      state.angular_velocity = share * after.angular_velocity;
+      state.position += time_ * state.velocity;
+      state.orientation =
+          (rotation_from_vector(time_ * state.angular_velocity) * state.orientation).normalized();
+    }
+    set_state(body->body, state);
+    body->impact.reset();
+  }
 }
 
 }  // namespace lodestone::ode

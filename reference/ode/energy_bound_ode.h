@@ -23,22 +23,35 @@ class EnergyBound {
   /// Whether they have no more energy now than they may. A body that touches nothing but what stands still is
   /// not asked.
   bool is_kept(const Bodies& bodies);
+  /// Of those that have more: takes so much of how they move against each other, or all alike, that they have
+  /// what there was, and lets them go on so from where they were.
+  void keep(Bodies& bodies);
 
  private:
   /// Of bodies that touch, directly or through others.
   struct Island {
-    double energy = 0.0;          ///< J, with what gravity and forces give
+    double energy = 0.0;          ///< J, with what gravity gives
     double driven = 0.0;          ///< J: at most, from surfaces that move
+    double forced = 0.0;          ///< J: what forces would give, were nothing in the way
+    double work = 0.0;            ///< J: what they have given, after the step
     double mass = 0.0;            ///< kg
     double squared_pushes = 0.0;  ///< m²/s², of all contacts; of a body by itself the greatest
     int bodies = 0;
     bool jointed = false;
     bool moved = false;  ///< by what moves, or was moved
+    double given() const;
     double most() const;
     bool is_asked() const { return !jointed && (bodies > 1 || moved); }  ///< alone: the truth's own
   };
   Island& island_of(std::size_t slot) { return islands_[std::size_t(sets_.root_of(std::int32_t(slot)))]; }
+  /// How one began, and what acts on it.
+  struct Pulled {
+    Vec3 velocity, angular_velocity;  ///< m/s, rad/s
+    Vec3 force, torque;               ///< N, N m, without gravity's
+  };
   void count_bodies(const Bodies& bodies);
+  void sum_up(const Bodies& bodies);
+  void slow_down(Bodies& bodies, std::size_t root);
   void note_contact(const Bodies& bodies, const OdeContact& contact, double push);
 
   std::vector<bool> noted_;       // by slot: those that were awake
@@ -46,7 +59,9 @@ class EnergyBound {
   std::vector<bool> asked_;       // by slot: of those, who is in an island that is asked
   DisjointSets sets_;             // of slots
   std::vector<Island> islands_;   // by root
+  std::vector<Pulled> pulled_;    // by slot
   std::vector<double> energies_;  // J, after the step, by root
+  double time_ = 0.0;             // s, of the step
 };
 
 }  // namespace lodestone::ode

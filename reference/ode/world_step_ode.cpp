@@ -131,7 +131,7 @@ void OdeWorld::Impl::substep(double h) {
   bool solved = try_substep(h);
   for (int attempt = 1; !solved && attempt < ContactJoints::kMostAttempts; ++attempt)
     solved = retry_substep(h, attempt, false);
-  if (!solved) retry_substep(h, 0, true);
+  if (!solved && !retry_substep(h, 0, true)) energy_bound.keep(bodies);
   end_substep(h);
 }
 
@@ -194,6 +194,7 @@ void OdeWorld::Impl::take_back_bodies() {
       dBodyDisable(body.body);
     }
     ode::set_state(body.body, before);
+    if (body.fell_asleep) collision.broad_phase().note_sleep(body);  // contacts are found once more
   }
 }
 

@@ -294,6 +294,41 @@ TEST(Policy, MostOnARungIsNeverExceededAndTheNearestAreThere) {
   }
 }
 
+// Groups of four, under limits for as many bodies as two of them and three have.
+TEST(Policy, OfGroupsTheMostOnARungAreCountedByTheirBodies) {
+  for (const bool budget : {false, true}) {
+    PolicySettings settings =
+        budget ? by_budget(1e6)
+               : PolicySettings{.policy = DistancePolicy{100.0, 200.0}, .max_transitions_per_frame = 1000};
+    settings.most_full = 8, settings.most_support = 12, settings.min_dwell_frames = 0;
+    std::vector<LevelCandidate> groups;
+    for (int i = 0; i < 20; ++i) {
+      groups.push_back(on_ladder(1 + i));
+      groups.back().bodies = 4;
+    }
+    for (int frame = 0; frame < 30; ++frame) {
+      for (int i = 0; i < 20; ++i) groups[std::size_t(i)].position.x() = 1 + std::abs(i - frame / 2);
+      make_changes(choose(groups, settings), groups);
+      ASSERT_LE(count_on(Rung::full, groups), 2) << budget << " frame " << frame;
+      ASSERT_LE(count_on(Rung::support, groups), 3) << budget << " frame " << frame;
+    }
+    EXPECT_EQ(groups[14].rung, Rung::full) << budget;
+    EXPECT_EQ(count_on(Rung::full, groups), 2) << budget;
+    EXPECT_EQ(count_on(Rung::support, groups), 3) << budget;
+    EXPECT_EQ(choose(groups, settings).reasons[0], Rule::most_reached) << budget;
+
+    settings.most_full = 4;  // and a lower limit takes the farther one down
+    make_changes(choose(groups, settings), groups);
+    EXPECT_EQ(groups[14].rung, Rung::full) << budget;
+    EXPECT_EQ(count_on(Rung::full, groups), 1) << budget;
+
+    groups[14].bodies = 5;  // more than may be full: those behind it may
+    for (int frame = 0; frame < 5; ++frame) make_changes(choose(groups, settings), groups);
+    EXPECT_NE(groups[14].rung, Rung::full) << budget;
+    EXPECT_EQ(count_on(Rung::full, groups), 1) << budget;
+  }
+}
+
 TEST(BudgetPolicy, TheNearestAreFullTheNextSupportTheRestTables) {
   std::vector<LevelCandidate> candidates;
   for (int i = 0; i < 200; ++i) candidates.push_back(on_ladder(1 + i));

@@ -60,6 +60,24 @@ TEST(Forces, WhatIsPressedToAWallHangsThere) {
   }
 }
 
+// What a full body is given as a force was not looked at where others near it were looked for.
+TEST(Forces, WhatOneThrowsInAStepMeetsWhatIsInItsWay) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const LevelChoice other : {LevelChoice::support, LevelChoice::tables})
+      for (const double speed : {90.0, 150.0}) {
+        Manager manager({.gravity = Vec3::Zero(), .signatures = coarse_signature});
+        const auto cube = box_shape({0.2, 0.2, 0.2});
+        const BodyId thrown = add(manager, cube, testing::at({0, 0, 0}), level);
+        const BodyId struck = manager.add_body(
+            {.shape = cube, .state = testing::at({0.8, 0, 0}), .mass = 1000.0, .level = other});
+        manager.step(kFrame);
+        manager.add_force(thrown, Vec3(speed * manager.mass(thrown) / kFrame, 0, 0));
+        for (int i = 0; i < 10; ++i) manager.step(kFrame);
+        EXPECT_LT(manager.state(thrown).position.x(), 0.7) << int(level) << int(other) << speed;
+        EXPECT_GT(manager.state(struck).velocity.x(), 0.1) << int(level) << int(other) << speed;
+      }
+}
+
 TEST(Forces, AStackUnderAPressHolds) {
   Manager manager = on_rough_floor();
   std::vector<BodyId> stack;

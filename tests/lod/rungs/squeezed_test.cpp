@@ -172,6 +172,75 @@ TEST(Squeezed, UnderAHeavyFullOneNoEnergyIsMade) {
   }
 }
 
+// A rod on the floor, a crate of 70 times its weight on it and another that falls on that. The rod was given
+// what the crates gave each other, or what pressed on it, without what backed it: up to 286 kJ in a step.
+TEST(Squeezed, UnderTwoHeavyOnesARodIsNotThrownOut) {
+  const auto rod = box_shape({0.8, 0.04, 0.04}), crate = box_shape({0.45, 0.45, 0.45});
+  constexpr double kRodMass = 1.3, kCrateMass = 91.0, kGain = 30.0;  // kg, kg, J: 3 cm of a crate's weight
+  for (const LevelChoice lower : {LevelChoice::full, LevelChoice::support})
+    for (std::uint64_t seed = 0; seed < 24; ++seed) {
+      RandomStream random(seed, 2, 0);
+      Manager manager = on_floor(unmeasured());
+      std::vector<BodyId> bodies{manager.add_body(
+          {.shape = rod, .state = testing::at({0, 0, 0.02}), .mass = kRodMass, .level = LevelChoice::full})};
+      const auto drop = [&](double height, LevelChoice level) {
+        const Vec3 place(random.uniform(-0.25, 0.25), random.uniform(-0.15, 0.15), height);
+        bodies.push_back(manager.add_body({.shape = crate,
+                                           .state = {.position = place, .orientation = random.orientation()},
+                                           .mass = kCrateMass,
+                                           .level = level}));
+      };
+      const auto sum = [&] {
+        double all = 0.0;
+        for (const BodyId body : bodies) all += energy(manager, body);
+        return all;
+      };
+      drop(0.63, lower);
+      double before = sum();
+      for (int i = 0; i < 200; ++i) {
+        if (i == 60) drop(1.1, LevelChoice::support), before = sum();
+        manager.step(kFrame);
+        const double now = sum();
+        ASSERT_LT(now - before, kGain) << int(lower) << ' ' << seed << " at step " << i;
+        before = now;
+      }
+    }
+}
+
+TEST(Squeezed, WhatPressesOnALightOneAndWhatBacksItAreForcesTogether) {
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  const auto pressed = [&](double mass, double by) {
+    FullNeighbor neighbor;
+    neighbor.shape = cube.get(), neighbor.mass = mass;
+    neighbor.push.linear = Vec3(0, 0, -by);
+    neighbor.backing.linear = Vec3(0, 0, by + 1);
+    return neighbor;
+  };
+  FullNeighbor light = pressed(2.0, 50.0), heavy = pressed(2.0, 10.0);
+  answer_hits({&light, 1}, {});
+  answer_hits({&heavy, 1}, {});
+  EXPECT_LT((light.push.linear - Vec3(0, 0, 1)).norm(), 1e-12);
+  EXPECT_LT((heavy.push.linear - Vec3(0, 0, -10)).norm(), 1e-12);  // ODE holds it up
+}
+
+// A heavy one that is squeezed gives it on; what is light under it is struck by no more than is left.
+TEST(Squeezed, WhatIsLightUnderOneThatIsStruckIsSqueezedToo) {
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  for (const double mass : {0.5, 200.0}) {
+    FullNeighbor neighbors[2];
+    for (FullNeighbor& n : neighbors) n.shape = cube.get();
+    neighbors[0].mass = 50.0, neighbors[1].mass = mass;
+    neighbors[0].fastest_hit = 2.0;
+    neighbors[0].backed_hit.linear = Vec3(0, 0, -300);
+    neighbors[1].backing.linear = Vec3(0, 0, 290);  // by the ground
+    const FullExchange exchange{
+        .first = 0, .second = 1, .on_first = {Vec3(0, 0, 290)}, .on_second = {Vec3(0, 0, -290)}};
+    answer_hits(neighbors, {&exchange, 1});
+    EXPECT_LT((neighbors[0].hit.linear - Vec3(0, 0, -10)).norm(), 1e-12);
+    EXPECT_LT((neighbors[1].hit.linear - Vec3(0, 0, mass < 1.0 ? 0 : -290)).norm(), 1e-12) << mass;
+  }
+}
+
 TEST(Squeezed, WhatIsLeftOfAHitIsItsSum) {
   const auto cube = box_shape({0.2, 0.2, 0.2});
   FullNeighbor neighbor;

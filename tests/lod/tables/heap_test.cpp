@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 #include "tools/compare/pile_overlap.h"
 #include "tools/compare/pile_start.h"
@@ -29,17 +30,38 @@ double deepest_overlap_of_poured(const std::shared_ptr<const Shape>& shape, doub
 
 TEST(TablesHeap, PouredBoxesLieBesideEachOther) {
   const auto box = box_shape({0.2, 0.3, 0.4});
-  // Of sixty such piles the mean is .107, and in two of them, somewhere, two are deeper than a fifth.
+  // Of sixty such piles the mean is .081, and in three of them, somewhere, two are deeper than a fifth.
   double sum = 0.0;
   int deep = 0;
-  constexpr int kPiles = 12;
+  constexpr int kPiles = 24;
   for (std::uint64_t seed = 1; seed <= kPiles; ++seed) {
     const double deepest = deepest_overlap_of_poured(box, 1.6, seed);
     deep += deepest > 0.2;
     sum += deepest;
   }
-  EXPECT_LE(deep, 1);
-  EXPECT_LT(sum / kPiles, 0.12);
+  EXPECT_LE(deep, 2);
+  EXPECT_LT(sum / kPiles, 0.1);
+}
+
+// One that hung by friction among its neighbours, or slipped to and fro, never slept: in one pile of six.
+TEST(TablesHeap, WhatIsPouredSleeps) {
+  const auto box = box_shape({0.1, 0.3, 0.2});
+  const auto signature = coarse_signature(*box, {});
+  constexpr double kBin = 1.5;  // m
+  for (const std::uint64_t seed : {15u, 28u, 30u, 42u}) {
+    Manager manager({.signatures = [&](const Shape&, const ContactLaw&) { return signature; }});
+    for (const HalfSpace& plane : make_bin(kBin)) manager.add_plane(plane.normal, plane.offset);
+    RandomStream random(7, seed, 0);
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 100; ++i) {
+      const double within = 0.5 * kBin - 0.2;
+      const Vec3 place(random.uniform(-within, within), random.uniform(-within, within), 0.3 + 0.2 * i);
+      bodies.push_back(
+          add(manager, box, {.position = place, .orientation = random.orientation()}, LevelChoice::tables));
+    }
+    run(manager, 10.0);
+    for (const BodyId body : bodies) EXPECT_TRUE(manager.asleep(body)) << seed << ": " << body.index;
+  }
 }
 
 }  // namespace

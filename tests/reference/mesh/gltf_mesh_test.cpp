@@ -115,6 +115,15 @@ TEST_F(GltfMesh, IsPlacedByItsNodes) {
       << mesh.vertices[8].transpose();
 }
 
+// glTF 2.0, 3.7.4. Open meshes are not turned right afterwards.
+TEST_F(GltfMesh, OfAMirroredNodeFacesOutwardsStill) {
+  json mirrored = box_json();
+  mirrored["nodes"] = json::parse(R"([{"children": [1], "scale": [-1, 1, 1]}, {"mesh": 0}])");
+  EXPECT_NEAR(measure_mass_properties(load(as_glb(mirrored.dump(), box_bytes()))).volume, 6.0, 1e-6);
+  mirrored["nodes"][1]["scale"] = {1, -1, 1};  // and back
+  EXPECT_NEAR(measure_mass_properties(load(as_glb(mirrored.dump(), box_bytes()))).volume, 6.0, 1e-6);
+}
+
 TEST_F(GltfMesh, OfStripsAndFansIsRead) {
   json strip = box_json();
   strip["meshes"][0]["primitives"][0] = {{"attributes", {{"POSITION", 0}}}, {"mode", 5}};
