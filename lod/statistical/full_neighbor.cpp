@@ -27,14 +27,14 @@ constexpr double kOverload = 20.0;
 double square(double x) { return x * x; }
 
 /// Whether `struck` is more than anything that struck it, or another, no faster than `fastest` (m/s) can do.
-bool is_squeezed(const FullNeighbor& neighbor, const Impulse& struck, double fastest) {
+bool exceeds_hits(const FullNeighbor& neighbor, const Impulse& struck, double fastest) {
   return fastest > 0.0 && product(neighbor, struck, struck) > square(kSqueezed * fastest) * neighbor.mass;
 }
 
 /// Whether what presses on it, `by_full` by other full bodies, and what backs it all but cancel: ODE would
 /// answer a steady force with what is no more the opposite once the body has moved by a little, and roll it
 /// out from under its load. A motor goes on pressing.
-bool is_overloaded(const FullNeighbor& neighbor, const Impulse& by_full = {}) {
+bool all_but_cancel(const FullNeighbor& neighbor, const Impulse& by_full = {}) {
   if (neighbor.on_motor) return false;
   const Impulse pressed = neighbor.push + neighbor.backed_hit,
                 left = neighbor.hit + pressed + neighbor.backing, load = pressed + by_full;
@@ -45,19 +45,20 @@ bool is_overloaded(const FullNeighbor& neighbor, const Impulse& by_full = {}) {
 /// by ODE, and what they give to others.
 class Burdened {
  public:
-  Burdened(std::span<const FullNeighbor> neighbors, std::span<const FullExchange> exchanges)
-      : exchanges_(exchanges), burdens_(neighbors.size()), given_(neighbors.size()) {
+  void find(std::span<const FullNeighbor> neighbors, std::span<const FullExchange> exchanges) {
+    burdens_.assign(neighbors.size(), {});
+    given_.assign(neighbors.size(), {});
     for (std::size_t i = 0; i < neighbors.size(); ++i) {
       const FullNeighbor& n = neighbors[i];
-      if (is_squeezed(n, n.hit + n.backed_hit, n.fastest_hit))
+      if (exceeds_hits(n, n.hit + n.backed_hit, n.fastest_hit))
         burdens_[i] = {Burden::squeezed, n.fastest_hit};
-      else if (is_overloaded(n))
+      else if (all_but_cancel(n))
         burdens_[i].kind = Burden::overloaded;
     }
-    for (bool more = !exchanges.empty(); more;) more = pass_on(neighbors);
+    for (bool more = !exchanges.empty(); more;) more = pass_on(neighbors, exchanges);
   }
-  bool is_squeezed_one(std::size_t neighbor) const { return burdens_[neighbor].kind == Burden::squeezed; }
-  bool is_overloaded_one(std::size_t neighbor) const { return burdens_[neighbor].kind == Burden::overloaded; }
+  bool is_squeezed(std::size_t neighbor) const { return burdens_[neighbor].kind == Burden::squeezed; }
+  bool is_overloaded(std::size_t neighbor) const { return burdens_[neighbor].kind == Burden::overloaded; }
   /// By them, to one that is not among them.
   const Impulse& hit_of(std::size_t neighbor) const { return given_[neighbor].hit; }
   const Impulse& push_of(std::size_t neighbor) const { return given_[neighbor].push; }
@@ -72,9 +73,9 @@ class Burdened {
     double fastest = 0.0;  ///< m/s, of the hits that squeeze those who give it
   };
   /// What is lighter than what gives to it may be no better off. False: nobody more is found.
-  bool pass_on(std::span<const FullNeighbor> neighbors) {
+  bool pass_on(std::span<const FullNeighbor> neighbors, std::span<const FullExchange> exchanges) {
     std::ranges::fill(given_, Given{});
-    for (const FullExchange& exchange : exchanges_) {
+    for (const FullExchange& exchange : exchanges) {
       give(exchange.first, exchange.second, exchange.on_second);
       give(exchange.second, exchange.first, exchange.on_first);
     }
@@ -82,9 +83,9 @@ class Burdened {
     for (std::size_t i = 0; i < neighbors.size(); ++i) {
       const FullNeighbor& n = neighbors[i];
       const Given& given = given_[i];
-      if (burdens_[i].kind == Burden::none && is_squeezed(n, given.hit, given.fastest))
+      if (burdens_[i].kind == Burden::none && exceeds_hits(n, given.hit, given.fastest))
         burdens_[i] = {Burden::squeezed, given.fastest}, more = true;
-      else if (burdens_[i].kind == Burden::none && !given.push.is_zero() && is_overloaded(n, given.push))
+      else if (burdens_[i].kind == Burden::none && !given.push.is_zero() && all_but_cancel(n, given.push))
         burdens_[i].kind = Burden::overloaded, more = true;
     }
     return more;
@@ -98,19 +99,18 @@ class Burdened {
     given.fastest = std::max(given.fastest, burden.fastest);
   }
 
-  std::span<const FullExchange> exchanges_;
   std::vector<Burden> burdens_;  // by neighbour
   std::vector<Given> given_;     // by neighbour
 };
 
 void answer_hit(FullNeighbor& neighbor, const Burdened& burdened, std::size_t index) {
   Impulse &hit = neighbor.hit, &push = neighbor.push;
-  if (burdened.is_squeezed_one(index)) {
+  if (burdened.is_squeezed(index)) {
     hit = hit + neighbor.backed_hit + push + neighbor.backing, push = {};
     return;
   }
   push = push + neighbor.backed_hit + burdened.push_of(index);
-  if (burdened.is_overloaded_one(index)) push = push + neighbor.backing;
+  if (burdened.is_overloaded(index)) push = push + neighbor.backing;
   const double energy = product(neighbor, hit, hit);
   if (const double against = -product(neighbor, hit, push); against > 0.0) {
     const double share = std::min(1.0, against / energy);
@@ -129,7 +129,8 @@ void answer_hits(std::span<FullNeighbor> neighbors, std::span<const FullExchange
     first.backing = first.backing + exchange.on_first;
     second.backing = second.backing + exchange.on_second;
   }
-  const Burdened burdened(neighbors, exchanges);
+  thread_local Burdened burdened;  // its memory serves every step
+  burdened.find(neighbors, exchanges);
   for (std::size_t i = 0; i < neighbors.size(); ++i) answer_hit(neighbors[i], burdened, i);
 }
 
