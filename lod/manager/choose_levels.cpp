@@ -289,9 +289,6 @@ class Chooser {
       const auto bodies = [&](std::int32_t k) {
         return std::int64_t(candidate(ranked[std::size_t(k)]).bodies);
       };
-      std::int64_t sum = 0;
-      for (const Ranked& w : wanted) sum += bodies(w.index);
-      if (sum <= most) continue;
       for (const Ranked& w : std::span(wanted).subspan(keep_nearest(wanted, most, bodies)))
         targets[std::size_t(w.index)] = {
             candidate(ranked[std::size_t(w.index)]).open.at_most(Rung(int(rung) - 1)), Rule::most_reached,

@@ -273,12 +273,18 @@ TEST(DistancePolicy, BodiesThatStayPutAreThoseForWhomNothingChanges) {
   EXPECT_GT(stay, 150);
 }
 
+/// Without these limits all would be full.
+PolicySettings with_most(int full, int support, bool budget) {
+  PolicySettings settings =
+      budget ? by_budget(1e6)
+             : PolicySettings{.policy = DistancePolicy{100.0, 200.0}, .max_transitions_per_frame = 1000};
+  settings.most_full = full, settings.most_support = support, settings.min_dwell_frames = 0;
+  return settings;
+}
+
 TEST(Policy, MostOnARungIsNeverExceededAndTheNearestAreThere) {
   for (const bool budget : {false, true}) {
-    PolicySettings settings =
-        budget ? by_budget(1e6)
-               : PolicySettings{.policy = DistancePolicy{100.0, 200.0}, .max_transitions_per_frame = 1000};
-    settings.most_full = 5, settings.most_support = 7, settings.min_dwell_frames = 0;
+    const PolicySettings settings = with_most(5, 7, budget);
     std::vector<LevelCandidate> candidates;
     for (int i = 0; i < 40; ++i) candidates.push_back(on_ladder(1 + i));
     for (int frame = 0; frame < 60; ++frame) {
@@ -297,10 +303,7 @@ TEST(Policy, MostOnARungIsNeverExceededAndTheNearestAreThere) {
 // Groups of four, under limits for as many bodies as two of them and three have.
 TEST(Policy, OfGroupsTheMostOnARungAreCountedByTheirBodies) {
   for (const bool budget : {false, true}) {
-    PolicySettings settings =
-        budget ? by_budget(1e6)
-               : PolicySettings{.policy = DistancePolicy{100.0, 200.0}, .max_transitions_per_frame = 1000};
-    settings.most_full = 8, settings.most_support = 12, settings.min_dwell_frames = 0;
+    PolicySettings settings = with_most(8, 12, budget);
     std::vector<LevelCandidate> groups;
     for (int i = 0; i < 20; ++i) {
       groups.push_back(on_ladder(1 + i));
