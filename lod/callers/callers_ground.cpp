@@ -53,8 +53,12 @@ void CallersGround::follow(const SpaceMirror& mirror, double dt, const Vec3& up,
     else
       wakes.disturbed(geoms[slot].bounds);
   }
-  for (const std::uint32_t slot : moving_)
-    if (ids_[slot]) ground_.move_part(ids_[slot], pose_of(geoms[slot], false, dt));
+  for (const std::uint32_t slot : moving_) {
+    if (!ids_[slot]) continue;
+    ground_.move_part(ids_[slot], pose_of(geoms[slot], false, dt));
+    if (!std::ranges::binary_search(mirror.moved(), slot))
+      wakes.gone(geoms[slot].bounds);  // it has come down
+  }
   moving_.clear();
   const auto move = [&](std::uint32_t slot, bool moved) {
     const GroundPose pose = pose_of(geoms[slot], moved, dt);

@@ -94,8 +94,9 @@ void GroundSolver::prepare(GroundContact& c) const {
   set_row(c.rows[0], c.normal, c.arm);
   c.rows[1] = c.rows[2] = {};
   const double approach = before_.velocity_at(c.arm).dot(c.normal), closing = std::min(0.0, -c.gap / step_),
-               fall = std::min(0.0, settings_.fall.dot(c.normal));
-  c.bounces = approach < -settings_.bounce_velocity && c.gap + approach * step_ < 0.0;
+               fall = std::min(0.0, settings_.fall.dot(c.normal)),
+               turned = std::min(0.0, settings_.turned.cross(c.arm).dot(c.normal));
+  c.bounces = approach - turned < -settings_.bounce_velocity && c.gap + approach * step_ < 0.0;
   const double leaving = c.bounces ? bounce_in_fall(c.law.restitution, c.gap, approach, fall, step_) : 0.0;
   if (leaving > 0.0)  // then no chord keeps it in its place
     c.rows[0].target = leaving;
@@ -114,6 +115,8 @@ double friction_bound(const GroundContact& c) {
   return c.friction_bound >= 0.0 ? c.friction_bound : c.law.friction * c.rows[0].impulse;
 }
 
+constexpr double kSlow = 5.0;  // over the speed from which on it slides
+
 // Returns the size of the change, N s over mass.
 inline double GroundSolver::relax(GroundContact& c, PairedMotion& motion) {
   const PairedMotion now = motion;
@@ -131,14 +134,18 @@ inline double GroundSolver::relax(GroundContact& c, PairedMotion& motion) {
   if (bound == 0.0 && c.rows[1].impulse == 0.0 && c.rows[2].impulse == 0.0) return changed;
   find_tangents(c);
   // The first tangent is the way that the point goes. What slides keeps no place: friction is bounded along
-  // that way, and across it must not draw the point to the side.
+  // that way, and across it must not draw the point to the side. What is slow, and more than friction can
+  // stop, is bounded by both together: else a box that is pushed high up would turn about its upright axis
+  // until √2 of its friction held it.
   const double speed = now.along(c.rows[1]),
                along = c.rows[1].impulse - c.rows[1].effective_mass * (speed - c.rows[1].target);
-  const bool slides = std::abs(along) > bound && std::abs(speed) > settings_.sliding_speed;
+  const bool stops = std::abs(along) <= bound, slides = !stops && std::abs(speed) > settings_.sliding_speed,
+             is_slow = !stops && std::abs(speed) < kSlow * settings_.sliding_speed;
   const double aside = now.along(c.rows[2]) - (slides ? 0.0 : c.rows[2].target),
-               across = c.rows[2].impulse - c.rows[2].effective_mass * aside;
-  changed += change_to(c.rows[1], std::clamp(along, -bound, bound));
-  changed += change_to(c.rows[2], std::clamp(across, -bound, bound));
+               across = c.rows[2].impulse - c.rows[2].effective_mass * aside,
+               share = is_slow ? std::min(1.0, bound / std::hypot(along, across)) : 1.0;
+  changed += change_to(c.rows[1], std::clamp(share * along, -bound, bound));
+  changed += change_to(c.rows[2], std::clamp(share * across, -bound, bound));
   return changed;
 }
 

@@ -36,7 +36,7 @@ struct GroundContact {
 };
 
 /// For one body of the inverse inertia `inverse_inertia` (over mass, body axes); of the
-/// settings, `fall` is in body axes.
+/// settings, `fall` and `turned` are in body axes.
 void solve_ground_contacts(GroundMotion& motion, const Mat3& inverse_inertia,
                            std::span<GroundContact> contacts, double step,
                            const ContactSolverSettings& settings);

@@ -13,7 +13,7 @@ constexpr double kReach = 0.5;      // over R
 constexpr double kToOneSide = 0.1;  // of that: along its normal, so that loads are remembered for each
 
 // Rows are counted from the oldest joint on, which ODE lists last: those that come change no number.
-constexpr std::uint32_t kMotors = 1U << 16, kByKinematics = 1U << 20;
+constexpr std::uint32_t kMotors = 1U << 16, kStops = 1U << 18, kByKinematics = 1U << 20;
 
 class JointContacts {
  public:
@@ -38,14 +38,18 @@ class JointContacts {
  private:
   // Of joints whose first body it is, or the only one.
   void add_of(std::size_t i) {
-    rows_.clear(), motors_.clear();
+    rows_.clear(), motors_.clear(), stops_.clear();
     find_joint_rows(bodies_[i], reach_of(i), rows_);
     find_joint_motors(bodies_[i], reach_of(i), motors_);
+    find_joint_stops(bodies_[i], reach_of(i), stops_);
     for (std::size_t r = 0; r < rows_.size(); ++r)
       add(i, rows_[r].second, rows_[r].point, rows_[r].direction, std::uint32_t(rows_.size() - r), nullptr);
     for (std::size_t m = 0; m < motors_.size(); ++m)
       add(i, motors_[m].second, motors_[m].point, motors_[m].direction,
           kMotors + std::uint32_t(motors_.size() - m), &motors_[m]);
+    for (std::size_t s = 0; s < stops_.size(); ++s)
+      add_one_way(i, stops_[s].second, stops_[s].point, stops_[s].direction, stops_[s].gap,
+                  2 * (kStops + std::uint32_t(stops_.size() - s)));
   }
 
   // Of joints whose first body it is; those that it is the second of are their first body's.
@@ -62,26 +66,31 @@ class JointContacts {
   // known.
   void add(std::size_t first, dxBody* other, const Vec3& point, const Vec3& direction, std::uint32_t number,
            const JointMotor* motor) {
+    for (const double sign : {1.0, -1.0}) {
+      FullContact* const contact = add_one_way(first, other, point, sign * direction, 0.0,
+                                               sign > 0.0 ? 2 * number + 1 : 2 * number + 2);
+      if (contact && motor) contact->drive = Drive{.speed = sign * motor->speed, .force = motor->force};
+    }
+  }
+
+  FullContact* add_one_way(std::size_t first, dxBody* other, const Vec3& point, const Vec3& direction,
+                           double gap, std::uint32_t row) {
     const auto second = other ? index_of_.find(other) : index_of_.end();
     const bool is_known = second != index_of_.end();
     Vec3 velocity = Vec3::Zero();
     if (other && !is_known) {
-      if (!callers::is_kinematic(other)) return;
+      if (!callers::is_kinematic(other)) return nullptr;
       const RigidState state = callers::state(other);
       velocity = state.velocity + state.angular_velocity.cross(point - state.position);
     }
-    for (const double sign : {1.0, -1.0}) {
-      FullContact& contact =
-          contacts_.emplace_back(FullContact{.first = std::int32_t(first),
-                                             .second = is_known ? second->second : -1,
-                                             .point = point + sign * kToOneSide * reach_of(first) * direction,
-                                             .normal = sign * direction,
-                                             .gap = 0.0,
-                                             .friction = 0.0,
-                                             .velocity = velocity,
-                                             .row = sign > 0.0 ? 2 * number + 1 : 2 * number + 2});
-      if (motor) contact.drive = Drive{.speed = sign * motor->speed, .force = motor->force};
-    }
+    return &contacts_.emplace_back(FullContact{.first = std::int32_t(first),
+                                               .second = is_known ? second->second : -1,
+                                               .point = point + kToOneSide * reach_of(first) * direction,
+                                               .normal = direction,
+                                               .gap = gap,
+                                               .friction = 0.0,
+                                               .velocity = velocity,
+                                               .row = row});
   }
 
   double reach_of(std::size_t i) const { return kReach * neighbors_[i].shape->radius; }
@@ -94,6 +103,7 @@ class JointContacts {
   std::unordered_map<dxBody*, std::int32_t> index_of_;
   std::vector<JointRow> rows_;
   std::vector<JointMotor> motors_;
+  std::vector<JointStop> stops_;
   std::vector<dxBody*> kinematic_;
 };
 

@@ -150,6 +150,7 @@ void Levels::wake_piled_in(const Eigen::AlignedBox3d& box) {
   std::vector<std::uint32_t> lay_there = find_sleepers_in(box);
   std::ranges::copy(find_full_in(box), std::back_inserter(lay_there));
   wake_all_in(box);
+  if (full.asleep_count() + (statistical ? statistical->asleep_count() : 0) == 0) return;
   for (const std::uint32_t body : lay_there) wake_piled_on(body);
 }
 

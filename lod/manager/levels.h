@@ -83,8 +83,8 @@ struct Levels {
   /// Wakes the statistical bodies whose bounding spheres meet `box`, and full ones that lie as they did
   /// there.
   void wake_in(const Eigen::AlignedBox3d& box);
-  /// Wakes the bodies of either level whose bounding spheres meet `box`, from which ground is gone, and what
-  /// is piled on them.
+  /// Wakes the bodies of either level whose bounding spheres meet `box`, from which ground is gone or was put
+  /// elsewhere, and what is piled on them, which would not feel it where the lowest fall by a hair.
   void wake_piled_in(const Eigen::AlignedBox3d& box);
   /// Wakes the bodies of either level whose bounding spheres meet `box`: new ground is there.
   void wake_all_in(const Eigen::AlignedBox3d& box);

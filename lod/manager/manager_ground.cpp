@@ -77,7 +77,7 @@ void Manager::move_ground(GroundId id, const RigidState& state) {
                                .angular_velocity = sound.angular_velocity,
                                .comes_back = true});
   const Eigen::AlignedBox3d after = levels.ground.bounds(id);
-  if (before.intersects(after))
+  if (levels.ground.part(id).moves() && before.intersects(after))
     levels.wake_in(before);
   else
     levels.wake_piled_in(before);

@@ -464,6 +464,7 @@ ContactSolverSettings ContactSteps::solver(const Mat3& rotation, double time, bo
   // What gravity adds in a step is no impact.
   solver.bounce_velocity = world_.bounce_velocity + world_.gravity_strength() * time;
   solver.fall = rotation.transpose() * (kicked_ * world_.gravity);
+  solver.turned = shape_.inverse_inertia_per_mass * (rotation.transpose() * (kicked_ * world_.turning));
   return solver;
 }
 

@@ -274,7 +274,7 @@ RestingRecord find_resting(const Quat& orientation, const BodyKind& kind, const 
   if (kind.faces && !options.nearest_rest_pose)
     up = kind.faces->faces()[std::size_t(kind.faces->find_quasistatic(up))].normal;
   const int pose = find_nearest_rest_pose(*kind.signature, up);
-  if (options.as_published() || !kind.faces) return {pose};
+  if (pose < 0 || options.as_published() || !kind.faces) return {pose};  // what is finely round has none
   const Vec3& lying = kind.signature->rest_poses[std::size_t(pose)].normal;
   const bool is_kept = up.dot(lying) > kSameFace;
   return {is_kept || !stands_securely(*kind.faces, *kind.shape, orientation.conjugate() * plane.normal,

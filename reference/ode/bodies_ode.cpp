@@ -8,6 +8,7 @@
 
 #include "reference/error.h"
 #include "reference/mass_bounds.h"
+#include "reference/ode/body_joints.h"
 
 namespace lodestone::ode {
 namespace {
@@ -243,6 +244,13 @@ Body* Bodies::owner(dBodyID body) {
   if (!body) return nullptr;
   const auto slot = reinterpret_cast<std::uintptr_t>(dBodyGetData(body)) - 1;
   return slot < slots_.size() && slots_[slot].body == body ? &slots_[slot] : nullptr;
+}
+
+void wake_jointed(Bodies& bodies, const Body& body) {
+  for (const dBodyID joined : find_jointed_group(body.body)) {
+    dBodyEnable(joined);
+    if (Body* const own = bodies.owner(joined)) own->disturbed = true;
+  }
 }
 
 }  // namespace lodestone::ode

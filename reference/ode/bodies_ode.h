@@ -114,4 +114,7 @@ class Bodies {
   double greatest_reach_ = 0.0;
 };
 
+/// With all that hang together with it by joints: alone, what it is given would be lost in those that sleep.
+void wake_jointed(Bodies& bodies, const Body& body);
+
 }  // namespace lodestone::ode

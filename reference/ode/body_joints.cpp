@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 #include <array>
+#include <unordered_set>
 
 namespace lodestone {
 namespace {
@@ -17,6 +18,15 @@ Vec3 read(dJointID joint, void (*get)(dJointID, dVector3)) {
 Vec3 place_of(dxBody* body) {
   const dReal* p = dBodyGetPosition(body);
   return {p[0], p[1], p[2]};
+}
+
+Vec3 middle_of(dxBody* body, dxBody* second) {
+  return second ? Vec3(0.5 * (place_of(body) + place_of(second))) : place_of(body);
+}
+
+// That in which its position grows. ODE turns a slider round whose only body is its second.
+Vec3 slider_direction(dJointID slider) {
+  return (dJointGetBody(slider, 0) ? 1.0 : -1.0) * read(slider, dJointGetSliderAxis);
 }
 
 void hold(dxBody* second, const Vec3& point, std::vector<JointRow>& rows) {
@@ -124,6 +134,37 @@ void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
   }
 }
 
+void find_joint_stops(dxBody* body, double reach, std::vector<JointStop>& stops) {
+  for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
+    const dJointID joint = dBodyGetJoint(body, i);
+    if (!dJointIsEnabled(joint) || !has_hard_stops(joint)) continue;
+    const dBodyID first = dJointGetBody(joint, 0), other = dJointGetBody(joint, 1);
+    if (first && first != body) continue;
+    const dBodyID second = first ? other : nullptr;
+    const bool slides = dJointGetType(joint) == dJointTypeSlider;
+    const auto& parameter = slides ? dJointGetSliderParam : dJointGetHingeParam;
+    const double at = slides ? dJointGetSliderPosition(joint) : dJointGetHingeAngle(joint),
+                 above = at - parameter(joint, dParamLoStop), below = parameter(joint, dParamHiStop) - at;
+    if (above + below < 0.0) continue;  // ODE leaves out stops that are the wrong way round
+    const Vec3 axis = slides ? slider_direction(joint) : read(joint, dJointGetHingeAxis),
+               across = slides ? Vec3::Zero() : axis.unitOrthogonal(),
+               point = slides ? middle_of(body, second)
+                              : Vec3(read(joint, dJointGetHingeAnchor) + reach * across),
+               way = slides ? axis : Vec3(axis.cross(across));
+    const double lever = slides ? 1.0 : reach;  // m a m, or a rad
+    if (lever * above < reach) stops.push_back({second, point, way, lever * above});
+    if (lever * below < reach) stops.push_back({second, point, -way, lever * below});
+  }
+}
+
+bool has_hard_stops(dxJoint* joint) {
+  const dJointType type = dJointGetType(joint);
+  if (type != dJointTypeSlider && type != dJointTypeHinge) return false;
+  const dBodyID first = dJointGetBody(joint, 0), body = first ? first : dJointGetBody(joint, 1);
+  const auto& parameter = type == dJointTypeSlider ? dJointGetSliderParam : dJointGetHingeParam;
+  return body && parameter(joint, dParamStopCFM) <= dWorldGetCFM(dBodyGetWorld(body));
+}
+
 void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& motors) {
   for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
     const dJointID joint = dBodyGetJoint(body, i);
@@ -132,9 +173,7 @@ void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& moto
     if (first && first != body) continue;
     const dBodyID second = first ? other : nullptr;
     if (dJointGetType(joint) == dJointTypeSlider) {
-      const Vec3 at = second ? Vec3(0.5 * (place_of(body) + place_of(second))) : place_of(body);
-      const double way = first ? 1.0 : -1.0;  // ODE turns a slider round whose only body is its second
-      motors.push_back({second, at, way * read(joint, dJointGetSliderAxis),
+      motors.push_back({second, middle_of(body, second), slider_direction(joint),
                         dJointGetSliderParam(joint, dParamVel), dJointGetSliderParam(joint, dParamFMax)});
       continue;
     }
@@ -152,17 +191,17 @@ void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& moto
 }
 
 bool has_motor(dxJoint* joint) {
-  const auto moves_freely = [&](const auto& parameter, double at) {
-    return parameter(joint, dParamFMax) > 0.0 && at > parameter(joint, dParamLoStop) &&
-           at < parameter(joint, dParamHiStop);
+  const auto pushes = [&](const auto& parameter, double at) {
+    return parameter(joint, dParamFMax) > 0.0 &&
+           (has_hard_stops(joint) ||
+            (at > parameter(joint, dParamLoStop) && at < parameter(joint, dParamHiStop)));
   };
   if (!dJointIsEnabled(joint)) return false;
   if (dJointGetType(joint) == dJointTypeSlider)
-    return moves_freely(dJointGetSliderParam, dJointGetSliderPosition(joint));
+    return pushes(dJointGetSliderParam, dJointGetSliderPosition(joint));
   if (dJointGetType(joint) == dJointTypeHinge2)  // on a spring it would drive the wheel too slowly
     return !is_sprung(joint) && dJointGetHinge2Param(joint, dParamFMax2) > 0.0;
-  return dJointGetType(joint) == dJointTypeHinge &&
-         moves_freely(dJointGetHingeParam, dJointGetHingeAngle(joint));
+  return dJointGetType(joint) == dJointTypeHinge && pushes(dJointGetHingeParam, dJointGetHingeAngle(joint));
 }
 
 bool is_driven(dxJoint* joint) {
@@ -190,6 +229,16 @@ std::vector<dxBody*> joined_bodies(dxBody* body) {
     joined.push_back(first == body ? dJointGetBody(joint, 1) : first);
   }
   return joined;
+}
+
+std::vector<dxBody*> find_jointed_group(dxBody* body) {
+  std::vector<dxBody*> group{body};
+  if (!has_joints(body)) return group;
+  std::unordered_set<dxBody*> known{body};
+  for (std::size_t i = 0; i < group.size(); ++i)
+    for (dxBody* const other : joined_bodies(group[i]))
+      if (other && !dBodyIsKinematic(other) && known.insert(other).second) group.push_back(other);
+  return group;
 }
 
 bool has_joints(dxBody* body) { return dBodyGetNumJoints(body) > 0 && !joined_bodies(body).empty(); }

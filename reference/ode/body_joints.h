@@ -16,6 +16,9 @@ namespace lodestone {
 std::vector<dxBody*> joined_bodies(dxBody* body);
 /// Whether there are any.
 bool has_joints(dxBody* body);
+/// `body` and all that hang together with it by such joints, through any but kinematic bodies. To be asked
+/// outside of a step.
+std::vector<dxBody*> find_jointed_group(dxBody* body);
 
 /// A direction (unit, world) in which a joint holds a point of one body to that of another.
 struct JointRow {
@@ -40,11 +43,26 @@ struct JointMotor {
 };
 
 /// Appends those of sliders, hinges and unsprung wheels (hinge 2, which turn them) whose first body is
-/// `body`, or whose only one; a hinge's at a point `reach` m from its axis. Not of those that stand at a
+/// `body`, or whose only one; a hinge's at a point `reach` m from its axis. Not of those that stand at a soft
 /// stop. To be asked outside of a step.
 void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& motors);
 /// Whether find_joint_motors() has the joint's.
 bool has_motor(dxJoint* joint);
+
+/// Beyond which a point of one body does not go along a direction, against a point of another.
+struct JointStop {
+  dxBody* second = nullptr;        ///< null: the world
+  Vec3 point = Vec3::Zero();       ///< m, world
+  Vec3 direction = Vec3::UnitZ();  ///< that of its push on the first body
+  double gap = 0.0;                ///< m
+};
+
+/// Appends the hard stops of sliders and hinges whose first body is `body`, or whose only one, that are
+/// within `reach` m; a hinge's at a point so far from its axis. To be asked outside of a step.
+void find_joint_stops(dxBody* body, double reach, std::vector<JointStop>& stops);
+/// Whether it is a slider or hinge whose stops, if it has any, are as hard as the world's joints: a softer
+/// one is a spring.
+bool has_hard_stops(dxJoint* joint);
 
 /// Whether a motor of the joint, of any kind that has parameters, is to bring it to a speed other than 0.
 bool is_driven(dxJoint* joint);

@@ -227,8 +227,7 @@ void BroadPhase::wake_ours(Bodies& bodies, const Eigen::AlignedBox3d& box) {
     Body& body = bodies.slots()[sleeper];
     if (dBodyIsEnabled(body.body) || !widened(bounds_of(body), kTouchMargin * body.reach).intersects(box))
       continue;
-    dBodyEnable(body.body);
-    body.disturbed = true;
+    wake_jointed(bodies, body);
   }
   for (Body& body : bodies.slots()) {
     const double reach = (1.0 + kTouchMargin) * body.reach;

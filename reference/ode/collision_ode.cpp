@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "reference/error.h"
 #include "reference/hull/hull_manifold.h"
@@ -33,6 +34,11 @@ RigidState moved_on(RigidState state, double time) {
   state.position += state.velocity * time;
   state.orientation = (rotation_from_vector(state.angular_velocity * time) * state.orientation).normalized();
   return state;
+}
+
+/// m, of no point within `reach` of it more.
+double way_between(const RigidState& from, const RigidState& to, double reach) {
+  return (to.position - from.position).norm() + from.orientation.angularDistance(to.orientation) * reach;
 }
 
 /// Longer, too, than bodies may be.
@@ -77,12 +83,13 @@ bool is_mesh(const Body& body) { return dGeomGetClass(dBodyGetFirstGeom(body.bod
 
 }  // namespace
 
-Collision::Collision(const SpaceMirror* callers, const OdeSettings& settings)
+Collision::Collision(const SpaceMirror* callers, TrimeshCache& trimeshes, const OdeSettings& settings)
     : settings_(settings),
       broad_phase_(callers, settings.hash_space),
       narrow_phase_(settings.mesh_contacts != MeshContacts::plain, settings.most_mesh_measures),
       plane_phase_(settings),
-      callers_(callers) {}
+      callers_(callers),
+      trimeshes_(trimeshes) {}
 
 Collision::~Collision() {
   for (const Plane& plane : planes_) dGeomDestroy(plane.geom);
@@ -148,6 +155,7 @@ void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bod
     throw InputError(
         "a pose of ground: expected finite, below 1e8 in each part, the orientation of unit norm");
   const Eigen::AlignedBox3d before = bounds_of(ground.geom);
+  ground.way += way_between(ground.put, state, 0.5 * before.diagonal().norm());
   put(ground, ground.put = state);
   ground.moved = true;
   ground.moves = !state.velocity.isZero(0.0) || !state.angular_velocity.isZero(0.0);
@@ -157,10 +165,10 @@ void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bod
 
 void Collision::remove_ground(OdeGroundId id, Bodies& bodies) {
   if (const auto plane = std::ranges::find(planes_, id, &Plane::id); id && plane != planes_.end()) {
-    for (const Body& body : bodies.slots())
+    for (Body& body : bodies.slots())
       if (body.body &&
           plane->normal.dot(to_vec3(dBodyGetPosition(body.body))) - plane->offset < 1.1 * body.reach)
-        dBodyEnable(body.body);
+        wake_jointed(bodies, body);
     dGeomDestroy(plane->geom);
     planes_.erase(plane);
     return;
@@ -196,7 +204,7 @@ void Collision::move_on(double after) {
 }
 
 void Collision::end_step() {
-  for (Ground& ground : ground_) ground.moved = false;
+  for (Ground& ground : ground_) ground.moved = false, ground.last_way = std::exchange(ground.way, 0.0);
 }
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
@@ -214,6 +222,8 @@ void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
     for (const Plane& plane : callers_planes_) collide_plane(body, plane, joints);
   }
   woken_.clear(), waking_.assign(bodies.slots().size(), Waking::no);
+  for (const Body& body : bodies.slots())
+    if (body.is_awake()) note_joined(bodies, body);
   collide_candidates(bodies, candidates, joints);
   collide_woken(bodies, joints);
 }
@@ -231,11 +241,15 @@ void Collision::collide_woken(Bodies& bodies, ContactJoints& joints) {
     for (const Plane& plane : planes_) collide_plane(body, plane, joints);
     for (const Plane& plane : callers_planes_) collide_plane(body, plane, joints);
     collide_candidates(bodies, broad_phase_.find_of_sleeper(bodies, body, is_left), joints);
-    for (int joint = 0; joint < dBodyGetNumJoints(body.body); ++joint)
-      for (const int end : {0, 1})
-        if (const dBodyID other = dJointGetBody(dBodyGetJoint(body.body, joint), end))
-          note_woken(bodies, bodies.owner(other));
+    note_joined(bodies, body);
   }
+}
+
+void Collision::note_joined(Bodies& bodies, const Body& body) {
+  for (int joint = 0; joint < dBodyGetNumJoints(body.body); ++joint)
+    for (const int end : {0, 1})
+      if (const dBodyID other = dJointGetBody(dBodyGetJoint(body.body, joint), end))
+        note_woken(bodies, bodies.owner(other));
 }
 
 void Collision::note_woken(Bodies& bodies, const Body* body) {
@@ -290,8 +304,8 @@ void Collision::collide_candidates(Bodies& bodies, std::span<const Candidate> ca
     }
     find_pair_points(body, other, candidates.subspan(i, next - i));
     if (points_.empty()) continue;
+    note_woken(bodies, &body), note_woken(bodies, other);  // before a surface that moves wakes them
     joints.add(side_of_ours(body), side_of(candidates[i], other), points_);
-    note_woken(bodies, &body), note_woken(bodies, other);
   }
 }
 
@@ -311,17 +325,12 @@ void Collision::find_pair_points(const Body& body, const Body* other, std::span<
     find_filtered_points(body, *other, parts[0], size);
   else
     for (const Candidate& part : parts) {
-      if (dGeomGetClass(part.second) == dConvexClass) prepare_for_convex(part.first);
+      if (dGeomGetClass(part.second) == dConvexClass && dGeomGetClass(part.first) == dTriMeshClass)
+        trimeshes_.prepare_for_convexes(*body.shape, dGeomTriMeshGetData(part.first));
       narrow_phase_.find(part.first, part.second, size, points_);
     }
   if (exact) points_.resize(std::size_t(drop_inner_contacts(points_, size)));
   drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
-}
-
-// ODE fails an assertion where a convex meets a trimesh that does not know the angles between its faces.
-void Collision::prepare_for_convex(dGeomID geom) {
-  if (dGeomGetClass(geom) != dTriMeshClass || !with_angles_.insert(dGeomTriMeshGetData(geom)).second) return;
-  dGeomTriMeshDataPreprocess2(dGeomTriMeshGetData(geom), 1u << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
 }
 
 /// Bodies are clear of each other once their hulls are.
@@ -371,12 +380,16 @@ ContactSide Collision::side_of(const Candidate& candidate, const Body* other) co
     if (ground.moves)
       side.motion =
           SurfaceMotion{ground.state.position, ground.state.velocity, ground.state.angular_velocity};
+    else
+      side.way_on = std::min(ground.way, ground.last_way);
     return side;
   }
   const MirroredGeom& geom = callers_->geoms()[candidate.second_number()];
   ContactSide side = ode::side_of(geom.body, 0, {}, geom.geom);
   if (side.body) side.callers_slot = std::int32_t(candidate.second_number());
-  side.moves |= !geom.body && std::ranges::binary_search(callers_->moved(), candidate.second_number());
+  if (side.body || side.motion) return side;
+  side.moves |= std::ranges::binary_search(callers_->moved(), candidate.second_number());
+  side.way_on = callers_->way_on(candidate.second_number());
   return side;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <unordered_set>
 #include <vector>
 
 #include "reference/ode/bodies_ode.h"
@@ -25,14 +24,15 @@ struct Ground {
   RigidState put = {};                      ///< where it was put, and how it moves
   RigidState state = {};                    ///< the same in this substep: where it has moved to from there
   std::unique_ptr<TrimeshData> mesh = {};
-  bool moved = false;  ///< before this step
-  bool moves = false;  ///< its state has a velocity
+  bool moved = false;                ///< before this step
+  double way = 0.0, last_way = 0.0;  ///< m, how far it was moved before this step and the one before
+  bool moves = false;                ///< its state has a velocity
 };
 
 class Collision {
  public:
-  /// `callers`: null in a world of its own.
-  Collision(const SpaceMirror* callers, const OdeSettings& settings);
+  /// `callers`: null in a world of its own. `trimeshes`: those of the bodies.
+  Collision(const SpaceMirror* callers, TrimeshCache& trimeshes, const OdeSettings& settings);
   ~Collision();
   Collision(const Collision&) = delete;
   Collision& operator=(const Collision&) = delete;
@@ -66,10 +66,10 @@ class Collision {
   void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);
   void collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints);
   void collide_woken(Bodies& bodies, ContactJoints& joints);
+  void note_joined(Bodies& bodies, const Body& body);
   void note_woken(Bodies& bodies, const Body* body);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
   void find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size);
-  void prepare_for_convex(dGeomID geom);
   Pieces pieces_of_other(const Candidate& candidate, const Body* other);
   void drop_beyond(int kept);
   OdeGroundId add_ground(Ground ground);
@@ -93,8 +93,8 @@ class Collision {
   std::vector<std::size_t> woken_;  // their slots
   const SpaceMirror* callers_;
   CallersShapes callers_shapes_;
-  PlaneStep step_;                                  // the one to come
-  std::unordered_set<dTriMeshDataID> with_angles_;  // trimeshes prepared for convexes
+  TrimeshCache& trimeshes_;
+  PlaneStep step_;  // the one to come
   std::int64_t dropped_ = 0, swallowed_ = 0;
 };
 

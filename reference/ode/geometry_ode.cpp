@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "reference/error.h"
 
@@ -60,6 +61,18 @@ TrimeshData::TrimeshData(std::span<const Vec3> vertices, std::span<const std::ar
 }
 
 TrimeshData::~TrimeshData() { dGeomTriMeshDataDestroy(id_); }
+
+// ODE ends the process where it is asked for them twice.
+void TrimeshData::prepare_for_convexes() {
+  if (std::exchange(knows_angles_, true)) return;
+  dGeomTriMeshDataPreprocess2(id_, 1u << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
+}
+
+void TrimeshCache::prepare_for_convexes(const Shape& shape, dTriMeshDataID data) {
+  for (Entries* const entries : {&meshes_, &hulls_})
+    if (const auto known = entries->find(&shape); known != entries->end() && known->second.data->id() == data)
+      known->second.data->prepare_for_convexes();
+}
 
 dTriMeshDataID TrimeshCache::find(Entries& entries, const std::shared_ptr<const Shape>& shape,
                                   std::span<const Vec3> vertices, std::span<const std::array<int, 3>> faces) {

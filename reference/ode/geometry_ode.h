@@ -19,11 +19,14 @@ class TrimeshData {
   TrimeshData(const TrimeshData&) = delete;
   TrimeshData& operator=(const TrimeshData&) = delete;
   dTriMeshDataID id() const { return id_; }
+  /// Of the angles between its faces, without which ODE fails an assertion where a convex meets it.
+  void prepare_for_convexes();
 
  private:
   std::vector<float> vertices_;
   std::vector<dTriIndex> indices_;
   dTriMeshDataID id_;
+  bool knows_angles_ = false;
 };
 
 /// The trimesh data of each shape and of each shape's hull, built on first use, and kept while bodies have
@@ -36,6 +39,8 @@ class TrimeshCache {
   dTriMeshDataID hull_of(const std::shared_ptr<const Shape>& shape) {
     return find(hulls_, shape, shape->hull.vertices, shape->hull.faces);
   }
+  /// What `data` is of those of the shape's.
+  void prepare_for_convexes(const Shape& shape, dTriMeshDataID data);
   std::int64_t built() const { return built_; }  ///< so far
 
  private:

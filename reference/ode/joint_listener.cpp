@@ -18,7 +18,8 @@ Vec3 read_vector(dJointID joint, Get get) {
   return ode::to_vec3(v);
 }
 
-// Of all that the joint gives, what find_joint_rows() does not hold and find_joint_motors() does not drive.
+// Of all that the joint gives, what find_joint_rows() and find_joint_stops() do not hold and
+// find_joint_motors() does not drive.
 JointForce free_part_of(dJointID joint, const JointForce& all, const Vec3& position) {
   const auto about = [&](const Vec3& anchor) {
     return Vec3(all.torque - (anchor - position).cross(all.force));
@@ -28,12 +29,12 @@ JointForce free_part_of(dJointID joint, const JointForce& all, const Vec3& posit
     case dJointTypeFixed:
       return {};
     case dJointTypeSlider: {
-      if (has_motor(joint)) return {};
+      if (has_motor(joint) || has_hard_stops(joint)) return {};
       const Vec3 axis = read_vector(joint, dJointGetSliderAxis);
       return {.force = axis.dot(all.force) * axis};
     }
     case dJointTypeHinge: {
-      if (has_motor(joint)) return {};
+      if (has_motor(joint) || has_hard_stops(joint)) return {};
       const Vec3 axis = read_vector(joint, dJointGetHingeAxis);
       return {.torque = axis.dot(about(read_vector(joint, dJointGetHingeAnchor))) * axis};
     }

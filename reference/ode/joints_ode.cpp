@@ -113,7 +113,9 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
                               const ContactPoint& point) {
   copy(point.point, joint_.geom.pos);
   copy(point.normal, joint_.geom.normal);
-  joint_.geom.depth = first.body && second.body ? depth_of(point) : std::min(point.depth, deepest_);
+  joint_.geom.depth = first.body && second.body
+                          ? depth_of(point)
+                          : std::min(point.depth, deepest_ + first.way_on + second.way_on);
   joint_.surface.mode = mode_;
   joint_.surface.motionN = point.lift;
   if (point.lift != 0.0) joint_.surface.mode |= dContactMotionN;

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include "reference/error.h"
+#include "reference/ode/body_joints.h"
 #include "reference/ode/world_ode.h"
 #include "reference/state_archive.h"
 
@@ -206,26 +206,13 @@ void OdeWorld::set_asleep(OdeBodyId id, bool asleep) {
 // And what hangs together with it by joints. Where one of them wakes alone, ODE wakes the others in each of
 // its steps and they are laid down again, since they are slow: what the one is given is lost in them.
 void OdeWorld::Impl::wake(dBodyID body) {
-  std::vector<dBodyID> waiting{body};
-  std::unordered_set<dBodyID> known{body};
-  while (!waiting.empty()) {
-    const dBodyID next = waiting.back();
-    waiting.pop_back();
+  for (const dBodyID next : find_jointed_group(body)) {
     Body* const own = bodies.owner(next);
     if (own && !dBodyIsEnabled(next)) own->held_force = own->held_torque = Vec3::Zero();
     if (next == body || !dBodyIsEnabled(next)) dBodyEnable(next);
-    if (own) {
-      own->to_sleep_s = sleep.law().time;
-      collision.broad_phase().note_sleep(*own);
-    }
-    for (int i = 0; i < dBodyGetNumJoints(next); ++i) {
-      const dJointID joint = dBodyGetJoint(next, i);
-      if (dJointGetType(joint) == dJointTypeContact) continue;
-      for (const int end : {0, 1})
-        if (const dBodyID other = dJointGetBody(joint, end);
-            other && !dBodyIsKinematic(other) && known.insert(other).second)
-          waiting.push_back(other);
-    }
+    if (!own) continue;
+    own->to_sleep_s = sleep.law().time;
+    collision.broad_phase().note_sleep(*own);
   }
 }
 

@@ -209,6 +209,13 @@ void place(const Seen& seen, MirroredGeom& geom) {
   geom.orientation = to_quat(q);
 }
 
+// m, since the refresh before: no point of it has come farther.
+double way_of(const MirroredGeom& geom) {
+  const double turn = geom.previous_orientation.angularDistance(geom.orientation),
+               rim = (geom.bounds.center() - geom.position).norm() + 0.5 * geom.bounds.sizes().norm();
+  return (geom.position - geom.previous_position).norm() + (turn > 0.0 ? turn * rim : 0.0);
+}
+
 MirroredGeom mirror(const Seen& seen) {
   const Identity& is = seen.identity;
   MirroredGeom geom;
@@ -260,7 +267,7 @@ struct SpaceMirror::Impl {
   std::unordered_map<dGeomID, std::uint32_t> slots;
   std::vector<Given> order, last_order;
   std::size_t cursor = 0;  // in last_order: which is expected next
-  std::vector<std::uint32_t> added, removed, moved, planes, bodied, free;
+  std::vector<std::uint32_t> added, removed, moved, moved_before, planes, bodied, free;
   std::vector<Eigen::AlignedBox3d> followed;  // one of each in bodied
   std::vector<Eigen::AlignedBox3d> disturbed;
   BoxTree tree;
@@ -292,10 +299,12 @@ void SpaceMirror::refresh() {
 void SpaceMirror::Impl::forget_moves() {
   for (const std::uint32_t slot : moved) {
     MirroredGeom& geom = geoms[slot];
+    geom.last_way = way_of(geom);
     geom.previous_position = geom.position, geom.previous_orientation = geom.orientation,
     geom.previous_bounds = geom.bounds;
   }
   free.insert(free.end(), removed.rbegin(), removed.rend());
+  std::swap(moved, moved_before);
   added.clear(), removed.clear(), moved.clear();
   std::swap(order, last_order);
   order.clear();
@@ -475,6 +484,11 @@ std::span<const MirroredGeom> SpaceMirror::geoms() const { return impl_->geoms; 
 std::span<const std::uint32_t> SpaceMirror::added() const { return impl_->added; }
 std::span<const std::uint32_t> SpaceMirror::removed() const { return impl_->removed; }
 std::span<const std::uint32_t> SpaceMirror::moved() const { return impl_->moved; }
+double SpaceMirror::way_on(std::uint32_t slot) const {
+  const bool moves_on =
+      std::ranges::binary_search(impl_->moved, slot) && std::ranges::binary_search(impl_->moved_before, slot);
+  return moves_on ? std::min(impl_->geoms[slot].last_way, way_of(impl_->geoms[slot])) : 0.0;
+}
 std::span<const std::uint32_t> SpaceMirror::planes() const { return impl_->planes; }
 std::span<const std::uint32_t> SpaceMirror::bodied() const { return impl_->bodied; }
 std::span<const Eigen::AlignedBox3d> SpaceMirror::disturbed() const { return impl_->disturbed; }

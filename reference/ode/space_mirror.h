@@ -28,6 +28,7 @@ struct MirroredGeom {
   Vec3 previous_position = Vec3::Zero();  ///< as of the refresh before; of an added one, as now
   Quat previous_orientation = Quat::Identity();
   Eigen::AlignedBox3d previous_bounds;
+  double last_way = 0.0;        ///< m, to the previous place, of no point of it more
   Vec3 normal = Vec3::UnitZ();  ///< of a plane: normal·x = offset, unit length
   double offset = 0.0;          ///< m
 };
@@ -57,6 +58,9 @@ class SpaceMirror {
   std::span<const std::uint32_t> added() const;
   std::span<const std::uint32_t> removed() const;
   std::span<const std::uint32_t> moved() const;  ///< position, orientation or bounds
+  /// How far one has moved on, m: the lesser of its last two ways where it moved before each of the last two
+  /// refreshes; 0 where it was put elsewhere once.
+  double way_on(std::uint32_t slot) const;
   /// Slots, ascending, of the planes.
   std::span<const std::uint32_t> planes() const;
   /// Slots, ascending, of those that have a body.

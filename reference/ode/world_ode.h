@@ -56,13 +56,13 @@ struct OdeWorld::Impl {
   dWorldID own_world, world;
   std::unique_ptr<ode::StepThreading> threading;
   ode::ContactJoints joints;
+  ode::TrimeshCache trimeshes;
   ode::Collision collision;
   ode::Touches touches;
   bool records_touches = false;
   ode::EnergyBound energy_bound;
   ode::Sweep sweep;
   ode::Sleep sleep;
-  ode::TrimeshCache trimeshes;
   ode::Bodies bodies;
   ode::HeldForces held_forces;
   OdeCounters counters;

@@ -41,7 +41,7 @@ OdeWorld::Impl::Impl(dWorldID callers_world, dSpaceID callers_space, const OdeSe
       own_world(callers_world ? nullptr : dWorldCreate()),
       world(callers_world ? callers_world : own_world),
       joints(world, s, materials),
-      collision(mirror.get(), s),
+      collision(mirror.get(), trimeshes, s),
       sleep(s),
       bodies(collision.broad_phase().bodies_space()) {
   if (own_world) set_up_own_world();
@@ -327,9 +327,7 @@ void OdeWorld::Impl::wake_neighbors(const Body& body) {
     collision.broad_phase().wake_callers(box);
   else if (mirror)
     vacated.push_back(box);
-  for (int i = 0; i < dBodyGetNumJoints(body.body); ++i)
-    for (const int end : {0, 1})
-      if (const dBodyID other = dJointGetBody(dBodyGetJoint(body.body, i), end)) dBodyEnable(other);
+  if (has_joints(body.body)) wake(body.body);
 }
 
 }  // namespace lodestone

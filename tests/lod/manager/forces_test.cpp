@@ -155,6 +155,29 @@ TEST(Forces, ATorqueThatFrictionHoldsTurnsNoStack) {
 
 // Friction opposes the slip that it would have without it, that of a torque too: along another way ODE's box
 // of friction holds up to √2 times as much.
+// It turned about its upright axis, and was held by √2 of friction, or by what a torque gives in a step.
+TEST(Forces, APushHighUpMovesABoxAsOneLowDown) {
+  struct Pushed {
+    double side, height, friction, weights;  // m, m, –, –
+  };
+  for (const Pushed& box : {Pushed{0.3, 0.3, 0.2, 0.28}, {1.0, 1.0, 0.2, 0.28}, {0.3, 0.15, 0.4, 0.8}})
+    for (const LevelChoice level : kPushedRungs) {
+      Manager manager = on_floor({.signatures = coarse_signature});
+      manager.materials().replace(0, {.restitution = 0.0, .friction = box.friction});
+      const BodyId body = add(manager, box_shape({box.side, box.side, box.height}),
+                              testing::at({0, 0, 0.5 * box.height}), level);
+      const Vec3 force(box.weights * manager.mass(body) * kG, 0, 0);
+      manager.step(kFrame);
+      for (int i = 0; i < 60; ++i) {
+        const RigidState now = manager.state(body);
+        manager.add_force_at(body, force, now.position + now.orientation * Vec3(0, 0, 0.48 * box.height));
+        manager.step(kFrame);
+      }
+      const double slid = 0.5 * (box.weights - box.friction) * kG;
+      EXPECT_NEAR(manager.state(body).position.x(), slid, 0.02 * slid) << box.side << " m, " << int(level);
+    }
+}
+
 TEST(Forces, ATorqueBeyondFrictionTurnsACubeAsCoulombSays) {
   constexpr double kSide = 0.3, kSeconds = 0.25;
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support}) {

@@ -210,6 +210,68 @@ TEST(JointContacts, ALiftOnAMotorCarriesAStack) {
     }
 }
 
+// A stop acted a step late: crates sank into a lift that stood at one, and those of `tables` fell through it.
+TEST(JointContacts, ALiftAtItsStopBearsCrates) {
+  for (const bool is_driven : {false, true})
+    for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+      TheirWorld their;
+      Manager manager(their.world, their.space, kSettings);
+      const BodyId plate = manager.add_body({.shape = box_shape({1.5, 1.5, 0.1}),
+                                             .state = testing::at({0, 0, 2}),
+                                             .mass = 50.0,
+                                             .level = LevelChoice::full});
+      manager.step(1e-9);
+      const dBodyID body = manager.ode_body(plate);
+      const dJointID slider = dJointCreateSlider(their.world, nullptr);
+      dJointAttach(slider, body, nullptr);
+      dJointSetSliderAxis(slider, 0, 0, 1);
+      if (is_driven) {  // and rides up to it
+        dJointSetSliderParam(slider, dParamVel, 0.5);
+        dJointSetSliderParam(slider, dParamFMax, 5e3);
+        dJointSetSliderParam(slider, dParamHiStop, 0.5);
+      } else {
+        dJointSetSliderParam(slider, dParamLoStop, 0.0);
+      }
+      std::vector<BodyId> crates;
+      for (int i = 0; i < 4; ++i)
+        crates.push_back(add(manager, box_shape({kCrate, kCrate, kCrate}),
+                             testing::at({0.4 * (i % 2) - 0.2, 0.4 * (i / 2) - 0.2, 2.05 + 0.5 * kCrate}),
+                             level));
+      run(manager, 6.0);
+      EXPECT_NEAR(manager.state(plate).position.z(), is_driven ? 2.5 : 2.0, 2e-3);
+      for (const BodyId crate : crates)
+        EXPECT_NEAR(manager.state(crate).position.z() - manager.state(plate).position.z(),
+                    0.05 + 0.5 * kCrate, 3e-3)
+            << is_driven << ' ' << int(level);
+    }
+}
+
+TEST(JointContacts, OnATrapdoorAtItsStopCratesComeToRest) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    TheirWorld their;
+    Manager manager(their.world, their.space, kSettings);
+    const BodyId door = manager.add_body({.shape = box_shape({1.5, 1.5, 0.1}),
+                                          .state = testing::at({0, 0, 2}),
+                                          .mass = 50.0,
+                                          .level = LevelChoice::full});
+    manager.step(1e-9);
+    const dJointID hinge = dJointCreateHinge(their.world, nullptr);
+    dJointAttach(hinge, manager.ode_body(door), nullptr);
+    dJointSetHingeAnchor(hinge, -0.75, 0, 2);
+    dJointSetHingeAxis(hinge, 0, -1, 0);  // down is back
+    dJointSetHingeParam(hinge, dParamLoStop, 0.0);
+    std::vector<BodyId> crates;
+    for (const double x : {-0.2, 0.4})
+      crates.push_back(
+          add(manager, box_shape({kCrate, kCrate, kCrate}), testing::at({x, 0, 2.05 + 0.5 * kCrate}), level));
+    run(manager, 6.0);
+    for (const BodyId crate : crates) {
+      EXPECT_NEAR(manager.state(crate).position.z(), 2.05 + 0.5 * kCrate, 3e-3) << int(level);
+      EXPECT_TRUE(manager.asleep(crate)) << int(level);
+    }
+  }
+}
+
 TEST(JointContacts, ADoorOnAMotorSweepsCratesAside) {
   const auto mean_of = [](LevelChoice level) {
     TheirWorld theirs;

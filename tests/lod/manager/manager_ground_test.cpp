@@ -74,6 +74,31 @@ INSTANTIATE_TEST_SUITE_P(All, GroundThatComes,
                                            NewGround::their_plane, NewGround::their_box,
                                            NewGround::their_plane_moved));
 
+// By less than the lowest falls in a few steps: those above hung in the air, asleep.
+TEST(ManagerGround, WhatStandsOnGroundThatSinksALittleComesDown) {
+  constexpr double kSide = 0.4;
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const double down : {0.003, 0.03}) {
+      Manager manager({.signatures = coarse_signature});
+      const GroundId shelf = manager.add_static_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity());
+      std::vector<BodyId> stack;
+      for (int i = 0; i < 3; ++i)
+        stack.push_back(
+            add(manager, box_shape({kSide, kSide, kSide}), testing::at({0, 0, (i + 0.5) * kSide}), level));
+      run(manager, 3.0);
+      std::vector<double> before;
+      for (const BodyId body : stack) {
+        ASSERT_TRUE(manager.asleep(body)) << int(level);
+        before.push_back(manager.state(body).position.z());
+      }
+      manager.move_ground(shelf, testing::at({0, 0, -0.5 - down}));
+      run(manager, 5.0);
+      for (std::size_t i = 0; i < stack.size(); ++i)
+        EXPECT_NEAR(manager.state(stack[i]).position.z(), before[i] - down, 2e-3)
+            << int(level) << ", " << down << " m, " << i;
+    }
+}
+
 // Longer than a body may be: `support` stood on it, and who became full was lost with the step.
 TEST(ManagerGround, AFloorOfManyKilometresHoldsOnEachRung) {
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {

@@ -79,5 +79,37 @@ TEST(RestPoses, ARowOfBooksStandsOnEnd) {
   }
 }
 
+// A ball of many faces comes to rest on none of them often enough: its signature has no pose, and it ended
+// the process.
+TEST(RestPoses, WhatIsFinelyRoundHasNoneAndLiesAsItCameDown) {
+  const auto round = std::make_shared<const Shape>(make_shape("round", make_sphere(0.15, 3)));
+  SignatureSettings coarse;
+  coarse.n_theta = 3, coarse.n_phi = 3, coarse.n_alpha = 4, coarse.trials_per_cell = 8;
+  coarse.height_trials = 60, coarse.settling_trials = 20, coarse.clips = 0;
+  coarse.rest_pose_frequency_min = 1.0;
+  const auto signature = std::make_shared<const Signature>(measure_signature(*round, coarse, 2));
+  ASSERT_TRUE(signature->rest_poses.empty());
+  Ground ground;
+  ground.add_plane({.normal = Vec3::UnitZ()});
+  for (const Vec3& inwards : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
+    ground.add_plane({.normal = inwards, .offset = -0.5});
+  const MaterialTable materials;
+  for (const bool published : {false, true}) {
+    StatisticalSettings settings;
+    settings.tables.published = published;
+    testing::OneRung level(StatisticalModel::tables, settings, ground, materials);
+    constexpr int kBalls = 8;
+    for (int i = 0; i < kBalls; ++i)
+      level.add(std::uint32_t(i), round, 14.0, 0,
+                {.position = Vec3(0.3 * (i % 2) - 0.1, 0.3 * (i / 2 % 2) - 0.2, 0.4 + 0.4 * (i / 4))}, false,
+                signature);
+    for (int step = 0; step < 240; ++step) {
+      StepReport report;
+      level.step(1.0 / 60, {}, report);
+    }
+    for (int i = 0; i < kBalls; ++i) EXPECT_GT(level.state(i).position.z(), 0.14) << published;
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -180,7 +180,7 @@ TEST_F(BodyJoints, MotorsReachTheirSpeed) {
     }
 }
 
-TEST_F(BodyJoints, AMotorAtItsStopOrSwitchedOffIsNone) {
+TEST_F(BodyJoints, AMotorAtASoftStopOrSwitchedOffIsNone) {
   const OdeBodyId a = add({0, 0, 1});
   const dJointID slider = dJointCreateSlider(dBodyGetWorld(body(a)), nullptr);
   dJointAttach(slider, body(a), nullptr);
@@ -192,7 +192,35 @@ TEST_F(BodyJoints, AMotorAtItsStopOrSwitchedOffIsNone) {
   EXPECT_FALSE(has_motor(slider));
   dJointEnable(slider);
   dJointSetSliderParam(slider, dParamHiStop, 0.0);
+  EXPECT_TRUE(has_motor(slider));  // it goes on pushing, and the stop is known
+  dJointSetSliderParam(slider, dParamStopCFM, 1e-3);
   EXPECT_FALSE(has_motor(slider));
+}
+
+TEST_F(BodyJoints, StopsOfASliderAreThoseWithinReach) {
+  for (const bool is_first : {true, false}) {
+    const OdeBodyId a = add({0, 0, 1});
+    const dJointID slider = dJointCreateSlider(dBodyGetWorld(body(a)), nullptr);
+    dJointAttach(slider, is_first ? body(a) : nullptr, is_first ? nullptr : body(a));
+    dJointSetSliderAxis(slider, 0, 0, 1);
+    dBodySetPosition(body(a), 0, 0, 1.5);
+    const double position = dJointGetSliderPosition(slider);
+    dJointSetSliderParam(slider, dParamLoStop, position - 0.03);
+    dJointSetSliderParam(slider, dParamHiStop, position + 0.4);
+    std::vector<JointStop> stops;
+    find_joint_stops(body(a), 0.1, stops);
+    ASSERT_EQ(stops.size(), 1u);
+    EXPECT_NEAR(stops[0].gap, 0.03, 1e-9);
+    dBodySetPosition(body(a), 0, 0, 1.5 + 0.03 * stops[0].direction.z());  // away from it
+    EXPECT_GT(std::abs(dJointGetSliderPosition(slider) - (position - 0.03)), 0.05);
+    stops.clear();
+    find_joint_stops(body(a), 1.0, stops);
+    EXPECT_EQ(stops.size(), 2u);
+    stops.clear();
+    dJointSetSliderParam(slider, dParamStopCFM, 1e-3);
+    find_joint_stops(body(a), 1.0, stops);
+    EXPECT_TRUE(stops.empty());
+  }
 }
 
 }  // namespace
