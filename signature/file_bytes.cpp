@@ -38,9 +38,11 @@ void check_is_file(const std::filesystem::path& file, const std::string& what) {
   throw_input_error(file.string(), fault.empty() ? "a special file" : fault, what);
 }
 
-// Something that bytes go through, such as a pipe or /dev/stdout: nothing may be put in its place.
+// Something that bytes go through, such as a pipe: nothing may be put in its place. Nor in that of a symbolic
+// link, though it leads to a file: /dev/stdout is one to whatever standard output was sent to.
 bool is_special(const std::filesystem::path& file) {
   std::error_code error;
+  if (std::filesystem::is_symlink(file, error)) return true;
   return std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error) &&
          !std::filesystem::is_directory(file, error);
 }

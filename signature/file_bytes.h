@@ -27,7 +27,8 @@ class MappedFile {
 };
 
 /// Written to a temporary file beside `file` and renamed: readers see the old file or the new one, whole.
-/// Straight to what is no file, such as a pipe. Throws InputError where it cannot be written.
+/// Straight to what is no file, such as a pipe, and to what a symbolic link leads to. Throws InputError where
+/// it cannot be written.
 void write_atomically(std::span<const std::byte> bytes, const std::filesystem::path& file);
 
 }  // namespace lodestone

@@ -103,5 +103,18 @@ TEST_F(FileBytes, APipeIsWrittenTo) {
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
+// As /dev/stdout is one to whatever the shell sent it to: it was replaced, and its file got nothing.
+TEST_F(FileBytes, ASymbolicLinkIsWrittenThrough) {
+  const fs::path link = folder / "link", file = folder / "file";
+  write_atomically(some(50, 1), file);
+  fs::create_symlink(file, link);
+  for (const std::size_t count : {1000, 10}) {
+    write_atomically(some(count, 2), link);
+    EXPECT_TRUE(fs::is_symlink(link));
+    EXPECT_EQ(read_file(file, "bytes"), some(count, 2));
+  }
+  EXPECT_EQ(files(), 2U);
+}
+
 }  // namespace
 }  // namespace lodestone
