@@ -134,10 +134,8 @@ void Manager::before_world_step(double dt) {
   const StageZones zones(impl.profile, impl.report.times);
   impl.follow_gravity();
   impl.begin_lists();
-  {
-    const Impl::Undo undo(impl);
-    impl.begin_stages(dt, WorldStepBy::caller);
-  }
+  const Impl::Undo undo(impl);
+  impl.begin_stages(dt, WorldStepBy::caller);
   impl.step_levels.begin_callers_step(dt);
   impl.waits_for_world_step = true;
 }

@@ -48,7 +48,12 @@ void StepLevels::step_full(double dt, StepReport& report) {
 void StepLevels::begin_callers_step(double dt) {
   levels_.eased.hold_back(levels_, dt);
   joint_forces_.begin(neighborhood_.bodies, neighborhood_.ode_bodies);
-  levels_.full.begin_callers_step(dt);
+  try {
+    levels_.full.begin_callers_step(dt);
+  } catch (...) {
+    joint_forces_.end();
+    throw;
+  }
 }
 
 void StepLevels::end_callers_step(Counters& counters) {

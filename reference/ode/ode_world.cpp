@@ -146,10 +146,15 @@ void OdeWorld::begin_callers_step(double dt) {
   if (impl_->callers_step_s > 0.0)
     throw InputError("begin_callers_step twice, with no end_callers_step between them");
   prepare();
+  try {
+    impl_->begin_step(dt);
+    impl_->sweep.begin(impl_->bodies);
+    impl_->begin_callers_substep(dt);
+  } catch (...) {  // such as the pair filter's: the step has not begun
+    impl_->joints.end();
+    throw;
+  }
   impl_->callers_step_s = dt;
-  impl_->begin_step(dt);
-  impl_->sweep.begin(impl_->bodies);
-  impl_->begin_callers_substep(dt);
 }
 
 void OdeWorld::end_callers_step() {

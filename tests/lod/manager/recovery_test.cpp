@@ -4,6 +4,8 @@
 
 #include <cstdarg>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include "reference/random.h"
 #include "reference/simulation_error.h"
@@ -115,6 +117,39 @@ TEST(Recovery, FastBodiesWithinTheLimitAreLeftAlone) {
   run(manager, 0.5);
   EXPECT_EQ(manager.report().counters.states_recovered, 0);
   EXPECT_NEAR(manager.state(body).velocity.x(), 1e6, 1e-6);
+}
+
+// A pair filter that throws once: the step had begun for ever, and none could be taken any more.
+TEST(Recovery, AWorldStepThatDidNotBeginCanBeBegunAgain) {
+  dInitODE2(0);
+  const dWorldID world = dWorldCreate();
+  const dSpaceID space = dHashSpaceCreate(nullptr);
+  dWorldSetGravity(world, 0, 0, -9.81);
+  {
+    bool throws = true;
+    ManagerSettings settings = unmeasured();
+    settings.pair_filter = [&](BodyId, BodyId) {
+      if (std::exchange(throws, false)) throw std::runtime_error("the caller's own");
+      return true;
+    };
+    Manager manager(world, space, settings);
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    const auto shape = box_shape({0.2, 0.2, 0.2});
+    add(manager, shape, testing::at({0, 0, 0.1}), LevelChoice::full);
+    const BodyId upper = add(manager, shape, testing::at({0, 0, 0.3}), LevelChoice::full);
+    EXPECT_THROW(manager.before_world_step(kFrame), std::runtime_error);
+    const std::int64_t step = manager.report().step;
+    for (int i = 0; i < 60; ++i) {
+      manager.before_world_step(kFrame);
+      dWorldStep(world, kFrame);
+      manager.after_world_step();
+    }
+    EXPECT_EQ(manager.report().step, step + 60);
+    EXPECT_NEAR(manager.state(upper).position.z(), 0.3, 2e-3);
+    EXPECT_NO_THROW(manager.step(kFrame));
+  }
+  dSpaceDestroy(space);
+  dWorldDestroy(world);
 }
 
 // Where ODE's solver gives up, the substep is done again, in a caller's world, too, with his bodies as they
