@@ -57,11 +57,8 @@ bool Groups::valid(GroupId group) const {
 }
 
 void Groups::dissolve(GroupId id) {
-  Group& group = groups_[id.index];
-  for (const std::uint32_t body : group.members) group_of_.erase(body);
-  const std::uint32_t generation = group.generation;
-  group = {};
-  group.generation = generation;
+  for (const std::uint32_t body : members(id)) group_of_.erase(body);
+  groups_[id.index].clear();
 }
 
 void Groups::forget(std::uint32_t body) {
@@ -71,6 +68,7 @@ void Groups::forget(std::uint32_t body) {
   const auto place = std::ranges::find(group.members, body);
   if (!group.poses.empty()) group.poses.erase(group.poses.begin() + (place - group.members.begin()));
   group.members.erase(place);
+  if (group.members.empty()) group.clear();
   group_of_.erase(found);
 }
 

@@ -64,6 +64,11 @@ class Groups {
     bool refused = false;           // the caller left a joint on when it was asked
     std::vector<RigidState> poses;  // of the members, while its joints are off
     void archive(StateArchive& a) { a(members, generation, asleep, detached, refused, poses); }
+    void clear() {
+      const std::uint32_t last = generation;
+      *this = {};
+      generation = last;
+    }
   };
   GroupId id_of(std::size_t index) const { return {std::uint32_t(index), groups_[index].generation}; }
   bool joined(const Group& group) const;
