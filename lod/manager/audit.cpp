@@ -63,6 +63,7 @@ void Audit::watch(std::uint32_t body, const RigidState& state) {
   const std::shared_ptr<const Shape>& shape = levels_.bodies.shape(body);
   watched_.push_back({.body = body,
                       .birth = record.birth,
+                      .number = ++numbers_,
                       .start = state,
                       .seen = state,
                       .shape = shape,
@@ -113,8 +114,8 @@ void Audit::end_step(double dt, StepReport& report) {
   while (!watched_.empty() && thread_time_ms() - started < audit_ms_) {
     const auto next = std::ranges::find_if(watched_, [](const Watched& w) { return !w.full; });
     if (next == watched_.end()) break;
-    if (simulated_birth_ != next->birth || !way_) begin(*next);
-    simulate(dt);
+    if (simulated_number_ != next->number || !way_) begin(*next);
+    simulate(*next, dt);
     if (way_->done()) next->full = std::exchange(way_, std::nullopt);
   }
   std::erase_if(watched_, [this](const Watched& w) {
@@ -147,13 +148,12 @@ void Audit::begin(const Watched& w) {
   }
   if (simulated_) world_->remove_body(simulated_);
   simulated_ = world_->add_body({.shape = w.shape, .mass = w.mass, .material = w.material, .state = w.start});
-  simulated_birth_ = w.birth;
+  simulated_number_ = w.number;
   simulated_s_ = 0.0;
   way_.emplace(w.start, w.shape->size);
 }
 
-void Audit::simulate(double dt) {
-  const Watched& w = *std::ranges::find(watched_, simulated_birth_, &Watched::birth);
+void Audit::simulate(const Watched& w, double dt) {
   world_->step(dt, full_.substeps);
   simulated_s_ += dt;
   const RigidState state = world_->state(simulated_);

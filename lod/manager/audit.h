@@ -68,7 +68,8 @@ class Audit {
   struct Watched {
     std::uint32_t body = 0;
     std::uint64_t birth = 0;
-    RigidState start, seen;  // at demotion; after the last step
+    std::int64_t number = 0;  // of this going down: the body may do so again
+    RigidState start, seen;   // at demotion; after the last step
     std::shared_ptr<const Shape> shape;
     double mass = 1.0;
     MaterialId material = 0;
@@ -78,7 +79,7 @@ class Audit {
   };
   bool still_watched(const Watched& watched) const;
   void look_at(Watched& watched, double dt);
-  void simulate(double dt);
+  void simulate(const Watched& watched, double dt);
   bool world_is_current() const;
   void begin(const Watched& watched);
   void compare(const Watched& watched);
@@ -91,7 +92,8 @@ class Audit {
   std::optional<OdeWorld> world_;  // with the planes of the ground and one body
   std::vector<HalfSpace> planes_;  // that it has
   OdeBodyId simulated_ = {};
-  std::uint64_t simulated_birth_ = 0;  // of the watched body that it is
+  std::int64_t numbers_ = 0;           // given
+  std::int64_t simulated_number_ = 0;  // of the watched that it is
   double simulated_s_ = 0.0;
   std::optional<WayToRest> way_;
   RunningMean rest_time_full_, rest_time_, rest_time_difference_, distance_full_, distance_,

@@ -122,5 +122,24 @@ TEST(Audit, LeavesOutWhatTheCallerMoves) {
   EXPECT_EQ(manager.report().audit.watched, 0);
 }
 
+// What goes down, comes up before its audit is done, and goes down once more is compared with a simulation
+// from where it went down last.
+TEST(Audit, EachGoingDownIsSimulatedFromItsOwnStart) {
+  ManagerSettings settings = unmeasured();
+  settings.audit_ms = 0.05;  // some steps of the simulation in each
+  Manager manager = on_floor(settings);
+  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 12}, {3, 0, 0}), LevelChoice::full);
+  run(manager, 0.1);
+  manager.set_level(body, LevelChoice::support);
+  run(manager, 0.2);
+  manager.set_level(body, LevelChoice::full);
+  run(manager, 0.4);
+  ASSERT_EQ(manager.report().audit.left_out, 1);
+  manager.set_level(body, LevelChoice::support);
+  for (int i = 0; i < 3000 && manager.report().audit.bodies == 0; ++i) manager.step(kFrame);
+  ASSERT_EQ(manager.report().audit.bodies, 1);
+  EXPECT_LT(manager.report().audit.drift, 0.5);  // a second on, in flight; sizes
+}
+
 }  // namespace
 }  // namespace lodestone
