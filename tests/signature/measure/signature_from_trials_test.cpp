@@ -11,6 +11,7 @@
 #include "reference/random.h"
 #include "signature/measure/collision_vectors.h"
 #include "signature/measure/response_grid.h"
+#include "signature/signature_file.h"
 
 namespace lodestone::signature_from_trials_test {
 namespace {
@@ -137,6 +138,28 @@ TEST(SignatureFromTrials, RowsThatDifferGiveOtherTables) {
   ASSERT_EQ(signature.rest_poses.size(), 2U);
   EXPECT_NEAR(signature.rest_poses[0].frequency, 2.0 / 3.0, 1e-12);
   EXPECT_NEAR(signature.rest_poses[0].height, 0.1 / box.radius, 1e-7);
+}
+
+// Finite numbers that no float holds over the speed, or that no spread of a cell survives. Compared with what
+// is drawn from them, the first were compared for ever.
+TEST(SignatureFromTrials, RowsBeyondAllMeasureAreLeftOut) {
+  const Vec3 still = Vec3::Zero(), up = Vec3::UnitZ();
+  const MeasuredTrials trials{.collisions = {{-1e-30 * up, still, up, 1e20 * up, still},
+                                             {-up, still, up, 1e30 * up, still},
+                                             {-up, still, up, 0.4 * up, 1e5 * up},
+                                             {-1e200 * up, still, up, 1e200 * up, still},
+                                             {-up, still, up, 0.4 * up, still}},
+                              .rest_normals = {}};
+  for (const bool paper_grid : {false, true}) {
+    SignatureSettings settings = quick_settings();
+    settings.draw = ResponseDraw::empirical;
+    settings.paper_grid = paper_grid;
+    TrialCoverage coverage;
+    const Signature signature = make_signature_from_trials(make_test_box(), settings, trials, {}, &coverage);
+    EXPECT_EQ(coverage.left_out, 4);
+    EXPECT_EQ(coverage.measured_cells, 1);
+    EXPECT_NO_THROW(load_signature(encode_signature(signature)));
+  }
 }
 
 TEST(MeasuredTrials, WhatIsWrongIsNamedWithItsLine) {
