@@ -143,6 +143,21 @@ TEST_F(Losses, AnOutputThatIsNoFileIsWrittenThrough) {
   EXPECT_TRUE(testing::bytes_of(at("copy")) == testing::bytes_of(at("plain.sig")));
 }
 
+// The size that it tells is that of what was written: a pipe has none.
+TEST_F(Losses, APartOrAPageThroughAPipeIsASuccess) {
+  ASSERT_EQ(run(kRun + "--out " + name("out")).exit_code, 0);
+  for (const std::string& arguments :
+       {kSign + "--shard 1/2 --json -o ", "view " + name("out") + " --json -o "}) {
+    const std::string pipe = name("pipe");
+    ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+    const Ended ended = testing::run_shell("timeout 60 cat " + pipe + " >" + name("copy") + " & (" +
+                                           command(arguments + pipe) + ") 2>&1; code=$?; wait; exit $code");
+    ASSERT_EQ(ended.exit_code, 0) << ended.out;
+    EXPECT_EQ(nlohmann::json::parse(ended.out)["bytes"], std::filesystem::file_size(at("copy")));
+    std::filesystem::remove(at("pipe"));
+  }
+}
+
 class Messages : public testing::CliTest {};
 
 TEST_F(Messages, AMeshNameBeyondWhatTheSystemTakes) {

@@ -56,7 +56,7 @@ void merge(const MergeArguments& arguments) {
   if (std::ranges::any_of(arguments.parts, is_json)) return merge_comparison(arguments);
   const Signature signature = merge_parts(arguments.parts);
   save_signature(signature, arguments.out);
-  const std::size_t bytes = std::filesystem::file_size(arguments.out);
+  const std::size_t bytes = encode_signature(signature).size();
   ordered_json json = json_of(signature, bytes);
   json["file"] = arguments.out.string();
   print_results(arguments.results, json,

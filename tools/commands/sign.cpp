@@ -146,7 +146,7 @@ nlohmann::ordered_json json_of(const MeasurementPart& part, const std::filesyste
   json["cached"] = false;
   json["trials_per_s"] = part.seconds > 0.0 ? nlohmann::ordered_json(double(trials) / part.seconds)
                                             : nlohmann::ordered_json(nullptr);
-  json["bytes"] = std::filesystem::file_size(file);
+  json["bytes"] = encode_part(part).size();
   json["rest_poses"] = nlohmann::ordered_json::array();
   json["held_out_ks"] = nullptr;
   json["trials_resumed"] = part.trials_resumed;

@@ -24,11 +24,10 @@ void view(const ViewArguments& arguments) {
     if (std::filesystem::equivalent(playback_of(run), arguments.page, error))
       throw_input_error(arguments.page.string(), "the run that it is to play", "another file for the page");
   }
-  save_page(arguments.page, make_view_page(arguments.runs, arguments.blind));
+  const std::string page = make_view_page(arguments.runs, arguments.blind);
+  save_page(arguments.page, page);
   print_results(arguments.results,
-                {{"page", arguments.page.string()},
-                 {"runs", arguments.runs.size()},
-                 {"bytes", std::filesystem::file_size(arguments.page)}},
+                {{"page", arguments.page.string()}, {"runs", arguments.runs.size()}, {"bytes", page.size()}},
                 fmt::format("written      {}, for any browser\n", arguments.page.string()));
 }
 
