@@ -42,7 +42,6 @@ void SupportLevel::wake(int slot) {
 void SupportLevel::put_to_sleep(int slot) {
   if (asleep(slot)) return;
   put_to_sleep(bodies_[std::size_t(slot)]);
-  if (angular_velocity_given_[std::size_t(slot)]) std::erase(given_, slot);
   angular_velocity_given_[std::size_t(slot)].reset();
   std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
   drop_awake(slot);

@@ -134,6 +134,23 @@ TEST(SupportLevel, AStateIsReadBackToTheBit) {
   EXPECT_TRUE(testing::same_bits(s.level.state(3), other));
 }
 
+// Laid to sleep between the two, and given one again.
+TEST(SupportLevel, AStateOfWhoWasLaidToSleepIsReadBackToo) {
+  OneSupportLevel s;
+  const RigidState state = testing::at({1, 2, 3}, {4, 5, 6}, {7, 8, 9});
+  for (int i = 0; i < 200; ++i) {
+    const int slot = i == 0 ? s.add(0, state) : 0;
+    s.level.put_to_sleep(slot);
+    EXPECT_TRUE(s.level.state(slot).angular_velocity.isZero(0.0));
+    s.level.set_state(slot, state);
+    EXPECT_TRUE(testing::same_bits(s.level.state(slot), state));
+  }
+  s.level.put_to_sleep(0);
+  s.step();
+  EXPECT_TRUE(s.level.asleep(0));
+  EXPECT_TRUE(s.level.state(0).angular_velocity.isZero(0.0));
+}
+
 // Who fell asleep in the step, and who was woken since that was asked.
 TEST(SupportLevel, TellsWhoWokeAndWhoFellAsleep) {
   OneSupportLevel s({0, 0, -9.81});
