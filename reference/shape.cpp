@@ -96,11 +96,14 @@ std::uint64_t hash_content(const Shape& shape) {
   return XXH3_64bits(content.data(), content.size() * sizeof(content[0]));
 }
 
-std::vector<Shape> make_pieces(const Shape& shape) {
+/// None where one of them is no shape by itself, such as a step smaller than any shape may be.
+std::vector<Shape> make_pieces(const Shape& shape) try {
   std::vector<Shape> pieces;
   for (const Hull& hull : find_convex_pieces(shape.mesh, shape.hull))
     pieces.push_back(make_shape(shape.name + " piece", {hull.vertices, hull.faces}));
   return pieces;
+} catch (const InputError&) {
+  return {};
 }
 
 /// From vertices already about the centre of mass.

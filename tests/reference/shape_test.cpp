@@ -18,6 +18,23 @@ Mesh open_box() {
   return mesh;
 }
 
+// Along x, with a step of a twentieth of its length.
+Mesh stepped_bar(double length) {
+  const double outline[][2] = {{0, 0},       {1, 0},      {1, 0.1},   {0.45, 0.1},
+                               {0.45, 0.15}, {0.4, 0.15}, {0.4, 0.1}, {0, 0.1}};
+  Mesh mesh;
+  for (const double z : {0.0, 0.08})
+    for (const auto& [x, y] : outline) mesh.vertices.push_back(length * Vec3(x, y, z));
+  const int caps[][3] = {{0, 1, 3}, {1, 2, 3}, {0, 3, 6}, {0, 6, 7}, {3, 4, 5}, {3, 5, 6}};
+  for (const auto& [a, b, c] : caps)
+    mesh.faces.push_back({a, c, b}), mesh.faces.push_back({a + 8, b + 8, c + 8});
+  for (int a = 0; a < 8; ++a) {
+    const int b = (a + 1) % 8;
+    mesh.faces.push_back({a, b, b + 8}), mesh.faces.push_back({a, b + 8, a + 8});
+  }
+  return mesh;
+}
+
 TEST(Shape, OfABox) {
   Mesh mesh = make_box({0.2, 0.3, 0.4});
   for (Vec3& vertex : mesh.vertices) vertex += Vec3(1, 2, 3);
@@ -138,6 +155,16 @@ TEST(Shape, WithAnImpossibleMassIsRefused) {
   const std::string message = testing::message_of(
       [&] { make_shape("odd", box, {.inertia_per_mass_m2 = Mat3(Vec3(1, 1, 100).asDiagonal())}); });
   EXPECT_EQ(message.rfind("odd: inertia: found", 0), 0u) << message;
+}
+
+// A bar with a step, of its legal size: the step alone is smaller than any shape may be. It is then without
+// pieces.
+TEST(Shape, MayHaveAStepSmallerThanAShape) {
+  for (const double length : {0.01, 0.0005}) {
+    const Shape shape = make_shape("stepped", stepped_bar(length));
+    EXPECT_FALSE(shape.convex);
+    EXPECT_EQ(shape.pieces.empty(), length < 0.001) << length;
+  }
 }
 
 }  // namespace
