@@ -152,11 +152,16 @@ void Ground::hold(std::int32_t part) {
   const Box box = placed(held.shape.bounds, held.pose);
   const Vec3 way = Vec3::Constant(held.greatest_speed() * held.pose.goes_on_s);
   bounds_[std::size_t(part)] = {box.min() - way, box.max() + way};
+  if (bounds_of_parts_) bounds_of_parts_->extend(bounds_[std::size_t(part)]);
   loose_.push_back(part);
 }
 
 // From the tree it goes when that is next built: until then it is passed over there.
 void Ground::let_go(std::int32_t part) {
+  const Box& box = bounds_[std::size_t(part)];
+  if (bounds_of_parts_ && ((box.min().array() <= bounds_of_parts_->min().array()).any() ||
+                           (box.max().array() >= bounds_of_parts_->max().array()).any()))
+    bounds_of_parts_.reset();
   if (in_tree_[std::size_t(part)])
     in_tree_[std::size_t(part)] = false;
   else
@@ -180,9 +185,11 @@ void Ground::rebuild() const {
 }
 
 Eigen::AlignedBox3d Ground::bounds_of_parts() const {
-  Eigen::AlignedBox3d all;
+  if (bounds_of_parts_) return *bounds_of_parts_;
+  Box all;
   for (std::size_t i = 0; i < parts_.size(); ++i)
     if (parts_[i]) all.extend(bounds_[i]);
+  bounds_of_parts_ = all;
   return all;
 }
 

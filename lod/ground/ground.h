@@ -115,7 +115,7 @@ class Ground {
   /// parts.
   void archive(StateArchive& a);
   bool has_parts() const { return parts_used_ > 0; }
-  /// Of all parts, m, world.
+  /// Of all parts, m, world. Not for several threads at once, as it keeps what it found.
   Eigen::AlignedBox3d bounds_of_parts() const;
   /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making.
   /// Not for several threads at once, as it makes solids.
@@ -148,6 +148,7 @@ class Ground {
   mutable std::vector<char> in_tree_;  // of each part
   mutable std::vector<std::int32_t> loose_;
   mutable std::size_t tree_size_ = 0;
+  mutable std::optional<Eigen::AlignedBox3d> bounds_of_parts_;  // none since a part at their border left
 };
 
 }  // namespace lodestone

@@ -1,9 +1,12 @@
+#include "lod/ground/ground.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
 #include "lod/manager.h"
+#include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
@@ -50,6 +53,30 @@ Mesh terrain(int n, const std::function<double(double, double)>& height) {
       mesh.faces.push_back({a, d, c});
     }
   return mesh;
+}
+
+// As parts come, move and go, at the border of all and within it.
+TEST(Ground, ItsBoundsAreThoseOfItsParts) {
+  Ground ground;
+  RandomStream random(12, 0, 0);
+  std::vector<GroundId> there;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 place = random.uniform(0, 20) * random.direction();
+    const auto any = std::size_t(random.uniform() * double(there.size()));
+    if (there.empty() || random.uniform() < 0.5) {
+      there.push_back(ground.add_box({1, 2, 3}, place, random.orientation(), 0));
+    } else if (random.uniform() < 0.5) {
+      ground.move_part(there[any], {place, random.orientation()});
+    } else {
+      ground.remove(there[any]);
+      there.erase(there.begin() + std::ptrdiff_t(any));
+    }
+    Eigen::AlignedBox3d all;
+    for (const GroundId id : there) all.extend(ground.bounds(id));
+    if (there.empty()) continue;
+    ASSERT_EQ(ground.bounds_of_parts().min(), all.min());
+    ASSERT_EQ(ground.bounds_of_parts().max(), all.max());
+  }
 }
 
 // A ball has no pose to rest in, and hops by what gravity adds in a step.
