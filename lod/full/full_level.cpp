@@ -62,8 +62,8 @@ FullLevel::FullLevel(dxWorld* world, dxSpace* space, const FullSettings& setting
       world_(std::in_place, world, space, ode_settings_of(settings), materials) {}
 
 void FullLevel::add_ground(GroundId id, std::function<OdeGroundId(OdeWorld&)> make) {
-  Piece& piece = pieces_.emplace_back(Piece{.id = id, .make = std::move(make)});
-  if (world_) lay(piece);
+  piece_of_[id.index] = pieces_.insert(pieces_.end(), Piece{.id = id, .make = std::move(make)});
+  if (world_) lay(pieces_.back());
 }
 
 void FullLevel::lay(Piece& piece) {
@@ -89,7 +89,7 @@ void FullLevel::add_static_mesh(GroundId id, const Mesh& mesh, MaterialId materi
 }
 
 void FullLevel::move_ground(GroundId id, const RigidState& state) {
-  Piece& piece = *std::ranges::find(pieces_, id, &Piece::id);
+  Piece& piece = *piece_of_.at(id.index);
   if (world_)
     world_->move_ground(piece.laid, state);
   else
@@ -97,12 +97,13 @@ void FullLevel::move_ground(GroundId id, const RigidState& state) {
 }
 
 void FullLevel::remove_ground(GroundId id) {
-  const auto piece = std::ranges::find(pieces_, id, &Piece::id);
+  const auto piece = piece_of_.at(id.index);
   if (world_) {
     world_->remove_ground(piece->laid);
     id_of_laid_.erase(piece->laid.value);
   }
   pieces_.erase(piece);
+  piece_of_.erase(id.index);
 }
 
 GroundId FullLevel::ground_of(OdeGroundId id) const {

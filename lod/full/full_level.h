@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -112,7 +113,8 @@ class FullLevel {
   const MaterialTable* materials_;
   std::optional<OdeWorld> world_;
   std::function<bool(std::uint32_t, std::uint32_t)> pair_filter_;
-  std::vector<Piece> pieces_;  // in the order in which they came
+  std::list<Piece> pieces_;                                                 // in the order in which they came
+  std::unordered_map<std::uint32_t, std::list<Piece>::iterator> piece_of_;  // by GroundId::index
   std::unordered_map<std::uint32_t, GroundId> id_of_laid_;
   std::vector<Member> members_;
   std::vector<char> touching_;  // one of each member

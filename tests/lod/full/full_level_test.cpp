@@ -50,6 +50,24 @@ TEST_F(FullLevelOfBoxes, GroundIsLaidAsItWasLeft) {
   EXPECT_NEAR(level_.world()->state(body).position.z(), 0.1, 2e-3);
 }
 
+// Of many pieces, of which some went and others came in their places, each moves by its own id.
+TEST_F(FullLevelOfBoxes, GroundIsKnownByItsIdsAsItComesAndGoes) {
+  const OdeBodyId body = add(0, {5, 0, 0.4});
+  const auto add_table = [&](std::uint32_t i, std::uint32_t generation) {
+    level_.add_static_box({i, generation}, {1, 1, 0.2}, {1.0 * i, 0, 0.1}, Quat::Identity(), 0);
+  };
+  for (std::uint32_t i = 0; i < 10; ++i) add_table(i, 1);
+  for (const std::uint32_t i : {3u, 0u, 5u, 9u}) level_.remove_ground({i, 1});
+  for (const std::uint32_t i : {5u, 0u}) add_table(i, 2);
+  level_.move_ground({5, 2}, testing::at({5, 0, 0.2}));
+  run(60);
+  EXPECT_NEAR(level_.world()->state(body).position.z(), 0.4, 2e-3);
+  level_.remove_ground({5, 2});
+  level_.move_ground({4, 1}, testing::at({5, 0, -0.1}));
+  run(60);
+  EXPECT_NEAR(level_.world()->state(body).position.z(), 0.1, 2e-3);
+}
+
 // As bodies come and go members are those that are there, each where index_of says.
 TEST_F(FullLevelOfBoxes, MembersAreThoseThatAreThere) {
   RandomStream random(2, 0, 0);
