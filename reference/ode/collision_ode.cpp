@@ -138,15 +138,16 @@ OdeGroundId Collision::add_ground(Ground ground) {
   ground.id = {++last_ground_id_};
   dGeomSetData(ground.geom, reinterpret_cast<void*>(number));
   broad_phase_.add_ground(ground.geom);
+  number_of_[ground.id.value] = number;
   ground_[number] = std::move(ground);
   return ground_[number].id;
 }
 
 Ground& Collision::find_ground(OdeGroundId id) {
-  const auto found = std::ranges::find(ground_, id, &Ground::id);
-  if (!id || found == ground_.end())
+  const auto found = number_of_.find(id.value);
+  if (found == number_of_.end())
     throw InputError(fmt::format("OdeGroundId {}: found no such box or mesh", id.value));
-  return *found;
+  return ground_[found->second];
 }
 
 void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bodies) {
@@ -178,6 +179,7 @@ void Collision::remove_ground(OdeGroundId id, Bodies& bodies) {
   broad_phase_.remove_ground(ground.geom);
   dGeomDestroy(ground.geom);
   free_ground_.push_back(std::uint32_t(&ground - ground_.data()));
+  number_of_.erase(id.value);
   ground = {};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "reference/ode/bodies_ode.h"
@@ -85,6 +86,7 @@ class Collision {
   std::vector<Plane> callers_planes_;
   std::vector<Ground> ground_;  // by the ground geom's number (dGeomGetData)
   std::vector<std::uint32_t> free_ground_;
+  std::unordered_map<std::uint32_t, std::size_t> number_of_;  // of ground, by OdeGroundId::value
   std::uint32_t last_ground_id_ = 0;
   std::int64_t ground_meshes_ = 0;
   std::vector<ContactPoint> points_;  // of the pair at hand
