@@ -57,7 +57,7 @@ struct PolicySettings {
   int min_dwell_frames = 30;          ///< a body keeps a new rung at least this long
   int max_transitions_per_frame = 4;  ///< nearest first; the rest wait their turn
   int most_full = kUnlimited;         ///< bodies that the policy makes full, at any time: the nearest
-  int most_support = kUnlimited;      ///< and `support`
+  int most_support = kUnlimited;      ///< and `support`, of those that are awake
   /// ≥ 1: a body in no viewpoint's picture counts as so many times as far; infinity: it goes to the least
   /// rung that it may have.
   double out_of_view_factor = 1.0;
