@@ -45,6 +45,7 @@ OdeSettings ode_settings_of(const FullSettings& settings) {
           .direct_contacts_max = kDirectContactsMax,
           .max_correcting_velocity = kMaxCorrectingVelocity,
           .correcting_time = kCorrectingTime,
+          .slides_straight = true,
           .most_mesh_measures = kMostMeshMeasures,
           .plane_depth_max = kPlaneDepthMax,
           .timed_contacts_above = kTimedContactsAbove,

@@ -52,12 +52,14 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
     : world_(world),
       group_(dJointGroupCreate(0)),
       materials_(&materials),
+      slides_straight_(settings.friction_along_slip && settings.slides_straight),
       erp_(settings.erp),
       cfm_(settings.cfm),
       max_correcting_velocity_(settings.max_correcting_velocity),
       correcting_time_(settings.correcting_time) {
   mode_ = dContactBounce | dContactApprox1 | dContactSoftERP | dContactSoftCFM;
   if (settings.friction_along_slip) mode_ |= dContactFDir1;
+  if (slides_straight_) mode_ |= dContactMu2;
   joint_.surface.bounce_vel = settings.bounce_velocity;
 }
 
@@ -121,6 +123,7 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
   if (point.lift != 0.0) joint_.surface.mode |= dContactMotionN;
   if (joint_.surface.slip1 > 0.0) joint_.surface.mode |= dContactSlip1 | dContactSlip2;
   copy(slip_direction(first, second, point), joint_.fdir1);
+  if (slides_straight_) joint_.surface.mu2 = joint_.surface.mu * share_across(first, second, point);
   for (const auto& [side, rider] : {std::pair(&first, &second), std::pair(&second, &first)})
     if (side->motion)
       move_surface(carrying_velocity(*side->motion, rider->body, point.point), point, side == &first);
@@ -172,6 +175,26 @@ Vec3 ContactJoints::slip_direction(const ContactSide& first, const ContactSide& 
     if (slip.squaredNorm() > still * still) return slip.normalized();
   }
   return point.normal.unitOrthogonal();
+}
+
+// Of the bound of friction, what is left across the way: of what slides with a velocity v, Coulomb's turns
+// back a velocity across it by its share in v, and in a step that is what friction gives in it.
+double ContactJoints::share_across(const ContactSide& first, const ContactSide& second,
+                                   const ContactPoint& point) const {
+  constexpr double kTurning = 0.25;  // of the way of the whole
+  const auto is_pushed = [](dBodyID body) {
+    return body && !(to_vec3(dBodyGetForce(body)).isZero(0.0) && to_vec3(dBodyGetTorque(body)).isZero(0.0));
+  };
+  if (!is_pushed(first.body) && !is_pushed(second.body)) return 1.0;
+  const auto of_whole = [&](const ContactSide& side) {
+    return side.body ? to_vec3(dBodyGetLinearVel(side.body)) : velocity_at(side, point.point);
+  };
+  const Vec3 slip =
+                 tangential(velocity_at(first, point.point) - velocity_at(second, point.point), point.normal),
+             whole = tangential(of_whole(first) - of_whole(second), point.normal);
+  const double in_step = joint_.surface.mu * gravity_.norm() * h_;  // m/s
+  const bool slides = slip.norm() > in_step && (slip - whole).norm() < kTurning * whole.norm();
+  return slides ? in_step / slip.norm() : 1.0;
 }
 
 /// Of the body's material at `point` at the end of the step if nothing but gravity and applied forces acted

@@ -88,12 +88,14 @@ class ContactJoints {
   double approach_of(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const;
   Vec3 slip_direction(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const;
   Vec3 unhindered_velocity(const ContactSide& side, const Vec3& point) const;
+  double share_across(const ContactSide& first, const ContactSide& second, const ContactPoint& point) const;
 
   dWorldID world_;
   dJointGroupID group_;
   const MaterialTable* materials_;
   dContact joint_{};  // what every contact has in common is filled in once
   int mode_;          // of every contact
+  bool slides_straight_;
   double erp_, cfm_, max_correcting_velocity_, correcting_time_, attempt_cfm_ = 0.0;
   double h_ = 0.0, deepest_ = 0.0, unevenness_ = 0.0;
   Vec3 gravity_ = Vec3::Zero();

@@ -61,6 +61,9 @@ struct OdeSettings {
                                  ///< same part it would push the faster the shorter it is
   bool friction_along_slip =
       true;  ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
+  bool slides_straight = false;  ///< what a force or torque drives, and slides as a whole, hardly turning,
+                                 ///< has Coulomb's friction across its way, the less the faster it is. False:
+                                 ///< a bound of its own, by which it goes as on rails
   int max_contacts_per_pair = 8;
   MeshContacts mesh_contacts = MeshContacts::exact;
   int most_mesh_measures = 1 << 30;  ///< of the contacts of two concave meshes in a substep: after so many

@@ -155,13 +155,15 @@ TEST(Forces, ATorqueThatFrictionHoldsTurnsNoStack) {
 
 // Friction opposes the slip that it would have without it, that of a torque too: along another way ODE's box
 // of friction holds up to √2 times as much.
-// It turned about its upright axis, and was held by √2 of friction, or by what a torque gives in a step.
+// It turned about its upright axis, and was held by √2 of friction, or by what a torque gives in a step; at
+// full it went on as on rails, whose way turned aside.
 TEST(Forces, APushHighUpMovesABoxAsOneLowDown) {
   struct Pushed {
     double side, height, friction, weights;  // m, m, –, –
   };
-  for (const Pushed& box : {Pushed{0.3, 0.3, 0.2, 0.28}, {1.0, 1.0, 0.2, 0.28}, {0.3, 0.15, 0.4, 0.8}})
-    for (const LevelChoice level : kPushedRungs) {
+  for (const Pushed& box :
+       {Pushed{0.3, 0.3, 0.2, 0.28}, {1.0, 1.0, 0.2, 0.28}, {0.3, 0.15, 0.4, 0.8}, {0.3, 0.45, 0.2, 0.23}})
+    for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
       Manager manager = on_floor({.signatures = coarse_signature});
       manager.materials().replace(0, {.restitution = 0.0, .friction = box.friction});
       const BodyId body = add(manager, box_shape({box.side, box.side, box.height}),
@@ -174,7 +176,7 @@ TEST(Forces, APushHighUpMovesABoxAsOneLowDown) {
         manager.step(kFrame);
       }
       const double slid = 0.5 * (box.weights - box.friction) * kG;
-      EXPECT_NEAR(manager.state(body).position.x(), slid, 0.02 * slid) << box.side << " m, " << int(level);
+      EXPECT_NEAR(manager.state(body).position.x(), slid, 0.05 * slid) << box.side << " m, " << int(level);
     }
 }
 
