@@ -37,6 +37,8 @@ struct ContactSolverSettings {
   double sliding_speed = 0.0;  ///< m/s: but for those that go faster than so, and than friction can stop
   Vec3 fall = Vec3::Zero();  ///< m/s, what gravity has given the velocities for this step: an impact on what
                              ///< stands still is answered as fast as it is when it happens, within the step
+  double driven = 0.0;  ///< m/s, of one body on the ground that a torque acts on: what its weight gives in
+                        ///< the step; 0: none acts
   Vec3 turned = Vec3::Zero();  ///< rad/s, of one body on the ground: what a torque has given it for this
                                ///< step, which is no impact
 };

@@ -77,6 +77,7 @@ class GroundSolver {
   }
   void prepare(GroundContact& c) const;
   void find_tangents(GroundContact& c) const;
+  double share_across(const GroundContact& c) const;
   double relax(GroundContact& c, PairedMotion& motion);
   void start_from_guess(GroundContact& c);
   void sweep();
@@ -108,7 +109,21 @@ void GroundSolver::prepare(GroundContact& c) const {
 void GroundSolver::find_tangents(GroundContact& c) const {
   if (c.rows[1].effective_mass > 0.0) return;
   const Mat3 frame = contact_frame(c.normal, before_.velocity_at(c.arm));
+  c.share_across = share_across(c);
   for (int i = 1; i < 3; ++i) set_row(c.rows[std::size_t(i)], frame.col(i), c.arm);
+}
+
+// Of what slides with a velocity v, Coulomb's friction turns back a velocity across it by its share in v, and
+// in a step that is what friction gives in it. With all of its bound there, what a push drives on is led by
+// its way as by rails, and turns aside with it.
+double GroundSolver::share_across(const GroundContact& c) const {
+  constexpr double kTurning = 0.25;  // of the way of the whole
+  if (settings_.driven == 0.0) return 1.0;
+  const auto along_ground = [&](const Vec3& v) { return Vec3(v - v.dot(c.normal) * c.normal); };
+  const Vec3 slip = along_ground(before_.velocity_at(c.arm)), whole = along_ground(before_.velocity);
+  const double in_step = c.law.friction * settings_.driven;
+  const bool slides = slip.norm() > in_step && (slip - whole).norm() < kTurning * whole.norm();
+  return slides ? in_step / slip.norm() : 1.0;
 }
 
 double friction_bound(const GroundContact& c) {
@@ -145,7 +160,8 @@ inline double GroundSolver::relax(GroundContact& c, PairedMotion& motion) {
                across = c.rows[2].impulse - c.rows[2].effective_mass * aside,
                share = is_slow ? std::min(1.0, bound / std::hypot(along, across)) : 1.0;
   changed += change_to(c.rows[1], std::clamp(share * along, -bound, bound));
-  changed += change_to(c.rows[2], std::clamp(share * across, -bound, bound));
+  changed +=
+      change_to(c.rows[2], std::clamp(share * across, -c.share_across * bound, c.share_across * bound));
   return changed;
 }
 

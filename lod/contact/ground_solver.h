@@ -29,6 +29,7 @@ struct GroundContact {
   };
   std::array<Row, 3> rows = {};
   double friction_bound = -1.0;  ///< N s over mass; negative: μ times the normal impulse as it is
+  double share_across = 1.0;     ///< of that bound, across the way that the point goes
   bool bounces = false;          ///< an impact, fast enough for restitution
   Vec3 impulse() const {
     return rows[0].impulse * rows[0].axis + rows[1].impulse * rows[1].axis + rows[2].impulse * rows[2].axis;

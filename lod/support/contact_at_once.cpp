@@ -65,6 +65,7 @@ void step_at_once(StatisticalBody& body, const BodyKind& kind, const StepWorld& 
     // What gravity gives it in a step is no impact.
     solver.bounce_velocity = world.bounce_velocity + world.gravity_strength() * time;
     solver.fall = on.rotation.transpose() * (kick * world.gravity);
+    solver.driven = world.turning.isZero(0.0) ? 0.0 : kick * world.gravity_strength();
     solver.turned = shape.inverse_inertia_per_mass * (on.rotation.transpose() * (kick * world.turning));
     // Most of the contacts lie under its weight: each begins with its share.
     const double weight = kick * world.gravity_strength() / double(contacts.size());

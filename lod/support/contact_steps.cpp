@@ -457,6 +457,7 @@ ContactSolverSettings ContactSteps::solver(const Mat3& rotation, double time, bo
   if (has_many_) solver.sweeps = kSweepsOfMany, solver.tolerance = kToleranceOfMany;
   solver.along_chords = !shape_.sphere_radius;  // whose lowest point is never the same
   solver.sliding_speed = settings_.sliding_speed * shape_.radius / fall_time_;
+  solver.driven = world_.turning.isZero(0.0) ? 0.0 : kicked_ * world_.gravity_strength();
   if (divided) {
     solver.bounce_velocity = kUnbounded;
     return solver;
