@@ -57,7 +57,7 @@ void CallersGround::follow(const SpaceMirror& mirror, double dt, const Vec3& up,
     if (!ids_[slot]) continue;
     ground_.move_part(ids_[slot], pose_of(geoms[slot], false, dt));
     if (!std::ranges::binary_search(mirror.moved(), slot))
-      wakes.gone(geoms[slot].bounds);  // it has come down
+      wakes.gone(geoms[slot].bounds);  // it stands again: who was left behind wakes
   }
   moving_.clear();
   const auto move = [&](std::uint32_t slot, bool moved) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lod/contact/contact_impulse.h"
+#include "reference/friction_across.h"
 
 namespace lodestone {
 namespace {
@@ -113,17 +114,12 @@ void GroundSolver::find_tangents(GroundContact& c) const {
   for (int i = 1; i < 3; ++i) set_row(c.rows[std::size_t(i)], frame.col(i), c.arm);
 }
 
-// Of what slides with a velocity v, Coulomb's friction turns back a velocity across it by its share in v, and
-// in a step that is what friction gives in it. With all of its bound there, what a push drives on is led by
-// its way as by rails, and turns aside with it.
+// For what a torque drives alone.
 double GroundSolver::share_across(const GroundContact& c) const {
-  constexpr double kTurning = 0.25;  // of the way of the whole
   if (settings_.driven == 0.0) return 1.0;
   const auto along_ground = [&](const Vec3& v) { return Vec3(v - v.dot(c.normal) * c.normal); };
-  const Vec3 slip = along_ground(before_.velocity_at(c.arm)), whole = along_ground(before_.velocity);
-  const double in_step = c.law.friction * settings_.driven;
-  const bool slides = slip.norm() > in_step && (slip - whole).norm() < kTurning * whole.norm();
-  return slides ? in_step / slip.norm() : 1.0;
+  return friction_share_across(along_ground(before_.velocity_at(c.arm)), along_ground(before_.velocity),
+                               c.law.friction * settings_.driven);
 }
 
 double friction_bound(const GroundContact& c) {

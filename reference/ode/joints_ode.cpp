@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/friction_across.h"
 #include "reference/ode/bodies_ode.h"
 #include "reference/ode/touches_ode.h"
 
@@ -177,11 +178,9 @@ Vec3 ContactJoints::slip_direction(const ContactSide& first, const ContactSide& 
   return point.normal.unitOrthogonal();
 }
 
-// Of the bound of friction, what is left across the way: of what slides with a velocity v, Coulomb's turns
-// back a velocity across it by its share in v, and in a step that is what friction gives in it.
+// For what a force or torque drives alone.
 double ContactJoints::share_across(const ContactSide& first, const ContactSide& second,
                                    const ContactPoint& point) const {
-  constexpr double kTurning = 0.25;  // of the way of the whole
   const auto is_pushed = [](dBodyID body) {
     return body && !(to_vec3(dBodyGetForce(body)).isZero(0.0) && to_vec3(dBodyGetTorque(body)).isZero(0.0));
   };
@@ -189,12 +188,9 @@ double ContactJoints::share_across(const ContactSide& first, const ContactSide& 
   const auto of_whole = [&](const ContactSide& side) {
     return side.body ? to_vec3(dBodyGetLinearVel(side.body)) : velocity_at(side, point.point);
   };
-  const Vec3 slip =
-                 tangential(velocity_at(first, point.point) - velocity_at(second, point.point), point.normal),
-             whole = tangential(of_whole(first) - of_whole(second), point.normal);
-  const double in_step = joint_.surface.mu * gravity_.norm() * h_;  // m/s
-  const bool slides = slip.norm() > in_step && (slip - whole).norm() < kTurning * whole.norm();
-  return slides ? in_step / slip.norm() : 1.0;
+  return friction_share_across(
+      tangential(velocity_at(first, point.point) - velocity_at(second, point.point), point.normal),
+      tangential(of_whole(first) - of_whole(second), point.normal), joint_.surface.mu * gravity_.norm() * h_);
 }
 
 /// Of the body's material at `point` at the end of the step if nothing but gravity and applied forces acted

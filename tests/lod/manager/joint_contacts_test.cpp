@@ -210,17 +210,23 @@ TEST(JointContacts, ALiftOnAMotorCarriesAStack) {
     }
 }
 
+// Of 1.5 m, full, 2 m up; it has its ODE body.
+BodyId add_plate(Manager& manager) {
+  const BodyId plate = manager.add_body({.shape = box_shape({1.5, 1.5, 0.1}),
+                                         .state = testing::at({0, 0, 2}),
+                                         .mass = 50.0,
+                                         .level = LevelChoice::full});
+  manager.step(1e-9);
+  return plate;
+}
+
 // A stop acted a step late: crates sank into a lift that stood at one, and those of `tables` fell through it.
 TEST(JointContacts, ALiftAtItsStopBearsCrates) {
   for (const bool is_driven : {false, true})
     for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
       TheirWorld their;
       Manager manager(their.world, their.space, kSettings);
-      const BodyId plate = manager.add_body({.shape = box_shape({1.5, 1.5, 0.1}),
-                                             .state = testing::at({0, 0, 2}),
-                                             .mass = 50.0,
-                                             .level = LevelChoice::full});
-      manager.step(1e-9);
+      const BodyId plate = add_plate(manager);
       const dBodyID body = manager.ode_body(plate);
       const dJointID slider = dJointCreateSlider(their.world, nullptr);
       dJointAttach(slider, body, nullptr);
@@ -250,11 +256,7 @@ TEST(JointContacts, OnATrapdoorAtItsStopCratesComeToRest) {
   for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
     TheirWorld their;
     Manager manager(their.world, their.space, kSettings);
-    const BodyId door = manager.add_body({.shape = box_shape({1.5, 1.5, 0.1}),
-                                          .state = testing::at({0, 0, 2}),
-                                          .mass = 50.0,
-                                          .level = LevelChoice::full});
-    manager.step(1e-9);
+    const BodyId door = add_plate(manager);
     const dJointID hinge = dJointCreateHinge(their.world, nullptr);
     dJointAttach(hinge, manager.ode_body(door), nullptr);
     dJointSetHingeAnchor(hinge, -0.75, 0, 2);

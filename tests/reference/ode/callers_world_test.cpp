@@ -36,6 +36,16 @@ struct His {
     dGeomSetPosition(geom, position.x(), position.y(), position.z());
     return geom;
   }
+  // Of 2 m sides. ODE keeps what it is given.
+  void convex_cube(const Vec3& position) const {
+    static const dReal planes[] = {1, 0, 0, 1, -1, 0, 0, 1, 0, 1, 0, 1, 0, -1, 0, 1, 0, 0, 1, 1, 0, 0, -1, 1};
+    static const dReal corners[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
+                                    -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
+    static const unsigned faces[] = {4, 1, 3, 7, 5, 4, 0, 4, 6, 2, 4, 2, 6, 7, 3,
+                                     4, 0, 1, 5, 4, 4, 4, 5, 7, 6, 4, 0, 2, 3, 1};
+    dGeomSetPosition(dCreateConvex(space, planes, 6, corners, 8, faces), position.x(), position.y(),
+                     position.z());
+  }
   dBodyID body(double mass, const Vec3& position) const {
     const dBodyID made = dBodyCreate(world);
     dMass parameters;
@@ -116,13 +126,7 @@ TEST(CallersOdeWorld, OursAreNotInHisSpace) {
 
 TEST(CallersOdeWorld, HisConvexCapsuleAndHeightFieldHoldOurs) {
   His his;
-  const dReal planes[] = {1, 0, 0, 1, -1, 0, 0, 1, 0, 1, 0, 1, 0, -1, 0, 1, 0, 0, 1, 1, 0, 0, -1, 1};
-  const dReal corners[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
-                           -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
-  const unsigned faces[] = {4, 1, 3, 7, 5, 4, 0, 4, 6, 2, 4, 2, 6, 7, 3,
-                            4, 0, 1, 5, 4, 4, 4, 5, 7, 6, 4, 0, 2, 3, 1};
-  for (const double x : {0.0, 20.0})
-    dGeomSetPosition(dCreateConvex(his.space, planes, 6, corners, 8, faces), x, 0, -1);
+  for (const double x : {0.0, 20.0}) his.convex_cube({x, 0, -1});
   const dHeightfieldDataID heights = dGeomHeightfieldDataCreate();
   dGeomHeightfieldDataBuildCallback(
       heights, nullptr, [](void*, int, int) { return dReal(0); }, 6, 6, 7, 7, 1, 0, 1, 0);
@@ -149,12 +153,7 @@ TEST(CallersOdeWorld, HisConvexCapsuleAndHeightFieldHoldOurs) {
 // have: ODE ended the process.
 TEST(CallersOdeWorld, HisConvexHoldsMoreMeshesThanAreKept) {
   His his;
-  const dReal planes[] = {1, 0, 0, 1, -1, 0, 0, 1, 0, 1, 0, 1, 0, -1, 0, 1, 0, 0, 1, 1, 0, 0, -1, 1};
-  const dReal corners[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
-                           -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
-  const unsigned faces[] = {4, 1, 3, 7, 5, 4, 0, 4, 6, 2, 4, 2, 6, 7, 3,
-                            4, 0, 1, 5, 4, 4, 4, 5, 7, 6, 4, 0, 2, 3, 1};
-  dGeomSetPosition(dCreateConvex(his.space, planes, 6, corners, 8, faces), 0, 0, -1);
+  his.convex_cube({0, 0, -1});
   OdeWorld ours(his.world, his.space, kSleeping, kMaterials);
   const Shape bunny = make_bunny_shape(0.3, 194);
   for (int i = 0; i < 140; ++i) {
