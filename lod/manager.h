@@ -104,7 +104,8 @@ class Manager {
   /// velocity it carries what lies on it, on every rung: `state` is that at the beginning of the step to
   /// come, within which it goes on from there; after it it stands where it was put again, as queries see it,
   /// until it is moved: each time before a step, and once without a velocity at the end. Who only gives it a
-  /// velocity has a belt. A plane is removed and added anew.
+  /// velocity has a belt. Put on before each step without one it pushes what it meets. A plane is removed and
+  /// added anew.
   void move_ground(GroundId ground, const RigidState& state);
   void remove_ground(GroundId ground);  ///< wakes what lies on it; its id is never valid again
   bool valid(GroundId ground) const;

@@ -9,10 +9,6 @@ namespace lodestone {
 namespace {
 
 const Eigen::AlignedBox3d kEverywhere(Vec3::Constant(-1e9), Vec3::Constant(1e9));  // m
-// A place that seems to move faster, or a rim that does in a turn of more than kFarTurn, was put elsewhere
-// and carries nothing along.
-constexpr double kLeap = 50.0;    // m/s
-constexpr double kFarTurn = 0.5;  // rad
 
 Eigen::AlignedBox3d in_own_frame(const MirroredGeom& geom) {
   // A height field that repeats itself has no bounds.
@@ -21,11 +17,6 @@ Eigen::AlignedBox3d in_own_frame(const MirroredGeom& geom) {
   const Vec3 center = geom.orientation.conjugate() * (bounds.center() - geom.position);
   const Vec3 reach = geom.orientation.conjugate().toRotationMatrix().cwiseAbs() * (0.5 * bounds.sizes());
   return {center - reach, center + reach};
-}
-
-Vec3 rotation_between(const Quat& from, const Quat& to) {
-  const Eigen::AngleAxisd turn(to * from.conjugate());
-  return turn.angle() * turn.axis();
 }
 
 HalfSpace plane_of(const MirroredGeom& geom) {
@@ -130,13 +121,8 @@ GroundPose CallersGround::pose_of(const MirroredGeom& geom, bool moved, double d
     pose.goes_on_s = pose.velocity.isZero(0.0) && pose.angular_velocity.isZero(0.0) ? 0.0 : dt;
   }
   if (pose.goes_on_s > 0.0 || !moved) return pose;
-  const Vec3 velocity = (geom.position - geom.previous_position) / dt;
-  const Vec3 turn = rotation_between(geom.previous_orientation, geom.orientation);
   const double rim = (geom.bounds.center() - geom.position).norm() + 0.5 * geom.bounds.sizes().norm();
-  if (velocity.norm() > kLeap || (turn.norm() > kFarTurn && turn.norm() * rim > kLeap * dt)) return pose;
-  pose.velocity = velocity;
-  pose.angular_velocity = turn / dt;
-  return pose;
+  return put_from({geom.previous_position, geom.previous_orientation}, pose, rim, dt);
 }
 
 dxGeom* CallersGround::geom_of(GroundId id) const {

@@ -24,15 +24,27 @@ GroundPose pose_after(const GroundPose& pose, double after) {
   return later;
 }
 
+// rad: a vector along the axis.
+Vec3 turn_between(const GroundPose& from, const GroundPose& to) {
+  const Eigen::AngleAxisd turn(to.orientation * from.orientation.conjugate());
+  return turn.angle() * turn.axis();
+}
+
 }  // namespace
 
 struct Ground::Tree : BoxTree {
   using BoxTree::BoxTree;
 };
 
-double GroundPart::greatest_speed() const {
-  const double farthest = shape.bounds.center().norm() + 0.5 * shape.bounds.sizes().norm();
-  return pose.velocity.norm() + pose.angular_velocity.norm() * farthest;
+GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt) {
+  constexpr double kLeap = 50.0;    // m/s
+  constexpr double kFarTurn = 0.5;  // rad
+  const Vec3 velocity = (to.position - from.position) / dt, turn = turn_between(from, to);
+  GroundPose going = to;
+  if (velocity.norm() > kLeap || (turn.norm() > kFarTurn && turn.norm() * rim > kLeap * dt)) return going;
+  going.velocity = velocity;
+  going.angular_velocity = turn / dt;
+  return going;
 }
 
 GroundId Ground::new_id(Entry entry) {
@@ -122,19 +134,36 @@ void Ground::move_plane(GroundId id, const HalfSpace& plane) {
 }
 
 void Ground::move_part(GroundId id, const GroundPose& pose) {
-  const std::int32_t index = entries_[id.index].part;
-  GroundPart& part = *parts_[std::size_t(index)];
+  if (pose.comes_back) note_put(id, pose);
+  stand(std::size_t(entries_[id.index].part), pose);
+}
+
+void Ground::stand(std::size_t index, const GroundPose& pose) {
+  GroundPart& part = *parts_[index];
   moving_ -= part.moves();
   const bool stays = part.pose.position == pose.position &&
                      part.pose.orientation.coeffs() == pose.orientation.coeffs() &&
                      part.pose.goes_on_s == 0.0 && pose.goes_on_s == 0.0;
-  if (!stays) let_go(index);
+  if (!stays) let_go(std::int32_t(index));
   part.pose = pose;
   moving_ += part.moves();
-  if (!stays) hold(index);
+  if (!stays) hold(std::int32_t(index));
 }
 
-void Ground::begin_step(double dt) {
+// One with a velocity of its own was nowhere put on.
+void Ground::note_put(GroundId id, const GroundPose& pose) {
+  const auto known = std::ranges::find(put_on_, id, &PutOn::id);
+  if (!pose.velocity.isZero(0.0) || !pose.angular_velocity.isZero(0.0)) {
+    if (known != put_on_.end()) put_on_.erase(known);
+  } else if (known == put_on_.end()) {
+    put_on_.push_back({id, part(id).pose});
+  } else {
+    known->moved = true;
+  }
+}
+
+void Ground::begin_step(double dt, const std::function<void(const Box&)>& stands_again) {
+  if (!put_on_.empty()) go_as_put(dt, stands_again);
   if (moving_ == 0) return;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (!parts_[i] || !parts_[i]->pose.comes_back || !parts_[i]->moves()) continue;
@@ -143,6 +172,31 @@ void Ground::begin_step(double dt) {
     parts_[i]->pose.goes_on_s = dt;
     hold(std::int32_t(i));
   }
+}
+
+// No faster than it went in the step before: what is put elsewhere once throws nobody.
+void Ground::go_as_put(double dt, const std::function<void(const Box&)>& stands_again) {
+  std::erase_if(put_on_, [&](const PutOn& put) { return !valid(put.id); });
+  for (PutOn& put : put_on_) {
+    const GroundPart& held = part(put.id);
+    GroundPose pose = held.pose;
+    pose.velocity = pose.angular_velocity = Vec3::Zero();
+    pose.comes_back = false;  // it stands where it goes to
+    double way = 0.0;         // m
+    if (put.moved) {
+      const GroundPose going = put_from(put.from, pose, held.rim(), dt);
+      way = dt * (going.velocity.norm() + going.angular_velocity.norm() * held.rim());
+      const double share = way > 0.0 ? std::min(1.0, put.last_way / way) : 0.0;
+      pose.velocity = share * going.velocity;
+      pose.angular_velocity = share * going.angular_velocity;
+    } else if (held.moves()) {
+      stands_again(bounds(put.id));
+    }
+    stand(std::size_t(entries_[put.id.index].part), pose);
+    put.last_way = way;
+  }
+  std::erase_if(put_on_, [](const PutOn& put) { return !put.moved; });
+  for (PutOn& put : put_on_) put.from = part(put.id).pose, put.moved = false;
 }
 
 Box Ground::bounds(GroundId id) const { return bounds_[std::size_t(entries_[id.index].part)]; }
@@ -219,7 +273,7 @@ void Ground::archive(StateArchive& a) {
   std::vector<std::uint32_t> first;
   for (const auto& part : parts_) first.push_back(part && part->solids ? part->first_number : kNone);
   std::uint32_t numbers = numbers_;
-  a(first, numbers);
+  a(first, numbers, put_on_);
   if (!a.reading()) return;
   for (std::size_t i = 0; i < std::min(first.size(), parts_.size()); ++i) {
     if (!parts_[i]) continue;

@@ -46,6 +46,11 @@ struct GroundPose {
   bool comes_back = false;  ///< after each step it stands where it was put again
 };
 
+/// `to` with the velocities of what was put there from `from` in `dt` s and is nowhere farther from its
+/// position than `rim` m. Without where it went faster than 50 m/s, or turned by more than half a radian with
+/// a rim as fast: that was put elsewhere, and carries nothing along.
+GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt);
+
 struct GroundPart {
   GroundId id;
   GroundShape shape;
@@ -63,8 +68,10 @@ struct GroundPart {
     const Quat half_way = rotation_from_vector(0.5 * time * pose.angular_velocity);
     return pose.velocity + pose.angular_velocity.cross(half_way * (center - pose.position));
   }
+  /// m, from its position to its farthest point, at most.
+  double rim() const { return shape.bounds.center().norm() + 0.5 * shape.bounds.sizes().norm(); }
   /// m/s: of no point of it more.
-  double greatest_speed() const;
+  double greatest_speed() const { return pose.velocity.norm() + pose.angular_velocity.norm() * rim(); }
 };
 
 /// A solid of a part, where it stands.
@@ -101,8 +108,10 @@ class Ground {
   void move_part(GroundId id, const GroundPose& pose);
   /// Of a part that is known by rays: where these come from.
   void set_up(GroundId id, const Vec3& up) { parts_[std::size_t(entries_[id.index].part)]->shape.up = up; }
-  /// Parts that come back move on in the next step, of `dt` s.
-  void begin_step(double dt);
+  /// Parts that come back move on in the next step, of `dt` s; those that were put elsewhere before this one
+  /// and the one before, without a velocity, go as they seem to, and `stands_again` is told the bounds of
+  /// those that did so until now.
+  void begin_step(double dt, const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
   const GroundPart& part(GroundId id) const { return *parts_[std::size_t(entries_[id.index].part)]; }
   const HalfSpace& plane(GroundId id) const { return planes_[std::size_t(entries_[id.index].plane)]; }
   /// Of a part, where it stands now.
@@ -111,8 +120,8 @@ class Ground {
 
   std::span<const HalfSpace> planes() const { return planes_; }
   std::size_t parts() const { return parts_used_; }
-  /// Not the ground itself, but by what numbers its solids are remembered: as far as the reader has the same
-  /// parts.
+  /// Not the ground itself, but by what numbers its solids are remembered and what is put on: as far as the
+  /// reader has the same parts.
   void archive(StateArchive& a);
   bool has_parts() const { return parts_used_ > 0; }
   /// Of all parts, m, world. Not for several threads at once, as it keeps what it found.
@@ -126,7 +135,17 @@ class Ground {
     std::uint32_t generation = 0;
     std::int32_t plane = -1, part = -1;
   };
+  /// A part that was put elsewhere, without a velocity, since the last step began or before that.
+  struct PutOn {
+    GroundId id;
+    GroundPose from;
+    bool moved = true;
+    double last_way = 0.0;  // m, in the last step, of no point of it more
+  };
   GroundId new_id(Entry entry);
+  void note_put(GroundId id, const GroundPose& pose);
+  void stand(std::size_t part, const GroundPose& pose);
+  void go_as_put(double dt, const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
   void hold(std::int32_t part);
   void let_go(std::int32_t part);
   void rebuild() const;
@@ -140,6 +159,7 @@ class Ground {
   std::vector<Eigen::AlignedBox3d> bounds_;         // of each part, world
   std::vector<std::int32_t> free_parts_;
   std::size_t parts_used_ = 0, moving_ = 0;
+  std::vector<PutOn> put_on_;
   mutable std::uint32_t numbers_ = 0;
 
   // Most parts stand in a tree, built now and then; those that came or moved since are looked at one by one.

@@ -77,6 +77,12 @@ void Levels::wake(std::uint32_t body) {
     bodies.newcomer(body).asleep = false;
 }
 
+// Where the ground moves it out of itself and into others, these are to part, too, before they sleep again.
+void Levels::wake_in_ground(std::uint32_t body) {
+  wake(body);
+  if (const StatisticalPlace place = bodies[body].statistical) statistical->note_placed(place);
+}
+
 void Levels::put_to_sleep(std::uint32_t body) {
   const BodyRecord& record = bodies[body];
   bodies.drop_force(body);
@@ -138,7 +144,7 @@ std::vector<CallersPart> Levels::callers_parts() const {
 
 void Levels::wake_in(const Eigen::AlignedBox3d& box) {
   eased.wake_in(*this, box);
-  for (const std::uint32_t body : find_sleepers_in(box)) wake(body);
+  for (const std::uint32_t body : find_sleepers_in(box)) wake_in_ground(body);
 }
 
 void Levels::wake_all_in(const Eigen::AlignedBox3d& box) {
@@ -164,7 +170,7 @@ void Levels::wake_on(const HalfSpace& plane) {
     std::int32_t hint = 0;
     if (height < shape.radius &&
         find_lowest_point(shape, at.orientation, plane.normal, height, hint).gap < -kCut * shape.radius)
-      wake(body);
+      wake_in_ground(body);
   }
 }
 

@@ -108,6 +108,7 @@ struct Levels {
  private:
   /// Wakes those of either level that sleep above the body, bounding sphere to bounding sphere, and above
   /// these, and so on: nothing holds them up any more.
+  void wake_in_ground(std::uint32_t body);
   void wake_piled_on(std::uint32_t body);
   /// Whether its bounding sphere about `place`, m, meets the box.
   bool meets(std::uint32_t body, const Vec3& place, const Eigen::AlignedBox3d& box) const;

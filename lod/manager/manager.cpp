@@ -246,7 +246,7 @@ void Manager::Impl::begin_stages(double dt, WorldStepBy by) {
   auto& [_, laps, measured] = *underway;
   const StageTimer timer(report.times.total_ms);
   levels.follow_callers_space(dt);
-  levels.ground.begin_step(dt);
+  levels.ground.begin_step(dt, [&](const Eigen::AlignedBox3d& box) { levels.wake_piled_in(box); });
   left_places.wake(levels);
   audit.begin_step();
   // 1 choose rungs

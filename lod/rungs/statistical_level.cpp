@@ -270,6 +270,9 @@ double StatisticalLevel::sphere_radius(StatisticalPlace place) const {
 void StatisticalLevel::wake(StatisticalPlace place) {
   impl_->at(place, [&](auto& level) { level.wake(place.slot); });
 }
+void StatisticalLevel::note_placed(StatisticalPlace place) {
+  if (place.model == StatisticalModel::support) impl_->support.note_placed(place.slot);
+}
 void StatisticalLevel::let_fall_near(StatisticalPlace place) { impl_->wake_touching(place); }
 void StatisticalLevel::put_to_sleep(StatisticalPlace place) {
   impl_->at(place, [&](auto& level) { level.put_to_sleep(place.slot); });

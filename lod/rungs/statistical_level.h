@@ -98,6 +98,7 @@ class StatisticalLevel {
   double sphere_radius(
       StatisticalPlace place) const;  ///< m, of the colliding sphere at `tables`; 0 at `support`
   void wake(StatisticalPlace place);
+  void note_placed(StatisticalPlace place);  ///< it may be in others, and is to part from them
   /// Wakes who touches it, as when it is removed: what bore them may be gone.
   void let_fall_near(StatisticalPlace place);
   void put_to_sleep(StatisticalPlace place);  ///< where it is, at once

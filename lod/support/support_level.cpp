@@ -104,6 +104,8 @@ RigidState SupportLevel::state(int slot) const {
           given ? *given : angular_velocity(b.orientation, b.spin, *kind_of(b).shape)};
 }
 
+void SupportLevel::note_placed(int slot) { bodies_[std::size_t(slot)].placed = kPlacedTime; }
+
 void SupportLevel::set_state(int slot, const RigidState& state) {
   wake(slot);
   StatisticalBody& body = bodies_[std::size_t(slot)];
@@ -117,7 +119,7 @@ void SupportLevel::set_state(int slot, const RigidState& state) {
   if (!given_before) note_given(slot);
   body.motion = Motion::dynamic;
   body.quiet_time = 0.0f;
-  body.placed = kPlacedTime;  // until a step has seen that it overlaps nobody
+  note_placed(slot);
   // What no level can hold is mended, and counted, before the next step looks at it.
   if (!is_sound(body, kinetic_energy(body, *kind_of(body).shape)))
     pushes_.push_back({slot, Vec3::Zero(), Vec3::Zero()});

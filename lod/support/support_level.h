@@ -52,6 +52,8 @@ class SupportLevel {
     return body(slot).since_crowded == 0.0f || body(slot).on_solid;
   }  ///< touched another body, or an edge of the ground, in the last step
   void wake(int slot);
+  /// It may overlap others, and is to part from them: until a step has seen that it overlaps nobody.
+  void note_placed(int slot);
   void put_to_sleep(int slot);  ///< where it is, at once
   /// m/s², from the next step on. Clips end: they were recorded under another.
   void set_gravity(const Vec3& gravity);

@@ -11,6 +11,7 @@
 #include "reference/mesh/inside.h"
 #include "reference/ode/exact_solid.h"
 #include "reference/ode/piece_contacts.h"
+#include "reference/state_archive.h"
 
 namespace lodestone::ode {
 namespace {
@@ -34,11 +35,6 @@ RigidState moved_on(RigidState state, double time) {
   state.position += state.velocity * time;
   state.orientation = (rotation_from_vector(state.angular_velocity * time) * state.orientation).normalized();
   return state;
-}
-
-/// m, of no point within `reach` of it more.
-double way_between(const RigidState& from, const RigidState& to, double reach) {
-  return (to.position - from.position).norm() + from.orientation.angularDistance(to.orientation) * reach;
 }
 
 /// Longer, too, than bodies may be.
@@ -135,7 +131,7 @@ OdeGroundId Collision::add_ground(Ground ground) {
     number = free_ground_.back();
     free_ground_.pop_back();
   }
-  ground.id = {++last_ground_id_};
+  ground.id = {++last_ground_id_}, ground.before = ground.put;
   dGeomSetData(ground.geom, reinterpret_cast<void*>(number));
   broad_phase_.add_ground(ground.geom);
   number_of_[ground.id.value] = number;
@@ -156,7 +152,6 @@ void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bod
     throw InputError(
         "a pose of ground: expected finite, below 1e8 in each part, the orientation of unit norm");
   const Eigen::AlignedBox3d before = bounds_of(ground.geom);
-  ground.way += way_between(ground.put, state, 0.5 * before.diagonal().norm());
   put(ground, ground.put = state);
   ground.moved = true;
   ground.moves = !state.velocity.isZero(0.0) || !state.angular_velocity.isZero(0.0);
@@ -206,7 +201,28 @@ void Collision::move_on(double after) {
 }
 
 void Collision::end_step() {
-  for (Ground& ground : ground_) ground.moved = false, ground.last_way = std::exchange(ground.way, 0.0);
+  for (Ground& ground : ground_)
+    ground.last_way = ground.way(), ground.before = ground.put, ground.moved = false;
+}
+
+double Ground::way() const {
+  if (!id || !moved) return 0.0;
+  const double rim = 0.5 * bounds_of(geom).diagonal().norm();
+  return (put.position - before.position).norm() + before.orientation.angularDistance(put.orientation) * rim;
+}
+
+// As far as the reader has the same ground.
+void Collision::archive(StateArchive& a) {
+  struct Course {
+    RigidState before;
+    double last_way;
+  };
+  std::vector<Course> courses;
+  for (const Ground& ground : ground_) courses.push_back({ground.before, ground.last_way});
+  a(courses);
+  if (!a.reading()) return;
+  for (std::size_t i = 0; i < std::min(courses.size(), ground_.size()); ++i)
+    ground_[i].before = courses[i].before, ground_[i].last_way = courses[i].last_way;
 }
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
@@ -383,7 +399,7 @@ ContactSide Collision::side_of(const Candidate& candidate, const Body* other) co
       side.motion =
           SurfaceMotion{ground.state.position, ground.state.velocity, ground.state.angular_velocity};
     else
-      side.way_on = std::min(ground.way, ground.last_way);
+      side.way_on = std::min(ground.way(), ground.last_way);
     return side;
   }
   const MirroredGeom& geom = callers_->geoms()[candidate.second_number()];

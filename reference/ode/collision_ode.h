@@ -25,9 +25,12 @@ struct Ground {
   RigidState put = {};                      ///< where it was put, and how it moves
   RigidState state = {};                    ///< the same in this substep: where it has moved to from there
   std::unique_ptr<TrimeshData> mesh = {};
-  bool moved = false;                ///< before this step
-  double way = 0.0, last_way = 0.0;  ///< m, how far it was moved before this step and the one before
-  bool moves = false;                ///< its state has a velocity
+  RigidState before = {};  ///< where it was put at the end of the step before
+  double last_way = 0.0;   ///< m, by which it was moved before that step
+  bool moved = false;      ///< before this step
+  bool moves = false;      ///< its state has a velocity
+
+  double way() const;  ///< m, by which it was moved before this step, no point of it more
 };
 
 class Collision {
@@ -43,6 +46,7 @@ class Collision {
   OdeGroundId add_mesh(const Mesh& mesh, MaterialId material);
   void move_ground(OdeGroundId id, const RigidState& state, Bodies& bodies);
   void remove_ground(OdeGroundId id, Bodies& bodies);
+  void archive(StateArchive& a);  ///< by what ground was moved, not the ground itself
 
   /// After the mirror was refreshed: wakes what the caller disturbed.
   void note_changes(Bodies& bodies);

@@ -246,7 +246,7 @@ void OdeWorld::archive(StateArchive& a) {
     for (const Body& body : impl.bodies.slots())
       if (body.body) impl.collision.broad_phase().note_sleep(body);
   archive_boxes(a, impl.vacated);
-  a(impl.joints, impl.quick_steps, impl.callers_attempt, impl.callers_calm);
+  a(impl.joints, impl.collision, impl.quick_steps, impl.callers_attempt, impl.callers_calm);
   double cfm = dWorldGetCFM(impl.world);
   a(cfm);
   if (impl.own_world) dWorldSetCFM(impl.world, cfm);

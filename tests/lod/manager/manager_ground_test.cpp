@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
+#include <tuple>
 #include <utility>
 
 #include "tests/lod/manager/manager_fixture.h"
@@ -98,6 +99,86 @@ TEST(ManagerGround, WhatStandsOnGroundThatSinksALittleComesDown) {
             << int(level) << ", " << down << " m, " << i;
     }
 }
+
+// The lowest was moved out of it into those above, which slept on with it in them: hulls by up to 5 cm.
+TEST(ManagerGround, WhatStandsOnGroundThatIsRaisedComesApart) {
+  constexpr double kSide = 0.4;
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const double up : {0.03, 0.1}) {
+      Manager manager({.signatures = coarse_signature});
+      const GroundId shelf = manager.add_static_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity());
+      std::vector<BodyId> stack;
+      for (int i = 0; i < 3; ++i)
+        stack.push_back(
+            add(manager, box_shape({kSide, kSide, kSide}), testing::at({0, 0, (i + 0.5) * kSide}), level));
+      run(manager, 3.0);
+      manager.move_ground(shelf, testing::at({0, 0, up - 0.5}));
+      run(manager, 5.0);
+      double below = up;
+      for (std::size_t i = 0; i < stack.size(); ++i) {
+        const double bottom = manager.state(stack[i]).position.z() - 0.5 * kSide;
+        EXPECT_NEAR(bottom, below, 0.0125 * kSide) << int(level) << ", " << up << " m, " << i;
+        EXPECT_TRUE(manager.asleep(stack[i])) << int(level);
+        below = bottom + kSide;
+      }
+    }
+}
+
+// Without a velocity: a cube of `tables` came through a lift at .5 m/s, and through a ram at 1 m/s.
+class GroundPutOn : public ::testing::TestWithParam<std::tuple<LevelChoice, double>> {
+ protected:
+  static constexpr double kSide = 0.4, kFrame = 1.0 / 60.0;  // m, s
+  static constexpr int kFrames = 30;
+  void put(int frame) { manager_.move_ground(lift_, testing::at({0, 0, speed_ * frame * kFrame - 0.1})); }
+  void go(int first, int last) {
+    for (int i = first; i <= last; ++i) put(i), manager_.step(kFrame);
+  }
+  double height_over_lift() const { return manager_.state(cube_).position.z() - speed_ * kFrames * kFrame; }
+
+  LevelChoice level_ = std::get<0>(GetParam());
+  double speed_ = std::get<1>(GetParam());  // m/s
+  Manager manager_{{.signatures = coarse_signature}};
+  GroundId lift_ = manager_.add_static_box({2, 2, 0.2}, {0, 0, -0.1}, Quat::Identity());
+  BodyId cube_ = add(manager_, box_shape({kSide, kSide, kSide}), testing::at({0, 0, 0.5 * kSide}), level_);
+};
+
+TEST_P(GroundPutOn, CarriesWhatLiesOnIt) {
+  run(manager_, 1.0);
+  go(1, kFrames);
+  EXPECT_NEAR(height_over_lift(), 0.5 * kSide, 0.15 * kSide) << "on its way";
+  run(manager_, 2.0);
+  EXPECT_NEAR(height_over_lift(), 0.5 * kSide, 2e-3);
+  EXPECT_TRUE(manager_.asleep(cube_));
+}
+
+TEST_P(GroundPutOn, PushesWhatItComesAgainst) {
+  manager_.add_plane(Vec3::UnitZ(), 0);
+  const GroundId ram = manager_.add_static_box({0.2, 2, 2}, {-0.4, 0, 1.01}, Quat::Identity());
+  run(manager_, 1.0);
+  for (int i = 1; i <= kFrames; ++i) {
+    const double front = speed_ * i * kFrame - 0.3;
+    manager_.move_ground(ram, testing::at({front - 0.1, 0, 1.01}));
+    manager_.step(kFrame);
+    ASSERT_GT(manager_.state(cube_).position.x() - 0.5 * kSide, front - 0.05 * kSide) << i;
+  }
+}
+
+TEST_P(GroundPutOn, GoesOnAlikeAfterARestore) {
+  run(manager_, 1.0);
+  go(1, 10);
+  const std::vector<std::byte> then = manager_.snapshot();
+  go(11, 13);
+  const std::uint64_t hash = manager_.state_hash();
+  put(10);
+  manager_.restore(then);
+  go(11, 13);
+  EXPECT_EQ(manager_.state_hash(), hash);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GroundPutOn,
+                         ::testing::Combine(::testing::Values(LevelChoice::full, LevelChoice::support,
+                                                              LevelChoice::tables),
+                                            ::testing::Values(0.5, 2.0)));
 
 // Longer than a body may be: `support` stood on it, and who became full was lost with the step.
 TEST(ManagerGround, AFloorOfManyKilometresHoldsOnEachRung) {
