@@ -25,7 +25,8 @@ HalfSpace plane_of(const MirroredGeom& geom) {
 
 }  // namespace
 
-void CallersGround::follow(const SpaceMirror& mirror, double dt, const Vec3& up, const Wakes& wakes) {
+void CallersGround::follow(const SpaceMirror& mirror, double dt, double since, const Vec3& up,
+                           const Wakes& wakes) {
   const std::span<const MirroredGeom> geoms = mirror.geoms();
   ids_.resize(geoms.size());
   for (const std::uint32_t slot : mirror.removed()) {
@@ -44,15 +45,16 @@ void CallersGround::follow(const SpaceMirror& mirror, double dt, const Vec3& up,
     else
       wakes.disturbed(geoms[slot].bounds);
   }
-  for (const std::uint32_t slot : moving_) {
-    if (!ids_[slot]) continue;
-    ground_.move_part(ids_[slot], pose_of(geoms[slot], false, dt));
-    if (!std::ranges::binary_search(mirror.moved(), slot))
-      wakes.gone(geoms[slot].bounds);  // it stands again: who was left behind wakes
-  }
-  moving_.clear();
+  std::erase_if(moving_, [&](std::uint32_t slot) {
+    if (!ids_[slot]) return true;
+    const bool moved = std::ranges::binary_search(mirror.moved(), slot);
+    if (since == 0.0 && !moved && !geoms[slot].body) return false;
+    ground_.move_part(ids_[slot], pose_of(geoms[slot], dt, 0.0));
+    if (!moved) wakes.gone(geoms[slot].bounds);  // it stands again: who was left behind wakes
+    return true;
+  });
   const auto move = [&](std::uint32_t slot, bool moved) {
-    const GroundPose pose = pose_of(geoms[slot], moved, dt);
+    const GroundPose pose = pose_of(geoms[slot], dt, moved ? since : 0.0);
     ground_.move_part(ids_[slot], pose);
     if (!ground_.part(ids_[slot]).moves() && !moved) return;
     moving_.push_back(slot);
@@ -93,7 +95,7 @@ void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt)
     } else {
       shape.make = [own = geom.geom] { return solids_of(read_geom(own)); };
     }
-    ids_[slot] = ground_.add_part(shape, pose_of(geom, false, dt), 0);
+    ids_[slot] = ground_.add_part(shape, pose_of(geom, dt, 0.0), 0);
     if (geom.body) carried_.insert(std::ranges::lower_bound(carried_, slot), slot);
   }
   const GroundId id = ids_[slot];
@@ -112,7 +114,7 @@ void CallersGround::remove(std::uint32_t slot) {
 
 // One that a kinematic body carries moves as that does; one that was put elsewhere since the last step came
 // from there.
-GroundPose CallersGround::pose_of(const MirroredGeom& geom, bool moved, double dt) const {
+GroundPose CallersGround::pose_of(const MirroredGeom& geom, double dt, double moved_in) const {
   GroundPose pose{geom.position, geom.orientation};
   if (geom.body) {
     const RigidState body = callers::state(geom.body);
@@ -120,9 +122,9 @@ GroundPose CallersGround::pose_of(const MirroredGeom& geom, bool moved, double d
     pose.angular_velocity = body.angular_velocity;
     pose.goes_on_s = pose.velocity.isZero(0.0) && pose.angular_velocity.isZero(0.0) ? 0.0 : dt;
   }
-  if (pose.goes_on_s > 0.0 || !moved) return pose;
+  if (pose.goes_on_s > 0.0 || moved_in == 0.0) return pose;
   const double rim = (geom.bounds.center() - geom.position).norm() + 0.5 * geom.bounds.sizes().norm();
-  return put_from({geom.previous_position, geom.previous_orientation}, pose, rim, dt);
+  return put_from({geom.previous_position, geom.previous_orientation}, pose, rim, moved_in);
 }
 
 dxGeom* CallersGround::geom_of(GroundId id) const {

@@ -22,9 +22,10 @@ class CallersGround {
     std::function<void(const Eigen::AlignedBox3d&)> gone;       ///< what was there is elsewhere, or nowhere
     std::function<void(const HalfSpace&)> came;
   };
-  /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s. `up` (unit, world)
-  /// is against gravity: what is known by rays alone is met from there.
-  void follow(const SpaceMirror& mirror, double dt, const Vec3& up, const Wakes& wakes);
+  /// Brings the ground to what the mirror saw in its last refresh, for a step of `dt` s. What has moved did
+  /// so in `since` s; 0: in a later part of a step, in which what was put on before goes on. `up` (unit,
+  /// world) is against gravity: what is known by rays alone is met from there.
+  void follow(const SpaceMirror& mirror, double dt, double since, const Vec3& up, const Wakes& wakes);
 
   /// The geom that a part or plane is; null where it is none of the caller's.
   dxGeom* geom_of(GroundId id) const;
@@ -32,7 +33,8 @@ class CallersGround {
  private:
   void add(const MirroredGeom& geom, std::uint32_t slot, double dt);
   void remove(std::uint32_t slot);
-  GroundPose pose_of(const MirroredGeom& geom, bool moved, double dt) const;
+  /// `moved_in`: s, in which it was put elsewhere; 0: it was not.
+  GroundPose pose_of(const MirroredGeom& geom, double dt, double moved_in) const;
 
   Ground& ground_;
   std::vector<GroundId> ids_;           // by the mirror's slots; null: not ground

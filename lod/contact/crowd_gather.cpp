@@ -202,8 +202,10 @@ void Crowd::add_full_contacts(const ContactScene& scene, int index, const CrowdT
     const std::int32_t other = is_first ? contact.second : contact.first,
                        second = other < 0 ? solver_index_of_ground(contact.velocity)
                                           : solver_index(Participant::full(std::size_t(other)));
-    const bool added_by_the_other = other >= 0 && second < index && !scene.neighbors[other].asleep;
-    if (added_by_the_other) continue;
+    const auto adds_its_own = [&](Participant full) {
+      return !scene.asleep(full) && !scene.properties(full).kinematic;
+    };
+    if (other >= 0 && second < index && adds_its_own(Participant::full(std::size_t(other)))) continue;
     const ContactKey key =
         contact_key(scene.neighbors[self].owner, other < 0 ? 0xffffffff : scene.neighbors[other].owner);
     if (contact.row % 2 == 1) opposed_.push_back(std::uint32_t(manifolds_.size()));

@@ -223,7 +223,7 @@ void PointSearch::add_probed(const SolidContact& contact) {
   for (int i = 0; i < manifold.count; ++i) {
     const auto& [point, gap] = manifold.points[std::size_t(i)];
     const Vec3& normal = contact.contact.normal;
-    found_.points.push_back({std::int32_t(contact.number) - 1,
+    found_.points.push_back({seeker_.shape.sphere_radius ? -1 : std::int32_t(contact.number) - 1,
                              point,
                              {normal, normal.dot(point) - gap, contact.material, contact.part->id},
                              std::min(gap, gap_then(point, normal, gap))});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include "lod/contact/faces_below.h"
 #include "lod/contact/hull_contacts.h"
@@ -49,53 +50,143 @@ bool closes(const PairContact& contact, const GroundPart& part, const GroundSeek
   });
 }
 
-void find_probed_contacts(const GroundSeeker& s, const GroundPart& part, double time,
-                          std::vector<SolidContact>& found, std::vector<HalfSpace>& planes) {
-  const Vec3 up = part.pose.orientation * part.shape.up;
-  const double reach = s.reach();
-  const auto hit_below = [&](const Vec3& point) {
-    return part.shape.probe(point + reach * up, -up, 2.0 * reach);
-  };
-  const Vec3 ahead = s.shape.sphere_radius ? s.half_way(time) : Vec3(Vec3::Zero());
-  const std::optional<GroundHit> below = hit_below(s.body.position + ahead);
-  const Vec3 normal = below ? below->normal : up;
-  std::int32_t hint = s.body.support_hint;
-  const double height = below ? normal.dot(s.body.position - below->point) : 0.0,
-               slack = 0.25 * s.shape.radius;  // as uneven as the ground may be there
-  const HullContacts low = find_hull_contacts(s.shape, s.body.orientation, normal, height,
-                                              below ? s.touching + s.way + slack : reach, hint);
-  std::array<std::optional<GroundHit>, kMaxGroundContacts> hits;
-  bool even = below.has_value();
-  for (int i = 0; i < low.count; ++i) {
-    hits[std::size_t(i)] = hit_below(s.body.position + low.contact[std::size_t(i)].arm + ahead);
-    const auto& hit = hits[std::size_t(i)];
-    even = even && hit && (hit->normal - normal).squaredNorm() < 1e-12 &&
-           std::abs(normal.dot(hit->point - below->point)) < 1e-6 * s.shape.radius;
+namespace {
+
+/// A part of the ground that is known by rays from above, beside a body.
+class ProbedGround {
+ public:
+  ProbedGround(const GroundSeeker& seeker, const GroundPart& part, double time,
+               std::vector<SolidContact>& found)
+      : s_(seeker),
+        part_(part),
+        time_(time),
+        up_(part.pose.orientation * part.shape.up),
+        ahead_(seeker.shape.sphere_radius ? seeker.half_way(time) : Vec3(Vec3::Zero())),
+        hint_(seeker.body.support_hint),
+        found_(found) {}
+
+  void find(std::vector<HalfSpace>& planes) {
+    constexpr double kHollow = 3.0;  // how far below its centre the bottom of a hollow is in which it fits
+    const double reach = s_.reach();
+    below_ = cast_below(Vec3::Zero(), kHollow);
+    const Vec3 normal = below_ ? below_->normal : up_;
+    const double height = below_ ? height_over(*below_) : 0.0;
+    const HullContacts low =
+        find_hull_contacts(s_.shape, s_.body.orientation, normal, height, below_ ? margin() : reach, hint_);
+    std::array<std::optional<GroundHit>, kMaxGroundContacts + 1> hits;
+    even_ = below_.has_value();
+    for (int i = 0; i < low.count; ++i) {
+      hits[std::size_t(i)] = hit_below(low.contact[std::size_t(i)]);
+      note(hits[std::size_t(i)]);
+    }
+    if (below_ && low.count > 0 && low.contact[0].gap < margin()) look_around();
+    if (even_ && !part_.moves())
+      return planes.push_back({normal, normal.dot(below_->point), part_.material, part_.id});
+    for (int i = 0; i < low.count; ++i) add(low.contact[std::size_t(i)], hits[std::size_t(i)]);
+    if (even_ || !below_) return;
+    for (std::size_t i = 0; i < faces_; ++i) add_low(face_[i]);
+    if (low.count >= 3) add_low_vertices(normal, height, low.contact[0].vertex);  // of two there are no more
   }
-  if (even && !part.moves())
-    return planes.push_back({normal, normal.dot(below->point), part.material, part.id});
-  const auto add = [&](const Vec3& arm, std::int32_t vertex, const std::optional<GroundHit>& hit) {
+
+ private:
+  static constexpr std::size_t kMostFaces = 6;
+
+  double margin() const { return s_.touching + s_.way + 0.25 * s_.shape.radius; }  // m: so uneven it may be
+  double height_over(const GroundHit& hit) const { return hit.normal.dot(s_.body.position - hit.point); }
+  /// `deepest`: how far below, over the reach.
+  std::optional<GroundHit> cast_below(const Vec3& arm, double deepest = 1.0) const {
+    const double reach = s_.reach();
+    return part_.shape.probe(s_.body.position + arm + ahead_ + reach * up_, -up_, (1.0 + deepest) * reach);
+  }
+  /// Of a vertex by one ray, however often it is asked for.
+  std::optional<GroundHit> hit_below(const HullContact& low) {
+    if (low.vertex < 0) return cast_below(low.arm);
+    const auto end = asked_.begin() + std::ptrdiff_t(asked_count_);
+    const auto known = std::find(asked_.begin(), end, low.vertex);
+    if (known != end) return hit_of_[std::size_t(known - asked_.begin())];
+    const std::optional<GroundHit> hit = cast_below(low.arm);
+    if (asked_count_ < asked_.size())
+      asked_[asked_count_] = low.vertex, hit_of_[asked_count_] = hit, ++asked_count_;
+    return hit;
+  }
+  /// Another face than that below the centre.
+  void note(const std::optional<GroundHit>& hit) {
+    const bool is_below = hit && below_ && (hit->normal - below_->normal).squaredNorm() < 1e-12 &&
+                          std::abs(below_->normal.dot(hit->point - below_->point)) < 1e-6 * s_.shape.radius;
+    even_ = even_ && is_below;
+    if (!hit || is_below || faces_ == kMostFaces) return;
+    const auto is_it = [&](const GroundHit& known) {
+      return (hit->normal - known.normal).squaredNorm() < 1e-12;
+    };
+    if (std::none_of(face_.begin(), face_.begin() + std::ptrdiff_t(faces_), is_it)) face_[faces_++] = *hit;
+  }
+  /// In a hollow a body touches what rises beside it.
+  void look_around() {
+    constexpr int kAround = 8;
+    constexpr double kAside = 0.8660254037844386;  // sin 60°: a wall as steep is met when it is touched
+    const Vec3 x = up_.unitOrthogonal(), y = up_.cross(x);
+    for (int i = 0; i < kAround; ++i) {
+      const double turn = 2.0 * std::numbers::pi * i / kAround;
+      const Vec3 out = 0.5 * up_ + kAside * (std::cos(turn) * x + std::sin(turn) * y);
+      note(hit_below(find_lowest_point(s_.shape, s_.body.orientation, out, 0.0, hint_)));
+    }
+  }
+  void add_low(const GroundHit& face) {
+    const HullContacts low =
+        find_hull_contacts(s_.shape, s_.body.orientation, face.normal, height_over(face), margin(), hint_);
+    for (int i = 0; i < low.count; ++i)
+      add(low.contact[std::size_t(i)], hit_below(low.contact[std::size_t(i)]));
+  }
+  void add_low_vertices(const Vec3& normal, double height, std::int32_t lowest) {
+    std::array<std::int32_t, kMostProbed> room;
+    for (const std::int32_t vertex : find_low_vertices(s_, normal, height, margin(), lowest, room)) {
+      const Vec3 arm = s_.body.orientation * s_.shape.hull.vertices[std::size_t(vertex)];
+      const HullContact low{arm, 0.0, vertex};
+      add(low, hit_below(low));
+    }
+  }
+  /// A vertex once, a ball's point once for each face.
+  void add(const HullContact& low, const std::optional<GroundHit>& hit) {
     if (!hit) return;
-    const Vec3 point = s.body.position + arm;
+    const auto number = low.vertex < 0 ? added_ : std::uint32_t(low.vertex + 1);
+    if (low.vertex >= 0 && std::any_of(known_.begin(), known_.begin() + added_,
+                                       [&](std::uint32_t known) { return known == number; }))
+      return;
+    if (added_ == known_.size()) return;
+    known_[added_++] = number;
+    const Vec3 point = s_.body.position + low.arm;
     PairContact contact;
     contact.normal = hit->normal;
     contact.gap = hit->normal.dot(point - hit->point);
     contact.manifold.count = 1;
     contact.manifold.points[0] = {point, contact.gap};
-    if (contact.gap > -s.shape.radius && closes(contact, part, s, time))
-      found.push_back({s.slot, std::uint32_t(vertex + 1), part.material, &part, contact});
-  };
-  for (int i = 0; i < low.count; ++i)
-    add(low.contact[std::size_t(i)].arm, low.contact[std::size_t(i)].vertex, hits[std::size_t(i)]);
-  if (even || !below || low.count < 3) return;  // of two there are no more
-  std::array<std::int32_t, kMostProbed> room;
-  for (const std::int32_t vertex :
-       find_low_vertices(s, normal, height, s.touching + s.way + slack, low.contact[0].vertex, room)) {
-    const auto is_known = [&](const HullContact& c) { return c.vertex == vertex; };
-    if (std::any_of(low.contact.begin(), low.contact.begin() + low.count, is_known)) continue;
-    const Vec3 arm = s.body.orientation * s.shape.hull.vertices[std::size_t(vertex)];
-    add(arm, vertex, hit_below(s.body.position + arm));
+    if (contact.gap > -s_.shape.radius && closes(contact, part_, s_, time_))
+      found_.push_back({s_.slot, number, part_.material, &part_, contact});
   }
+
+  const GroundSeeker& s_;
+  const GroundPart& part_;
+  const double time_;  // s, of the step
+  const Vec3 up_, ahead_;
+  std::int32_t hint_;
+  std::vector<SolidContact>& found_;
+  std::optional<GroundHit> below_;
+  bool even_ = false;
+  std::array<GroundHit, kMostFaces> face_;
+  std::size_t faces_ = 0;
+  static constexpr std::size_t kMostAsked = 24;
+  std::array<std::int32_t, kMostAsked> asked_;  // vertices, and what is below them
+  std::array<std::optional<GroundHit>, kMostAsked> hit_of_;
+  std::size_t asked_count_ = 0;
+  std::array<std::uint32_t, 64> known_;
+  std::uint32_t added_ = 0;
+};
+
+}  // namespace
+
+void find_probed_contacts(const GroundSeeker& seeker, const GroundPart& part, double time,
+                          std::vector<SolidContact>& found, std::vector<HalfSpace>& planes) {
+  ProbedGround(seeker, part, time, found).find(planes);
 }
 
 bool are_wedge(std::span<const HalfSpace> planes) {

@@ -60,7 +60,9 @@ FullLevel::FullLevel(dxWorld* world, dxSpace* space, const FullSettings& setting
                      const MaterialTable& materials)
     : settings_(settings),
       materials_(&materials),
-      world_(std::in_place, world, space, ode_settings_of(settings), materials) {}
+      world_(std::in_place, world, space, ode_settings_of(settings), materials) {
+  settings_.gravity = callers::gravity(world);
+}
 
 void FullLevel::add_ground(GroundId id, std::function<OdeGroundId(OdeWorld&)> make) {
   piece_of_[id.index] = pieces_.insert(pieces_.end(), Piece{.id = id, .make = std::move(make)});

@@ -30,6 +30,17 @@ Vec3 turn_between(const GroundPose& from, const GroundPose& to) {
   return turn.angle() * turn.axis();
 }
 
+// One that was put on in the last `since` s, as it seems to go, and its speed, m/s. No faster than it went in
+// the step before: what is put elsewhere once throws nobody.
+std::pair<GroundPose, double> pose_put_on(const GroundPart& part, double since) {
+  GroundPose pose =
+      put_from(part.put_on->from, {part.pose.position, part.pose.orientation}, part.rim(), since);
+  const double speed = pose.velocity.norm() + pose.angular_velocity.norm() * part.rim();
+  const double share = speed > 0.0 ? std::min(1.0, part.put_on->last_speed / speed) : 0.0;
+  pose.velocity *= share, pose.angular_velocity *= share;
+  return {pose, speed};
+}
+
 }  // namespace
 
 struct Ground::Tree : BoxTree {
@@ -73,7 +84,7 @@ GroundId Ground::add_plane(const HalfSpace& plane) {
 }
 
 GroundId Ground::add_part(const GroundShape& shape, const GroundPose& pose, MaterialId material, bool eager) {
-  auto part = std::make_unique<GroundPart>(GroundPart{{}, shape, pose, material, {}, 0});
+  auto part = std::make_unique<GroundPart>(GroundPart{{}, shape, pose, {}, material, {}, 0});
   if (free_parts_.empty()) {
     free_parts_.push_back(std::int32_t(parts_.size()));
     parts_.emplace_back();
@@ -134,7 +145,7 @@ void Ground::move_plane(GroundId id, const HalfSpace& plane) {
 }
 
 void Ground::move_part(GroundId id, const GroundPose& pose) {
-  if (pose.comes_back) note_put(id, pose);
+  if (pose.comes_back) note_put(*parts_[std::size_t(entries_[id.index].part)], pose);
   stand(std::size_t(entries_[id.index].part), pose);
 }
 
@@ -150,20 +161,18 @@ void Ground::stand(std::size_t index, const GroundPose& pose) {
   if (!stays) hold(std::int32_t(index));
 }
 
-// One with a velocity of its own was nowhere put on.
-void Ground::note_put(GroundId id, const GroundPose& pose) {
-  const auto known = std::ranges::find(put_on_, id, &PutOn::id);
-  if (!pose.velocity.isZero(0.0) || !pose.angular_velocity.isZero(0.0)) {
-    if (known != put_on_.end()) put_on_.erase(known);
-  } else if (known == put_on_.end()) {
-    put_on_.push_back({id, part(id).pose});
+void Ground::note_put(GroundPart& part, const GroundPose& pose) {
+  if (!pose.velocity.isZero(0.0) || !pose.angular_velocity.isZero(0.0)) return;
+  if (part.put_on) {
+    part.put_on->moved = true;
   } else {
-    known->moved = true;
+    part.put_on = {part.pose};
+    put_on_.push_back(part.id);
   }
 }
 
-void Ground::begin_step(double dt, const std::function<void(const Box&)>& stands_again) {
-  if (!put_on_.empty()) go_as_put(dt, stands_again);
+void Ground::begin_step(double dt, double since, const std::function<void(const Box&)>& stands_again) {
+  if (since > 0.0 && !put_on_.empty()) go_as_put(since, stands_again);
   if (moving_ == 0) return;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (!parts_[i] || !parts_[i]->pose.comes_back || !parts_[i]->moves()) continue;
@@ -174,29 +183,25 @@ void Ground::begin_step(double dt, const std::function<void(const Box&)>& stands
   }
 }
 
-// No faster than it went in the step before: what is put elsewhere once throws nobody.
-void Ground::go_as_put(double dt, const std::function<void(const Box&)>& stands_again) {
-  std::erase_if(put_on_, [&](const PutOn& put) { return !valid(put.id); });
-  for (PutOn& put : put_on_) {
-    const GroundPart& held = part(put.id);
-    GroundPose pose = held.pose;
-    pose.velocity = pose.angular_velocity = Vec3::Zero();
-    pose.comes_back = false;  // it stands where it goes to
-    double way = 0.0;         // m
-    if (put.moved) {
-      const GroundPose going = put_from(put.from, pose, held.rim(), dt);
-      way = dt * (going.velocity.norm() + going.angular_velocity.norm() * held.rim());
-      const double share = way > 0.0 ? std::min(1.0, put.last_way / way) : 0.0;
-      pose.velocity = share * going.velocity;
-      pose.angular_velocity = share * going.angular_velocity;
-    } else if (held.moves()) {
-      stands_again(bounds(put.id));
+void Ground::go_as_put(double since, const std::function<void(const Box&)>& stands_again) {
+  std::erase_if(put_on_, [&](GroundId id) {
+    if (!valid(id)) return true;
+    const auto index = std::size_t(entries_[id.index].part);
+    GroundPart& held = *parts_[index];
+    const bool has_own_velocity = held.pose.comes_back && held.moves();
+    if (!has_own_velocity && held.put_on->moved) {
+      const auto [pose, speed] = pose_put_on(held, since);
+      stand(index, pose);
+      held.put_on = {.from = pose, .moved = false, .last_speed = speed};
+      return false;
     }
-    stand(std::size_t(entries_[put.id.index].part), pose);
-    put.last_way = way;
-  }
-  std::erase_if(put_on_, [](const PutOn& put) { return !put.moved; });
-  for (PutOn& put : put_on_) put.from = part(put.id).pose, put.moved = false;
+    if (!has_own_velocity && held.moves()) {
+      stands_again(bounds(id));
+      stand(index, {held.pose.position, held.pose.orientation});
+    }
+    held.put_on.reset();
+    return true;
+  });
 }
 
 Box Ground::bounds(GroundId id) const { return bounds_[std::size_t(entries_[id.index].part)]; }
@@ -273,8 +278,21 @@ void Ground::archive(StateArchive& a) {
   std::vector<std::uint32_t> first;
   for (const auto& part : parts_) first.push_back(part && part->solids ? part->first_number : kNone);
   std::uint32_t numbers = numbers_;
-  a(first, numbers, put_on_);
+  struct Put {
+    GroundId id;
+    PutOn on;
+  };
+  std::vector<Put> put;
+  for (const GroundId id : put_on_)
+    if (valid(id)) put.push_back({id, *part(id).put_on});
+  a(first, numbers, put);
   if (!a.reading()) return;
+  for (const GroundId id : put_on_)
+    if (valid(id)) parts_[std::size_t(entries_[id.index].part)]->put_on.reset();
+  std::erase_if(put, [&](const Put& p) { return !valid(p.id); });
+  put_on_.clear();
+  for (const Put& p : put)
+    put_on_.push_back(p.id), parts_[std::size_t(entries_[p.id.index].part)]->put_on = p.on;
   for (std::size_t i = 0; i < std::min(first.size(), parts_.size()); ++i) {
     if (!parts_[i]) continue;
     if (first[i] == kNone) {

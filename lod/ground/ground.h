@@ -51,10 +51,18 @@ struct GroundPose {
 /// a rim as fast: that was put elsewhere, and carries nothing along.
 GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt);
 
+/// Of a part that was put elsewhere without a velocity, since the last step began or before that.
+struct PutOn {
+  GroundPose from;
+  bool moved = true;
+  double last_speed = 0.0;  ///< m/s, in the last step, of no point of it more
+};
+
 struct GroundPart {
   GroundId id;
   GroundShape shape;
   GroundPose pose;
+  std::optional<PutOn> put_on = {};
   MaterialId material = 0;
   std::optional<GroundSolids> solids;  ///< once made
   std::uint32_t first_number = 0;      ///< of its solids, for what is remembered of contacts with them
@@ -108,10 +116,11 @@ class Ground {
   void move_part(GroundId id, const GroundPose& pose);
   /// Of a part that is known by rays: where these come from.
   void set_up(GroundId id, const Vec3& up) { parts_[std::size_t(entries_[id.index].part)]->shape.up = up; }
-  /// Parts that come back move on in the next step, of `dt` s; those that were put elsewhere before this one
-  /// and the one before, without a velocity, go as they seem to, and `stands_again` is told the bounds of
-  /// those that did so until now.
-  void begin_step(double dt, const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
+  /// Parts that come back move on in the next step, of `dt` s. Those that were put elsewhere in the last
+  /// `since` s and in the step before, without a velocity, go as they seem to, and `stands_again` is told the
+  /// bounds of those that did so until now; 0: they go on as in the part of a step before this one.
+  void begin_step(double dt, double since,
+                  const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
   const GroundPart& part(GroundId id) const { return *parts_[std::size_t(entries_[id.index].part)]; }
   const HalfSpace& plane(GroundId id) const { return planes_[std::size_t(entries_[id.index].plane)]; }
   /// Of a part, where it stands now.
@@ -135,17 +144,10 @@ class Ground {
     std::uint32_t generation = 0;
     std::int32_t plane = -1, part = -1;
   };
-  /// A part that was put elsewhere, without a velocity, since the last step began or before that.
-  struct PutOn {
-    GroundId id;
-    GroundPose from;
-    bool moved = true;
-    double last_way = 0.0;  // m, in the last step, of no point of it more
-  };
   GroundId new_id(Entry entry);
-  void note_put(GroundId id, const GroundPose& pose);
+  void note_put(GroundPart& part, const GroundPose& pose);
   void stand(std::size_t part, const GroundPose& pose);
-  void go_as_put(double dt, const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
+  void go_as_put(double since, const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
   void hold(std::int32_t part);
   void let_go(std::int32_t part);
   void rebuild() const;
@@ -159,7 +161,7 @@ class Ground {
   std::vector<Eigen::AlignedBox3d> bounds_;         // of each part, world
   std::vector<std::int32_t> free_parts_;
   std::size_t parts_used_ = 0, moving_ = 0;
-  std::vector<PutOn> put_on_;
+  std::vector<GroundId> put_on_;  // parts with such a note
   mutable std::uint32_t numbers_ = 0;
 
   // Most parts stand in a tree, built now and then; those that came or moved since are looked at one by one.

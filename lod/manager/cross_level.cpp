@@ -68,33 +68,37 @@ std::optional<std::int32_t> second_of(const Levels& levels, const Neighborhood& 
   return found == neighborhood.ode_bodies.end() ? -1 : std::int32_t(found - neighborhood.ode_bodies.begin());
 }
 
-// Two bodies were moved since ODE found it: what they have parted by is a gap. (What nothing moves takes
-// along what lies on it.)
+// Two bodies were moved since ODE found it: what they have parted by is a gap. What nothing moves takes along
+// what lies on it, for as long as ODE finds the contact again.
 FullContact full_contact_of(const Levels& levels, const Neighborhood& neighborhood, std::int32_t first,
-                            std::int32_t second, const OdeContact& contact) {
+                            std::int32_t second, const Neighborhood::Seen& seen) {
+  const OdeContact& contact = seen.contact;
   FullContact full{first, second, contact.point, contact.normal, -contact.depth};
   if (second < 0) full.velocity = contact.velocity;
   const auto is_kinematic = [&](std::int32_t body) {
     return levels.bodies.properties(neighborhood.bodies[std::size_t(body)].owner).kinematic;
   };
-  if (second < 0 || is_kinematic(first) || (contact.second && is_kinematic(second))) return full;
+  const bool carries =
+      second < 0 ? contact.moves : is_kinematic(first) || (contact.second && is_kinematic(second));
+  if (carries && seen.age == 0) return full;
   const auto place_on = [&](std::int32_t body, const Vec3& arm) {
     const RigidState& state = neighborhood.bodies[std::size_t(body)].state;
     return Vec3(state.position + state.orientation * arm);
   };
-  full.gap += std::max(
-      0.0, (place_on(first, contact.first_arm) - place_on(second, contact.second_arm)).dot(contact.normal));
+  const Vec3 on_second = second < 0 ? contact.point : place_on(second, contact.second_arm);
+  full.gap += std::max(0.0, (place_on(first, contact.first_arm) - on_second).dot(contact.normal));
   return full;
 }
 
 void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
   update_seen(levels.full.world()->contacts(), neighborhood.seen);
-  for (const auto& [contact, age] : neighborhood.seen) {
+  for (const Neighborhood::Seen& seen : neighborhood.seen) {
+    const OdeContact& contact = seen.contact;
     const std::int32_t first = levels.full.index_of(contact.first);
     const std::optional<std::int32_t> second = second_of(levels, neighborhood, contact);
     if (first < 0 || !second) continue;
     FullContact& full =
-        neighborhood.contacts.emplace_back(full_contact_of(levels, neighborhood, first, *second, contact));
+        neighborhood.contacts.emplace_back(full_contact_of(levels, neighborhood, first, *second, seen));
     full.friction = friction_between(levels, neighborhood, full);
   }
 }

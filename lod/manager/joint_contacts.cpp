@@ -38,10 +38,7 @@ class JointContacts {
  private:
   // Of joints whose first body it is, or the only one.
   void add_of(std::size_t i) {
-    rows_.clear(), motors_.clear(), stops_.clear();
-    find_joint_rows(bodies_[i], reach_of(i), rows_);
-    find_joint_motors(bodies_[i], reach_of(i), motors_);
-    find_joint_stops(bodies_[i], reach_of(i), stops_);
+    find(bodies_[i], reach_of(i));
     for (std::size_t r = 0; r < rows_.size(); ++r)
       add(i, rows_[r].second, rows_[r].point, rows_[r].direction, std::uint32_t(rows_.size() - r), nullptr);
     for (std::size_t m = 0; m < motors_.size(); ++m)
@@ -54,12 +51,31 @@ class JointContacts {
 
   // Of joints whose first body it is; those that it is the second of are their first body's.
   void add_of_kinematic(dxBody* body) {
-    rows_.clear();
-    find_joint_rows(body, kKinematicReach, rows_);
-    for (std::size_t r = 0; r < rows_.size(); ++r)
-      if (const auto held = index_of_.find(rows_[r].second); held != index_of_.end())
-        add(std::size_t(held->second), body, rows_[r].point, rows_[r].direction,
-            kByKinematics + std::uint32_t(rows_.size() - r), nullptr);
+    find(body, kKinematicReach);
+    each_held(rows_, [&](std::size_t held, const JointRow& row, std::uint32_t number) {
+      add(held, body, row.point, row.direction, kByKinematics + number, nullptr);
+    });
+    each_held(motors_, [&](std::size_t held, const JointMotor& motor, std::uint32_t number) {
+      add(held, body, motor.point, -motor.direction, kByKinematics + kMotors + number, &motor);
+    });
+    each_held(stops_, [&](std::size_t held, const JointStop& stop, std::uint32_t number) {
+      add_one_way(held, body, stop.point, -stop.direction, stop.gap, 2 * (kByKinematics + kStops + number));
+    });
+  }
+
+  /// Of those of a kinematic body: `visit(held, of it, number)` where the second is a neighbour.
+  template <class Of, class Visit>
+  void each_held(const std::vector<Of>& all, const Visit& visit) const {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (const auto held = index_of_.find(all[i].second); held != index_of_.end())
+        visit(std::size_t(held->second), all[i], std::uint32_t(all.size() - i));
+  }
+
+  void find(dxBody* body, double reach) {
+    rows_.clear(), motors_.clear(), stops_.clear();
+    find_joint_rows(body, reach, rows_);
+    find_joint_motors(body, reach, motors_);
+    find_joint_stops(body, reach, stops_);
   }
 
   // What is kinematic holds as ground that moves does; others that are no neighbours are of no shape that is

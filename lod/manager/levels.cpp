@@ -113,7 +113,7 @@ void Levels::wake_all() {
     if (bodies.alive(body)) wake(body);
 }
 
-void Levels::follow_callers_space(double dt) {
+void Levels::follow_callers_space(double dt, double since) {
   if (!full.world()) return;
   full.world()->look_at_callers_space();  // puts back what the caller spoilt of ours, too
   const SpaceMirror* mirror = full.world()->callers_space();
@@ -121,7 +121,7 @@ void Levels::follow_callers_space(double dt) {
   const auto wake = [this](const Eigen::AlignedBox3d& box) { wake_in(box); };
   const Vec3& gravity = statistical_settings.gravity;
   const Vec3 up = gravity.isZero(0.0) ? Vec3(Vec3::UnitZ()) : Vec3(-gravity.normalized());
-  callers.ground.follow(*mirror, dt, up,
+  callers.ground.follow(*mirror, dt, since, up,
                         {.disturbed = wake,
                          .gone = [this](const Eigen::AlignedBox3d& box) { wake_piled_in(box); },
                          .came = [this](const HalfSpace& plane) { wake_on(plane); }});

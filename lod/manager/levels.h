@@ -73,9 +73,10 @@ struct Levels {
   void set_gravity(const Vec3& gravity);
   /// The same, of bodies that are about to be put as they were under it: wakes none.
   void use_gravity(const Vec3& gravity);
-  /// Brings ground and bodies to what the caller's space holds now, before a step of `dt` s; what lay on
-  /// ground that came, went or moved wakes.
-  void follow_callers_space(double dt);
+  /// Brings ground and bodies to what the caller's space holds now, before a step of `dt` s, in which he has
+  /// put it so for `since` s; 0: in a later part of a divided step. What lay on ground that came, went or
+  /// moved wakes.
+  void follow_callers_space(double dt, double since);
   /// After that, where no step follows: the caller may change it again.
   void look_away();
   /// The geoms of the caller's dynamic bodies as they are now, at any time.
@@ -108,8 +109,9 @@ struct Levels {
  private:
   /// Wakes those of either level that sleep above the body, bounding sphere to bounding sphere, and above
   /// these, and so on: nothing holds them up any more.
-  void wake_in_ground(std::uint32_t body);
   void wake_piled_on(std::uint32_t body);
+  /// The ground may have come into it.
+  void wake_in_ground(std::uint32_t body);
   /// Whether its bounding sphere about `place`, m, meets the box.
   bool meets(std::uint32_t body, const Vec3& place, const Eigen::AlignedBox3d& box) const;
   std::vector<std::uint32_t> find_sleepers_in(const Eigen::AlignedBox3d& box) const;  // statistical ones

@@ -119,7 +119,7 @@ const StepReport& Manager::step(double dt) {
   if (const int parts = int(std::ceil(dt / kLongestPart)); parts > 1)
     impl.step_divided(dt, parts);
   else
-    impl.step_part(dt);
+    impl.step_part(dt, dt);
   return impl.finish_lists(dt, WorldStepBy::manager);
 }
 
@@ -135,7 +135,7 @@ void Manager::before_world_step(double dt) {
   impl.follow_gravity();
   impl.begin_lists();
   const Impl::Undo undo(impl);
-  impl.begin_stages(dt, WorldStepBy::caller);
+  impl.begin_stages(dt, dt, WorldStepBy::caller);
   impl.step_levels.begin_callers_step(dt);
   impl.waits_for_world_step = true;
 }
@@ -186,7 +186,7 @@ void Manager::Impl::step_divided(double dt, int parts) {
   for (int i = 0; i < parts; ++i) {
     if (i > 0) levels.bodies.hold(forces);
     if (i > 0 && callers_world) levels.full.world()->repeat_callers_forces();
-    step_part(dt / parts);
+    step_part(dt / parts, i == 0 ? dt : 0.0);
     sum.times += report.times;
     sum.promotions += report.promotions, sum.demotions += report.demotions;
     sum.bytes_moved += report.bytes_moved, sum.contacts += report.contacts;
@@ -210,9 +210,9 @@ Manager::Impl::Undo::~Undo() {
     bodies.level(body).looked_at = std::min(bodies.level(body).looked_at, before_.step);
 }
 
-void Manager::Impl::step_part(double dt) {
+void Manager::Impl::step_part(double dt, double since) {
   const Undo undo(*this);
-  begin_stages(dt, WorldStepBy::manager);
+  begin_stages(dt, since, WorldStepBy::manager);
   step_levels.step_full(dt, report);
   end_stages();
   changes.take_part();
@@ -235,7 +235,7 @@ void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
       find_signature(levels, newcomers[i].index, newcomers[i].rung);
 }
 
-void Manager::Impl::begin_stages(double dt, WorldStepBy by) {
+void Manager::Impl::begin_stages(double dt, double since, WorldStepBy by) {
   report = {.step = report.step + 1, .times = {}, .counters = report.counters};
   levels.now = report.step;
   const PolicySettings& policy = choose.policy();
@@ -245,8 +245,8 @@ void Manager::Impl::begin_stages(double dt, WorldStepBy by) {
   underway.emplace(Underway{dt, ThreadLaps(clocked)});
   auto& [_, laps, measured] = *underway;
   const StageTimer timer(report.times.total_ms);
-  levels.follow_callers_space(dt);
-  levels.ground.begin_step(dt, [&](const Eigen::AlignedBox3d& box) { levels.wake_piled_in(box); });
+  levels.follow_callers_space(dt, since);
+  levels.ground.begin_step(dt, since, [&](const Eigen::AlignedBox3d& box) { levels.wake_piled_in(box); });
   left_places.wake(levels);
   audit.begin_step();
   // 1 choose rungs

@@ -67,7 +67,7 @@ struct Manager::Impl {
   void follow_gravity();
   void step_divided(double dt, int parts);
   /// Stages 1 to 5, for at most .1 s.
-  void step_part(double dt);
+  void step_part(double dt, double since);
   /// Where stages throw while it lasts, nothing has moved, and the report is that of the step before.
   class Undo {
    public:
@@ -81,7 +81,7 @@ struct Manager::Impl {
     const StepReport before_;
     const int exceptions_ = std::uncaught_exceptions();
   };
-  void begin_stages(double dt, WorldStepBy by);
+  void begin_stages(double dt, double since, WorldStepBy by);
   void end_stages();
   void begin_lists();
   const StepReport& finish_lists(double dt, WorldStepBy by);

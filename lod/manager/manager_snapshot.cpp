@@ -165,7 +165,8 @@ void Manager::Impl::archive(StateArchive& a, std::span<const std::shared_ptr<con
   if (a.reading()) queries.forget_all(), levels.forget_places(), audit.forget_watched();
   bool has_statistical = levels.statistical != nullptr;
   a(has_statistical);
-  if (!has_statistical) return levels.statistical.reset();
+  if (!has_statistical && a.reading()) levels.statistical.reset();
+  if (!has_statistical) return;
   if (!levels.statistical)
     levels.statistical =
         std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
@@ -210,7 +211,7 @@ void Manager::restore(std::span<const std::byte> snapshot,
                      find_shapes(body, header.shapes, shapes, levels.bodies));
   const auto signatures = archive_signatures(state, levels);
   impl_->choose.groups().archive_detached(state);
-  levels.follow_callers_space(kAnyStep);  // contacts are remembered with the parts of his ground
+  levels.follow_callers_space(kAnyStep, kAnyStep);  // contacts are remembered with the parts of his ground
   levels.look_away();
   impl_->archive(state, signatures);
   check_that(state.at_end(), "a snapshot is read to its end");

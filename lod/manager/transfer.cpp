@@ -72,13 +72,20 @@ bool overlaps_planes(std::span<const HalfSpace> planes, const Shape& shape, cons
   });
 }
 
-// Whether it leans on others there, or may do so, and hardly moves.
+bool is_carried(const Levels& levels, std::uint32_t body, const RigidState& state) {
+  if (levels.statistical->is_carried(levels.bodies[body].statistical)) return true;
+  std::vector<const GroundPart*> near;
+  levels.ground.find_parts(state.position, levels.bodies.shape(body)->radius, near);
+  return std::ranges::any_of(near, &GroundPart::moves);
+}
+
+// Whether it leans on others there, or may do so, and hardly moves. What is carried goes on with its carrier.
 bool lies_among_others(const Levels& levels, std::uint32_t body, const RigidState& state) {
   const Activity does = levels.statistical->activity(levels.bodies[body].statistical);
   const double radius = levels.bodies.shape(body)->radius,
                slow = 4.0 * parting_speed(radius, levels.statistical_settings.gravity.norm());
   return does != Activity::alone && state.velocity.norm() <= slow &&
-         state.angular_velocity.norm() * radius <= slow;
+         state.angular_velocity.norm() * radius <= slow && !is_carried(levels, body, state);
 }
 
 // m that its mesh may be above what its hull lies on, at most, where it is hollow.

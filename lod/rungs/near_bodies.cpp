@@ -376,8 +376,9 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
   };
   for (const CrowdContact& c : pairs_.contacts())
     for (const auto& [touched, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
-      const bool carried = carried_.contains(touched) || is_parting(other);
+      const bool is_carried = carried_.contains(touched), carried = is_carried || is_parting(other);
       if (carried) keep_awake(step, touched);
+      if (is_carried && touched.is_statistical()) scene.body(touched).carried = true;
       if (!scene.asleep(touched)) continue;
       Vec3 velocity = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point);
       if (other.is_statistical()) velocity += step.dt * scene.pushed(other);  // as it will be
@@ -389,7 +390,10 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
   for (const Participant p : struck_) wake(step, p, pace);
   if (!carried_.none())
     for (const SolidContact& c : solid_contacts_)
-      if (c.part->moves()) keep_awake(step, Participant::statistical(std::size_t(c.slot)));
+      if (c.part->moves()) {
+        keep_awake(step, Participant::statistical(std::size_t(c.slot)));
+        scene.body(Participant::statistical(std::size_t(c.slot))).carried = true;
+      }
 }
 
 // Who sleeps holds still; where it would not, it wakes, and what touches it is solved once more.

@@ -239,7 +239,8 @@ void NearPairs::choose(const NearMarks& near, Pace pace) {
 
 void NearPairs::find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> movers,
                               NearMarks& near, Pace pace) {
-  for (const std::int32_t slot : movers) scene.bodies[std::size_t(slot)].crowded = false;
+  for (const std::int32_t slot : movers)
+    scene.bodies[std::size_t(slot)].crowded = scene.bodies[std::size_t(slot)].carried = false;
   contacts_.resize(kept_contacts_);
   looked_at_ = 0;
   find_more_contacts(scene, time, near, pace);

@@ -313,6 +313,10 @@ Activity StatisticalLevel::activity(StatisticalPlace place) const {
   });
 }
 
+bool StatisticalLevel::is_carried(StatisticalPlace place) const {
+  return place.model == StatisticalModel::support && impl_->support.body(place.slot).carried;
+}
+
 const StatisticalCost& StatisticalLevel::cost() const { return impl_->cost; }
 void StatisticalLevel::set_clocked(bool clocked) { impl_->clocked = clocked; }
 

@@ -119,6 +119,8 @@ class StatisticalLevel {
 
   /// What it did in the last step.
   Activity activity(StatisticalPlace place) const;
+  /// Of one at `support`: whether what nothing stops carried it, directly or through others.
+  bool is_carried(StatisticalPlace place) const;
   /// Of the last step. Times are taken only from the next step on after `clocked` was set.
   const StatisticalCost& cost() const;
   void set_clocked(bool clocked);

@@ -64,10 +64,11 @@ struct StatisticalBody {
   bool on_edge = false;        ///< slow and in a crowd, but not over an area of what it stands on (Footing)
   bool pinned =
       false;  ///< deep in one of many times its mass, or the other way round, and not to be moved out
-  float since_crowded = 1e9f;  ///< s since it last did
+  bool carried = false;        ///< by what nothing stops (CarriedBodies), when it last met others or solids
+  float since_crowded = 1e9f;  ///< s since it last met another body
   float placed = 0.0f;  ///< s left in which it is not to rest in overlaps, since it was put where it has
                         ///< some, or pressed into others by one that was
-  float eased = 0.0f;  ///< s left in which overlaps that it brought from another rung are undone slowly
+  float eased = 0.0f;   ///< s left in which overlaps that it brought from another rung are undone slowly
 
   bool is_sphere() const { return sphere_radius > 0.0f; }
   bool is_solved_in_crowd() const { return crowded || (on_solid && !alone_on_solid); }

@@ -222,7 +222,8 @@ void Collision::archive(StateArchive& a) {
   a(courses);
   if (!a.reading()) return;
   for (std::size_t i = 0; i < std::min(courses.size(), ground_.size()); ++i)
-    ground_[i].before = courses[i].before, ground_[i].last_way = courses[i].last_way;
+    ground_[i].before = courses[i].before, ground_[i].last_way = courses[i].last_way,
+    ground_[i].moved = false;
 }
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {

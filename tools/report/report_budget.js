@@ -32,7 +32,7 @@ function rungConfig(run) {
 }
 
 function stepConfig(run) {
-  const budget = run.budget_ms, sorted = [...run.processor_ms.slice(9)].sort((a, b) => a - b);
+  const budget = run.budget_ms, sorted = [...run.processor_ms.slice(Math.min(9, run.processor_ms.length - 1))].sort((a, b) => a - b);
   const high = Math.max(budget ? budget * 1.35 : 0, 1.1 * sorted[Math.floor(0.995 * sorted.length)]);
   const datasets = [{
     label: "step", data: run.processor_ms.map((ms, i) => ({x: timeOf(run, i), y: Math.min(ms, high), ms})), borderColor: colour("ink"), backgroundColor: colour("ink"), borderWidth: 1, showLine: true, clip: 8,

@@ -20,7 +20,7 @@ class GroundOfCaller : public ::testing::Test {
     disturbed_.clear(), planes_.clear();
     scene_.mirror->refresh();
     const auto note = [this](const Eigen::AlignedBox3d& box) { disturbed_.push_back(box); };
-    callers_.follow(*scene_.mirror, kCallersStep, Vec3::UnitZ(),
+    callers_.follow(*scene_.mirror, kCallersStep, kCallersStep, Vec3::UnitZ(),
                     {.disturbed = note, .gone = note, .came = [this](const HalfSpace& plane) {
                        planes_.push_back(plane);
                      }});

@@ -68,6 +68,40 @@ TEST_F(OddGeoms, AHeightFieldThatRepeatsItselfIsGroundFarOutToo) {
   dGeomHeightfieldDataDestroy(data);
 }
 
+// A valley of 80 × 80 cells of an eighth of a metre, its bottom along x = 0.
+dReal valley(void* slope, int x, int) { return *static_cast<double*>(slope) * 0.125 * std::abs(x - 40); }
+
+// Of its two sides only that below the centre was known: the ball went to and fro, the deeper the steeper
+// they are, and at 60° out through the bottom.
+TEST_F(OddGeoms, ABallInAValleyOfAHeightFieldTouchesBothSides) {
+  constexpr double kRadius = 0.15;
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kRadius));
+  for (double slope : {0.3, 1.0, 1.7}) {
+    const dHeightfieldDataID data = dGeomHeightfieldDataCreate();
+    dGeomHeightfieldDataBuildCallback(data, &slope, valley, 10, 10, 81, 81, 1, 0, 1, 0);
+    const dGeomID field = dCreateHeightfield(space_, data, 1);
+    const dQuaternion up = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
+    dGeomSetQuaternion(field, up);
+    Manager& manager = start();
+    const double lies = kRadius * std::sqrt(1.0 + slope * slope);
+    std::vector<BodyId> balls;
+    for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+      balls.push_back(
+          manager.add_body({.shape = ball,
+                            .state = {.position = {0.01, 2.0 * double(balls.size()) - 2.03, lies + 0.02}},
+                            .level = level}));
+    for (int i = 0; i < 240; ++i) manager.step(kFrame);
+    for (const BodyId body : balls) {
+      EXPECT_NEAR(manager.state(body).position.z(), lies, 0.002) << slope;
+      EXPECT_NEAR(manager.state(body).position.x(), 0.0, 0.002) << slope;
+      EXPECT_TRUE(manager.asleep(body)) << slope;
+    }
+    manager_.reset();
+    dGeomDestroy(field);
+    dGeomHeightfieldDataDestroy(data);
+  }
+}
+
 // Gravity along its own −y, as where the world's y is up.
 TEST_F(OddGeoms, AHeightFieldWithoutAPlaceIsGroundAtTheOrigin) {
   dWorldSetGravity(world_, 0, -9.81, 0);

@@ -175,6 +175,30 @@ TEST_P(GroundPutOn, GoesOnAlikeAfterARestore) {
   EXPECT_EQ(manager_.state_hash(), hash);
 }
 
+// Its way in a step was compared with that in another of half the length; a step that is divided gave all of
+// it to its first part.
+TEST(ManagerGround, PutOnInStepsOfAnyLengthItCarriesWhatLiesOnIt) {
+  constexpr double kSpeed = 1.0;  // m/s
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const double other : {1.0 / 30.0, 0.3}) {
+      Manager manager({.signatures = coarse_signature});
+      const GroundId platform = manager.add_static_box({6, 2, 0.2}, {0, 0, -0.1}, Quat::Identity());
+      const BodyId cube = add(manager, box_shape({0.3, 0.3, 0.3}), testing::at({0, 0, 0.15}), level);
+      double at = 0.0, slipped = 0.0;  // m
+      const auto go = [&](double dt) {
+        at += kSpeed * dt;
+        manager.move_ground(platform, testing::at({at, 0, -0.1}));
+        manager.step(dt);
+      };
+      for (int i = 0; i < 60; ++i) go(1.0 / 60.0);
+      slipped = manager.state(cube).position.x() - at;
+      for (int i = 0; i < 10; ++i) go(i % 2 == 0 ? other : 1.0 / 60.0);
+      EXPECT_NEAR(manager.state(cube).position.x() - at, slipped, 0.01)
+          << int(level) << ", " << other << " s";
+      EXPECT_NEAR(manager.state(cube).velocity.x(), kSpeed, 0.05) << int(level) << ", " << other << " s";
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, GroundPutOn,
                          ::testing::Combine(::testing::Values(LevelChoice::full, LevelChoice::support,
                                                               LevelChoice::tables),

@@ -131,6 +131,28 @@ TEST(ManagerSnapshot, ThreadsOfTheReaderDoNotMatter) {
 }
 
 // Ids are the snapshot's: those given since are good no more, those removed since are again.
+// Putting it back counted as having moved it: who lies on it began anew to come to rest.
+TEST(ManagerSnapshot, GroundThatWasMovedOnceStandsStillForItsReader) {
+  const auto set_up = [](Manager& manager) {
+    const GroundId box = manager.add_static_box({4, 4, 0.4}, {0, 0, -1}, Quat::Identity());
+    manager.move_ground(box, at({0, 0, -0.2}));
+  };
+  Manager manager(unmeasured());
+  set_up(manager);
+  const BodyId crate = add(manager, box_shape({0.3, 0.3, 0.3}), at({0, 0, 0.1501}), LevelChoice::full);
+  for (int i = 0; i < 20; ++i) manager.step(kFrame);
+  Manager reader(unmeasured());
+  set_up(reader);
+  reader.restore(manager.snapshot(), std::vector{box_shape({0.3, 0.3, 0.3})});
+  ASSERT_FALSE(manager.asleep(crate));
+  for (int i = 0; i < 60; ++i) {
+    manager.step(kFrame), reader.step(kFrame);
+    ASSERT_EQ(reader.asleep(crate), manager.asleep(crate)) << i;
+    ASSERT_EQ(reader.state_hash(), manager.state_hash()) << i;
+  }
+  EXPECT_TRUE(reader.asleep(crate));
+}
+
 TEST(ManagerSnapshot, IdsAreThoseOfTheSnapshot) {
   SavedWorld world;
   world.fill();

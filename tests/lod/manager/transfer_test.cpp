@@ -222,6 +222,39 @@ TEST(Transfer, T7CameraAboutTheThresholdKeepsEnergy) {
   EXPECT_NEAR(energy(manager, body), energy_before, 0.01 * energy_before);
 }
 
+// It was held back as if it had to part from what it lay on: its carrier went on under it.
+TEST(Transfer, WhoIsCarriedGoesOnWithItsCarrier) {
+  constexpr double kSpeed = 0.3;  // m/s
+  for (const bool by_body : {false, true}) {
+    Manager manager(unmeasured());
+    BodyProperties kinematic;
+    kinematic.kinematic = true;
+    const auto where = [&](int frame) { return at({kSpeed * frame * kFrame, 0, -0.2}, {kSpeed, 0, 0}); };
+    BodyId body;
+    GroundId ground;
+    if (by_body)
+      body = manager.add_body({.shape = box_shape({6, 6, 0.4}),
+                               .state = where(0),
+                               .level = LevelChoice::full,
+                               .properties = kinematic});
+    else
+      ground = manager.add_static_box({6, 6, 0.4}, where(0).position, Quat::Identity());
+    const BodyId crate =
+        add(manager, box_shape({0.3, 0.3, 0.3}), at({0, 0, 0.15}, {kSpeed, 0, 0}), LevelChoice::support);
+    for (int frame = 0; frame < 60; ++frame) {
+      if (by_body)
+        manager.set_state(body, where(frame));
+      else
+        manager.move_ground(ground, where(frame));
+      if (frame == 30) manager.set_level(crate, LevelChoice::full);
+      manager.step(kFrame);
+      ASSERT_NEAR(manager.state(crate).position.x(), where(frame + 1).position.x(), 1e-3)
+          << by_body << ", frame " << frame;
+    }
+    EXPECT_EQ(manager.level(crate), Level::full);
+  }
+}
+
 struct Teleport {
   std::vector<int> promoted;  // in order of frames, then of bodies
   int most_in_a_frame = 0;

@@ -254,6 +254,65 @@ int count_restless(const std::function<LevelChoice(int)>& level_of_ball, const M
 
 // Each half second one that statistical bodies held up was laid to sleep, woken by ODE, and fell for a frame:
 // of these 19 and 33 never slept. (A few may roll on, or spin, as balls do.)
+// The crowd left out what a full body stood on where that was kinematic and had been added before it.
+TEST(MixedStacks, AFullOneOnAKinematicOneHoldsWhatIsPushedAgainstIt) {
+  constexpr double kPush = 420.0;  // N, of 446 that friction holds
+  for (const bool platform_first : {false, true}) {
+    Manager manager(unmeasured());
+    manager.add_plane(Vec3::UnitZ(), -5.0);
+    BodyProperties kinematic;
+    kinematic.kinematic = true;
+    const auto add_platform = [&] {
+      manager.add_body({.shape = box_shape({3, 3, 0.2}),
+                        .state = testing::at({0, 0, -0.1}),
+                        .level = LevelChoice::full,
+                        .properties = kinematic});
+    };
+    if (platform_first) add_platform();
+    const BodyId full = manager.add_body({.shape = box_shape({0.3, 0.4, 0.3}),
+                                          .state = testing::at({0, 0, 0.15}),
+                                          .mass = 64.0,
+                                          .level = LevelChoice::full});
+    if (!platform_first) add_platform();
+    const BodyId pushed = manager.add_body({.shape = box_shape({0.3, 0.3, 0.3}),
+                                            .state = testing::at({0.3005, 0, 0.1505}),
+                                            .mass = 27.0,
+                                            .level = LevelChoice::support});
+    for (int i = 0; i < 240; ++i) {
+      manager.add_force(pushed, {-kPush, 0, 0});
+      manager.step(kFrame);
+    }
+    EXPECT_NEAR(manager.state(full).position.x(), 0.0, 0.01) << platform_first;
+    EXPECT_NEAR(manager.state(pushed).position.x(), 0.3, 0.01) << platform_first;
+  }
+}
+
+// What a full ball had touched until three frames ago was taken to be right behind it still: a cube that
+// struck it in the air bounced as off the ground, and the ball was driven down besides (122 J more of 165).
+TEST(MixedStacks, NobodyGainsWhereAFullBallIsStruckAfterItBounced) {
+  constexpr double kRadius = 0.12, kSide = 0.2;  // m
+  const auto ball = sphere_shape(kRadius);
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (int later = 6; later < 10; ++later) {
+      Manager manager({.signatures = coarse_signature});
+      manager.materials().replace(0, {0.6, 0.5, 1000.0});
+      manager.add_plane(Vec3::UnitZ(), 0.0);
+      RigidState falls = testing::at({0, 0, kRadius + 0.04});  // it bounces at the end of a frame
+      falls.velocity = {0, 0, -3};
+      const BodyId full = add(manager, ball, falls, LevelChoice::full);
+      RigidState above = testing::at({0.02, later % 2 == 0 ? 0.08 : 0.0, 0.42 + 0.05 * later});
+      above.velocity = {0, 0, -6};
+      const BodyId cube = add(manager, box_shape({kSide, kSide, kSide}), above, level);
+      double before = energy(manager, full) + energy(manager, cube);
+      for (int i = 0; i < 30; ++i) {
+        manager.step(kFrame);
+        const double now = energy(manager, full) + energy(manager, cube);
+        EXPECT_LT(now, before + 1.0) << int(level) << ", " << later << ", frame " << i;
+        before = now;
+      }
+    }
+}
+
 TEST(MixedHeap, ComesToRest) {
   EXPECT_LE(count_restless([](int i) { return i % 2 ? LevelChoice::full : LevelChoice::support; },
                            {.signatures = coarse_signature}),
