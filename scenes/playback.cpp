@@ -337,10 +337,11 @@ Playback load_playback(const fs::path& file) {
   if (!has_label || !header.contains("blobs") || !header["blobs"].is_object())
     fail("a damaged playback file");
   playback.blobs.assign(bytes.begin() + std::ptrdiff_t(head + sizes[1]), bytes.end());
-  for (const auto& [name, place] : playback.header["blobs"].items()) {
+  for (const auto& blob : playback.header["blobs"].items()) {
     const auto number = [&](const char* key) {
+      const auto& place = blob.value();
       if (!place.is_object() || !place.contains(key) || !place[key].is_number_unsigned())
-        fail(fmt::format("a damaged playback file: no {} of {}", key, name));
+        fail(fmt::format("a damaged playback file: no {} of {}", key, blob.key()));
       return place[key].get<std::size_t>();
     };
     const std::size_t offset = number("offset"), size = number("bytes"), held = playback.blobs.size();

@@ -9,7 +9,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kFar = 0.25;  // over R: whoever is driven less far passes no other
+constexpr double kDrivenFar = 0.25;  // over R: whoever is driven less far passes no other
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void TablesLevel::note_driven(std::int64_t begin, std::int64_t end, std::vector<
   for (std::int64_t i = begin; i < end; ++i) {
     if (!step_.touches(i)) continue;
     const double before = spheres_.velocity(i).norm(), more = step_.velocity(i).norm() - before,
-                 far = kFar * double(kinds_.radius[spheres_.kind[std::size_t(i)]]);
+                 far = kDrivenFar * double(kinds_.radius[spheres_.kind[std::size_t(i)]]);
     if (more > 0.0 && (ground_.has_parts() || more * constants_.wide_time > far))
       driven.push_back({i, spheres_.position(i), before});
   }
@@ -35,7 +35,7 @@ double TablesLevel::farthest_reach(std::int64_t place) const {
 bool TablesLevel::leaves_its_reach(const Driven& driven) const {
   const double way = (spheres_.position(driven.place) - driven.from).norm(),
                radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
-  return way > kFar * radius &&
+  return way > kDrivenFar * radius &&
          way + farthest_reach(driven.place) > double(step_.reach[std::size_t(driven.place)]);
 }
 
@@ -139,7 +139,7 @@ double TablesLevel::find_way_to(const Driven& driven, const Vec3& way, std::int6
     const double closing = -relative.dot(normal);  // m, on all of the way
     if (closing <= 0.0) break;
     if (gap <= kTouching * radius) {
-      if (i > 0 || closing > kFar * radius + gap) free = gone;
+      if (i > 0 || closing > kDrivenFar * radius + gap) free = gone;
       break;
     }
     gone += gap / closing;

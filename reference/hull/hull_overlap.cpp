@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -121,6 +122,13 @@ class Walk {
 
 using Search = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*, ccd_vec3_t*);
 
+/// Unit, from the second centre to the first; any where they are one.
+Vec3 way_between(const PlacedHull& first, const PlacedHull& second) {
+  const Vec3 between = first.state.position - second.state.position;
+  const double distance = between.norm();
+  return distance > 0.0 ? Vec3(between / distance) : Vec3::UnitZ();
+}
+
 /// Where libccd says that the two overlap, a direction along which the first leaves the second by about the
 /// shortest way.
 std::optional<Vec3> find_way_out(const PlacedHull& first, const PlacedHull& second, Search search) {
@@ -136,7 +144,8 @@ std::optional<Vec3> find_way_out(const PlacedHull& first, const PlacedHull& seco
   if (search(&first, &second, &query, &depth, &out, &point) != 0) return {};
   const Vec3 direction = -to_vec3(out);
   const double norm = direction.norm();
-  if (!(norm > 0.5)) return {};
+  if (!std::isfinite(norm)) return way_between(first, second);  // they overlap, but it found no way
+  if (norm <= 0.5) return {};
   return direction / norm;
 }
 
@@ -199,7 +208,7 @@ std::optional<HullOverlap> find_hull_overlap(const Shape& first, const RigidStat
     if (const HullOverlap other = Walk(a, b, start).end(); other.depth < kLess * least.depth) least = other;
   };
   try_from(-*by_portal);
-  if (const double distance = b.state.position.norm(); distance > 0.0) try_from(-b.state.position / distance);
+  try_from(way_between(a, b));
   return least.depth > 0.0 ? std::optional(least) : std::nullopt;
 }
 
