@@ -4,8 +4,7 @@
 #include <unordered_set>
 
 #include "lod/callers/geom_solids.h"
-#include "lod/contact/hull_contacts.h"
-#include "lod/contact/pair_contacts.h"
+#include "lod/contact/reckoned_contacts.h"
 #include "lod/ground/met_ground.h"
 #include "reference/error.h"
 #include "reference/ode/body_joints.h"
@@ -15,7 +14,6 @@ namespace lodestone {
 namespace {
 
 constexpr std::uint32_t kFirstOwner = 0x40000000;  // above every body of the manager's
-constexpr double kTouching = 0.02;                 // over R: so near it is held up
 constexpr double kLeft = 0.02;  // over its longest side: a geom whose bounds move by more in a step has left
 
 // What contacts need of a body's shape, or of a convex piece of it, about `center`.
@@ -202,40 +200,6 @@ void CallersBodies::follow_tied(std::span<dxBody* const> jointed,
   }
 }
 
-// What holds them up: the ground below, which the caller's own contacts act against.
-void add_ground_contacts(const MetGround& ground, const FullNeighbor& body, std::int32_t index,
-                         std::vector<FullContact>& contacts) {
-  const Shape& shape = *body.shape;
-  const double margin = kTouching * shape.radius;
-  const auto add = [&](const Vec3& point, const Vec3& normal, double gap, const GroundPart* part = nullptr) {
-    FullContact& contact = contacts.emplace_back(FullContact{index, -1, point, normal, gap});
-    if (part) contact.velocity = part->velocity_at(point);
-  };
-  for (const HalfSpace& plane : ground.planes()) {
-    const double height = plane.height_of(body.state.position);
-    if (height > shape.radius + margin) continue;
-    std::int32_t hint = 0;
-    const HullContacts low =
-        find_hull_contacts(shape, body.state.orientation, plane.normal, height, margin, hint);
-    for (int i = 0; i < low.count; ++i)
-      if (low.contact[std::size_t(i)].gap < margin)
-        add(body.state.position + low.contact[std::size_t(i)].arm, plane.normal,
-            low.contact[std::size_t(i)].gap);
-  }
-  std::vector<const GroundPart*> parts;
-  std::vector<PlacedSolid> near;
-  ground.find_parts(body.state.position, shape.radius + margin, parts);
-  for (const GroundPart* part : parts)
-    find_solids(*part, body.state.position, shape.radius + margin, 0.0, near);
-  const PairBody self{&shape, body.state.position, body.state.orientation};
-  for (const PlacedSolid& solid : near)
-    if (const auto contact =
-            find_hull_contact(self, {solid.solid->shape.get(), solid.position, solid.orientation}, margin))
-      for (int i = 0; i < contact->manifold.count; ++i)
-        add(contact->manifold.points[std::size_t(i)].point, contact->normal,
-            contact->manifold.points[std::size_t(i)].gap, solid.part);
-}
-
 void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vector<FullNeighbor>& neighbors,
                            std::vector<FullContact>& contacts) const {
   for (const Entry& entry : bodies_) {
@@ -254,7 +218,7 @@ void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vecto
     if (neighbor.asleep || entry.is_tied()) continue;
     BodyProperties own;
     own.category = entry.bits.category, own.collide = entry.bits.collide;
-    add_ground_contacts({ground, own}, neighbor, index, contacts);
+    reckon_ground_contacts({ground, own}, neighbor, index, contacts);
   }
 }
 

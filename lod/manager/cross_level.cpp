@@ -5,6 +5,7 @@
 #include <span>
 #include <tuple>
 
+#include "lod/contact/reckoned_contacts.h"
 #include "lod/manager/joint_contacts.h"
 #include "reference/ode/body_joints.h"
 #include "reference/ode/callers_bodies.h"
@@ -90,6 +91,50 @@ FullContact full_contact_of(const Levels& levels, const Neighborhood& neighborho
   return full;
 }
 
+// Of one that has just become full ODE may know no contact: none before its first step, and none where it lay
+// a little deep and hops. By its hull, or what lies on it would fall with it.
+void reckon_contacts_of(const Levels& levels, Neighborhood& neighborhood, std::int32_t index,
+                        std::span<const std::int32_t> fresh) {
+  const FullNeighbor& body = neighborhood.bodies[std::size_t(index)];
+  const BodyProperties& own = levels.bodies.properties(body.owner);
+  reckon_ground_contacts({levels.ground, own}, body, index, neighborhood.contacts);
+  if (!body.shape->convex) return;
+  std::vector<std::uint32_t> near;
+  levels.find_near(body.owner, 1.0 + kTouchMargin, Level::full, near, false);
+  std::ranges::sort(near);
+  const auto& may_pair = levels.statistical_settings.pair_filter;
+  for (const std::uint32_t owner : near) {
+    const std::int32_t other = levels.full.index_of(levels.bodies[owner].ode);
+    const bool is_theirs = other < index && std::ranges::binary_search(fresh, other);
+    if (other < 0 || is_theirs || !levels.bodies.shape(owner)->convex ||
+        !may_meet(own, levels.bodies.properties(owner)) || (may_pair && !may_pair(body.owner, owner)))
+      continue;
+    reckon_pair_contacts(neighborhood.bodies, index, other, neighborhood.contacts);
+  }
+}
+
+void reckon_contacts_of_newcomers(const Levels& levels, Neighborhood& neighborhood) {
+  constexpr std::int64_t kNew = 8;  // steps
+  const std::size_t own = levels.full.members().size();
+  std::vector<std::int32_t> fresh;
+  for (std::size_t i = 0; i < own; ++i) {
+    const std::uint32_t owner = neighborhood.bodies[i].owner;
+    if (levels.now - levels.bodies.level(owner).changed_at < kNew && !neighborhood.bodies[i].asleep &&
+        !levels.bodies.properties(owner).kinematic)
+      fresh.push_back(std::int32_t(i));
+  }
+  if (fresh.empty()) return;
+  std::vector<bool> touches(neighborhood.bodies.size(), false);
+  for (const FullContact& contact : neighborhood.contacts)
+    for (const std::int32_t end : {contact.first, contact.second})
+      if (end >= 0) touches[std::size_t(end)] = true;
+  std::erase_if(fresh, [&](std::int32_t i) { return bool(touches[std::size_t(i)]); });
+  const std::size_t before = neighborhood.contacts.size();
+  for (const std::int32_t i : fresh) reckon_contacts_of(levels, neighborhood, i, fresh);
+  for (FullContact& contact : std::span(neighborhood.contacts).subspan(before))
+    contact.friction = friction_between(levels, neighborhood, contact);
+}
+
 void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
   update_seen(levels.full.world()->contacts(), neighborhood.seen);
   for (const Neighborhood::Seen& seen : neighborhood.seen) {
@@ -101,6 +146,7 @@ void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
         neighborhood.contacts.emplace_back(full_contact_of(levels, neighborhood, first, *second, seen));
     full.friction = friction_between(levels, neighborhood, full);
   }
+  reckon_contacts_of_newcomers(levels, neighborhood);
 }
 
 // ODE lets no body sleep that none of its own contacts or joints holds up: by the same measure, one that

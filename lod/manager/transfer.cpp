@@ -6,6 +6,7 @@
 #include "lod/statistical/parting.h"
 #include "reference/error.h"
 #include "reference/hull/hull_overlap.h"
+#include "reference/ode/body_joints.h"
 
 namespace lodestone {
 namespace {
@@ -114,6 +115,16 @@ bool overlaps_ground(const MetGround& ground, const Shape& shape, const RigidSta
          });
 }
 
+// What hangs on joints may yield to what is laid on it, however gently.
+void wake_sprung(Levels& levels, std::uint32_t body) {
+  if (levels.full.members().empty()) return;
+  std::vector<std::uint32_t> near;
+  levels.find_near(body, 1.0 + kTouchMargin, Level::full, near, true);
+  std::ranges::sort(near);
+  for (const std::uint32_t other : near)
+    if (has_joints(levels.full.world()->ode_body(levels.bodies[other].ode))) levels.wake(other);
+}
+
 }  // namespace
 
 void find_signature(Levels& levels, std::uint32_t body, Rung rung) {
@@ -133,6 +144,7 @@ void place(Levels& levels, std::uint32_t body, Rung rung) {
   levels.bodies[body].newcomer = -1;
   levels.bodies.level(body).newcomer = false;
   levels.bodies.level(body).changed_at = BodyLevel::kLongAgo;
+  if (!levels.asleep(body)) wake_sprung(levels, body);
 }
 
 void transfer(Levels& levels, std::uint32_t body, Rung to) {

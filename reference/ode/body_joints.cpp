@@ -3,8 +3,11 @@
 #include <ode/ode.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <unordered_set>
+
+#include "reference/ode/callers_bodies.h"
 
 namespace lodestone {
 namespace {
@@ -214,10 +217,19 @@ bool is_driven(dxJoint* joint) {
   return false;
 }
 
+// ODE's constraint is a spring of ERP / (h CFM) N/m and a damper of (1 − ERP) / CFM N s/m in a substep of h
+// s.
 bool is_sprung(dxJoint* joint) {
+  constexpr double kFrame = 1.0 / 60.0, kSubstep = kFrame / 4.0;  // s, as usual
+  constexpr double kStiff = 3.0;
   const dBodyID first = dJointGetBody(joint, 0), body = first ? first : dJointGetBody(joint, 1);
-  return dJointGetType(joint) == dJointTypeHinge2 && body &&
-         dJointGetHinge2Param(joint, dParamSuspensionCFM) > dWorldGetCFM(dBodyGetWorld(body));
+  if (dJointGetType(joint) != dJointTypeHinge2 || !body) return false;
+  const double erp = dJointGetHinge2Param(joint, dParamSuspensionERP),
+               cfm = dJointGetHinge2Param(joint, dParamSuspensionCFM);
+  if (cfm <= dWorldGetCFM(dBodyGetWorld(body))) return false;
+  const double share = callers::mass(body) / std::max(1, dBodyGetNumJoints(body)),  // kg
+      in_frame = (erp / kSubstep * kFrame + 1.0 - erp) / cfm * kFrame;              // kg
+  return in_frame < kStiff * share;
 }
 
 std::vector<dxBody*> joined_bodies(dxBody* body) {

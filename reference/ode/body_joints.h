@@ -68,7 +68,7 @@ bool has_hard_stops(dxJoint* joint);
 bool is_driven(dxJoint* joint);
 
 /// Whether a wheel's joint (hinge 2) gives way along its first axis: its suspension is softer than the
-/// world's joints.
+/// world's joints, and does not stop its share of its first body within a frame.
 bool is_sprung(dxJoint* joint);
 
 /// Of what `body` hangs on, contacts left out: how many joints, and what the motors and stops of hinges (1

@@ -498,5 +498,75 @@ TEST(JointContacts, ASprungCarRollsOverABody) {
   }
 }
 
+// On springs that hardly give within a frame it was taken to yield as far as its force of the last substep
+// was less than the load: crates of `tables` went down through it.
+TEST(JointContacts, OnAParkedTruckCratesLie) {
+  TheirWorld their;
+  ManagerSettings settings = kSettings;
+  settings.full_substeps = 16;  // as many as a bed with walls takes by itself
+  Manager manager(their.world, their.space, settings);
+  const MaterialId rubber = manager.materials().add({.restitution = 0.0, .friction = 0.9});
+  manager.add_plane(Vec3::UnitZ(), 0.0, rubber);
+  const auto add_part = [&](const std::shared_ptr<const Shape>& shape, const Vec3& place, double mass) {
+    return manager.add_body(
+        {.shape = shape, .state = at(place), .material = rubber, .mass = mass, .level = LevelChoice::full});
+  };
+  const BodyId bed = add_part(box_shape({3, 1.6, 0.2}), {0, 0, 0.7}, 1200.0);
+  for (const double x : {1.1, -1.1})
+    for (const double y : {0.95, -0.95}) {
+      const Vec3 hub(x, y, 0.4);
+      const BodyId wheel = add_part(sphere_shape(0.35), hub, 30.0);
+      manager.step(1e-9);
+      const dJointID axle = dJointCreateHinge2(their.world, nullptr);
+      dJointAttach(axle, manager.ode_body(bed), manager.ode_body(wheel));
+      dJointSetHinge2Anchor(axle, hub.x(), hub.y(), hub.z());
+      const dVector3 up = {0, 0, 1}, across = {0, 1, 0};
+      dJointSetHinge2Axes(axle, up, across);
+      dJointSetHinge2Param(axle, dParamLoStop, 0), dJointSetHinge2Param(axle, dParamHiStop, 0);
+      dJointSetHinge2Param(axle, dParamSuspensionERP, 0.4);
+      dJointSetHinge2Param(axle, dParamSuspensionCFM, 2e-5);
+    }
+  run(manager, 1.0);
+  std::vector<BodyId> crates;
+  for (int i = 0; i < 8; ++i)
+    crates.push_back(manager.add_body(
+        {.shape = box_shape({0.4, 0.4, 0.4}),
+         .state = at(manager.state(bed).position + Vec3(0.6 * (i % 4) - 0.9, 0.6 * (i / 4) - 0.3, 0.32)),
+         .material = rubber,
+         .mass = 64.0,
+         .level = LevelChoice::tables}));
+  run(manager, 5.0);
+  for (const BodyId crate : crates)
+    EXPECT_NEAR(manager.state(crate).position.z() - manager.state(bed).position.z(), 0.3, 0.005);
+}
+
+// Asleep it did not feel what was laid on it without a fall.
+TEST(JointContacts, APlateAsleepOnASpringSagsUnderWhatIsLaidOnIt) {
+  constexpr double kStiffness = 20e3, kDamping = 4e3, kMass = 50.0, kLoad = 200.0;  // N/m, N s/m, kg
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    TheirWorld their;
+    Manager manager(their.world, their.space, kSettings);
+    const BodyId plate = add_plate(manager);
+    const dJointID slider = dJointCreateSlider(their.world, nullptr);
+    dJointAttach(slider, manager.ode_body(plate), nullptr);
+    dJointSetSliderAxis(slider, 0, 0, 1);
+    const double h = kFrame / 4.0;
+    dJointSetSliderParam(slider, dParamLoStop, 0), dJointSetSliderParam(slider, dParamHiStop, 0);
+    dJointSetSliderParam(slider, dParamStopERP, h * kStiffness / (h * kStiffness + kDamping));
+    dJointSetSliderParam(slider, dParamStopCFM, 1.0 / (h * kStiffness + kDamping));
+    run(manager, 4.0);
+    ASSERT_TRUE(manager.asleep(plate)) << int(level);
+    const double stood = manager.state(plate).position.z();
+    EXPECT_NEAR(stood, 2.0 - kMass * 9.81 / kStiffness, 1e-3);
+    for (int i = 0; i < 4; ++i)
+      manager.add_body({.shape = box_shape({kCrate, kCrate, kCrate}),
+                        .state = at({0.8 * (i % 2) - 0.4, 0.8 * (i / 2) - 0.4, stood + 0.05 + 0.5 * kCrate}),
+                        .mass = kLoad / 4.0,
+                        .level = level});
+    run(manager, 4.0);
+    EXPECT_NEAR(manager.state(plate).position.z(), stood - kLoad * 9.81 / kStiffness, 5e-3) << int(level);
+  }
+}
+
 }  // namespace
 }  // namespace lodestone::joint_contacts_test

@@ -222,6 +222,40 @@ TEST(Transfer, T7CameraAboutTheThresholdKeepsEnergy) {
   EXPECT_NEAR(energy(manager, body), energy_before, 0.01 * energy_before);
 }
 
+// In the step in which one became full nothing was known to hold it up, and what lay on it fell with it; on a
+// kinematic body so for several steps, by up to 10 cm.
+TEST(Transfer, WhatLiesOnOneThatBecomesFullLiesStill) {
+  constexpr double kSide = 0.3;
+  for (const bool on_kinematic : {false, true}) {
+    Manager manager(unmeasured());
+    BodyProperties kinematic;
+    kinematic.kinematic = true;
+    if (on_kinematic)
+      manager.add_body({.shape = box_shape({6, 6, 0.4}),
+                        .state = at({0, 0, -0.2}),
+                        .level = LevelChoice::full,
+                        .properties = kinematic});
+    else
+      manager.add_plane(Vec3::UnitZ(), 0.0);
+    std::vector<BodyId> stack;
+    for (int i = 0; i < 3; ++i)
+      stack.push_back(
+          add(manager, box_shape({kSide, kSide, kSide}), at({0, 0, kSide * (i + 0.5)}), LevelChoice::full));
+    RandomStream random(7, 0, 0);
+    for (int frame = 0; frame < 300; ++frame) {
+      if (frame % 7 == 6)
+        manager.set_level(stack[std::size_t(random.uniform(0.0, 3.0))],
+                          random.uniform(0.0, 1.0) < 0.5 ? LevelChoice::full : LevelChoice::support);
+      for (const BodyId body : stack) manager.wake(body);
+      manager.step(kFrame);
+      for (int i = 0; i < 3; ++i)
+        ASSERT_NEAR((manager.state(stack[std::size_t(i)]).position - Vec3(0, 0, kSide * (i + 0.5))).norm(),
+                    0.0, 1.5e-3)
+            << on_kinematic << ", frame " << frame << ", cube " << i;
+    }
+  }
+}
+
 // It was held back as if it had to part from what it lay on: its carrier went on under it.
 TEST(Transfer, WhoIsCarriedGoesOnWithItsCarrier) {
   constexpr double kSpeed = 0.3;  // m/s
