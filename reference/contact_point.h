@@ -12,6 +12,7 @@ struct ContactPoint {
   double depth = 0.0;
   double lift =
       0.0;  ///< m/s along the normal, of the surface met; what bounces leaves it 1 + e times as fast
+  double above = 0.0;  ///< m, by which it has not come down to it yet; then `depth` is 0
 };
 
 }  // namespace lodestone

@@ -2,6 +2,7 @@
 #include "lod/contact/crowd.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace lodestone {
@@ -18,8 +19,37 @@ void Crowd::drop(const ContactScene& scene) {
   if (scene.world.log) scene.world.log->records().resize(noted_);
 }
 
+// What falls by a step's way or two onto what bears it does not strike it.
+void Crowd::note_struck(const ContactScene& scene) {
+  constexpr double kBlow = 0.4;  // over √(g R)
+  const double strength = scene.world.gravity_strength();
+  for (const CrowdManifold& m : manifolds_) {
+    double fastest = 0.0;  // m/s
+    for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count))
+      if (point.bounces) fastest = std::max(fastest, speed_of_blow(m, point));
+    if (fastest == 0.0) continue;
+    for (const std::int32_t i : {m.first, m.second}) {
+      if (i < 0) continue;
+      const Participant p = participants_[std::size_t(i)];
+      if (p.is_statistical() && scene.body(p).is_sphere() &&
+          fastest > kBlow * std::sqrt(strength * scene.shape(p).radius))
+        scene.body(p).struck = true;
+    }
+  }
+}
+
+// m/s. Of one that others passed on only what it gave is known.
+double Crowd::speed_of_blow(const CrowdManifold& m, const CrowdPoint& point) const {
+  if (point.blow > 0.0f) return double(point.blow);
+  const auto inverse_mass = [&](std::int32_t body) {
+    return body < 0 ? 0.0 : solver_bodies_[std::size_t(body)].inverse_mass;
+  };
+  return std::abs(point.impulse.dot(m.normal)) * (inverse_mass(m.first) + inverse_mass(m.second));
+}
+
 ContactTally Crowd::move(const ContactScene& scene, const CrowdTouch& touch) {
   memory_.remember(keys_, manifolds_, points_, touch.time);
+  note_struck(scene);
   if (scene.world.log) note_impulses(*scene.world.log, noted_);
   find_footing(scene, touch);
   find_impacts();

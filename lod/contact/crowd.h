@@ -123,6 +123,8 @@ class Crowd {
   void find_pressed(const ContactScene& scene, double time);
   void find_footing(const ContactScene& scene, const CrowdTouch& touch);
   void find_impacts();
+  void note_struck(const ContactScene& scene);
+  double speed_of_blow(const CrowdManifold& m, const CrowdPoint& point) const;
   void move_bodies(const ContactScene& scene, double time);
   bool is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const;
   void give_to_full(const ContactScene& scene, const CrowdTouch& touch);

@@ -8,7 +8,7 @@
 namespace lodestone {
 namespace {
 
-constexpr double kHeldUp = 0.02;  // over R: so near it is held up
+constexpr double kHeldUp = 0.002;  // over R: so near it is held up
 
 void add_points(const PairContact& contact, const FullContact& between, const GroundPart* part,
                 std::vector<FullContact>& contacts) {

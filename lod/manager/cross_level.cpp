@@ -72,7 +72,7 @@ std::optional<std::int32_t> second_of(const Levels& levels, const Neighborhood& 
 // Two bodies were moved since ODE found it: what they have parted by is a gap. What nothing moves takes along
 // what lies on it, for as long as ODE finds the contact again.
 FullContact full_contact_of(const Levels& levels, const Neighborhood& neighborhood, std::int32_t first,
-                            std::int32_t second, const Neighborhood::Seen& seen) {
+                            std::int32_t second, const Neighborhood::Seen& seen, double dt) {
   const OdeContact& contact = seen.contact;
   FullContact full{first, second, contact.point, contact.normal, -contact.depth};
   if (second < 0) full.velocity = contact.velocity;
@@ -86,8 +86,10 @@ FullContact full_contact_of(const Levels& levels, const Neighborhood& neighborho
     const RigidState& state = neighborhood.bodies[std::size_t(body)].state;
     return Vec3(state.position + state.orientation * arm);
   };
-  const Vec3 on_second = second < 0 ? contact.point : place_on(second, contact.second_arm);
-  full.gap += std::max(0.0, (place_on(first, contact.first_arm) - on_second).dot(contact.normal));
+  const Vec3 on_second = second < 0 ? Vec3(contact.point + seen.age * dt * contact.velocity)
+                                    : place_on(second, contact.second_arm);
+  const double parted = (place_on(first, contact.first_arm) - on_second).dot(contact.normal);
+  full.gap += std::max(0.0, contact.above + parted);
   return full;
 }
 
@@ -135,7 +137,7 @@ void reckon_contacts_of_newcomers(const Levels& levels, Neighborhood& neighborho
     contact.friction = friction_between(levels, neighborhood, contact);
 }
 
-void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
+void gather_contacts(const Levels& levels, Neighborhood& neighborhood, double dt) {
   update_seen(levels.full.world()->contacts(), neighborhood.seen);
   for (const Neighborhood::Seen& seen : neighborhood.seen) {
     const OdeContact& contact = seen.contact;
@@ -143,7 +145,7 @@ void gather_contacts(const Levels& levels, Neighborhood& neighborhood) {
     const std::optional<std::int32_t> second = second_of(levels, neighborhood, contact);
     if (first < 0 || !second) continue;
     FullContact& full =
-        neighborhood.contacts.emplace_back(full_contact_of(levels, neighborhood, first, *second, seen));
+        neighborhood.contacts.emplace_back(full_contact_of(levels, neighborhood, first, *second, seen, dt));
     full.friction = friction_between(levels, neighborhood, full);
   }
   reckon_contacts_of_newcomers(levels, neighborhood);
@@ -186,7 +188,7 @@ void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, dou
 
 }  // namespace
 
-void gather(const Levels& levels, Neighborhood& neighborhood) {
+void gather(const Levels& levels, Neighborhood& neighborhood, double dt) {
   neighborhood.bodies.clear();
   neighborhood.contacts.clear();
   neighborhood.ode_bodies.clear();
@@ -198,7 +200,7 @@ void gather(const Levels& levels, Neighborhood& neighborhood) {
   levels.callers.bodies.gather(levels.ground, levels.statistical_settings.gravity, neighborhood.bodies,
                                neighborhood.contacts);
   levels.callers.bodies.append_ode_bodies(neighborhood.ode_bodies);
-  if (any_full) gather_contacts(levels, neighborhood);
+  if (any_full) gather_contacts(levels, neighborhood, dt);
   add_joint_contacts(neighborhood.bodies, neighborhood.ode_bodies, neighborhood.contacts);
   for (const FullContact& contact : neighborhood.contacts)
     for (const std::int32_t end : {contact.first, contact.second})

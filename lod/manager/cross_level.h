@@ -25,8 +25,8 @@ struct Neighborhood {
   std::vector<Seen> seen;  // in order of their pairs
 };
 
-/// To be called while the bodies' forces are still held for them.
-void gather(const Levels& levels, Neighborhood& neighborhood);
+/// For a step of `dt` seconds. To be called while the bodies' forces are still held for them.
+void gather(const Levels& levels, Neighborhood& neighborhood, double dt);
 
 /// Gives each full body what came back, for a step of `dt` seconds that ODE takes in `substeps`.
 void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt, int substeps);

@@ -24,7 +24,7 @@ void StepLevels::step_statistical(double dt, WorldStepBy by, StepReport& report)
   }
   {
     const StageTimer timer(report.times.cross_level_ms);
-    gather(levels_, neighborhood_);
+    gather(levels_, neighborhood_, dt);
     driven_bodies_.mark(neighborhood_, levels_.statistical_settings.gravity, dt);
     joint_forces_.add_to(neighborhood_.bodies);
     levels_.give_forces();

@@ -65,6 +65,7 @@ struct StatisticalBody {
   bool pinned =
       false;  ///< deep in one of many times its mass, or the other way round, and not to be moved out
   bool carried = false;        ///< by what nothing stops (CarriedBodies), when it last met others or solids
+  bool struck = false;         ///< of a sphere among hulls: by a blow in this step
   float since_crowded = 1e9f;  ///< s since it last met another body
   float placed = 0.0f;  ///< s left in which it is not to rest in overlaps, since it was put where it has
                         ///< some, or pressed into others by one that was

@@ -10,6 +10,7 @@ void SupportLevel::move_alone(std::int32_t slot, std::span<const HalfSpace> face
                               ContactTally& tally, const Quat* turned) {
   StatisticalBody& body = bodies_[std::size_t(slot)];
   body.placed = 0.0f;
+  body.carried = false;
   const BodyKind& kind = kind_of(body);
   StepWorld step_world = world();
   step_world.planes = join_planes(ground_.planes(), faces);

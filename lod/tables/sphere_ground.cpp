@@ -116,6 +116,7 @@ struct SortLoop {
     const Row* s = step.s.data();
     Row *given = step.a.data(), *start = step.p.data();
     std::uint8_t* on_ground = step.on_ground.data();
+    const int published = -int(!c.hulls);
 #pragma GCC ivdep
     for (std::int64_t i = begin; i < end; ++i) {
       const int k = OneKind ? 0 : int(kind[i]), p = OnePlane ? 0 : int(plane[i]), moves = int(motion[i]);
@@ -126,7 +127,11 @@ struct SortLoop {
                   threshold = c.resting_energy * c.gravity * size[k];
       const float kept = c.held * held[i], weight = pressure[p] * c.time;
       // Masks: 0 or −1.
-      const int near = -int(state == int(kNear)), presses = -int(dot(v, n) > -bounce),
+      // Who comes off it so fast that it rises by twice its radius lies there no more.
+      const float leaves = dot(v, n);
+      const int rises =
+          -int(leaves > bounce) & -int(leaves * leaves > 4.0f * c.gravity * size[k]) & ~published;
+      const int near = -int(state == int(kNear)), presses = -int(leaves > -bounce) & ~rises,
                 others = -int(touching > 0.0f), level = -int(slope[p] == 0.0f);
       const int settling = -int(moves == int(Motion::settling)) & level & -int(moving <= 2.0f * threshold);
       const int settles = (-int(moves == int(Motion::dynamic)) | ~level) & -int(moving < threshold);

@@ -275,19 +275,21 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
 }
 
 // What is there in two steps running; and where the hulls press up or down less than was expected, what bore
-// the body must not fling it. Along the ground, and where nothing weighs anything, momentum is kept.
+// the body must not fling it. Along the ground, and where nothing weighs anything, momentum is kept. What a
+// blow gives up or down is no load.
 void TablesLevel::keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after) {
   const Load* known = load_of(place);
-  const Vec3 last = (after.velocity - before) / constants_.wide_time - settings_.gravity,
+  const Vec3 up = -settings_.gravity.normalized(),
+             last = (after.velocity - before) / constants_.wide_time - settings_.gravity,
+             lasts = after.struck ? Vec3(last - last.dot(up) * up) : last,
              earlier = known ? known->last : Vec3(Vec3::Zero()),
              expected = known ? known->steady : Vec3(Vec3::Zero());
   Vec3 steady = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis)
-    if (last[axis] * earlier[axis] > 0.0)
-      steady[axis] = std::abs(last[axis]) < std::abs(earlier[axis]) ? last[axis] : earlier[axis];
+    if (lasts[axis] * earlier[axis] > 0.0)
+      steady[axis] = std::abs(lasts[axis]) < std::abs(earlier[axis]) ? lasts[axis] : earlier[axis];
   new_loads_.push_back(
-      {std::uint32_t(spheres_.slot[std::size_t(place)]), spheres_.owner[std::size_t(place)], last, steady});
-  const Vec3 up = -settings_.gravity.normalized();
+      {std::uint32_t(spheres_.slot[std::size_t(place)]), spheres_.owner[std::size_t(place)], lasts, steady});
   const double borne = expected.dot(up);
   if (borne != 0.0)
     after.velocity += std::max(0.0, 1.0 - last.dot(up) / borne) * borne * constants_.wide_time * up;

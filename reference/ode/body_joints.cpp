@@ -227,8 +227,8 @@ bool is_sprung(dxJoint* joint) {
   const double erp = dJointGetHinge2Param(joint, dParamSuspensionERP),
                cfm = dJointGetHinge2Param(joint, dParamSuspensionCFM);
   if (cfm <= dWorldGetCFM(dBodyGetWorld(body))) return false;
-  const double share = callers::mass(body) / std::max(1, dBodyGetNumJoints(body)),  // kg
-      in_frame = (erp / kSubstep * kFrame + 1.0 - erp) / cfm * kFrame;              // kg
+  const double share = callers::mass(body) / double(joined_bodies(body).size()),  // kg
+      in_frame = (erp / kSubstep * kFrame + 1.0 - erp) / cfm * kFrame;            // kg
   return in_frame < kStiff * share;
 }
 

@@ -104,7 +104,8 @@ void PlanePhase::append_early_and_deep(const Body& body, const Plane& plane, con
   const double most = settings_.plane_depth_max * body.shape->size;
   for (const NearPoint& near : near_)
     if (near.depth > 0.0 || near.depth + approach_of(body, near.arm, plane.normal) * step.duration > most)
-      points.push_back({position + near.arm, plane.normal, std::max(near.depth, 0.0)});
+      points.push_back(
+          {position + near.arm, plane.normal, std::max(near.depth, 0.0), 0.0, std::max(-near.depth, 0.0)});
 }
 
 // A ball is met as hulls are: at its own time within the step, and before it would be far inside. Spheres

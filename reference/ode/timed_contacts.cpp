@@ -31,7 +31,7 @@ class TimedContacts {
       } else if (point.depth > 0.0) {
         contacts.push_back({at(point.arm), step_.normal, point.depth});
       } else if (is_held(point)) {
-        contacts.push_back({at(point.arm), step_.normal, 0.0, point.depth / step_.duration});
+        contacts.push_back({at(point.arm), step_.normal, 0.0, point.depth / step_.duration, -point.depth});
       }
     }
     if (first_ >= step_.duration) return std::nullopt;
@@ -72,7 +72,7 @@ class TimedContacts {
     const double lift = approach(point) > kFreeImpact * fall_ ? fell : std::min(fell, 0.0);
     const Vec3 spin = step_.turns ? step_.body.angular_velocity : Vec3(Vec3::Zero());
     return {at(rotation_from_vector(first_ * spin) * point.arm), step_.normal, 0.0,
-            std::max(-rebound, lift) / (1.0 + step_.restitution)};
+            std::max(-rebound, lift) / (1.0 + step_.restitution), std::max(0.0, -point.depth)};
   }
 
   Vec3 at(const Vec3& arm) const { return step_.body.position + arm; }

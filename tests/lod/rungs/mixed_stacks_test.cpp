@@ -221,7 +221,8 @@ TEST(MixedStacks, RideOnAKinematicLift) {
 
 /// Who is awake half a second on end, of sixty balls poured into a bin that had seventeen seconds to come to
 /// rest.
-int count_restless(const std::function<LevelChoice(int)>& level_of_ball, const ManagerSettings& settings) {
+int count_restless(const std::function<LevelChoice(int)>& level_of_ball, const ManagerSettings& settings,
+                   std::uint32_t seed = 3) {
   constexpr double kHalf = 0.6;  // m
   constexpr int kBalls = 60, kInARow = 4;
   Manager manager(settings);
@@ -232,7 +233,7 @@ int count_restless(const std::function<LevelChoice(int)>& level_of_ball, const M
     manager.add_plane(Vec3(0, side, 0), -kHalf);
     manager.add_plane(Vec3(side, 0, 0), -kHalf);
   }
-  RandomStream random(3, 0, 0);
+  RandomStream random(seed, 0, 0);
   const auto ball = sphere_shape(0.1);
   std::vector<BodyId> balls;
   for (int i = 0; i < kBalls; ++i) {
@@ -252,8 +253,6 @@ int count_restless(const std::function<LevelChoice(int)>& level_of_ball, const M
   return int(std::ranges::count(awake, 30));
 }
 
-// Each half second one that statistical bodies held up was laid to sleep, woken by ODE, and fell for a frame:
-// of these 19 and 33 never slept. (A few may roll on, or spin, as balls do.)
 // The crowd left out what a full body stood on where that was kinematic and had been added before it.
 TEST(MixedStacks, AFullOneOnAKinematicOneHoldsWhatIsPushedAgainstIt) {
   constexpr double kPush = 420.0;  // N, of 446 that friction holds
@@ -313,6 +312,90 @@ TEST(MixedStacks, NobodyGainsWhereAFullBallIsStruckAfterItBounced) {
     }
 }
 
+// ODE meets a plane within the step in which a body reaches it: where it had found the contact above the
+// plane, the way from there and back was counted as none.
+TEST(MixedStacks, NobodyGainsWhereAFullBallIsStruckAsItBounces) {
+  constexpr double kRadius = 0.15;  // m
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const double mass : {1.0, 1.5})
+      for (int later = 0; later < 10; ++later) {
+        Manager manager({.signatures = coarse_signature});
+        manager.materials().replace(0, {0.8, 0.5, 1000.0});
+        manager.add_plane(Vec3::UnitZ(), 0.0);
+        const auto add_ball = [&](double height, double speed, double kilograms, LevelChoice rung) {
+          RigidState state = testing::at({0, 0, height});
+          state.velocity = {0, 0, -speed};
+          return manager.add_body(
+              {.shape = sphere_shape(kRadius), .state = state, .mass = kilograms, .level = rung});
+        };
+        const BodyId full = add_ball(0.32, 4.0, 1.0, LevelChoice::full),
+                     other = add_ball(0.63 + 0.03 * later, 6.0, mass, level);
+        double before = energy(manager, full) + energy(manager, other);
+        for (int i = 0; i < 8; ++i) {
+          manager.step(kFrame);
+          const double now = energy(manager, full) + energy(manager, other);
+          EXPECT_LT(now, before + 0.5) << int(level) << ", " << mass << " kg, " << later << ", frame " << i;
+          before = now;
+        }
+      }
+}
+
+// His cube falls onto his plane, 4 mm above it: it was taken to lie there, and a box that struck it bounced
+// as off the ground, while his own contact came a step later (125 J became 273).
+TEST(MixedStacks, NobodyGainsWhereACallersBodyIsStruckJustOverHisGround) {
+  constexpr double kCubeSize = 0.3, kCubeMass = 10.0;  // m, kg
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    const dWorldID world = dWorldCreate();
+    const dSpaceID space = dHashSpaceCreate(nullptr);
+    const dJointGroupID contacts = dJointGroupCreate(0);
+    dWorldSetGravity(world, 0, 0, -9.81);
+    const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+    {
+      Manager manager(world, space, {.signatures = coarse_signature});
+      const dBodyID cube = dBodyCreate(world);
+      dMass mass;
+      dMassSetBoxTotal(&mass, kCubeMass, kCubeSize, kCubeSize, kCubeSize);
+      dBodySetMass(cube, &mass);
+      dBodySetPosition(cube, 0, 0, 0.16);
+      const dGeomID geom = dCreateBox(space, kCubeSize, kCubeSize, kCubeSize);
+      dGeomSetBody(geom, cube);
+      const BodyId box = manager.add_body({.shape = box_shape({0.2, 0.3, 0.4}),
+                                           .state = {.position = {0.03, 0.02, 0.65},
+                                                     .orientation = rotation_from_vector({0.2, 0, 0}),
+                                                     .velocity = {0.3, 0, -3},
+                                                     .angular_velocity = {0.5, 1, 0}},
+                                           .mass = kCubeMass,
+                                           .level = level});
+      const auto energy_of_both = [&] {
+        const dReal *v = dBodyGetLinearVel(cube), *w = dBodyGetAngularVel(cube);
+        const double inertia = kCubeMass * kCubeSize * kCubeSize / 6.0;
+        return energy(manager, box) + 0.5 * kCubeMass * dCalcVectorLengthSquare3(v) +
+               0.5 * inertia * dCalcVectorLengthSquare3(w) + kCubeMass * 9.81 * dBodyGetPosition(cube)[2];
+      };
+      double before = energy_of_both();
+      for (int i = 0; i < 6; ++i) {
+        dContact found[8] = {};
+        const int count = dCollide(geom, plane, 8, &found[0].geom, sizeof(dContact));
+        for (int k = 0; k < count; ++k) {
+          found[k].surface.mode = dContactApprox1 | dContactBounce;
+          found[k].surface.mu = 0.5, found[k].surface.bounce = 0.4, found[k].surface.bounce_vel = 0.01;
+          dJointAttach(dJointCreateContact(world, contacts, &found[k]), cube, nullptr);
+        }
+        manager.step(kFrame);
+        dJointGroupEmpty(contacts);
+        const double now = energy_of_both();
+        EXPECT_LT(now, before + 1.0) << int(level) << ", frame " << i;
+        before = now;
+      }
+    }
+    dJointGroupDestroy(contacts);
+    dSpaceDestroy(space);
+    dWorldDestroy(world);
+  }
+}
+
+// Each half second one that statistical bodies held up was laid to sleep, woken by ODE, and fell for a frame:
+// of these 19 and 33 never slept. (A few may roll on, or spin, as balls do.)
 TEST(MixedHeap, ComesToRest) {
   EXPECT_LE(count_restless([](int i) { return i % 2 ? LevelChoice::full : LevelChoice::support; },
                            {.signatures = coarse_signature}),
@@ -323,13 +406,18 @@ TEST(MixedHeap, ComesToRest) {
             4);
 }
 
-// Those of `tables` at the border keep a part of gravity's step, by which they do not move: of these 19 never
-// slept.
+// Those of `tables` at the border keep a part of gravity's step, by which they do not move: of one pour's 19
+// never slept. (From pour to pour it is none to seven.)
 TEST(MixedHeap, ComesToRestAtTheBorderOfTables) {
-  EXPECT_LE(count_restless([](int) { return LevelChoice::automatic; },
-                           {.policy = {.policy = DistancePolicy{.full_within = 1e-9, .support_within = 5.0}},
-                            .signatures = coarse_signature}),
-            5);
+  constexpr int kPours = 6;
+  int restless = 0;
+  for (std::uint32_t seed = 0; seed < kPours; ++seed)
+    restless +=
+        count_restless([](int) { return LevelChoice::automatic; },
+                       {.policy = {.policy = DistancePolicy{.full_within = 1e-9, .support_within = 5.0}},
+                        .signatures = coarse_signature},
+                       seed);
+  EXPECT_LE(restless, 5 * kPours);
 }
 
 }  // namespace
