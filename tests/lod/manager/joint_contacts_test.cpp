@@ -452,6 +452,16 @@ TEST(JointContacts, ABridgeOfHingedPlanksCarriesCrates) {
   }
 }
 
+// Of a hinge-2 joint whose bodies are attached: sprung upwards, turning about y, not steered.
+void set_up_axle(dJointID axle, const Vec3& hub, double suspension_erp, double suspension_cfm) {
+  const dVector3 up = {0, 0, 1}, across = {0, 1, 0};
+  dJointSetHinge2Anchor(axle, hub.x(), hub.y(), hub.z());
+  dJointSetHinge2Axes(axle, up, across);
+  dJointSetHinge2Param(axle, dParamLoStop, 0), dJointSetHinge2Param(axle, dParamHiStop, 0);
+  dJointSetHinge2Param(axle, dParamSuspensionERP, suspension_erp);
+  dJointSetHinge2Param(axle, dParamSuspensionCFM, suspension_cfm);
+}
+
 // On wheels with springs and motors, over a slab that is a body: it went at 1.3 m/s instead of 1.5, and at .8
 // when it had coasted for five seconds.
 TEST(JointContacts, ASprungCarRollsOverABody) {
@@ -479,12 +489,7 @@ TEST(JointContacts, ASprungCarRollsOverABody) {
         const Vec3 hub(x, y, kSlab + kWheel);
         const dJointID axle = axles.emplace_back(dJointCreateHinge2(his.world, nullptr));
         dJointAttach(axle, chassis, make_body(hub, mass, dCreateSphere(his.space, kWheel)));
-        dJointSetHinge2Anchor(axle, hub.x(), hub.y(), hub.z());
-        const dVector3 up = {0, 0, 1}, across = {0, 1, 0};
-        dJointSetHinge2Axes(axle, up, across);
-        dJointSetHinge2Param(axle, dParamLoStop, 0), dJointSetHinge2Param(axle, dParamHiStop, 0);
-        dJointSetHinge2Param(axle, dParamSuspensionERP, 0.05);
-        dJointSetHinge2Param(axle, dParamSuspensionCFM, 6e-4);
+        set_up_axle(axle, hub, 0.05, 6e-4);
         dJointSetHinge2Param(axle, dParamVel2, -kSpeed / kWheel);
       }
     const auto drive = [&](double torque, double seconds) {
@@ -519,12 +524,7 @@ TEST(JointContacts, OnAParkedTruckCratesLie) {
       manager.step(1e-9);
       const dJointID axle = dJointCreateHinge2(their.world, nullptr);
       dJointAttach(axle, manager.ode_body(bed), manager.ode_body(wheel));
-      dJointSetHinge2Anchor(axle, hub.x(), hub.y(), hub.z());
-      const dVector3 up = {0, 0, 1}, across = {0, 1, 0};
-      dJointSetHinge2Axes(axle, up, across);
-      dJointSetHinge2Param(axle, dParamLoStop, 0), dJointSetHinge2Param(axle, dParamHiStop, 0);
-      dJointSetHinge2Param(axle, dParamSuspensionERP, 0.4);
-      dJointSetHinge2Param(axle, dParamSuspensionCFM, 2e-5);
+      set_up_axle(axle, hub, 0.4, 2e-5);
     }
   run(manager, 1.0);
   std::vector<BodyId> crates;

@@ -75,50 +75,53 @@ INSTANTIATE_TEST_SUITE_P(All, GroundThatComes,
                                            NewGround::their_plane, NewGround::their_box,
                                            NewGround::their_plane_moved));
 
+// Three cubes that sleep on a box.
+struct StackOnShelf {
+  static constexpr double kSide = 0.4;  // m
+  explicit StackOnShelf(LevelChoice level) {
+    for (int i = 0; i < 3; ++i)
+      stack.push_back(
+          add(manager, box_shape({kSide, kSide, kSide}), testing::at({0, 0, (i + 0.5) * kSide}), level));
+    run(manager, 3.0);
+    for (const BodyId body : stack) EXPECT_TRUE(manager.asleep(body)) << int(level);
+  }
+  /// Once, and leaves it time to come to rest.
+  void raise(double by) {
+    manager.move_ground(shelf, testing::at({0, 0, by - 0.5}));
+    run(manager, 5.0);
+  }
+  double height(std::size_t i) const { return manager.state(stack[i]).position.z(); }
+
+  Manager manager{{.signatures = coarse_signature}};
+  GroundId shelf = manager.add_static_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity());
+  std::vector<BodyId> stack;
+};
+
 // By less than the lowest falls in a few steps: those above hung in the air, asleep.
 TEST(ManagerGround, WhatStandsOnGroundThatSinksALittleComesDown) {
-  constexpr double kSide = 0.4;
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
     for (const double down : {0.003, 0.03}) {
-      Manager manager({.signatures = coarse_signature});
-      const GroundId shelf = manager.add_static_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity());
-      std::vector<BodyId> stack;
-      for (int i = 0; i < 3; ++i)
-        stack.push_back(
-            add(manager, box_shape({kSide, kSide, kSide}), testing::at({0, 0, (i + 0.5) * kSide}), level));
-      run(manager, 3.0);
+      StackOnShelf on(level);
       std::vector<double> before;
-      for (const BodyId body : stack) {
-        ASSERT_TRUE(manager.asleep(body)) << int(level);
-        before.push_back(manager.state(body).position.z());
-      }
-      manager.move_ground(shelf, testing::at({0, 0, -0.5 - down}));
-      run(manager, 5.0);
-      for (std::size_t i = 0; i < stack.size(); ++i)
-        EXPECT_NEAR(manager.state(stack[i]).position.z(), before[i] - down, 2e-3)
-            << int(level) << ", " << down << " m, " << i;
+      for (std::size_t i = 0; i < on.stack.size(); ++i) before.push_back(on.height(i));
+      on.raise(-down);
+      for (std::size_t i = 0; i < on.stack.size(); ++i)
+        EXPECT_NEAR(on.height(i), before[i] - down, 2e-3) << int(level) << ", " << down << " m, " << i;
     }
 }
 
 // The lowest was moved out of it into those above, which slept on with it in them: hulls by up to 5 cm.
 TEST(ManagerGround, WhatStandsOnGroundThatIsRaisedComesApart) {
-  constexpr double kSide = 0.4;
+  constexpr double kSide = StackOnShelf::kSide;
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
     for (const double up : {0.03, 0.1}) {
-      Manager manager({.signatures = coarse_signature});
-      const GroundId shelf = manager.add_static_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity());
-      std::vector<BodyId> stack;
-      for (int i = 0; i < 3; ++i)
-        stack.push_back(
-            add(manager, box_shape({kSide, kSide, kSide}), testing::at({0, 0, (i + 0.5) * kSide}), level));
-      run(manager, 3.0);
-      manager.move_ground(shelf, testing::at({0, 0, up - 0.5}));
-      run(manager, 5.0);
+      StackOnShelf on(level);
+      on.raise(up);
       double below = up;
-      for (std::size_t i = 0; i < stack.size(); ++i) {
-        const double bottom = manager.state(stack[i]).position.z() - 0.5 * kSide;
+      for (std::size_t i = 0; i < on.stack.size(); ++i) {
+        const double bottom = on.height(i) - 0.5 * kSide;
         EXPECT_NEAR(bottom, below, 0.0125 * kSide) << int(level) << ", " << up << " m, " << i;
-        EXPECT_TRUE(manager.asleep(stack[i])) << int(level);
+        EXPECT_TRUE(on.manager.asleep(on.stack[i])) << int(level);
         below = bottom + kSide;
       }
     }
