@@ -168,6 +168,7 @@ const StepReport& Manager::Impl::finish_lists(double dt, WorldStepBy by) {
   const Call call = by == WorldStepBy::manager ? Call::step : Call::callers_step;
   if (recorder.on()) recorder.note(call, dt, body_hashes(levels));
   if (callers_jobs) callers_jobs->rethrow();
+  recorder.rethrow();
   return report;
 }
 

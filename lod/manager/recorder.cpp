@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace lodestone {
 
@@ -53,16 +54,30 @@ std::vector<std::uint32_t> body_hashes(const Levels& levels) {
 }
 
 void Recorder::set(RecordFunction write, std::vector<std::byte> snapshot) {
+  write_ = nullptr;
+  rethrow();
+  if (!write) return;
+  write(std::as_bytes(std::span(kRecordingMagic)));
   write_ = std::move(write);
-  if (!write_) return;
-  write_(std::as_bytes(std::span(kRecordingMagic)));
   note(Call::begin, snapshot);
+  rethrow();
 }
 
-void Recorder::put(const std::vector<std::byte>& chunk) const {
+void Recorder::rethrow() {
+  if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+}
+
+// The call that is written down has been made, so what `write` throws waits for one whose caller loses
+// nothing.
+void Recorder::put(const std::vector<std::byte>& chunk) {
   const ChunkHead head = ChunkHead::of(chunk);
-  write_(std::as_bytes(std::span(&head, 1)));
-  write_(chunk);
+  try {
+    write_(std::as_bytes(std::span(&head, 1)));
+    write_(chunk);
+  } catch (...) {
+    thrown_ = std::current_exception();
+    write_ = nullptr;
+  }
 }
 
 }  // namespace lodestone

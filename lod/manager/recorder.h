@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <exception>
 #include <span>
 #include <vector>
 
@@ -85,22 +86,25 @@ struct RecordedPolicy {
 
 class Recorder {
  public:
-  /// Begins with `snapshot`; empty `write`: ends.
+  /// Begins with `snapshot`; empty `write`: ends. Throws what a `write` has thrown.
   void set(RecordFunction write, std::vector<std::byte> snapshot);
   bool on() const { return bool(write_); }
 
   template <class... T>
-  void note(Call call, const T&... values) const {
+  void note(Call call, const T&... values) {
     if (!write_) return;
     StateArchive chunk;
     chunk(call, const_cast<T&>(values)...);  // which changes nothing where it writes
     put(chunk.bytes());
   }
+  /// What `write` has thrown since the last call, if it has: the recording ended there.
+  void rethrow();
 
  private:
-  void put(const std::vector<std::byte>& chunk) const;
+  void put(const std::vector<std::byte>& chunk);
 
   RecordFunction write_;
+  std::exception_ptr thrown_;
 };
 
 }  // namespace lodestone

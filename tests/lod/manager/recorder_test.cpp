@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <stdexcept>
 
 #include "lod/manager.h"
 #include "tests/lod/callers/callers_scene.h"
@@ -201,6 +202,40 @@ TEST(Recording, EveryTruncationIsRefusedOrEndsAtAStep) {
     refused += fault != kNothingThrown;
   }
   EXPECT_GT(refused, 10);
+}
+
+// A full disk costs the recording, and neither the body that was being added nor the step.
+TEST(Recording, EndsWhereItsWriterThrows) {
+  using namespace testing;
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  Tape tape;
+  bool full = false;
+  const auto write = [&](std::span<const std::byte> bytes) {
+    if (full) throw std::runtime_error("no room");
+    tape.write(bytes);
+  };
+  Manager manager = on_floor(), plain = on_floor();
+  manager.set_record(write);
+  add(manager, box, at({0, 0, 1})), add(plain, box, at({0, 0, 1}));
+  manager.step(kFrame), plain.step(kFrame);
+  full = true;
+  const BodyId late = add(manager, box, at({0, 0, 2}));
+  EXPECT_EQ(late, add(plain, box, at({0, 0, 2})));
+  EXPECT_EQ(message_of<std::runtime_error>([&] { manager.step(kFrame); }), "no room");
+  plain.step(kFrame);
+  EXPECT_EQ(manager.state_hash(), plain.state_hash());
+  EXPECT_EQ(message_of([&] { manager.step(kFrame); }), kNothingThrown);
+  const std::shared_ptr<const Shape> shapes[] = {box};
+  EXPECT_EQ(on_floor().replay(tape.bytes, shapes).steps, 1);
+
+  EXPECT_EQ(message_of<std::runtime_error>([&] { manager.set_record(write); }), "no room");
+  EXPECT_EQ(message_of([&] { manager.step(kFrame); }), kNothingThrown);
+  full = false;
+  manager.set_record(write);
+  full = true;
+  manager.remove_body(late);
+  EXPECT_EQ(message_of<std::runtime_error>([&] { manager.set_record({}); }), "no room");
+  EXPECT_EQ(message_of([&] { manager.step(kFrame); }), kNothingThrown);
 }
 
 // A bit is enough, in the call and its values, in what came of it, or in a chunk's head.
