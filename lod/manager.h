@@ -262,8 +262,8 @@ class Manager {
   /// From now on every call that changes the manager, and what each step came to, goes to `write`: first a
   /// snapshot, then each call as it is made. Empty: no more. What is done to the caller's own bodies and
   /// through ode_body() is not seen, nor are materials; of a policy's functions only whether there are any.
-  /// Where `write` throws, the recording has ended, and what it threw is thrown by the next step, once that is
-  /// done, or by this.
+  /// Where `write` throws, the recording has ended; what it threw comes out of the next step, once that is
+  /// done, or of this.
   void set_record(RecordFunction write);
   /// Does again what a recording tells, from its snapshot on (see restore, also for `shapes`, which must have
   /// those of bodies that it adds), up to the first step that comes out otherwise than recorded, in the state

@@ -167,7 +167,8 @@ class Run {
     for (const SceneBody& body : scene_.bodies) shapes.push_back(body.definition.shape);
     manager_.restore(other.manager_.snapshot(), shapes);
     manager_.set_policy(policy_of(scene_, settings_));
-    for (const BodyId body : bodies_) manager_.set_level(body, settings_.level);
+    if (settings_.level != LevelChoice::automatic)  // else each has what the scene says
+      for (const BodyId body : bodies_) manager_.set_level(body, settings_.level);
     trajectory_ = Trajectory(int(scene_.bodies.size()));
     from_step_ = step;
     sample_ = other.sample_, last_awake_s_ = other.last_awake_s_;

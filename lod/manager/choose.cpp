@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lod/manager/full_pairs.h"
+#include "lod/manager/recorder.h"
 #include "lod/timing/stage_timer.h"
 
 namespace lodestone {
@@ -46,8 +47,7 @@ void Choose::set_views(Views views) {
   if (!look_at_all_) traveled_ += find_travel(views_, views);
   if (!(traveled_ < kLongTravel))
     look_at_all_ = true, traveled_ = 0.0;  // whoever waits for a turn is looked at
-  look_at_all_ |= turned_ && limits_ && limits_->measure == Measure::size &&
-                  views.per_metre(Measure::size) != views_.per_metre(Measure::size);
+  look_at_all_ |= turned_ && limits_ && limits_->measure == Measure::size && views.zoomed_since(views_);
   views_ = std::move(views);
 }
 
@@ -335,6 +335,16 @@ void Choose::add_up_errors(const RungChanges& changes) {
       add(i, candidates_[i].newcomer ? levels_.bodies.newcomer(change.body).rung : candidates_[i].rung, -1.0);
       add(i, change.to, 1.0);
     }
+}
+
+void Choose::archive(StateArchive& a) {
+  StateArchive own;
+  RecordedPolicy policy{policy_, bool(policy_.visible), bool(policy_.significance)};
+  own(policy);
+  std::vector<std::byte> written = own.bytes();
+  a(written, groups_, carriers_, views_, turned_, look_at_all_, wishing_, changed_, support_sleepers_,
+    seen_or_not_, waiting_, next_waiting_, far_, traveled_, counts_);
+  if (a.reading()) look_at_all_ |= written != own.bytes();
 }
 
 }  // namespace lodestone

@@ -82,11 +82,8 @@ class Choose {
   /// What full bodies do, after the changes.
   void count_meetings();
 
-  /// But for the policy and the ground, which are the reader's.
-  void archive(StateArchive& a) {
-    a(groups_, carriers_, views_, turned_, look_at_all_, wishing_, changed_, support_sleepers_, seen_or_not_,
-      waiting_, next_waiting_, far_, traveled_, counts_);
-  }
+  /// But for the policy and the ground, which are the reader's: what another policy wanted is not believed.
+  void archive(StateArchive& a);
 
  private:
   bool budgeted() const { return !limits_; }

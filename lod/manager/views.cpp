@@ -52,6 +52,10 @@ bool Views::turned_since(const Views& before) const {
   return !std::ranges::equal(views_, before.views_, same);
 }
 
+bool Views::zoomed_since(const Views& before) const {
+  return !std::ranges::equal(views_, before.views_, {}, &View::weight, &View::weight);
+}
+
 double Views::squared(const Vec3& place, Measure measure) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (const View& view : views_) {

@@ -33,6 +33,9 @@ class Views {
   /// Whether some view has turned, or has another picture, since `before`, which had as many.
   bool turned_since(const Views& before) const;
 
+  /// Whether some view has another picture than `before` had, which had as many.
+  bool zoomed_since(const Views& before) const;
+
   /// m², to the nearest; for a size each view's is over its pixels per radian, squared.
   double squared(const Vec3& place, Measure measure) const;
   /// The same from where a body is to where it will be, `ahead` from there.

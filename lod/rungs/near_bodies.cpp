@@ -78,7 +78,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     }
     find_ground_solids(step, awake, 0.0, dt, SolidSearch::one_of_a_part);
     if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
-    plan_.make(step.scene, pairs_, solid_contacts_, dt, near_);
+    plan_.make(step.scene, pairs_, solid_contacts_, faces_, dt, near_);
     support.end_search();
     choose_movers(support, 0);
     for (const std::int32_t index : movers_) {

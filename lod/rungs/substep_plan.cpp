@@ -16,9 +16,13 @@ constexpr double kUneven = 20.0;            // ratio of the masses of two that m
 constexpr double kStride =
     0.07;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
 
-bool may_strike_ground(const ContactScene& scene, const StatisticalBody& body, double dt) {
+constexpr double kRides =
+    0.01;  // over R: who moves less than that against its ground in a step does not strike it
+
+bool may_strike(const ContactScene& scene, const StatisticalBody& body, std::span<const HalfSpace> planes,
+                double dt) {
   const double fall = 0.5 * scene.world.gravity_strength() * dt * dt;
-  return std::ranges::any_of(scene.world.planes, [&](const HalfSpace& plane) {
+  return std::ranges::any_of(planes, [&](const HalfSpace& plane) {
     return plane.height_of(body.position) - scene.kind_of(body).shape->radius <=
            fall - std::min(0.0, body.velocity.dot(plane.normal)) * dt;
   });
@@ -60,21 +64,36 @@ void SubstepPlan::find_ways(const ContactScene& scene, const NearPairs& pairs, d
 
 // What strikes another or the ground may stop within the step: then who follows close behind meets it, though
 // neither gains on the other now. The way of such a pair is that of its faster body.
-void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt,
-                                 NearMarks& near) {
+void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pairs, const FacesBelow& faces,
+                                 double dt, NearMarks& near) {
+  std::ranges::sort(striking_);
   const auto stops = [&](Participant p) {
-    return !p.is_statistical() || near[p.index()] || may_strike_ground(scene, scene.body(p), dt);
+    if (!p.is_statistical() || near[p.index()]) return true;
+    const auto slot = std::int32_t(p.index());
+    return may_strike(scene, scene.body(p), scene.world.planes, dt) ||
+           may_strike(scene, scene.body(p), faces.of(slot), dt) ||
+           std::ranges::binary_search(striking_, slot);
   };
-  for (bool any = true; any;) {
-    any = false;
-    std::erase_if(following_, [&](std::size_t i) {
-      const FoundPair& pair = pairs[i];
-      if (!stops(pair.first) && !stops(pair.second)) return false;
-      mark(ways_[i], near);
-      const double speed = std::max(scene.velocity(pair.first).norm(), scene.velocity(pair.second).norm());
-      ways_[i].along = speed * dt / least_radius(scene, pair);
-      return any = true;
-    });
+  following_of_.clear(), stopped_.clear();
+  for (const std::size_t i : following_)
+    for (const Participant p : {pairs[i].first, pairs[i].second})
+      if (p.is_statistical()) following_of_.emplace_back(p.index(), i);
+  std::ranges::sort(following_of_);
+  const auto meet = [&](std::size_t i) {
+    const FoundPair& pair = pairs[i];
+    ways_[i].along = std::max(scene.velocity(pair.first).norm(), scene.velocity(pair.second).norm()) * dt /
+                     least_radius(scene, pair);
+    for (const Participant p : {pair.first, pair.second})
+      if (p.is_statistical() && !near[p.index()]) near.mark(p), stopped_.push_back(p.index());
+  };
+  for (const std::size_t i : following_)
+    if (stops(pairs[i].first) || stops(pairs[i].second)) meet(i);
+  while (!stopped_.empty()) {
+    const std::size_t body = stopped_.back();
+    stopped_.pop_back();
+    for (auto own = std::ranges::lower_bound(following_of_, std::pair(body, std::size_t(0)));
+         own != following_of_.end() && own->first == body; ++own)
+      if (ways_[own->second].along == kFollowing) meet(own->second);
   }
 }
 
@@ -132,23 +151,28 @@ void SubstepPlan::find_ways_to_solids(const ContactScene& scene, std::span<const
 }
 
 void SubstepPlan::make(const ContactScene& scene, const NearPairs& pairs,
-                       std::span<const SolidContact> solid_contacts, double dt, NearMarks& near) {
+                       std::span<const SolidContact> solid_contacts, const FacesBelow& faces, double dt,
+                       NearMarks& near) {
   find_ways(scene, pairs, dt);
-  following_.clear();
+  following_.clear(), striking_.clear();
   for (std::size_t i = 0; i < ways_.size(); ++i) {
     if (ways_[i].along >= 0.0) mark(ways_[i], near);
     if (ways_[i].along == kFollowing) following_.push_back(i);
   }
-  mark_followers(scene, pairs, dt, near);
   for (auto left = solid_contacts; !left.empty();) {
     const auto of_body = first_run_of(left);
     left = left.subspan(of_body.size());
     const auto slot = std::size_t(of_body.front().slot);
     const StatisticalBody& body = scene.bodies[slot];
     const std::optional<Vec3> along = find_velocity_of_ground(of_body, dt);
-    const bool moves_along = along && (along->isZero(0.0) || !may_strike_ground(scene, body, dt));
-    if (body.is_sphere() || !moves_along) near.mark(Participant::statistical(slot));
+    const bool moves_along =
+        along && (along->isZero(0.0) || !may_strike(scene, body, scene.world.planes, dt));
+    if (body.is_sphere() || !moves_along)
+      near.mark(Participant::statistical(slot));
+    else if ((body.velocity - *along).norm() * dt > kRides * scene.kind_of(body).shape->radius)
+      striking_.push_back(std::int32_t(slot));
   }
+  mark_followers(scene, pairs, faces, dt, near);
 
   find_islands(scene, dt, near);
   find_ways_to_solids(scene, solid_contacts, dt, near);

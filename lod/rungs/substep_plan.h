@@ -34,7 +34,7 @@ class SubstepPlan {
   /// the pace of their island. A hull that touches nothing but ground that stands still, or goes on as one
   /// without turning, is not marked.
   void make(const ContactScene& scene, const NearPairs& pairs, std::span<const SolidContact> solid_contacts,
-            double dt, NearMarks& near);
+            const FacesBelow& faces, double dt, NearMarks& near);
   /// That any island has, in ascending order.
   std::span<const Pace> paces() const { return paces_; }
 
@@ -58,7 +58,8 @@ class SubstepPlan {
   static void mark(const PairWay& way, NearMarks& near) { near.mark(way.first), near.mark(way.second); }
 
   void find_ways(const ContactScene& scene, const NearPairs& pairs, double dt);
-  void mark_followers(const ContactScene& scene, const NearPairs& pairs, double dt, NearMarks& near);
+  void mark_followers(const ContactScene& scene, const NearPairs& pairs, const FacesBelow& faces, double dt,
+                      NearMarks& near);
   void find_islands(const ContactScene& scene, double dt, const NearMarks& near);
   void find_ways_to_solids(const ContactScene& scene, std::span<const SolidContact> solid_contacts, double dt,
                            const NearMarks& near);
@@ -67,6 +68,9 @@ class SubstepPlan {
   JobRunner jobs_;
   std::vector<PairWay> ways_;           // of each pair
   std::vector<std::size_t> following_;  // pairs of which neither gains on the other
+  std::vector<std::pair<std::size_t, std::size_t>> following_of_;  // each body's, in order
+  std::vector<std::int32_t> striking_;  // slots of those alone on parts of the ground against which they move
+  std::vector<std::size_t> stopped_;    // bodies whose pairs are still to be looked at
   DisjointSets islands_;                // of bodies
   std::vector<Island> island_of_root_;  // of each body, where it stands for its island
   std::vector<Pace> paces_;

@@ -92,6 +92,17 @@ Eigen::AlignedBox3d bounds_of(const Mesh& mesh) {
   return box;
 }
 
+// Vertices that are asked whether they lie inside, spread over a piece.
+constexpr std::size_t kAskedVertices = 64;
+
+// What sticks in another with one end alone bounds no cavity of it.
+bool contains(const Mesh& outer, const Mesh& inner) {
+  const std::size_t vertices = inner.vertices.size(), asked = std::min(vertices, kAskedVertices);
+  for (std::size_t i = 0; i < asked; ++i)
+    if (winding_number(outer, inner.vertices[i * vertices / asked]) == 0) return false;
+  return true;
+}
+
 /// For each piece, whether an odd number of closed pieces contain it: it then bounds a cavity.
 std::vector<bool> find_cavities(const std::vector<Mesh>& parts, const std::vector<Piece>& pieces) {
   std::vector<bool> cavities(parts.size(), false);
@@ -100,7 +111,7 @@ std::vector<bool> find_cavities(const std::vector<Mesh>& parts, const std::vecto
   for (std::size_t outer = 0; outer < parts.size(); ++outer)
     for (std::size_t inner = 0; inner < parts.size(); ++inner)
       if (inner != outer && !pieces[outer].open && boxes[outer].contains(boxes[inner]) &&
-          winding_number(parts[outer], parts[inner].vertices.front()) != 0)
+          contains(parts[outer], parts[inner]))
         cavities[inner] = !cavities[inner];
   return cavities;
 }

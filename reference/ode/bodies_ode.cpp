@@ -110,20 +110,22 @@ void set_properties(Body& body, const BodyProperties& properties) {
   body.properties = properties;
   properties.kinematic ? dBodySetKinematic(body.body) : dBodySetDynamic(body.body);
   dBodySetGravityMode(body.body, properties.gravity);
-  dBodySetMaxAngularSpeed(body.body, properties.max_angular_speed);
+  dBodySetMaxAngularSpeed(body.body, properties.kinematic ? dInfinity : properties.max_angular_speed);
   for (dGeomID geom = dBodyGetFirstGeom(body.body); geom; geom = dBodyGetNextGeom(geom)) {
     dGeomSetCategoryBits(geom, properties.category);
     dGeomSetCollideBits(geom, properties.collide);
   }
 }
 
-// ODE takes the same part of a velocity away in each of its steps, however long.
+// ODE takes the same part of a velocity away in each of its steps, however long; of kinematic ones, too.
 void set_damping(Body& body, double h) {
   const BodyProperties& properties = body.properties;
-  const bool damps = properties.linear_damping > 0.0 || properties.angular_damping > 0.0;
+  const bool damps =
+      !properties.kinematic && (properties.linear_damping > 0.0 || properties.angular_damping > 0.0);
   if (!damps && !body.damped) return;
-  dBodySetDamping(body.body, -std::expm1(-properties.linear_damping * h),
-                  -std::expm1(-properties.angular_damping * h));
+  const double time = damps ? h : 0.0;
+  dBodySetDamping(body.body, -std::expm1(-properties.linear_damping * time),
+                  -std::expm1(-properties.angular_damping * time));
   body.damped = damps;
 }
 

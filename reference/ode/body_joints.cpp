@@ -27,10 +27,14 @@ Vec3 middle_of(dxBody* body, dxBody* second) {
   return second ? Vec3(0.5 * (place_of(body) + place_of(second))) : place_of(body);
 }
 
-// That in which its position grows. ODE turns a slider round whose only body is its second.
-Vec3 slider_direction(dJointID slider) {
-  return (dJointGetBody(slider, 0) ? 1.0 : -1.0) * read(slider, dJointGetSliderAxis);
-}
+// Where its only body is its second, ODE turns a slider's axis round, and what it says of a hinge's angle,
+// but not the angle that its stops go by.
+double sense_of(dJointID joint) { return dJointGetBody(joint, 0) ? 1.0 : -1.0; }
+
+// That in which its position grows.
+Vec3 slider_direction(dJointID slider) { return sense_of(slider) * read(slider, dJointGetSliderAxis); }
+
+double hinge_angle(dJointID hinge) { return sense_of(hinge) * dJointGetHingeAngle(hinge); }
 
 void hold(dxBody* second, const Vec3& point, std::vector<JointRow>& rows) {
   for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
@@ -146,7 +150,7 @@ void find_joint_stops(dxBody* body, double reach, std::vector<JointStop>& stops)
     const dBodyID second = first ? other : nullptr;
     const bool slides = dJointGetType(joint) == dJointTypeSlider;
     const auto& parameter = slides ? dJointGetSliderParam : dJointGetHingeParam;
-    const double at = slides ? dJointGetSliderPosition(joint) : dJointGetHingeAngle(joint),
+    const double at = slides ? dJointGetSliderPosition(joint) : hinge_angle(joint),
                  above = at - parameter(joint, dParamLoStop), below = parameter(joint, dParamHiStop) - at;
     if (above + below < 0.0) continue;  // ODE leaves out stops that are the wrong way round
     const Vec3 axis = slides ? slider_direction(joint) : read(joint, dJointGetHingeAxis),
@@ -204,7 +208,7 @@ bool has_motor(dxJoint* joint) {
     return pushes(dJointGetSliderParam, dJointGetSliderPosition(joint));
   if (dJointGetType(joint) == dJointTypeHinge2)  // on a spring it would drive the wheel too slowly
     return !is_sprung(joint) && dJointGetHinge2Param(joint, dParamFMax2) > 0.0;
-  return dJointGetType(joint) == dJointTypeHinge && pushes(dJointGetHingeParam, dJointGetHingeAngle(joint));
+  return dJointGetType(joint) == dJointTypeHinge && pushes(dJointGetHingeParam, hinge_angle(joint));
 }
 
 bool is_driven(dxJoint* joint) {

@@ -157,5 +157,20 @@ output: {every_n_steps: 1}
   EXPECT_THROW(run_scene(scene, {.fork_step = 10}), InputError);
 }
 
+TEST_F(SavedPlayback, TheSecondFutureKeepsTheLevelsOfTheScene) {
+  const Scene scene = load(R"(version: 1
+step: {dt_s: 0.01, steps: 20, full_substeps: 2}
+shapes: {crate: {box_m: [0.2, 0.3, 0.2]}}
+ground: [{plane: {normal: [0, 0, 1], offset_m: 0}}]
+bodies: [{shape: crate, position_m: [0, 0, 0.4], level: support}, {shape: crate, position_m: [1, 0, 0.6]}]
+viewpoints: [{position_m: [0, -2, 1]}]
+lod: {policy: distance, full_within_m: 0}
+)");
+  const RunResult run = run_scene(scene, {.full_within_m = 100.0, .fork_step = 10});
+  ASSERT_TRUE(run.fork);
+  EXPECT_EQ(run.fork->result.last().full, 1);
+  EXPECT_EQ(run.fork->result.last().support, 1);
+}
+
 }  // namespace
 }  // namespace lodestone::playback_test

@@ -15,7 +15,7 @@ constexpr double kPileHorizon = 8.0;        // s
 constexpr double kPileRestEnergy = 2e-3;    // J/kg, as in drops
 constexpr double kPileRestDuration = 0.25;  // s
 constexpr double kHoverDrop = 0.05;         // over the size
-constexpr int kOverlapInterval = 6;         // samples: a look at every pair costs more than a step
+constexpr double kOverlapInterval = 0.1;    // s: a look at every pair costs more than a step
 
 }  // namespace
 
@@ -27,7 +27,10 @@ PileObserver::PileObserver(const Shape& shape, const PileOverlap& overlap, doubl
 
 void PileObserver::sample(double time_s, std::span<const RigidState> states) {
   observe_energy(time_s, states);
-  if (samples_ % kOverlapInterval == 0) observe_overlap(states);
+  if (time_s > next_overlap_s_ - 0.5 * kObservationStep) {
+    observe_overlap(states);
+    next_overlap_s_ += kOverlapInterval;
+  }
   ++samples_;
   last_time_s_ = time_s;
   last_.assign(states.begin(), states.end());
@@ -42,11 +45,20 @@ void PileObserver::observe_energy(double time_s, std::span<const RigidState> sta
     kinetic += energy / double(states.size());
     potential += gravity_ * states[i].position.z() / double(states.size());
   }
-  pile_.kinetic_energy.push_back(kinetic);
+  keep_energy(time_s, kinetic);
   const double total = kinetic + potential;
   if (samples_ == 0) first_energy_ = least_energy_ = total;
   pile_.energy_rise = std::max(pile_.energy_rise, (total - least_energy_) / first_energy_);
   least_energy_ = std::min(least_energy_, total);
+}
+
+void PileObserver::keep_energy(double time_s, double energy) {
+  std::vector<double>& kept = pile_.kinetic_energy;
+  const auto samples = std::size_t(std::lround(time_s / kObservationStep)) + 1;
+  while (kept.size() < samples) {
+    const double last = kept.empty() ? energy : kept.back();
+    kept.push_back(last + (energy - last) / double(samples - kept.size()));
+  }
 }
 
 void PileObserver::observe_overlap(std::span<const RigidState> states) {

@@ -11,7 +11,8 @@ namespace lodestone {
 
 /// What is kept of one pile.
 struct PileObservation {
-  std::vector<double> kinetic_energy;  ///< per mass, J/kg, mean of the bodies, at each sample
+  std::vector<double> kinetic_energy;  ///< per mass, J/kg, mean of the bodies, each kObservationStep; between
+                                       ///< the samples of longer steps on a line
   double sleep_time_s =
       0;  ///< mean over the bodies of the last time that the kinetic energy per mass is above 2e-3 J/kg
   double mean_height_m = 0;         ///< of the centres of mass, at the end
@@ -41,6 +42,7 @@ class PileObserver {
 
  private:
   void observe_energy(double time_s, std::span<const RigidState> states);
+  void keep_energy(double time_s, double energy);
   void observe_overlap(std::span<const RigidState> states);
 
   const Shape& shape_;
@@ -48,7 +50,7 @@ class PileObserver {
   double gravity_, scale_;
   std::vector<double> last_stir_s_;  // of each body
   std::vector<RigidState> last_;
-  double last_time_s_ = 0, first_energy_ = 0, least_energy_ = 0;
+  double last_time_s_ = 0, next_overlap_s_ = 0, first_energy_ = 0, least_energy_ = 0;
   int samples_ = 0;
   PileObservation pile_;
 };

@@ -101,24 +101,22 @@ void write_piles(OutputFile& out, const std::string& head, const std::vector<Pil
                           piles[i].end_penetration_m));
 }
 
-void write_energy(OutputFile& out, const std::string& head, const std::vector<PileObservation>& piles,
-                  double interval) {
+void write_energy(OutputFile& out, const std::string& head, const std::vector<PileObservation>& piles) {
   for (std::size_t i = 0; i < piles.size(); ++i)
     for (std::size_t k = 0; k < piles[i].kinetic_energy.size(); ++k)
-      out.write(
-          fmt::format("{},{},{:.6g},{:.6g}\n", head, i, double(k) * interval, piles[i].kinetic_energy[k]));
+      out.write(fmt::format("{},{},{:.6g},{:.6g}\n", head, i, double(k) * kObservationStep,
+                            piles[i].kinetic_energy[k]));
 }
 
 std::string head_of(const PileRow& row) { return fmt::format("{},{},{}", row.method, row.model, row.dt_s); }
 
-// Calls `visit(head, piles, seconds between samples)` for both batches of truth and for every row.
+// Calls `visit(head, piles)` for both batches of truth and for every row.
 template <class Visit>
 void each_batch(const PileComparison& comparison, Visit visit) {
   const double truth_step = kObservationStep / comparison.truth_substeps;
-  visit(fmt::format("truth_a,,{}", truth_step), comparison.truth_a, kObservationStep);
-  visit(fmt::format("truth_b,,{}", truth_step), comparison.truth_b, kObservationStep);
-  for (const PileRow& row : comparison.rows)
-    visit(head_of(row), row.piles, std::max(kObservationStep, row.dt_s));
+  visit(fmt::format("truth_a,,{}", truth_step), comparison.truth_a);
+  visit(fmt::format("truth_b,,{}", truth_step), comparison.truth_b);
+  for (const PileRow& row : comparison.rows) visit(head_of(row), row.piles);
 }
 
 template <class Write>
@@ -169,13 +167,12 @@ void save_piles(const PileComparison& comparison, const std::filesystem::path& f
         "method,model,dt_s,pile,sleep_time_s,mean_height_m,max_penetration_m,energy_rise,hovering,escaped,"
         "median_penetration_m,end_penetration_m\n");
     each_batch(comparison,
-               [&](const std::string& head, const auto& piles, double) { write_piles(out, head, piles); });
+               [&](const std::string& head, const auto& piles) { write_piles(out, head, piles); });
   });
   save(folder / "pile_energy.csv", [&](OutputFile& out) {
     out.write("method,model,dt_s,pile,time_s,kinetic_energy_j_per_kg\n");
-    each_batch(comparison, [&](const std::string& head, const auto& piles, double interval) {
-      write_energy(out, head, piles, interval);
-    });
+    each_batch(comparison,
+               [&](const std::string& head, const auto& piles) { write_energy(out, head, piles); });
   });
 }
 

@@ -262,26 +262,35 @@ TEST(JointContacts, ALiftAtItsStopBearsCrates) {
     }
 }
 
+// Whichever body of its hinge it is, made where it stands up by an angle.
 TEST(JointContacts, OnATrapdoorAtItsStopCratesComeToRest) {
-  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
-    TheirWorld their;
-    Manager manager(their.world, their.space, kSettings);
-    const BodyId door = add_plate(manager);
-    const dJointID hinge = dJointCreateHinge(their.world, nullptr);
-    dJointAttach(hinge, manager.ode_body(door), nullptr);
-    dJointSetHingeAnchor(hinge, -0.75, 0, 2);
-    dJointSetHingeAxis(hinge, 0, -1, 0);  // down is back
-    dJointSetHingeParam(hinge, dParamLoStop, 0.0);
-    std::vector<BodyId> crates;
-    for (const double x : {-0.2, 0.4})
-      crates.push_back(
-          add(manager, box_shape({kCrate, kCrate, kCrate}), testing::at({x, 0, 2.05 + 0.5 * kCrate}), level));
-    run(manager, 6.0);
-    for (const BodyId crate : crates) {
-      EXPECT_NEAR(manager.state(crate).position.z(), 2.05 + 0.5 * kCrate, 3e-3) << int(level);
-      EXPECT_TRUE(manager.asleep(crate)) << int(level);
+  constexpr double kOpen = 0.8;  // rad
+  for (const bool is_first : {true, false})
+    for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+      TheirWorld their;
+      Manager manager(their.world, their.space, kSettings);
+      const BodyId door = add_plate(manager);
+      const Vec3 anchor(-0.75, 0, 2);
+      const RigidState closed = manager.state(door);
+      const Quat up(Eigen::AngleAxisd(-kOpen, Vec3::UnitY()));
+      manager.set_state(door, {.position = anchor + up * (closed.position - anchor), .orientation = up});
+      const dBodyID body = manager.ode_body(door);
+      const dJointID hinge = dJointCreateHinge(their.world, nullptr);
+      dJointAttach(hinge, is_first ? body : nullptr, is_first ? nullptr : body);
+      dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+      dJointSetHingeAxis(hinge, 0, 1, 0);  // down is ahead
+      dJointSetHingeParam(hinge, dParamHiStop, kOpen);
+      manager.set_state(door, closed);
+      std::vector<BodyId> crates;
+      for (const double x : {-0.2, 0.4})
+        crates.push_back(add(manager, box_shape({kCrate, kCrate, kCrate}),
+                             testing::at({x, 0, 2.05 + 0.5 * kCrate}), level));
+      run(manager, 6.0);
+      for (const BodyId crate : crates) {
+        EXPECT_NEAR(manager.state(crate).position.z(), 2.05 + 0.5 * kCrate, 3e-3) << int(level) << is_first;
+        EXPECT_TRUE(manager.asleep(crate)) << int(level) << is_first;
+      }
     }
-  }
 }
 
 TEST(JointContacts, ADoorOnAMotorSweepsCratesAside) {

@@ -181,7 +181,7 @@ TEST(ManagerBodies, AKinematicBodyTakesNoImpulse) {
   Manager manager = in_space();
   for (const LevelChoice level : kRungsOf) {
     BodyProperties driven;
-    driven.kinematic = true;
+    driven.kinematic = true, driven.max_angular_speed = 3.0;
     const BodyId body =
         manager.add_body({.shape = box_shape({0.2, 0.2, 0.2}),
                           .state = at({level == LevelChoice::full ? 0.0 : 5.0, 0, 0}, {1, 0, 0}),
@@ -313,6 +313,26 @@ TEST(ManagerBodies, DampingIsExponentialOnEveryRung) {
     run(manager, 0.5);
     EXPECT_NEAR(manager.state(body).velocity.x(), 2.0 * std::exp(-1.0), 2e-3);
     EXPECT_NEAR(manager.state(body).angular_velocity.y(), 4.0 * std::exp(-0.5), 4e-3);
+  }
+}
+
+TEST(ManagerBodies, WhatIsKinematicIsNeitherDampedNorHeldBack) {
+  for (const LevelChoice level : kRungsOf) {
+    Manager manager = in_space();
+    const BodyProperties damped{.linear_damping = 2.0, .angular_damping = 1.0};
+    const BodyId body = manager.add_body({.shape = sphere_shape(0.2),
+                                          .state = at({0, 0, 0}, {2, 0, 0}, {0, 4, 0}),
+                                          .level = level,
+                                          .properties = damped});
+    run(manager, 0.5);
+    BodyProperties driven = damped;
+    driven.kinematic = true, driven.max_angular_speed = 3.0;
+    manager.set_properties(body, driven);
+    manager.set_state(body, at({0, 0, 0}, {2, 0, 0}, {0, 4, 0}));
+    run(manager, 0.5);
+    EXPECT_NEAR(manager.state(body).position.x(), 1.0, 1e-6);
+    EXPECT_NEAR(manager.state(body).velocity.x(), 2.0, 1e-12);
+    EXPECT_NEAR(manager.state(body).angular_velocity.y(), 4.0, 1e-12);
   }
 }
 

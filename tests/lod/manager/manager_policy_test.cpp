@@ -50,6 +50,30 @@ TEST(Explain, PixelsAreThoseOfThePicture) {
   }
 }
 
+// A sleeper is looked at again where any view zooms, not only the one with the coarsest picture.
+TEST(Policies, EveryViewMayZoom) {
+  for (const bool scope_first : {true, false}) {
+    PolicySettings policy;
+    policy.policy = ProjectedSizePolicy{200.0};
+    Manager manager = still_world(policy);
+    const BodyId body = manager.add_body({.shape = sphere_shape(0.2), .state = testing::at({10, 0, 0})});
+    const auto look = [&](double fov) {
+      const Viewpoint eye{.direction = Vec3::UnitX(), .vertical_fov_rad = 1.0},
+          scope{.direction = Vec3::UnitX(), .vertical_fov_rad = fov};
+      manager.set_viewpoints({scope_first ? scope : eye, scope_first ? eye : scope});
+    };
+    look(0.9);
+    manager.sleep(body);
+    for (int i = 0; i < 5; ++i) manager.step(kFrame);
+    ASSERT_EQ(manager.rung(body), Rung::support);
+    ASSERT_TRUE(manager.asleep(body));
+    look(0.05);
+    for (int i = 0; i < 5; ++i) manager.step(kFrame);
+    EXPECT_GT(manager.explain(body).pixels, 200.0);
+    EXPECT_EQ(manager.rung(body), Rung::full);
+  }
+}
+
 TEST(Explain, TheDwellThatIsLeftCountsDown) {
   PolicySettings policy;
   policy.policy = DistancePolicy{3.0}, policy.min_dwell_frames = 10;

@@ -257,6 +257,31 @@ TEST(ManagerSnapshot, WhatWaitsIsPartOfIt) {
   EXPECT_EQ(reader.manager.state_hash(), expected);
 }
 
+// Sleepers are looked at anew where the reader's policy is another than the writer's.
+TEST(ManagerSnapshot, TheReadersPolicyDecides) {
+  const auto make = [](double full_within) {
+    Manager manager = testing::on_floor(testing::unmeasured({.policy = DistancePolicy{full_within}}));
+    testing::view_from(manager, {0, 0, 1});
+    return manager;
+  };
+  Manager writer = make(1.0);
+  const BodyId crate = add(writer, SavedWorld::shapes()[0], testing::at({5, 0, 0.2}));
+  testing::run(writer, 0.5);
+  writer.sleep(crate);
+  testing::run(writer, 0.1);
+  ASSERT_EQ(writer.rung(crate), Rung::support);
+  const Bytes snapshot = writer.snapshot();
+
+  Manager reader = make(20.0);
+  reader.restore(snapshot, SavedWorld::shapes());
+  testing::run(reader, 0.5);
+  EXPECT_EQ(reader.rung(crate), Rung::full);
+  writer.set_policy({.policy = DistancePolicy{20.0}});
+  writer.restore(snapshot);
+  testing::run(writer, 0.5);
+  EXPECT_EQ(writer.rung(crate), Rung::full);
+}
+
 // Whose bins are ground, and whose kinematic slide moves what lies on it.
 struct SavedCallersWorld {
   SavedCallersWorld() : manager(his.world, his.space, unmeasured({.policy = DistancePolicy{1.5, 6.0}})) {

@@ -204,7 +204,7 @@ TEST(SubstepPlan, IsByHowFarTheyCloseInOverTheirSize) {
     NearMarks near;
     near.begin(2);
     SubstepPlan plan(make_job_runner(1));
-    plan.make(scene.scene(), pairs, {}, kPairStep, near);
+    plan.make(scene.scene(), pairs, {}, {}, kPairStep, near);
     EXPECT_EQ(near.pace(a), near.pace(b));
     EXPECT_EQ(plan.paces().size(), near[0] ? 1 : 0);
     return int(near.pace(a));
@@ -235,7 +235,7 @@ TEST(SubstepPlan, IsAnIslandsOwn) {
     NearMarks near;
     near.begin(scene.bodies.size());
     SubstepPlan plan(make_job_runner(1));
-    plan.make(scene.scene(), pairs, {}, kPairStep, near);
+    plan.make(scene.scene(), pairs, {}, {}, kPairStep, near);
     EXPECT_EQ(near.pace(fast), near.pace(right));
     EXPECT_TRUE(std::ranges::is_sorted(plan.paces()));
     EXPECT_EQ(plan.paces().size(), beside_sleepers ? 1u : 2u);
@@ -244,6 +244,36 @@ TEST(SubstepPlan, IsAnIslandsOwn) {
   const int quick = int(std::ceil(4.0 / 60 / (0.07 * cube->radius)));
   EXPECT_EQ(paces(false), std::pair(quick, 3));
   EXPECT_EQ(paces(true), std::pair(quick, quick));
+}
+
+// A stream of cubes, one behind the other at one speed: none gains on another, but once the first strikes the
+// ground all may meet, in whatever order they were added.
+TEST(SubstepPlan, WhoFollowsOneThatStrikesTheGroundMayMeetIt) {
+  const auto cube = box_shape({0.2, 0.2, 0.2});
+  for (const double lowest : {0.15, 5.0})
+    for (const int stride : {1, -1, 7}) {
+      PairScene scene;
+      const HalfSpace floor{Vec3::UnitZ(), 0.0};
+      scene.world.planes = {&floor, 1};
+      constexpr int kCubes = 20;
+      std::vector<int> place(kCubes);
+      for (int i = 0; i < kCubes; ++i) {
+        const int rank = (stride * i % kCubes + kCubes) % kCubes;
+        place[std::size_t(rank)] = i;
+        scene.add(cube, 1.0, at({0, 0, lowest + 0.3 * rank}, {0, 0, -10}));
+      }
+      std::vector<NearPair> column;
+      for (int i = 1; i < kCubes; ++i)
+        column.emplace_back(Participant::statistical(std::size_t(place[std::size_t(i)])),
+                            Participant::statistical(std::size_t(place[std::size_t(i - 1)])));
+      NearPairs pairs(make_job_runner(1));
+      scene.find(pairs, column);
+      NearMarks near;
+      near.begin(scene.bodies.size());
+      SubstepPlan plan(make_job_runner(1));
+      plan.make(scene.scene(), pairs, {}, {}, kPairStep, near);
+      for (std::size_t i = 0; i < kCubes; ++i) EXPECT_EQ(near[i], lowest < 1.0) << lowest << " " << stride;
+    }
 }
 
 // A row of cubes that touch, of which one closes in at `speed`: the pace of all. A heap that is slow takes
@@ -264,7 +294,7 @@ TEST(SubstepPlan, ASlowHeapTakesAStepAtOnce) {
     NearMarks near;
     near.begin(scene.bodies.size());
     SubstepPlan plan(make_job_runner(1));
-    plan.make(scene.scene(), pairs, {}, dt, near);
+    plan.make(scene.scene(), pairs, {}, {}, dt, near);
     EXPECT_EQ(plan.paces().size(), 1U);
     return int(near.pace(Participant::statistical(0)));
   };

@@ -59,6 +59,25 @@ TEST(MeshOrient, PiecesInsideOneAnotherAlternate) {
   }
 }
 
+// A bar that sticks in a leg of an L, whichever of its vertices comes first.
+TEST(MeshOrient, WhatSticksInAnotherIsNoCavity) {
+  for (const bool other_end_first : {false, true}) {
+    Mesh bar = make_box({0.3, 0.05, 0.05});
+    if (other_end_first)
+      for (Vec3& vertex : bar.vertices) vertex.x() = -vertex.x();  // and inside out
+    Mesh mesh = make_l(1.0, 1.0, 0.2, 0.2);
+    Vec3 corner = mesh.vertices.front();
+    for (const Vec3& vertex : mesh.vertices) corner = corner.cwiseMin(vertex);
+    const double l = volume(mesh);
+    append(mesh, bar, corner + Vec3(0.3, 0.6, 0.1), false);  // from x .15, in the leg, to .45, in the notch
+    MeshReport report;
+    orient_faces(mesh, "lever", report);
+    EXPECT_EQ(report.components, 2);
+    EXPECT_NEAR(volume(mesh), l + 0.3 * 0.05 * 0.05, 1e-12);
+    EXPECT_EQ(report.faces_flipped, other_end_first ? 12 : 0);
+  }
+}
+
 TEST(MeshOrient, OpenAndCrowdedEdgesAreCounted) {
   Mesh open = make_box({1, 1, 1});
   open.faces.pop_back();

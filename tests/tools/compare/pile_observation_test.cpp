@@ -77,6 +77,28 @@ TEST_F(Boxes, TheTimeToSleepIsTheMeanOfTheLastStirs) {
               2.5 / 60.0, 1e-12);
 }
 
+// Longer steps are laid beside the truth in time.
+TEST_F(Boxes, TheEnergyOfLongerStepsIsOnALineBetweenThem) {
+  const auto moving = [](double v) { return std::vector{at({0, 0, 0.5}, {v, 0, 0})}; };
+  PileObserver observer(shape_, overlap_);
+  for (int i = 0; i < 4; ++i) observer.sample(i / 15.0, moving(std::sqrt(2.0 * i)));
+  const std::vector<double> energy = observer.result().kinetic_energy;
+  ASSERT_EQ(energy.size(), 13U);
+  for (std::size_t i = 0; i < energy.size(); ++i) EXPECT_NEAR(energy[i], double(i) / 4.0, 1e-12);
+}
+
+// Overlaps are looked at ten times a second, or in each step that is longer.
+TEST_F(Boxes, OverlapIsLookedAtTenTimesASecond) {
+  const auto deep = [](bool is) { return std::vector{at({0, 0, is ? 0.05 : 0.1})}; };
+  for (const auto& [steps_per_s, of] : {std::pair{60, 6}, {10, 1}, {5, 1}})
+    for (int deepest = 0; deepest < 12; ++deepest) {
+      PileObserver observer(shape_, overlap_);
+      for (int i = 0; i < 13; ++i) observer.sample(double(i) / steps_per_s, deep(i == deepest));
+      EXPECT_EQ(observer.result().max_penetration_m > 0.01, deepest % of == 0)
+          << steps_per_s << " " << deepest;
+    }
+}
+
 TEST(PileOverlap, OfConcaveBodiesIsThatOfTheBodiesNotOfTheirHulls) {
   const Shape l = make_shape("l", make_l(0.3, 0.2, 0.08, 0.1));
   ASSERT_FALSE(l.pieces.empty());
