@@ -266,12 +266,13 @@ class Manager {
   /// done, or of this.
   void set_record(RecordFunction write);
   /// Does again what a recording tells, from its snapshot on (see restore, also for `shapes`, which must have
-  /// those of bodies that it adds), up to the first step that comes out otherwise than recorded, in the state
-  /// of any body to the bit. Under a budget of milliseconds that is no fault, as rungs follow the clock.
-  /// What lay between before_world_step and after_world_step is done again as one dWorldStep.
-  /// One that ends in the midst of a call, as where the program ended, is done as far as it goes.
-  /// Throws InputError for what is no recording, where it comes to what is damaged, where restore does, and
-  /// where it sets a policy with a function that the policy here lacks, whose functions are used.
+  /// those of bodies that it adds; neither has the policy or the full_substeps of the beginning), up to the
+  /// first step that comes out otherwise than recorded, in the state of any body to the bit. Under a budget
+  /// of milliseconds that is no fault, as rungs follow the clock. What lay between before_world_step and
+  /// after_world_step is done again as one dWorldStep. One that ends in the midst of a call, as where the
+  /// program ended, is done as far as it goes. Throws InputError for what is no recording, where it comes to
+  /// what is damaged, where restore does, and where it sets a policy with a function that the policy here
+  /// lacks, whose functions are used.
   ReplayResult replay(std::span<const std::byte> recording,
                       std::span<const std::shared_ptr<const Shape>> shapes = {});
 

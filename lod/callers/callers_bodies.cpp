@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::uint32_t kFirstOwner = 0x40000000;  // above every body of the manager's
 constexpr double kLeft = 0.02;  // over its longest side: a geom whose bounds move by more in a step has left
+constexpr double kSunk =
+    1e-4;  // over R: so deep what is pressed onto ground begins ODE's step, lest this find
+           // no contact there in the next: its ERP leaves depths that rounding decides
 
 // What contacts need of a body's shape, or of a convex piece of it, about `center`.
 Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {
@@ -218,7 +221,9 @@ void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vecto
     if (neighbor.asleep || entry.is_tied()) continue;
     BodyProperties own;
     own.category = entry.bits.category, own.collide = entry.bits.collide;
+    const std::size_t before = contacts.size();
     reckon_ground_contacts({ground, own}, neighbor, index, contacts);
+    neighbors.back().on_ground = contacts.size() > before;
   }
 }
 
@@ -237,8 +242,11 @@ void CallersBodies::hand_over(std::span<const FullNeighbor> neighbors, const Vec
     if (!callers::is_enabled(entry.body)) callers::set_enabled(entry.body, true);
     if (!neighbor.push.is_zero())
       callers::add_force(entry.body, neighbor.push.linear / dt, neighbor.push.angular / dt);
-    if (neighbor.is_touched() || !neighbor.shift.isZero(0.0))
-      callers::set_state(entry.body, find_start(neighbor, gravity, dt, substeps));
+    if (!neighbor.is_touched() && neighbor.shift.isZero(0.0)) continue;
+    RigidState start = find_start(neighbor, gravity, dt, substeps);
+    if (neighbor.on_ground && !neighbor.push.is_zero() && !neighbor.backing.is_zero())
+      start.position += kSunk * neighbor.shape->radius * gravity.normalized();
+    callers::set_state(entry.body, start);
   }
 }
 

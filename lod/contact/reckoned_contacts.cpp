@@ -16,7 +16,7 @@ void add_points(const PairContact& contact, const FullContact& between, const Gr
     const ManifoldPoint& at = contact.manifold.points[std::size_t(i)];
     FullContact& added = contacts.emplace_back(between);
     added.point = at.point, added.normal = contact.normal, added.gap = at.gap;
-    if (part) added.velocity = part->velocity_at(at.point);
+    if (part) added.velocity = part->velocity_at(at.point), added.ground_material = part->material;
   }
 }
 
@@ -38,7 +38,12 @@ void reckon_ground_contacts(const MetGround& ground, const FullNeighbor& body, s
         find_hull_contacts(shape, body.state.orientation, plane.normal, height, margin, hint);
     for (int i = 0; i < low.count; ++i)
       if (const HullContact& at = low.contact[std::size_t(i)]; at.gap < margin)
-        contacts.push_back({index, -1, body.state.position + at.arm, plane.normal, at.gap});
+        contacts.push_back({.first = index,
+                            .second = -1,
+                            .point = body.state.position + at.arm,
+                            .normal = plane.normal,
+                            .gap = at.gap,
+                            .ground_material = plane.material});
   }
   std::vector<const GroundPart*> parts;
   std::vector<PlacedSolid> near;

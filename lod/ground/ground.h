@@ -133,6 +133,7 @@ class Ground {
   /// reader has the same parts.
   void archive(StateArchive& a);
   bool has_parts() const { return parts_used_ > 0; }
+  bool any_moves() const { return moving_ > 0; }
   /// Of all parts, m, world. Not for several threads at once, as it keeps what it found.
   Eigen::AlignedBox3d bounds_of_parts() const;
   /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making.

@@ -30,8 +30,9 @@ FullNeighbor neighbor_of(const Levels& levels, const FullLevel::Member& member) 
 
 double friction_between(const Levels& levels, const Neighborhood& neighborhood, const FullContact& contact) {
   const MaterialId first = neighborhood.bodies[contact.first].material;
-  return levels.materials.law(first, contact.second < 0 ? 0 : neighborhood.bodies[contact.second].material)
-      .friction;
+  const MaterialId second =
+      contact.second < 0 ? contact.ground_material : neighborhood.bodies[contact.second].material;
+  return levels.materials.law(first, second).friction;
 }
 
 // ODE's contacts of the last substep, and those of the last steps whose pair it did not find again.
@@ -69,27 +70,44 @@ std::optional<std::int32_t> second_of(const Levels& levels, const Neighborhood& 
   return found == neighborhood.ode_bodies.end() ? -1 : std::int32_t(found - neighborhood.ode_bodies.begin());
 }
 
+// m/s, in the step to come, where ODE's contact knows that of the last one: of the part that is there, if no
+// other is.
+Vec3 velocity_of_ground(const Levels& levels, const BodyProperties& own, const OdeContact& contact) {
+  constexpr double kThere = 1e-3;  // m
+  if (contact.callers_slot >= 0 || (!contact.moves && !levels.ground.any_moves())) return contact.velocity;
+  thread_local std::vector<const GroundPart*> parts;
+  parts.clear();
+  MetGround(levels.ground, own).find_parts(contact.point, kThere, parts);
+  return parts.size() == 1 ? parts.front()->velocity_at(contact.point) : contact.velocity;
+}
+
 // Two bodies were moved since ODE found it: what they have parted by is a gap. What nothing moves takes along
-// what lies on it, for as long as ODE finds the contact again.
-FullContact full_contact_of(const Levels& levels, const Neighborhood& neighborhood, std::int32_t first,
-                            std::int32_t second, const Neighborhood::Seen& seen, double dt) {
+// what lies on it, for as long as ODE finds the contact again. None where the caller has put one elsewhere.
+std::optional<FullContact> full_contact_of(const Levels& levels, const Neighborhood& neighborhood,
+                                           std::int32_t first, std::int32_t second,
+                                           const Neighborhood::Seen& seen, double dt) {
   const OdeContact& contact = seen.contact;
+  const FullNeighbor& body = neighborhood.bodies[std::size_t(first)];
   FullContact full{first, second, contact.point, contact.normal, -contact.depth};
-  if (second < 0) full.velocity = contact.velocity;
-  const auto is_kinematic = [&](std::int32_t body) {
-    return levels.bodies.properties(neighborhood.bodies[std::size_t(body)].owner).kinematic;
-  };
-  const bool carries =
-      second < 0 ? contact.moves : is_kinematic(first) || (contact.second && is_kinematic(second));
-  if (carries && seen.age == 0) return full;
-  const auto place_on = [&](std::int32_t body, const Vec3& arm) {
-    const RigidState& state = neighborhood.bodies[std::size_t(body)].state;
+  if (second < 0) {
+    full.velocity = velocity_of_ground(levels, levels.bodies.properties(body.owner), contact);
+    full.ground_material = contact.second_material;
+  }
+  const auto place_on = [&](std::int32_t neighbor, const Vec3& arm) {
+    const RigidState& state = neighborhood.bodies[std::size_t(neighbor)].state;
     return Vec3(state.position + state.orientation * arm);
   };
   const Vec3 on_second = second < 0 ? Vec3(contact.point + seen.age * dt * contact.velocity)
-                                    : place_on(second, contact.second_arm);
-  const double parted = (place_on(first, contact.first_arm) - on_second).dot(contact.normal);
-  full.gap += std::max(0.0, contact.above + parted);
+                                    : place_on(second, contact.second_arm),
+             between = place_on(first, contact.first_arm) - on_second;
+  const bool has_places = second < 0 || contact.second;
+  if (has_places && between.norm() > body.shape->radius) return {};
+  const auto is_kinematic = [&](std::int32_t neighbor) {
+    return levels.bodies.properties(neighborhood.bodies[std::size_t(neighbor)].owner).kinematic;
+  };
+  const bool carries =
+      second < 0 ? contact.moves : is_kinematic(first) || (contact.second && is_kinematic(second));
+  if (!carries || seen.age > 0) full.gap += std::max(0.0, contact.above + between.dot(contact.normal));
   return full;
 }
 
@@ -116,13 +134,11 @@ void reckon_contacts_of(const Levels& levels, Neighborhood& neighborhood, std::i
 }
 
 void reckon_contacts_of_newcomers(const Levels& levels, Neighborhood& neighborhood) {
-  constexpr std::int64_t kNew = 8;  // steps
   const std::size_t own = levels.full.members().size();
   std::vector<std::int32_t> fresh;
   for (std::size_t i = 0; i < own; ++i) {
     const std::uint32_t owner = neighborhood.bodies[i].owner;
-    if (levels.now - levels.bodies.level(owner).changed_at < kNew && !neighborhood.bodies[i].asleep &&
-        !levels.bodies.properties(owner).kinematic)
+    if (!neighborhood.bodies[i].asleep && !levels.bodies.properties(owner).kinematic)
       fresh.push_back(std::int32_t(i));
   }
   if (fresh.empty()) return;
@@ -144,9 +160,10 @@ void gather_contacts(const Levels& levels, Neighborhood& neighborhood, double dt
     const std::int32_t first = levels.full.index_of(contact.first);
     const std::optional<std::int32_t> second = second_of(levels, neighborhood, contact);
     if (first < 0 || !second) continue;
-    FullContact& full =
-        neighborhood.contacts.emplace_back(full_contact_of(levels, neighborhood, first, *second, seen, dt));
-    full.friction = friction_between(levels, neighborhood, full);
+    std::optional<FullContact> full = full_contact_of(levels, neighborhood, first, *second, seen, dt);
+    if (!full) continue;
+    full->friction = friction_between(levels, neighborhood, *full);
+    neighborhood.contacts.push_back(*full);
   }
   reckon_contacts_of_newcomers(levels, neighborhood);
 }

@@ -1,6 +1,8 @@
 #include "lod/manager/joint_contacts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "reference/ode/body_joints.h"
@@ -38,7 +40,7 @@ class JointContacts {
  private:
   // Of joints whose first body it is, or the only one.
   void add_of(std::size_t i) {
-    find(bodies_[i], reach_of(i));
+    find(bodies_[i], callers::is_kinematic(bodies_[i]) ? reach_about(bodies_[i]) : reach_of(i));
     for (std::size_t r = 0; r < rows_.size(); ++r)
       add(i, rows_[r].second, rows_[r].point, rows_[r].direction, std::uint32_t(rows_.size() - r), nullptr);
     for (std::size_t m = 0; m < motors_.size(); ++m)
@@ -51,7 +53,7 @@ class JointContacts {
 
   // Of joints whose first body it is; those that it is the second of are their first body's.
   void add_of_kinematic(dxBody* body) {
-    find(body, kKinematicReach);
+    find(body, reach_about(body));
     each_held(rows_, [&](std::size_t held, const JointRow& row, std::uint32_t number) {
       add(held, body, row.point, row.direction, kByKinematics + number, nullptr);
     });
@@ -111,7 +113,14 @@ class JointContacts {
 
   double reach_of(std::size_t i) const { return kReach * neighbors_[i].shape->radius; }
 
-  static constexpr double kKinematicReach = 0.1;  // m
+  // Of the smallest that a kinematic body holds.
+  double reach_about(dxBody* body) const {
+    double reach = std::numeric_limits<double>::infinity();
+    for (dxBody* const other : joined_bodies(body))
+      if (const auto held = index_of_.find(other); held != index_of_.end())
+        reach = std::min(reach, reach_of(std::size_t(held->second)));
+    return std::isfinite(reach) ? reach : 0.0;
+  }
 
   std::span<const FullNeighbor> neighbors_;
   std::span<dxBody* const> bodies_;

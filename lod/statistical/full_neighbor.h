@@ -29,6 +29,7 @@ struct FullNeighbor {
        torque = Vec3::Zero();  ///< N and N m, acting on it over the step besides gravity
   bool touches_full = false;   ///< whether any FullContact is its own
   bool on_motor = false;       ///< whether any is a motor's
+  bool on_ground = false;      ///< of the caller's: whether it is known to lie on ground
   bool driven = false;         ///< by a motor
   bool asleep = false;         ///< stands still like ground; also out: false where a hit woke it
   bool carried = false;        ///< out: by what nothing stops (CarriedBodies), or touched by a statistical
@@ -84,6 +85,7 @@ struct FullContact {
   double gap = 0.0;                     ///< m, negative where they overlap
   double friction = 0.5;
   Vec3 velocity = Vec3::Zero();     ///< m/s, of the ground there
+  MaterialId ground_material = 0;   ///< where the second is the ground
   std::optional<Drive> drive = {};  ///< a motor's: no contact, but pushes along its normal
   std::uint32_t row = 0;            ///< of a joint's: its number among those of the first body, odd where it
                                     ///< pushes one way, and the next where it pushes the other; 0: a contact

@@ -158,7 +158,7 @@ void TablesLevel::finish(ContactTally& tally) {
   joined_.resize(std::max(joined_.size(), tallies_.size()));
   driven_.resize(std::max(driven_.size(), tallies_.size()));
   rubs_.resize(std::max(rubs_.size(), tallies_.size()));
-  for (std::size_t block = tallies_.size(); block < rubs_.size(); ++block) rubs_[block].clear();
+  for (std::size_t block = ground ? tallies_.size() : 0; block < rubs_.size(); ++block) rubs_[block].clear();
   let_driven_go();
   tips_ = constants_.hulls && kinds_.any_tips() && contacts_.count() > 0;
   if (tips_) {

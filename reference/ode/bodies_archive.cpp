@@ -24,11 +24,11 @@ struct Motion {
   RigidState state, last_good;
   std::array<dReal, 12> rotation{};
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero(), given_force = Vec3::Zero(), given_torque = Vec3::Zero(),
-       held_force = Vec3::Zero(), held_torque = Vec3::Zero();
+       held_force = Vec3::Zero(), held_torque = Vec3::Zero(), withheld = Vec3::Zero();
   double to_sleep_s = 0.0;
   std::uint64_t joints_at_rest = 0;
   int last_support = 0;
-  bool awake = true, was_enabled = true, disturbed = false;
+  bool awake = true, was_enabled = true, disturbed = false, fell_asleep = false;
 };
 
 struct Slot {
@@ -58,6 +58,7 @@ Motion motion_of(const Body& body) {
   motion.held_force = body.held_force, motion.held_torque = body.held_torque;
   motion.last_support = body.last_support;
   motion.to_sleep_s = body.to_sleep_s;
+  motion.fell_asleep = body.fell_asleep, motion.withheld = body.withheld;
   motion.joints_at_rest = body.joints_at_rest;
   motion.awake = dBodyIsEnabled(body.body), motion.was_enabled = body.was_enabled,
   motion.disturbed = body.disturbed;
@@ -76,7 +77,8 @@ void set_motion(Body& body, const Motion& motion) {
   body.impact.reset();
   body.joints_at_rest = motion.joints_at_rest;
   body.to_sleep_s = motion.to_sleep_s, body.was_enabled = motion.was_enabled,
-  body.disturbed = motion.disturbed;
+  body.disturbed = motion.disturbed, body.fell_asleep = motion.fell_asleep;
+  body.withheld = motion.withheld;
   motion.awake ? dBodyEnable(body.body) : dBodyDisable(body.body);
 }
 

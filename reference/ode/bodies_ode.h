@@ -38,12 +38,13 @@ struct Body {
   Vec3 held_force = Vec3::Zero(), held_torque = Vec3::Zero();  ///< see OdeWorld::hold
   RigidState last_good;
   BodyProperties properties;
-  double to_sleep_s = 0.0;           ///< how much longer it has to be still to fall asleep
-  bool was_enabled = true;           ///< after the last substep
-  bool fell_asleep = false;          ///< in this substep
-  bool kept_awake = false;           ///< in this step, with what it touches
-  bool disturbed = false;            ///< since: what it may lie on came, went or was moved
-  bool damped = false;               ///< ODE was told of its damping
+  double to_sleep_s = 0.0;       ///< how much longer it has to be still to fall asleep
+  bool was_enabled = true;       ///< after the last substep
+  bool fell_asleep = false;      ///< in this substep
+  Vec3 withheld = Vec3::Zero();  ///< m/s: taken from it as it was put to rest in one substep after another
+  bool kept_awake = false;       ///< in this step, with what it touches
+  bool disturbed = false;        ///< since: what it may lie on came, went or was moved
+  bool damped = false;           ///< ODE was told of its damping
   std::uint64_t joints_at_rest = 0;  ///< sum_up_joints() of one that sleeps; 0: not known, or awake
   OdeGeometry geometry = OdeGeometry::trimesh;
   std::uint64_t birth =

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <unordered_set>
 
 #include "reference/ode/callers_bodies.h"
@@ -23,22 +24,46 @@ Vec3 place_of(dxBody* body) {
   return {p[0], p[1], p[2]};
 }
 
+// Of the two; where one is kinematic, and may be far away, of the one that is held.
 Vec3 middle_of(dxBody* body, dxBody* second) {
-  return second ? Vec3(0.5 * (place_of(body) + place_of(second))) : place_of(body);
+  if (!second || dBodyIsKinematic(second)) return place_of(body);
+  return dBodyIsKinematic(body) ? place_of(second) : Vec3(0.5 * (place_of(body) + place_of(second)));
 }
 
-// Where its only body is its second, ODE turns a slider's axis round, and what it says of a hinge's angle,
-// but not the angle that its stops go by.
+// Where its only body is its second, ODE turns the axis of a slider and of a piston round, and what it says
+// of a hinge's angle, but not the angle that its stops go by.
 double sense_of(dJointID joint) { return dJointGetBody(joint, 0) ? 1.0 : -1.0; }
 
-// That in which its position grows.
-Vec3 slider_direction(dJointID slider) { return sense_of(slider) * read(slider, dJointGetSliderAxis); }
+/// Of a slider or a piston.
+struct Sliding {
+  Vec3 direction;  ///< in which its position grows
+  double position = 0.0;
+  dReal (*parameter)(dJointID, int) = nullptr;
+};
+
+std::optional<Sliding> sliding_of(dJointID joint) {
+  if (dJointGetType(joint) == dJointTypeSlider)
+    return Sliding{sense_of(joint) * read(joint, dJointGetSliderAxis), dJointGetSliderPosition(joint),
+                   dJointGetSliderParam};
+  if (dJointGetType(joint) == dJointTypePiston)
+    return Sliding{sense_of(joint) * read(joint, dJointGetPistonAxis), dJointGetPistonPosition(joint),
+                   dJointGetPistonParam};
+  return {};
+}
 
 double hinge_angle(dJointID hinge) { return sense_of(hinge) * dJointGetHingeAngle(hinge); }
 
 void hold(dxBody* second, const Vec3& point, std::vector<JointRow>& rows) {
   for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
     rows.push_back({second, point, direction});
+}
+
+// Two points, `reach` m apart.
+void hold_to_axis(dxBody* second, const Vec3& at, const Vec3& axis, double reach,
+                  std::vector<JointRow>& rows) {
+  const Vec3 across = axis.unitOrthogonal(), way = 0.5 * reach * axis;
+  for (const Vec3& point : {Vec3(at + way), Vec3(at - way)})
+    rows.push_back({second, point, across}), rows.push_back({second, point, axis.cross(across)});
 }
 
 // Of a wheel's joint: but for the way along which it is sprung.
@@ -121,7 +146,7 @@ void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
         break;
       }
       case dJointTypeFixed: {
-        const Vec3 middle = second ? Vec3(0.5 * (place_of(body) + place_of(second))) : place_of(body);
+        const Vec3 middle = middle_of(body, second);
         hold(second, middle, rows);
         hold(second, middle + reach * Vec3::UnitX(), rows),
             hold(second, middle + reach * Vec3::UnitY(), rows);
@@ -129,10 +154,14 @@ void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
       }
       case dJointTypeSlider: {
         const Vec3 axis = read(joint, dJointGetSliderAxis), across = axis.unitOrthogonal(),
-                   along = axis.cross(across), at = place_of(body), way = 0.5 * reach * axis;
-        for (const Vec3& point : {Vec3(at + way), Vec3(at - way)})
-          rows.push_back({second, point, across}), rows.push_back({second, point, along});
-        rows.push_back({second, at + reach * across, along});
+                   at = place_of(second && dBodyIsKinematic(body) ? second : body);
+        hold_to_axis(second, at, axis, reach, rows);
+        rows.push_back({second, at + reach * across, axis.cross(across)});
+        break;
+      }
+      case dJointTypePiston: {
+        hold_to_axis(second, read(joint, dJointGetPistonAnchor), read(joint, dJointGetPistonAxis), reach,
+                     rows);
         break;
       }
       default:
@@ -148,12 +177,12 @@ void find_joint_stops(dxBody* body, double reach, std::vector<JointStop>& stops)
     const dBodyID first = dJointGetBody(joint, 0), other = dJointGetBody(joint, 1);
     if (first && first != body) continue;
     const dBodyID second = first ? other : nullptr;
-    const bool slides = dJointGetType(joint) == dJointTypeSlider;
-    const auto& parameter = slides ? dJointGetSliderParam : dJointGetHingeParam;
-    const double at = slides ? dJointGetSliderPosition(joint) : hinge_angle(joint),
+    const std::optional<Sliding> slides = sliding_of(joint);
+    const auto parameter = slides ? slides->parameter : dJointGetHingeParam;
+    const double at = slides ? slides->position : hinge_angle(joint),
                  above = at - parameter(joint, dParamLoStop), below = parameter(joint, dParamHiStop) - at;
     if (above + below < 0.0) continue;  // ODE leaves out stops that are the wrong way round
-    const Vec3 axis = slides ? slider_direction(joint) : read(joint, dJointGetHingeAxis),
+    const Vec3 axis = slides ? slides->direction : read(joint, dJointGetHingeAxis),
                across = slides ? Vec3::Zero() : axis.unitOrthogonal(),
                point = slides ? middle_of(body, second)
                               : Vec3(read(joint, dJointGetHingeAnchor) + reach * across),
@@ -166,9 +195,10 @@ void find_joint_stops(dxBody* body, double reach, std::vector<JointStop>& stops)
 
 bool has_hard_stops(dxJoint* joint) {
   const dJointType type = dJointGetType(joint);
-  if (type != dJointTypeSlider && type != dJointTypeHinge) return false;
+  const bool slides = type == dJointTypeSlider || type == dJointTypePiston;
+  if (!slides && type != dJointTypeHinge) return false;
   const dBodyID first = dJointGetBody(joint, 0), body = first ? first : dJointGetBody(joint, 1);
-  const auto& parameter = type == dJointTypeSlider ? dJointGetSliderParam : dJointGetHingeParam;
+  const auto parameter = parameters_of(type).read;
   return body && parameter(joint, dParamStopCFM) <= dWorldGetCFM(dBodyGetWorld(body));
 }
 
@@ -179,9 +209,9 @@ void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& moto
     const dBodyID first = dJointGetBody(joint, 0), other = dJointGetBody(joint, 1);
     if (first && first != body) continue;
     const dBodyID second = first ? other : nullptr;
-    if (dJointGetType(joint) == dJointTypeSlider) {
-      motors.push_back({second, middle_of(body, second), slider_direction(joint),
-                        dJointGetSliderParam(joint, dParamVel), dJointGetSliderParam(joint, dParamFMax)});
+    if (const std::optional<Sliding> slides = sliding_of(joint)) {
+      motors.push_back({second, middle_of(body, second), slides->direction,
+                        slides->parameter(joint, dParamVel), slides->parameter(joint, dParamFMax)});
       continue;
     }
     const auto add = [&](const Vec3& anchor, const Vec3& axis, double speed, double torque) {
@@ -204,8 +234,8 @@ bool has_motor(dxJoint* joint) {
             (at > parameter(joint, dParamLoStop) && at < parameter(joint, dParamHiStop)));
   };
   if (!dJointIsEnabled(joint)) return false;
-  if (dJointGetType(joint) == dJointTypeSlider)
-    return pushes(dJointGetSliderParam, dJointGetSliderPosition(joint));
+  if (const std::optional<Sliding> slides = sliding_of(joint))
+    return pushes(slides->parameter, slides->position);
   if (dJointGetType(joint) == dJointTypeHinge2)  // on a spring it would drive the wheel too slowly
     return !is_sprung(joint) && dJointGetHinge2Param(joint, dParamFMax2) > 0.0;
   return dJointGetType(joint) == dJointTypeHinge && pushes(dJointGetHingeParam, hinge_angle(joint));

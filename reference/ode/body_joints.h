@@ -28,10 +28,10 @@ struct JointRow {
 };
 
 /// Appends what the joints hold whose first body is `body`, or whose only one: of a ball joint its anchor, of
-/// a hinge two points of its axis, of a fixed joint three points, of a slider all but the way along its axis;
-/// a universal joint and a wheel's (hinge 2) count as ball joints, the latter but for the way along which it
-/// is sprung. Others, limits, motors, and joints that are disabled are left out. Points are `reach` m apart.
-/// To be asked outside of a step.
+/// a hinge two points of its axis, of a fixed joint three points, of a slider all but the way along its axis,
+/// of a piston what a slider holds but for turning about it; a universal joint and a wheel's (hinge 2) count
+/// as ball joints, the latter but for the way along which it is sprung. Others, limits, motors, and joints
+/// that are disabled are left out. Points are `reach` m apart. To be asked outside of a step.
 void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows);
 
 /// A motor that drives a point of one body along a direction, against a point of another.
@@ -42,9 +42,9 @@ struct JointMotor {
   double speed = 0.0, force = 0.0;  ///< m/s along it, N at most
 };
 
-/// Appends those of sliders, hinges and unsprung wheels (hinge 2, which turn them) whose first body is
-/// `body`, or whose only one; a hinge's at a point `reach` m from its axis. Not of those that stand at a soft
-/// stop. To be asked outside of a step.
+/// Appends those of sliders, pistons, hinges and unsprung wheels (hinge 2, which turn them) whose first body
+/// is `body`, or whose only one; a hinge's at a point `reach` m from its axis. Not of those that stand at a
+/// soft stop. To be asked outside of a step.
 void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& motors);
 /// Whether find_joint_motors() has the joint's.
 bool has_motor(dxJoint* joint);
@@ -57,8 +57,8 @@ struct JointStop {
   double gap = 0.0;                ///< m
 };
 
-/// Appends the hard stops of sliders and hinges whose first body is `body`, or whose only one, that are
-/// within `reach` m; a hinge's at a point so far from its axis. To be asked outside of a step.
+/// Appends the hard stops of sliders, pistons and hinges whose first body is `body`, or whose only one, that
+/// are within `reach` m; a hinge's at a point so far from its axis. To be asked outside of a step.
 void find_joint_stops(dxBody* body, double reach, std::vector<JointStop>& stops);
 /// Whether it is a slider or hinge whose stops, if it has any, are as hard as the world's joints: a softer
 /// one is a spring.

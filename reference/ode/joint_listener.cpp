@@ -33,6 +33,13 @@ JointForce free_part_of(dJointID joint, const JointForce& all, const Vec3& posit
       const Vec3 axis = read_vector(joint, dJointGetSliderAxis);
       return {.force = axis.dot(all.force) * axis};
     }
+    case dJointTypePiston: {
+      const Vec3 axis = read_vector(joint, dJointGetPistonAxis),
+                 anchor = read_vector(joint, dJointGetPistonAnchor), turning = axis.dot(about(anchor)) * axis;
+      if (has_motor(joint) || has_hard_stops(joint)) return {.torque = turning};
+      const Vec3 along = axis.dot(all.force) * axis;
+      return {.force = along, .torque = turning + (anchor - position).cross(along)};
+    }
     case dJointTypeHinge: {
       if (has_motor(joint) || has_hard_stops(joint)) return {};
       const Vec3 axis = read_vector(joint, dJointGetHingeAxis);

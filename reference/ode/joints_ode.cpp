@@ -107,7 +107,7 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second,
     contacts_.push_back({own.id, other.id, point.point, side * point.normal, std::max(0.0, point.depth),
                          other.id ? Vec3(Vec3::Zero()) : velocity_at(other, point.point),
                          !other.id && other.moves, arm_on(own, point.point), arm_on(other, point.point),
-                         other.callers_slot, point.above});
+                         other.callers_slot, point.above, other.material});
   }
   made_ += std::int64_t(points.size());
 }

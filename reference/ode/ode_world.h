@@ -138,6 +138,7 @@ struct OdeContact {
        second_arm = Vec3::Zero();  ///< m, body axes: where the point was on each; none of what is no body
   std::int32_t callers_slot = -1;  ///< of its geom in the mirror: of a dynamic body of the caller's
   double above = 0.0;              ///< m, ≥ 0: by which they had not met yet when it was found
+  MaterialId second_material = 0;  ///< of ground, too
 };
 
 /// Ground of an OdeWorld; stays valid until removed. Zero is null.

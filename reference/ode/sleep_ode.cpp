@@ -1,13 +1,17 @@
 #include "reference/ode/sleep_ode.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "reference/ode/body_joints.h"
 
 namespace lodestone::ode {
 namespace {
 
-constexpr double kDrawn = 0.2;  // of the law's time: for so long who was drawn along stays awake
+constexpr double kDrawn = 0.2;     // of the law's time: for so long who was drawn along stays awake
+constexpr double kWithheld = 0.8;  // of the law's speed: who is given more than that anew wakes,
+constexpr double kForgets = 0.1;   // s, within about this time
 
 double square(double x) { return x * x; }
 
@@ -28,7 +32,7 @@ void put_to_rest(const Body& body) {
 void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
   if (on_) find_carried(bodies, carried), find_pulled(bodies);
   for (Body& body : bodies.slots()) {
-    body.fell_asleep = false;
+    const bool was_put_to_rest = std::exchange(body.fell_asleep, false);
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
     // Woken from outside, and not by ODE's own step with those that it hangs together with.
     if (!body.was_enabled || body.disturbed) body.to_sleep_s = law_.time;
@@ -39,8 +43,14 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
       continue;
     body.to_sleep_s = is_still(body) ? body.to_sleep_s - h : law_.time;
     if (body.to_sleep_s <= 0.0 && is_drawn(bodies, body)) body.to_sleep_s = kDrawn * law_.time;
-    body.fell_asleep = body.to_sleep_s <= 0.0;
-    if (body.fell_asleep) put_to_rest(body);
+    if (body.to_sleep_s > 0.0) continue;
+    if (was_put_to_rest && is_dragged(body, h)) {
+      body.to_sleep_s = law_.time;
+      continue;
+    }
+    if (!was_put_to_rest) body.withheld = Vec3::Zero();
+    body.fell_asleep = true;
+    put_to_rest(body);
   }
 }
 
@@ -54,11 +64,13 @@ namespace {
 
 constexpr double kGivesWay = 0.02;  // times the law's speed
 
-double speed_at(dBodyID body, const Vec3& point) {
+Vec3 velocity_at(dBodyID body, const Vec3& point) {
   const Vec3 velocity = to_vec3(dBodyGetLinearVel(body)), turning = to_vec3(dBodyGetAngularVel(body)),
              arm = point - to_vec3(dBodyGetPosition(body));
-  return (velocity + turning.cross(arm)).norm();
+  return velocity + turning.cross(arm);
 }
+
+double speed_at(dBodyID body, const Vec3& point) { return velocity_at(body, point).norm(); }
 
 // To a force or torque on it, other than what holds it up; seen from `point`.
 bool gives_way(Bodies& bodies, dBodyID body, const Vec3& point, double slow) {
@@ -101,12 +113,38 @@ bool has_own_joints(dBodyID body) {
   return false;
 }
 
+// By a joint, on what nothing stops.
+bool hangs_on_mover(dBodyID body) {
+  return std::ranges::any_of(joined_bodies(body), [](dBodyID other) {
+    return other && dBodyIsKinematic(other) && is_moving(other);
+  });
+}
+
 Vec3 rim_of(const Body& body) {
   const Vec3 turning = to_vec3(dBodyGetAngularVel(body.body)), center = to_vec3(dBodyGetPosition(body.body));
   return turning.isZero(0.0) ? center : Vec3(center + body.reach * turning.unitOrthogonal());
 }
 
 }  // namespace
+
+// Of one that was put to rest in the last substep, too: whether one that it touches, and that does not sleep
+// at its own speed, moves it time and again one way, and is held back by it.
+bool Sleep::is_dragged(Body& body, double h) const {
+  body.withheld = std::exp(-h / kForgets) * body.withheld + to_vec3(dBodyGetLinearVel(body.body));
+  if (body.withheld.squaredNorm() <= square(kWithheld * law_.speed)) return false;
+  const Vec3 center = to_vec3(dBodyGetPosition(body.body));
+  const auto drags = [&](dBodyID other) {
+    if (!other || other == body.body || !dBodyIsEnabled(other)) return false;
+    const Vec3 velocity = velocity_at(other, center);
+    const double speed = velocity.norm();
+    return speed > law_.speed && body.withheld.dot(velocity) > kWithheld * law_.speed * speed;
+  };
+  for (int i = 0; i < dBodyGetNumJoints(body.body); ++i) {
+    const dJointID joint = dBodyGetJoint(body.body, i);
+    if (drags(dJointGetBody(joint, 0)) || drags(dJointGetBody(joint, 1))) return true;
+  }
+  return false;
+}
 
 // Whether what it touches moves, or gives way to a force or a motor: put to rest again in each step, it would
 // hold that back, and of what the two exchange its share be lost. (What jitters in a heap moves nobody.)
@@ -171,6 +209,13 @@ void Sleep::find_carried(Bodies& bodies, std::span<const dBodyID> carried) {
   waiting_.assign(carried.begin(), carried.end());
   for (const Body& body : bodies.slots())
     if (body.body && body.kept_awake) waiting_.push_back(body.body);
+  grouped_.clear();
+  for (const Body& body : bodies.slots()) {
+    if (!body.body || !has_own_joints(body.body) || grouped_.contains(body.body)) continue;
+    joined_ = find_jointed_group(body.body);
+    grouped_.insert(joined_.begin(), joined_.end());
+    if (std::ranges::any_of(joined_, hangs_on_mover)) waiting_.push_back(body.body);
+  }
   while (!waiting_.empty()) {
     const dBodyID body = waiting_.back();
     waiting_.pop_back();

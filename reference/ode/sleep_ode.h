@@ -17,19 +17,20 @@ class Sleep {
   void set_law(const SleepLaw& law) { law_ = law; }
   const SleepLaw& law() const { return law_; }
 
-  /// `carried`: bodies on surfaces that move; they and what hangs together with them by joints, those of
-  /// contacts too, stay awake. `h`: the step to come, s.
+  /// `carried`: bodies on surfaces that move; they, those on joints to kinematic bodies that move, and what
+  /// hangs together with these by joints, those of contacts too, stay awake. `h`: the step to come, s.
   void run(Bodies& bodies, std::span<const dBodyID> carried, double h);
 
  private:
   void find_carried(Bodies& bodies, std::span<const dBodyID> carried);
   bool is_still(const Body& body) const;
+  bool is_dragged(Body& body, double h) const;
   bool is_drawn(Bodies& bodies, const Body& body) const;
   void find_pulled(Bodies& bodies);
 
   SleepLaw law_;
   bool on_;
-  std::unordered_set<dBodyID> carried_, pulled_, unpulled_;
+  std::unordered_set<dBodyID> carried_, grouped_, pulled_, unpulled_;
   std::vector<dBodyID> waiting_, joined_;
 };
 

@@ -577,5 +577,58 @@ TEST(JointContacts, APlateAsleepOnASpringSagsUnderWhatIsLaidOnIt) {
   }
 }
 
+// The rows are those of the platform, however far away the kinematic body is, and whichever comes first.
+TEST(JointContacts, OnAPlatformFixedToAFarKinematicBodyCratesLie) {
+  for (const bool platform_first : {true, false})
+    for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+      TheirWorld their;
+      Manager manager(their.world, their.space, kSettings);
+      const BodyId plate = add_plate(manager);
+      const dBodyID post = their.add_box(0.3, 1.0, {-3, 0, 2}), body = manager.ode_body(plate);
+      dBodySetKinematic(post);
+      const dJointID joint = dJointCreateFixed(their.world, nullptr);
+      dJointAttach(joint, platform_first ? body : post, platform_first ? post : body);
+      dJointSetFixed(joint);
+      std::vector<BodyId> crates;
+      for (int i = 0; i < 2; ++i)
+        crates.push_back(add(manager, box_shape({kCrate, kCrate, kCrate}),
+                             testing::at({0.1, 0, 2.05 + (i + 0.5) * kCrate}), level));
+      run(manager, 4.0);
+      for (int i = 0; i < 2; ++i) {
+        EXPECT_NEAR(manager.state(crates[i]).position.z(), 2.05 + (i + 0.5) * kCrate, 6e-3)
+            << platform_first << int(level);
+        EXPECT_LT(manager.state(crates[i]).velocity.norm(), 0.01) << platform_first << int(level);
+      }
+    }
+}
+
+TEST(JointContacts, APistonsMotorLiftsAndItsStopsHoldWhatLiesOnThePlatform) {
+  for (const bool is_driven : {true, false})
+    for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+      TheirWorld their;
+      Manager manager(their.world, their.space, kSettings);
+      const BodyId plate = add_plate(manager);
+      const dJointID piston = dJointCreatePiston(their.world, nullptr);
+      dJointAttach(piston, manager.ode_body(plate), nullptr);
+      dJointSetPistonAxis(piston, 0, 0, 1);
+      const Vec3 at = manager.state(plate).position;
+      dJointSetPistonAnchor(piston, at.x(), at.y(), at.z());
+      if (is_driven) {
+        dJointSetPistonParam(piston, dParamVel, 0.3);
+        dJointSetPistonParam(piston, dParamFMax, 5e3);
+      } else {
+        dJointSetPistonParam(piston, dParamLoStop, 0.0);
+        dJointSetPistonParam(piston, dParamHiStop, 0.0);
+      }
+      const BodyId crate = add(manager, box_shape({kCrate, kCrate, kCrate}),
+                               testing::at({at.x(), 0, 2.05 + 0.5 * kCrate}), level);
+      run(manager, 2.0);
+      EXPECT_NEAR(manager.state(plate).position.z(), is_driven ? 2.6 : 2.0, 5e-3) << int(level);
+      EXPECT_NEAR(manager.state(crate).position.z() - manager.state(plate).position.z(), 0.05 + 0.5 * kCrate,
+                  4e-3)
+          << int(level);
+    }
+}
+
 }  // namespace
 }  // namespace lodestone::joint_contacts_test

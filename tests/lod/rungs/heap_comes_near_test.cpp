@@ -78,9 +78,8 @@ TEST(HeapComesNear, ItsOverlapsGoAndItSleeps) {
 }
 
 // Who had to wait for the full level in an overlap waited as a sphere, among hulls: the heap boiled down. In
-// a third of the heaps one cube or two are left in an overlap for longer, and keep the others awake: of
-// fourteen starts nine come to rest, other nine by other roundings (tried), so that at least two of six do
-// but once in forty times.
+// some heaps one cube or two are left in an overlap for longer, and keep the others awake: of fourteen starts
+// twelve come to rest, these six among them (tried); by other roundings it may be others.
 TEST(HeapComesNear, ForcedFullItComesToRest) {
   int at_rest = 0;
   for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
@@ -92,7 +91,7 @@ TEST(HeapComesNear, ForcedFullItComesToRest) {
     EXPECT_GE(full.full(), 94) << seed;
     EXPECT_GT(full.height(), 0.7 * before) << seed;
   }
-  EXPECT_GE(at_rest, 2);
+  EXPECT_GE(at_rest, 4);
 }
 
 }  // namespace

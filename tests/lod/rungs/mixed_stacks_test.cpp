@@ -3,6 +3,7 @@
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -418,6 +419,148 @@ TEST(MixedHeap, ComesToRestAtTheBorderOfTables) {
                         .signatures = coarse_signature},
                        seed);
   EXPECT_LE(restless, 5 * kPours);
+}
+
+// ODE knows no contact of a body before its first step, nor where the whole stack was put elsewhere.
+TEST(MixedStacks, WhatIsLaidOnANewFullOneLiesFromTheFirstStepOn) {
+  const auto cube = box_shape({kStackedSide, kStackedSide, kStackedSide});
+  for (const bool on_box : {false, true})
+    for (const double dt : {1.0 / 60.0, 1.0 / 30.0})
+      for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+        Manager manager({.signatures = coarse_signature});
+        if (on_box)
+          manager.add_static_box({20, 20, 1}, {0, 0, -0.5}, Quat::Identity());
+        else
+          manager.add_plane(Vec3::UnitZ(), 0.0);
+        const auto place = [&](double x, double layer) {
+          return testing::at({x, 0, (layer + 0.5) * kStackedSide});
+        };
+        const BodyId lower = add(manager, cube, place(0, 0), LevelChoice::full),
+                     upper = add(manager, cube, place(0, 1), level);
+        const auto expect_lies = [&](double x) {
+          for (int i = 0; i < 30; ++i) {
+            manager.step(dt);
+            EXPECT_LT(manager.state(upper).velocity.norm(), 0.01) << on_box << ' ' << dt << ' ' << i;
+          }
+          EXPECT_NEAR((manager.state(upper).position - place(x, 1).position).norm(), 0.0, 1e-3);
+        };
+        expect_lies(0.0);
+        manager.set_state(lower, place(5, 0)), manager.set_state(upper, place(5, 1));
+        expect_lies(5.0);
+      }
+}
+
+// By the law of the ground that it is on, whatever the first material's: a cart that coasts over ice.
+TEST(MixedStacks, WhatRidesOnAFullOneOverIceGoesAlong) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const bool on_box : {false, true}) {
+      Manager manager({.signatures = coarse_signature});
+      const MaterialId ice = manager.materials().add({.restitution = 0.0, .friction = 0.5});
+      manager.materials().set_law(0, ice, {.restitution = 0.0, .friction = 0.0});
+      if (on_box)
+        manager.add_static_box({20, 20, 1}, {0, 0, -0.5}, Quat::Identity(), ice);
+      else
+        manager.add_plane(Vec3::UnitZ(), 0.0, ice);
+      const BodyId cart = add(manager, box_shape({2, 2, 0.2}), testing::at({0, 0, 0.1}, {0.5, 0, 0}),
+                              LevelChoice::full),
+                   crate = add(manager, box_shape({kStackedSide, kStackedSide, kStackedSide}),
+                               testing::at({0, 0, 0.2 + 0.5 * kStackedSide}, {0.5, 0, 0}), level);
+      run(manager, 2.0);
+      EXPECT_NEAR(manager.state(cart).velocity.x(), 0.5, 2e-3);
+      EXPECT_NEAR(manager.state(crate).velocity.x(), 0.5, 2e-3);
+      EXPECT_NEAR(manager.state(crate).position.x(), manager.state(cart).position.x(), 2e-3);
+    }
+}
+
+// Both fly on as thrown by a lift that stops.
+TEST(MixedStacks, AStackOnALiftThatStopsFliesOnTogether) {
+  const auto cube = box_shape({kStackedSide, kStackedSide, kStackedSide});
+  constexpr double kRises = 1.0;  // m/s
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    Manager manager({.signatures = coarse_signature});
+    const GroundId lift = manager.add_static_box({4, 4, 1}, {0, 0, -0.5}, Quat::Identity());
+    const auto at_layer = [&](int layer) {
+      return testing::at({0, 0, (layer + 0.5) * kStackedSide}, {0, 0, kRises});
+    };
+    const BodyId lower = manager.add_body(
+                     {.shape = cube, .state = at_layer(0), .mass = 10.0, .level = LevelChoice::full}),
+                 upper =
+                     manager.add_body({.shape = cube, .state = at_layer(1), .mass = 100.0, .level = level});
+    for (int i = 0; i < 40; ++i) {
+      manager.move_ground(
+          lift, {.position = {0, 0, -0.5 + kRises * kFrame * i}, .velocity = {0, 0, i < 39 ? kRises : 0.0}});
+      manager.step(kFrame);
+    }
+    const double thrown = kRises - 9.81 * kFrame;
+    EXPECT_NEAR(manager.state(lower).velocity.z(), thrown, 0.02);
+    EXPECT_NEAR(manager.state(upper).velocity.z(), thrown, 0.02);
+  }
+}
+
+// An L of two boxes: his contacts come and go as ODE's rounding has it, since its ERP leaves no depth.
+TEST(MixedStacks, ACallersBodyLiesQuietlyUnderAHeavySleeper) {
+  struct Part {
+    Vec3 sides, center;  // m
+  };
+  const std::array<Part, 2> parts{{{{0.3, 0.08, 0.1}, {0, -0.06, 0}}, {{0.08, 0.12, 0.1}, {-0.11, 0.04, 0}}}};
+  constexpr double kLMass = 10.0;  // kg
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    dWorldID world = dWorldCreate();
+    dWorldSetGravity(world, 0, 0, -9.81);
+    const dSpaceID space = dHashSpaceCreate(nullptr);
+    const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+    const dJointGroupID contacts = dJointGroupCreate(0);
+    {
+      Manager manager(world, space, {.signatures = coarse_signature});
+      dMass mass, part_mass;
+      dMassSetZero(&mass);
+      for (const Part& part : parts) {
+        dMassSetBox(&part_mass, 1.0, part.sides.x(), part.sides.y(), part.sides.z());
+        dMassTranslate(&part_mass, part.center.x(), part.center.y(), part.center.z());
+        dMassAdd(&mass, &part_mass);
+      }
+      const Vec3 middle(mass.c[0], mass.c[1], mass.c[2]);
+      dMassTranslate(&mass, -middle.x(), -middle.y(), -middle.z());
+      dMassAdjust(&mass, kLMass);
+      const dBodyID body = dBodyCreate(world);
+      dBodySetMass(body, &mass);
+      std::vector<dGeomID> geoms;
+      for (const Part& part : parts) {
+        const Vec3 at = part.center - middle;
+        geoms.push_back(dCreateBox(space, part.sides.x(), part.sides.y(), part.sides.z()));
+        dGeomSetBody(geoms.back(), body);
+        dGeomSetOffsetPosition(geoms.back(), at.x(), at.y(), at.z());
+      }
+      const double turned = 0.2;  // rad
+      const dQuaternion q = {std::cos(0.5 * turned), 0, 0, std::sin(0.5 * turned)};
+      dBodySetPosition(body, 0.013, 0.3, 0.0505);
+      dBodySetQuaternion(body, q);
+      manager.add_body({.shape = box_shape({kStackedSide, kStackedSide, kStackedSide}),
+                        .state = {.position = {0.013, 0.3, 0.1 + 0.5 * kStackedSide + 0.002}},
+                        .mass = 10.0 * kLMass,
+                        .level = level});
+      double fastest = 0.0;  // m/s
+      for (int i = 0; i < 240; ++i) {
+        for (const dGeomID geom : geoms) {
+          dContact found[8] = {};
+          const int count = dCollide(geom, plane, 8, &found[0].geom, sizeof(dContact));
+          for (int k = 0; k < count; ++k) {
+            found[k].surface.mode = dContactApprox1 | dContactBounce;
+            found[k].surface.mu = 0.5, found[k].surface.bounce = 0.4, found[k].surface.bounce_vel = 0.01;
+            dJointAttach(dJointCreateContact(world, contacts, &found[k]), body, nullptr);
+          }
+        }
+        manager.step(kFrame);
+        dJointGroupEmpty(contacts);
+        const dReal* v = dBodyGetLinearVel(body);
+        if (i > 60) fastest = std::max(fastest, std::sqrt(dCalcVectorLengthSquare3(v)));
+      }
+      EXPECT_LT(fastest, 0.05) << int(level);
+    }
+    dJointGroupDestroy(contacts);
+    dSpaceDestroy(space);
+    dWorldDestroy(world);
+  }
 }
 
 }  // namespace

@@ -205,6 +205,58 @@ TEST(OdeSleep, ALoadGoesWithWhatIsDrawnAwayUnderIt) {
   }
 }
 
+// Put to rest in each substep, who lay still took all that friction gave it, and its carrier stopped.
+TEST(OdeSleep, WhoLiesOnOneThatIsGivenASlowPushGoesAlong) {
+  for (const double speed : {0.06, 0.1, 0.18})  // m/s, below four times the law's
+    for (const int substeps : {1, 4, 16}) {
+      MaterialTable materials = material(0.0, 0.5);
+      const MaterialId ice = materials.add({.restitution = 0.0, .friction = 0.5});
+      materials.set_law(0, ice, {.restitution = 0.0, .friction = 0.0});
+      OdeWorld world({.auto_disable = true}, materials);
+      world.add_plane(Vec3::UnitZ(), 0.0, ice);
+      const OdeBodyId cart = world.add_body(
+                          {.shape = box_shape({2, 2, 0.2}), .mass = 200, .state = at({0, 0, 0.1})}),
+                      crate = world.add_body(
+                          {.shape = box_shape({0.3, 0.3, 0.3}), .mass = 10, .state = at({0, 0, 0.35})});
+      for (int i = 0; i < 120; ++i) world.step(1.0 / 60, substeps);
+      ASSERT_TRUE(world.asleep(cart) && world.asleep(crate));
+      RigidState pushed = world.state(cart);
+      pushed.velocity.x() = speed;
+      world.set_asleep(cart, false);
+      world.set_state(cart, pushed);
+      for (int i = 0; i < 180; ++i) world.step(1.0 / 60, substeps);
+      const double together = 3.0 * speed * 200 / 210;  // m, in three seconds
+      EXPECT_NEAR(world.state(cart).position.x(), together, 0.08 * together) << speed << ' ' << substeps;
+      EXPECT_NEAR(world.state(crate).position.x(), world.state(cart).position.x(), 0.01)
+          << speed << ' ' << substeps;
+    }
+}
+
+// A platform on a joint to a kinematic body carries however slowly this goes.
+TEST(OdeSleep, WhoLiesOnWhatHangsOnAMovingBodyGoesAlong) {
+  for (const double speed : {0.02, 0.1, 0.19}) {
+    Bed bed({});
+    const OdeBodyId mover = bed.world.add_body({.shape = box_shape({0.3, 0.3, 0.3}),
+                                                .mass = 10,
+                                                .state = at({-1, 0, 2}),
+                                                .properties = {.kinematic = true}}),
+                    plate = bed.world.add_body(
+                        {.shape = box_shape({1, 1, 0.1}), .mass = 10, .state = at({0, 0, 2})}),
+                    crate = bed.world.add_body(
+                        {.shape = box_shape({0.3, 0.3, 0.3}), .mass = 20, .state = at({0, 0, 2.2})});
+    const dJointID joint = dJointCreateFixed(dBodyGetWorld(bed.world.ode_body(plate)), nullptr);
+    dJointAttach(joint, bed.world.ode_body(plate), bed.world.ode_body(mover));
+    dJointSetFixed(joint);
+    for (int i = 0; i < 120; ++i) bed.world.step(1.0 / 60, 4);
+    RigidState moved = bed.world.state(mover);
+    moved.velocity.y() = speed;
+    bed.world.set_state(mover, moved);
+    for (int i = 0; i < 240; ++i) bed.world.step(1.0 / 60, 4);
+    EXPECT_NEAR(bed.world.state(plate).position.y(), 4.0 * speed, 1e-3);
+    EXPECT_NEAR(bed.world.state(crate).position.y(), 4.0 * speed, 5e-3) << speed;
+  }
+}
+
 // At rest it is at rest: no speed is left that a wake would bring back.
 TEST(OdeSleep, PutsAnEndToAllMotion) {
   Bed bed({.speed = 0.5, .turning_speed = 0.5, .time = 0.05});
