@@ -1,5 +1,7 @@
 #include "scenes/run_measures.h"
 
+#include <algorithm>
+
 namespace lodestone {
 
 double kinetic_energy(const Shape& shape, double mass, const RigidState& state) {
@@ -16,6 +18,18 @@ double depth_below(const Shape& shape, const RigidState& state, const Vec3& norm
   const Vec3 down = state.orientation.conjugate() * Vec3(-normal);
   const int lowest = find_support(shape.hull, down, shape.support_map.find_start(down));
   return down.dot(shape.hull.vertices[std::size_t(lowest)]) - height;
+}
+
+double depth_in_box(const Shape& shape, const RigidState& state, const Vec3& sides, const RigidState& box) {
+  const Quat to_box = box.orientation.conjugate();
+  const Vec3 half = 0.5 * sides, center = to_box * (state.position - box.position);
+  const auto depth_of = [&](const Vec3& point) { return (half - point.cwiseAbs()).minCoeff(); };
+  const double deepest = depth_of(center) + shape.radius;  // of any of its points, at most
+  if (shape.sphere_radius || deepest <= 0.0) return deepest;
+  const Quat turn = to_box * state.orientation;
+  double depth = -shape.radius;
+  for (const Vec3& vertex : shape.hull.vertices) depth = std::max(depth, depth_of(center + turn * vertex));
+  return depth;
 }
 
 bool is_finite(const RigidState& state) {

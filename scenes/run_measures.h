@@ -13,6 +13,9 @@ double kinetic_energy(const Shape& shape, double mass, const RigidState& state);
 /// above it.
 double depth_below(const Shape& shape, const RigidState& state, const Vec3& normal, double offset);
 
+/// How far the deepest vertex, or a sphere, is in a box, from its nearest face, m; not positive outside.
+double depth_in_box(const Shape& shape, const RigidState& state, const Vec3& sides, const RigidState& box);
+
 bool is_finite(const RigidState& state);
 
 }  // namespace lodestone

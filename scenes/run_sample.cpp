@@ -34,6 +34,10 @@ void read_sample(const Manager& manager, std::span<const BodyId> bodies, const S
     for (const SceneGround& ground : scene.ground)
       if (const auto* plane = std::get_if<GroundPlane>(&ground))
         deepest = std::max(deepest, depth_below(shape, state, plane->normal, plane->offset_m));
+      else if (const auto* box = std::get_if<GroundBox>(&ground))
+        deepest =
+            std::max(deepest, depth_in_box(shape, state, box->sides_m,
+                                           {.position = box->position_m, .orientation = box->orientation}));
   }
 }
 

@@ -375,18 +375,23 @@ class Run {
   }
 
   void record(int step) {
+    if (step == 1 && trajectory_.frames() > 0) trajectory_.set_first_statuses(read_statuses());
     if ((step - from_step_) % scene_.output.every_n_steps == 0) record_frame(step);
   }
 
   void record_frame(int step) {
     if (result_.playback.empty() || !sample_.finite) return;
+    trajectory_.add_frame(step * dt_s_, sample_.states, read_statuses());
+  }
+
+  std::span<const BodyStatus> read_statuses() {
     statuses_.clear();
     for (const BodyId body : bodies_)
       statuses_.push_back({.rung = manager_.rung(body),
                            .asleep = manager_.asleep(body),
                            .rule = manager_.explain(body).rule,
                            .collision_radius_m = float(manager_.collision_radius(body))});
-    trajectory_.add_frame(step * dt_s_, sample_.states, statuses_);
+    return statuses_;
   }
 
   void check_penetration() {

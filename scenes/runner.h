@@ -92,7 +92,7 @@ struct RunResult {
   std::optional<BudgetFigures> budget;       ///< none without a budget
   std::optional<PictureFigures> in_picture;  ///< none without a viewpoint, or where the run ended before
   std::int64_t transitions = 0, promotions = 0;
-  double max_penetration_m = 0;         ///< deepest hull vertex below a ground plane, over the run
+  double max_penetration_m = 0;         ///< deepest hull vertex in ground planes and boxes, over the run
   double max_tables_penetration_m = 0;  ///< the same of bodies at `tables` and of those that came from there
                                         ///< and were not awake for 30 steps since
   double energy_start_j = 0, energy_max_j = 0, energy_end_j = 0;  ///< kinetic and potential, all bodies

@@ -193,14 +193,23 @@ SceneOutput load_output(const YamlCursor& root) {
   return output;
 }
 
-SceneChecks load_checks(const YamlCursor& root) {
+SceneChecks load_checks(const YamlCursor& root, const std::vector<SceneGround>& ground) {
   SceneChecks checks;
   const auto section = root.find("check");
   if (!section) return checks;
   section->expect_keys({"max_penetration_m", "max_tables_penetration_m", "all_asleep_by_s"});
-  if (auto key = section->find("max_penetration_m")) checks.max_penetration_m = key->number(kNotNegative);
-  if (auto key = section->find("max_tables_penetration_m"))
-    checks.max_tables_penetration_m = key->number(kNotNegative);
+  const bool is_measured = std::ranges::any_of(
+      ground, [](const SceneGround& part) { return !std::holds_alternative<GroundMesh>(part); });
+  const auto depth = [&](const char* name) -> std::optional<double> {
+    const auto key = section->find(name);
+    if (!key) return {};
+    const double bound = key->number(kNotNegative);
+    if (!is_measured)
+      key->fail("no ground but terrain and meshes", "a plane, a box or stairs, in which depths are measured");
+    return bound;
+  };
+  checks.max_penetration_m = depth("max_penetration_m");
+  checks.max_tables_penetration_m = depth("max_tables_penetration_m");
   if (auto key = section->find("all_asleep_by_s")) checks.all_asleep_by_s = key->number(kPositive);
   return checks;
 }
@@ -230,9 +239,9 @@ Scene load_scene(const fs::path& file, const SceneLoadSettings& settings) {
   scene.viewpoints = load_viewpoints(root);
   load_lod(root, scene);
   scene.output = load_output(root);
-  scene.checks = load_checks(root);
   load_materials(root, scene);
   scene.ground = load_ground(root, scene, search);
+  scene.checks = load_checks(root, scene.ground);
   const std::map<std::string, SceneShape> shapes = load_shapes(root, scene, search);
   for (const auto& [shape_name, shape] : shapes) scene.shapes.emplace(shape_name, shape.shape);
   load_ragdolls(root, scene);

@@ -28,6 +28,11 @@ Trajectory::Orientation with_sign_of(Trajectory::Orientation q, const Trajectory
 
 }  // namespace
 
+void Trajectory::set_first_statuses(std::span<const BodyStatus> statuses) {
+  check_that(frames() > 0 && int(statuses.size()) == bodies_, "a first frame has one status for each body");
+  std::ranges::copy(statuses, statuses_.begin());
+}
+
 void Trajectory::add_frame(double time_s, std::span<const RigidState> states,
                            std::span<const BodyStatus> statuses) {
   check_that(int(states.size()) == bodies_ && int(statuses.size()) == bodies_,

@@ -31,6 +31,8 @@ class Trajectory {
   /// One state and status for each body. A frame that is not later than the last by a float's precision is
   /// left out.
   void add_frame(double time_s, std::span<const RigidState> states, std::span<const BodyStatus> statuses);
+  /// Of the first frame anew, one for each body: before a first step nobody has a rung yet.
+  void set_first_statuses(std::span<const BodyStatus> statuses);
 
   int bodies() const { return bodies_; }
   int frames() const { return int(times_.size()); }

@@ -147,7 +147,7 @@ std::string text_of(const RunResult& result) {
     text += fmt::format("in picture   {} full at least, {:.1f} on average\n", result.in_picture->min_full,
                         result.in_picture->mean_full);
   text += fmt::format("transitions  {}, of which {} promotions\n", result.transitions, result.promotions);
-  text += fmt::format("deepest      {:.4g} m below the ground, at tables {:.4g} m\n",
+  text += fmt::format("deepest      {:.4g} m in planes and boxes of the ground, at tables {:.4g} m\n",
                       result.max_penetration_m, result.max_tables_penetration_m);
   text += fmt::format("energy       {:.6g} J at the start, {:.6g} J at most, {:.6g} J at the end\n",
                       result.energy_start_j, result.energy_max_j, result.energy_end_j);

@@ -62,5 +62,21 @@ TEST(IsFinite, FindsEachPart) {
   for (const RigidState& state : {a, b, c, d}) EXPECT_FALSE(is_finite(state));
 }
 
+// By the vertices that are inside, from the nearest face; of a ball to the bit, whichever way the box is
+// turned.
+TEST(Depth, InABoxIsThatOfTheDeepestVertex) {
+  const Shape cube = make_shape("cube", make_box({0.2, 0.2, 0.2}));
+  const Quat turned = rotation_from_vector({0.3, -0.5, 0.8});
+  const RigidState box{.position = {1, 2, 3}, .orientation = turned};
+  const auto at_height = [&](double z) {
+    return RigidState{.position = box.position + turned * Vec3(0.1, 0.2, z), .orientation = turned};
+  };
+  const Vec3 sides(2, 2, 1);
+  EXPECT_NEAR(depth_in_box(cube, at_height(0.57), sides, box), 0.03, 1e-12);
+  EXPECT_LT(depth_in_box(cube, at_height(0.61), sides, box), 0.0);
+  EXPECT_LT(depth_in_box(cube, at_height(20.0), sides, box), 0.0);
+  EXPECT_NEAR(depth_in_box(make_sphere_shape(0.1), at_height(0.56), sides, box), 0.04, 1e-12);
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -130,6 +130,20 @@ check: {max_penetration_m: 0.025, max_tables_penetration_m: 0.04}
   EXPECT_FALSE(one[0].pass);
 }
 
+TEST_F(Runner, DepthInABoxOfTheGroundIsChecked) {
+  const Scene scene = load(R"(version: 1
+step: {dt_s: 0.001, steps: 1, full_substeps: 1}
+shapes: {crate: {box_m: [0.2, 0.2, 0.2]}}
+ground: [{box: {sides_m: [4, 4, 1], position_m: [0, 0, -0.5]}}]
+bodies: [{shape: crate, position_m: [0, 0, 0.05], level: full}]
+check: {max_penetration_m: 0.025}
+)");
+  const auto checks = run_scene(scene).checks;
+  ASSERT_EQ(checks.size(), 1u);
+  EXPECT_NEAR(checks[0].value, 0.05, 2e-3);
+  EXPECT_FALSE(checks[0].pass);
+}
+
 TEST_F(Runner, RefusesSettingsOutOfRange) {
   const Scene scene = load(kFalling);
   for (double dt : {0.0, -0.01, 0.2, std::numeric_limits<double>::quiet_NaN()})

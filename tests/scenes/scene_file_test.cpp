@@ -281,6 +281,9 @@ TEST_F(SceneFile, TopLevelErrors) {
        "s.yaml:4: output.trajectory: found ../run.glb, expected a file name"},
       {"output: {trajectory: run.obj}", "s.yaml:4: output.trajectory: found run.obj, expected"},
       {"check: {max_penetration_m: -1}", "s.yaml:4: check.max_penetration_m: found -1, expected"},
+      {"check: {max_penetration_m: 0.1}",
+       "s.yaml:4: check.max_penetration_m: found no ground but terrain and meshes, expected a plane, a box "
+       "or"},
       {"viewpoints: [{look_at_m: [0, 0, 0]}]",
        "s.yaml:4: viewpoints[0].position_m: found no such key, expected"},
       {"viewpoints: [{path: [{time_s: 1, position_m: [0, 0, 0]}, {time_s: 1, position_m: [1, 0, 0]}]}]",

@@ -277,5 +277,20 @@ TEST(Trajectory, BoundsItsSize) {
   EXPECT_LE(20.0 * max_trajectory_frames(2'000'000) * 2'000'000, 4e9);
 }
 
+// Before a first step nobody has a rung: the first frame's are told after it.
+TEST(TrajectoryFrames, TheFirstMayBeToldAnew) {
+  Trajectory trajectory(2);
+  const std::vector<RigidState> states(2);
+  std::vector<BodyStatus> statuses(2);
+  statuses[0].rung = statuses[1].rung = Rung::support;
+  trajectory.add_frame(0.0, states, statuses);
+  trajectory.add_frame(0.1, states, statuses);
+  statuses[1].rung = Rung::full;
+  trajectory.set_first_statuses(statuses);
+  EXPECT_EQ(trajectory.status(0, 1).rung, Rung::full);
+  EXPECT_EQ(trajectory.status(0, 0).rung, Rung::support);
+  EXPECT_EQ(trajectory.status(1, 1).rung, Rung::support);
+}
+
 }  // namespace
 }  // namespace lodestone

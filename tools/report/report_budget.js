@@ -6,11 +6,11 @@ const kNoBodies = 0.3;  // where 0 stands on an axis of logarithms
 
 const budgetRuns = [...reportData.budget.runs].sort((a, b) => (a.budget_ms === null) - (b.budget_ms === null));  // those under a budget first
 
-function runTitle(run) { return run.scene.replace(".yaml", "") + (run.budget_ms === null ? ", by distance, no budget" : ", " + run.budget_ms + " ms a step"); }
+function runTitle(run) { return run.scene.replace(".yaml", "") + (run.budget_ms === null ? ", no budget of time" : ", " + run.budget_ms + " ms a step"); }
 const timeOf = (run, index) => Math.round(1000 * (index + 1) * run.dt_s) / 1000;
 
 function rungConfig(run) {
-  const most = Math.max(...[...rungNames, "asleep"].flatMap(name => run[name]));
+  const most = [...rungNames, "asleep"].flatMap(name => run[name]).reduce((a, b) => Math.max(a, b), 0);  // too many for arguments
   const line = (name, values, more) => ({label: name, data: values.map((value, i) => ({x: timeOf(run, i), y: Math.max(value, kNoBodies), bodies: value})), borderWidth: 1.8, pointRadius: 0, pointHitRadius: 4, direct: true, showLine: true, ...more});
   const datasets = rungNames.map(rung => line(rung, run[rung], {borderColor: colour(rung), backgroundColor: colour(rung), emphasised: true, priority: rung === "full" ? 3 : 2}));
   datasets.push(line("asleep", run.asleep, {borderColor: colour("asleep"), backgroundColor: colour("asleep"), borderDash: [4, 3], borderWidth: 1.2, priority: 1}));
@@ -53,16 +53,21 @@ function stepConfig(run) {
   };
 }
 
-const meanOf = values => values.reduce((sum, value) => sum + value, 0) / values.length;
+// From the tenth step on, as the program counts.
+function meanOf(values) {
+  const counted = values.length > 9 ? values.slice(9) : values;
+  return counted.reduce((sum, value) => sum + value, 0) / counted.length;
+}
 
 function budgetSummary(run) {
   const bodies = rungNames.map(rung => shortNumber(meanOf(run[rung])) + " " + rung).join(", ");
-  const kept = run.budget_ms === null ? "The nearest are full, the next ones support, by distance alone. " : run.over + " of " + run.counted_steps + " steps took longer than " + run.budget_ms + " ms" + (run.over ? " (longest " + msText(run.max_ms) + ")" : "") + ". ";
+  const kept = run.budget_ms === null ? "No budget of time: the scene's policy alone decides. " : run.over + " of " + run.counted_steps + " steps took longer than " + run.budget_ms + " ms" + (run.over ? " (longest " + msText(run.max_ms) + ")" : "") + ". ";
   return kept + "Median step " + msText(run.p50_ms) + ", 99 % below " + msText(run.p99_ms) + "; on average " + bodies + ".";
 }
 
 function startBudget() {
   const {levels} = reportData.budget, runs = budgetRuns;
+  byId("budget_heap").hidden = !runs.some(run => run.scene === "heap.yaml");
   runs.forEach((run, index) => {
     const [rungs, steps] = ["rungs_chart_" + index, "steps_chart_" + index];
     byId("budget_runs").append(make("div", {}, make("h3", {}, runTitle(run)), make("p", {class: "note"}, budgetSummary(run)),
@@ -70,13 +75,13 @@ function startBudget() {
     drawChart(rungs, () => rungConfig(run), "Bodies on each rung over time, " + runTitle(run) + ": " + budgetSummary(run));
     drawChart(steps, () => stepConfig(run), "Time of each step, " + runTitle(run) + ": " + budgetSummary(run));
   });
-  byId("budget_table").append(makeTable("Runs under a budget, and one by distance; processor time from the tenth step on", ["run", "median", "99 %", "longest", "steps over", "mean full", "mean support", "mean tables"],
+  byId("budget_table").append(makeTable("Each run; processor time and means from the tenth step on", ["run", "median", "99 %", "longest", "steps over", "mean full", "mean support", "mean tables"],
     runs.map(run => ({cells: [runTitle(run), msText(run.p50_ms), msText(run.p99_ms), msText(run.max_ms), run.budget_ms === null ? "–" : run.over + " of " + run.counted_steps, ...rungNames.map(rung => shortNumber(meanOf(run[rung])))]}))));
   for (const run of runs) {
     const every = Math.round(0.5 / run.dt_s), indices = run.full.map((_, i) => i).filter(i => (i + 1) % every === 0);
     byId("budget_table").append(makeTable(runTitle(run) + ": every half second", ["s", ...rungNames, "asleep", "ms"],
       indices.map(i => ({cells: [timeOf(run, i).toFixed(1), ...rungNames.map(rung => run[rung][i].toLocaleString("en-US")), run.asleep[i].toLocaleString("en-US"), shortNumber(run.processor_ms[i])]}))));
   }
-  if (levels) byId("budget_runs").after(make("div", {class: "scroll"}, makeTable("The same scene at one level throughout, measured just now; full over its busiest steps only", ["level", "median step", "99 %", "median of the busiest steps", "most full at once"],
+  if (levels) byId("budget_runs").after(make("div", {class: "scroll"}, makeTable(reportData.budget.runs[0].scene.replace(".yaml", "") + " at one level throughout, measured just now; full over its busiest steps only", ["level", "median step", "99 %", "median of the busiest steps", "most full at once"],
     levels.map(row => ({cells: [row.level, msText(row.p50_ms), msText(row.p99_ms), msText(row.busy_p50_ms), String(row.most_full)]})))));
 }

@@ -63,8 +63,12 @@ class Stage {
 
   addGround() {
     const {ground} = this.run.header;
-    this.groundMaterial = new THREE.MeshLambertMaterial({side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+    const make = side => new THREE.MeshLambertMaterial({side, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+    this.groundMaterial = make(THREE.DoubleSide);
+    this.planeMaterial = make(THREE.FrontSide);  // a wall is seen through from behind
+    this.grids = [];
     this.extent = this.findExtent();
+    this.sight = this.findSight();
     for (const part of ground) {
       const mesh = part.plane ? this.planeMesh(part.plane) : new THREE.Mesh(shaded(this.run.geometryOf(part.mesh)), this.groundMaterial);
       mesh.receiveShadow = true;
@@ -73,20 +77,36 @@ class Stage {
   }
 
   planeMesh({normal, offset_m}) {
-    const mesh = new THREE.Mesh(new THREE.PlaneBufferGeometry(36 * this.extent.radius, 36 * this.extent.radius, 120, 120), this.groundMaterial);  // in parts: a depth is not exact over a huge triangle
+    const mesh = new THREE.Mesh(new THREE.PlaneBufferGeometry(36 * this.sight, 36 * this.sight, 120, 120), this.planeMaterial);  // in parts: a depth is not exact over a huge triangle
     const up = new THREE.Vector3(...normal);
     mesh.quaternion.setFromUnitVectors(UP, up);
     const {center} = this.extent;
     mesh.position.copy(center).addScaledVector(up, offset_m - center.dot(up));
-    const side = this.extent.radius < 12 ? 1 : 10, count = 2 * Math.ceil(2 * this.extent.radius / side);  // squares of one metre or ten
-    this.grid = new THREE.GridHelper(count * side, count);
-    this.grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), up);
-    this.grid.position.copy(mesh.position).addScaledVector(up, 0.001 * this.extent.radius);
-    this.grid.position.x = side * Math.round(this.grid.position.x / side);
-    this.grid.position.y = side * Math.round(this.grid.position.y / side);
-    this.grid.material.transparent = true;
-    this.scene.add(this.grid);
+    if (up.z > 0.7) this.addGrid(mesh.position, up);
     return mesh;
+  }
+
+  // Squares of one metre or ten on a floor; on a level one at whole metres.
+  addGrid(middle, up) {
+    const side = this.extent.radius < 12 ? 1 : 10, count = 2 * Math.ceil(2 * this.extent.radius / side);
+    const grid = new THREE.GridHelper(count * side, count);
+    grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), up);
+    grid.position.copy(middle);
+    if (up.z > 0.999999) {
+      grid.position.x = side * Math.round(grid.position.x / side);
+      grid.position.y = side * Math.round(grid.position.y / side);
+    }
+    grid.position.addScaledVector(up, 0.001 * this.extent.radius);
+    grid.material.transparent = true;
+    this.scene.add(grid);
+    this.grids.push(grid);
+  }
+
+  // How far there must be something to see, in thirds: from the scene's camera, wherever it goes, to the bodies.
+  findSight() {
+    const {center, radius} = this.extent;
+    const places = this.run.header.viewpoints.flatMap(({position_m, path}) => path.length > 0 ? path.map(key => key.position_m) : [position_m]);
+    return Math.max(radius, ...places.map(place => center.distanceTo(new THREE.Vector3(...place)) / 3));
   }
 
   // A ball that has nearly all bodies in it, from the first frame to the last.
@@ -157,13 +177,14 @@ class Stage {
     this.plainColor = pageColor("--support");
     this.scene.background = new THREE.Color(dark ? 0x1b2027 : 0xe9edf2);
     this.groundMaterial.color.set(dark ? 0x4a525d : 0xb9bdbc);
-    if (this.grid) {
-      this.grid.material.vertexColors = THREE.NoColors;
-      this.grid.material.color.set(dark ? 0x79828e : 0x8d9396);
-      this.grid.material.opacity = 0.45;
-      this.grid.material.needsUpdate = true;
+    this.planeMaterial.color.copy(this.groundMaterial.color);
+    for (const {material} of this.grids) {
+      material.vertexColors = THREE.NoColors;
+      material.color.set(dark ? 0x79828e : 0x8d9396);
+      material.opacity = 0.45;
+      material.needsUpdate = true;
     }
-    this.scene.fog = new THREE.Fog(this.scene.background, 3 * this.extent.radius, 15 * this.extent.radius);
+    this.scene.fog = new THREE.Fog(this.scene.background, 3 * this.sight, 15 * this.sight);
     this.marker.material.color.copy(pageColor("--focus"));
   }
 

@@ -7,8 +7,8 @@ class View {
   constructor(runs, forks, blind) {
     this.runs = runs;
     this.forks = forks;
-    this.time = Number(settings.get("time") || 0);
     this.end = Math.max(...runs.map(run => run.end()), ...forks.filter(Boolean).map(fork => fork.end()));
+    this.time = Math.min(this.end, Math.max(0, Number(settings.get("time")) || 0));
     this.playing = false;
     this.speed = 1;
     this.blind = blind;
@@ -24,9 +24,9 @@ class View {
   }
 
   makeCameras() {
-    const {radius} = this.stages[0].extent;
+    const sight = Math.max(...this.stages.map(stage => stage.sight));
     const make = () => {
-      const camera = new THREE.PerspectiveCamera(60, 16 / 9, radius / 2000, 60 * radius);
+      const camera = new THREE.PerspectiveCamera(60, 16 / 9, sight / 2000, 60 * sight);
       camera.up.copy(UP);
       return camera;
     };
@@ -285,12 +285,12 @@ class View {
     }};
     const options = (title, stacked) => ({animation: false, maintainAspectRatio: false, parsing: false, interaction: {mode: "index", intersect: false}, elements: {point: {radius: 0}, line: {borderWidth: 2}},
       plugins: {legend: {labels: {boxWidth: 12}}, decimation: {enabled: true, algorithm: "min-max"}},
-      scales: {x: {type: "linear", min: 0, max: Math.round(100 * this.end) / 100, title: {display: true, text: "s"}}, y: {beginAtZero: true, stacked, title: {display: true, text: title}}}});
+      scales: {x: {type: "linear", min: 0, max: this.end < 1 ? this.end : Math.round(100 * this.end) / 100, title: {display: true, text: "s"}}, y: {beginAtZero: true, stacked, title: {display: true, text: title}}}});
     const series = (run, values) => run.times.map((x, i) => ({x, y: values[i]}));
     const styles = [[], [6, 3], [2, 2]];
     const sets = this.runs.length === 1 && !this.forks[0]
       ? ["full", "support", "tables"].map(name => ({label: name, data: series(this.runs[0], this.runs[0].counts[name]), borderColor: color(`--${name}`), backgroundColor: color(`--${name}`) + "66", fill: true}))
-      : this.allRuns().map((run, i) => ({label: `asleep: ${this.name(run)}`, data: series(run, run.counts.asleep), borderColor: color(["--full", "--support", "--tables", "--accent"][i % 4]), borderDash: styles[i % 3]}));
+      : this.allRuns().map((run, i) => ({label: `asleep: ${this.name(run)}`, data: series(run, run.counts.asleep), borderColor: color(["--accent", "--ink", "--faint"][i % 3]), borderDash: styles[i % 3]}));  // no rung's colours
     this.charts = [new Chart(element("rungs-chart"), {type: "line", data: {datasets: sets}, options: options("bodies", sets[0].fill === true), plugins: [now]})];
     const forked = this.forks.findIndex(Boolean);
     if (forked >= 0) {
