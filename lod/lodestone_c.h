@@ -210,6 +210,9 @@ lodestone_result lodestone_move_ground(lodestone_manager* manager, lodestone_gro
 lodestone_result lodestone_remove_ground(lodestone_manager* manager, lodestone_ground ground);
 bool lodestone_is_valid_ground(const lodestone_manager* manager,
                                lodestone_ground ground); /* of a null manager none is */
+/* In a caller's world. */
+lodestone_result lodestone_include_body(lodestone_manager* manager, struct dxBody* ode_body);
+lodestone_result lodestone_exclude_body(lodestone_manager* manager, struct dxBody* ode_body);
 
 lodestone_result lodestone_set_policy(lodestone_manager* manager, const lodestone_policy* policy);
 typedef struct lodestone_viewpoint {
@@ -297,6 +300,8 @@ lodestone_result lodestone_get_properties(const lodestone_manager* manager, lode
 lodestone_result lodestone_get_rung(const lodestone_manager* manager, lodestone_body body,
                                     lodestone_rung* rung);
 lodestone_result lodestone_is_asleep(const lodestone_manager* manager, lodestone_body body, bool* asleep);
+lodestone_result lodestone_get_collision_radius(const lodestone_manager* manager, lodestone_body body,
+                                                double* radius);
 /* Null unless it is full. */
 lodestone_result lodestone_get_ode_body(const lodestone_manager* manager, lodestone_body body,
                                         struct dxBody** ode_body);

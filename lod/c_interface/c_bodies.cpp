@@ -200,6 +200,11 @@ lodestone_result lodestone_is_asleep(const lodestone_manager* manager, lodestone
   return guarded([&] { give(asleep, of(manager).asleep(body(id))); });
 }
 
+lodestone_result lodestone_get_collision_radius(const lodestone_manager* manager, lodestone_body id,
+                                                double* radius) {
+  return guarded([&] { give(radius, of(manager).collision_radius(body(id))); });
+}
+
 lodestone_result lodestone_get_ode_body(const lodestone_manager* manager, lodestone_body id,
                                         dxBody** ode_body) {
   return guarded([&] { give(ode_body, of(manager).ode_body(body(id))); });

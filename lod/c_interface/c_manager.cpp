@@ -259,6 +259,14 @@ lodestone_result lodestone_remove_ground(lodestone_manager* manager, lodestone_g
   return guarded([&] { of(manager).remove_ground(ground(id)); });
 }
 
+lodestone_result lodestone_include_body(lodestone_manager* manager, dxBody* ode_body) {
+  return guarded([&] { of(manager).include_body(ode_body); });
+}
+
+lodestone_result lodestone_exclude_body(lodestone_manager* manager, dxBody* ode_body) {
+  return guarded([&] { of(manager).exclude_body(ode_body); });
+}
+
 bool lodestone_is_valid_ground(const lodestone_manager* manager, lodestone_ground id) {
   return manager && manager->manager.valid(ground(id));
 }

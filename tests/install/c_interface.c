@@ -433,6 +433,19 @@ static void check_callers_world(void) {
   that(met && hit.who.callers == NULL && hit.who.geom != box, "and the ground below where they are left out");
   dGeomDestroy(box);
   dBodyDestroy(his);
+  /* One without a geom, pushed for the whole of a step. */
+  const dBodyID pushed = dBodyCreate(world);
+  dBodySetGravityMode(pushed, 0);
+  refused(lodestone_include_body(manager, NULL), "body", "null is no body");
+  DO(lodestone_include_body(manager, pushed));
+  dBodyAddForce(pushed, 60, 0, 0);
+  DO(lodestone_step(manager, 1.0 / 60.0, NULL));
+  within(dBodyGetLinearVel(pushed)[0], 1.0 - 1e-9, 1.0 + 1e-9, "of 1 kg under 60 N for a step, m/s");
+  DO(lodestone_exclude_body(manager, pushed));
+  dBodyDestroy(pushed);
+  double radius = -1;
+  DO(lodestone_get_collision_radius(manager, body, &radius));
+  that(radius == 0, "a full body has no sphere");
   /* His own loop. */
   lodestone_report report;
   DO(lodestone_set_state(manager, body, &(lodestone_state){{0, 0, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}}));
