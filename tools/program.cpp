@@ -11,12 +11,14 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "lod/version.h"
 #include "reference/argument_error.h"
 #include "reference/output_file.h"
 #include "reference/simulation_error.h"
 #include "tools/command.h"
 #include "tools/commands.h"
 #include "tools/interrupt.h"
+#include "tools/report/machine.h"
 #include "tools/results.h"
 #include "tools/terminal.h"
 
@@ -136,6 +138,9 @@ ExitCode run_lodestone(int argc, char** argv) {
     CLI::App program("Simulation level of detail for rigid bodies, on ODE", "lodestone");
     program.require_subcommand(1);
     program.footer(kExitCodes);
+    program.set_version_flag("--version",
+                             fmt::format("lodestone {} ({})", LODESTONE_VERSION_STRING, program_commit()),
+                             "Print the version and the commit, and exit");
     Command commands(program, exit_code);
     add_commands(commands);
     check_values(program);

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "lod/version.h"
+
 namespace lodestone::program_test {
 namespace {
 
@@ -44,6 +46,12 @@ TEST(Program, HelpIsDone) {
     EXPECT_EQ(ended.exit_code, 0) << arguments;
     EXPECT_FALSE(ended.out.empty()) << arguments;
   }
+}
+
+TEST(Program, TellsItsVersion) {
+  const Ended ended = run("--version");
+  EXPECT_EQ(ended.exit_code, 0);
+  EXPECT_TRUE(ended.out.starts_with("lodestone " LODESTONE_VERSION_STRING " (")) << ended.out;
 }
 
 TEST(Program, WrongUsageIsTwoAndSilentOnStdout) {
