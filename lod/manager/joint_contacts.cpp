@@ -15,7 +15,7 @@ constexpr double kReach = 0.5;      // over R
 constexpr double kToOneSide = 0.1;  // of that: along its normal, so that loads are remembered for each
 
 // Rows are counted from the oldest joint on, which ODE lists last: those that come change no number.
-constexpr std::uint32_t kMotors = 1U << 16, kStops = 1U << 18, kByKinematics = 1U << 20;
+constexpr std::uint32_t kMotors = 1U << 16, kStops = 1U << 18, kByHolders = 1U << 20;
 
 class JointContacts {
  public:
@@ -30,46 +30,51 @@ class JointContacts {
         for (std::size_t k = 0; k < bodies_.size(); ++k) index_of_.emplace(bodies_[k], std::int32_t(k));
       add_of(i);
       for (dxBody* const other : joined_bodies(bodies_[i]))
-        if (other && !index_of_.contains(other) && callers::is_kinematic(other) &&
-            !std::ranges::count(kinematic_, other))
-          kinematic_.push_back(other);
+        if (other && holds_fast(other, bodies_[i]) && !std::ranges::count(holders_, other))
+          holders_.push_back(other);
     }
-    for (dxBody* const body : kinematic_) add_of_kinematic(body);
+    for (dxBody* const body : holders_) add_of_holder(body);
   }
 
  private:
-  // Of joints whose first body it is, or the only one.
+  // Of joints whose first body it is, or the only one; of those by which it holds others fast it is the
+  // holder.
   void add_of(std::size_t i) {
-    find(bodies_[i], callers::is_kinematic(bodies_[i]) ? reach_about(bodies_[i]) : reach_of(i));
+    find(bodies_[i], reach_of(i));
+    const auto is_holders = [&](dxBody* second) { return second && holds_fast(bodies_[i], second); };
     for (std::size_t r = 0; r < rows_.size(); ++r)
-      add(i, rows_[r].second, rows_[r].point, rows_[r].direction, std::uint32_t(rows_.size() - r), nullptr);
+      if (!is_holders(rows_[r].second))
+        add(i, rows_[r].second, rows_[r].point, rows_[r].direction, std::uint32_t(rows_.size() - r), nullptr);
     for (std::size_t m = 0; m < motors_.size(); ++m)
-      add(i, motors_[m].second, motors_[m].point, motors_[m].direction,
-          kMotors + std::uint32_t(motors_.size() - m), &motors_[m]);
+      if (!is_holders(motors_[m].second))
+        add(i, motors_[m].second, motors_[m].point, motors_[m].direction,
+            kMotors + std::uint32_t(motors_.size() - m), &motors_[m]);
     for (std::size_t s = 0; s < stops_.size(); ++s)
-      add_one_way(i, stops_[s].second, stops_[s].point, stops_[s].direction, stops_[s].gap,
-                  2 * (kStops + std::uint32_t(stops_.size() - s)));
+      if (!is_holders(stops_[s].second))
+        add_one_way(i, stops_[s].second, stops_[s].point, stops_[s].direction, stops_[s].gap,
+                    2 * (kStops + std::uint32_t(stops_.size() - s)));
   }
 
   // Of joints whose first body it is; those that it is the second of are their first body's.
-  void add_of_kinematic(dxBody* body) {
+  void add_of_holder(dxBody* body) {
     find(body, reach_about(body));
-    each_held(rows_, [&](std::size_t held, const JointRow& row, std::uint32_t number) {
-      add(held, body, row.point, row.direction, kByKinematics + number, nullptr);
+    each_held(body, rows_, [&](std::size_t held, const JointRow& row, std::uint32_t number) {
+      add(held, body, row.point, row.direction, kByHolders + number, nullptr);
     });
-    each_held(motors_, [&](std::size_t held, const JointMotor& motor, std::uint32_t number) {
-      add(held, body, motor.point, -motor.direction, kByKinematics + kMotors + number, &motor);
+    each_held(body, motors_, [&](std::size_t held, const JointMotor& motor, std::uint32_t number) {
+      add(held, body, motor.point, -motor.direction, kByHolders + kMotors + number, &motor);
     });
-    each_held(stops_, [&](std::size_t held, const JointStop& stop, std::uint32_t number) {
-      add_one_way(held, body, stop.point, -stop.direction, stop.gap, 2 * (kByKinematics + kStops + number));
+    each_held(body, stops_, [&](std::size_t held, const JointStop& stop, std::uint32_t number) {
+      add_one_way(held, body, stop.point, -stop.direction, stop.gap, 2 * (kByHolders + kStops + number));
     });
   }
 
-  /// Of those of a kinematic body: `visit(held, of it, number)` where the second is a neighbour.
+  /// Of those of `holder`: `visit(held, of it, number)` where the second is a neighbour that it holds.
   template <class Of, class Visit>
-  void each_held(const std::vector<Of>& all, const Visit& visit) const {
+  void each_held(dxBody* holder, const std::vector<Of>& all, const Visit& visit) const {
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (const auto held = index_of_.find(all[i].second); held != index_of_.end())
+      if (const auto held = index_of_.find(all[i].second);
+          held != index_of_.end() && holds_fast(holder, all[i].second))
         visit(std::size_t(held->second), all[i], std::uint32_t(all.size() - i));
   }
 
@@ -80,7 +85,7 @@ class JointContacts {
     find_joint_stops(body, reach, stops_);
   }
 
-  // What is kinematic holds as ground that moves does; others that are no neighbours are of no shape that is
+  // What holds fast does so as ground that moves; others that are no neighbours are of no shape that is
   // known.
   void add(std::size_t first, dxBody* other, const Vec3& point, const Vec3& direction, std::uint32_t number,
            const JointMotor* motor) {
@@ -94,10 +99,11 @@ class JointContacts {
   FullContact* add_one_way(std::size_t first, dxBody* other, const Vec3& point, const Vec3& direction,
                            double gap, std::uint32_t row) {
     const auto second = other ? index_of_.find(other) : index_of_.end();
-    const bool is_known = second != index_of_.end();
+    const bool holds = other && holds_fast(other, bodies_[first]),
+               is_known = second != index_of_.end() && !holds;
     Vec3 velocity = Vec3::Zero();
     if (other && !is_known) {
-      if (!callers::is_kinematic(other)) return nullptr;
+      if (!holds) return nullptr;
       const RigidState state = callers::state(other);
       velocity = state.velocity + state.angular_velocity.cross(point - state.position);
     }
@@ -113,11 +119,11 @@ class JointContacts {
 
   double reach_of(std::size_t i) const { return kReach * neighbors_[i].shape->radius; }
 
-  // Of the smallest that a kinematic body holds.
-  double reach_about(dxBody* body) const {
+  // Of the smallest that a holder holds.
+  double reach_about(dxBody* holder) const {
     double reach = std::numeric_limits<double>::infinity();
-    for (dxBody* const other : joined_bodies(body))
-      if (const auto held = index_of_.find(other); held != index_of_.end())
+    for (dxBody* const other : joined_bodies(holder))
+      if (const auto held = index_of_.find(other); held != index_of_.end() && holds_fast(holder, other))
         reach = std::min(reach, reach_of(std::size_t(held->second)));
     return std::isfinite(reach) ? reach : 0.0;
   }
@@ -129,7 +135,7 @@ class JointContacts {
   std::vector<JointRow> rows_;
   std::vector<JointMotor> motors_;
   std::vector<JointStop> stops_;
-  std::vector<dxBody*> kinematic_;
+  std::vector<dxBody*> holders_;
 };
 
 }  // namespace

@@ -24,10 +24,21 @@ Vec3 place_of(dxBody* body) {
   return {p[0], p[1], p[2]};
 }
 
-// Of the two; where one is kinematic, and may be far away, of the one that is held.
+// By a fixed joint, to the world or to what is kinematic.
+bool is_anchored(dxBody* body) {
+  for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
+    const dJointID joint = dBodyGetJoint(body, i);
+    if (dJointGetType(joint) != dJointTypeFixed || !dJointIsEnabled(joint)) continue;
+    const dBodyID first = dJointGetBody(joint, 0), other = first == body ? dJointGetBody(joint, 1) : first;
+    if (!other || dBodyIsKinematic(other)) return true;
+  }
+  return false;
+}
+
+// Of the two; where one holds the other fast, and may be far away or small, of the one that is held.
 Vec3 middle_of(dxBody* body, dxBody* second) {
-  if (!second || dBodyIsKinematic(second)) return place_of(body);
-  return dBodyIsKinematic(body) ? place_of(second) : Vec3(0.5 * (place_of(body) + place_of(second)));
+  if (!second || holds_fast(second, body)) return place_of(body);
+  return holds_fast(body, second) ? place_of(second) : Vec3(0.5 * (place_of(body) + place_of(second)));
 }
 
 // Where its only body is its second, ODE turns the axis of a slider and of a piston round, and what it says
@@ -102,6 +113,11 @@ JointParameters parameters_of(dJointType type) {
 
 }  // namespace
 
+bool holds_fast(dxBody* holder, dxBody* body) {
+  if (dBodyIsKinematic(holder)) return !dBodyIsKinematic(body);
+  return is_anchored(holder) && !is_anchored(body) && !dBodyIsKinematic(body);
+}
+
 std::uint64_t sum_up_joints(dxBody* body) {
   std::uint64_t sum = 1;
   for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
@@ -154,7 +170,7 @@ void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
       }
       case dJointTypeSlider: {
         const Vec3 axis = read(joint, dJointGetSliderAxis), across = axis.unitOrthogonal(),
-                   at = place_of(second && dBodyIsKinematic(body) ? second : body);
+                   at = place_of(second && holds_fast(body, second) ? second : body);
         hold_to_axis(second, at, axis, reach, rows);
         rows.push_back({second, at + reach * across, axis.cross(across)});
         break;

@@ -20,6 +20,10 @@ bool has_joints(dxBody* body);
 /// outside of a step.
 std::vector<dxBody*> find_jointed_group(dxBody* body);
 
+/// Whether what a joint between them brings onto `holder` does not move it: it is kinematic and `body` is
+/// not, or a joint fixes it, and not `body`, to the world or to one that is kinematic.
+bool holds_fast(dxBody* holder, dxBody* body);
+
 /// A direction (unit, world) in which a joint holds a point of one body to that of another.
 struct JointRow {
   dxBody* second = nullptr;   ///< null: the world

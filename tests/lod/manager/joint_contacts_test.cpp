@@ -602,6 +602,53 @@ TEST(JointContacts, OnAPlatformFixedToAFarKinematicBodyCratesLie) {
     }
 }
 
+// A post of 3 kg, fixed to the world, bears what its other joint brings onto it, as the world does.
+TEST(JointContacts, OnABoardThatASmallPostHoldsCratesLie) {
+  for (const bool slides : {false, true})
+    for (const bool board_first : {true, false})
+      for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+        TheirWorld their;
+        Manager manager(their.world, their.space, kSettings);
+        const auto add_full = [&](const Vec3& sides, double mass, const Vec3& at) {
+          return manager.ode_body([&] {
+            const BodyId body = manager.add_body({.shape = box_shape(sides),
+                                                  .state = testing::at(at),
+                                                  .mass = mass,
+                                                  .level = LevelChoice::full});
+            manager.step(1e-9);
+            return body;
+          }());
+        };
+        const dBodyID post = add_full({0.1, 0.1, 0.1}, 3.0, {-1.5, 0, 2}),
+                      board = add_full({1, 1, 0.1}, 10.0, {0.5, 0, 2});
+        const dJointID anchor = dJointCreateFixed(their.world, nullptr);
+        dJointAttach(anchor, post, nullptr);
+        dJointSetFixed(anchor);
+        const dJointID joint =
+            slides ? dJointCreateSlider(their.world, nullptr) : dJointCreateFixed(their.world, nullptr);
+        dJointAttach(joint, board_first ? board : post, board_first ? post : board);
+        if (slides) {
+          dJointSetSliderAxis(joint, 0, 0, 1);
+          dJointSetSliderParam(joint, dParamLoStop, 0), dJointSetSliderParam(joint, dParamHiStop, 0);
+        } else {
+          dJointSetFixed(joint);
+        }
+        std::vector<BodyId> crates;
+        for (int i = 0; i < 2; ++i)
+          crates.push_back(manager.add_body({.shape = box_shape({kCrate, kCrate, kCrate}),
+                                             .state = testing::at({0.7, 0.2, 2.05 + (i + 0.5) * kCrate}),
+                                             .mass = 20.0,
+                                             .level = level}));
+        run(manager, 3.0);
+        for (int i = 0; i < 2; ++i) {
+          const RigidState crate = manager.state(crates[i]);
+          EXPECT_NEAR(crate.position.z(), 2.05 + (i + 0.5) * kCrate, 6e-3)
+              << slides << board_first << int(level);
+          EXPECT_LT(crate.velocity.norm(), 0.02) << slides << board_first << int(level);
+        }
+      }
+}
+
 TEST(JointContacts, APistonsMotorLiftsAndItsStopsHoldWhatLiesOnThePlatform) {
   for (const bool is_driven : {true, false})
     for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
