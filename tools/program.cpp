@@ -18,7 +18,6 @@
 #include "tools/command.h"
 #include "tools/commands.h"
 #include "tools/interrupt.h"
-#include "tools/report/machine.h"
 #include "tools/results.h"
 #include "tools/terminal.h"
 
@@ -138,9 +137,8 @@ ExitCode run_lodestone(int argc, char** argv) {
     CLI::App program("Simulation level of detail for rigid bodies, on ODE", "lodestone");
     program.require_subcommand(1);
     program.footer(kExitCodes);
-    program.set_version_flag("--version",
-                             fmt::format("lodestone {} ({})", LODESTONE_VERSION_STRING, program_commit()),
-                             "Print the version and the commit, and exit");
+    program.set_version_flag("--version", "lodestone " LODESTONE_VERSION_STRING,
+                             "Print the version, and exit");
     Command commands(program, exit_code);
     add_commands(commands);
     check_values(program);
