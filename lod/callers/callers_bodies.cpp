@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::uint32_t kFirstOwner = 0x40000000;  // above every body of the manager's
 constexpr double kLeft = 0.02;  // over its longest side: a geom whose bounds move by more in a step has left
-constexpr double kSunk =
-    1e-4;  // over R: so deep what is pressed onto ground begins ODE's step, lest this find
-           // no contact there in the next: its ERP leaves depths that rounding decides
+// Over R: so deep what is pressed onto ground begins ODE's step, lest this find no contact there in the next:
+// its ERP leaves depths that rounding decides.
+constexpr double kSunk = 1e-4;
 
 // What contacts need of a body's shape, or of a convex piece of it, about `center`.
 Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {

@@ -16,8 +16,8 @@ constexpr double kUneven = 20.0;            // ratio of the masses of two that m
 constexpr double kStride =
     0.07;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
 
-constexpr double kRides =
-    0.01;  // over R: who moves less than that against its ground in a step does not strike it
+// Over R: who moves less than that against its ground in a step does not strike it.
+constexpr double kRides = 0.01;
 
 bool may_strike(const ContactScene& scene, const StatisticalBody& body, std::span<const HalfSpace> planes,
                 double dt) {

@@ -127,8 +127,8 @@ Vec3 rim_of(const Body& body) {
 
 }  // namespace
 
-// Of one that was put to rest in the last substep, too: whether one that it touches, and that does not sleep
-// at its own speed, moves it time and again one way, and is held back by it.
+// Of one that was put to rest in the last substep, too: whether one that it touches, faster than what sleeps,
+// moves it its own way time and again, and is held back by it.
 bool Sleep::is_dragged(Body& body, double h) const {
   body.withheld = std::exp(-h / kForgets) * body.withheld + to_vec3(dBodyGetLinearVel(body.body));
   if (body.withheld.squaredNorm() <= square(kWithheld * law_.speed)) return false;
@@ -211,7 +211,9 @@ void Sleep::find_carried(Bodies& bodies, std::span<const dBodyID> carried) {
     if (body.body && body.kept_awake) waiting_.push_back(body.body);
   grouped_.clear();
   for (const Body& body : bodies.slots()) {
-    if (!body.body || !has_own_joints(body.body) || grouped_.contains(body.body)) continue;
+    if (!body.body || !dBodyIsEnabled(body.body) || !has_own_joints(body.body) ||
+        grouped_.contains(body.body))
+      continue;
     joined_ = find_jointed_group(body.body);
     grouped_.insert(joined_.begin(), joined_.end());
     if (std::ranges::any_of(joined_, hangs_on_mover)) waiting_.push_back(body.body);

@@ -82,7 +82,8 @@ class Stage {
     mesh.quaternion.setFromUnitVectors(UP, up);
     const {center} = this.extent;
     mesh.position.copy(center).addScaledVector(up, offset_m - center.dot(up));
-    if (up.z > 0.7) this.addGrid(mesh.position, up);
+    const planes = this.run.header.ground.filter(part => part.plane).length;
+    if (planes === 1 || up.z > 0.7) this.addGrid(mesh.position, up);  // of several, floors
     return mesh;
   }
 
