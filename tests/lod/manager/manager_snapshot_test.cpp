@@ -389,32 +389,32 @@ TEST(ManagerSnapshot, WhatTouchesACallersBodyGoesOnToTheBit) {
 }
 
 // A body of `tables`, which cannot be without one.
-// What friction a sleeper had of the ground is forgotten where nobody awake has ground near.
+// Sleepers on a slope, too, that are woken after it.
 TEST(ManagerSnapshot, WhoeverIsWokenByItsReaderGoesOnToTheBit) {
-  const auto make = [] {
+  const Quat tilt(Eigen::AngleAxisd(0.2, Vec3::UnitY()));
+  const auto make = [&] {
     Manager manager({.signatures = testing::coarse_signature});
-    const Quat tilt(Eigen::AngleAxisd(0.2, Vec3::UnitY()));
     manager.add_static_box({8, 8, 1}, tilt * Vec3(0, 0, -0.5), tilt);
     return manager;
   };
   const std::shared_ptr<const Shape> shapes[] = {testing::box_shape({0.4, 0.4, 0.2})};
   Manager writer = make();
-  const Quat tilt(Eigen::AngleAxisd(0.2, Vec3::UnitY()));
-  const BodyId slab = writer.add_body({.shape = shapes[0],
-                                       .state = {.position = tilt * Vec3(0, 0, 0.101), .orientation = tilt},
-                                       .level = LevelChoice::tables});
-  testing::run(writer, 3.0);
-  ASSERT_TRUE(writer.asleep(slab));
-  // It rubs, and another is in the air when it sleeps again.
-  writer.wake(slab);
-  testing::add(writer, shapes[0], testing::at({0, 0, 60}), LevelChoice::tables);
-  for (int i = 0; i < 120 && (i < 5 || !writer.asleep(slab)); ++i) writer.step(testing::kFrame);
-  ASSERT_TRUE(writer.asleep(slab));
-  testing::run(writer, 0.2);
+  std::vector<BodyId> slabs;  // on each other
+  for (const double height : {0.101, 0.302})
+    slabs.push_back(writer.add_body({.shape = shapes[0],
+                                     .state = {.position = tilt * Vec3(0, 0, height), .orientation = tilt},
+                                     .level = LevelChoice::tables}));
+  testing::add(writer, shapes[0], testing::at({0, 0, 90}), LevelChoice::tables);  // falls, for four seconds
+  int steps = 0;
+  for (; steps < 150 && !(writer.asleep(slabs[0]) && writer.asleep(slabs[1])); ++steps)
+    writer.step(testing::kFrame);
+  ASSERT_LT(steps, 150);
+  testing::run(writer, 0.1);
   const Bytes snapshot = writer.snapshot();
   Manager reader = make();
   reader.restore(snapshot, shapes);
-  for (Manager* manager : {&writer, &reader}) manager->wake(slab), testing::run(*manager, 0.1);
+  for (Manager* manager : {&writer, &reader})
+    testing::run(*manager, 0.1), manager->wake(slabs[0]), testing::run(*manager, 0.1);
   EXPECT_EQ(reader.state_hash(), writer.state_hash());
 }
 

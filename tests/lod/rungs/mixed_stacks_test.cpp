@@ -341,57 +341,73 @@ TEST(MixedStacks, NobodyGainsWhereAFullBallIsStruckAsItBounces) {
       }
 }
 
+// A world of the caller's with a plane, onto which he makes the contacts of his own bodies.
+struct HisWorld {
+  HisWorld() { dWorldSetGravity(world, 0, 0, -9.81); }
+  ~HisWorld() {
+    dJointGroupDestroy(contacts);
+    dSpaceDestroy(space);
+    dWorldDestroy(world);
+  }
+  HisWorld(const HisWorld&) = delete;
+  HisWorld& operator=(const HisWorld&) = delete;
+
+  void meet_plane(dBodyID body) const {
+    for (dGeomID geom = dBodyGetFirstGeom(body); geom; geom = dBodyGetNextGeom(geom)) {
+      dContact found[8] = {};
+      const int count = dCollide(geom, plane, 8, &found[0].geom, sizeof(dContact));
+      for (int k = 0; k < count; ++k) {
+        found[k].surface.mode = dContactApprox1 | dContactBounce;
+        found[k].surface.mu = 0.5, found[k].surface.bounce = 0.4, found[k].surface.bounce_vel = 0.01;
+        dJointAttach(dJointCreateContact(world, contacts, &found[k]), body, nullptr);
+      }
+    }
+  }
+  void step(Manager& manager, dBodyID body) const {
+    meet_plane(body);
+    manager.step(kFrame);
+    dJointGroupEmpty(contacts);
+  }
+
+  dWorldID world = dWorldCreate();
+  dSpaceID space = dHashSpaceCreate(nullptr);
+  dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  dJointGroupID contacts = dJointGroupCreate(0);
+};
+
 // His cube falls onto his plane, 4 mm above it: it was taken to lie there, and a box that struck it bounced
 // as off the ground, while his own contact came a step later (125 J became 273).
 TEST(MixedStacks, NobodyGainsWhereACallersBodyIsStruckJustOverHisGround) {
   constexpr double kCubeSize = 0.3, kCubeMass = 10.0;  // m, kg
   for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
-    const dWorldID world = dWorldCreate();
-    const dSpaceID space = dHashSpaceCreate(nullptr);
-    const dJointGroupID contacts = dJointGroupCreate(0);
-    dWorldSetGravity(world, 0, 0, -9.81);
-    const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
-    {
-      Manager manager(world, space, {.signatures = coarse_signature});
-      const dBodyID cube = dBodyCreate(world);
-      dMass mass;
-      dMassSetBoxTotal(&mass, kCubeMass, kCubeSize, kCubeSize, kCubeSize);
-      dBodySetMass(cube, &mass);
-      dBodySetPosition(cube, 0, 0, 0.16);
-      const dGeomID geom = dCreateBox(space, kCubeSize, kCubeSize, kCubeSize);
-      dGeomSetBody(geom, cube);
-      const BodyId box = manager.add_body({.shape = box_shape({0.2, 0.3, 0.4}),
-                                           .state = {.position = {0.03, 0.02, 0.65},
-                                                     .orientation = rotation_from_vector({0.2, 0, 0}),
-                                                     .velocity = {0.3, 0, -3},
-                                                     .angular_velocity = {0.5, 1, 0}},
-                                           .mass = kCubeMass,
-                                           .level = level});
-      const auto energy_of_both = [&] {
-        const dReal *v = dBodyGetLinearVel(cube), *w = dBodyGetAngularVel(cube);
-        const double inertia = kCubeMass * kCubeSize * kCubeSize / 6.0;
-        return energy(manager, box) + 0.5 * kCubeMass * dCalcVectorLengthSquare3(v) +
-               0.5 * inertia * dCalcVectorLengthSquare3(w) + kCubeMass * 9.81 * dBodyGetPosition(cube)[2];
-      };
-      double before = energy_of_both();
-      for (int i = 0; i < 6; ++i) {
-        dContact found[8] = {};
-        const int count = dCollide(geom, plane, 8, &found[0].geom, sizeof(dContact));
-        for (int k = 0; k < count; ++k) {
-          found[k].surface.mode = dContactApprox1 | dContactBounce;
-          found[k].surface.mu = 0.5, found[k].surface.bounce = 0.4, found[k].surface.bounce_vel = 0.01;
-          dJointAttach(dJointCreateContact(world, contacts, &found[k]), cube, nullptr);
-        }
-        manager.step(kFrame);
-        dJointGroupEmpty(contacts);
-        const double now = energy_of_both();
-        EXPECT_LT(now, before + 1.0) << int(level) << ", frame " << i;
-        before = now;
-      }
+    const HisWorld his;
+    Manager manager(his.world, his.space, {.signatures = coarse_signature});
+    const dBodyID cube = dBodyCreate(his.world);
+    dMass mass;
+    dMassSetBoxTotal(&mass, kCubeMass, kCubeSize, kCubeSize, kCubeSize);
+    dBodySetMass(cube, &mass);
+    dBodySetPosition(cube, 0, 0, 0.16);
+    dGeomSetBody(dCreateBox(his.space, kCubeSize, kCubeSize, kCubeSize), cube);
+    const BodyId box = manager.add_body({.shape = box_shape({0.2, 0.3, 0.4}),
+                                         .state = {.position = {0.03, 0.02, 0.65},
+                                                   .orientation = rotation_from_vector({0.2, 0, 0}),
+                                                   .velocity = {0.3, 0, -3},
+                                                   .angular_velocity = {0.5, 1, 0}},
+                                         .mass = kCubeMass,
+                                         .level = level});
+    const auto energy_of_both = [&] {
+      const dReal *v = dBodyGetLinearVel(cube), *w = dBodyGetAngularVel(cube);
+      const double inertia = kCubeMass * kCubeSize * kCubeSize / 6.0;
+      return energy(manager, box) + 0.5 * kCubeMass * dCalcVectorLengthSquare3(v) +
+             0.5 * inertia * dCalcVectorLengthSquare3(w) + kCubeMass * 9.81 * dBodyGetPosition(cube)[2];
+    };
+    double before = energy_of_both();
+    for (int i = 0; i < 6; ++i) {
+      his.step(manager, cube);
+      const double now = energy_of_both();
+      EXPECT_LT(now, before + 1.0) << int(level) << ", frame " << i;
+      before = now;
     }
-    dJointGroupDestroy(contacts);
-    dSpaceDestroy(space);
-    dWorldDestroy(world);
   }
 }
 
@@ -503,63 +519,41 @@ TEST(MixedStacks, ACallersBodyLiesQuietlyUnderAHeavySleeper) {
     Vec3 sides, center;  // m
   };
   const std::array<Part, 2> parts{{{{0.3, 0.08, 0.1}, {0, -0.06, 0}}, {{0.08, 0.12, 0.1}, {-0.11, 0.04, 0}}}};
-  constexpr double kLMass = 10.0;  // kg
+  constexpr double kLMass = 10.0, kTurned = 0.2;  // kg, rad
   for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
-    dWorldID world = dWorldCreate();
-    dWorldSetGravity(world, 0, 0, -9.81);
-    const dSpaceID space = dHashSpaceCreate(nullptr);
-    const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
-    const dJointGroupID contacts = dJointGroupCreate(0);
-    {
-      Manager manager(world, space, {.signatures = coarse_signature});
-      dMass mass, part_mass;
-      dMassSetZero(&mass);
-      for (const Part& part : parts) {
-        dMassSetBox(&part_mass, 1.0, part.sides.x(), part.sides.y(), part.sides.z());
-        dMassTranslate(&part_mass, part.center.x(), part.center.y(), part.center.z());
-        dMassAdd(&mass, &part_mass);
-      }
-      const Vec3 middle(mass.c[0], mass.c[1], mass.c[2]);
-      dMassTranslate(&mass, -middle.x(), -middle.y(), -middle.z());
-      dMassAdjust(&mass, kLMass);
-      const dBodyID body = dBodyCreate(world);
-      dBodySetMass(body, &mass);
-      std::vector<dGeomID> geoms;
-      for (const Part& part : parts) {
-        const Vec3 at = part.center - middle;
-        geoms.push_back(dCreateBox(space, part.sides.x(), part.sides.y(), part.sides.z()));
-        dGeomSetBody(geoms.back(), body);
-        dGeomSetOffsetPosition(geoms.back(), at.x(), at.y(), at.z());
-      }
-      const double turned = 0.2;  // rad
-      const dQuaternion q = {std::cos(0.5 * turned), 0, 0, std::sin(0.5 * turned)};
-      dBodySetPosition(body, 0.013, 0.3, 0.0505);
-      dBodySetQuaternion(body, q);
-      manager.add_body({.shape = box_shape({kStackedSide, kStackedSide, kStackedSide}),
-                        .state = {.position = {0.013, 0.3, 0.1 + 0.5 * kStackedSide + 0.002}},
-                        .mass = 10.0 * kLMass,
-                        .level = level});
-      double fastest = 0.0;  // m/s
-      for (int i = 0; i < 240; ++i) {
-        for (const dGeomID geom : geoms) {
-          dContact found[8] = {};
-          const int count = dCollide(geom, plane, 8, &found[0].geom, sizeof(dContact));
-          for (int k = 0; k < count; ++k) {
-            found[k].surface.mode = dContactApprox1 | dContactBounce;
-            found[k].surface.mu = 0.5, found[k].surface.bounce = 0.4, found[k].surface.bounce_vel = 0.01;
-            dJointAttach(dJointCreateContact(world, contacts, &found[k]), body, nullptr);
-          }
-        }
-        manager.step(kFrame);
-        dJointGroupEmpty(contacts);
-        const dReal* v = dBodyGetLinearVel(body);
-        if (i > 60) fastest = std::max(fastest, std::sqrt(dCalcVectorLengthSquare3(v)));
-      }
-      EXPECT_LT(fastest, 0.05) << int(level);
+    const HisWorld his;
+    Manager manager(his.world, his.space, {.signatures = coarse_signature});
+    dMass mass, part_mass;
+    dMassSetZero(&mass);
+    for (const Part& part : parts) {
+      dMassSetBox(&part_mass, 1.0, part.sides.x(), part.sides.y(), part.sides.z());
+      dMassTranslate(&part_mass, part.center.x(), part.center.y(), part.center.z());
+      dMassAdd(&mass, &part_mass);
     }
-    dJointGroupDestroy(contacts);
-    dSpaceDestroy(space);
-    dWorldDestroy(world);
+    const Vec3 middle(mass.c[0], mass.c[1], mass.c[2]);
+    dMassTranslate(&mass, -middle.x(), -middle.y(), -middle.z());
+    dMassAdjust(&mass, kLMass);
+    const dBodyID body = dBodyCreate(his.world);
+    dBodySetMass(body, &mass);
+    for (const Part& part : parts) {
+      const Vec3 at = part.center - middle;
+      const dGeomID geom = dCreateBox(his.space, part.sides.x(), part.sides.y(), part.sides.z());
+      dGeomSetBody(geom, body);
+      dGeomSetOffsetPosition(geom, at.x(), at.y(), at.z());
+    }
+    const dQuaternion q = {std::cos(0.5 * kTurned), 0, 0, std::sin(0.5 * kTurned)};
+    dBodySetPosition(body, 0.013, 0.3, 0.0505);
+    dBodySetQuaternion(body, q);
+    manager.add_body({.shape = box_shape({kStackedSide, kStackedSide, kStackedSide}),
+                      .state = {.position = {0.013, 0.3, 0.1 + 0.5 * kStackedSide + 0.002}},
+                      .mass = 10.0 * kLMass,
+                      .level = level});
+    double fastest = 0.0;  // m/s
+    for (int i = 0; i < 240; ++i) {
+      his.step(manager, body);
+      if (i > 60) fastest = std::max(fastest, std::sqrt(dCalcVectorLengthSquare3(dBodyGetLinearVel(body))));
+    }
+    EXPECT_LT(fastest, 0.05) << int(level);
   }
 }
 
