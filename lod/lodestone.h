@@ -24,6 +24,7 @@
 #include "reference/material.h"
 #include "reference/mesh/mesh.h"
 #include "reference/shape.h"
+#include "reference/simulation_error.h"
 #include "signature/signature_file.h"
 #include "signature/signature_source.h"
 // IWYU pragma: end_exports

@@ -6,8 +6,9 @@
 //
 // - Errors. Whatever is passed here at run time and cannot be used (a stale id, a number that is not finite
 //   or out of the range given, a material that the table does not have) throws InputError (reference/error.h)
-//   before anything has changed; nothing aborts for it. After a SimulationError, where one of ODE's own
-//   assertions fails in a step, the manager can be read and destroyed, and steps no more.
+//   before anything has changed; nothing aborts for it. Where one of ODE's own assertions fails in a step,
+//   that throws SimulationError (reference/simulation_error.h), and the manager can be read and destroyed,
+//   and steps no more.
 // - Ids. That of a removed body, ground or group is stale for good, though its index comes back: valid()
 //   tells so of bodies and ground, every other call throws.
 // - Threads. A manager is used by one thread at a time; between two steps any number of threads may call its
@@ -37,6 +38,7 @@
 #include "lod/viewpoint.h"
 #include "lod/why.h"
 #include "reference/mesh/mesh.h"
+#include "reference/simulation_error.h"  // IWYU pragma: export
 
 struct dxWorld;
 struct dxSpace;

@@ -1,5 +1,6 @@
 // The three kinds of error, and no more: a bug of ours aborts with its values (`check_that`); bad input
-// throws `InputError`; numerical trouble while stepping is counted in the step report and never thrown.
+// throws `InputError`; numerical trouble while stepping is counted in the step report. Only where ODE gives
+// up by an assertion of its own does a step throw: `SimulationError` (reference/simulation_error.h).
 #pragma once
 
 #include <functional>

@@ -184,10 +184,10 @@ void FullLevel::step(double dt, Counters& counters) {
   try {
     world_->step(dt, substeps_of(dt));
   } catch (const SimulationError& error) {
-    const std::int32_t index = index_of(OdeBodyId{error.body()});
-    if (index < 0) throw;
-    throw SimulationError(fmt::format("{}: body {}", error.what(), members_[std::size_t(index)].owner),
-                          error.body());
+    const std::int32_t index = error.body() ? index_of(OdeBodyId{*error.body()}) : -1;
+    if (index < 0) throw SimulationError(error.what());
+    const std::uint32_t owner = members_[std::size_t(index)].owner;
+    throw SimulationError(fmt::format("{}: body {}", error.what(), owner), owner);
   }
   add_new_counts(counters);
 }

@@ -72,10 +72,11 @@ struct OdeWorld::Impl {
   // and how many were not since.
   static constexpr std::int32_t kCalm = 600;
   std::int32_t callers_attempt = 0, callers_calm = 0;
-  std::int64_t callers_messages = 0;         // a caller's step
-  bool has_looked = false;                   // for the step to come
-  std::string failure = {};                  // why ODE gave up; empty: it has not
-  double callers_step_s = 0.0;               // between begin_callers_step and end_callers_step; else 0
+  std::int64_t callers_messages = 0;              // a caller's step
+  bool has_looked = false;                        // for the step to come
+  std::string failure = {};                       // why ODE gave up; empty: it has not
+  std::optional<std::uint32_t> failed_over = {};  // the body that it is most likely about
+  double callers_step_s = 0.0;                    // between begin_callers_step and end_callers_step; else 0
   std::vector<Eigen::AlignedBox3d> vacated;  // m, by bodies that were removed between steps: the caller's
                                              // near there wake once they are known again
 };

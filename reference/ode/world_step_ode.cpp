@@ -82,7 +82,7 @@ void OdeWorld::Impl::look_at_callers_space() {
 }
 
 void OdeWorld::Impl::begin_step(double h) {
-  if (!failure.empty()) throw SimulationError(failure);
+  if (!failure.empty()) throw SimulationError(failure, failed_over);
   if (!has_looked) look_at_callers_space();
   times = {};
   touches.begin_step();
@@ -252,7 +252,8 @@ void OdeWorld::Impl::fail(const std::string& message) {
                               message, suspect->shape->name, suspect->mass())
                 : fmt::format("ODE gave up in a step ({}), over a body of the caller's own", message);
   if (threading) threading->abandon();
-  throw SimulationError(failure, suspect ? suspect->id.value : 0);
+  if (suspect) failed_over = suspect->id.value;
+  throw SimulationError(failure, failed_over);
 }
 
 void OdeWorld::Impl::count_uneven_contacts() {
