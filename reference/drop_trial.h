@@ -10,6 +10,9 @@ namespace lodestone {
 
 inline constexpr double kObservationStep =
     1.0 / 60.0;  ///< s: every method is observed at these instants, whatever its own step
+inline constexpr int kTruthSubsteps = 34;  ///< ODE's steps in one of those, of .49 ms: the ground truth
+/// J/kg: a body whose kinetic energy over its mass stays below it is at rest, as comparisons see it.
+inline constexpr double kRestEnergyPerMass = 2e-3;
 
 /// Ranges of a drop's start for a body of .2–.4 m; other sizes scale lengths by λ and times by √λ (see
 /// `drop_scale`).

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "reference/free_rotation.h"
+
 namespace lodestone {
 
 double kinetic_energy(const Shape& shape, double mass, const RigidState& state) {
-  const Vec3 omega =
-      state.orientation.conjugate() * state.angular_velocity;  // body axes, in which the inertia is constant
-  return 0.5 * mass * (state.velocity.squaredNorm() + omega.dot(shape.inertia_per_mass * omega));
+  return mass * kinetic_energy(shape, state);
 }
 
 double depth_below(const Shape& shape, const RigidState& state, const Vec3& normal, double offset) {

@@ -4,19 +4,15 @@
 #include <cmath>
 
 #include "lod/timing/thread_clock.h"
+#include "reference/drop_trial.h"
+#include "reference/free_rotation.h"
 
 namespace lodestone {
 namespace {
 
-constexpr double kRestEnergy = 2e-3;   // J/kg, as of `compare drop`
 constexpr double kRestDuration = 1.0;  // s below it until a body counts as at rest
 constexpr double kHorizon = 10.0;      // s
 constexpr std::size_t kMostWatched = 64;
-
-double energy_per_mass(const Shape& shape, const RigidState& state) {
-  const Vec3 spin = state.orientation.conjugate() * state.angular_velocity;
-  return 0.5 * (state.velocity.squaredNorm() + spin.dot(shape.inertia_per_mass * spin));
-}
 
 /// Parts of the ground that the body may touch.
 bool near_solids(const Levels& levels, const Vec3& position, double radius) {
@@ -45,7 +41,7 @@ double RunningMean::standard_error() const {
 
 void WayToRest::sample(double time_s, const RigidState& state, double energy, bool asleep) {
   if (done_) return;
-  if (energy > kRestEnergy) rest_time_ = time_s;
+  if (energy > kRestEnergyPerMass) rest_time_ = time_s;
   if (time_s <= 1.0 + 1e-9) a_second_on_ = state.position;
   last_ = state.position;
   done_ = asleep || time_s - rest_time_ >= kRestDuration || time_s >= kHorizon;
@@ -101,7 +97,7 @@ void Audit::look_at(Watched& w, double dt) {
   if (w.demoted.done()) return;
   w.time_s += dt;
   w.seen = levels_.state(w.body);
-  w.demoted.sample(w.time_s, w.seen, energy_per_mass(*w.shape, w.seen), levels_.asleep(w.body));
+  w.demoted.sample(w.time_s, w.seen, kinetic_energy(*w.shape, w.seen), levels_.asleep(w.body));
 }
 
 void Audit::end_step(double dt, StepReport& report) {
@@ -157,7 +153,7 @@ void Audit::simulate(const Watched& w, double dt) {
   world_->step(dt, full_.substeps);
   simulated_s_ += dt;
   const RigidState state = world_->state(simulated_);
-  way_->sample(simulated_s_, state, energy_per_mass(*w.shape, state), world_->asleep(simulated_));
+  way_->sample(simulated_s_, state, kinetic_energy(*w.shape, state), world_->asleep(simulated_));
 }
 
 void Audit::compare(const Watched& w) {

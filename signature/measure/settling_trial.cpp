@@ -11,7 +11,9 @@
 namespace lodestone {
 namespace {
 
-constexpr int kSubsteps = 33;           // ODE steps of .505 ms in 1/60 s: the ground truth's
+// ODE steps of .505 ms in 1/60 s. The ground truth has kTruthSubsteps; one less here, so that signatures are
+// the same, to the bit, as those that people keep.
+constexpr int kSubsteps = 33;
 constexpr double kHorizon = 30.0;       // s: a rounded body rocks for long
 constexpr double kRestEnergy = 2.5e-4;  // J/kg over g R: below it for kRestTime the body rests
 constexpr double kRestTime = 0.75;      // s

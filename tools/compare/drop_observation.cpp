@@ -5,6 +5,7 @@
 
 #include "reference/drop_trial.h"
 #include "reference/error.h"
+#include "reference/free_rotation.h"
 
 namespace lodestone {
 namespace {
@@ -13,17 +14,11 @@ constexpr double kHorizon = 10.0;    // s
 constexpr double kBounceRise = 0.3;  // m/s; a resting contact rises by gΔt = .16 m/s …
 constexpr double kRestingRise =
     1.5;  // … or, between samples farther apart than 1/60 s, by this times gΔt at most
-constexpr double kRestEnergy = 2e-3;      // J/kg
 constexpr double kRestDuration = 0.25;    // s, longer than a rocking body stands still at its turning points
 constexpr double kSettledEnergy = 1e-6;   // J/kg
 constexpr double kSettledDuration = 1.0;  // s
 
 }  // namespace
-
-double kinetic_energy_per_mass(const Shape& shape, const RigidState& state) {
-  const Vec3 spin = state.orientation.conjugate() * state.angular_velocity;
-  return 0.5 * (state.velocity.squaredNorm() + spin.dot(shape.inertia_per_mass * spin));
-}
 
 DropObserver::DropObserver(const Shape& shape, const Vec3& plane_normal, double gravity_m_per_s2)
     : shape_(shape),
@@ -43,8 +38,8 @@ void DropObserver::sample(double time_s, const RigidState& state) {
           FirstImpact{last_.velocity - gravity_ * (time_s - last_time_) * Vec3::UnitZ(), state.velocity};
   }
   if (bounces_ == 1) rebound_ = std::max(rebound_, lowest_point(state));
-  const double energy = kinetic_energy_per_mass(shape_, state);
-  if (energy > kRestEnergy * scale_) rest_time_ = time_s;
+  const double energy = kinetic_energy(shape_, state);
+  if (energy > kRestEnergyPerMass * scale_) rest_time_ = time_s;
   if (energy > kSettledEnergy * scale_) last_stir_time_ = time_s;
   keep_energy(time_s, float(energy));
   if (time_s <= std::sqrt(scale_) + 1e-9) after_a_second_ = state.position;

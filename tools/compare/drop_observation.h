@@ -26,12 +26,12 @@ struct FirstImpact {
 struct DropObservation {
   int bounces = 0;  ///< pairs of successive samples between which the velocity along the normal rises by more
                     ///< than .3 m/s above free flight
-  double rest_time_s = 0;  ///< last time that the kinetic energy per mass is above 2e-3 J/kg
+  double rest_time_s = 0;  ///< last time that the kinetic energy per mass is above kRestEnergyPerMass
   double distance_m = 0;   ///< from start to end, along the plane
   double first_rebound_m =
       0;  ///< greatest height of the lowest point between the first and the second bounce; 0 without a bounce
   std::optional<FirstImpact> first_impact = {};  ///< none without a bounce
-  bool at_rest = false;                          ///< below 2e-3 J/kg for the last quarter of a second
+  bool at_rest = false;                          ///< below it for the last quarter of a second
   std::int64_t table_extrapolations =
       0;  ///< look-ups of the statistical level outside of what its signature was measured for
   Vec3 after_a_second = Vec3::Zero();  ///< m, where its centre of mass is then
@@ -74,8 +74,5 @@ class DropObserver {
   std::optional<FirstImpact> first_impact_;
   std::vector<float> kinetic_energy_;
 };
-
-/// Translational and rotational, J/kg.
-double kinetic_energy_per_mass(const Shape& shape, const RigidState& state);
 
 }  // namespace lodestone

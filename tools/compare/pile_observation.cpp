@@ -6,13 +6,13 @@
 
 #include "reference/drop_trial.h"
 #include "reference/error.h"
+#include "reference/free_rotation.h"
 #include "tools/compare/drop_observation.h"
 
 namespace lodestone {
 namespace {
 
 constexpr double kPileHorizon = 8.0;        // s
-constexpr double kPileRestEnergy = 2e-3;    // J/kg, as in drops
 constexpr double kPileRestDuration = 0.25;  // s
 constexpr double kHoverDrop = 0.05;         // over the size
 constexpr double kOverlapInterval = 0.1;    // s: a look at every pair costs more than a step
@@ -40,8 +40,8 @@ void PileObserver::observe_energy(double time_s, std::span<const RigidState> sta
   last_stir_s_.resize(states.size(), 0.0);
   double kinetic = 0.0, potential = 0.0;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    const double energy = kinetic_energy_per_mass(shape_, states[i]);
-    if (energy > kPileRestEnergy * scale_) last_stir_s_[i] = time_s;
+    const double energy = kinetic_energy(shape_, states[i]);
+    if (energy > kRestEnergyPerMass * scale_) last_stir_s_[i] = time_s;
     kinetic += energy / double(states.size());
     potential += gravity_ * states[i].position.z() / double(states.size());
   }

@@ -13,9 +13,8 @@ namespace lodestone {
 struct PileObservation {
   std::vector<double> kinetic_energy;  ///< per mass, J/kg, mean of the bodies, each kObservationStep; between
                                        ///< the samples of longer steps on a line
-  double sleep_time_s =
-      0;  ///< mean over the bodies of the last time that the kinetic energy per mass is above 2e-3 J/kg
-  double mean_height_m = 0;         ///< of the centres of mass, at the end
+  double sleep_time_s = 0;   ///< mean over the bodies of the last time that this is above kRestEnergyPerMass
+  double mean_height_m = 0;  ///< of the centres of mass, at the end
   double max_penetration_m = 0;     ///< greatest of any pair and any body in a plane, at any time
   double end_penetration_m = 0;     ///< the same at the end
   double median_penetration_m = 0;  ///< of the pairs that overlap at the end

@@ -7,6 +7,7 @@
 #include "lod/manager.h"
 #include "reference/ode/ode_world.h"
 #include "reference/shape.h"
+#include "scenes/run_measures.h"
 
 namespace lodestone {
 
@@ -32,12 +33,6 @@ inline Manager make_unmeasured_manager() {
   return Manager({.policy = {}, .signatures = [](const Shape&, const ContactLaw&) {
                     return std::shared_ptr<const Signature>();
                   }});
-}
-
-/// J, of one body.
-inline double kinetic_energy(const Shape& shape, double mass, const RigidState& state) {
-  const Vec3 spin = state.orientation.conjugate() * state.angular_velocity;
-  return 0.5 * mass * (state.velocity.squaredNorm() + spin.dot(shape.inertia_per_mass * spin));
 }
 
 /// kg m²/s, about the body's own centre of mass, in the world.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "reference/free_rotation.h"
 #include "reference/ode/ode_world.h"
 #include "reference/random.h"
 #include "tools/hard_cases/case_parts.h"
@@ -131,10 +132,7 @@ struct Figures {
 };
 
 double energy_of(const Shape& shape, const RigidState& state) {  // J
-  const Vec3 spin = state.orientation.conjugate() * state.angular_velocity;
-  return kDensity * shape.volume *
-         (0.5 * (state.velocity.squaredNorm() + spin.dot(shape.inertia_per_mass * spin)) +
-          kGravity * state.position.z());
+  return kDensity * shape.volume * (kinetic_energy(shape, state) + kGravity * state.position.z());
 }
 
 /// In layers of a square, a little more than a body's diameter apart.

@@ -224,7 +224,6 @@ namespace flat_landings {
 
 constexpr int kTrials = 200;
 constexpr double kSeconds = 4.0;
-constexpr int kTruthSubsteps = 34;
 const double kFlat = std::cos(std::numbers::pi / 180.0);
 
 /// On one of its faces, level, its heading drawn, .3 to .8 m above the plane, without any motion.

@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "reference/argument_error.h"
+#include "reference/drop_trial.h"
 #include "tools/terminal.h"
 
 namespace lodestone {
 namespace {
 
-constexpr int kTruthSubsteps = 34;
 constexpr int kLowFaces = 194;  // the paper's low-resolution bunny
 constexpr int kSphereCount = 7;
 
