@@ -72,13 +72,7 @@ ManagerSettings settings_of(const lodestone_settings* given) {
       enumerator(s.signature_timing, SignatureTiming::in_background, "signature_timing");
   settings.policy = policy_of(s.policy);
   settings.audit_ms = s.audit_ms;
-  settings.tables = {.interpolate = s.tables.interpolate,
-                     .draw_height = s.tables.draw_height,
-                     .radius_update_interval = s.tables.radius_update_interval,
-                     .rest_poses = s.tables.rest_poses,
-                     .nearest_rest_pose = s.tables.nearest_rest_pose,
-                     .paper_pair_rule = s.tables.paper_pair_rule,
-                     .published = s.tables.published};
+  settings.tables = tables(s.tables);
   if (s.signatures)
     settings.signatures = [s](const Shape& shape, const ContactLaw& law) {
       const lodestone_signature* found =
@@ -187,13 +181,7 @@ lodestone_settings lodestone_default_settings(void) {
   settings.full_substeps = s.full_substeps;
   settings.sleeping = s.sleeping;
   settings.sleep_speed = s.sleep.speed, settings.sleep_time = s.sleep.time;
-  settings.tables = {.interpolate = s.tables.interpolate,
-                     .draw_height = s.tables.draw_height,
-                     .radius_update_interval = s.tables.radius_update_interval,
-                     .rest_poses = s.tables.rest_poses,
-                     .nearest_rest_pose = s.tables.nearest_rest_pose,
-                     .paper_pair_rule = s.tables.paper_pair_rule,
-                     .published = s.tables.published};
+  settings.tables = tables(s.tables);
   settings.policy = lodestone_default_policy();
   settings.audit_ms = s.audit_ms;
   settings.events = {s.events.all_bodies, s.events.least_speed, s.events.least_impulse};

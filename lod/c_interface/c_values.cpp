@@ -40,6 +40,21 @@ lodestone_properties properties(const BodyProperties& p) {
           p.allow_sleep, p.linear_damping, p.angular_damping, p.max_angular_speed};
 }
 
+TablesOptions tables(const lodestone_tables_options& o) {
+  return {.interpolate = o.interpolate,
+          .draw_height = o.draw_height,
+          .radius_update_interval = o.radius_update_interval,
+          .rest_poses = o.rest_poses,
+          .nearest_rest_pose = o.nearest_rest_pose,
+          .paper_pair_rule = o.paper_pair_rule,
+          .published = o.published};
+}
+
+lodestone_tables_options tables(const TablesOptions& o) {
+  return {o.interpolate,     o.draw_height, o.radius_update_interval, o.rest_poses, o.nearest_rest_pose,
+          o.paper_pair_rule, o.published};
+}
+
 lodestone_color color(const DebugColor& color) { return {color.red, color.green, color.blue}; }
 DebugColor color(const lodestone_color& color) { return {color.red, color.green, color.blue}; }
 

@@ -101,6 +101,8 @@ inline lodestone_state state(const RigidState& s) {
 }
 BodyProperties properties(const lodestone_properties& p);
 lodestone_properties properties(const BodyProperties& p);
+TablesOptions tables(const lodestone_tables_options& o);
+lodestone_tables_options tables(const TablesOptions& o);
 lodestone_color color(const DebugColor& color);
 DebugColor color(const lodestone_color& color);
 lodestone_contact_side side(const ContactSide& side);

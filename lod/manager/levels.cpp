@@ -35,6 +35,13 @@ RigidState Levels::state(std::uint32_t body) const {
   return bodies.newcomer(body).state;
 }
 
+std::array<double, 15> Levels::numbers_of(std::uint32_t body) const {
+  const auto [x, q, v, w] = state(body);
+  const bool is_full(bodies[body].ode), sleeps = asleep(body);
+  return {x.x(), x.y(), x.z(), q.w(), q.x(), q.y(),           q.z(),         v.x(),
+          v.y(), v.z(), w.x(), w.y(), w.z(), double(is_full), double(sleeps)};
+}
+
 bool Levels::asleep(std::uint32_t body) const {
   const BodyRecord& record = bodies[body];
   if (record.ode) return full.world()->asleep(record.ode);

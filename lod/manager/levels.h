@@ -2,6 +2,7 @@
 // rung.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -59,6 +60,9 @@ struct Levels {
   std::array<RungError, kRungs> errors_of(std::uint32_t body, Activity does) const;
 
   RigidState state(std::uint32_t body) const;
+  /// What hashes of its state are of: position, orientation (w first), velocity, angular velocity, whether it
+  /// is full, whether it sleeps.
+  std::array<double, 15> numbers_of(std::uint32_t body) const;
   bool asleep(std::uint32_t body) const;
   /// Wakes the body and what was near it.
   void set_state(std::uint32_t body, const RigidState& state);

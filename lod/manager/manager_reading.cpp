@@ -76,11 +76,7 @@ std::uint64_t Manager::state_hash() const {
   const Levels& levels = impl_->levels;
   std::uint64_t hash = 0;
   for (const std::uint32_t body : levels.bodies.in_order_of_creation()) {
-    const auto [x, q, v, w] = levels.state(body);
-    const bool full(levels.bodies[body].ode), asleep = levels.asleep(body);
-    const std::array<double, 15> numbers{x.x(), x.y(), x.z(), q.w(),        q.x(),
-                                         q.y(), q.z(), v.x(), v.y(),        v.z(),
-                                         w.x(), w.y(), w.z(), double(full), double(asleep)};
+    const std::array<double, 15> numbers = levels.numbers_of(body);
     hash = XXH64(numbers.data(), sizeof numbers, hash);
   }
   return hash;

@@ -32,22 +32,7 @@ std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::sha
 std::vector<std::uint32_t> body_hashes(const Levels& levels) {
   std::vector<std::uint32_t> hashes;
   for (const std::uint32_t body : levels.bodies.in_order_of_creation()) {
-    const auto [x, q, v, w] = levels.state(body);
-    const std::array<double, 15> numbers{x.x(),
-                                         x.y(),
-                                         x.z(),
-                                         q.w(),
-                                         q.x(),
-                                         q.y(),
-                                         q.z(),
-                                         v.x(),
-                                         v.y(),
-                                         v.z(),
-                                         w.x(),
-                                         w.y(),
-                                         w.z(),
-                                         double(bool(levels.bodies[body].ode)),
-                                         double(levels.asleep(body))};
+    const std::array<double, 15> numbers = levels.numbers_of(body);
     hashes.push_back(std::uint32_t(XXH64(numbers.data(), sizeof numbers, 0)));
   }
   return hashes;

@@ -42,6 +42,17 @@ TEST(CValues, GoThereAndBack) {
                            .allow_sleep = false};
   EXPECT_TRUE(properties(properties(own)) == own);
   EXPECT_TRUE(properties(lodestone_default_properties()) == BodyProperties{});
+  // One at a time: each is true once.
+  constexpr bool TablesOptions::*kOptions[] = {
+      &TablesOptions::interpolate,       &TablesOptions::draw_height,     &TablesOptions::rest_poses,
+      &TablesOptions::nearest_rest_pose, &TablesOptions::paper_pair_rule, &TablesOptions::published};
+  for (const auto option : kOptions) {
+    TablesOptions options{.interpolate = false, .radius_update_interval = 3, .rest_poses = false};
+    options.*option = true;
+    const TablesOptions back = tables(tables(options));
+    for (const auto other : kOptions) EXPECT_EQ(back.*other, other == option);
+    EXPECT_EQ(back.radius_update_interval, 3);
+  }
   EXPECT_EQ(vec3(vec3(Vec3(1, 2, 3))), Vec3(1, 2, 3));
   const Quat turn = Quat(1, 2, 3, 4).normalized();
   EXPECT_EQ(quat(quat(turn)).coeffs(), turn.coeffs());
