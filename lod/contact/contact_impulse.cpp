@@ -40,17 +40,16 @@ Mat3 contact_frame(const Vec3& normal, const Vec3& velocity) {
   return frame;
 }
 
-ContactImpulse respond_contact(const Mat3& response, const Vec3& normal, const Vec3& velocity,
-                               const ContactLaw& law) {
+Vec3 respond_contact(const Mat3& response, const Vec3& normal, const Vec3& velocity, const ContactLaw& law) {
   const double approach = velocity.dot(normal);
-  if (!(approach < 0.0)) return {};
+  if (!(approach < 0.0)) return Vec3::Zero();
   const double target = -law.restitution * approach;  // normal velocity afterwards
   const double bound =
       law.friction * (target - approach) / normal.dot(response * normal);  // μ × frictionless normal impulse
   // Most hits stick, and then the frame of the slip does not matter.
   const Vec3 stop = response.inverse() * (target * normal - velocity);
   const double along = stop.dot(normal);
-  if (along >= 0.0 && (stop - along * normal).squaredNorm() < bound * bound) return {stop, true};
+  if (along >= 0.0 && (stop - along * normal).squaredNorm() < bound * bound) return stop;
 
   const Mat3 frame = contact_frame(normal, velocity);
   const Mat3 k = frame.transpose() * response * frame;
@@ -95,7 +94,7 @@ ContactImpulse respond_contact(const Mat3& response, const Vec3& normal, const V
     }
     if (violation <= tolerance) break;
   }
-  return {frame * best, std::abs(best[1]) < bound && std::abs(best[2]) < bound};
+  return frame * best;
 }
 
 }  // namespace lodestone

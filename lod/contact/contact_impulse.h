@@ -18,15 +18,10 @@ Mat3 contact_response_matrix(double inverse_mass, const Mat3& inverse_inertia_wo
 /// tangent (a fixed function of the normal).
 Mat3 contact_frame(const Vec3& normal, const Vec3& velocity);
 
-struct ContactImpulse {
-  Vec3 impulse = Vec3::Zero();  ///< N s (or per mass), world frame, on the body the normal points into
-  bool sticks = false;  ///< friction inside its bounds: the contact point ends at rest along the surface
-};
-
-/// Impulse that turns the contact velocity `velocity` (of the body relative to what it hits; approaching
-/// means velocity·normal < 0) into normal velocity −restitution × velocity·normal. `response` as from
-/// contact_response_matrix, world frame. Zero for a separating contact.
-ContactImpulse respond_contact(const Mat3& response, const Vec3& normal, const Vec3& velocity,
-                               const ContactLaw& law);
+/// Impulse (N s, or per mass; world frame; on the body the normal points into) that turns the contact
+/// velocity `velocity` (of the body relative to what it hits; approaching means velocity·normal < 0) into
+/// normal velocity −restitution × velocity·normal. `response` as from contact_response_matrix, world frame.
+/// Zero for a separating contact.
+Vec3 respond_contact(const Mat3& response, const Vec3& normal, const Vec3& velocity, const ContactLaw& law);
 
 }  // namespace lodestone

@@ -345,17 +345,6 @@ void shift(PairContact& contact, const Vec3& by) {
 
 }  // namespace
 
-std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin) {
-  const Vec3 between = first.position - second.position;
-  const double distance = between.norm(), gap = distance - first.sphere_radius - second.sphere_radius;
-  if (gap > margin) return {};
-  const Vec3 normal = distance > 1e-12 ? Vec3(between / distance) : Vec3::UnitZ();
-  PairContact contact{normal, gap, {}};
-  contact.manifold.points[0] = {second.position + (second.sphere_radius + 0.5 * gap) * normal, gap};
-  contact.manifold.count = 1;
-  return contact;
-}
-
 PairPose pose_of(const PairBody& first, const PairBody& second) {
   return {(first.position - second.position).cast<float>(), first.orientation.coeffs().cast<float>(),
           second.orientation.coeffs().cast<float>()};

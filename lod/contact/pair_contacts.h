@@ -16,7 +16,6 @@ struct PairBody {
   const Shape* shape = nullptr;
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
-  double sphere_radius = 0.0;  ///< m, `tables`: of the colliding sphere
 };
 
 /// One of its convex pieces; the body itself where it has none.
@@ -27,9 +26,6 @@ struct PairContact {
   double gap = 0.0;             ///< m, the least; negative where they overlap
   Manifold manifold;            ///< one to four points that both bodies share, world
 };
-
-/// `tables`: the two spheres. None where the gap is above `margin`.
-std::optional<PairContact> find_sphere_contact(const PairBody& first, const PairBody& second, double margin);
 
 inline constexpr double kTakenAlong = 0.02;  // over the lesser R: so far bodies take a contact along
 

@@ -77,7 +77,7 @@ void respond_alone(StatisticalBody& body, const Shape& shape, const LowestPoint&
   const Vec3 spin = to_body * body.spin;
   const Vec3 velocity = to_body * body.velocity + (shape.inverse_inertia_per_mass * spin).cross(lowest.arm);
   const Mat3 response = contact_response_matrix(1.0, shape.inverse_inertia_per_mass, lowest.arm);
-  Vec3 impulse = respond_contact(response, lowest.normal, velocity, law).impulse;
+  Vec3 impulse = respond_contact(response, lowest.normal, velocity, law);
   const double linear = impulse.dot(velocity), square = impulse.dot(response * impulse);
   if (linear + 0.5 * square > 1e-12 * square) {
     impulse *= std::clamp(-2.0 * linear / square, 0.0, 1.0);

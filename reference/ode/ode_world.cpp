@@ -281,6 +281,5 @@ const OdeCounters& OdeWorld::counters() const {
 
 const OdeTimes& OdeWorld::times() const { return impl_->times; }
 dxWorld* OdeWorld::ode_world() const { return impl_->world; }
-dxSpace* OdeWorld::ode_space() const { return impl_->collision.broad_phase().bodies_space(); }
 
 }  // namespace lodestone

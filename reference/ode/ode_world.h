@@ -171,8 +171,8 @@ class OdeWorld {
   /// caller's to make, before step(), and last all its substeps. So do forces that he gives his bodies (see
   /// include_body). Of `settings` those of a whole world (gravity, QuickStep's iterations) are left as the
   /// caller has them. His space may be of any type and change at any time between steps. Our geoms are in a
-  /// space of their own that his knows nothing of (cast rays into ode_space() to meet them); the caller must
-  /// not collide trimeshes on another thread meanwhile.
+  /// space of their own that his knows nothing of; the caller must not collide trimeshes on another thread
+  /// meanwhile.
   OdeWorld(dxWorld* world, dxSpace* space, const OdeSettings& settings, const MaterialTable& materials);
   ~OdeWorld();
   OdeWorld(OdeWorld&&) noexcept;
@@ -262,7 +262,6 @@ class OdeWorld {
   const OdeCounters& counters() const;
   const OdeTimes& times() const;
   dxWorld* ode_world() const;  ///< an own world is stepped only while a body of this OdeWorld's is awake
-  dxSpace* ode_space() const;  ///< dSpaceID that holds this world's bodies
 
  private:
   struct Impl;

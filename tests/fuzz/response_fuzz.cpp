@@ -63,14 +63,14 @@ void hit(fuzz::FuzzInput& input) {
           .hull.vertices[std::size_t(find_support(shape().hull, s.orientation.conjugate() * Vec3(0, 0, -1)))];
   const Vec3 approach = s.velocity + s.angular_velocity.cross(arm);
   const Mat3 inverse_inertia = inverse_inertia_world(s.orientation, shape());
-  const ContactImpulse impulse =
+  const Vec3 impulse =
       respond_contact(contact_response_matrix(1.0, inverse_inertia, arm), Vec3::UnitZ(), approach, law);
   RigidState after = s;
-  after.velocity += impulse.impulse;
-  after.angular_velocity += inverse_inertia * arm.cross(impulse.impulse);
+  after.velocity += impulse;
+  after.angular_velocity += inverse_inertia * arm.cross(impulse);
   const Vec3 leaving = after.velocity + after.angular_velocity.cross(arm);
   const double scale = 1.0 + s.velocity.norm() + s.angular_velocity.norm();
-  fuzz::require(impulse.impulse.allFinite() && impulse.impulse.z() >= -1e-9 * scale, "an impulse that pulls");
+  fuzz::require(impulse.allFinite() && impulse.z() >= -1e-9 * scale, "an impulse that pulls");
   fuzz::require(std::abs(leaving.z() - (approach.z() < 0.0 ? -law.restitution * approach.z()
                                                            : approach.z())) < 1e-9 * scale,
                 "another rebound than restitution says");

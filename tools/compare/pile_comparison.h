@@ -48,7 +48,6 @@ struct PileComparison {
   int pile_count = 0;
   int truth_substeps = 0, truth_iterations = 0;
   PileFigures truth = {}, floor = {};  ///< batch A beside itself; B beside A
-  double truth_momentum_residual = 0;
   std::vector<PileObservation> truth_a = {}, truth_b = {};
   std::vector<PileRow> rows = {};
 };
