@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -54,14 +55,16 @@ class StateArchive {
       if (count > 0) std::memcpy(bytes_.data() + before, at, count);
       return;
     }
-    if (count > left_.size()) throw InputError("a snapshot ends early");
+    if (count > left_.size()) throw_input_error("state", "its end in the middle of a value", "more bytes");
     if (count > 0) std::memcpy(at, left_.data(), count);
     left_ = left_.subspan(count);
   }
   std::size_t take_count(std::size_t count) {
     auto wide = std::uint64_t(count);
     take_bytes(&wide, sizeof wide);
-    if (reading_ && wide > left_.size()) throw InputError("a snapshot has a list that is longer than it");
+    if (reading_ && wide > left_.size())
+      throw_input_error("state", "a list of " + std::to_string(wide),
+                        "one of at most the " + std::to_string(left_.size()) + " bytes that follow");
     return std::size_t(wide);
   }
 
@@ -128,7 +131,8 @@ class StateArchive {
       if (known == shapes_.end()) shapes_.push_back(shape);
     }
     take(number);
-    if (number > shapes_.size()) throw InputError("a snapshot names a shape that it has not");
+    if (number > shapes_.size())
+      throw_input_error("state", "shape " + std::to_string(number), "0 … " + std::to_string(shapes_.size()));
     if (reading_) shape = number == 0 ? nullptr : shapes_[number - 1];
   }
 

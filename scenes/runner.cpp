@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 
 #include "lod/timing/thread_clock.h"
 #include "reference/argument_error.h"
@@ -481,7 +482,17 @@ ReplayResult replay_scene(const Scene& scene, const RunSettings& settings,
   Manager manager = make_manager(scene, settings, settings.signatures);
   std::vector<std::shared_ptr<const Shape>> shapes;
   for (const auto& [name, shape] : scene.shapes) shapes.push_back(shape);
-  return manager.replay(bytes_of(recording), shapes);
+  const auto bytes = bytes_of(recording);
+  try {
+    return manager.replay(bytes, shapes);
+  } catch (const InputError& error) {
+    // The recording, and the snapshot that it begins with, are this file.
+    const std::string_view text = error.what();
+    for (const std::string_view where : {"recording: ", "snapshot: ", "state: "})
+      if (text.starts_with(where))
+        throw InputError(fmt::format("{}: {}", recording.string(), text.substr(where.size())));
+    throw;
+  }
 }
 
 }  // namespace lodestone

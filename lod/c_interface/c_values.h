@@ -51,7 +51,7 @@ lodestone_result guarded(const Act& act) noexcept {
 
 template <class T>
 T& need(T* pointer, const char* what) {
-  if (!pointer) throw InputError(std::string(what) + ": found null");
+  if (!pointer) throw_input_error(what, "null", "an address");
   return *pointer;
 }
 inline Manager& of(lodestone_manager* manager) { return need(manager, "manager").manager; }

@@ -9,6 +9,19 @@
 #include "reference/error.h"
 
 namespace lodestone {
+namespace {
+
+// Why bodies make no group.
+std::string words_of_refused(std::span<const std::uint32_t> bodies, const Groups& groups) {
+  for (auto body = bodies.begin(); body != bodies.end(); ++body) {
+    if (std::find(bodies.begin(), body, *body) != body) return fmt::format("body {} twice", *body);
+    if (groups.of(*body)) return fmt::format("body {}, which is in a group already", *body);
+  }
+  return "no body";
+}
+
+}  // namespace
+
 PolicySettings::~PolicySettings() = default;
 
 void Manager::set_policy(const PolicySettings& policy) {
@@ -49,11 +62,13 @@ void Manager::set_rung_range(BodyId body, Rung least, Rung greatest) {
 
 GroupId Manager::make_group(std::span<const BodyId> bodies, GroupJoints joints) {
   if (bool(joints.before_demotion) != bool(joints.after_promotion))
-    throw InputError("a group's joints: expected both functions or none");
+    throw_input_error("a group's joints", "one function alone", "both or none");
   std::vector<std::uint32_t> members;
   for (const BodyId body : bodies) members.push_back(impl_->index_of(body));
   const GroupId group = impl_->choose.groups().make(members, std::move(joints));
-  if (!group) throw InputError("a group: expected at least one body, none twice and none in another group");
+  if (!group)
+    throw_input_error("a group", words_of_refused(members, impl_->choose.groups()),
+                      "at least one body, none twice and none in another group");
   for (const std::uint32_t member : members) impl_->choose.note(member);
   if (impl_->recorder.on())
     impl_->recorder.note(Call::make_group, std::vector<BodyId>(bodies.begin(), bodies.end()));
@@ -63,7 +78,10 @@ GroupId Manager::make_group(std::span<const BodyId> bodies, GroupJoints joints) 
 void Manager::dissolve_group(GroupId group) {
   Groups& groups = impl_->choose.groups();
   if (!groups.valid(group))
-    throw InputError("a group's id: expected one that make_group returned and that was not dissolved");
+    throw InputError(fmt::format(
+        "a group's id: found index {}, generation {}, expected one that make_group returned and that was not "
+        "dissolved",
+        group.index, group.generation));
   impl_->changes.keep_moved();
   if (groups.detached(group)) groups.bring_back(group, Groups::Return::asleep);
   for (const std::uint32_t member : groups.members(group)) impl_->choose.note(member);

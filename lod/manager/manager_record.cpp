@@ -18,7 +18,7 @@ class Chunks {
   explicit Chunks(std::span<const std::byte> bytes) : left_(bytes) {
     if (left_.size() < kRecordingMagic.size() ||
         std::memcmp(left_.data(), kRecordingMagic.data(), kRecordingMagic.size()) != 0)
-      throw InputError("no recording: it begins otherwise");
+      throw_input_error("recording", "no LODEREC3 at its beginning", "what set_record() writes");
     left_ = left_.subspan(kRecordingMagic.size());
   }
   bool next() {
@@ -26,22 +26,26 @@ class Chunks {
     if (left_.size() < sizeof head) return breaks_off_ = !left_.empty(), false;
     std::memcpy(&head, left_.data(), sizeof head);
     left_ = left_.subspan(sizeof head);
-    if (!head.has_true_length()) throw InputError(damage());
+    if (!head.has_true_length()) throw_damage();
     if (head.length > left_.size()) return breaks_off_ = true, false;
     chunk_ = left_.first(head.length);
     left_ = left_.subspan(head.length);
-    if (!head.fits(chunk_)) throw InputError(damage());
-    ++number_;
+    if (!head.fits(chunk_)) throw_damage();
+    ++number_, place_ += sizeof head + head.length;
     return true;
   }
-  /// Of the chunk that is being read, or was to be read next.
-  std::string damage() const { return fmt::format("the recording is damaged in its chunk {}", number_); }
   StateArchive chunk() const { return {chunk_, {}}; }
   bool breaks_off() const { return breaks_off_; }  ///< known once there is no next one
 
  private:
+  [[noreturn]] void throw_damage() const {
+    throw_input_error("recording", fmt::format("damage in chunk {}, at byte {}", number_, place_),
+                      "bytes of its checksum");
+  }
+
   std::span<const std::byte> left_, chunk_;
-  int number_ = 1;
+  int number_ = 1;                              // of the chunk that is read or comes next
+  std::size_t place_ = kRecordingMagic.size();  // bytes before it
   bool breaks_off_ = false;
 };
 
@@ -58,11 +62,12 @@ PolicySettings read_policy(StateArchive& chunk, const PolicySettings& readers) {
   chunk(recorded);
   PolicySettings& policy = recorded.settings;
   if (policy.policy.index() >= std::variant_size_v<decltype(policy.policy)>)
-    throw InputError("the recording is damaged");
+    throw_input_error("recording", fmt::format("a policy of kind {}", policy.policy.index()),
+                      fmt::format("0 … {}", std::variant_size_v<decltype(policy.policy)> - 1));
   const auto check = [](bool has, std::string_view what) {
     if (!has)
-      throw InputError(fmt::format(
-          "the recording sets a policy with a function for `{}`: expected one in the manager's own", what));
+      throw_input_error("recording", fmt::format("a policy with a function for `{}`", what),
+                        "one in the manager's own policy");
   };
   if (recorded.visible) check(bool(policy.visible = readers.visible), "visible");
   if (recorded.significance) check(bool(policy.significance = readers.significance), "significance");
@@ -104,9 +109,7 @@ void Manager::Impl::do_call(Manager& manager, Call call, StateArchive& chunk,
             definition.least_rung, definition.greatest_rung);
       definition.shape = find_shape(name, shapes, levels.bodies);
       if (!definition.shape)
-        throw InputError(
-            fmt::format("the recording adds a body of a shape that is not here: content {:016x}, radius {} m",
-                        name.content_hash, name.radius));
+        throw_input_error("recording", words_of(name), "a shape that is given, or that a body here has");
       manager.add_body(definition);
       return;
     }
@@ -184,7 +187,9 @@ ReplayResult Manager::replay(std::span<const std::byte> recording,
     StateArchive chunk = chunks.chunk();
     Call call = Call::begin;
     chunk(call);
-    if (call > kLastCall || (!begun && call != Call::begin)) throw InputError("the recording is damaged");
+    if (call > kLastCall || (!begun && call != Call::begin))
+      throw_input_error("recording", fmt::format("call {}", int(call)),
+                        begun ? fmt::format("0 … {}", int(kLastCall)) : "a snapshot at its beginning");
     begun = true;
     if (call != Call::step && call != Call::callers_step) {
       impl_->do_call(*this, call, chunk, shapes);
@@ -208,7 +213,7 @@ ReplayResult Manager::replay(std::span<const std::byte> recording,
                                        bodies(), recorded.size());
     return result;
   }
-  if (!begun) throw InputError("the recording has no beginning");
+  if (!begun) throw_input_error("recording", "no beginning", "the snapshot that it begins with");
   result.text = result.steps == 0 ? "no step is recorded"
                                   : fmt::format("all {} steps are as they were recorded", result.steps);
   if (chunks.breaks_off()) result.text += "; the recording breaks off after that";

@@ -65,18 +65,21 @@ Circumstances circumstances_of(const Levels& levels, bool callers_world) {
 }
 
 void check_alike(const Circumstances& written, const Circumstances& here) {
-  const auto check = [](bool alike, std::string_view what) {
-    if (!alike) throw InputError(fmt::format("the snapshot is of a manager with {}", what));
+  const auto check = [](bool alike, std::string_view found, std::string_view expected) {
+    if (!alike)
+      throw_input_error("snapshot", fmt::format("one of a manager with {}", found),
+                        fmt::format("one with {}", expected));
   };
-  check(written.callers_world == here.callers_world,
-        written.callers_world ? "a world of the caller's" : "a world of its own");
-  check(written.seed == here.seed, fmt::format("seed {}, not {}", written.seed, here.seed));
-  check(written.sleeping == here.sleeping, written.sleeping ? "sleeping" : "no sleeping");
-  check(written.gravity == here.gravity, "another gravity");
-  check(written.materials == here.materials, "other materials");
-  check(written.planes == here.planes, "other planes");
-  check(written.parts == here.parts,
-        fmt::format("{} static boxes and meshes, not {}", written.parts, here.parts));
+  const auto world = [](bool callers) { return callers ? "a world of the caller's" : "a world of its own"; };
+  const auto sleep = [](bool sleeping) { return sleeping ? "sleeping" : "no sleeping"; };
+  check(written.callers_world == here.callers_world, world(written.callers_world), world(here.callers_world));
+  check(written.seed == here.seed, fmt::format("seed {}", written.seed), fmt::format("seed {}", here.seed));
+  check(written.sleeping == here.sleeping, sleep(written.sleeping), sleep(here.sleeping));
+  check(written.gravity == here.gravity, "another gravity", "the gravity here");
+  check(written.materials == here.materials, "other materials", "the materials here");
+  check(written.planes == here.planes, "other planes", "the planes here");
+  check(written.parts == here.parts, fmt::format("{} static boxes and meshes", written.parts),
+        fmt::format("the {} here", here.parts));
 }
 
 std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
@@ -84,18 +87,24 @@ std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(by
 Header read_header(std::span<const std::byte> bytes) {
   Header header;
   const Header expected;
-  if (bytes.size() < sizeof header) throw InputError("no snapshot: too short");
+  if (bytes.size() < sizeof header)
+    throw_input_error("snapshot", fmt::format("{} bytes", bytes.size()),
+                      fmt::format("at least the {} of its header", sizeof header));
   std::memcpy(static_cast<void*>(&header), bytes.data(), sizeof header);
-  if (header.magic != expected.magic) throw InputError("no snapshot: it begins otherwise");
+  if (header.magic != expected.magic)
+    throw_input_error("snapshot", "no LODESNAP at its beginning", "what snapshot() returns");
   if (header.format != expected.format || header.version != expected.version ||
       header.layout != expected.layout)
-    throw InputError(fmt::format("the snapshot is of another build of Lodestone (format {}, version {})",
-                                 header.format, header.version));
+    throw_input_error(
+        "snapshot",
+        fmt::format("one of another build of Lodestone (format {}, version {})", header.format,
+                    header.version),
+        fmt::format("one of this build (format {}, version {})", expected.format, expected.version));
   const std::size_t left = bytes.size() - sizeof header;
   if (header.shapes > left / sizeof(ShapeName) || header.bytes != left - header.shapes * sizeof(ShapeName))
-    throw InputError("the snapshot is not whole");
+    throw_input_error("snapshot", fmt::format("{} bytes", bytes.size()), "as many as its header says");
   if (header.checksum != checksum(bytes.subspan(sizeof header)))
-    throw InputError("the snapshot is damaged: its checksum is another");
+    throw_input_error("snapshot", "another checksum than its header has", "undamaged bytes");
   return header;
 }
 
@@ -108,9 +117,7 @@ Shapes find_shapes(std::span<const std::byte> bytes, std::size_t count,
     std::memcpy(&name, bytes.data() + i * sizeof name, sizeof name);
     found.push_back(find_shape(name, given, bodies));
     if (!found.back())
-      throw InputError(
-          fmt::format("the snapshot has bodies of a shape that is not here: content {:016x}, radius {} m",
-                      name.content_hash, name.radius));
+      throw_input_error("snapshot", words_of(name), "a shape that is given, or that a body here has");
   }
   return found;
 }
@@ -136,10 +143,11 @@ std::vector<std::shared_ptr<const Signature>> archive_signatures(StateArchive& a
     found.push_back(levels.signatures.find(*one.shape, one.law));
     if (found.back() && !(one.tables && found.back()->collision_heights.mean.empty())) continue;
     throw InputError(fmt::format(
-        "the snapshot has bodies that move by the signature of shape {} (restitution {}, friction {}): found "
-        "{}",
+        "snapshot: the signature of shape {} (restitution {}, friction {}), by which bodies move: found {}, "
+        "expected one{}",
         one.shape->name, one.law.restitution, one.law.friction,
-        found.back() ? "one without collision heights, which tables needs" : "none here"));
+        found.back() ? "one without collision heights" : "none here",
+        one.tables ? " with collision heights, which tables needs" : ""));
   }
   return found;
 }

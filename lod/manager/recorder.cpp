@@ -1,5 +1,6 @@
 #include "lod/manager/recorder.h"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <algorithm>
@@ -19,6 +20,11 @@ ChunkHead ChunkHead::of(std::span<const std::byte> chunk) {
 }
 
 bool ChunkHead::has_true_length() const { return length_hash == hash_of(length); }
+
+std::string words_of(ShapeName name) {
+  return fmt::format("a body of a shape that is not here (content {:016x}, radius {} m)", name.content_hash,
+                     name.radius);
+}
 
 std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given,
                                         const BodyTable& bodies) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <exception>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lod/manager/levels.h"
@@ -66,6 +67,8 @@ struct ShapeName {
   friend bool operator==(const ShapeName&, const ShapeName&) = default;
 };
 inline ShapeName name_of(const Shape& shape) { return {shape.content_hash, shape.radius}; }
+/// Of one that is not to be found.
+std::string words_of(ShapeName name);
 /// Among those given and those of bodies; null where there is none.
 std::shared_ptr<const Shape> find_shape(ShapeName name, std::span<const std::shared_ptr<const Shape>> given,
                                         const BodyTable& bodies);

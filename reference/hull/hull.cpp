@@ -192,7 +192,9 @@ Hull make_hull(std::span<const Vec3> points) {
   if (points.size() < 4)
     throw InputError(fmt::format("hull: found {} points, expected at least 4", points.size()));
   for (const Vec3& point : points)
-    if (!point.allFinite()) throw InputError("hull: found a coordinate that is not finite");
+    if (!point.allFinite())
+      throw InputError(fmt::format("hull: found a point at ({}, {}, {}), expected finite ones", point.x(),
+                                   point.y(), point.z()));
   Hull hull = make_raw_hull(points);
   for (auto corners = drop_flat_vertices(hull); corners.size() < hull.vertices.size();
        corners = drop_flat_vertices(hull)) {

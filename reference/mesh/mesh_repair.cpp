@@ -28,7 +28,8 @@ double extent_of(const Mesh& mesh) {
 void require_sound_numbers(const Mesh& mesh, const std::string& name) {
   const auto bad =
       std::count_if(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& v) { return !v.allFinite(); });
-  if (bad > 0) throw InputError(fmt::format("{}: found {} vertices that are not finite", name, bad));
+  if (bad > 0)
+    throw InputError(fmt::format("{}: found {} vertices that are not finite, expected none", name, bad));
   const auto is_outside = [&](int i) { return i < 0 || i >= int(mesh.vertices.size()); };
   const auto wrong = std::count_if(mesh.faces.begin(), mesh.faces.end(), [&](const auto& f) {
     return std::any_of(f.begin(), f.end(), is_outside);

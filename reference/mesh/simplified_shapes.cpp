@@ -82,8 +82,9 @@ Mesh simplify_mesh(const Mesh& mesh, int faces, double* error_m) {
   if (int(simplified.faces.size()) > faces) simplified = collapse_edges(simplified, faces, &safe_error);
   simplified = repair_mesh(std::move(simplified), "simplified mesh");
   if (int(simplified.faces.size()) > 1.1 * faces)
-    throw InputError(fmt::format("faces: found {}, but this mesh keeps its form only down to {}", faces,
-                                 simplified.faces.size()));
+    throw InputError(
+        fmt::format("faces: found {}, expected at least the {} with which this mesh keeps its form", faces,
+                    simplified.faces.size()));
   for (Vec3& vertex : simplified.vertices) vertex = whole.middle + whole.size * vertex;
   if (error_m) *error_m = (fast_error + safe_error) * whole.size;
   return simplified;

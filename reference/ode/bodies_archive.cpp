@@ -1,6 +1,7 @@
 // The bodies of an OdeWorld as bytes, and back to the bit: what ODE keeps of each and what is kept beside it.
 #include <algorithm>
 
+#include "reference/error.h"
 #include "reference/ode/bodies_ode.h"
 #include "reference/ode/geometry_ode.h"
 #include "reference/state_archive.h"
@@ -114,8 +115,8 @@ void Bodies::archive(StateArchive& a, dWorldID world, const OdeSettings& setting
   if (!std::ranges::equal(slots_, slots, is_same)) {
     if (std::ranges::any_of(slots_,
                             [](const Body& body) { return body.body && dBodyGetNumJoints(body.body) > 0; }))
-      throw InputError(
-          "a snapshot with other full bodies is restored only where none of those there has a joint");
+      throw_input_error("snapshot", "other full bodies than those here, of which one has a joint",
+                        "the same bodies, or none with a joint");
     clear();
     slots_.resize(slots.size());
     std::vector<std::size_t> order;

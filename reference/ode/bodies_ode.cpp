@@ -21,6 +21,8 @@ bool within_limit(const Vec3& v) {  // false for NaN
   return std::abs(v.x()) <= kLimit && std::abs(v.y()) <= kLimit && std::abs(v.z()) <= kLimit;
 }
 
+}  // namespace
+
 std::string describe(const RigidState& s) {
   return fmt::format(
       "position {} {} {}, orientation {} {} {} {}, velocity {} {} {}, angular velocity {} {} {}",
@@ -29,10 +31,10 @@ std::string describe(const RigidState& s) {
       s.angular_velocity.y(), s.angular_velocity.z());
 }
 
+namespace {
+
 void check_state(const RigidState& state) {
-  if (!is_sound(state))
-    throw InputError("a body's state: found " + describe(state) +
-                     ", expected finite, below 1e8 in each part, the orientation of unit norm");
+  if (!is_sound(state)) throw_input_error("a body's state", describe(state), kSound);
 }
 
 void check_properties(const BodyProperties& properties) {
@@ -47,7 +49,7 @@ void check_properties(const BodyProperties& properties) {
 
 void check_definition(const OdeBodyDefinition& definition, const OdeSettings& settings) {
   check_that(settings.max_contacts_per_pair > 0, "pairs have at least one contact");
-  if (!definition.shape) throw InputError("a body's shape: found none");
+  if (!definition.shape) throw_input_error("a body's shape", "none", "one");
   check_mass(definition.mass);
   check_inertia(*definition.shape);
   check_properties(definition.properties);
@@ -236,7 +238,8 @@ void Bodies::remove(OdeBodyId id) {
 const Body& Bodies::find(OdeBodyId id) const {
   const std::size_t slot = id.value & kSlotMask;
   if (!(id && slot < slots_.size() && slots_[slot].body && slots_[slot].id == id))
-    throw InputError(fmt::format("OdeBodyId {}: found no such body in this world", id.value));
+    throw InputError(fmt::format(
+        "OdeBodyId {}: found no such body, expected one of this world that was not removed", id.value));
   return slots_[slot];
 }
 

@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "reference/ode/geometry_ode.h"
@@ -64,6 +66,9 @@ void set_force(dBodyID body, const Vec3& force, const Vec3& torque);
 /// Whether every part is finite and within ODE's reach: 1e8 m, m/s and rad/s; the squared norm of the
 /// quaternion within 1e-6 of one.
 bool is_sound(const RigidState& state);
+/// In words, and what is_sound() asks for.
+std::string describe(const RigidState& state);
+inline constexpr std::string_view kSound = "finite, below 1e8 in each part, the orientation of unit norm";
 
 std::uint32_t slot_of(OdeBodyId id);
 

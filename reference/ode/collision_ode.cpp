@@ -95,7 +95,10 @@ Collision::~Collision() {
 
 OdeGroundId Collision::add_plane(const Vec3& normal, double offset, MaterialId material) {
   if (!(std::abs(normal.norm() - 1.0) < 1e-6 && std::isfinite(offset)))
-    throw InputError("a plane: expected a normal of unit length and a finite offset");
+    throw InputError(fmt::format(
+        "a plane: found the normal ({}, {}, {}) and the offset {} m, expected a normal of unit length and a "
+        "finite offset",
+        normal.x(), normal.y(), normal.z(), offset));
   planes_.push_back({normal,
                      offset,
                      material,
@@ -110,7 +113,9 @@ OdeGroundId Collision::add_box(const Vec3& sides, const Vec3& position, const Qu
                                MaterialId material) {
   const RigidState state{position, orientation, Vec3::Zero(), Vec3::Zero()};
   if (!(sides.allFinite() && sides.minCoeff() > 0.0 && is_sound(state)))
-    throw InputError("a static box: expected positive sides and a finite pose, below 1e8 m");
+    throw InputError(fmt::format(
+        "a static box: found sides of {}, {} and {} m and {}, expected positive sides and a pose that is {}",
+        sides.x(), sides.y(), sides.z(), describe(state), kSound));
   const dGeomID box = dCreateBox(nullptr, sides.x(), sides.y(), sides.z());
   place(box, state);
   return add_ground({{}, box, material, std::make_shared<const Shape>(box_of_any_size(sides)), state, state});
@@ -142,15 +147,14 @@ OdeGroundId Collision::add_ground(Ground ground) {
 Ground& Collision::find_ground(OdeGroundId id) {
   const auto found = number_of_.find(id.value);
   if (found == number_of_.end())
-    throw InputError(fmt::format("OdeGroundId {}: found no such box or mesh", id.value));
+    throw InputError(
+        fmt::format("OdeGroundId {}: found no such box or mesh, expected one of this world", id.value));
   return ground_[found->second];
 }
 
 void Collision::move_ground(OdeGroundId id, const RigidState& state, Bodies& bodies) {
   Ground& ground = find_ground(id);
-  if (!is_sound(state))
-    throw InputError(
-        "a pose of ground: expected finite, below 1e8 in each part, the orientation of unit norm");
+  if (!is_sound(state)) throw_input_error("a pose of ground", describe(state), kSound);
   const Eigen::AlignedBox3d before = bounds_of(ground.geom);
   put(ground, ground.put = state);
   ground.moved = true;

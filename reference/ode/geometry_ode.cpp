@@ -16,11 +16,14 @@ void check_faces(std::span<const Vec3> vertices, std::span<const std::array<int,
   if (faces.size() < 2)
     throw InputError(fmt::format("a trimesh: found {} faces, expected two or more", faces.size()));
   for (const Vec3& vertex : vertices)
-    if (!vertex.allFinite()) throw InputError("a trimesh: found a vertex that is not finite");
+    if (!vertex.allFinite())
+      throw InputError(fmt::format("a trimesh: found a vertex at ({}, {}, {}), expected finite ones",
+                                   vertex.x(), vertex.y(), vertex.z()));
   for (const auto& face : faces)
     for (const int i : face)
       if (i < 0 || i >= int(vertices.size()))
-        throw InputError(fmt::format("a trimesh: found a face of vertex {}, of {}", i, vertices.size()));
+        throw InputError(fmt::format("a trimesh: found a face of vertex {}, expected 0 … {}", i,
+                                     int(vertices.size()) - 1));
 }
 
 Sphere sphere_of_volume(const Shape& shape) {

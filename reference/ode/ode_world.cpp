@@ -122,7 +122,8 @@ void OdeWorld::remove_body(OdeBodyId body, bool stays) {
 
 void OdeWorld::step(double dt, int substeps) {
   check_step(dt, substeps);
-  if (impl_->callers_step_s > 0.0) throw InputError("a step between begin_callers_step and end_callers_step");
+  if (impl_->callers_step_s > 0.0)
+    throw_input_error("a step", "one between begin_callers_step and end_callers_step", "none there");
   prepare();
   const std::int64_t messages_before = messages_of_this_thread();
   impl_->begin_step(dt / substeps);
@@ -144,7 +145,7 @@ void OdeWorld::step(double dt, int substeps) {
 void OdeWorld::begin_callers_step(double dt) {
   check_step(dt, 1);
   if (impl_->callers_step_s > 0.0)
-    throw InputError("begin_callers_step twice, with no end_callers_step between them");
+    throw_input_error("begin_callers_step", "it called twice", "end_callers_step between them");
   prepare();
   try {
     impl_->begin_step(dt);
@@ -158,7 +159,8 @@ void OdeWorld::begin_callers_step(double dt) {
 }
 
 void OdeWorld::end_callers_step() {
-  if (!(impl_->callers_step_s > 0.0)) throw InputError("end_callers_step without begin_callers_step");
+  if (!(impl_->callers_step_s > 0.0))
+    throw_input_error("end_callers_step", "no step begun", "begin_callers_step before it");
   prepare();
   impl_->end_callers_substep(std::exchange(impl_->callers_step_s, 0.0));
   impl_->end_step();
@@ -188,7 +190,9 @@ void OdeWorld::set_state(OdeBodyId id, const RigidState& state) {
 
 void OdeWorld::add_force(OdeBodyId id, const Vec3& force, const Vec3& torque) {
   if (!force.allFinite() || !torque.allFinite())
-    throw InputError("a force on a body: found one that is not finite");
+    throw InputError(
+        fmt::format("a force on a body: found ({}, {}, {}) N and ({}, {}, {}) N m, expected finite numbers",
+                    force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z()));
   Body& body = impl_->bodies.find(id);
   body.force += force;
   body.torque += torque;

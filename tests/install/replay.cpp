@@ -119,7 +119,7 @@ int main() {
   again.set_policy({});
 
   for (const auto& [bytes, because] : {std::pair(with_function, "a function for `significance`"),
-                                       std::pair(Bytes(20), "it begins otherwise"),
+                                       std::pair(Bytes(20), "no LODEREC3 at its beginning"),
                                        {Bytes(recording.begin(), recording.begin() + 8), "no beginning"}}) {
     std::string said;
     try {

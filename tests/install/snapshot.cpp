@@ -225,7 +225,7 @@ void check_refusals(const Shapes& shapes) {
   }
   check::within(damaged, places, places, "damaged snapshots that were refused");
   Manager seeded = make(2);
-  check::that(refuses(seeded, good, "seed 1, not 2"), "another seed is named");
+  check::that(refuses(seeded, good, "seed 1, expected one with seed 2"), "another seed is named");
   Manager bare({.signature_timing = SignatureTiming::in_step});
   check::that(refuses(bare, good, "other planes"), "other ground is named");
   Manager empty = make(1);

@@ -113,7 +113,8 @@ TEST(StateArchive, AListLongerThanTheBytesIsRefusedBeforeItIsMade) {
     std::unordered_map<std::uint32_t, double> map;
     const std::string message =
         i == 0 ? testing::message_of([&] { reader(doubles); }) : testing::message_of([&] { reader(map); });
-    EXPECT_EQ(message, "a snapshot has a list that is longer than it");
+    EXPECT_EQ(message,
+              "state: found a list of 1152921504606846976, expected one of at most the 0 bytes that follow");
     EXPECT_TRUE(doubles.empty() && map.empty());
   }
 }
@@ -130,7 +131,7 @@ TEST(StateArchive, ShapesAreSharedAfterwardsAsBefore) {
   reader(read);
   EXPECT_EQ(read, (std::vector<std::shared_ptr<const Shape>>{c, d, nullptr, c, d}));
   StateArchive without(writer.bytes(), {c});
-  EXPECT_EQ(testing::message_of([&] { without(read); }), "a snapshot names a shape that it has not");
+  EXPECT_EQ(testing::message_of([&] { without(read); }), "state: found shape 2, expected 0 … 1");
 }
 
 }  // namespace

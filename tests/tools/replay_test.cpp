@@ -47,8 +47,22 @@ TEST_F(ReplayTest, WhatComesOutOtherwiseIsNamed) {
   const Ended other = run("replay " + name("run.rec") + " " + name("scene.yaml") + " --budget-work 1");
   EXPECT_EQ(other.exit_code, 1) << other.out;
   EXPECT_NE(other.out.find("(crate) is not as it was recorded"), std::string::npos) << other.out;
-  EXPECT_EQ(run("replay " + name("scene.yaml") + " " + name("scene.yaml")).exit_code, 3);
-  EXPECT_EQ(run("replay " + name("run.rec") + " " + name("scene.yaml") + " --seed 8").exit_code, 3);
+}
+
+// With the file's name, which is the one that a user knows.
+TEST_F(ReplayTest, WhatCannotBeReplayedIsNamedWithItsFile) {
+  ASSERT_EQ(run("run " + name("scene.yaml") + " --record " + name("run.rec")).exit_code, 0);
+  const auto says = [this](const std::string& file, const std::string& options, const std::string& text) {
+    const Ended ended = run("replay " + name(file) + " " + name("scene.yaml") + options);
+    EXPECT_EQ(ended.exit_code, 3);
+    EXPECT_NE(ended.out.find(at(file).string() + ": found " + text), std::string::npos) << ended.out;
+  };
+  says("scene.yaml", "", "no LODEREC3 at its beginning, expected what ");
+  says("run.rec", " --seed 8", "one of a manager with seed 7, expected one with seed 8");
+  std::fstream file(at("run.rec"), std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(500).put('\xff');
+  file.close();
+  says("run.rec", "", "damage in chunk 1, at byte 8, expected ");
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ RungError error_of(const DropJob& job, const DropComparison& comparison, const s
   for (const DropRow& row : comparison.rows) {
     if (row.method != method || row.model != model) continue;
     if (!row.score)
-      throw InputError(fmt::format("errors of the rungs: {} cannot be had: {}", method, row.reason));
+      throw InputError(
+          fmt::format("errors of the rungs: found no {} ({}), expected drops by it", method, row.reason));
     return {row.score->value.score, mean_drift(job, comparison.truth_b, row.drops)};
   }
   check_that(false, "every rung was compared");

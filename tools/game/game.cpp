@@ -12,6 +12,7 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/game/game_world.h"
@@ -70,8 +71,8 @@ bool asks_for_help(int argc, char** argv) {
 }
 
 /// An InputError with SDL's own words.
-[[noreturn]] void throw_sdl_error(const std::string& what) {
-  throw InputError("lodestone_game: " + what + ": " + SDL_GetError());
+[[noreturn]] void throw_sdl_error(const std::string& found, std::string_view expected) {
+  throw_input_error("lodestone_game", found + " (" + SDL_GetError() + ")", expected);
 }
 
 /// Where there is no display, SDL falls back on drivers that show nothing to anybody, unless it was asked for
@@ -86,15 +87,15 @@ struct Window {
   int width = 1280, height = 720;
 
   explicit Window(bool wait_for_screen) {
-    if (SDL_Init(SDL_INIT_VIDEO) != 0) throw_sdl_error("no display");
-    if (shows_nothing(SDL_GetCurrentVideoDriver())) throw InputError("lodestone_game: no display");
+    if (SDL_Init(SDL_INIT_VIDEO) != 0) throw_sdl_error("no display", "one");
+    if (shows_nothing(SDL_GetCurrentVideoDriver())) throw_input_error("lodestone_game", "no display", "one");
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 2);
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 1);
     SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
     window = SDL_CreateWindow("Lodestone", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height,
                               SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE);
     context = window ? SDL_GL_CreateContext(window) : nullptr;
-    if (!context) throw_sdl_error("no window with OpenGL 2.1");
+    if (!context) throw_sdl_error("no window with OpenGL 2.1", "one");
     SDL_GL_SetSwapInterval(wait_for_screen ? 1 : 0);
   }
   ~Window() {
@@ -122,7 +123,7 @@ void save_picture(const Window& window, const std::string& file) {
   const bool saved = opaque && SDL_SaveBMP(opaque, file.c_str()) == 0;
   SDL_FreeSurface(opaque);
   SDL_FreeSurface(surface);
-  if (!saved) throw_sdl_error("cannot write " + file);
+  if (!saved) throw_sdl_error(file + ", which cannot be written", "a file that can");
 }
 
 class Game {

@@ -23,7 +23,8 @@ class TemporaryFile {
     path_ = fs::temp_directory_path() / fmt::format("lodestone_case_{}_{}.yaml", getpid(), ++count);
     std::ofstream out(path_, std::ios::binary);
     out << text;
-    if (!out.flush()) throw InputError(path_.string() + ": cannot be written");
+    if (!out.flush())
+      throw_input_error(path_.string(), "a file that cannot be written", "room for it and leave to write it");
   }
   ~TemporaryFile() {
     std::error_code ignored;

@@ -23,8 +23,9 @@ std::string read_library(std::string_view name) {
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad() || text.empty())
-    throw InputError(fmt::format("{}: cannot be read; it belongs to Debian's package libjs-{}", file.string(),
-                                 name.substr(0, name.find('/'))));
+    throw InputError(
+        fmt::format("{}: found no file that can be read, expected that of Debian's package libjs-{}",
+                    file.string(), name.substr(0, name.find('/'))));
   return text;
 }
 

@@ -123,7 +123,7 @@ TEST(CBodies, BadCallsAreRefusedAndChangeNothing) {
   lodestone_state state{};
   EXPECT_EQ(lodestone_get_state(s.c, stale, &state), LODESTONE_BAD_INPUT);
   EXPECT_EQ(lodestone_get_state(nullptr, body, &state), LODESTONE_BAD_INPUT);
-  EXPECT_STREQ(lodestone_error(), "manager: found null");
+  EXPECT_STREQ(lodestone_error(), "manager: found null, expected an address");
   EXPECT_EQ(lodestone_set_state(s.c, body, nullptr), LODESTONE_BAD_INPUT);
   EXPECT_EQ(lodestone_set_state(s.c, body, &state), LODESTONE_BAD_INPUT);  // a quaternion of zeros
   EXPECT_EQ(lodestone_set_level(s.c, body, lodestone_level_choice(9)), LODESTONE_BAD_INPUT);

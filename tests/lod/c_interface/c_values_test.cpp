@@ -91,14 +91,14 @@ TEST(CShapes, WhatCannotBeIsSaidAndGivesNone) {
   lodestone_shape* shape = before;
   EXPECT_EQ(lodestone_make_box("flat", {1, 0, 1}, &shape), LODESTONE_BAD_INPUT);
   EXPECT_EQ(lodestone_make_box(nullptr, {1, 1, 1}, &shape), LODESTONE_BAD_INPUT);
-  EXPECT_STREQ(lodestone_error(), "name: found null");
+  EXPECT_STREQ(lodestone_error(), "name: found null, expected an address");
   EXPECT_EQ(lodestone_make_sphere(-1, &shape), LODESTONE_BAD_INPUT);
   EXPECT_EQ(lodestone_make_mesh("m", nullptr, 3, nullptr, 1, &shape), LODESTONE_BAD_INPUT);
-  EXPECT_STREQ(lodestone_error(), "vertices: found null");
+  EXPECT_STREQ(lodestone_error(), "vertices: found null, expected an address");
   EXPECT_EQ(lodestone_load_mesh("/none.obj", 0, &shape), LODESTONE_BAD_INPUT);
   EXPECT_EQ(shape, before);
   EXPECT_EQ(lodestone_make_sphere(1, nullptr), LODESTONE_BAD_INPUT);
-  EXPECT_STREQ(lodestone_error(), "where the handle shall go: found null");
+  EXPECT_STREQ(lodestone_error(), "where the handle shall go: found null, expected an address");
 }
 
 TEST(CShapes, AFileIsLoadedAtItsSize) {

@@ -171,20 +171,24 @@ TEST(ManagerGroups, WrongOnesAreRefusedByWords) {
   const std::vector<BodyId> bodies = {add(manager, box, testing::at({0, 0, 0})),
                                       add(manager, box, testing::at({2, 0, 0}))};
   const std::vector<BodyId> twice = {bodies[0], bodies[0]};
-  const std::string words = "a group: expected at least one body, none twice and none in another group";
-  EXPECT_EQ(message_of([&] { manager.make_group({}); }), words);
-  EXPECT_EQ(message_of([&] { manager.make_group(twice); }), words);
+  const auto refused = [](const std::string& found) {
+    return "a group: found " + found + ", expected at least one body, none twice and none in another group";
+  };
+  EXPECT_EQ(message_of([&] { manager.make_group({}); }), refused("no body"));
+  EXPECT_EQ(message_of([&] { manager.make_group(twice); }), refused("body 0 twice"));
   GroupJoints half;
   half.before_demotion = [](GroupId) {};
   EXPECT_EQ(message_of([&] { manager.make_group(bodies, half); }),
-            "a group's joints: expected both functions or none");
+            "a group's joints: found one function alone, expected both or none");
   const GroupId group = manager.make_group(bodies);
   EXPECT_EQ(manager.explain(bodies[0]).group, group);
-  EXPECT_EQ(message_of([&] { manager.make_group(bodies); }), words);
+  EXPECT_EQ(message_of([&] { manager.make_group(bodies); }), refused("body 0, which is in a group already"));
   manager.dissolve_group(group);
   EXPECT_FALSE(manager.explain(bodies[0]).group);
-  EXPECT_EQ(message_of([&] { manager.dissolve_group(group); }),
-            "a group's id: expected one that make_group returned and that was not dissolved");
+  EXPECT_EQ(
+      message_of([&] { manager.dissolve_group(group); }),
+      "a group's id: found index 0, generation 1, expected one that make_group returned and that was not "
+      "dissolved");
   EXPECT_NO_THROW(manager.make_group(bodies));
 }
 

@@ -191,6 +191,10 @@ TEST(ManagerSnapshot, DamageAndOtherSettingsAreRefusedAndChangeNothing) {
   Bytes longer = sound;
   longer.push_back(std::byte(0));
   EXPECT_TRUE(refused(longer));
+  EXPECT_EQ(message_of([&] { reader.manager.restore(Bytes(200)); }),
+            "snapshot: found no LODESNAP at its beginning, expected what snapshot() returns");
+  EXPECT_TRUE(
+      message_of([&] { reader.manager.restore(Bytes(12)); }).starts_with("snapshot: found 12 bytes, "));
   SavedWorld without;
   EXPECT_NE(message_of([&] { without.manager.restore(sound); }), kNothingThrown);  // its shapes are unknown
   EXPECT_EQ(without.manager.bodies(), 0);
@@ -209,9 +213,12 @@ TEST(ManagerSnapshot, OfAnotherSceneIsRefused) {
   EXPECT_EQ(fault(plain, [](Manager&) {}), kNothingThrown);
   ManagerSettings seeded = plain;
   seeded.seed = 99;
-  EXPECT_NE(fault(seeded, [](Manager&) {}), kNothingThrown);
-  EXPECT_NE(fault(plain, [](Manager& m) { m.add_plane(Vec3::UnitX(), -5); }), kNothingThrown);
-  EXPECT_NE(fault(plain, [](Manager& m) { m.materials().add({.friction = 0.1}); }), kNothingThrown);
+  EXPECT_EQ(fault(seeded, [](Manager&) {}),
+            "snapshot: found one of a manager with seed 1, expected one with seed 99");
+  EXPECT_EQ(fault(plain, [](Manager& m) { m.add_plane(Vec3::UnitX(), -5); }),
+            "snapshot: found one of a manager with other planes, expected one with the planes here");
+  EXPECT_EQ(fault(plain, [](Manager& m) { m.materials().add({.friction = 0.1}); }),
+            "snapshot: found one of a manager with other materials, expected one with the materials here");
 }
 
 // Turned since, or turned when the reader knows nothing of it: it is the snapshot's again, and who slept

@@ -253,8 +253,8 @@ TEST(Recording, DamageIsFoundWhereverItIs) {
     Bytes damaged = tape.bytes;
     damaged[place] ^= std::byte(1 << place % 8);
     const std::string fault = message_of([&] { on_floor().replay(damaged, shapes); });
-    EXPECT_TRUE(
-        fault.starts_with(place < kRecordingMagic.size() ? "no recording" : "the recording is damaged"))
+    EXPECT_TRUE(fault.starts_with(place < kRecordingMagic.size() ? "recording: found no LODEREC3"
+                                                                 : "recording: found damage in chunk"))
         << place << " of " << tape.bytes.size() << ": " << fault;
   }
 }

@@ -69,7 +69,8 @@ TEST(OdeGroundKinds, IdsStayTheirOwn) {
   EXPECT_EQ(message_of([&] {
               scene.world.move_ground(first, at({0, 0, 0}));
             }),
-            "OdeGroundId " + std::to_string(first.value) + ": found no such box or mesh");
+            "OdeGroundId " + std::to_string(first.value) +
+                ": found no such box or mesh, expected one of this world");
   EXPECT_NO_THROW(scene.world.move_ground(second, at({0, 0, 1})));
   EXPECT_THROW(scene.world.remove_ground({}), InputError);
 }
@@ -140,12 +141,16 @@ TEST(OdeGroundKinds, WhatCannotBeIsRefused) {
   EXPECT_EQ(message_of([&] {
               world.add_plane({0, 0, 2}, 0, 0);
             }),
-            "a plane: expected a normal of unit length and a finite offset");
+            "a plane: found the normal (0, 0, 2) and the offset 0 m, expected a normal of unit length and a "
+            "finite offset");
   EXPECT_THROW(world.add_plane({0, 0, 1}, kOdd, 0), InputError);
-  EXPECT_EQ(message_of([&] {
-              world.add_static_box({1, 0, 1}, {0, 0, 0}, Quat::Identity(), 0);
-            }),
-            "a static box: expected positive sides and a finite pose, below 1e8 m");
+  EXPECT_EQ(
+      message_of([&] {
+        world.add_static_box({1, 0, 1}, {0, 0, 0}, Quat::Identity(), 0);
+      }),
+      "a static box: found sides of 1, 0 and 1 m and position 0 0 0, orientation 1 0 0 0, velocity 0 0 0, "
+      "angular velocity 0 0 0, expected positive sides and a pose that is finite, below 1e8 in each "
+      "part, the orientation of unit norm");
   EXPECT_THROW(world.add_static_box({1, 1, 1}, {2e8, 0, 0}, Quat::Identity(), 0), InputError);
   EXPECT_THROW(world.add_static_box({1, 1, 1}, {0, 0, 0}, Quat(2, 0, 0, 0), 0), InputError);
   Mesh mesh = make_box({1, 1, 1});
@@ -155,7 +160,7 @@ TEST(OdeGroundKinds, WhatCannotBeIsRefused) {
   mesh = make_box({1, 1, 1});
   mesh.faces[0][0] = 99;
   EXPECT_EQ(message_of([&] { world.add_static_mesh(mesh, 0); }),
-            "a trimesh: found a face of vertex 99, of 8");
+            "a trimesh: found a face of vertex 99, expected 0 … 7");
   const OdeGroundId box = world.add_static_box({1, 1, 1}, {0, 0, 0}, Quat::Identity(), 0);
   EXPECT_THROW(world.move_ground(box, at({kOdd, 0, 0})), InputError);
   const OdeBodyId body = scene.box({0, 0, 0.61});
