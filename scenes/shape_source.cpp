@@ -109,7 +109,7 @@ fs::path find_mesh_file(const std::string& name, const ShapeOptions& options) {
   const std::vector<fs::path> folders = folders_of(options);
   std::error_code error;
   for (const fs::path& folder : folders) {
-    const fs::path file = folder / name;
+    const fs::path file = folder == "." ? fs::path(name) : folder / name;  // as the user wrote it
     if (options.stay_in_search &&
         std::ranges::none_of(folders, [&](const fs::path& f) { return lies_in(file, f); }))
       throw InputError(fmt::format(

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -232,14 +234,85 @@ void check_stl(const fs::path& file) {
     refuse(fmt::format("{} triangles in {} bytes", triangles, bytes), "50 bytes for each after the first 84");
 }
 
+/// Each line with its number; one that ends in a backslash goes on in the next.
+template <class Act>
+void for_each_obj_line(std::string_view text, const Act& act) {
+  std::string joined;
+  for (int number = 1, first = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(end);
+    text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, text.size()));
+    if (joined.empty()) first = number;
+    if (line.ends_with('\\')) {
+      joined += line.substr(0, line.size() - 1);
+      if (!text.empty()) continue;
+      line = {};
+    }
+    if (!joined.empty()) line = joined += line;
+    act(first, line);
+    joined.clear();
+  }
+}
+
+/// In single precision, as assimp reads it: a comma may stand for the point.
+bool is_finite_number(std::string_view word) {
+  std::string number(word);
+  std::ranges::replace(number, ',', '.');
+  char* end = nullptr;
+  const float value = std::strtof(number.c_str(), &end);
+  return !number.empty() && end == number.c_str() + number.size() && std::isfinite(value);
+}
+
+/// Lines v are three numbers that are finite, and lines f name vertices that there are: assimp passes over a
+/// vertex that is none, and says neither where it was nor which face has another than it should. `where` has
+/// the line of what is refused.
+void check_obj(std::string_view text, std::string& where) {
+  const std::string file = where;
+  int vertices = 0;
+  for_each_obj_line(text, [&](int number, std::string_view line) {
+    if (take_word(line) != "v") return;
+    ++vertices;
+    for (int i = 0; i < 3; ++i)
+      if (const std::string_view word = take_word(line); !is_finite_number(word)) {
+        where = fmt::format("{}:{}: v", file, number);
+        refuse(word.empty() ? fmt::format("{} numbers", i) : fmt::format("'{}'", word.substr(0, 40)),
+               word.empty() ? "three" : "a finite number");
+      }
+  });
+  int above = 0;  // vertices so far, which negative numbers count back from
+  for_each_obj_line(text, [&](int number, std::string_view line) {
+    const std::string_view keyword = take_word(line);
+    above += keyword == "v";
+    if (keyword != "f") return;
+    const auto refuse_here = [&](const std::string& found, const std::string& expected) {
+      where = fmt::format("{}:{}: f", file, number);
+      refuse(found, expected);
+    };
+    for (std::string_view word = take_word(line); !word.empty() && word[0] != '#'; word = take_word(line)) {
+      const std::string_view corner = word.substr(0, word.find('/'));
+      std::int64_t vertex = 0;
+      const auto [end, error] = std::from_chars(corner.data(), corner.data() + corner.size(), vertex);
+      if (error != std::errc() || end != corner.data() + corner.size())
+        refuse_here(fmt::format("'{}'", word.substr(0, 40)), "the number of a vertex");
+      if (vertex < 0 ? -vertex > above : vertex == 0 || vertex > vertices)
+        refuse_here(fmt::format("vertex {}", vertex), vertex < 0 ? fmt::format("one of the {} above", above)
+                                                      : vertices > 0 ? fmt::format("1 … {}", vertices)
+                                                                     : "lines v with vertices");
+    }
+  });
+}
+
 }  // namespace
 
 void require_safe_for_assimp(const fs::path& file, const std::string& extension) {
+  std::string where = file.string();
   try {
+    if (extension == "obj") check_obj(read_whole(file), where);
     if (extension == "ply") check_ply(read_whole(file));
     if (extension == "stl") check_stl(file);
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+    throw InputError(fmt::format("{}: {}", where, error.what()));
   }
 }
 

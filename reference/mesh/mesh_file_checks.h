@@ -1,5 +1,5 @@
 // What assimp 5.2 must not be shown: files on which it loops for ever, or sets aside what a count in the file
-// promises.
+// promises, and those of whose faults it does not say where they are.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,9 @@
 namespace lodestone {
 
 /// Throws InputError, naming the file, for a PLY file whose header or lists promise more than the file has,
-/// and for a binary STL file with fewer bytes than its triangles. `extension` is in lower case and without
-/// its dot; other formats pass.
+/// for a binary STL file with fewer bytes than its triangles, and, with the line, for an OBJ file with a
+/// vertex that is not three finite numbers or a face of vertices that there are not. `extension` is in lower
+/// case and without its dot; other formats pass.
 void require_safe_for_assimp(const std::filesystem::path& file, const std::string& extension);
 
 }  // namespace lodestone
