@@ -25,11 +25,9 @@ struct BodyEntry {
   double radius() const { return body.definition.shape->radius; }
 };
 
-LevelChoice load_level(const YamlCursor& key) {
-  static const std::array<std::string, 5> kNames{"auto", "full", "statistical", "support", "tables"};
-  return std::array{LevelChoice::automatic, LevelChoice::full, LevelChoice::statistical, LevelChoice::support,
-                    LevelChoice::tables}[key.choice(kNames)];
-}
+const std::array<std::string, 5> kLevelNames{"auto", "full", "statistical", "support", "tables"};
+
+LevelChoice load_level(const YamlCursor& key) { return LevelChoice(key.choice(kLevelNames)); }
 
 Rung load_rung(const YamlCursor& key) {
   static const std::array<std::string, 3> kNames{"tables", "support", "full"};
@@ -163,8 +161,21 @@ PutOnGround put_on(const GroundHeights& heights, const BodyEntry& entry) {
 void expand_scatter(const BodyEntry& entry, std::span<const KeepAbove> planes, const GroundHeights& heights,
                     PlacedSpheres& placed, std::vector<SceneBody>& bodies) {
   const Scatter& scatter = *entry.scatter;
-  const std::vector<Vec3> centers =
-      place_scatter(scatter, entry.radius(), planes, placed, put_on(heights, entry));
+  PutOnGround put = put_on(heights, entry);
+  bool has_ground = !put;  // or needs none
+  if (put)
+    put = [&has_ground, find = std::move(put)](int index, const Vec3& center) {
+      const std::optional<Vec3> found = find(index, center);
+      has_ground = has_ground || found;
+      return found;
+    };
+  const std::vector<Vec3> centers = place_scatter(scatter, entry.radius(), planes, placed, put);
+  if (!has_ground)
+    entry.place.at("scatter")
+        .at(entry.lying ? "lying" : "on_ground")
+        .fail(
+            entry.lying ? "no ground below the region that they could lie on" : "no ground below the region",
+            "some");
   if (int(centers.size()) < scatter.count)
     entry.place.at("scatter").fail(
         fmt::format("{} bodies of radius {:.3g} m", scatter.count, entry.radius()),
@@ -192,6 +203,8 @@ std::vector<KeepAbove> planes_of(const Scene& scene) {
 }
 
 }  // namespace
+
+std::string_view name_of(LevelChoice level) { return kLevelNames[std::size_t(level)]; }
 
 void add_bodies(const YamlCursor& root, Scene& scene, const std::map<std::string, SceneShape>& shapes,
                 const SceneLoadSettings& settings) {

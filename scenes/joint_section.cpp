@@ -36,7 +36,8 @@ int find_body(const YamlCursor& key, const Names& names) {
 void make_full(const YamlCursor& key, SceneBody& body) {
   LevelChoice& level = body.definition.level;
   if (level != LevelChoice::automatic && level != LevelChoice::full)
-    key.fail(body.name + ", whose level is another", "a body that may be full, as joints need it");
+    key.fail(fmt::format("{}, whose level is {}", body.name, name_of(level)),
+             "a body that may be full, as joints need it");
   level = LevelChoice::full;
 }
 

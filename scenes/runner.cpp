@@ -15,6 +15,7 @@
 #include "scenes/camera.h"
 #include "scenes/playback.h"
 #include "scenes/run_sample.h"
+#include "scenes/scene_sections.h"
 #include "scenes/step_csv.h"
 #include "scenes/trajectory.h"
 #include "signature/signature_source.h"
@@ -122,12 +123,8 @@ std::vector<std::byte> bytes_of(const fs::path& file) {
 /// What of the levels is not the scene's own choice, in words.
 std::string text_of_choice(const RunSettings& settings) {
   std::vector<std::string> parts;
-  static constexpr std::pair<LevelChoice, const char*> kLevels[] = {{LevelChoice::full, "full"},
-                                                                    {LevelChoice::statistical, "statistical"},
-                                                                    {LevelChoice::support, "support"},
-                                                                    {LevelChoice::tables, "tables"}};
-  for (const auto& [level, name] : kLevels)
-    if (settings.level == level) parts.push_back(fmt::format("level {}", name));
+  if (settings.level != LevelChoice::automatic)
+    parts.push_back(fmt::format("level {}", name_of(settings.level)));
   if (settings.model) parts.push_back(fmt::format("model {}", name_of(rung_of(*settings.model))));
   if (settings.budget_ms) parts.push_back(fmt::format("a budget of {:g} ms", *settings.budget_ms));
   if (settings.budget_work)

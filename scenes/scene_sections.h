@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "reference/error.h"
@@ -45,6 +46,9 @@ std::vector<SceneGround> load_ground(const YamlCursor& root, const Scene& scene,
 /// `scene.ground`.
 void add_bodies(const YamlCursor& root, Scene& scene, const std::map<std::string, SceneShape>& shapes,
                 const SceneLoadSettings& settings);
+
+/// As a scene names it.
+std::string_view name_of(LevelChoice level);
 
 /// Adds to `scene.joints`, between bodies of `scene.bodies` by their names, and makes these full.
 void load_joints(const YamlCursor& root, Scene& scene);

@@ -1,7 +1,9 @@
 // The `shapes:` of a scene.
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <string_view>
 
 #include "reference/error.h"
 #include "scenes/scene_sections.h"
@@ -29,17 +31,32 @@ Mat3 load_inertia(const YamlCursor& key) {
   return inertia;
 }
 
+std::string words_of_moments(const Mat3& inertia) {
+  if (inertia != inertia.transpose()) return ", which is not symmetric";
+  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  return fmt::format(", of moments {:g}, {:g} and {:g}", moments[0], moments[1], moments[2]);
+}
+
 MassOverride load_mass_override(const YamlCursor& place, const std::optional<double>& mass) {
   MassOverride result;
   if (auto key = place.find("center_of_mass_m")) result.center_of_mass_m = key->vector();
   if (auto key = place.find("inertia")) {
     if (!mass) key->fail("an inertia without a mass", "mass_kg beside it");
-    const Mat3 inertia = load_inertia(*key) / *mass;
-    if (!is_possible_inertia(inertia))
-      key->fail("an impossible inertia", "a symmetric, positive one with I1 + I2 ≥ I3 (kg m²)");
-    result.inertia_per_mass_m2 = inertia;
+    const Mat3 inertia = load_inertia(*key);
+    if (!is_possible_inertia(inertia / *mass))
+      key->fail("an impossible inertia" + words_of_moments(inertia),
+                "a symmetric, positive one with I1 + I2 ≥ I3 (kg m²)");
+    result.inertia_per_mass_m2 = inertia / *mass;
   }
   return result;
+}
+
+/// At the key of the centre of mass where that is what is wrong, else at `part`, what the shape is made of.
+[[noreturn]] void fail_at_part(const YamlCursor& place, const YamlCursor& part, const InputError& error,
+                               const std::string& hint = "") {
+  const auto center = place.find("center_of_mass_m");
+  const bool is_center = std::string_view(error.what()).find("center of mass: found ") != std::string::npos;
+  fail_at(center && is_center ? *center : part, error, hint);
 }
 
 void check_inertia_at(const YamlCursor& key, const Shape& shape) {
@@ -65,7 +82,7 @@ Shape load_mesh_shape(const YamlCursor& place, ShapeOptions options, const MassO
     Shape shape = make_mesh_shape(name, options, mass, &report);
     if (report.closed() || has_mass) return shape;
   } catch (const InputError& error) {
-    fail_at(mesh, error, hint);
+    fail_at_part(place, mesh, error, hint);
   }
   place.fail(fmt::format("a mesh with {} open edges and no mass", report.open_edges),
              "a closed mesh, or mass_kg");
@@ -83,7 +100,7 @@ std::optional<Shape> load_solid(const YamlCursor& place, const MassOverride& mas
     try {
       return make_solid(form.kind, lengths, mass);
     } catch (const InputError& error) {
-      fail_at(*key, error);
+      fail_at_part(place, *key, error);
     }
   }
   return std::nullopt;

@@ -172,7 +172,11 @@ class TreeBuilder : public YAML::EventHandler {
     map.key.emplace(key.text, line_of(mark));
   }
 
-  [[noreturn]] void fail_key(const YAML::Mark& mark) { fail(mark, "key", "no plain name", "a name as key"); }
+  /// To yaml-cpp a map or list whose bracket is not closed is a key of what it is in.
+  [[noreturn]] void fail_key(const YAML::Mark& mark) {
+    fail(mark, "key", fmt::format("no plain name at column {}", mark.column + 1),
+         "a name as key (is a bracket not closed?)");
+  }
 
   std::string file_;
   YamlLimits limits_;

@@ -95,7 +95,7 @@ TEST_F(Joints, Errors) {
       {"joints: [{ball: [one, two], at_m: [0, 0, 0]}]",
        "s.yaml:5: joints[0].ball[1]: found two, which several bodies are called, expected"},
       {"joints: [{ball: [one, far], at_m: [0, 0, 0]}]",
-       "s.yaml:5: joints[0].ball[1]: found far, whose level is another, expected"},
+       "s.yaml:5: joints[0].ball[1]: found far, whose level is support, expected"},
       {"joints: [{ball: [one, one], at_m: [0, 0, 0]}]",
        "s.yaml:5: joints[0].ball[1]: found one a second time, expected another body"},
       {"joints: [{ball: [], at_m: [0, 0, 0]}]",

@@ -115,7 +115,8 @@ json change(json scene, std::mt19937& random) {
 // loader's message.
 bool is_beyond_a_schema(const std::string& message) {
   static const std::regex kPhrases(
-      "a direction of any length|a quaternion w, x, y, z|a second corner below|found room without overlap|at "
+      "a direction of any length|a quaternion w, x, y, z|a second corner below|found room without overlap|no "
+      "ground below the region|at "
       "least full_within_m|at least least_rung|an impossible inertia|"
       "the name of a body|a name of one body|a second time|joints need it|a bar width W|lying beside "
       "on_ground|a mesh file|mesh that bounds|a list of [0-9]+|no volume|extent|the corners|unused");

@@ -64,6 +64,11 @@ TEST(YamlValue, RefusesWhatYamlCppLetsPass) {
   EXPECT_EQ(error_of("").substr(0, 19), "s.yaml:1: document:");
   EXPECT_EQ(error_of("a: 1\nb: [1, 2\n").substr(0, 9), "s.yaml:3:");
   EXPECT_NE(error_of("a: 1\n b: 2\n").find("syntax: found"), std::string::npos);
+  EXPECT_TRUE(
+      error_of("a: 1\nb: [{c: [0, 0\n")
+          .ends_with(":2: key: found no plain name at column 5, expected a name as key (is a bracket not "
+                     "closed?)"))
+      << error_of("a: 1\nb: [{c: [0, 0\n");
 }
 
 TEST(YamlValue, LimitsNesting) {
