@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -72,21 +73,24 @@ std::string find_real_fault(const std::string& text) {
              : fmt::format("found '{}', expected a finite number", text);
 }
 
+/// Digits, with a sign or without; CLI11 reads a 0 before them as base 8, and 0x as 16.
+template <class Integer>
+bool is_integer(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  Integer value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return false;
+  if (text.starts_with('-')) text.remove_prefix(1);
+  return text.size() == 1 || text[0] != '0';
+}
+
 std::string find_integer_fault(const std::string& text) {
-  char* end = nullptr;
-  errno = 0;
-  std::strtoll(text.c_str(), &end, 0);
-  return is_whole(text, end) && errno == 0 ? "" : fmt::format("found '{}', expected a whole number", text);
+  return is_integer<std::int64_t>(text) ? "" : fmt::format("found '{}', expected a whole number", text);
 }
 
 std::string find_unsigned_fault(const std::string& text) {
-  char* end = nullptr;
-  errno = 0;
-  std::strtoull(text.c_str(), &end, 0);  // which turns a negative number round to a large one
-  const bool has_sign = text.find('-') != std::string::npos;
-  return is_whole(text, end) && errno == 0 && !has_sign
-             ? ""
-             : fmt::format("found '{}', expected a whole number from 0 on", text);
+  return is_integer<std::uint64_t>(text) ? ""
+                                         : fmt::format("found '{}', expected a whole number from 0 on", text);
 }
 
 std::string find_absence(const std::string& text) { return text.empty() ? "found '', expected a name" : ""; }
@@ -141,7 +145,47 @@ void check_values(CLI::Option& option) {
     option.check(CLI::Validator([](std::string& text) { return find_absence(text); }, ""));
 }
 
+/// What the option itself says of `text`; empty where it takes it.
+std::string find_fault(CLI::Option& option, std::string text) {
+  try {
+    for (int i = 0;; ++i)
+      if (std::string fault = (*option.get_validator(i))(text); !fault.empty()) return fault;
+  } catch (const CLI::OptionNotFound&) {  // one past the last
+    return "";
+  }
+}
+
+/// Throws where one of the items is empty, which CLI11 passes over.
+void check_items(CLI::Option& option, const std::string& list) {
+  const char delimiter = option.get_delimiter();
+  for (std::size_t begin = 0, end = 0; end != std::string::npos && !list.empty(); begin = end + 1) {
+    end = list.find(delimiter, begin);
+    if (end == begin || begin == list.size())
+      throw CLI::ValidationError(option.get_name(), find_fault(option, ""));
+  }
+}
+
 }  // namespace
+
+void check_lists(CLI::App& program, int argc, const char* const* argv) {
+  CLI::App* command = &program;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto inner = command->get_subcommands([&](CLI::App* app) { return app->get_name() == word; });
+    if (!inner.empty()) {
+      command = inner.front();
+      continue;
+    }
+    const std::size_t equals = word.find('=');
+    CLI::Option* option =
+        word.starts_with('-') ? command->get_option_no_throw(word.substr(0, equals)) : nullptr;
+    if (!option || option->get_delimiter() == '\0') continue;
+    if (equals != std::string::npos)
+      check_items(*option, word.substr(equals + 1));
+    else if (i + 1 < argc)
+      check_items(*option, argv[++i]);
+  }
+}
 
 template <class Number>
 Option& Option::range(Number least, Number most, const std::string& name) {

@@ -117,6 +117,8 @@ class Command {
 /// own checks, which not-a-number passes; any other refuses an empty text; and every refusal of an option's
 /// value reads `found …, expected …`.
 void check_values(CLI::App& program);
+/// After that: throws CLI::ParseError for a list with an empty item, such as `0.1,,2`.
+void check_lists(CLI::App& program, int argc, const char* const* argv);
 
 template <class Arguments>
 struct Command::Added {

@@ -62,6 +62,14 @@ TEST_F(CommandTest, ReadsWhatIsSaid) {
   EXPECT_TRUE(picked_->ripe);
 }
 
+TEST_F(CommandTest, WholeNumbersHaveBaseTen) {
+  check_values(program_);
+  parse("pick --count +5");
+  EXPECT_EQ(picked_->count, 5);
+  EXPECT_THROW(parse("pick --count 05"), CLI::ValidationError);
+  EXPECT_THROW(parse("pick --count 0x5"), CLI::ValidationError);
+}
+
 TEST_F(CommandTest, EndsAsItSays) {
   end_ = ExitCode::check_failed;
   parse("pick");
@@ -131,6 +139,19 @@ class ArgumentChecks : public ::testing::Test {
         << option.words[0] << ' ' << value << ": " << error;
   }
 
+  // What is wrong with the lists of a command line.
+  std::string fault_of(std::vector<std::string> words) {
+    words.insert(words.begin(), "lodestone");
+    std::vector<const char*> pointers;
+    for (const std::string& word : words) pointers.push_back(word.c_str());
+    try {
+      check_lists(program_, int(pointers.size()), pointers.data());
+    } catch (const CLI::ParseError& found) {
+      return found.what();
+    }
+    return "none";
+  }
+
  private:
   CLI::App program_;
   ExitCode exit_code_{};
@@ -148,7 +169,7 @@ TEST_F(ArgumentChecks, NoCountIsNegative) {
   const auto options = options_of("UINT");
   ASSERT_GT(options.size(), 5U);
   for (const OptionPath& option : options)
-    for (const char* value : {"-1", "1.5", "99999999999999999999"})
+    for (const char* value : {"-1", "1.5", "99999999999999999999", "010", "0x10"})
       expect_refused(option, value, "a whole number from 0 on");
 }
 
@@ -156,7 +177,8 @@ TEST_F(ArgumentChecks, NoIntegerIsCut) {
   const auto options = options_of("INT");
   ASSERT_GT(options.size(), 20U);
   for (const OptionPath& option : options)
-    for (const char* value : {"1.5", "nan", "99999999999999999999", "1e3"}) expect_refused(option, value, "");
+    for (const char* value : {"1.5", "nan", "99999999999999999999", "1e3", "010", "-010", "0x10"})
+      expect_refused(option, value, "a whole number");
 }
 
 TEST_F(ArgumentChecks, RangesAreSaidAsFoundAndExpected) {
@@ -167,6 +189,19 @@ TEST_F(ArgumentChecks, RangesAreSaidAsFoundAndExpected) {
   expect_refused({{"run", "--level"}, ""}, "fast", "one of {auto,");
   expect_refused({{"run", "--dt"}, ""}, "nan", "seconds from 1e-9 to 0.1");
   expect_refused({{"run", "--budget-ms"}, ""}, "nan", "");
+}
+
+// CLI11 passes over them.
+TEST_F(ArgumentChecks, NoItemOfAListIsEmpty) {
+  for (const char* list : {"0.01,,0.02", ",0.01", "0.01,"}) {
+    const std::string expected = "--dt: found '', expected seconds from 1e-9 to 0.1";
+    EXPECT_TRUE(fault_of({"compare", "drop", "box:1,1,1", "--dt", list}).starts_with(expected)) << list;
+    EXPECT_TRUE(fault_of({"compare", "drop", "box:1,1,1", std::string("--dt=") + list}).starts_with(expected))
+        << list;
+  }
+  EXPECT_EQ(fault_of({"compare", "drop", "box:1,1,1", "--dt", "0.01,0.02"}), "none");
+  EXPECT_TRUE(
+      fault_of({"compare", "drop", "--methods", "full_1,", "box:1,1,1"}).starts_with("--methods: found ''"));
 }
 
 TEST(Program, AValueThatIsNoneIsUsage) {
