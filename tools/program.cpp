@@ -9,12 +9,15 @@
 #include <iostream>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "lod/version.h"
 #include "reference/argument_error.h"
 #include "reference/output_file.h"
 #include "reference/simulation_error.h"
+#include "scenes/yaml_cursor.h"
 #include "tools/command.h"
 #include "tools/commands.h"
 #include "tools/interrupt.h"
@@ -49,15 +52,90 @@ std::string find_command_fault(const CLI::App& group) {
                      fmt::join(names, ", "));
 }
 
+CLI::App& find_chosen(CLI::App& program) {
+  CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return *command;
+}
+
+// Of words that no option or argument takes, the one that is most likely wrong.
+std::string words_of_extras(const CLI::App& command) {
+  const std::vector<std::string> words = command.remaining(true);
+  const auto option =
+      std::ranges::find_if(words, [](const std::string& word) { return word.starts_with('-'); });
+  if (option == words.end())
+    return fmt::format("{}: found '{}', expected no more arguments", command.get_name(),
+                       words.empty() ? "" : words.front());
+  std::vector<std::string> known;
+  for (const CLI::Option* one : command.get_options())
+    for (const std::string& name : one->get_lnames()) known.push_back("--" + name);
+  return fmt::format("{}: found '{}', expected one of its options{}", command.get_name(), *option,
+                     suggestion(option->substr(0, option->find('=')), known));
+}
+
+// What CLI11 says of its own, as our messages say it; all else as it is.
+std::string words_of(CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App& command = find_chosen(program);
+  const std::string said = error.what();
+  // The name before `words`, and what stands after them.
+  const auto split_at = [&](std::string_view words) -> std::optional<std::pair<std::string, std::string>> {
+    const std::size_t at = said.find(words);
+    if (at == said.npos) return std::nullopt;
+    return std::pair(said.substr(0, at), said.substr(at + words.size()));
+  };
+  switch (CLI::ExitCodes(error.get_exit_code())) {
+    case CLI::ExitCodes::RequiredError:
+      if (const std::string fault = find_command_fault(program); !fault.empty()) return fault;
+      if (const auto name = split_at(" is required")) {
+        const CLI::Option* option = command.get_option_no_throw(name->first);
+        return fmt::format("{}: found none, expected {}", name->first,
+                           option ? option->get_description() : "one");
+      }
+      break;
+    case CLI::ExitCodes::ExcludesError:
+      if (const auto both = split_at(" excludes "))
+        return fmt::format("{}: found it beside {}, expected one of them", both->first, both->second);
+      break;
+    case CLI::ExitCodes::RequiresError:
+      if (const auto both = split_at(" requires "))
+        return fmt::format("{}: found it without {}, expected both", both->first, both->second);
+      break;
+    case CLI::ExitCodes::ExtrasError:
+      return words_of_extras(command);
+    case CLI::ExitCodes::ArgumentMismatch:
+      if (const auto name = split_at(": At Most 1 required but received "))
+        return fmt::format("{}: found it {} times, expected once", name->first, name->second);
+      for (const auto& [theirs, ours] : {std::pair(": At Most ", "at most"), {": At least ", "at least"}})
+        if (const auto name = split_at(theirs)) {
+          const std::string& numbers = name->second;  // "3 required but received 4"
+          return fmt::format("{}: found {}, expected {} {}", name->first,
+                             numbers.substr(numbers.rfind(' ') + 1), ours,
+                             numbers.substr(0, numbers.find(' ')));
+        }
+      if (const auto name = split_at(": "); name && said.ends_with(" missing"))
+        return fmt::format("{}: found no value, expected one", name->first);
+      break;
+    default:
+      break;
+  }
+  return said;
+}
+
+// The settings of a call have the names of options, but for their dashes.
+std::string with_dashes(CLI::App& program, const std::string& message) {
+  std::string name = "--" + message.substr(0, message.find(": found "));
+  std::ranges::replace(name, '_', '-');
+  return find_chosen(program).get_option_no_throw(name) ? name + message.substr(message.find(": found "))
+                                                        : message;
+}
+
 // CLI11's own exit codes are not ours.
-ExitCode explain(const CLI::App& program, const CLI::ParseError& error) {
+ExitCode explain(CLI::App& program, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) {  // help was asked for
     program.exit(error, std::cout, std::cerr);
     return ExitCode::done;
   }
-  const bool is_missing = error.get_exit_code() == int(CLI::ExitCodes::RequiredError);
-  const std::string fault = is_missing ? find_command_fault(program) : "";
-  complain(fault.empty() ? error.what() : fault);
+  complain(words_of(program, error));
   write_stderr("Run with --help for more information.\n");
   return ExitCode::usage;
 }
@@ -84,9 +162,12 @@ bool wants_json(const CLI::App& command) {
 
 void parse(CLI::App& program, int argc, char** argv, ExitCode& exit_code) {
   try {
+    check_lists(program, argc, argv);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     exit_code = explain(program, error);
+  } catch (const ArgumentError& error) {
+    throw ArgumentError(with_dashes(program, error.what()));
   } catch (const Interrupted&) {  // before there was any part of a result
     if (wants_json(program)) print_json(nlohmann::ordered_json::object());
   }

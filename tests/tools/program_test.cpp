@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "lod/version.h"
 
@@ -91,6 +92,30 @@ TEST(Program, ACommandThatIsNoneIsNamed) {
   EXPECT_NE(run("", true).out.find("found no command, expected one of run, "), std::string::npos);
   EXPECT_NE(run("compare --all dropp box", true).out.find("compare: found 'dropp', expected one of drop, "),
             std::string::npos);
+}
+
+// Not in the words of the library that reads the command line.
+TEST(Program, WhatIsWrongWithItsArgumentsIsFoundAndExpected) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"run a.yaml --budget-ms 4 --budget-work 9",
+       "--budget-ms: found it beside --budget-work, expected one of them"},
+      {"run", "SCENE: found none, expected a YAML file"},
+      {"run a.yaml --steps 4 --steps 5", "--steps: found it 2 times, expected once"},
+      {"run a.yaml --steps", "--steps: found no value, expected one"},
+      {"run a.yaml --step 4", "run: found '--step', expected one of its options (did you mean \"--steps\"?)"},
+      {"run a.yaml b.yaml", "run: found 'b.yaml', expected no more arguments"},
+      {"view a b c d", "RUN: found 4, expected at most 3"},
+      {"sign box:1,1,1 --shard 1/2", "--shard: found it without -o, expected both"},
+      {"run a.yaml --dt 0.01,,2", "--dt: found '0.01,,2', expected seconds from 1e-9 to 0.1"},
+      {"compare drop box:1,1,1 --dt 0.01,,0.02", "--dt: found '', expected seconds from 1e-9 to 0.1"},
+      {"run " LODESTONE_SOURCE_DIR "/scenes/drop.yaml --steps 10 --fork 100 --level full",
+       "--fork: found 100, expected a step from 1 to 9"}};
+  for (const auto& [arguments, message] : wrong) {
+    const Ended ended = run(arguments, true);
+    EXPECT_EQ(ended.exit_code, 2) << arguments;
+    EXPECT_TRUE(ended.out.starts_with(std::string("lodestone: ") + message))
+        << arguments << ": " << ended.out;
+  }
 }
 
 TEST(Program, BadInputIsThreeAndSilentOnStdout) {
