@@ -109,8 +109,11 @@ std::string text_of(const std::vector<Checked>& all) {
 ExitCode compare_scores(const ScoresArguments& arguments) {
   const std::vector<ScoreRow> kept = kept_scores(arguments);
   if (!arguments.page.empty()) {
-    write_file(arguments.page,
-               with_score_tables(arguments.page.string(), text_of_file(arguments.page, "a page"), kept));
+    const PageOfScores page =
+        with_score_tables(arguments.page.string(), text_of_file(arguments.page, "a page"), kept);
+    write_file(arguments.page, page.text);
+    print_results(arguments.results, {{"page", arguments.page.string()}, {"tables", page.tables}},
+                  fmt::format("written {} ({} tables)\n", arguments.page.string(), page.tables));
     return ExitCode::done;
   }
   const std::vector<ScoreRow> measured = with_progress(arguments, measure_chosen);

@@ -231,23 +231,30 @@ constexpr std::array<ScoreTable, 5> kTables = {{{"drops", drops_table},
 
 constexpr std::string_view kBegin = "<!-- scores: ", kBeginEnd = " -->", kEnd = "<!-- end of scores -->";
 
+std::string table_names() {
+  std::vector<std::string> names;
+  for (const ScoreTable& known : kTables) names.emplace_back(known.name);
+  return join_commas(names);
+}
+
 const ScoreTable& find_table(const std::string& where, std::string_view name) {
   const auto table = std::ranges::find_if(kTables, [&](const ScoreTable& t) { return name == t.name; });
   if (table != kTables.end()) return *table;
-  std::vector<std::string> names;
-  for (const ScoreTable& known : kTables) names.emplace_back(known.name);
-  throw InputError(
-      fmt::format("{}: found the table \"{}\", expected one of {}", where, name, join_commas(names)));
+  throw InputError(fmt::format("{}: found the table \"{}\", expected one of {}", where, name, table_names()));
 }
 
 }  // namespace
 
-std::string with_score_tables(std::string_view name, std::string_view page,
-                              const std::vector<ScoreRow>& rows) {
+PageOfScores with_score_tables(std::string_view name, std::string_view page,
+                               const std::vector<ScoreRow>& rows) {
+  if (page.find(kBegin) == std::string_view::npos)
+    throw InputError(fmt::format("{}: found no line {}NAME{}, expected one; NAME: one of {}", name, kBegin,
+                                 kBeginEnd, table_names()));
   std::string made;
-  for (std::size_t at = 0;;) {
+  int tables = 0;
+  for (std::size_t at = 0;; ++tables) {
     const std::size_t begin = page.find(kBegin, at);
-    if (begin == std::string_view::npos) return made += page.substr(at);
+    if (begin == std::string_view::npos) return {made += page.substr(at), tables};
     const auto line = 1 + std::ranges::count(page.substr(0, begin), '\n');
     const std::string where = fmt::format("{}: line {}", name, line);
     const std::size_t table_begin = begin + kBegin.size(), table_end = page.find(kBeginEnd, table_begin),
