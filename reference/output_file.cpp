@@ -18,8 +18,9 @@ namespace {
 
 constexpr std::size_t kKeptBack = 1 << 16;  // bytes
 
-// "Permission denied" within a sentence; "Is a directory" as what is found.
+// "Permission denied" within a sentence, as what is found.
 std::string words_for(int error_number) {
+  if (error_number == EISDIR) return "a folder";
   std::string words = std::strerror(error_number);
   if (!words.empty()) words[0] = char(std::tolower(static_cast<unsigned char>(words[0])));
   return words;

@@ -45,7 +45,7 @@ void require_readable(const fs::path& file, const MeshLoadSettings& settings) {
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) refuse(file, "no such file", "a mesh file");
   if (!fs::is_regular_file(status))
-    refuse(file, fs::is_directory(status) ? "a directory" : "no regular file", "a mesh file");
+    refuse(file, fs::is_directory(status) ? "a folder" : "no regular file", "a mesh file");
   const std::uintmax_t bytes = fs::file_size(file, error);
   if (error || bytes == 0) refuse(file, error ? error.message() : "an empty file", "a mesh file");
   if (bytes > settings.max_bytes)

@@ -48,8 +48,8 @@ TEST_F(OutputFileTest, AFullDeviceIsAnErrorOfTheFlush) {
 
 TEST_F(OutputFileTest, AFolderIsNoFile) {
   EXPECT_EQ(testing::message_of([&] { OutputFile out(folder_, "a table"); }),
-            folder_.string() + ": found is a directory, expected a table");
-  EXPECT_EQ(find_reading_fault(folder_), "is a directory");
+            folder_.string() + ": found a folder, expected a table");
+  EXPECT_EQ(find_reading_fault(folder_), "a folder");
   EXPECT_EQ(find_reading_fault(folder_ / "none"), "no such file or directory");
 }
 

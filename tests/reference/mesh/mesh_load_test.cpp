@@ -144,7 +144,7 @@ TEST_F(MeshFile, WithSeveralPlacedMeshesIsJoined) {
 TEST_F(MeshFile, ThatIsMissingOrNoFileIsRefused) {
   EXPECT_EQ(error_of(folder_.path() / "none.obj").substr(0, 12), "no such file");
   fs::create_directory(folder_.path() / "folder.obj");
-  EXPECT_EQ(error_of(folder_.path() / "folder.obj").substr(0, 11), "a directory");
+  EXPECT_EQ(error_of(folder_.path() / "folder.obj").substr(0, 8), "a folder");
   ASSERT_EQ(mkfifo((folder_.path() / "pipe.obj").c_str(), 0600), 0);
   EXPECT_EQ(error_of(folder_.path() / "pipe.obj").substr(0, 15), "no regular file");
   EXPECT_EQ(error_of(write("empty.obj", "")).substr(0, 13), "an empty file");
