@@ -190,13 +190,23 @@ TEST_F(Messages, WhyAFileCannotBeRead) {
   const Ended signature = run("inspect " + name("loop.sig"));
   EXPECT_EQ(signature.exit_code, 3);
   EXPECT_NE(signature.out.find("too many levels of symbolic links"), signature.out.npos) << signature.out;
-  if (::geteuid() == 0) return;  // who may read everything
+}
+
+// Root may read everything, and is nobody here.
+TEST_F(Messages, AFileThatMayNotBeReadIsDenied) {
+  const std::string program =
+      (::geteuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "") +
+      quoted(LODESTONE_CLI) + ' ';
+  if (testing::run_shell(program + "--version 2>&1").exit_code != 0)
+    GTEST_SKIP() << "nobody may not run the program";
+  std::filesystem::permissions(at(""), std::filesystem::perms::others_exec,
+                               std::filesystem::perm_options::add);
   for (const char* file : {"s.yaml", "s.sig"}) {
     std::ofstream(at(file)) << "version: 1\n";
     std::filesystem::permissions(at(file), std::filesystem::perms::none);
   }
   for (const std::string& arguments : {"run " + name("s.yaml"), "inspect " + name("s.sig")}) {
-    const Ended denied = run(arguments);
+    const Ended denied = testing::run_shell(program + arguments + " 2>&1");
     EXPECT_EQ(denied.exit_code, 3);
     EXPECT_NE(denied.out.find("found permission denied, expected"), denied.out.npos) << denied.out;
   }

@@ -49,6 +49,7 @@ TEST(MakeSignature, FramesAreTheStatesOfARecord) {
   const std::shared_ptr<const Shape>& shape = recorded().shape;
   const std::vector<SettlingRecord>& records = recorded().records;
   const Signature& signature = recorded().signature;
+  ASSERT_FALSE(signature.clips.empty());
   for (const SettlingClip& clip : signature.clips) {
     const auto record = std::ranges::find_if(records, [&](const SettlingRecord& r) {
       if (r.states.size() != clip.frames) return false;

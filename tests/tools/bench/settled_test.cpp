@@ -13,7 +13,9 @@ TEST(SettledBench, ABodyThatFallsInWakesAFew) {
   SettledSettings settings;
   settings.bodies = 4'000;
   settings.steps = 60;
-  for (const SettledRow& row : bench_settled(settings)) {
+  const auto rows = bench_settled(settings);
+  ASSERT_EQ(rows.size(), 2u);  // tables, support
+  for (const SettledRow& row : rows) {
     EXPECT_EQ(row.awake, 0) << int(row.model);
     EXPECT_LT(row.settling_steps, 300);
     EXPECT_GT(row.woken, 1);  // the one that fell, and another

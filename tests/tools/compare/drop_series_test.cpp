@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -41,10 +42,10 @@ TEST(DropConditions, ChangeOneThingEach) {
 }
 
 TEST(DropConditions, ASizeIsThatOfTheLongestSide) {
-  for (const DropCase& one : make_condition_cases(box_job()))
-    if (one.name == "size_m=0.001") {
-      EXPECT_NEAR(one.job.shape->size, 0.001, 1e-15);
-    }
+  const auto cases = make_condition_cases(box_job());
+  const auto small = std::ranges::find(cases, "size_m=0.001", &DropCase::name);
+  ASSERT_NE(small, cases.end());
+  EXPECT_NEAR(small->job.shape->size, 0.001, 1e-15);
 }
 
 // A box of a millimetre of the usual density weighs less than any rung takes.
