@@ -42,6 +42,8 @@ TEST_F(ShapeSource, MeshFilesAreLookedUpInOrder) {
   const ShapeOptions both{.size_m = 0.5, .search = {folder(), folder() / "second"}};
   EXPECT_NEAR(make_shape_from_text("t.obj", both).size, 0.5, 1e-12);
   EXPECT_NEAR(make_shape_from_text((folder() / "second/t.obj").string()).size, 1.0, 1e-12);
+  const std::string here = std::filesystem::relative(folder() / "second/t.obj").string();
+  EXPECT_EQ(find_mesh_file(here, {}), here) << "as it was written";
   const std::string message = testing::message_of([&] { make_shape_from_text("u.obj", both); });
   EXPECT_NE(message.find("second"), std::string::npos) << message;
 }
