@@ -135,7 +135,7 @@ void Manager::before_world_step(double dt) {
   impl.follow_gravity();
   impl.begin_lists();
   const Impl::Undo undo(impl);
-  impl.begin_stages(dt, dt, WorldStepBy::caller);
+  impl.begin_stages(dt, dt, WorldStepBy::caller);  // 1 to 3; 4 is the caller's own world step
   impl.step_levels.begin_callers_step(dt);
   impl.waits_for_world_step = true;
 }
@@ -148,7 +148,7 @@ const StepReport& Manager::after_world_step() {
   impl.waits_for_world_step = false;
   const double dt = impl.underway->dt;
   impl.step_levels.end_callers_step(impl.report.counters);
-  impl.end_stages();
+  impl.end_stages();  // 5
   impl.changes.take_part();
   return impl.finish_lists(dt, WorldStepBy::caller);
 }
@@ -206,16 +206,16 @@ Manager::Impl::Undo::~Undo() {
   impl_.levels.now = before_.step;
   impl_.levels.look_away();
   BodyTable& bodies = impl_.levels.bodies;
-  for (std::uint32_t body = 0; body < bodies.indices();
-       ++body)  // in the step to come they are looked at anew
+  // they are looked at anew in the step to come
+  for (std::uint32_t body = 0; body < bodies.indices(); ++body)
     bodies.level(body).looked_at = std::min(bodies.level(body).looked_at, before_.step);
 }
 
 void Manager::Impl::step_part(double dt, double since) {
   const Undo undo(*this);
-  begin_stages(dt, since, WorldStepBy::manager);
-  step_levels.step_full(dt, report);
-  end_stages();
+  begin_stages(dt, since, WorldStepBy::manager);  // 1 choose, 2 transfer, 3 statistical rungs
+  step_levels.step_full(dt, report);              // 4 full level
+  end_stages();                                   // 5 report
   changes.take_part();
 }
 
@@ -266,7 +266,7 @@ void Manager::Impl::begin_stages(double dt, double since, WorldStepBy by) {
   if (levels.statistical) choose.note_carriers(levels.statistical->carriers());
   if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::as_it_slept, report);
   add_statistical(levels, laps.lap_ms(), measured);
-  // 4 full level
+  // for 4: ODE is to tell of touches that events want
   if (levels.full.world()) levels.full.world()->record_touches(events.wanted());
 }
 

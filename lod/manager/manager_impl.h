@@ -81,7 +81,10 @@ struct Manager::Impl {
     const StepReport before_;
     const int exceptions_ = std::uncaught_exceptions();
   };
+  /// Stages 1 to 3, before the world's step. `since`: s, in which the caller put geoms and ground where they
+  /// are; 0: in a later part of a divided step.
   void begin_stages(double dt, double since, WorldStepBy by);
+  /// What stage 4 leaves to be taken over, and stage 5.
   void end_stages();
   void begin_lists();
   const StepReport& finish_lists(double dt, WorldStepBy by);

@@ -20,10 +20,10 @@ class StepLevels {
 
   void step_statistical(double dt, WorldStepBy by, StepReport& report);
   void step_full(double dt, StepReport& report);
-  /// Instead of it, around the step that the caller takes of his world.
+  /// The two in place of step_full(), around the step that the caller takes of its world.
   void begin_callers_step(double dt);
   void end_callers_step(Counters& counters);
-  /// Notes which full bodies touch another, on whatever rung; after both.
+  /// Notes which full bodies touch another, on whatever rung; after both stages.
   void note_touching();
   void archive(StateArchive& a) { a(neighborhood_.seen, joint_forces_, driven_bodies_); }
 

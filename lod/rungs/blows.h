@@ -1,4 +1,4 @@
-// Stage 3: who sleeps, of the hulls that touch, but is set in motion by a blow through others.
+// Stage 3d: who sleeps, of the hulls that touch, but is set in motion by a blow through others.
 #pragma once
 
 #include <cstdint>

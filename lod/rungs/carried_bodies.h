@@ -1,6 +1,6 @@
-// Stage 3: who is moved, directly or through others that it touches, by what nothing stops: a kinematic body,
-// ground that moves, what a motor drives. None of them sleeps, however slowly it goes: a sleeper would stand
-// in its way like ground.
+// Stage 3d: who is moved, directly or through others that it touches, by what nothing stops: a kinematic
+// body, ground that moves, what a motor drives. None of them sleeps, however slowly it goes: a sleeper would
+// stand in its way like ground.
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
-// Stages 3 to 5 for hulls: bodies of `support` and full ones, and those of `tables` near them, which are
-// guests here for a step. Who may touch another moves in substeps: contacts found, all of them solved at
-// once, the bodies moved; the others move by themselves.
+// Stage 3d: bodies of `support` and full ones, and those of `tables` near them, which are guests here for a
+// step. Who may touch another moves in substeps: contacts found, all of them solved at once, the bodies
+// moved; the others move by themselves.
 #pragma once
 
 #include <span>

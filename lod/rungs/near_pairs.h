@@ -1,4 +1,4 @@
-// Stages 2 and 3: which of the bodies that may meet in a step do touch: of `support`, full ones, and those of
+// Stage 3d: which of the bodies that may meet in a step do touch: of `support`, full ones, and those of
 // `tables` near them. What is known of a pair is kept from step to step. Bodies meet as their hulls, whatever
 // their rung: spheres are for two of `tables`, which meet by themselves (tables/).
 #pragma once
@@ -84,8 +84,9 @@ class NearPairs {
   double find_approach(const ContactScene& scene, const FoundPair& pair, double time) const;
   /// m: the gap of a pair, at least, now. None where that was never looked for.
   double gap_left(const ContactScene& scene, const FoundPair& pair) const;
+  /// rad/s, world.
+  Vec3 turning_of(const ContactScene& scene, Participant p) const;
   /// m/s, of a point that goes with the body.
-  Vec3 turning_of(const ContactScene& scene, Participant p) const;  // rad/s
   Vec3 point_velocity(const ContactScene& scene, Participant p, const Vec3& point) const;
 
  private:

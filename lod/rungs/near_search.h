@@ -1,4 +1,4 @@
-// Stage 2: who is near whom, on all rungs. One set of cells holds the balls of all that move: awake spheres,
+// Stage 3b: who is near whom, on all rungs. One set of cells holds the balls of all that move: awake spheres,
 // awake bodies of `support`, full ones; those that sleep are looked up in their store. Pairs of spheres stay
 // with the tables level; all others are near pairs of hulls, and spheres among them become guests there.
 #pragma once

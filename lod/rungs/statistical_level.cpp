@@ -142,13 +142,13 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   StageTimes& times = report.times;
   ContactTally tally;
   const double started = s.clock();
-  // 1 start
+  // 3a start
   {
     const StageTimer timer(times.flight_ms);
     tables.begin_step(dt, search.order_of_spheres(), tally);
     support.begin_step(dt, tally);
   }
-  // 2 near pairs, and the contacts of spheres
+  // 3b near pairs, and the contacts of spheres
   const bool pair_phase = s.any_pairs(neighbors);
   report.counters.pair_phases += pair_phase;
   if (pair_phase) {
@@ -163,12 +163,12 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     tables.forget_contacts();
   }
   search.invite_cornered(tables, support);
-  // 3 the response of spheres
+  // 3c spheres answer
   {
     const StageTimer timer(times.crowd_ms);
     tables.respond(tally);
   }
-  // 4 hulls, and spheres near them
+  // 3d hulls and their guests
   const double hulls_from = s.clock();
   if (!support.awake().empty() || !search.pairs().empty() || !search.guests().empty()) {
     s.guest_bodies.clear();
@@ -185,12 +185,12 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
     s.near_bodies.forget_pairs();
   }
   const double hulls_until = s.clock();
-  // 5 spheres move
+  // 3e spheres move
   {
     const StageTimer timer(times.flight_ms);
     tables.finish(tally);
   }
-  // 6 rest
+  // 3f rest
   {
     const StageTimer timer(times.rest_ms);
     tables.rest();

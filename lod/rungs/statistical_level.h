@@ -1,6 +1,14 @@
 // The statistical bodies of a world, on two rungs: `support` (support/) and `tables` (tables/), stepped
 // without ODE (sections 3.3 and 3.4). They meet each other and the full bodies near them; one broad phase
 // finds who is near whom, and one store holds those that sleep.
+//
+// Its step is stage 3 of the manager's (lod/manager.h), in six parts, of which the files' heads say theirs:
+// - 3a start: what was given for the step (forces), on both rungs; radii and reaches of spheres
+// - 3b near pairs of all that moves (near_search.h); the contacts of spheres with each other
+// - 3c spheres answer: the impulses of those contacts
+// - 3d hulls and their guests (near_bodies.h): hulls, spheres near them, full bodies, in substeps
+// - 3e spheres move; who strikes the ground on its way is answered at the exact time
+// - 3f rest, on both rungs: who comes to rest, who falls asleep
 #pragma once
 
 #include <array>

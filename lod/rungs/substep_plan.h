@@ -1,4 +1,4 @@
-// Stage 3: in how many substeps those bodies move that may touch another. A pile needs them: contacts found
+// Stage 3d: in how many substeps those bodies move that may touch another. A pile needs them: contacts found
 // once in 1/60 s miss what a body that falls into it at several m/s meets on its way, and ten sweeps over a
 // pile of many layers leave it sinking into itself (a bin of 100 boxes: time to sleep three times ODE's, a
 // third too low). After Macklin et al., Small steps in physics simulation, 2019. A heap that has slowed down
