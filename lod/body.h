@@ -55,10 +55,11 @@ enum class LevelChoice : std::uint8_t { automatic, full, statistical, support, t
 
 /// When a body at rest falls asleep.
 struct SleepThresholds {
-  double speed = 0.05;  ///< m/s, > 0: slower is still; on the statistical rungs for a body with a bounding
-                        ///< sphere of .2 m radius, of others in proportion to its square root
-  double time =
-      0.1;  ///< s, ≥ 0: so long it must be still among other bodies; alone, or full, five times as long
+  /// m/s, > 0: slower is still; on the statistical rungs for a body with a bounding sphere of .2 m radius, of
+  /// others in proportion to its square root.
+  double speed = 0.05;
+  /// s, ≥ 0: so long it must be still among other bodies; alone, or full, five times as long.
+  double time = 0.1;
 };
 
 struct BodyDefinition {

@@ -12,9 +12,9 @@ namespace lodestone {
 /// and comes back as a whole at once, to the very same poses, when something wakes one of them: before ODE's
 /// next step. They are called within Manager::step, which they may read and not change.
 struct GroupJoints {
-  std::function<void(GroupId)> before_demotion =
-      {};  ///< destroys the joints, or detaches them: the ODE bodies are gone when it has returned. One that
-           ///< leaves a joint keeps its group full
+  /// Destroys the joints, or detaches them: the ODE bodies are gone when it has returned. One that leaves a
+  /// joint keeps its group full.
+  std::function<void(GroupId)> before_demotion = {};
   std::function<void(GroupId)> after_promotion = {};  ///< joins the new ODE bodies
 };
 

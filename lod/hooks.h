@@ -40,11 +40,12 @@ struct DebugDrawer {
 };
 
 struct DrawSettings {
-  bool bodies =
-      true;  ///< as their rung has them: hulls, and for `tables` the colliding sphere, as three circles
-  bool contacts = true;  ///< between bodies, and of full ones with the ground, in the last step: a point, and
-                         ///< a line along the normal; not those between two spheres
-  bool bounds = false;   ///< axis-aligned boxes around the hulls
+  /// As their rung has them: hulls, and for `tables` the colliding sphere, as three circles.
+  bool bodies = true;
+  /// Between bodies, and of full ones with the ground, in the last step: a point, and a line along the
+  /// normal; not those between two spheres.
+  bool contacts = true;
+  bool bounds = false;  ///< axis-aligned boxes around the hulls
   std::array<DebugColor, kRungs> colors{
       {{0.0f, 0.45f, 0.3f}, {0.35f, 0.7f, 0.9f}, {0.9f, 0.6f, 0.0f}}};  ///< by Rung; half as bright asleep
   DebugColor contact_color{0.9f, 0.2f, 0.2f}, bounds_color{0.5f, 0.5f, 0.5f};

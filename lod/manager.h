@@ -51,26 +51,28 @@ using PairFilter = std::function<bool(BodyId, BodyId)>;
 struct ManagerSettings {
   Vec3 gravity{0, 0, -9.81};  ///< m/s², finite; not on a caller's world, which has its own
   std::uint64_t seed = 1;
-  int threads = 1;             ///< ≥ 1, for the statistical level; the results do not depend on it
-  JobRunner jobs = {};         ///< an engine's own, for so many threads; empty: oneTBB's. What it throws in a
-                               ///< step comes out of that once it has been taken
+  int threads = 1;  ///< ≥ 1, for the statistical level; the results do not depend on it
+  /// An engine's own, for so many threads; empty: oneTBB's. What it throws in a step comes out of that once
+  /// it has been taken.
+  JobRunner jobs = {};
   int full_substeps = 4;       ///< ≥ 1, ODE steps per step; 16 while thin bodies are awake among others
   bool sleeping = true;        ///< bodies at rest cost nothing until something wakes them
   SleepThresholds sleep = {};  ///< on every rung
-  std::optional<StatisticalModel> model =
-      {};                     ///< that all statistical bodies have; none: what the policy finds, body by body
+  /// That all statistical bodies have; none: what the policy finds, body by body.
+  std::optional<StatisticalModel> model = {};
   TablesOptions tables = {};  ///< of the tables model
   PolicySettings policy = {};
-  double audit_ms = 0.0;  ///< processor time of each step for the audit: demoted bodies simulated on in full
-                          ///< beside the world (AuditReport); 0: none. One step of one body may exceed it
+  /// Processor time of each step for the audit: demoted bodies simulated on in full beside the world
+  /// (AuditReport); 0: none. One step of one body may exceed it.
+  double audit_ms = 0.0;
   /// Whether two bodies may meet, beside what their properties say; empty: all may. Asked about pairs that
   /// are near each other, in any order, from several threads and more than once a step: it must answer the
   /// same for the same two, whichever comes first, until the step is over, and not call the manager.
   PairFilter pair_filter = {};
   EventSettings events = {};          ///< which contacts step() tells of
   SignatureFunction signatures = {};  ///< empty: find_or_measure_signature with its defaults
-  SignatureTiming signature_timing = SignatureTiming::automatic;  ///< whether a step waits for a signature or
-                                                                  ///< the body goes without meanwhile
+  /// Whether a step waits for a signature or the body goes without meanwhile.
+  SignatureTiming signature_timing = SignatureTiming::automatic;
 };
 
 class Manager {
@@ -93,15 +95,13 @@ class Manager {
 
   // Ground of bodies on every rung, not of the caller's own, who makes these' contacts with his geoms alone;
   // what comes to lie in it wakes.
-  GroundId add_plane(
-      const Vec3& normal, double offset,
-      MaterialId material = 0);  ///< normal·x = offset (m); the normal's length within 1e-3 of 1
-  GroundId add_static_mesh(const Mesh& mesh,
-                           MaterialId material = 0);  ///< vertices in the world frame, m, within 1e6 of its
-                                                      ///< axes' origin; two faces or more
+  /// normal·x = offset (m); the normal's length within 1e-3 of 1.
+  GroundId add_plane(const Vec3& normal, double offset, MaterialId material = 0);
+  /// Vertices in the world frame, m, within 1e6 of its axes' origin; two faces or more.
+  GroundId add_static_mesh(const Mesh& mesh, MaterialId material = 0);
+  /// Full sides, 1e-4 … 1e6 m, none below 2e-6 of the longest.
   GroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
-                          MaterialId material = 0);  ///< full sides, 1e-4 … 1e6 m, none below 2e-6 of the
-                                                     ///< longest
+                          MaterialId material = 0);
   /// Puts a box or mesh elsewhere (a mesh was made at the origin, unturned) and wakes what is near. With a
   /// velocity it carries what lies on it, on every rung: `state` is that at the beginning of the step to
   /// come, within which it goes on from there; after it it stands where it was put again, as queries see it,
@@ -131,12 +131,11 @@ class Manager {
 
   void set_level(BodyId body, LevelChoice choice);      ///< from the next step on
   void set_importance(BodyId body, double importance);  ///< > 0, from the next step on
-  void set_state(
-      BodyId body,
-      const RigidState& state);  ///< with the ranges of add_body; wakes it and what it touches or touched
+  /// With the ranges of add_body; wakes it and what it touches or touched.
+  void set_state(BodyId body, const RigidState& state);
   void set_user_data(BodyId body, std::uintptr_t user_data);
-  void set_events(BodyId body,
-                  bool events);  ///< whether its contacts make events, see BodyDefinition::events
+  /// Whether its contacts make events, see BodyDefinition::events.
+  void set_events(BodyId body, bool events);
   /// Kept on every rung; wakes it, and what it touches where it is to meet others, or to be met by them,
   /// otherwise. A body whose properties are not all default is never at `tables`, whose
   /// loops know none of them, but at `support` instead, whatever was asked for. A kinematic body moves as its
@@ -146,8 +145,8 @@ class Manager {
   /// N and N m about the centre of mass, over the whole of the next step, on top of those given before; wakes
   /// it. Their sum must be finite.
   void add_force(BodyId body, const Vec3& force, const Vec3& torque = Vec3::Zero());
-  void add_force_at(BodyId body, const Vec3& force,
-                    const Vec3& point);  ///< N, at a point of the world (m) as the body is now
+  /// N, at a point of the world (m) as the body is now.
+  void add_force_at(BodyId body, const Vec3& force, const Vec3& point);
   /// N s, at a point of the world (m): changes the velocities at once, as state() shows; wakes it. Nothing on
   /// a kinematic body.
   void add_impulse(BodyId body, const Vec3& impulse, const Vec3& point);
@@ -201,12 +200,13 @@ class Manager {
   // What the last step did, in an order that is the same in every run. Each list costs in proportion to what
   // it holds, never to all bodies, and is good until the next step; ids of bodies that were removed since are
   // in it still.
-  std::span<const BodyId> moved() const;  ///< that were awake; the others are where they were, a sleeper
-                                          ///< that went to `tables` to 1e-7 of a turn (see rung_changes)
+  /// That were awake; the others are where they were, a sleeper that went to `tables` to 1e-7 of a turn (see
+  /// rung_changes).
+  std::span<const BodyId> moved() const;
   std::span<const BodyId> fell_asleep() const;  ///< asleep now, and not after the step before
   std::span<const BodyId> woke() const;         ///< awake now, and asleep after the step before
-  std::span<const RungChange> rung_changes()
-      const;  ///< in the order in which they were made, from the end of the step before on; not of new bodies
+  /// In the order in which they were made, from the end of the step before on; not of new bodies.
+  std::span<const RungChange> rung_changes() const;
 
   /// What touched what in the last step, between any two rungs, ground and the caller's geoms: see events.h.
   /// By the bodies' indices; in the same order in every run.
@@ -225,8 +225,8 @@ class Manager {
   double mass(BodyId body) const;  ///< kg
   const Shape& shape(BodyId body) const;
   std::uintptr_t user_data(BodyId body) const;
-  const BodyProperties& properties(
-      BodyId body) const;  ///< until they are set anew or a body is added or removed
+  /// Until they are set anew or a body is added or removed.
+  const BodyProperties& properties(BodyId body) const;
   Level level(BodyId body) const;
   Rung rung(BodyId body) const;  ///< `support` for a body that waits for its first step
   bool asleep(BodyId body) const;
@@ -239,8 +239,8 @@ class Manager {
   dxBody* ode_body(BodyId body) const;  ///< dBodyID while full, else null
   Vec3 gravity() const;                 ///< m/s², as of the last step
   const StepReport& report() const;     ///< of the last step
-  std::size_t statistical_bytes()
-      const;  ///< held by the statistical level's arrays; 0 where that is not counted: under `support`
+  /// Held by the statistical level's arrays; 0 where that is not counted: under `support`.
+  std::size_t statistical_bytes() const;
   /// All that its next steps depend on, as bytes for restore(): the bodies with their ids, what is remembered
   /// of contacts, sleepers, random draws, what the policy has learnt and put off, and the gravity of a world
   /// of the manager's own. Not the policy itself, hooks, ground and materials, nor the caller's own bodies.
@@ -289,8 +289,8 @@ class Manager {
   // proportion to what is awake; the very first, to all bodies. Where the caller has dynamic bodies, each
   // call walks through his space, unless its filter leaves them out.
 
-  std::optional<QueryHit> cast_ray(
-      const Ray& ray, const QueryFilter& filter = {}) const;  ///< the nearest; none: nothing is met
+  /// The nearest; none: nothing is met.
+  std::optional<QueryHit> cast_ray(const Ray& ray, const QueryFilter& filter = {}) const;
   std::optional<QueryHit> sweep_sphere(const SphereSweep& sphere, const QueryFilter& filter = {}) const;
   /// Of each one the nearest: as many as rays or spheres.
   void cast_rays(std::span<const Ray> rays, std::span<std::optional<QueryHit>> firsts,

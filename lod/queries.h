@@ -17,8 +17,8 @@
 namespace lodestone {
 
 struct QueryFilter {
-  unsigned categories = ~0u;  ///< bodies are met whose category (BodyProperties; of the caller's: of the
-                              ///< geom) has one of these bits
+  /// Bodies are met whose category (BodyProperties; of the caller's: of the geom) has one of these bits.
+  unsigned categories = ~0u;
   bool bodies = true, ground = true, callers = true;  ///< the manager's, ground, the caller's dynamic ones
   BodyId except = {};                                 ///< this body is not met: the one that asks
 };
@@ -49,8 +49,8 @@ struct BoxVolume {
 
 struct QueryHit {
   ContactSide who;
-  Vec3 point =
-      Vec3::Zero();  ///< world, on the surface that is met; of an overlap with a box: the body's position
+  /// World, on the surface that is met; of an overlap with a box: the body's position.
+  Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();  ///< of that surface, outward; of an overlap with a box: none known, z
   double distance = 0.0;        ///< along the ray; 0 of an overlap
 };

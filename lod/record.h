@@ -18,8 +18,9 @@ using RecordFunction = std::function<void(std::span<const std::byte>)>;
 struct ReplayResult {
   int steps = 0;     ///< that were done again, up to the first that came out otherwise
   bool same = true;  ///< all did as recorded
-  BodyId body = {};  ///< where not: the first body, in order of creation, that is otherwise after that step;
-                     ///< null where one is missing
+  /// Where not: the first body, in order of creation, that is otherwise after that step; null where one is
+  /// missing.
+  BodyId body = {};
   std::string text = {};  ///< the same in words
 };
 

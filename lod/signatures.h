@@ -16,11 +16,12 @@ using SignatureFunction = std::function<std::shared_ptr<const Signature>(const S
 
 /// When a signature is had that a body needs for the first time.
 enum class SignatureTiming : std::uint8_t {
-  automatic,  ///< in_step from a source that was given, in_background where it is measured or found in the
-              ///< cache
-  in_step,    ///< the step waits for it: the same levels in every run
-  in_background,  ///< by threads of the lowest priority; until it is there the body is at `support` without
-                  ///< settling clips, or full where the policy wants that
+  /// in_step from a source that was given, in_background where it is measured or found in the cache.
+  automatic,
+  in_step,  ///< the step waits for it: the same levels in every run
+  /// By threads of the lowest priority; until it is there the body is at `support` without settling clips, or
+  /// full where the policy wants that.
+  in_background,
 };
 
 }  // namespace lodestone

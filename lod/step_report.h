@@ -16,8 +16,8 @@ struct StageTimes {
   double pairs_ms = 0;        ///< statistical level: finding the contacts between bodies
   double crowd_ms = 0;        ///< statistical level: the response of bodies that touch others
   double rest_ms = 0;         ///< statistical level: coming to rest, sleeping and waking
-  double cross_level_ms =
-      0;  ///< full bodies handed to the statistical level, and the impulses that come back
+  /// Full bodies handed to the statistical level, and the impulses that come back.
+  double cross_level_ms = 0;
   double full_ms = 0;
   double total_ms = 0;
 
@@ -34,32 +34,35 @@ struct StageTimes {
 struct Counters {
   std::int64_t ode_bodies_created = 0, trimeshes_built = 0, signatures_loaded = 0, pair_phases = 0;
   std::int64_t ode_messages = 0;
-  std::int64_t contacts_dropped = 0;  ///< points at which two full bodies touch beyond eight of a pair: the
-                                      ///< deepest and those farthest apart stay, so that the pair is held
+  /// Points at which two full bodies touch beyond eight of a pair: the deepest and those farthest apart stay,
+  /// so that the pair is held.
+  std::int64_t contacts_dropped = 0;
   std::int64_t states_recovered = 0;
-  std::int64_t full_quick_steps =
-      0;  ///< substeps of the full level whose largest pile was too much for dWorldStep, or beyond it
-  std::int64_t full_swallowed = 0;         ///< times that a full body was wholly inside another in a substep
-  std::int64_t full_passes_prevented = 0;  ///< times that a full body, faster than it is thick in a substep,
-                                           ///< was stopped at what it would have gone through
-  std::int64_t full_uneven_contacts = 0;   ///< contacts, in substeps by QuickStep, of bodies 100 times as
-                                           ///< heavy as each other: the heavy one sinks in
-  std::int64_t energy_clamps = 0;          ///< responses scaled so as not to add energy
-  std::int64_t table_extrapolations = 0;   ///< look-ups outside the measured range
-  std::int64_t levels_considered =
-      0;  ///< bodies whose level was thought about, step by step: most that sleep are in no step
+  /// Substeps of the full level whose largest pile was too much for dWorldStep, or beyond it.
+  std::int64_t full_quick_steps = 0;
+  std::int64_t full_swallowed = 0;  ///< times that a full body was wholly inside another in a substep
+  /// Times that a full body, faster than it is thick in a substep, was stopped at what it would have gone
+  /// through.
+  std::int64_t full_passes_prevented = 0;
+  /// Contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: the heavy one sinks in.
+  std::int64_t full_uneven_contacts = 0;
+  std::int64_t energy_clamps = 0;         ///< responses scaled so as not to add energy
+  std::int64_t table_extrapolations = 0;  ///< look-ups outside the measured range
+  /// Bodies whose level was thought about, step by step: most that sleep are in no step.
+  std::int64_t levels_considered = 0;
   std::int64_t promotions_put_off = 0;  ///< for overlap with another body
   std::int64_t divided_steps = 0;       ///< steps longer than .1 s, which were done in equal parts of no more
-  std::int64_t bodies_held_back = 0;  ///< times that a new body waited for a step, as it was given, where too
-                                      ///< many others were added at the same place
+  /// Times that a new body waited for a step, as it was given, where too many others were added at the same
+  /// place.
+  std::int64_t bodies_held_back = 0;
 };
 
 /// What the bodies of a rung cost in a step: predicted before it, measured in it. Milliseconds of the calling
 /// thread's processor time.
 struct RungCost {
   double predicted_ms = 0, measured_ms = 0;
-  double work = 0;  ///< predicted, in work units: a microsecond of the machine that they were counted on; the
-                    ///< same in every run
+  /// Predicted, in work units: a microsecond of the machine that they were counted on; the same in every run.
+  double work = 0;
 };
 
 /// One number of bodies that went down from the full level, beside the same bodies simulated on in full.
@@ -74,10 +77,10 @@ struct AuditReport {
   int bodies = 0;    ///< compared so far: they met nothing but planes until they rested
   int watched = 0;   ///< on their way
   int left_out = 0;  ///< that met something else, went up again, or were pushed or removed by the caller
-  AuditFigure rest_time_s, distance_m, rest_height;  ///< after the demotion; the last of the centre of mass
-                                                     ///< along gravity, over the size: which pose it rests in
-  double drift =
-      0;  ///< mean distance between the two a second after the demotion, over the size (as RungError::drift)
+  /// After the demotion; the last of the centre of mass along gravity, over the size: which pose it rests in.
+  AuditFigure rest_time_s, distance_m, rest_height;
+  /// Mean distance between the two a second after the demotion, over the size (as RungError::drift).
+  double drift = 0;
   std::array<double, 2> drift_interval{};  ///< 95 %
   double spent_ms = 0;  ///< in this step, of the calling thread's processor time; no part of the budget
 };
@@ -92,9 +95,10 @@ struct StepReport {
   /// By Rung, in its order. Filled under a budget only, since clocks and counts cost time themselves.
   std::array<RungCost, kRungs> cost{};
   double predicted_ms = 0,
-         measured_ms = 0;             ///< of the whole step, with what is no rung's; under a budget only
-  double predicted_error_pixels = 0;  ///< of the scene: the sum of what explain() says of each awake body,
-                                      ///< times its importance; under an error budget only
+         measured_ms = 0;  ///< of the whole step, with what is no rung's; under a budget only
+  /// Of the scene: the sum of what explain() says of each awake body, times its importance; under an error
+  /// budget only.
+  double predicted_error_pixels = 0;
   double bytes_moved = 0;  ///< by the tables model, counted from its arrays; 0 where it is not counted
   AuditReport audit = {};
   int contacts = 0;  ///< of statistical bodies, with ground and each other, in this step

@@ -10,12 +10,13 @@ struct TablesOptions {
   bool interpolate = true;         ///< look-up between cells; else the nearest cell (3.3.1)
   bool draw_height = false;        ///< radius drawn from (μ, σ) at each contact instead of the mean
   int radius_update_interval = 1;  ///< steps between updates of the sphere's radius (3.3.1)
-  bool rest_poses = true;  ///< bodies turn into rest poses (3.4); else they lie as they last came down, on
-                           ///< the sphere that they had then: the paper's figure 7
-  bool nearest_rest_pose = false;  ///< rest in the pose that needs the smallest rotation (3.4); else in the
-                                   ///< one that the body tips into
-  bool paper_pair_rule = false;    ///< each body responds as against an immovable plane (3.3.2); gains energy
-  bool published = false;          ///< the paper's model: spheres of the mean height, drawn responses
+  /// Bodies turn into rest poses (3.4); else they lie as they last came down, on the sphere that they had
+  /// then: the paper's figure 7.
+  bool rest_poses = true;
+  /// Rest in the pose that needs the smallest rotation (3.4); else in the one that the body tips into.
+  bool nearest_rest_pose = false;
+  bool paper_pair_rule = false;  ///< each body responds as against an immovable plane (3.3.2); gains energy
+  bool published = false;        ///< the paper's model: spheres of the mean height, drawn responses
 
   /// Whether the model is the paper's: it was asked for, or one of its options was.
   bool as_published() const {

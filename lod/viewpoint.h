@@ -12,8 +12,8 @@ struct Viewpoint {
   Vec3 position = Vec3::Zero();        ///< m
   std::optional<Vec3> direction = {};  ///< of sight, of any length but 0; none: it sees all around
   Vec3 up = Vec3::UnitZ();             ///< roughly: what is along the direction of sight is left out
-  double vertical_fov_rad =
-      std::numbers::pi / 3;    ///< from the lower edge of the picture to the upper, in (0, π)
+  /// From the lower edge of the picture to the upper, in (0, π).
+  double vertical_fov_rad = std::numbers::pi / 3;
   double height_px = 1080.0;   ///< of the picture
   double aspect = 16.0 / 9.0;  ///< its width over its height
 };

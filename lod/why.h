@@ -34,21 +34,21 @@ std::string_view text_of(Rule rule);
 struct Why {
   Rung rung = Rung::support;
   Rule rule = Rule::forced;
-  bool placed = false;  ///< false: it was added since the last step, which gives it a rung; rung and rule say
-                        ///< nothing yet
-  double distance_m =
-      std::numeric_limits<double>::infinity();  ///< from the nearest viewpoint to its bounding sphere;
-                                                ///< infinite without viewpoints
-  double pixels = 0.0;  ///< diameter of its bounding sphere in the picture where it is largest, as if it were
-                        ///< in view; 0 without viewpoints
+  /// False: it was added since the last step, which gives it a rung; rung and rule say nothing yet.
+  bool placed = false;
+  /// From the nearest viewpoint to its bounding sphere; infinite without viewpoints.
+  double distance_m = std::numeric_limits<double>::infinity();
+  /// Diameter of its bounding sphere in the picture where it is largest, as if it were in view; 0 without
+  /// viewpoints.
+  double pixels = 0.0;
   bool in_view = true;
   double predicted_error = 0.0;  ///< score of its rung for its shape (see RungErrors); 0 while it sleeps
-  double predicted_error_pixels = 0.0;  ///< how far it drifts in a second (RungError::drift, among others
-                                        ///< with RungOverlaps) × pixels; over out_of_view_factor where it is
-                                        ///< not in view; 0 while it sleeps
-  double cost_work = 0.0;  ///< of a step on its rung as it is now, in work units (see RungCost::work),
-                           ///< without pairs of full bodies
-  double cost_ms = 0.0;    ///< the same as learnt from measured steps; 0 unless the budget is in milliseconds
+  /// How far it drifts in a second (RungError::drift, among others with RungOverlaps) × pixels; over
+  /// out_of_view_factor where it is not in view; 0 while it sleeps.
+  double predicted_error_pixels = 0.0;
+  /// Of a step on its rung as it is now, in work units (see RungCost::work), without pairs of full bodies.
+  double cost_work = 0.0;
+  double cost_ms = 0.0;  ///< the same as learnt from measured steps; 0 unless the budget is in milliseconds
   int dwell_left_frames = 0;  ///< until it may change again
   GroupId group = {};         ///< that it is a member of; null: of none
 };

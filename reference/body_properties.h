@@ -6,8 +6,8 @@
 namespace lodestone {
 
 struct BodyProperties {
-  unsigned category = ~0u, collide = ~0u;  ///< bits, as ODE's: two meet where either's category is among what
-                                           ///< the other collides with
+  /// Bits, as ODE's: two meet where either's category is among what the other collides with.
+  unsigned category = ~0u, collide = ~0u;
   bool gravity = true;
   double linear_damping = 0.0, angular_damping = 0.0;  ///< 1/s, ≥ 0: a velocity falls as exp(−damping · t)
   double max_angular_speed = std::numeric_limits<double>::infinity();  ///< rad/s, > 0

@@ -8,8 +8,8 @@
 
 namespace lodestone {
 
-inline constexpr double kObservationStep =
-    1.0 / 60.0;  ///< s: every method is observed at these instants, whatever its own step
+/// s: every method is observed at these instants, whatever its own step.
+inline constexpr double kObservationStep = 1.0 / 60.0;
 inline constexpr int kTruthSubsteps = 34;  ///< ODE's steps in one of those, of .49 ms: the ground truth
 /// J/kg: a body whose kinetic energy over its mass stays below it is at rest, as comparisons see it.
 inline constexpr double kRestEnergyPerMass = 2e-3;

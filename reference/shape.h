@@ -20,22 +20,23 @@ struct Shape {
   Mesh mesh;  ///< vertices relative to the centre of mass
   Hull hull;
   SupportMap support_map;
-  TipMap tips;  ///< may be none: then every vertex is looked at
+  TipMap tips;          ///< may be none: then every vertex is looked at
   double volume = 0.0;  ///< m³
-  Vec3 center_of_mass_in_mesh =
-      Vec3::Zero();  ///< m, where the body frame's origin lies in the mesh that was given
+  /// m, where the body frame's origin lies in the mesh that was given.
+  Vec3 center_of_mass_in_mesh = Vec3::Zero();
   Mat3 inertia_per_mass = Mat3::Identity();  ///< m², body axes
   Mat3 inverse_inertia_per_mass = Mat3::Identity();
-  double radius =
-      0.0;  ///< m, greatest distance of a vertex from the centre of mass: the paper's bounding sphere
+  /// m, greatest distance of a vertex from the centre of mass: the paper's bounding sphere.
+  double radius = 0.0;
   double inner_radius = 0.0;  ///< m, of the greatest ball about the centre of mass that the hull contains
   double size = 0.0;          ///< m, longest side of the mesh's bounding box
   bool convex = false;        ///< whether mesh and hull bound the same solid
-  std::vector<Shape> pieces;  ///< of a concave shape, whose union it is (convex_pieces.h), each about its own
-                              ///< `center_of_mass_in_mesh` in this body's frame; may be none
+  /// Of a concave shape, whose union it is (convex_pieces.h), each about its own `center_of_mass_in_mesh` in
+  /// this body's frame; may be none.
+  std::vector<Shape> pieces;
   std::optional<double> sphere_radius;  ///< set where the shape is exactly a sphere
-  std::uint64_t content_hash =
-      0;  ///< of geometry and mass distribution over `radius`: equal for scaled copies
+  /// Of geometry and mass distribution over `radius`: equal for scaled copies.
+  std::uint64_t content_hash = 0;
 };
 
 /// What may be given instead of being measured from the mesh.

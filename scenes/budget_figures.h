@@ -26,8 +26,8 @@ struct BudgetFigures {
   double mean_predicted_ms = 0, mean_measured_ms = 0;  ///< of a whole step, by its report
   double mean_error_ms = 0;                            ///< |predicted − measured|
   double mean_work = 0;                                ///< units of all rungs
-  std::optional<double> mean_error_pixels =
-      {};  ///< predicted of the scene (StepReport::predicted_error_pixels), under an error budget
+  /// Predicted of the scene (StepReport::predicted_error_pixels), under an error budget.
+  std::optional<double> mean_error_pixels = {};
 };
 
 /// Takes the steps of a run one by one.

@@ -7,8 +7,8 @@
 
 namespace lodestone {
 
-inline constexpr double kFieldOfView =
-    std::numbers::pi / 3;  ///< rad, from the lower edge of the picture to the upper
+/// rad, from the lower edge of the picture to the upper.
+inline constexpr double kFieldOfView = std::numbers::pi / 3;
 inline constexpr double kAspectRatio = 16.0 / 9.0;
 
 /// The rotation of a glTF camera, which looks along its −z with y upwards, at `position` looking at `target`

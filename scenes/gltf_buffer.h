@@ -24,8 +24,8 @@ class GltfBuffer {
                    bool normalized = false);
 
   int add_scalars(std::span<const float> values);  ///< with the bounds that key times need
-  int add_vectors(std::span<const std::array<float, 3>> values,
-                  int target);  ///< with the bounds that positions need
+  /// With the bounds that positions need.
+  int add_vectors(std::span<const std::array<float, 3>> values, int target);
   int add_indices(std::span<const std::uint32_t> values);
 
  private:

@@ -24,8 +24,8 @@ class GltfStage {
 
   int add_node(tinygltf::Node node);  ///< under the root
   int add_child(int parent, tinygltf::Node node);
-  int body_mesh(const Shape& shape,
-                BodyLook look);  ///< made once for each shape and look; the looks share their arrays
+  /// Made once for each shape and look; the looks share their arrays.
+  int body_mesh(const Shape& shape, BodyLook look);
   void add_ground(const SceneGround& ground, double extent_m);  ///< planes are drawn `extent_m` to each side
   int add_camera(const SceneViewpoint& viewpoint);              ///< returns its node
 

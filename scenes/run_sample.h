@@ -16,13 +16,13 @@ inline constexpr int kSinking = 30;
 struct RunSample {
   std::vector<RigidState> states;
   std::vector<Rung> rungs;
-  std::vector<int>
-      awake_since_tables;  ///< samples in which the body was awake since it was at `tables`, at most kSinking
-  double energy_j = 0;     ///< kinetic, and potential about the origin
-  double max_tables_penetration_m = 0;  ///< below any ground plane of the scene: of bodies at `tables`, or
-                                        ///< fewer than kSinking awake_since_tables
-  double max_other_penetration_m = 0;   ///< of all others
-  bool finite = true;                   ///< where not, the three above are of the finite bodies only
+  /// Samples in which the body was awake since it was at `tables`, at most kSinking.
+  std::vector<int> awake_since_tables;
+  double energy_j = 0;  ///< kinetic, and potential about the origin
+  /// Below any ground plane of the scene: of bodies at `tables`, or fewer than kSinking awake_since_tables.
+  double max_tables_penetration_m = 0;
+  double max_other_penetration_m = 0;  ///< of all others
+  bool finite = true;                  ///< where not, the three above are of the finite bodies only
 };
 
 /// Reads `bodies` (those of `scene`, in its order) into `sample`.

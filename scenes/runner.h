@@ -40,23 +40,24 @@ struct RunSettings {
   LevelChoice level = LevelChoice::automatic;  ///< other than automatic: forces every body
   std::optional<double> budget_ms = {},
                         budget_work = {};  ///< else the scene's policy; at most one of them, positive
-  std::optional<double> full_within_m =
-      {};  ///< else the scene's policy; instead of a budget, ≥ 0: policy distance with it
+  /// Else the scene's policy; instead of a budget, ≥ 0: policy distance with it.
+  std::optional<double> full_within_m = {};
   std::optional<double> audit_ms = {};  ///< else the scene's
   int threads = 1;
   /// From the end of this step on the world goes on twice: as the scene says all through, and once more with
   /// level, model, budget and full_within_m of these settings, which are for this second future alone.
   std::optional<int> fork_step = {};
-  std::filesystem::path out = {};  ///< folder for run.play (scenes/playback.h; fork.play beside it), the
-                                   ///< trajectory and steps.csv; empty: write nothing
-  std::filesystem::path record =
-      {};  ///< file for a recording (lod/record.h) of what is done to the bodies; empty: none
+  /// Folder for run.play (scenes/playback.h; fork.play beside it), the trajectory and steps.csv; empty: write
+  /// nothing.
+  std::filesystem::path out = {};
+  /// File for a recording (lod/record.h) of what is done to the bodies; empty: none.
+  std::filesystem::path record = {};
   SignatureFunction signatures = {};
   std::function<void(const RunProgress&)> progress = {};
   std::function<void(const WatchedStep&)> watch = {};  ///< of each step, outside of its times
   bool keep_steps = false;  ///< in RunResult::reports and step_processor_ms: 500 bytes a step
-  std::function<bool()> stop =
-      {};  ///< asked before each step but the first: true ends the run there, incomplete
+  /// Asked before each step but the first: true ends the run there, incomplete.
+  std::function<bool()> stop = {};
 };
 
 /// One of the scene's `check:` lines, evaluated.
@@ -64,8 +65,8 @@ struct CheckResult {
   std::string name;
   double value = 0, bound = 0;
   bool pass = true;
-  bool decided =
-      true;  ///< false where the run ended before the check could fail or pass; `pass` is true then
+  /// False where the run ended before the check could fail or pass; `pass` is true then.
+  bool decided = true;
 };
 
 /// Full bodies whose centre of mass is in the picture (scenes/camera.h) of the scene's first viewpoint, of
@@ -92,9 +93,9 @@ struct RunResult {
   std::optional<BudgetFigures> budget;       ///< none without a budget
   std::optional<PictureFigures> in_picture;  ///< none without a viewpoint, or where the run ended before
   std::int64_t transitions = 0, promotions = 0;
-  double max_penetration_m = 0;         ///< deepest hull vertex in ground planes and boxes, over the run
-  double max_tables_penetration_m = 0;  ///< the same of bodies at `tables` and of those that came from there
-                                        ///< and were not awake for 30 steps since
+  double max_penetration_m = 0;  ///< deepest hull vertex in ground planes and boxes, over the run
+  /// The same of bodies at `tables` and of those that came from there and were not awake for 30 steps since.
+  double max_tables_penetration_m = 0;
   double energy_start_j = 0, energy_max_j = 0, energy_end_j = 0;  ///< kinetic and potential, all bodies
   bool finite = true;              ///< no NaN or infinity at any step; the run ends at the first
   std::vector<RigidState> states;  ///< at the end, in the scene's order
@@ -107,10 +108,11 @@ struct RunResult {
 
 /// The second future of a world.
 struct ForkedRun {
-  int step = 0;                         ///< after which the two differ
-  RunResult result;                     ///< from there on
-  std::vector<double> mean_distance_m;  ///< of each step from there on: from where a body is in one future to
-                                        ///< where it is in the other, mean over the bodies
+  int step = 0;      ///< after which the two differ
+  RunResult result;  ///< from there on
+  /// Of each step from there on: from where a body is in one future to where it is in the other, mean over
+  /// the bodies.
+  std::vector<double> mean_distance_m;
 };
 
 /// Runs at least one step. Throws InputError (ArgumentError for settings out of range) for what cannot be run

@@ -28,8 +28,8 @@ struct Scatter {
   int count = 0;
   ScatterRegion region;
   std::uint64_t seed = 0;
-  double spacing_m =
-      0;  ///< between centres of this scatter, where that is more than the bounding spheres ask for
+  /// Between centres of this scatter, where that is more than the bounding spheres ask for.
+  double spacing_m = 0;
 };
 
 /// A half-space that bodies must stay out of: normal·x ≥ offset for every point of them.

@@ -17,8 +17,8 @@ struct ShapeOptions {
   std::optional<double> size_m = {};               ///< longest side of the bounding box (meshes; bunny: .2)
   std::optional<int> faces = {};                   ///< simplify to this many (meshes; bunny: 4,698)
   std::vector<std::filesystem::path> search = {};  ///< folders that a mesh file is looked up in, in order
-  bool stay_in_search =
-      false;  ///< refuse a mesh file outside those folders (scenes, which may come from strangers)
+  /// Refuse a mesh file outside those folders (scenes, which may come from strangers).
+  bool stay_in_search = false;
   bool untrusted = false;  ///< read mesh files in a child process with limits
 };
 

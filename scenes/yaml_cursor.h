@@ -16,8 +16,8 @@
 
 namespace lodestone {
 
-inline constexpr double kFarthest =
-    1e8;  ///< m, m/s, …: the largest magnitude of any number in a scene (beyond it ODE's hash space fails)
+/// m, m/s, …: the largest magnitude of any number in a scene (beyond it ODE's hash space fails).
+inline constexpr double kFarthest = 1e8;
 
 /// Which numbers are accepted.
 struct NumberRange {

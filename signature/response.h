@@ -71,8 +71,8 @@ struct ResponseTable {
   ResponseCells cells;
   std::int64_t size() const { return std::int64_t(n_theta) * n_phi * n_alpha * n_psi; }
   CollisionConfiguration center(std::int64_t cell) const;  ///< at a speed unit of 1 m/s
-  std::int64_t find_cell(
-      const CollisionConfiguration& c) const;  ///< whose centre is nearest along every axis
+  /// Whose centre is nearest along every axis.
+  std::int64_t find_cell(const CollisionConfiguration& c) const;
 };
 
 /// The paper's own table: responses over (θ, φ, ‖V⁻‖, ‖Ω⁻‖), on both sides of bounce_vel. Cell index ((i
@@ -86,8 +86,8 @@ struct SpeedTable {
     return std::int64_t(n_theta) * n_phi * std::int64_t(speeds.size() * spins.size());
   }
   CollisionConfiguration center(std::int64_t cell) const;
-  std::int64_t find_cell(
-      const CollisionConfiguration& c) const;  ///< whose centre is nearest along every axis
+  /// Whose centre is nearest along every axis.
+  std::int64_t find_cell(const CollisionConfiguration& c) const;
 };
 
 }  // namespace lodestone

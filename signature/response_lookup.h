@@ -19,12 +19,12 @@ struct CellBlend {
 struct FoundResponse {
   Response mean = Response::Zero(), deviation = Response::Zero();
   bool extrapolated = false;  ///< it lies outside of what was measured: the nearest was taken
-  float bouncing_part =
-      1.0f;  ///< of the restitution that V_particle has: less than 1 where slow approaches do not bounce
+  /// Of the restitution that V_particle has: less than 1 where slow approaches do not bounce.
+  float bouncing_part = 1.0f;
   double least_bouncing_approach = 0.0;  ///< over s: ODE's bounce_vel
   const ResponseCells* bouncing = nullptr;
-  const ResponseCells* slow =
-      nullptr;  ///< null where nothing is slower than bounce_vel, or the table knows by itself
+  /// Null where nothing is slower than bounce_vel, or the table knows by itself.
+  const ResponseCells* slow = nullptr;
   CellBlend blend;
 };
 

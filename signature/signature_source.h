@@ -24,11 +24,11 @@ struct SignatureSourceSettings {
   std::filesystem::path cache_folder;  ///< empty: $XDG_CACHE_HOME/lodestone, else ~/.cache/lodestone
   int threads = 0;                     ///< 0: all cores
   Progress progress;
-  std::function<void(const std::string&)> warn =
-      {};  ///< told of a cache that cannot be used, and of a process that is waited for longer than
-           ///< kWaitSaid; from one thread
-  std::stop_token stop =
-      {};  ///< once stopped, measuring ends soon, and goes on from there the next time (with the cache)
+  /// Told of a cache that cannot be used, and of a process that is waited for longer than kWaitSaid; from one
+  /// thread.
+  std::function<void(const std::string&)> warn = {};
+  /// Once stopped, measuring ends soon, and goes on from there the next time (with the cache).
+  std::stop_token stop = {};
 };
 
 struct MeasurementPart;

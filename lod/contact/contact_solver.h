@@ -25,22 +25,25 @@ inline constexpr double kUnbounded = 1e300;
 inline constexpr double kUnevenMasses = 12.0;
 
 struct ContactSolverSettings {
-  int sweeps = 10;  ///< at most; fewer once no impulse changes by more than `tolerance` of the greatest,
-                    ///< or in a crowd no velocity by more than that of `fall`
+  /// At most; fewer once no impulse changes by more than `tolerance` of the greatest, or in a crowd no
+  /// velocity by more than that of `fall`.
+  int sweeps = 10;
   double tolerance = 1e-4;
-  bool frictionless_bound = false;  ///< friction is bounded by μ times the normal impulses without friction,
-                                    ///< as dWorldStep with Approx1 has it; crowds choose that
-                                    ///< themselves
-  double bounce_velocity = 0.05;    ///< m/s, slower approaches do not bounce (as in ODE)
-  bool along_chords = false;   ///< of one body on the ground: in a step contacts keep their places while it
-                               ///< turns about them, as they do not where each moves along its tangent
+  /// Friction is bounded by μ times the normal impulses without friction, as dWorldStep with Approx1 has it;
+  /// crowds choose that themselves.
+  bool frictionless_bound = false;
+  double bounce_velocity = 0.05;  ///< m/s, slower approaches do not bounce (as in ODE)
+  /// Of one body on the ground: in a step contacts keep their places while it turns about them, as they do
+  /// not where each moves along its tangent.
+  bool along_chords = false;
   double sliding_speed = 0.0;  ///< m/s: but for those that go faster than so, and than friction can stop
-  Vec3 fall = Vec3::Zero();  ///< m/s, what gravity has given the velocities for this step: an impact on what
-                             ///< stands still is answered as fast as it is when it happens, within the step
-  double driven = 0.0;  ///< m/s, of one body on the ground that a torque acts on: what its weight gives in
-                        ///< the step; 0: none acts
-  Vec3 turned = Vec3::Zero();  ///< rad/s, of one body on the ground: what a torque has given it for this
-                               ///< step, which is no impact
+  /// m/s, what gravity has given the velocities for this step: an impact on what stands still is answered as
+  /// fast as it is when it happens, within the step.
+  Vec3 fall = Vec3::Zero();
+  /// m/s, of one body on the ground that a torque acts on: what its weight gives in the step; 0: none acts.
+  double driven = 0.0;
+  /// rad/s, of one body on the ground: what a torque has given it for this step, which is no impact.
+  Vec3 turned = Vec3::Zero();
 };
 
 /// m/s along the normal at the end of a `step` that a body began with `approach` (negative, with the step's

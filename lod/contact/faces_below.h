@@ -27,9 +27,10 @@ std::optional<HalfSpace> find_face_below(const PlacedSolid& solid, const Vec3& c
 
 /// Of a solid that is one triangle of a surface.
 struct SurfaceBelow {
-  bool in_reach = false;           ///< of a ball
-  std::optional<HalfSpace> plane;  ///< where the surface goes on beyond it, level or rising, as far as the
-                                   ///< ball reaches: no edge that stands out, and no border
+  bool in_reach = false;  ///< of a ball
+  /// Where the surface goes on beyond it, level or rising, as far as the ball reaches: no edge that stands
+  /// out, and no border.
+  std::optional<HalfSpace> plane;
 };
 SurfaceBelow find_surface_below(const PlacedSolid& triangle, const Vec3& center, double reach);
 

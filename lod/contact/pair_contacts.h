@@ -76,11 +76,11 @@ struct PairWay {
 };
 
 struct HullContactSearch {
-  bool exact = true;                  ///< in: see find_hull_gap
-  std::optional<PairWay> way;         ///< in; none: they pass over nothing
-  double gap = 0.0;                   ///< m: the true distance is at least this
-  std::vector<PairContact> contacts;  ///< those with a gap of at most the margin: one for hulls, one for each
-                                      ///< two convex pieces that meet
+  bool exact = true;           ///< in: see find_hull_gap
+  std::optional<PairWay> way;  ///< in; none: they pass over nothing
+  double gap = 0.0;            ///< m: the true distance is at least this
+  /// Those with a gap of at most the margin: one for hulls, one for each two convex pieces that meet.
+  std::vector<PairContact> contacts;
 };
 
 /// `support`. Concave bodies that have convex pieces (Shape::pieces) meet in these, so that they may reach

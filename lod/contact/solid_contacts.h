@@ -82,8 +82,8 @@ std::span<const HalfSpace> join_planes(std::span<const HalfSpace> planes, std::s
 /// The faces of the ground's parts that bodies lie over: planes, as far as these bodies are concerned.
 struct FacesBelow {
   std::vector<HalfSpace> faces;
-  std::vector<std::pair<std::int32_t, std::int32_t>>
-      run;  ///< of each slot, in `faces`; empty where there are no solids
+  /// Of each slot, in `faces`; empty where there are no solids.
+  std::vector<std::pair<std::int32_t, std::int32_t>> run;
   std::span<const HalfSpace> of(std::int32_t slot) const {
     if (run.empty()) return {};
     const auto& [begin, end] = run[std::size_t(slot)];

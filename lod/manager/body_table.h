@@ -43,11 +43,11 @@ struct BodyLevel {
   Rule reason = Rule::forced;
   bool newcomer = false;  ///< on no rung yet
   bool put_off = false;   ///< its promotion was put off lately
-  bool waits_for_signature =
-      false;                    ///< and is at `support` without settling clips, or full, until it is there
+  /// Until that is there it is at `support` without settling clips, or full.
+  bool waits_for_signature = false;
   bool own_properties = false;  ///< that `tables` knows nothing of
-  std::int8_t tables_open =
-      -1;  ///< whether it has the signature that `tables` needs; −1: that was not asked for yet
+  /// Whether it has the signature that `tables` needs; −1: that was not asked for yet.
+  std::int8_t tables_open = -1;
 };
 
 class BodyTable {

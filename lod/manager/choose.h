@@ -27,8 +27,8 @@ struct RungChanges {
     std::uint32_t body = 0;
     Rung to = Rung::support;
     RungSet open = kEveryRung;
-    std::int32_t together =
-        -1;  ///< those that follow each other with the same number change all or not at all
+    /// Those that follow each other with the same number change all or not at all.
+    std::int32_t together = -1;
   };
   std::vector<Change> promote, demote;
 };

@@ -19,10 +19,11 @@ struct StepOverhead {
   double others = 0.0;                  ///< whatever is no candidate's
   double margin = 0.0;                  ///< over the prediction: that it is likely to err by, as a part of it
   std::array<double, kRungs> change{};  ///< once, of a change to each rung
-  double pair = 0.0;   ///< of full bodies that may meet, of weight 1; half of it where both sleep: all that
-                       ///< wakes at once may take twice the budget
-  double spike = 0.0;  ///< once, where there is such a pair that is awake, for what the dearest of them may
-                       ///< take in a bad step
+  /// Of full bodies that may meet, of weight 1; half of it where both sleep: all that wakes at once may take
+  /// twice the budget.
+  double pair = 0.0;
+  /// Once, where there is such a pair that is awake, for what the dearest of them may take in a bad step.
+  double spike = 0.0;
 };
 
 struct LevelDecision {

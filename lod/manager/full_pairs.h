@@ -27,8 +27,8 @@ class FullPairs {
     double radius = 0.0;  ///< m, of the bounding sphere
     float mesh = 0.0f;    ///< mesh_weight
     bool asleep = false;
-    Vec3 motion =
-        Vec3::Zero();  ///< m, in the next frame: a pair is as deep as it will be then, where that is deeper
+    /// m, in the next frame: a pair is as deep as it will be then, where that is deeper.
+    Vec3 motion = Vec3::Zero();
     std::int64_t joined = -1;  ///< the group whose joints hold it, in which there are no pairs; −1: none
   };
 

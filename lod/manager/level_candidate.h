@@ -15,10 +15,10 @@ struct LevelCandidate {
   Vec3 position = Vec3::Zero();
   double radius = 0.0;  ///< m, distance is measured to the nearest point of the bounding sphere
   double importance = 1.0;
-  std::array<float, kRungs> cost{};  ///< predicted for a step at each rung, in the unit of the budget; at the
-                                     ///< full level without pairs
-  float mesh = 0.0f;                 ///< weight of its mesh in pairs of full bodies (full_pairs.h)
-  PairWeights pairs_within = {};     ///< of one that stands for several, when they are full
+  /// Predicted for a step at each rung, in the unit of the budget; at the full level without pairs.
+  std::array<float, kRungs> cost{};
+  float mesh = 0.0f;              ///< weight of its mesh in pairs of full bodies (full_pairs.h)
+  PairWeights pairs_within = {};  ///< of one that stands for several, when they are full
   bool asleep = false;
   Vec3 motion = Vec3::Zero();  ///< m, of a full body in the next frame
   std::int32_t frames_since_change = 1 << 30;
@@ -30,10 +30,10 @@ struct LevelCandidate {
   bool hits_full = false;          ///< it is about to hit a full body
   std::int32_t bodies = 1;         ///< that it stands for
   double view_factor = 1.0;        ///< ≥ 1, by which it counts as farther than it is: out of view
-  double no_farther_than =
-      std::numeric_limits<double>::infinity();  ///< in the policy's measure: of what it is about to hit
-  Vec3 ahead = Vec3::Zero();                    ///< m, how far it will have moved when the look-ahead ends
-  std::array<float, kRungs> error{};            ///< px, predicted at each rung
+  /// In the policy's measure: of what it is about to hit.
+  double no_farther_than = std::numeric_limits<double>::infinity();
+  Vec3 ahead = Vec3::Zero();          ///< m, how far it will have moved when the look-ahead ends
+  std::array<float, kRungs> error{};  ///< px, predicted at each rung
 
   /// Whether the policy has no say.
   bool decided() const { return open.one(); }

@@ -44,18 +44,16 @@ struct StatisticalPlace {
 /// What a body does, as far as its cost goes.
 enum class Activity : std::uint8_t {
   asleep,
-  alone,
-  crowded
-};  // alone: flies, slides or rests by itself; crowded: touches other bodies
+  alone,   ///< flies, slides or rests by itself
+  crowded  ///< touches other bodies
+};
 inline constexpr std::size_t kActivities = 3;
 
 /// Bodies of each rung by what they did in the last step, and the processor time of the calling thread that
-/// they took, ms.
+/// they took, ms; that of `support` with what it and full bodies have to do with those of `tables` near them.
 struct StatisticalCost {
   std::array<int, kActivities> tables{}, support{};
-  double tables_ms = 0.0,
-         support_ms =
-             0.0;  ///< `support`: with what it and full bodies have to do with those of `tables` near them
+  double tables_ms = 0.0, support_ms = 0.0;
 };
 
 class StatisticalLevel {
@@ -103,16 +101,16 @@ class StatisticalLevel {
   Vec3 position(StatisticalPlace place) const;
   void set_state(StatisticalPlace place, const RigidState& state);  ///< wakes it
   bool asleep(StatisticalPlace place) const;
-  double sphere_radius(
-      StatisticalPlace place) const;  ///< m, of the colliding sphere at `tables`; 0 at `support`
+  /// m, of the colliding sphere at `tables`; 0 at `support`.
+  double sphere_radius(StatisticalPlace place) const;
   void wake(StatisticalPlace place);
   void note_placed(StatisticalPlace place);  ///< it may be in others, and is to part from them
   /// Wakes who touches it, as when it is removed: what bore them may be gone.
   void let_fall_near(StatisticalPlace place);
   void put_to_sleep(StatisticalPlace place);  ///< where it is, at once
-  void add_force(StatisticalPlace place, const Vec3& force,
-                 const Vec3& torque);  ///< over the next step; wakes it
-  double reach() const;                ///< m, greatest bounding radius
+  /// Over the next step; wakes it.
+  void add_force(StatisticalPlace place, const Vec3& force, const Vec3& torque);
+  double reach() const;  ///< m, greatest bounding radius
   /// Appends the owners of sleepers whose bounding sphere meets this one, and perhaps others; `reach` in m.
   void find_sleepers(const Vec3& center, double reach, std::vector<std::uint32_t>& owners) const;
 

@@ -32,9 +32,10 @@ struct FullNeighbor {
   bool on_ground = false;      ///< of the caller's: whether it is known to lie on ground
   bool driven = false;         ///< by a motor
   bool asleep = false;         ///< stands still like ground; also out: false where a hit woke it
-  bool carried = false;        ///< out: by what nothing stops (CarriedBodies), or touched by a statistical
-                               ///< body that moves: it must not sleep
-  Impulse hit;                 ///< out: of impacts, to be given to the body before the full level's step
+  /// Out: by what nothing stops (CarriedBodies), or touched by a statistical body that moves: it must not
+  /// sleep.
+  bool carried = false;
+  Impulse hit;         ///< out: of impacts, to be given to the body before the full level's step
   Impulse push;        ///< out: of resting, sliding and rolling, to be given as a force spread over that step
   Impulse backed_hit;  ///< out: of impacts against what of ODE's stands behind it
   double fastest_hit = 0.0;  ///< out: m/s, of all of them
@@ -87,8 +88,9 @@ struct FullContact {
   Vec3 velocity = Vec3::Zero();     ///< m/s, of the ground there
   MaterialId ground_material = 0;   ///< where the second is the ground
   std::optional<Drive> drive = {};  ///< a motor's: no contact, but pushes along its normal
-  std::uint32_t row = 0;            ///< of a joint's: its number among those of the first body, odd where it
-                                    ///< pushes one way, and the next where it pushes the other; 0: a contact
+  /// Of a joint's: its number among those of the first body, odd where it pushes one way, and the next where
+  /// it pushes the other; 0: a contact.
+  std::uint32_t row = 0;
 };
 
 }  // namespace lodestone

@@ -17,8 +17,8 @@ namespace lodestone {
 struct BodyKind {
   std::shared_ptr<const Shape> shape;
   std::shared_ptr<const Signature> signature;  ///< may be null (support model)
-  std::shared_ptr<const ClipIndex>
-      clips;  ///< of the signature's settling clips; none without a signature, or where no model plays them
+  /// Of the signature's settling clips; none without a signature, or where no model plays them.
+  std::shared_ptr<const ClipIndex> clips;
   std::shared_ptr<const RestingFaces> faces;  ///< on which it can stand (tables model); none for a sphere
   MaterialId material = 0;
   bool isotropic = false;                  ///< a sphere or a cube: rotates steadily
@@ -62,14 +62,15 @@ struct StatisticalBody {
   bool borne_up = false;        ///< of a guest of `support`: what bears it was reckoned with a load to come
   bool in_great_heap = false;  ///< many bodies hang together with it (IslandKind::great); asleep: did so last
   bool on_edge = false;        ///< slow and in a crowd, but not over an area of what it stands on (Footing)
-  bool pinned =
-      false;  ///< deep in one of many times its mass, or the other way round, and not to be moved out
+  /// Deep in one of many times its mass, or the other way round, and not to be moved out.
+  bool pinned = false;
   bool carried = false;        ///< by what nothing stops (CarriedBodies), when it last met others or solids
   bool struck = false;         ///< of a sphere among hulls: by a blow in this step
   float since_crowded = 1e9f;  ///< s since it last met another body
-  float placed = 0.0f;  ///< s left in which it is not to rest in overlaps, since it was put where it has
-                        ///< some, or pressed into others by one that was
-  float eased = 0.0f;   ///< s left in which overlaps that it brought from another rung are undone slowly
+  /// s left in which it is not to rest in overlaps, since it was put where it has some, or pressed into
+  /// others by one that was.
+  float placed = 0.0f;
+  float eased = 0.0f;  ///< s left in which overlaps that it brought from another rung are undone slowly
 
   bool is_sphere() const { return sphere_radius > 0.0f; }
   bool is_solved_in_crowd() const { return crowded || (on_solid && !alone_on_solid); }

@@ -20,11 +20,11 @@ struct StatisticalSettings {
   TablesOptions tables = {};
   bool sleeping = true;
   SleepThresholds sleep = {};
-  const OwnProperties* properties =
-      nullptr;  ///< of bodies at `support` and of full ones, by owner; those at `tables` have none. Null:
-                ///< nobody has any. Must outlive the level
-  std::function<bool(std::uint32_t, std::uint32_t)> pair_filter =
-      {};  ///< of two owners: whether they may meet; empty: all do. Called from several threads
+  /// Of bodies at `support` and of full ones, by owner; those at `tables` have none. Null: nobody has any.
+  /// Must outlive the level.
+  const OwnProperties* properties = nullptr;
+  /// Of two owners: whether they may meet; empty: all do. Called from several threads.
+  std::function<bool(std::uint32_t, std::uint32_t)> pair_filter = {};
   Simd simd = find_simd();  ///< the results do not depend on it
 };
 

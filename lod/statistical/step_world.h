@@ -22,8 +22,8 @@ struct StepWorld {
   ContactLog* log = nullptr;                  ///< null: nobody asked
   double bounce_velocity = 0.05;              ///< m/s, ODE's: slower contacts do not bounce
   const ActingForces* forces = nullptr;       ///< on bodies of `support`; null: none
-  Vec3 turning = Vec3::Zero();     ///< m²/s²: what a torque adds to the spin of a body that moves
-                                   ///< alone. (A force is a part of its gravity.)
+  /// m²/s²: what a torque adds to the spin of a body that moves alone. (A force is a part of its gravity.)
+  Vec3 turning = Vec3::Zero();
   const Ground* solids = nullptr;  ///< parts of which are no planes to the body that moves; null: none
 
   const BodyProperties& properties_of(std::uint32_t owner) const {

@@ -21,11 +21,12 @@ struct ClipPlayback {
 };
 
 struct ClipSettings {
-  double energy_limit =
-      0.15;  ///< J/kg over g R: kinetic energy below which a body at a contact may join a clip
-  float energy_slack = 0.002f;        ///< over m g R: what a clip's energy may exceed the body's by
-  float distance_over_energy = 0.5f;  ///< how far the nearest entry may be, in ClipIndex::find_nearest's
-                                      ///< measure, over the kinetic energy of its rocking over m g R,
+  /// J/kg over g R: kinetic energy below which a body at a contact may join a clip.
+  double energy_limit = 0.15;
+  float energy_slack = 0.002f;  ///< over m g R: what a clip's energy may exceed the body's by
+  /// How far the nearest entry may be, in ClipIndex::find_nearest's measure, over the kinetic energy of its
+  /// rocking over m g R …
+  float distance_over_energy = 0.5f;
   float least_distance = 0.002f,
         greatest_distance = 0.1f;  ///< … within these: what differs by more than it moves is another motion
   double fade_time = 0.15;         ///< s at R = .2 m and 9.81 m/s², scaled with √(R/g)

@@ -25,11 +25,11 @@ struct Hull {
   VertexLanes lanes;                      ///< of `vertices`
   std::vector<std::array<int, 3>> faces;  ///< triangulated, counter-clockwise seen from outside
   std::vector<Vec3> face_normals;         ///< unit, outward, of each of `faces`
-  std::vector<std::int32_t>
-      neighbor_start;  ///< size vertices + 1: where each vertex's run of `neighbor` begins
+  /// Size vertices + 1: where each vertex's run of `neighbor` begins.
+  std::vector<std::int32_t> neighbor_start;
   std::vector<std::int32_t> neighbor;
-  std::vector<std::int32_t>
-      face_start;  ///< size vertices + 1: where each vertex's run of `incident_face` begins
+  /// Size vertices + 1: where each vertex's run of `incident_face` begins.
+  std::vector<std::int32_t> face_start;
   std::vector<std::int32_t> incident_face;
 
   std::span<const std::int32_t> neighbors(int vertex) const {

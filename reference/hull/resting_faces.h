@@ -16,8 +16,8 @@ namespace lodestone {
 struct RestingFace {
   Vec3 normal = Vec3::UnitZ();  ///< the plane's normal in body axes when the body stands on it: into the body
   double height = 0.0;          ///< m, of the centre of mass over the plane
-  double pass = 0.0;  ///< m, height that the centre of mass must reach to get to a lower stable face;
-                      ///< infinite for the lowest
+  /// m, height that the centre of mass must reach to get to a lower stable face; infinite for the lowest.
+  double pass = 0.0;
 };
 
 class RestingFaces {

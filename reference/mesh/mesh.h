@@ -34,8 +34,8 @@ struct MeshReport {
 struct MeshLoadSettings {
   std::uintmax_t max_bytes = 256u << 20;
   int max_faces = 1'000'000;
-  bool untrusted =
-      false;  ///< read in a child process with limits of memory and time, whose death is an InputError
+  /// Read in a child process with limits of memory and time, whose death is an InputError.
+  bool untrusted = false;
 };
 
 /// Reads a mesh file (OBJ, PLY, STL, glTF or 3DS) with every mesh of the file joined, vertices in the file's
@@ -56,10 +56,10 @@ Mesh scale_to_size(Mesh mesh, double size_m);
 /// positive and finite.
 Mesh make_box(const Vec3& sides_m);
 Mesh make_sphere(double radius_m, int subdivisions = 3);  ///< icosphere
-Mesh make_l(double leg_a_m, double leg_b_m, double width_m,
-            double thickness_m);  ///< outer legs a along x, b along y; extruded along z
-Mesh make_needle(double length_m,
-                 double radius_m);  ///< hexagonal prism along z, `length_m` long, circumradius `radius_m`
+/// Outer legs a along x, b along y; extruded along z.
+Mesh make_l(double leg_a_m, double leg_b_m, double width_m, double thickness_m);
+/// Hexagonal prism along z, `length_m` long, circumradius `radius_m`.
+Mesh make_needle(double length_m, double radius_m);
 
 /// Hash of vertices and faces (xxHash of their bytes).
 std::uint64_t hash_of(const Mesh& mesh);

@@ -29,11 +29,11 @@ struct Body {
   MaterialId material = 0;
   std::shared_ptr<const Shape> shape;
   std::vector<Sphere> spheres;  ///< empty: a mesh, and its contacts with planes are those of the hull
-  std::vector<Piece>
-      pieces;  ///< convex, whose union is the body; none where it is met as a trimesh or as primitives
+  /// Convex, whose union is the body; none where it is met as a trimesh or as primitives.
+  std::vector<Piece> pieces;
   double reach = 0.0;  ///< m, nothing of the body is farther from its centre of mass
-  double thickness =
-      0.0;  ///< m, radius of a ball about its centre of mass that its hull, or its sphere, contains
+  /// m, radius of a ball about its centre of mass that its hull, or its sphere, contains.
+  double thickness = 0.0;
   Vec3 before = Vec3::Zero();  ///< m, its place before the substep
   int last_support = 0;        ///< the hull vertex deepest in a plane last time
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
@@ -49,8 +49,8 @@ struct Body {
   bool damped = false;           ///< ODE was told of its damping
   std::uint64_t joints_at_rest = 0;  ///< sum_up_joints() of one that sleeps; 0: not known, or awake
   OdeGeometry geometry = OdeGeometry::trimesh;
-  std::uint64_t birth =
-      0;  ///< bodies of this world made before it: ODE goes through them from the last to the first
+  /// Bodies of this world made before it: ODE goes through them from the last to the first.
+  std::uint64_t birth = 0;
   bool in_company = false;                 ///< in this substep: it may touch more than planes
   std::optional<TimedImpact> impact = {};  ///< in this substep, that is answered at its own time
 };

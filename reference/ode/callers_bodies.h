@@ -28,8 +28,8 @@ bool is_kinematic(dxBody* body);
 bool has_gravity(dxBody* body);
 
 void set_state(dxBody* body, const RigidState& state);  ///< does not wake
-void add_force(dxBody* body, const Vec3& force,
-               const Vec3& torque);  ///< N at the centre of mass and N m, world, over its next step
+/// N at the centre of mass and N m, world, over its next step.
+void add_force(dxBody* body, const Vec3& force, const Vec3& torque);
 void set_enabled(dxBody* body, bool enabled);
 
 }  // namespace lodestone::callers

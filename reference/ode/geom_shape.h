@@ -31,8 +31,8 @@ struct GeomShape {
   GeomKind kind = GeomKind::other;
   Vec3 sides = Vec3::Zero();          ///< of a box
   double radius = 0.0, length = 0.0;  ///< of a sphere, capsule or cylinder
-  std::vector<Vec3> vertices =
-      {};  ///< of a convex (its corners) or a trimesh (three a face, as ODE gives them out)
+  /// Of a convex (its corners) or a trimesh (three a face, as ODE gives them out).
+  std::vector<Vec3> vertices = {};
   std::vector<std::array<int, 3>> faces = {};  ///< counter-clockwise seen from outside
 };
 

@@ -39,8 +39,9 @@ struct ContactSide {
   dGeomID callers_geom = nullptr;
   OdeGroundId ground = {};
   std::int32_t callers_slot = -1;  ///< in the mirror, of a geom of a dynamic body of the caller's
-  double way_on = 0.0;  ///< m, by which what has no motion is put on in each step: so deep it may be in
-                        ///< others for a moment, and pushes them as fast as it goes
+  /// m, by which what has no motion is put on in each step: so deep it may be in others for a moment, and
+  /// pushes them as fast as it goes.
+  double way_on = 0.0;
 };
 
 /// `body` as a side: one that is kinematic is a surface that moves. ODE would else make one island of all

@@ -33,8 +33,8 @@ class StateArchive;
 enum class MeshContacts {
   plain,     ///< as ODE's dCollide finds them
   filtered,  ///< as it finds them, made believable (contact_filter.h)
-  exact,     ///< two convex bodies by their hulls (hull_manifold.h), which bound the same solids; others
-             ///< filtered
+  /// Two convex bodies by their hulls (hull_manifold.h), which bound the same solids; others filtered.
+  exact,
 };
 
 /// ODE's own, for bodies that something holds: one slower than this for long enough is put to rest.
@@ -49,29 +49,32 @@ struct OdeSettings {
   std::uint64_t seed = 1;
   bool quick_step = false;  ///< dWorldQuickStep instead of dWorldStep (another friction law)
   int quick_step_iterations = 20;
-  int direct_contacts_max = 1 << 30;  ///< contacts of one island above which a substep is QuickStep's:
-                                      ///< dWorldStep's time grows with their cube
-  double erp = 0.2,
-         cfm = 1e-10;  ///< ODE's error reduction and constraint force mixing (s/kg) at contacts; less, in
-                       ///< proportion, for bodies above 100 kg, whose impacts it would soften
+  /// Contacts of one island above which a substep is QuickStep's: dWorldStep's time grows with their cube.
+  int direct_contacts_max = 1 << 30;
+  /// ODE's error reduction and constraint force mixing (s/kg) at contacts; less, in proportion, for bodies
+  /// above 100 kg, whose impacts it would soften.
+  double erp = 0.2, cfm = 1e-10;
   double bounce_velocity = 0.05;  ///< m/s, slower contacts do not bounce
-  double max_correcting_velocity =
-      1e9;                       ///< m/s, how fast overlap is pushed apart (ODE's own default: unlimited)
-  double correcting_time = 0.0;  ///< s: a shorter substep undoes less of an overlap, in proportion: by the
-                                 ///< same part it would push the faster the shorter it is
-  bool friction_along_slip =
-      true;  ///< false: along ODE's own choice of axes, so that friction depends on the compass direction
-  bool slides_straight = false;  ///< what a force or torque drives, and slides as a whole, hardly turning,
-                                 ///< has Coulomb's friction across its way, the less the faster it is. False:
-                                 ///< a bound of its own, by which it goes as on rails
+  /// m/s, how fast overlap is pushed apart (ODE's own default: unlimited).
+  double max_correcting_velocity = 1e9;
+  /// s: a shorter substep undoes less of an overlap, in proportion: by the same part it would push the faster
+  /// the shorter it is.
+  double correcting_time = 0.0;
+  /// False: along ODE's own choice of axes, so that friction depends on the compass direction.
+  bool friction_along_slip = true;
+  /// What a force or torque drives, and slides as a whole, hardly turning, has Coulomb's friction across its
+  /// way, the less the faster it is. False: a bound of its own, by which it goes as on rails.
+  bool slides_straight = false;
   int max_contacts_per_pair = 8;
   MeshContacts mesh_contacts = MeshContacts::exact;
-  int most_mesh_measures = 1 << 30;  ///< of the contacts of two concave meshes in a substep: after so many
-                                     ///< the search for their directions ends (contact_filter.h)
-  bool plane_contacts_from_hull =
-      true;  ///< false: dCollide of the trimesh with the plane, brute force over all faces
-  double plane_depth_max = 1e9;  ///< over the shape's size: a hull vertex that would sink deeper into a plane
-                                 ///< within the step bounces beforehand
+  /// Of the contacts of two concave meshes in a substep: after so many the search for their directions ends
+  /// (contact_filter.h).
+  int most_mesh_measures = 1 << 30;
+  /// False: dCollide of the trimesh with the plane, brute force over all faces.
+  bool plane_contacts_from_hull = true;
+  /// Over the shape's size: a hull vertex that would sink deeper into a plane within the step bounces
+  /// beforehand.
+  double plane_depth_max = 1e9;
   /// In substeps longer than the first and no longer than the second (s) a hull's contacts with planes are
   /// answered at their own time, where it touches nothing else (timed_contacts.h). Nowhere unless the first
   /// is set.
@@ -108,12 +111,13 @@ struct OdeBodyDefinition {
 struct OdeCounters {
   std::int64_t bodies_created = 0, trimeshes_built = 0, contacts = 0, contacts_dropped = 0, messages = 0,
                quick_steps = 0, states_recovered = 0;
-  std::int64_t swallowed =
-      0;  ///< times that a body was wholly inside another in a substep (both meshes, one of them concave)
-  std::int64_t passes_prevented =
-      0;  ///< times that a body would have gone through another, or through ground, within a substep
-  std::int64_t uneven_contacts = 0;  ///< contacts, in substeps by QuickStep, of bodies 100 times as heavy as
-                                     ///< each other: it lets the heavy one sink in
+  /// Times that a body was wholly inside another in a substep (both meshes, one of them concave).
+  std::int64_t swallowed = 0;
+  /// Times that a body would have gone through another, or through ground, within a substep.
+  std::int64_t passes_prevented = 0;
+  /// Contacts, in substeps by QuickStep, of bodies 100 times as heavy as each other: it lets the heavy one
+  /// sink in.
+  std::int64_t uneven_contacts = 0;
 };
 
 /// What ODE said last on the calling thread, at most 255 characters; empty where it has said nothing. Until
@@ -230,8 +234,8 @@ class OdeWorld {
   RigidState state(OdeBodyId body) const;
   const Shape& shape(OdeBodyId body) const;
   void set_state(OdeBodyId body, const RigidState& state);  ///< leaves sleep as it is
-  void add_force(OdeBodyId body, const Vec3& force,
-                 const Vec3& torque);  ///< N and N m, over the whole of the next step(); does not wake
+  /// N and N m, over the whole of the next step(); does not wake.
+  void add_force(OdeBodyId body, const Vec3& force, const Vec3& torque);
   /// N and N m, by what holds the body up besides ODE's contacts and joints: over the whole of the next
   /// step(), and while the body sleeps. (In the step in which ODE wakes it, it would fall.)
   void hold(OdeBodyId body, const Vec3& force, const Vec3& torque);

@@ -16,8 +16,8 @@ struct dxBody;
 namespace lodestone {
 
 struct MirroredGeom {
-  dxGeom* geom = nullptr;  ///< null: removed; what else is known of it stays until its slot is taken again, a
-                           ///< refresh later or more
+  /// Null: removed; what else is known of it stays until its slot is taken again, a refresh later or more.
+  dxGeom* geom = nullptr;
   dxBody* body = nullptr;  ///< null: static
   GeomKind kind = GeomKind::other;
   bool dynamic = false;                ///< has a body that is not kinematic

@@ -36,8 +36,8 @@ CellUnit make_cell_unit(std::span<const Response> responses);
 CellUnit measure_cell(CollisionTrial& trial, const CollisionConfiguration& center, std::int64_t cell,
                       const CellSampling& sampling);
 
-inline constexpr int kHeldOutTrials =
-    16;  ///< at each condition: enough to tell the error of a mean from the spread of the trials
+/// At each condition: enough to tell the error of a mean from the spread of the trials.
+inline constexpr int kHeldOutTrials = 16;
 
 /// Trials at `c`, from the keys (seed, number, 0 …); with `every_psi` each draws a ψ of its own.
 HeldOutUnit measure_held_out(CollisionTrial& trial, const CollisionConfiguration& c, std::int64_t number,

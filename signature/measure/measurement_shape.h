@@ -8,8 +8,8 @@
 
 namespace lodestone {
 
-inline constexpr double kMeasurementRadius =
-    0.2;  ///< m: a signature is the same for all sizes because it is measured at this one
+/// m: a signature is the same for all sizes because it is measured at this one.
+inline constexpr double kMeasurementRadius = 0.2;
 
 inline std::shared_ptr<const Shape> make_measurement_shape(const Shape& shape) {
   return std::make_shared<const Shape>(make_hashed_copy(shape, kMeasurementRadius));

@@ -12,8 +12,8 @@ ResponseTable make_response_grid(const SignatureSettings& settings);
 /// and .02 to 5 m/s, evenly in the logarithm, so on both sides of ODE's bounce_vel (.05 m/s).
 SpeedTable make_speed_grid(const SignatureSettings& settings);
 
-inline constexpr double kAlwaysBounces =
-    1e-9;  ///< bounce_vel of the scale-free tables' trials, m/s: far below their speeds
+/// bounce_vel of the scale-free tables' trials, m/s: far below their speeds.
+inline constexpr double kAlwaysBounces = 1e-9;
 
 CellSampling make_cell_sampling(const SignatureSettings& settings);
 

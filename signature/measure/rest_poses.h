@@ -12,8 +12,8 @@ namespace lodestone {
 
 struct SettlingRecord;
 
-inline constexpr double kSamePose =
-    12.0 * std::numbers::pi / 180.0;  ///< rad: resting normals this near are one pose
+/// rad: resting normals this near are one pose.
+inline constexpr double kSamePose = 12.0 * std::numbers::pi / 180.0;
 
 /// Clusters the resting normals, most frequent first, and keeps those of at least `frequency_min` of all
 /// records. Their basins come from the hull of `shape` (0 for a sphere).

@@ -12,8 +12,8 @@
 namespace lodestone {
 
 inline constexpr double kSettlingGravity = 9.81;  ///< m/s²
-inline constexpr double kClipEnergy =
-    0.2;  ///< J/kg over g R: kinetic energy at a contact below which a record starts
+/// J/kg over g R: kinetic energy at a contact below which a record starts.
+inline constexpr double kClipEnergy = 0.2;
 inline constexpr double kEntryGap = 0.02;  ///< over R: near enough to the plane to be such a contact
 /// Below this friction a body that slides and spins about the vertical without tipping counts as at rest in
 /// its pose: it would slide on for long. (So little friction tips no body that stands: its moment about the
@@ -26,10 +26,11 @@ double gap_over_ground(const Shape& shape, const RigidState& state);
 /// What is kept of one drop.
 struct SettlingRecord {
   bool rests = false;
-  Vec3 normal = Vec3::UnitZ();     ///< of the plane at rest, in body axes
-  double height = 0.0;             ///< of the centre of mass at rest, m
-  std::vector<RigidState> states;  ///< from the first low-energy contact to rest, kObservationStep apart;
-                                   ///< empty where only the pose was asked for
+  Vec3 normal = Vec3::UnitZ();  ///< of the plane at rest, in body axes
+  double height = 0.0;          ///< of the centre of mass at rest, m
+  /// From the first low-energy contact to rest, kObservationStep apart; empty where only the pose was asked
+  /// for.
+  std::vector<RigidState> states;
 };
 
 /// A world with one body and the plane z = 0 under gravity 9.81 m/s², used again for every drop of a thread.

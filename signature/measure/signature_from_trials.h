@@ -10,9 +10,9 @@ namespace lodestone {
 /// What measured trials gave.
 struct TrialCoverage {
   std::int64_t cells = 0, measured_cells = 0;  ///< of the tables; the other cells keep what ODE gave
-  std::int64_t collisions = 0, left_out = 0;   ///< `left_out`: away from the plane, without motion, or with
-                                               ///< an answer a thousand times as fast
-  std::int64_t rests = 0;                      ///< 0: the rest poses are ODE's
+  /// `left_out`: away from the plane, without motion, or with an answer a thousand times as fast.
+  std::int64_t collisions = 0, left_out = 0;
+  std::int64_t rests = 0;  ///< 0: the rest poses are ODE's
 };
 
 /// Collisions whose speed unit √(v² + R²ω²) is below this belong to the table without bounce, m/s: at most √2

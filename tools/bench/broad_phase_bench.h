@@ -14,10 +14,11 @@ namespace lodestone {
 struct BroadPhaseSettings {
   std::vector<int> bodies = {1'000, 10'000, 100'000};
   std::vector<std::string> layouts = {"layer", "pile", "sparse", "mixed", "line", "outliers"};
-  int threads = 1;     ///< of the cells; the others run on one
-  int steps = 9;       ///< of 1/60 s: the median counts
-  double speed = 1.0;  ///< m/s, of every ball: methods that keep what they know from step to step take more
-                       ///< time the faster they are
+  int threads = 1;  ///< of the cells; the others run on one
+  int steps = 9;    ///< of 1/60 s: the median counts
+  /// m/s, of every ball: methods that keep what they know from step to step take more time the faster they
+  /// are.
+  double speed = 1.0;
   double row_seconds = 20.0;  ///< an alternative that would take longer for all steps is left out
   std::uint64_t seed = 1;
   Progress progress = {};
@@ -36,8 +37,8 @@ struct BroadPhaseRow {
   double bytes_per_body = 0.0;  ///< held by the cells
   std::optional<double> ode_hash_ns = {}, ode_sweep_ns = {}, bullet_tree_ns = {};  ///< the whole of it
   std::optional<double> times_less = {};  ///< the fastest of those over the cells
-  std::string checked_by =
-      {};  ///< hash, sweep, tree; all: each ball tried with each; -N: who missed N pairs itself
+  /// Hash, sweep, tree; all: each ball tried with each; -N: who missed N pairs itself.
+  std::string checked_by = {};
   std::string fault = {};  ///< what the cells did wrong; else empty
 };
 

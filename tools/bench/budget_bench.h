@@ -33,9 +33,9 @@ struct BudgetBenchRow {
   int threads = 1;
   std::array<int, kRungs> least{}, most{};  ///< bodies at the end of a step, by Rung
   double nearest = 0.0;  ///< of the n nearest bodies, where n are full, the part that is full: mean of steps
-  double nearest_settled = 0.0;           ///< the same without the half second after a jump
-  std::map<std::string, double> waiting;  ///< of the kNearest nearest, those that are not full, by their rung
-                                          ///< and why they have it: mean of steps
+  double nearest_settled = 0.0;  ///< the same without the half second after a jump
+  /// Of the kNearest nearest, those that are not full, by their rung and why they have it: mean of steps.
+  std::map<std::string, double> waiting;
   std::uint64_t state_hash = 0;
 };
 

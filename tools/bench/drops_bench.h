@@ -16,8 +16,8 @@ inline constexpr int kDropsSteps = 600;
 struct DropsSettings {
   int bodies = 1'000;
   std::vector<std::string> methods = {"full_plain", "full", "bullet_hull40", "statistical"};
-  std::string model =
-      {};           ///< of the statistical level: "tables", "tables_published" or "support"; empty: all
+  /// Of the statistical level: "tables", "tables_published" or "support"; empty: all.
+  std::string model = {};
   int threads = 1;  ///< of the statistical level; the others run on one
   SignatureSettings measuring = {};
   std::uint64_t seed = 1;

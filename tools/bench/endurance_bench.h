@@ -35,20 +35,19 @@ struct EnduranceFigures {
   std::int64_t states_recovered = 0;
   double heap_growth_bytes = 0;      ///< greatest after the first tenth, over that at its end
   double resident_growth_bytes = 0;  ///< the same of what the process holds
-  double energy_over_start =
-      0;  ///< greatest of any step over that at its round's start, kinetic and potential; 1: never above
-  double first_step_us = 0,
-         last_step_us =
-             0;  ///< processor time of a step: medians over the rounds of the second and of the last tenth
+  /// Greatest of any step over that at its round's start, kinetic and potential; 1: never above.
+  double energy_over_start = 0;
+  /// Processor time of a step: medians over the rounds of the second and of the last tenth.
+  double first_step_us = 0, last_step_us = 0;
   bool finite = true;
 };
 
 /// Bounds of the figures.
 inline constexpr double kEnduranceMemory = 1 << 20;  ///< bytes
-inline constexpr double kEnduranceEnergy =
-    1.01;  ///< over the start's: the support map's and the substeps' errors
-inline constexpr double kEnduranceSlower =
-    1.5;  ///< last over first step: a machine's clock and neighbours change by less
+/// Over the start's: the support map's and the substeps' errors.
+inline constexpr double kEnduranceEnergy = 1.01;
+/// Last over first step: a machine's clock and neighbours change by less.
+inline constexpr double kEnduranceSlower = 1.5;
 
 bool endures(const EnduranceFigures& figures);
 

@@ -9,8 +9,8 @@
 namespace lodestone {
 
 struct FallingHeap {
-  double radius_m =
-      0.0;  ///< of the upright cylinder, twice as high as wide, out of which they fall at rest onto z = 0
+  /// Of the upright cylinder, twice as high as wide, out of which they fall at rest onto z = 0.
+  double radius_m = 0.0;
   std::vector<RigidState> starts;  ///< turned at random, none touching another
 };
 

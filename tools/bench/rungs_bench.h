@@ -17,8 +17,9 @@ struct RungsSettings {
   std::optional<int> bodies = {};                    ///< of each heap; else 1,000 bunnies and 300 L-shapes
   int rounds = 20;
   int frames = 15;  ///< of 1/60 s, that are watched after each change
-  int slice = 40;   ///< bodies that are full at a time: a heap all of whose bodies are full takes ODE a third
-                    ///< of a second a step
+  /// Bodies that are full at a time: a heap all of whose bodies are full takes ODE a third of a second a
+  /// step.
+  int slice = 40;
   std::uint64_t seed = 1;
   Progress progress = {};
 };
@@ -34,8 +35,8 @@ struct RungsRow {
   // 0 for a blow or a stop.
   double unexplained_p999_mm = 0.0, unexplained_max_mm = 0.0;
   double others_max_mm = 0.0;  ///< of bodies that did not change
-  double energy_rise =
-      0.0;  ///< the most that the heap's energy rose above that before the change, over m g R of a body
+  /// The most that the heap's energy rose above that before the change, over m g R of a body.
+  double energy_rise = 0.0;
   std::int64_t woken = 0;    ///< bodies that slept before and did not at the end of the watched frames
   std::int64_t put_off = 0;  ///< that had not got their rung by then
 };

@@ -16,8 +16,8 @@ struct Table1Settings {
   std::vector<int> bodies = {10, 100, 1'000, 10'000};
   std::vector<std::string> methods = {"full_plain", "full",        "low",           "spheres7",
                                       "sphere",     "bullet_hull", "bullet_sphere", "statistical"};
-  std::string model =
-      {};           ///< of the statistical level: "tables", "tables_published" or "support"; empty: all
+  /// Of the statistical level: "tables", "tables_published" or "support"; empty: all.
+  std::string model = {};
   int threads = 1;  ///< of the statistical level; the others run on one
   bool sleeping = false;
   double row_seconds = 120.0;  ///< rows that would take longer are left out
@@ -35,8 +35,8 @@ struct Table1Row {
   std::array<int, 3> awake{};    ///< after steps 60, 120 and 179
   std::uint64_t state_hash = 0;  ///< after the last step
   double bytes_per_body = 0.0;   ///< of the heap, that the whole world holds
-  double level_bytes_per_body =
-      0.0;  ///< of that in the statistical level's arrays; 0 where nobody counts them
+  /// Of that in the statistical level's arrays; 0 where nobody counts them.
+  double level_bytes_per_body = 0.0;
   double bytes_moved_per_body = 0.0;  ///< in a step, by the `tables` model; 0 for others
   bool hash_space = false;            ///< ODE's: whether this space, not sweep and prune, was the faster
   std::optional<double> times_less_than_full_plain = {}, times_less_than_spheres7 = {},

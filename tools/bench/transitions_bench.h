@@ -26,8 +26,8 @@ struct TransitionFigures {
   MovesBeyondMotion changed;        ///< in the step of the change
   MovesBeyondMotion others;         ///< of bodies awake, full or at `support`, that did not change
   OverlapsAtPromotion with_bodies;  ///< hulls, or convex pieces where a body has them
-  OverlapsAtPromotion
-      with_ground;  ///< planes and boxes; of meshes, vertices of the hull below the highest surface there
+  /// Planes and boxes; of meshes, vertices of the hull below the highest surface there.
+  OverlapsAtPromotion with_ground;
   // Kinetic and potential energy, after the step of the change beyond that before, of changed bodies together
   // with what they may have met.
   double gained_j = 0;  ///< where there was more

@@ -24,20 +24,21 @@ struct FirstImpact {
 
 /// What is kept of one drop.
 struct DropObservation {
-  int bounces = 0;  ///< pairs of successive samples between which the velocity along the normal rises by more
-                    ///< than .3 m/s above free flight
+  /// Pairs of successive samples between which the velocity along the normal rises by more than .3 m/s above
+  /// free flight.
+  int bounces = 0;
   double rest_time_s = 0;  ///< last time that the kinetic energy per mass is above kRestEnergyPerMass
   double distance_m = 0;   ///< from start to end, along the plane
-  double first_rebound_m =
-      0;  ///< greatest height of the lowest point between the first and the second bounce; 0 without a bounce
+  /// Greatest height of the lowest point between the first and the second bounce; 0 without a bounce.
+  double first_rebound_m = 0;
   std::optional<FirstImpact> first_impact = {};  ///< none without a bounce
   bool at_rest = false;                          ///< below it for the last quarter of a second
-  std::int64_t table_extrapolations =
-      0;  ///< look-ups of the statistical level outside of what its signature was measured for
+  /// Look-ups of the statistical level outside of what its signature was measured for.
+  std::int64_t table_extrapolations = 0;
   Vec3 after_a_second = Vec3::Zero();  ///< m, where its centre of mass is then
   Vec3 up_in_body = Vec3::UnitZ();     ///< the plane's normal in body axes at the end
-  std::vector<float> kinetic_energy;  ///< per mass, J/kg, kKineticEnergySamples values; the last state's goes
-                                      ///< on where a drop ends earlier
+  /// Per mass, J/kg, kKineticEnergySamples values; the last state's goes on where a drop ends earlier.
+  std::vector<float> kinetic_energy;
 };
 
 /// Collects a DropObservation from samples. The plane goes through the origin.

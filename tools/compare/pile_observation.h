@@ -11,18 +11,20 @@ namespace lodestone {
 
 /// What is kept of one pile.
 struct PileObservation {
-  std::vector<double> kinetic_energy;  ///< per mass, J/kg, mean of the bodies, each kObservationStep; between
-                                       ///< the samples of longer steps on a line
+  /// Per mass, J/kg, mean of the bodies, each kObservationStep; between the samples of longer steps on a
+  /// line.
+  std::vector<double> kinetic_energy;
   double sleep_time_s = 0;   ///< mean over the bodies of the last time that this is above kRestEnergyPerMass
   double mean_height_m = 0;  ///< of the centres of mass, at the end
   double max_penetration_m = 0;     ///< greatest of any pair and any body in a plane, at any time
   double end_penetration_m = 0;     ///< the same at the end
   double median_penetration_m = 0;  ///< of the pairs that overlap at the end
-  double energy_rise = 0;  ///< greatest rise of kinetic and potential energy (over the floor) above an
-                           ///< earlier sample, over that at the start
+  /// Greatest rise of kinetic and potential energy (over the floor) above an earlier sample, over that at the
+  /// start.
+  double energy_rise = 0;
   int hovering = 0;  ///< bodies at rest at the end that touch nothing though moved down by 5 % of the size
-  int escaped =
-      0;  ///< bodies whose centre was out of the bin in any of the samples of overlaps, at most at once
+  /// Bodies whose centre was out of the bin in any of the samples of overlaps, at most at once.
+  int escaped = 0;
 };
 
 /// Collects a PileObservation.

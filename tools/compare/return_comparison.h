@@ -25,10 +25,12 @@ struct ReturnSettings {
 struct ReturnMeasure {
   std::string name;
   double mean_full = 0, mean_returned = 0;
-  double distance = 0, floor = 0;  ///< Kolmogorov–Smirnov, or total variation for the rest pose: returned
-                                   ///< against full, and full against full from other starts
-  double critical = 0;  ///< a Kolmogorov–Smirnov distance that two ensembles of one distribution exceed in 5
-                        ///< % of cases; 0 for the rest pose
+  /// Kolmogorov–Smirnov, or total variation for the rest pose: returned against full, and full against full
+  /// from other starts.
+  double distance = 0, floor = 0;
+  /// A Kolmogorov–Smirnov distance that two ensembles of one distribution exceed in 5 % of cases; 0 for the
+  /// rest pose.
+  double critical = 0;
   double w1_over_deviation = 0,
          w1_floor = 0;  ///< Wasserstein-1 over the deviation among full ones; 0 for the rest pose
 };

@@ -9,9 +9,9 @@ namespace lodestone {
 
 struct RungErrorMeasurement {
   RungErrors errors;
-  double floor = 0.0;        ///< score of truth against truth
-  double floor_drift = 0.0;  ///< of the full level at the truth's step: the least that a level that meets
-                             ///< planes in its own way can have
+  double floor = 0.0;  ///< score of truth against truth
+  /// Of the full level at the truth's step: the least that a level that meets planes in its own way can have.
+  double floor_drift = 0.0;
 };
 
 /// At 1/60 s, whatever steps and methods `settings` has.

@@ -30,8 +30,8 @@ Mesh make_random_hull(int points, const Vec3& semi_axes, std::uint64_t seed);
 /// corner alone.
 struct CellSolid {
   std::vector<double> x, y, z;  ///< sides of the columns, rows and layers
-  std::vector<std::vector<std::string>>
-      layers;  ///< from the lowest; of each its rows, that of the greatest y first; '#' is filled
+  /// From the lowest; of each its rows, that of the greatest y first; '#' is filled.
+  std::vector<std::vector<std::string>> layers;
 };
 Mesh make_cell_mesh(const CellSolid& solid);
 

@@ -19,16 +19,16 @@ struct HardCaseRow {
   double bound = 0.0;
   std::string unit = "";  ///< empty for a plain number
   BoundSide side = BoundSide::at_most;
-  std::string odes_own =
-      "";  ///< why ODE itself fails here and how the engine reports it; empty where a failure is ours
+  /// Why ODE itself fails here and how the engine reports it; empty where a failure is ours.
+  std::string odes_own = "";
 };
 
 /// A value that is not a number fails.
 bool passes(const HardCaseRow& row);
 
 struct HardCaseSettings {
-  bool quick =
-      false;  ///< fewer steps, sizes or repeats of what takes more than a second or two; the same bounds
+  /// Fewer steps, sizes or repeats of what takes more than a second or two; the same bounds.
+  bool quick = false;
 };
 
 struct HardCase {

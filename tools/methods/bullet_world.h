@@ -40,8 +40,8 @@ class BulletWorld {
   BulletWorld(BulletWorld&&) noexcept;
   BulletWorld& operator=(BulletWorld&&) noexcept;
 
-  void add_plane(const Vec3& normal, double offset,
-                 const Material& material);  ///< normal·x = offset, normal of unit length
+  /// normal·x = offset, normal of unit length.
+  void add_plane(const Vec3& normal, double offset, const Material& material);
   /// Returns the body's number: 0, 1, …; a removed body's is not used again. Bodies of one shape share its
   /// geometry.
   int add_body(const BulletBodyDefinition& definition);

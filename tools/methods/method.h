@@ -37,8 +37,8 @@ struct OdeMethod {
 /// The statistical level.
 struct StatisticalMethod {
   StatisticalModel model = StatisticalModel::support;
-  std::shared_ptr<const Signature> signature =
-      {};                  ///< none: as a body is that waits for its first one, at `support`
+  /// None: as a body is that waits for its first one, at `support`.
+  std::shared_ptr<const Signature> signature = {};
   bool published = false;  ///< `tables` as the paper has it
 };
 
