@@ -1,4 +1,5 @@
-// What the levels share about a body: its id, its level, its definition.
+// What the levels share about a body: its id, its level, its definition. A body's rung is `tables`, `support`
+// or full; its level is full, or statistical on the other two; a LevelChoice is what a caller asks for.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +30,9 @@ struct GroupId {
 
 enum class Level : std::uint8_t { statistical, full };
 
-/// How a statistical body meets contacts: the paper's sphere with drawn responses, or ours with the exact
-/// support height and impulse.
+/// How a statistical body meets contacts. `support`: as its hull, by exact contact points and impulses.
+/// `tables`: alone the same, coarser; among others as a sphere that knows the heights of its hull; with the
+/// paper's drawn responses only as published (TablesOptions).
 enum class StatisticalModel : std::uint8_t { tables, support };
 
 /// Where a body is on the ladder, from the cheapest to the truest: both statistical models, then ODE.
@@ -55,8 +57,9 @@ enum class LevelChoice : std::uint8_t { automatic, full, statistical, support, t
 
 /// When a body at rest falls asleep.
 struct SleepThresholds {
-  /// m/s, > 0: slower is still; on the statistical rungs for a body with a bounding sphere of .2 m radius, of
-  /// others in proportion to its square root.
+  /// m/s, > 0: what is slower is still. On the statistical rungs at a bounding radius R of .2 m, times
+  /// √(R/.2 m) at others; of full bodies as it is, for the centre of mass and for the farthest point about
+  /// it.
   double speed = 0.05;
   /// s, ≥ 0: so long it must be still among other bodies; alone, or full, five times as long.
   double time = 0.1;
@@ -66,14 +69,16 @@ struct BodyDefinition {
   std::shared_ptr<const Shape> shape = {};
   RigidState state = {};
   MaterialId material = 0;
-  std::optional<double> mass = {};  ///< kg; else the material's density times the shape's volume
+  /// kg, 1e-6 … 1e12; else the material's density times the shape's volume, in the same range.
+  std::optional<double> mass = {};
   LevelChoice level = LevelChoice::automatic;
   double importance = 1.0;  ///< > 0, scales the distance within which the policy makes it full
-  Rung least_rung = Rung::tables,
-       greatest_rung = Rung::full;  ///< between which it is kept, unless its level is forced
-  BodyProperties properties = {};   ///< what it meets and what acts on it
-  std::uintptr_t user_data = 0;     ///< the caller's own: a pointer or a number
-  bool events = false;              ///< its contacts make events, see events.h
+  /// Between which the policy keeps it, the least no higher than the greatest; a `level` that names a rung
+  /// goes before them.
+  Rung least_rung = Rung::tables, greatest_rung = Rung::full;
+  BodyProperties properties = {};  ///< what it meets and what acts on it
+  std::uintptr_t user_data = 0;    ///< the caller's own: a pointer or a number
+  bool events = false;             ///< its contacts make events, see events.h
 };
 
 }  // namespace lodestone

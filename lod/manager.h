@@ -97,9 +97,10 @@ class Manager {
   // what comes to lie in it wakes.
   /// normal·x = offset (m); the normal's length within 1e-3 of 1.
   GroundId add_plane(const Vec3& normal, double offset, MaterialId material = 0);
-  /// Vertices in the world frame, m, within 1e6 of its axes' origin; two faces or more.
+  /// Vertices in the world frame, m, each coordinate within 1e6; two faces or more, one at least with an
+  /// area.
   GroundId add_static_mesh(const Mesh& mesh, MaterialId material = 0);
-  /// Full sides, 1e-4 … 1e6 m, none below 2e-6 of the longest.
+  /// Full sides, the longest 1e-4 … 1e6 m, none below 2e-6 of it.
   GroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
                           MaterialId material = 0);
   /// Puts a box or mesh elsewhere (a mesh was made at the origin, unturned) and wakes what is near. With a
@@ -119,11 +120,11 @@ class Manager {
   void exclude_body(dxBody* body);  ///< before it is destroyed; nothing for one that was not named
 
   /// The state must be finite, within 1e8 m of the origin, its orientation within 1e-3 of unit length (it is
-  /// normalised); velocities beyond 1e6 m/s or rad/s are taken as these. Mass and importance are positive,
-  /// the material known. A body that is forced full is so at once. Any other gets its level in its next step,
-  /// whatever the dwell and the cap; that is not counted as a promotion, and until then the body waits as it
-  /// was given. Of many at one place (deep in each other) all but four wait longer:
-  /// Counters::bodies_held_back.
+  /// normalised); velocities beyond 1e6 m/s or rad/s are taken as these. Mass is 1e-6 … 1e12 kg, importance
+  /// positive, the material known, the shape no thinner about an axis than every rung can take. A body that
+  /// is forced full is so at once. Any other gets its level in its next step, whatever the dwell and the cap;
+  /// that is not counted as a promotion, and until then the body waits as it was given. Of many at one place
+  /// (deep in each other) all but four wait longer: Counters::bodies_held_back.
   BodyId add_body(const BodyDefinition& definition);
   void remove_body(BodyId body);  ///< its id is never valid again
 
@@ -230,16 +231,17 @@ class Manager {
   Level level(BodyId body) const;
   Rung rung(BodyId body) const;  ///< `support` for a body that waits for its first step
   bool asleep(BodyId body) const;
-  /// m, of the sphere that stands for a body at `tables`; 0 on other rungs. As published, it is what all
-  /// others meet; else what edges and ground that turns sharply meet of a body that touches no other: planes
-  /// and bodies meet heights of its hull.
+  /// m, of the sphere that stands for a body at `tables`; 0 on other rungs. As published, everything meets
+  /// it; else only edges and ground that turns sharply do, of a body that touches no other: planes and bodies
+  /// meet heights of its hull.
   double collision_radius(BodyId body) const;
   Why explain(BodyId body) const;       ///< the rule that decided the level, and the figures behind it
   std::string why(BodyId body) const;   ///< the same in a sentence
   dxBody* ode_body(BodyId body) const;  ///< dBodyID while full, else null
   Vec3 gravity() const;                 ///< m/s², as of the last step
   const StepReport& report() const;     ///< of the last step
-  /// Held by the statistical level's arrays; 0 where that is not counted: under `support`.
+  /// Held by the arrays of `tables`, its cells and the store of sleepers; 0 where no body is at `tables`:
+  /// those of `support` are not counted.
   std::size_t statistical_bytes() const;
   /// All that its next steps depend on, as bytes for restore(): the bodies with their ids, what is remembered
   /// of contacts, sleepers, random draws, what the policy has learnt and put off, and the gravity of a world

@@ -1,5 +1,5 @@
 // Which rung each body should have: by distance from the viewpoints, by size in their pictures, or by what a
-// step may cost.
+// step may cost. Numbers out of their ranges throw InputError.
 #pragma once
 
 #include <functional>
@@ -14,16 +14,16 @@ namespace lodestone {
 /// Full within `full_within` metres (times importance) of the nearest viewpoint, `support` within
 /// `support_within`, `tables` beyond; a lower rung again only beyond the distance times (1 + hysteresis).
 struct DistancePolicy {
-  double full_within = 4.0;                                         ///< m
-  double support_within = std::numeric_limits<double>::infinity();  ///< m
+  double full_within = 4.0;                                         ///< m, ≥ 0
+  double support_within = std::numeric_limits<double>::infinity();  ///< m, ≥ full_within
 };
 
 /// By the diameter of a body's bounding sphere in the picture of the viewpoint where it is largest, times
 /// importance: full above `full_above_px`, `support` above `support_above_px`, `tables` below; a lower rung
 /// again only below the size over (1 + hysteresis).
 struct ProjectedSizePolicy {
-  double full_above_px = 50.0;
-  double support_above_px = 0.0;  ///< 0: no body is on a lower rung
+  double full_above_px = 50.0;    ///< ≥ 0
+  double support_above_px = 0.0;  ///< 0 … full_above_px; 0: no body is on a lower rung
 };
 
 /// What a whole step may cost, in processor time of the calling thread: choice, transfer, all three rungs and
@@ -31,13 +31,13 @@ struct ProjectedSizePolicy {
 /// `tables`, as many as are predicted to fit; the prediction is learnt from measured steps, so the levels
 /// differ from run to run.
 struct BudgetPolicy {
-  double budget_ms = 4.0;
+  double budget_ms = 4.0;  ///< ≥ 0
 };
 
 /// The same with work that is counted, not timed: the same levels in every run and on every machine. A unit
 /// is about a microsecond (see RungCost::work).
 struct WorkPolicy {
-  double budget_work = 4000.0;
+  double budget_work = 4000.0;  ///< units a step, ≥ 0
 };
 
 /// A budget that is spent where it buys most: a higher rung goes to those bodies first whose error in the
@@ -45,30 +45,32 @@ struct WorkPolicy {
 /// comes with the shape's signature where it was measured (`lodestone compare errors SHAPE --keep`), else it
 /// is an average (RungErrors).
 struct ErrorBudgetPolicy {
-  double budget_ms = 4.0;
-  std::optional<double> budget_work = {};  ///< in its place: counted, not timed
+  double budget_ms = 4.0;                  ///< ≥ 0
+  std::optional<double> budget_work = {};  ///< in its place, ≥ 0: counted, not timed
 };
 
 inline constexpr int kUnlimited = std::numeric_limits<int>::max();
 
 struct PolicySettings {
   std::variant<DistancePolicy, BudgetPolicy, WorkPolicy, ProjectedSizePolicy, ErrorBudgetPolicy> policy;
-  double hysteresis = 0.1;            ///< fraction of the distance
-  int min_dwell_frames = 30;          ///< a body keeps a new rung at least this long
-  int max_transitions_per_frame = 4;  ///< nearest first; the rest wait their turn
-  int most_full = kUnlimited;         ///< bodies that the policy makes full, at any time: the nearest
-  int most_support = kUnlimited;      ///< and `support`, of those that are awake
+  double hysteresis = 0.1;    ///< ≥ 0, as a part of the distance or size
+  int min_dwell_frames = 30;  ///< steps, ≥ 0: a body keeps a new rung at least this long
+  /// In a step, ≥ 0, nearest first; the rest wait their turn. Not among them are those of new bodies, those
+  /// that the caller forces, and those down to a limit or a budget that is exceeded.
+  int max_transitions_per_frame = 4;
+  int most_full = kUnlimited;     ///< ≥ 0, bodies that the policy makes full, at any time: the nearest
+  int most_support = kUnlimited;  ///< ≥ 0, and `support`, of those that are awake
   /// ≥ 1: a body in no viewpoint's picture counts as so many times as far; infinity: it goes to the least
   /// rung that it may have.
   double out_of_view_factor = 1.0;
   /// Whether a sphere is in view (m, world); empty: whether it meets the frustum of any viewpoint. It is
   /// asked in every step about each body for which that makes a difference.
   std::function<bool(const Vec3& center, double radius)> visible = {};
-  /// Times a body's importance, in (0, 1], to which it is cut. It is asked about the bodies that a step looks
-  /// at: those that are full or awake, and a sleeper now and then.
+  /// Times a body's importance; cut to 1e-3 … 1. It is asked about the bodies that a step looks at: those
+  /// that are full or awake, and a sleeper now and then.
   std::function<double(BodyId)> significance = {};
-  /// s, ≥ 0: a body that moves farther than its radius in this time counts as near as it will come meanwhile,
-  /// and as what it will hit, where that is full: so it goes up before.
+  /// s, 0 … 10: a body that moves farther than its radius in this time counts as near as it will come
+  /// meanwhile, and as what it will hit, where that is full: so it goes up before.
   double look_ahead_s = 0.0;
   /// Awake bodies that touch each other change rung together, all of a contact group or none, as the nearest
   /// of them.

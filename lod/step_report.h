@@ -8,17 +8,18 @@
 
 namespace lodestone {
 
-/// Wall time of each stage of the last step, ms.
+/// Wall time of each stage of the last step, ms; of one that was divided the sum over its parts. The stages'
+/// numbers are those of lod/manager.h and lod/rungs/statistical_level.h.
 struct StageTimes {
-  double choose_ms = 0, transfer_ms = 0;
-  double flight_ms = 0;       ///< statistical level: flight, contacts with the ground and their responses
-  double broad_phase_ms = 0;  ///< statistical level: which bodies are near each other
-  double pairs_ms = 0;        ///< statistical level: finding the contacts between bodies
-  double crowd_ms = 0;        ///< statistical level: the response of bodies that touch others
-  double rest_ms = 0;         ///< statistical level: coming to rest, sleeping and waking
-  /// Full bodies handed to the statistical level, and the impulses that come back.
+  double choose_ms = 0, transfer_ms = 0;  ///< 1, 2
+  double flight_ms = 0;       ///< 3a, 3d, 3e: flight, contacts with the ground and their responses
+  double broad_phase_ms = 0;  ///< 3b, 3d: which bodies are near each other
+  double pairs_ms = 0;        ///< 3b, 3d: finding the contacts between bodies
+  double crowd_ms = 0;        ///< 3c, 3d: the response of bodies that touch others
+  double rest_ms = 0;         ///< 3f: coming to rest, sleeping and waking
+  /// Around 3: full bodies handed to the statistical level, and the impulses that come back.
   double cross_level_ms = 0;
-  double full_ms = 0;
+  double full_ms = 0;  ///< 4
   double total_ms = 0;
 
   StageTimes& operator+=(const StageTimes& o) {
@@ -32,13 +33,17 @@ struct StageTimes {
 
 /// Counts since the manager was made: what the scene needed, and trouble that was met and mended.
 struct Counters {
+  /// Bodies and triangle meshes (of shapes and of ground) made in ODE; signatures that shapes and their
+  /// materials needed, wherever they came from; steps in which near pairs of statistical bodies with others
+  /// were looked for.
   std::int64_t ode_bodies_created = 0, trimeshes_built = 0, signatures_loaded = 0, pair_phases = 0;
-  std::int64_t ode_messages = 0;
+  std::int64_t ode_messages = 0;  ///< what ODE complained of while it stepped
   /// Points at which two full bodies touch beyond eight of a pair: the deepest and those farthest apart stay,
   /// so that the pair is held.
   std::int64_t contacts_dropped = 0;
-  std::int64_t states_recovered = 0;
-  /// Substeps of the full level whose largest pile was too much for dWorldStep, or beyond it.
+  std::int64_t states_recovered = 0;  ///< bodies that were no longer finite or sound: put back
+  /// Substeps of the full level by dWorldQuickStep: the largest island had more than 150 contacts, or
+  /// dWorldStep had given up on it.
   std::int64_t full_quick_steps = 0;
   std::int64_t full_swallowed = 0;  ///< times that a full body was wholly inside another in a substep
   /// Times that a full body, faster than it is thick in a substep, was stopped at what it would have gone
@@ -92,7 +97,8 @@ struct StepReport {
   int full = 0, statistical = 0, asleep = 0;  ///< bodies at the end of the step; asleep counts within both
   int support = 0, tables = 0;                ///< of the statistical ones
   int promotions = 0, demotions = 0;          ///< changes to a higher rung and to a lower one, in this step
-  /// By Rung, in its order. Filled under a budget only, since clocks and counts cost time themselves.
+  /// By Rung, in its order; of a step that was divided, of its last part. Filled under a budget only, since
+  /// clocks and counts cost time themselves.
   std::array<RungCost, kRungs> cost{};
   double predicted_ms = 0,
          measured_ms = 0;  ///< of the whole step, with what is no rung's; under a budget only

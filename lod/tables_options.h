@@ -9,7 +9,7 @@ namespace lodestone {
 struct TablesOptions {
   bool interpolate = true;         ///< look-up between cells; else the nearest cell (3.3.1)
   bool draw_height = false;        ///< radius drawn from (μ, σ) at each contact instead of the mean
-  int radius_update_interval = 1;  ///< steps between updates of the sphere's radius (3.3.1)
+  int radius_update_interval = 1;  ///< steps, ≥ 1, between updates of the sphere's radius (3.3.1)
   /// Bodies turn into rest poses (3.4); else they lie as they last came down, on the sphere that they had
   /// then: the paper's figure 7.
   bool rest_poses = true;

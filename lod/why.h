@@ -12,22 +12,22 @@ namespace lodestone {
 
 /// What decided.
 enum class Rule : std::uint8_t {
-  forced,  ///< the caller's LevelChoice
-  near,
-  far,  ///< of the viewpoints, or large and small in their pictures
-  within_hysteresis,
-  dwell,   ///< the policy wants another rung, and it changed too recently
-  queued,  ///< … and max_transitions_per_frame others go first
-  over_budget,
-  in_budget,
-  most_reached,  ///< most_full or most_support
-  overlap_put_off,
-  signature_pending,
-  rung_range,  ///< the caller left one rung
-  out_of_view,
-  look_ahead,
-  joined,        ///< joints of the caller's on its ODE body
-  carries_full,  ///< it is kinematic and touches full bodies
+  forced,             ///< the caller's LevelChoice
+  near,               ///< a viewpoint, or large in its picture
+  far,                ///< from every viewpoint, or small in its picture
+  within_hysteresis,  ///< only just past the limit
+  dwell,              ///< the policy wants another rung, and it changed too recently
+  queued,             ///< … and max_transitions_per_frame others go first
+  over_budget,        ///< nearer bodies, or those that gain more, use up the budget
+  in_budget,          ///< it is among those that fit the budget
+  most_reached,       ///< most_full or most_support
+  overlap_put_off,    ///< it wants to be full, and overlaps another body
+  signature_pending,  ///< its signature is still being measured
+  rung_range,         ///< the caller left one rung
+  out_of_view,        ///< in no viewpoint's picture
+  look_ahead,         ///< it is about to hit a full body
+  joined,             ///< joints of the caller's on its ODE body
+  carries_full,       ///< it is kinematic and touches full bodies
 };
 std::string_view text_of(Rule rule);
 

@@ -51,7 +51,7 @@ struct MassOverride {
 Shape make_shape(std::string name, Mesh mesh, const MassOverride& mass = {}, MeshReport* report = nullptr);
 Shape make_sphere_shape(double radius_m);
 
-/// A copy `factor` times as large, of the same density.
+/// A copy `factor` times as large, of the same density. Throws InputError unless that is positive and finite.
 Shape scale_shape(const Shape& shape, double factor);
 
 /// A copy of that radius, made of nothing but what the content hash covers: of all shapes with one hash it is

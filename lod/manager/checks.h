@@ -32,7 +32,7 @@ Vec3 checked_normal(const Vec3& normal, std::string_view what);
 Quat checked(const Quat& orientation, std::string_view what);
 /// kg, of a body that can be made.
 double checked_mass(const BodyDefinition& definition, const MaterialTable& materials);
-/// Of a static box: 1e-4 … 1e6 m, none below 2e-6 of the longest.
+/// Of a static box: the longest 1e-4 … 1e6 m, none below 2e-6 of it.
 void check_box_sides(const Vec3& sides);
 /// A mesh that can be ground: vertices within 1e6 m, faces that name them, one at least with an area.
 void check_ground_mesh(const Mesh& mesh);

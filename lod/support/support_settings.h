@@ -7,7 +7,8 @@ namespace lodestone {
 
 struct SupportSettings {
   int max_impacts = 4;  ///< exact impacts a step; what is left of the step is done in contact steps
-  /// Small turns are taken to second order, velocities at once are those of a step's end.
+  /// Cheaper, for `tables`: small turns are taken to second order, and in contact_at_once.h velocities are
+  /// those of a step's end, not half a step behind.
   bool coarse = false;
   double contact_step = 0.07;     ///< longest contact step over √(R/g)
   double uneven_step = 0.045;     ///< the same over ground that is no plane

@@ -49,14 +49,15 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshLoadSettings& settin
 /// 1e4 m, a volume of zero; and for a one-sided surface or over 1,000 pieces.
 Mesh repair_mesh(Mesh mesh, const std::string& name, MeshReport* report = nullptr);
 
-/// Scales about the origin so that the longest side of the bounding box is `size_m`.
+/// Scales about the origin so that the longest side of the bounding box is `size_m`. Throws InputError unless
+/// that is positive and finite, and for a mesh without an extent.
 Mesh scale_to_size(Mesh mesh, double size_m);
 
 /// Solids, centred on the middle of their bounding box. Full sides; throws InputError unless every length is
 /// positive and finite.
 Mesh make_box(const Vec3& sides_m);
-Mesh make_sphere(double radius_m, int subdivisions = 3);  ///< icosphere
-/// Outer legs a along x, b along y; extruded along z.
+Mesh make_sphere(double radius_m, int subdivisions = 3);  ///< icosphere; 0 … 7 subdivisions, 20 · 4ⁿ faces
+/// Outer legs a along x, b along y, the width less than both; extruded along z.
 Mesh make_l(double leg_a_m, double leg_b_m, double width_m, double thickness_m);
 /// Hexagonal prism along z, `length_m` long, circumradius `radius_m`.
 Mesh make_needle(double length_m, double radius_m);
