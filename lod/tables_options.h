@@ -3,9 +3,9 @@
 
 namespace lodestone {
 
-/// Of the rung `tables`: a body alone stands on its hull, but at edges, one among others is a sphere that
-/// knows the heights of its hull. With `published` it is the paper's sphere everywhere. The other options are
-/// the paper's, or matter for its model: who sets one asks for that model.
+/// Options of the rung `tables`: a body alone stands on its hull, except at edges; one among others is a
+/// sphere that knows the heights of its hull. With `published` it is the paper's sphere everywhere. The other
+/// options are the paper's, or matter for its model: who sets one asks for that model.
 struct TablesOptions {
   bool interpolate = true;         ///< look-up between cells; else the nearest cell (3.3.1)
   bool draw_height = false;        ///< radius drawn from (μ, σ) at each contact instead of the mean

@@ -46,7 +46,8 @@ struct Why {
   /// How far it drifts in a second (RungError::drift, among others with RungOverlaps) × pixels; over
   /// out_of_view_factor where it is not in view; 0 while it sleeps.
   double predicted_error_pixels = 0.0;
-  /// Of a step on its rung as it is now, in work units (see RungCost::work), without pairs of full bodies.
+  /// What it costs in a step on its rung as it is now, in work units (RungCost::work), without pairs of full
+  /// bodies.
   double cost_work = 0.0;
   double cost_ms = 0.0;  ///< the same as learnt from measured steps; 0 unless the budget is in milliseconds
   int dwell_left_frames = 0;  ///< until it may change again

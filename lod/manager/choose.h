@@ -77,7 +77,7 @@ class Choose {
   /// Of a body as it is now.
   Activity activity(std::uint32_t body) const;
   bool in_view(const Vec3& center, double radius) const;
-  /// Of its bounding sphere's diameter, where it is largest; 0 without viewpoints.
+  /// px: diameter of its bounding sphere in the picture where it is largest; 0 without viewpoints.
   double pixels(const LevelCandidate& seen) const;
   /// What full bodies do, after the changes.
   void count_meetings();

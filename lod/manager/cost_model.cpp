@@ -19,6 +19,8 @@ constexpr double kChangeWork[] = {2.0, 10.0, 100.0};
 // Of a bunny's, what a box costs: .32 in a flight and landing (tools/README.md, single drops).
 constexpr double kLeastShare = 0.3;
 
+// µs besides the rungs (choice, transfer, contacts between levels, report): of any step, of each body that
+// the policy is asked about, of each new body.
 constexpr double kOthersWork = 20.0, kAskedWork = 0.15, kAddedWork = 1.5;
 
 // What the dearest pair of meshes is charged once, µs: several times what one was seen to cost in a step.

@@ -21,7 +21,7 @@ inline constexpr std::size_t kArriving = kActivities, kOfFull = kActivities + 1,
                              kCharges = kActivities + 3;
 using Charges = std::array<double, kCharges>;
 
-/// Steps in which a body counts as arriving.
+/// Steps after a change of rung or a waking, in which a body in a crowd counts as arriving.
 inline constexpr int kArrivalSteps = 16;
 
 struct StepCounts {

@@ -37,7 +37,7 @@ double friction_between(const Levels& levels, const Neighborhood& neighborhood, 
 
 // ODE's contacts of the last substep, and those of the last steps whose pair it did not find again.
 void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Seen>& seen) {
-  constexpr int kStepsSeen = 3;
+  constexpr int kStepsSeen = 3;  // for which a contact is kept, without depth, that ODE does not find again
   const auto pair_of = [](const Neighborhood::Seen& s) {
     return std::tuple(s.contact.first.value, s.contact.second.value, s.contact.callers_slot);
   };

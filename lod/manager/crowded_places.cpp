@@ -11,10 +11,11 @@ namespace {
 constexpr double kThinnest = 1e-3;         // of a body's radius: the ball inside counts as so large at least
 constexpr std::size_t kMembersSeen = 256;  // of the full level, the last
 constexpr std::int64_t kStepsBetween = 8;  // steps after which one more comes
-// Volume of the bodies whose centres are in a room over the room's: where newcomers are beyond the first,
-// which touching cubes stay below however they lie in the rooms, or beyond the second with those that are
-// there, and overlap for certain (the balls inside two of them are nearer than kOverlapping times touching),
-// they come in up to the third.
+// How full a room (room_of) is: the volume of the bodies whose centres are in it over its own. It is crowded
+// where those that wait come to more than kCrowded, which touching cubes stay below however they lie in the
+// rooms; or where some that wait overlap for certain, come to more than kFilled, and with those that are
+// there to more than kDense. Then bodies come in up to kFilled. Two overlap for certain where they are nearer
+// than kOverlapping times the sum of the radii of the balls inside them.
 constexpr double kCrowded = 8.0, kDense = 2.0, kFilled = 1.0, kOverlapping = 0.9;
 
 // A cell of a grid, whose width (m) is a power of two.

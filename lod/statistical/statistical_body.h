@@ -59,7 +59,10 @@ struct StatisticalBody {
   bool crowded = false;         ///< touches another body in this step
   bool on_solid = false;        ///< touches parts of the ground in this step, where these are no planes to it
   bool alone_on_solid = false;  ///< and nothing that moves: moved by itself
-  bool borne_up = false;        ///< of a guest of `support`: what bears it was reckoned with a load to come
+  /// A guest from `tables` whose contacts there were solved under the steady load that hulls lay on it.
+  /// Without it, as it still is, it seems to rise: its contacts do not bounce, and it does not count as
+  /// falling.
+  bool borne_up = false;
   bool in_great_heap = false;  ///< many bodies hang together with it (IslandKind::great); asleep: did so last
   bool on_edge = false;        ///< slow and in a crowd, but not over an area of what it stands on (Footing)
   /// Deep in one of many times its mass, or the other way round, and not to be moved out.
