@@ -15,8 +15,8 @@ constexpr double kColumnMost = 4.0;  // balls in a column of cells, up to which 
 constexpr double kSliceMost = 12.0;  // balls in a slice across the longest axis, up to which slices are cells
 constexpr double kCellsMost = 2.0;   // for each ball
 constexpr std::int32_t kWrapLeast = 4;  // cells: with fewer, a cell would be its neighbour's neighbour
-constexpr double kStrayFactor =
-    16.0;  // an axis is so many times as long as all but a few balls need: those have strayed
+// An axis is so many times as long as all but a few balls need: those have strayed.
+constexpr double kStrayFactor = 16.0;
 constexpr double kRounding = 4e-7;     // of a position kept as a float, over how far from the origin
 constexpr double kFinest = 2e-3;       // of a reach: a rounding that finds hardly a ball too many
 constexpr std::size_t kSample = 1000;  // balls that tell where most are
@@ -44,8 +44,8 @@ int CellGrid::level_of(float reach) const {
 // An edge that most balls fit in, from a histogram of reaches with eight bins in an octave.
 void CellGrid::choose_edges(const BallSpan& balls, const JobRunner& jobs) {
   constexpr int kBins = 256, kFirstBin = (127 - 20) * 8;
-  constexpr std::size_t kSets =
-      4;  // of bins, taken in turn: most reaches fall into one, and would wait for each other there
+  // Of bins, taken in turn: most reaches fall into one, and would wait for each other there.
+  constexpr std::size_t kSets = 4;
   std::array<std::atomic<std::uint32_t>, kBins> bins{};
   each_block(balls, jobs, [&](std::int64_t begin, std::int64_t end) {
     std::array<std::array<std::uint32_t, kBins>, kSets> own{};

@@ -52,8 +52,8 @@ void GroundMeetings::find(const ContactScene& scene, std::span<const Participant
     }
     first_.push_back(std::uint32_t(meetings_.size()));
   }
-  constexpr std::int64_t kBodies =
-      128;  // of a job: those of a body one after the other, as each leaves a hint
+  // Of a job: those of a body one after the other, as each leaves a hint.
+  constexpr std::int64_t kBodies = 128;
   run_in_pieces(jobs, std::int64_t(participants.size()), kBodies, [&](std::int64_t begin, std::int64_t end) {
     for (std::uint32_t i = first_[std::size_t(begin)]; i < first_[std::size_t(end)]; ++i) {
       const auto index = std::size_t(meetings_[i].index);

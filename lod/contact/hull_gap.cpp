@@ -10,10 +10,10 @@ namespace lodestone {
 namespace {
 
 constexpr double kApart = 0.02;  // over R: so far overlapping hulls are taken apart to look for their axis
-constexpr double kShallow =
-    0.02;  // over R: so little that no other way out is shorter than the one known before
-constexpr double kDeep =
-    0.25;  // over the lesser inner radius: an overlap whose least way out may lie elsewhere
+// Over R: so little that no other way out is shorter than the one known before.
+constexpr double kShallow = 0.02;
+// Over the lesser inner radius: an overlap whose least way out may lie elsewhere.
+constexpr double kDeep = 0.25;
 constexpr int kMostRounds = 32;
 constexpr double kConverged = 1e-7;  // of the squared distance
 

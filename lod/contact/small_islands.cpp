@@ -17,8 +17,8 @@ namespace {
 using L = F8;
 constexpr std::size_t kWidth = kLanes<L>;
 constexpr int kMostIslandSweeps = 40;  // of few points: a body on two edges asks for many
-constexpr int kIslandRelaxations =
-    400;  // of points, in as many sweeps as that is, but never fewer than a crowd's
+// Of points, in as many sweeps as that is, but never fewer than a crowd's.
+constexpr int kIslandRelaxations = 400;
 
 // A blow at which sweeps are led, over √(g d), d being how far from its body's centre it strikes: slower ones
 // throw nothing aside that anybody would see.

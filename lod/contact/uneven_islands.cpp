@@ -14,8 +14,8 @@ using namespace lane;
 
 namespace {
 
-constexpr double kMostUnevenSweeps =
-    80.0;  // times as many as elsewhere; for a ratio r about √(r / 2) times, as such an iteration asks for
+// Times as many as elsewhere; for a ratio r about √(r / 2) times, as such an iteration asks for.
+constexpr double kMostUnevenSweeps = 80.0;
 // Points, four lanes wide, of one body on another: an impact on a light one, of whose impulses nothing is
 // known, is solved to the end, in which so many points are relaxed. Larger ones are no better for it: slabs
 // of a thousand times a column's mass then crush it more often.

@@ -9,8 +9,8 @@
 namespace lodestone {
 namespace {
 
-constexpr std::size_t kRoomKept =
-    64;  // elements that a list keeps room for once it is cleared: a whole scene is added only once
+// Elements that a list keeps room for once it is cleared: a whole scene is added only once.
+constexpr std::size_t kRoomKept = 64;
 
 template <class List>
 void clear(List& list) {

@@ -17,8 +17,8 @@ constexpr double kFarthest = 1e8;     // m, from the origin
 constexpr double kLongestStep = 10.0,
                  kShortestStep = 1e-9;  // s; over a shorter one solvers divide by what is no longer a number
 constexpr double kFarthestVertex = 1e6, kShortestSide = 1e-4, kLongestSide = 1e6;  // m, of ground
-constexpr double kFarthestView =
-    1e12;  // m, from the origin: beyond, the squares of distances lose what is near
+// m, from the origin: beyond, the squares of distances lose what is near.
+constexpr double kFarthestView = 1e12;
 
 std::string text(const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z()); }
 

@@ -5,8 +5,8 @@
 namespace lodestone {
 namespace {
 
-constexpr double kPieces =
-    8.0;  // of a ray's way through a geom's ball, for which solids are looked up at a time
+// Of a ray's way through a geom's ball, for which solids are looked up at a time.
+constexpr double kPieces = 8.0;
 constexpr int kFewSolids = 8;  // all of which are asked
 
 struct Ball {

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kPiece = 2.0;  // m: of a ray, for which solids are looked up at a time
 constexpr double kMostPieces = 256.0;
-constexpr double kFarthestPiece =
-    1e6;  // m, from where a ray comes to the ground: beyond, it meets planes alone
+// m, from where a ray comes to the ground: beyond, it meets planes alone.
+constexpr double kFarthestPiece = 1e6;
 
 SurfaceHit in_world(const PosedSurface& surface, SurfaceHit hit) {
   hit.point = surface.position + surface.orientation * hit.point;

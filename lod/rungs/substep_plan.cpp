@@ -13,8 +13,8 @@ constexpr double kLongest = 1.0 / 60.0;     // s, of a step taken at once
 constexpr double kLongestOfSmall = 0.0615;  // over √(R/g), of a substep, but for slow heaps: three times that
 constexpr int kManyBodies = 30;             // awake, of an island that may take it: of fewer, each one shows
 constexpr double kUneven = 20.0;            // ratio of the masses of two that may touch
-constexpr double kStride =
-    0.07;  // over R: how far two bodies may close in in a substep, while kMostSubsteps lasts
+// Over R: how far two bodies may close in in a substep, while kMostSubsteps lasts.
+constexpr double kStride = 0.07;
 
 // Over R: who moves less than that against its ground in a step does not strike it.
 constexpr double kRides = 0.01;

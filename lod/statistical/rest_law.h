@@ -15,10 +15,10 @@ class RestLaw {
   static constexpr double kSleepSpeedRadius = 0.2;     // m
   static constexpr double kAloneSleepEnergy = 2.5e-4;  // J/kg over g R
   static constexpr double kAloneSleepTime = 5.0;       // of the time among others
-  static constexpr double kLeaningTime =
-      0.19;  // s: a body that touched another so lately still leans on it, though a hair apart
-  static constexpr double kWakeFactor =
-      2.0;  // a sleeper wakes when touched faster than this times its sleeping speed
+  // s: a body that touched another so lately still leans on it, though a hair apart.
+  static constexpr double kLeaningTime = 0.19;
+  // A sleeper wakes when touched faster than this times its sleeping speed.
+  static constexpr double kWakeFactor = 2.0;
   static constexpr double kSettingOut = 0.01;  // of the gravity: what gains speed faster than so sets out
 
   explicit RestLaw(const SleepThresholds& thresholds = {})

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied from the file as they are");
 
-constexpr int kMaxParents =
-    1000;  // nodes with children: more is no model but a trap for readers that recurse
+// Nodes with children: more is no model but a trap for readers that recurse.
+constexpr int kMaxParents = 1000;
 constexpr std::uint64_t kMaxCount = std::uint64_t(1) << 53;  // integers that a double holds
 enum : int {
   kByte = 5120,

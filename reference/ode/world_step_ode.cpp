@@ -14,8 +14,8 @@ using namespace ode;
 
 namespace {
 
-constexpr double kUneven =
-    100.0;  // QuickStep's iterations carry a weight through a body a hundredth of it no more
+// QuickStep's iterations carry a weight through a body a hundredth of it no more.
+constexpr double kUneven = 100.0;
 
 // Adds the time that it lives to a sum.
 class Timing {
