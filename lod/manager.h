@@ -1,6 +1,7 @@
 // The engine's public face: bodies on three rungs, full (ODE trimesh), `support` (hull) and `tables`
 // (sphere), moved between them by a policy. One step: 1 choose rungs, 2 transfer, 3 statistical rungs and
-// their contacts with full bodies, 4 full level, with the impulses of those contacts, 5 report.
+// their contacts with full bodies (3a to 3f: lod/rungs/statistical_level.h), 4 full level, with the impulses
+// of those contacts, 5 report.
 //
 // SI units unless a name ends in another (`_ms`, `_px`), world frame right-handed, quaternions w, x, y, z.
 //
