@@ -90,6 +90,8 @@ struct TableCertificate {
              0.0;  ///< fraction of bodies moving into the plane after the first impulse, and at the end
   double energy_ratio_first = 0.0,
          energy_ratio = 0.0;  ///< kinetic, after over before: mean, after the first impulse, and at the end
+  /// Whether these are known: rows of measurements say only how a body left.
+  bool knows_first_impulse() const { return energy_ratio > 0.0; }
   double mean_over_deviation = 0.0;  ///< |μ_V|/σ_V over the table (the paper: near 0)
   double standard_error = 0.0,
          greatest_standard_error =

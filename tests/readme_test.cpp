@@ -27,9 +27,9 @@ using testing::quoted;
 using testing::run_shell;
 
 const fs::path kSource = LODESTONE_SOURCE_DIR;
-const std::array<std::string, 8> kPages = {"README.md",           "lod/README.md",       "lod/findings.md",
-                                           "signature/README.md", "reference/README.md", "scenes/README.md",
-                                           "tools/README.md",     "tests/README.md"};
+const std::array<std::string, 10> kPages = {
+    "README.md",           "lod/README.md",       "lod/limits.md",    "lod/words.md",    "lod/findings.md",
+    "signature/README.md", "reference/README.md", "scenes/README.md", "tools/README.md", "tests/README.md"};
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file);

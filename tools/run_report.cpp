@@ -78,15 +78,15 @@ std::string text_of(const BudgetFigures& budget) {
                          : fmt::format("budget       {:g} units: {:.0f} foretold, mean of {} steps",
                                        *budget.budget_work, budget.mean_work, budget.steps);
   text += fmt::format("; processor ms median {:.3f}, 99 % {:.3f}, longest {:.3f}\n", ms.p50, ms.p99, ms.max);
-  text += fmt::format(
-      "             foretold {:.3f} ms, measured {:.3f}, {:.3f} apart; mean bodies, ms foretold and "
-      "measured:",
-      budget.mean_predicted_ms, budget.mean_measured_ms, budget.mean_error_ms);
+  text += fmt::format("             foretold {:.3f} ms", budget.mean_predicted_ms);
+  if (budget.budget_ms)  // no clock runs where work is counted
+    text += fmt::format(", measured {:.3f}, {:.3f} apart", budget.mean_measured_ms, budget.mean_error_ms);
+  text += fmt::format("; mean bodies, ms foretold{}:", budget.budget_ms ? " and measured" : "");
   for (const Rung rung : kFromTheTop) {
     const std::size_t i = std::size_t(rung);
-    text +=
-        fmt::format("{} {} {:.1f}, {:.3f}, {:.3f}", rung == Rung::full ? "" : ";", name_of(rung),
-                    budget.mean_bodies[i], budget.mean_cost[i].predicted_ms, budget.mean_cost[i].measured_ms);
+    text += fmt::format("{} {} {:.1f}, {:.3f}", rung == Rung::full ? "" : ";", name_of(rung),
+                        budget.mean_bodies[i], budget.mean_cost[i].predicted_ms);
+    if (budget.budget_ms) text += fmt::format(", {:.3f}", budget.mean_cost[i].measured_ms);
   }
   return text + '\n';
 }
@@ -186,21 +186,28 @@ ordered_json json_of(const BudgetFigures& budget) {
   else
     json["work"] = budget.budget_work.value();
   json["steps"] = budget.steps;
-  json["over"] = budget.over ? ordered_json(*budget.over) : ordered_json(nullptr);
-  json["p50"] = budget.step_ms.p50;
-  json["p99"] = budget.step_ms.p99;
-  json["max"] = budget.step_ms.max;
+  const auto counted = [&](double figure) {
+    return budget.steps > 0 ? ordered_json(figure) : ordered_json(nullptr);
+  };
+  const auto timed = [&](double figure) {  // no clock runs where work is counted
+    return budget.budget_ms ? counted(figure) : ordered_json(nullptr);
+  };
+  json["over"] = budget.over && budget.steps > 0 ? ordered_json(*budget.over) : ordered_json(nullptr);
+  json["p50"] = counted(budget.step_ms.p50);
+  json["p99"] = counted(budget.step_ms.p99);
+  json["max"] = counted(budget.step_ms.max);
   for (const Rung rung : kFromTheTop)
-    json[fmt::format("mean_{}", name_of(rung))] = budget.mean_bodies[std::size_t(rung)];
-  json["mean_work"] = budget.mean_work;
-  json["mean_predicted_ms"] = budget.mean_predicted_ms;
-  json["mean_measured_ms"] = budget.mean_measured_ms;
-  json["mean_error_ms"] = budget.mean_error_ms;
-  if (budget.mean_error_pixels) json["mean_predicted_error_px"] = *budget.mean_error_pixels;
+    json[fmt::format("mean_{}", name_of(rung))] = counted(budget.mean_bodies[std::size_t(rung)]);
+  json["mean_work"] = counted(budget.mean_work);
+  json["mean_predicted_ms"] = counted(budget.mean_predicted_ms);
+  json["mean_measured_ms"] = timed(budget.mean_measured_ms);
+  json["mean_error_ms"] = timed(budget.mean_error_ms);
+  if (budget.mean_error_pixels) json["mean_predicted_error_px"] = counted(*budget.mean_error_pixels);
   for (const Rung rung : kFromTheTop) {
     const RungCost& cost = budget.mean_cost[std::size_t(rung)];
-    json["rungs"][std::string(name_of(rung))] = {
-        {"predicted_ms", cost.predicted_ms}, {"measured_ms", cost.measured_ms}, {"work", cost.work}};
+    json["rungs"][std::string(name_of(rung))] = {{"predicted_ms", counted(cost.predicted_ms)},
+                                                 {"measured_ms", timed(cost.measured_ms)},
+                                                 {"work", counted(cost.work)}};
   }
   return json;
 }

@@ -59,15 +59,19 @@ std::string text_of_validity(const Signature& s) {
 std::string text_of(const std::vector<NamedTable>& tables) {
   TextTable table({"table", "cells", "trials", "a cell", "std. error", "greatest", "held-out KS",
                    "held-out error", "into plane", "at first", "energy", "at first", "mean/dev. V"});
-  for (const auto& [name, cells, c] : tables)
+  for (const auto& [name, cells, c] : tables) {
+    const auto known = [&](double figure, int digits) {
+      return c.knows_first_impulse() ? fmt::format("{:.{}f}", figure, digits) : "-";
+    };
     table.add_row({std::string(name), fmt::format("{}", cells), fmt::format("{}", c.trials),
                    c.fewest_trials == c.most_trials ? fmt::format("{}", c.most_trials)
                                                     : fmt::format("{}-{}", c.fewest_trials, c.most_trials),
                    fmt::format("{:.4f}", c.standard_error), fmt::format("{:.4f}", c.greatest_standard_error),
                    fmt::format("{:.4f}", c.held_out_ks), fmt::format("{:.4f}", c.held_out_error),
-                   fmt::format("{:.4f}", c.into_plane), fmt::format("{:.4f}", c.into_plane_first),
-                   fmt::format("{:.3f}", c.energy_ratio), fmt::format("{:.3f}", c.energy_ratio_first),
+                   fmt::format("{:.4f}", c.into_plane), known(c.into_plane_first, 4),
+                   known(c.energy_ratio, 3), known(c.energy_ratio_first, 3),
                    fmt::format("{:.3f}", c.mean_over_deviation)});
+  }
   return table.text();
 }
 
@@ -84,6 +88,9 @@ std::string text_of(const std::vector<RestPose>& poses) {
 
 ordered_json json_of(const NamedTable& table) {
   const TableCertificate& c = table.certificate;
+  const auto known = [&](double figure) {
+    return c.knows_first_impulse() ? ordered_json(figure) : ordered_json(nullptr);
+  };
   return {{"table", table.name},
           {"cells", table.cells},
           {"trials", c.trials},
@@ -96,10 +103,10 @@ ordered_json json_of(const NamedTable& table) {
           {"held_out", c.held_out},
           {"held_out_ks", c.held_out_ks},
           {"held_out_error", c.held_out_error},
-          {"into_plane_after_first_impulse", c.into_plane_first},
+          {"into_plane_after_first_impulse", known(c.into_plane_first)},
           {"into_plane", c.into_plane},
-          {"energy_ratio_after_first_impulse", c.energy_ratio_first},
-          {"energy_ratio", c.energy_ratio},
+          {"energy_ratio_after_first_impulse", known(c.energy_ratio_first)},
+          {"energy_ratio", known(c.energy_ratio)},
           {"impulses", c.impulses},
           {"mean_over_deviation_v", c.mean_over_deviation}};
 }

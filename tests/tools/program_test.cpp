@@ -167,8 +167,9 @@ TEST(Program, RunPrintsOneJsonObjectAndNothingElse) {
 }
 
 TEST(Program, RunTakesABudget) {
-  const std::string scene =
-      "run " + quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml") + " --level full --steps 20 --json";
+  const std::string any_steps =
+      "run " + quoted(LODESTONE_SOURCE_DIR "/scenes/drop.yaml") + " --level full --json --steps ";
+  const std::string scene = any_steps + "20";
   const auto timed = nlohmann::json::parse(run(scene + " --budget-ms 4").out)["budget"];
   EXPECT_EQ(timed["ms"], 4.0);
   EXPECT_EQ(timed["steps"], 11);
@@ -177,7 +178,13 @@ TEST(Program, RunTakesABudget) {
     EXPECT_TRUE(timed[key].is_number()) << key;
   const auto worked = nlohmann::json::parse(run(scene + " --budget-work 2000").out)["budget"];
   EXPECT_EQ(worked["work"], 2000.0);
-  EXPECT_TRUE(worked["over"].is_null());
+  for (const char* key : {"over", "mean_measured_ms", "mean_error_ms"})
+    EXPECT_TRUE(worked[key].is_null()) << key;
+  EXPECT_TRUE(worked["mean_predicted_ms"].is_number());
+  const auto brief = nlohmann::json::parse(run(any_steps + "5 --budget-ms 4").out)["budget"];
+  EXPECT_EQ(brief["steps"], 0);
+  for (const char* key : {"over", "p50", "p99", "max", "mean_full", "mean_work", "mean_predicted_ms"})
+    EXPECT_TRUE(brief[key].is_null()) << key;
 }
 
 TEST(Program, BenchHardCasesPrintsOneJsonObjectAndNothingElse) {

@@ -61,7 +61,7 @@ function meanOf(values) {
 
 function budgetSummary(run) {
   const bodies = rungNames.map(rung => shortNumber(meanOf(run[rung])) + " " + rung).join(", ");
-  const kept = run.budget_ms === null ? "No budget of time: the scene's policy alone decides. " : run.over + " of " + run.counted_steps + " steps took longer than " + run.budget_ms + " ms" + (run.over ? " (longest " + msText(run.max_ms) + ")" : "") + ". ";
+  const kept = run.budget_ms === null ? "No budget of time: the scene's policy alone decides. " : run.over + " of " + run.counted_steps + " steps took longer than " + run.budget_ms + " ms, from the tenth on" + (run.over ? " (longest " + msText(run.max_ms) + ")" : "") + ". ";
   return kept + "Median step " + msText(run.p50_ms) + ", 99 % below " + msText(run.p99_ms) + "; on average " + bodies + ".";
 }
 

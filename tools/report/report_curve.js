@@ -3,7 +3,7 @@
 
 const methodOf = {
   "statistical/support": {name: "support", colour: "support", ours: true, priority: 12, what: "Lodestone's better stand-in: the convex hull, impacts at their exact time, settling as ODE's was recorded."},
-  "statistical/tables": {name: "tables", colour: "tables", ours: true, priority: 12, what: "Lodestone's cheapest: a body alone moves on its hull, one among others is a sphere."},
+  "statistical/tables": {name: "tables", colour: "tables", ours: true, priority: 12, what: "Lodestone's cheapest: a body alone moves on its hull; among others it meets each in one point."},
   "statistical/tables_published": {name: "tables, published", colour: "tables", ours: true, priority: 11, what: "The paper's idea: a sphere whose bounces and rest poses are drawn from what was measured of the shape."},
   "full": {name: "full", colour: "full", ours: true, priority: 10, what: "Lodestone's full level: the mesh in ODE, four substeps in each step, contacts with planes of its own."},
   "full_1": {name: "ODE single steps", colour: "ode", priority: 9, what: "The same mesh and contacts in ODE without substeps."},

@@ -48,7 +48,7 @@ const whiskerPlugin = {
         ctx.beginPath();
         ctx.moveTo(point.x, top);
         ctx.lineTo(point.x, bottom);
-        for (const end of [top, bottom]) {
+        for (const end of raw.from < scales.y.min ? [top] : [top, bottom]) {  // no end where it goes on below the axis
           ctx.moveTo(point.x - 3, end);
           ctx.lineTo(point.x + 3, end);
         }

@@ -93,6 +93,9 @@ TEST(SignatureFromTrials, ExportedTrialsGiveTheSameTables) {
         make_signature_from_trials(box, other, load_trials(file_for_test()), {}, &coverage);
     EXPECT_EQ(coverage.measured_cells, coverage.cells);
     EXPECT_EQ(coverage.left_out, 0);
+    EXPECT_TRUE((paper_grid ? ode.by_speed_certificate : ode.bouncing_certificate).knows_first_impulse());
+    EXPECT_FALSE(
+        (paper_grid ? again.by_speed_certificate : again.bouncing_certificate).knows_first_impulse());
     EXPECT_LT(greatest_difference(ode.bouncing.cells, again.bouncing.cells), 2e-6);
     EXPECT_LT(greatest_difference(ode.non_bouncing.cells, again.non_bouncing.cells), 2e-6);
     EXPECT_LT(greatest_difference(ode.by_speed.cells, again.by_speed.cells), 2e-6);
