@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lod/ground/box_tree.h"
+#include "lod/ground/box_hierarchy.h"
 
 namespace lodestone {
 namespace {
@@ -43,8 +43,8 @@ std::pair<GroundPose, double> pose_put_on(const GroundPart& part, double since) 
 
 }  // namespace
 
-struct Ground::Tree : BoxTree {
-  using BoxTree::BoxTree;
+struct Ground::Tree : BoxHierarchy {
+  using BoxHierarchy::BoxHierarchy;
 };
 
 GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt) {

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <span>
 
-#include "lod/ground/box_tree.h"
+#include "lod/ground/box_hierarchy.h"
 #include "reference/hull/convex_pieces.h"
 #include "reference/mesh/mesh_edges.h"
 
@@ -77,8 +77,8 @@ void GroundSolids::add_surface(const Mesh& mesh) {
   for (std::size_t i = 0; i < surface_->size(); ++i) all_bounds_.extend(surface_->bounds(i));
 }
 
-struct GroundSolids::Tree : BoxTree {
-  using BoxTree::BoxTree;
+struct GroundSolids::Tree : BoxHierarchy {
+  using BoxHierarchy::BoxHierarchy;
 };
 
 void GroundSolids::prepare() {

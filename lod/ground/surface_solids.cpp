@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "lod/ground/box_tree.h"
+#include "lod/ground/box_hierarchy.h"
 #include "reference/mesh/mesh_edges.h"
 #include "reference/mesh/rays.h"
 
@@ -70,8 +70,8 @@ Box bounds_of(const std::array<Vec3, 3>& corner, const std::array<Vec3, 3>& belo
 
 }  // namespace
 
-struct SurfaceSolids::Tree : BoxTree {
-  using BoxTree::BoxTree;
+struct SurfaceSolids::Tree : BoxHierarchy {
+  using BoxHierarchy::BoxHierarchy;
 };
 
 SurfaceSolids::SurfaceSolids(const Mesh& mesh) : vertices_(mesh.vertices) {

@@ -9,7 +9,7 @@
 
 namespace lodestone {
 
-struct BoxTree : Eigen::KdBVH<double, 3, int> {
+struct BoxHierarchy : Eigen::KdBVH<double, 3, int> {
   using Eigen::KdBVH<double, 3, int>::KdBVH;
 
   /// Those that stand in boxes of the tree within `reach` m of `center`.
