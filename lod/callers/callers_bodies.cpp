@@ -91,6 +91,10 @@ void CallersBodies::follow(const SpaceMirror& mirror,
     if (body_of_slot_[slot] && moved > kLeft * now.sizes().maxCoeff()) left(before);
   }
   for (Entry& entry : bodies_) {
+    if (entry.stale && entry.shape) {  // contacts, gaps and vertices of what it was are known by its number
+      tell(entry.owner, {});
+      entry.owner = kFirstOwner + owners_++;
+    }
     if (entry.stale || entry.untold) {
       entry.bits = {0, 0};
       for (const std::uint32_t slot : entry.slots)
@@ -105,11 +109,7 @@ void CallersBodies::follow(const SpaceMirror& mirror,
     entry.stale = false;
     entry.shape = nullptr;
     entry.solids.assign(entry.slots.size(), nullptr);
-    try {
-      make_shape(mirror, entry);
-    } catch (const InputError&) {
-      continue;  // flat: nothing that a solid could be
-    }
+    make_shape(mirror, entry);
   }
 }
 
@@ -119,6 +119,17 @@ void CallersBodies::follow_inertia(Entry& entry) {
   Shape shape = *entry.shape;
   set_inertia(shape, entry.body);
   entry.shape = std::make_shared<const Shape>(std::move(shape));
+}
+
+// About its middle; none of what is flat, which can be no solid.
+std::optional<Shape> make_piece(const std::vector<Vec3>& points) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : points) middle += p / double(points.size());
+  try {
+    return make_contact_shape(points, middle);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 // Each geom a convex piece, or several; of a trimesh that has no pieces, its hull.
@@ -150,18 +161,17 @@ void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
     }
     if (surface) pieces.push_back(std::move(all));
   }
-  if (pieces.empty()) return;
   std::vector<Vec3> points;
-  for (const auto& piece : pieces) points.insert(points.end(), piece.begin(), piece.end());
-  Shape shape = make_contact_shape(points, Vec3::Zero());
-  if (pieces.size() > 1) {
-    shape.convex = false;
-    for (const auto& piece : pieces) {
-      Vec3 middle = Vec3::Zero();
-      for (const Vec3& p : piece) middle += p / double(piece.size());
-      shape.pieces.push_back(make_contact_shape(piece, middle));
-    }
+  std::vector<Shape> solids;
+  for (const std::vector<Vec3>& piece : pieces) {
+    std::optional<Shape> solid = make_piece(piece);
+    if (!solid) continue;
+    points.insert(points.end(), piece.begin(), piece.end());
+    solids.push_back(std::move(*solid));
   }
+  if (solids.empty()) return;
+  Shape shape = make_contact_shape(points, Vec3::Zero());
+  if (solids.size() > 1) shape.convex = false, shape.pieces = std::move(solids);
   if (sphere) shape.sphere_radius = shape.radius = *sphere;
   set_inertia(shape, entry.body);
   entry.shape = std::make_shared<const Shape>(std::move(shape));

@@ -124,7 +124,9 @@ GroundPose CallersGround::pose_of(const MirroredGeom& geom, double dt, double mo
   }
   if (pose.goes_on_s > 0.0 || moved_in == 0.0) return pose;
   const double rim = (geom.bounds.center() - geom.position).norm() + 0.5 * geom.bounds.sizes().norm();
-  return put_from({geom.previous_position, geom.previous_orientation}, pose, rim, moved_in);
+  const GroundPose put = put_from({geom.previous_position, geom.previous_orientation}, pose, rim, moved_in);
+  const bool is_probed = geom.kind == GeomKind::height_field || geom.kind == GeomKind::other;
+  return is_probed ? put : coming_to(put, dt);
 }
 
 dxGeom* CallersGround::geom_of(GroundId id) const {

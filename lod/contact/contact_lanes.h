@@ -384,7 +384,7 @@ struct ContactLanes<L>::PrepareLoop {
           point.blow = -float(approach[lane]);
           point.impact_time = float(std::max(0.0, point.gap) / -double(approach[lane]));
           const bool on_still = batch.inverse_mass_second[lane] == R(0);
-          const double fall = on_still ? std::min(0.0, settings.fall.dot(m.normal)) : 0.0;
+          const double fall = on_still ? std::min(0.0, settings.fall.dot(m.normal) + double(m.spared)) : 0.0;
           const double bounced =
               bounce_in_fall(m.law.restitution, point.gap, double(approach[lane]), fall, contacts.step);
           p.target[lane] = std::max(R(bounced), closing[lane]);

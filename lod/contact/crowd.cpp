@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <tuple>
+#include <utility>
+
+#include "reference/rocking.h"
 
 namespace lodestone {
 
@@ -63,8 +67,15 @@ ContactTally Crowd::move(const ContactScene& scene, const CrowdTouch& touch) {
   return tally;
 }
 
-// What forces press together does not strike.
+// What forces press together does not strike, and what falls by more or less than gravity has it fall, by
+// forces or as it has none, bounces off what stands as it came.
 void Crowd::note_presses(const ContactScene& scene, double time) {
+  for (CrowdManifold& m : manifolds_) {
+    const Participant p = participants_[std::size_t(m.first)];
+    const bool on_still = m.second < 0 || solver_bodies_[std::size_t(m.second)].inverse_mass == 0.0;
+    if (!on_still || !p.is_statistical()) continue;
+    m.spared = float((scene.gravity(p) + scene.pushed(p) - scene.world.gravity).dot(m.normal) * time);
+  }
   const auto is_pushed = [&](const FullNeighbor& body) { return !body.force.isZero(0.0); };
   const bool any =
       (scene.world.forces && !scene.world.forces->empty()) || std::ranges::any_of(scene.neighbors, is_pushed);
@@ -167,12 +178,15 @@ void Crowd::pass_forces_on(const ContactScene& scene, const Sleeps& sleeps) {
     return body >= 0 && !sleeps(body) &&
            (pushes_[std::size_t(body)].forced || scene.is_forced(participants_[std::size_t(body)]));
   };
-  for (bool any = true; any;) {
-    any = false;
-    for (const CrowdManifold& m : manifolds)
-      for (const auto& [from, to] : {std::pair{m.first, m.second}, std::pair{m.second, m.first}})
-        if (to >= 0 && !pushes_[std::size_t(to)].forced && passes(from))
-          pushes_[std::size_t(to)].forced = any = true;
+  bool any = true;
+  const auto pass_on = [&](const CrowdManifold& m) {
+    for (const auto& [from, to] : {std::pair{m.first, m.second}, std::pair{m.second, m.first}})
+      if (to >= 0 && !pushes_[std::size_t(to)].forced && passes(from))
+        pushes_[std::size_t(to)].forced = any = true;
+  };
+  while (std::exchange(any, false)) {  // to and fro: rows stand in the manifolds' order, or against it
+    std::ranges::for_each(manifolds, pass_on);
+    std::ranges::for_each(manifolds | std::views::reverse, pass_on);
   }
 }
 
@@ -252,7 +266,8 @@ void Crowd::find_footing(const ContactScene& scene, const CrowdTouch& touch) {
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     if (!is_asked(i)) continue;
     radii_[i] = scene.shape(participants_[i]).radius;
-    any |= scene.body(participants_[i]).quiet_time + float(touch.time) >= touch.still_time;
+    const float still_time = touch.still_time * float(rocking_slowness(radii_[i], strength));
+    any |= scene.body(participants_[i]).quiet_time + float(touch.time) >= still_time;
   }
   if (!any || strength == 0.0) return;
   footing_.find(solver_bodies_, radii_, manifolds_, points_, -scene.world.gravity / strength);

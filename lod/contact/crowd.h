@@ -34,10 +34,11 @@ struct CrowdTouch {
   std::span<const SolidContact> solid_contacts;
   std::span<const FullContact> full_contacts;
   const FacesBelow& faces;
-  double time = 0.0;         ///< s
-  float still_time = 1e30f;  ///< s: who was still for so long falls asleep, if it stands firmly
-  int sweeps = 10;           ///< of the solver, at most
-  double parting = 1.0;      ///< how much of what push_out_overlap says is undone
+  double time = 0.0;  ///< s
+  /// s: who was still for so long falls asleep, if it stands firmly; larger ones later (RestLaw).
+  float still_time = 1e30f;
+  int sweeps = 10;       ///< of the solver, at most
+  double parting = 1.0;  ///< how much of what push_out_overlap says is undone
 };
 
 /// The contact solver's work arrays, kept between steps so that a warm step allocates nothing.

@@ -17,6 +17,8 @@ struct CrowdManifold {
   bool known = false;                  ///< from the last step, which gives the guesses of its points
   bool to_forget = false;              ///< the next step knows nothing of it
   float pressed = 0.0f;  ///< m/s: what forces add to its approach in the step, beyond gravity: no impact
+  float spared =
+      0.0f;  ///< m/s along the normal: what its body falls less in the step than gravity has it fall
   double most_impulse = kUnbounded;  ///< N s, of each point along the normal; a bounded one is a
                                      ///< motor's, which closes or opens the gap, however wide, just within
                                      ///< the step

@@ -182,7 +182,7 @@ void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
     if (first + second == 0.0) continue;
     const double deep = deep_overlap_of(scene, one, other);
     // A face of the ground has a contact of each triangle: together they push it out once.
-    const double by_others = m.second < 0 ? std::max(0.0, shift_of(m.first).dot(m.normal)) : 0.0;
+    const double by_others = other.is_ground() ? std::max(0.0, shift_of(m.first).dot(m.normal)) : 0.0;
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       if (push_out_overlap(point.gap, radius) == 0.0) continue;
       const float placed = std::max(placed_time(scene, one), placed_time(scene, other));

@@ -7,6 +7,7 @@
 #include "lod/contact/crowd_islands.h"
 #include "lod/contact/crowd_lanes.h"
 #include "lod/contact/impact_waves.h"
+#include "lod/contact/island_contacts.h"
 #include "lod/contact/small_islands.h"
 #include "lod/contact/uneven_islands.h"
 
@@ -20,6 +21,7 @@ struct CrowdSolver::Work {
   ImpactWaves waves;
   CrowdIslands islands;
   SmallIslands small_islands;
+  IslandContacts uneven_island;
   UnevenIslands uneven_islands;
   CrowdLanes<F8> great_islands;
   std::vector<std::uint32_t> uneven, great;  // manifolds
@@ -45,7 +47,10 @@ void CrowdSolver::Work::solve_uneven_islands(const CrowdContacts& contacts, cons
   for (auto begin = uneven.begin(), end = begin; begin != uneven.end(); begin = end) {
     end = std::ranges::find_if(begin, uneven.end(),
                                [&](std::uint32_t m) { return island_of(m) != island_of(*begin); });
-    uneven_islands.solve(contacts, {begin, end}, islands.unevenness_of(*begin), jobs);
+    uneven_island.take(contacts, {begin, end});
+    uneven_islands.solve(uneven_island.contacts(contacts), uneven_island.which(),
+                         islands.unevenness_of(*begin), jobs);
+    uneven_island.hand_out(contacts);
   }
 }
 

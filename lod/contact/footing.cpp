@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace lodestone {
 namespace {
@@ -80,18 +81,20 @@ void Footing::find(std::span<const SolverBody> bodies, std::span<const double> r
 // What stands on one that tips goes with it.
 void Footing::hand_on(std::span<const SolverBody> bodies, std::span<const double> radii,
                       std::span<const CrowdManifold> manifolds, const Vec3& up) {
-  for (bool any = true; any;) {
-    any = false;
-    for (std::size_t i = 0; i < manifolds.size(); ++i) {
-      if (!carries_[i]) continue;
-      const CrowdManifold& m = manifolds[i];
-      const bool first_above = m.normal.dot(up) > 0.0;
-      const std::int32_t above = first_above ? m.first : m.second, below = first_above ? m.second : m.first;
-      if (!is_free(bodies, below) || !tips_[std::size_t(below)] || tips_[std::size_t(above)] ||
-          radii[std::size_t(above)] == 0.0)
-        continue;
-      tips_[std::size_t(above)] = any = true;
-    }
+  bool any = true;
+  const auto hand_on = [&](std::size_t i) {
+    if (!carries_[i]) return;
+    const CrowdManifold& m = manifolds[i];
+    const bool first_above = m.normal.dot(up) > 0.0;
+    const std::int32_t above = first_above ? m.first : m.second, below = first_above ? m.second : m.first;
+    if (!is_free(bodies, below) || !tips_[std::size_t(below)] || tips_[std::size_t(above)] ||
+        radii[std::size_t(above)] == 0.0)
+      return;
+    tips_[std::size_t(above)] = any = true;
+  };
+  while (std::exchange(any, false)) {  // to and fro: stacks stand in their order, or against it
+    for (std::size_t i = 0; i < manifolds.size(); ++i) hand_on(i);
+    for (std::size_t i = manifolds.size(); i-- > 0;) hand_on(i);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "lod/ground/ground.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "lod/ground/box_hierarchy.h"
 
@@ -56,6 +57,15 @@ GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, do
   going.velocity = velocity;
   going.angular_velocity = turn / dt;
   return going;
+}
+
+GroundPose coming_to(const GroundPose& put, double dt) {
+  if (put.velocity.isZero(0.0) && put.angular_velocity.isZero(0.0)) return put;
+  GroundPose coming = put;
+  coming.position -= dt * put.velocity;
+  coming.orientation = rotation_from_vector(-dt * put.angular_velocity) * put.orientation;
+  coming.goes_on_s = dt;
+  return coming;
 }
 
 GroundId Ground::new_id(Entry entry) {
@@ -155,10 +165,9 @@ void Ground::stand(std::size_t index, const GroundPose& pose) {
   const bool stays = part.pose.position == pose.position &&
                      part.pose.orientation.coeffs() == pose.orientation.coeffs() &&
                      part.pose.goes_on_s == 0.0 && pose.goes_on_s == 0.0;
-  if (!stays) let_go(std::int32_t(index));
   part.pose = pose;
   moving_ += part.moves();
-  if (!stays) hold(std::int32_t(index));
+  if (!stays) hold_anew(std::int32_t(index));
 }
 
 void Ground::note_put(GroundPart& part, const GroundPose& pose) {
@@ -172,18 +181,17 @@ void Ground::note_put(GroundPart& part, const GroundPose& pose) {
 }
 
 void Ground::begin_step(double dt, double since, const std::function<void(const Box&)>& stands_again) {
-  if (since > 0.0 && !put_on_.empty()) go_as_put(since, stands_again);
+  if (since > 0.0 && !put_on_.empty()) go_as_put(dt, since, stands_again);
   if (moving_ == 0) return;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (!parts_[i] || !parts_[i]->pose.comes_back || !parts_[i]->moves()) continue;
     if (parts_[i]->pose.goes_on_s == dt) continue;
-    let_go(std::int32_t(i));
     parts_[i]->pose.goes_on_s = dt;
-    hold(std::int32_t(i));
+    hold_anew(std::int32_t(i));
   }
 }
 
-void Ground::go_as_put(double since, const std::function<void(const Box&)>& stands_again) {
+void Ground::go_as_put(double dt, double since, const std::function<void(const Box&)>& stands_again) {
   std::erase_if(put_on_, [&](GroundId id) {
     if (!valid(id)) return true;
     const auto index = std::size_t(entries_[id.index].part);
@@ -191,13 +199,13 @@ void Ground::go_as_put(double since, const std::function<void(const Box&)>& stan
     const bool has_own_velocity = held.pose.comes_back && held.moves();
     if (!has_own_velocity && held.put_on->moved) {
       const auto [pose, speed] = pose_put_on(held, since);
-      stand(index, pose);
+      stand(index, held.shape.probe ? pose : coming_to(pose, dt));
       held.put_on = {.from = pose, .moved = false, .last_speed = speed};
       return false;
     }
     if (!has_own_velocity && held.moves()) {
       stands_again(bounds(id));
-      stand(index, {held.pose.position, held.pose.orientation});
+      stand(index, {held.put_on->from.position, held.put_on->from.orientation});
     }
     held.put_on.reset();
     return true;
@@ -207,24 +215,39 @@ void Ground::go_as_put(double since, const std::function<void(const Box&)>& stan
 Box Ground::bounds(GroundId id) const { return bounds_[std::size_t(entries_[id.index].part)]; }
 
 void Ground::hold(std::int32_t part) {
+  take_bounds(part);
+  loose_.push_back(part);
+}
+
+void Ground::take_bounds(std::int32_t part) {
   const GroundPart& held = *parts_[std::size_t(part)];
   const Box box = placed(held.shape.bounds, held.pose);
   const Vec3 way = Vec3::Constant(held.greatest_speed() * held.pose.goes_on_s);
   bounds_[std::size_t(part)] = {box.min() - way, box.max() + way};
   if (bounds_of_parts_) bounds_of_parts_->extend(bounds_[std::size_t(part)]);
-  loose_.push_back(part);
 }
 
-// From the tree it goes when that is next built: until then it is passed over there.
-void Ground::let_go(std::int32_t part) {
+void Ground::forget_bounds(std::int32_t part) {
   const Box& box = bounds_[std::size_t(part)];
   if (bounds_of_parts_ && ((box.min().array() <= bounds_of_parts_->min().array()).any() ||
                            (box.max().array() >= bounds_of_parts_->max().array()).any()))
     bounds_of_parts_.reset();
+}
+
+// From the tree it goes when that is next built: until then it is passed over there.
+void Ground::let_go(std::int32_t part) {
+  forget_bounds(part);
   if (in_tree_[std::size_t(part)])
     in_tree_[std::size_t(part)] = false;
   else
     std::erase(loose_, part);
+}
+
+// Where it is now. One that is loose already stays so.
+void Ground::hold_anew(std::int32_t part) {
+  forget_bounds(part);
+  take_bounds(part);
+  if (std::exchange(in_tree_[std::size_t(part)], false)) loose_.push_back(part);
 }
 
 void Ground::rebuild() const {

@@ -50,6 +50,8 @@ struct GroundPose {
 /// position than `rim` m. Without where it went faster than 50 m/s, or turned by more than half a radian with
 /// a rim as fast: that was put elsewhere, and carries nothing along.
 GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt);
+/// `put`, which goes, as it comes to stand there within `dt` s: what lies on it goes along.
+GroundPose coming_to(const GroundPose& put, double dt);
 
 /// Of a part that was put elsewhere without a velocity, since the last step began or before that.
 struct PutOn {
@@ -148,9 +150,13 @@ class Ground {
   GroundId new_id(Entry entry);
   void note_put(GroundPart& part, const GroundPose& pose);
   void stand(std::size_t part, const GroundPose& pose);
-  void go_as_put(double since, const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
+  void go_as_put(double dt, double since,
+                 const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
   void hold(std::int32_t part);
   void let_go(std::int32_t part);
+  void hold_anew(std::int32_t part);
+  void take_bounds(std::int32_t part);
+  void forget_bounds(std::int32_t part);
   void rebuild() const;
   const GroundSolids& solids_of(std::int32_t part) const;
 

@@ -9,6 +9,7 @@
 #include "lod/manager/joint_contacts.h"
 #include "reference/ode/body_joints.h"
 #include "reference/ode/callers_bodies.h"
+#include "reference/rocking.h"
 
 namespace lodestone {
 namespace {
@@ -107,6 +108,14 @@ std::optional<FullContact> full_contact_of(const Levels& levels, const Neighborh
   };
   const bool carries =
       second < 0 ? contact.moves : is_kinematic(first) || (contact.second && is_kinematic(second));
+  // Where that point is now: what goes fast has gone on by centimetres since.
+  const bool goes_along = second < 0 ? contact.moves : bool(contact.second);
+  if (goes_along) {
+    const Vec3 on_first = on_second + between;
+    full.point = !carries                             ? Vec3(on_first - 0.5 * between)
+                 : second >= 0 && is_kinematic(first) ? on_second
+                                                      : on_first;
+  }
   if (!carries || seen.age > 0) full.gap += std::max(0.0, contact.above + between.dot(contact.normal));
   return full;
 }
@@ -171,8 +180,9 @@ void gather_contacts(const Levels& levels, Neighborhood& neighborhood, double dt
 // ODE lets no body sleep that none of its own contacts or joints holds up: by the same measure, one that
 // statistical bodies hold up sleeps here. Jointed ones sleep by ODE's law, all that hang together at once.
 bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepThresholds& thresholds,
-                  double dt) {
-  const double still_speed = thresholds.speed, still_time = 5.0 * thresholds.time;  // m/s and s, as alone
+                  double gravity, double dt) {
+  const double still_speed = falling_speed_share(gravity) * thresholds.speed,                  // m/s
+      still_time = 5.0 * thresholds.time * rocking_slowness(neighbor.shape->radius, gravity);  // s, as alone
   if (!bodies.properties(neighbor.owner).allow_sleep) return false;
   const double turning = neighbor.state.angular_velocity.norm() * neighbor.shape->radius;
   const bool still = !neighbor.push.is_zero() && !neighbor.carried &&
@@ -235,7 +245,8 @@ void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt, int 
   for (std::size_t i = 0; i < own; ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
-    const bool sleeps = falls_asleep(levels.bodies, neighbor, levels.statistical_settings.sleep, dt) &&
+    const bool sleeps = falls_asleep(levels.bodies, neighbor, levels.statistical_settings.sleep,
+                                     levels.statistical_settings.gravity.norm(), dt) &&
                         levels.statistical_settings.sleeping && !has_joints(neighborhood.ode_bodies[i]);
     if (sleeps)
       put_to_sleep(*levels.full.world(), id, neighbor, dt);

@@ -166,7 +166,7 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   // 3c spheres answer
   {
     const StageTimer timer(times.crowd_ms);
-    tables.respond(tally);
+    tables.respond(search.guests(), tally);
   }
   // 3d hulls and their guests
   const double hulls_from = s.clock();

@@ -1,12 +1,14 @@
 // When a body sleeps and what wakes it, on either statistical rung (section 3.4's second threshold). Among
 // other bodies: slower than .05 m/s at R = .2 m, scaled with √R, for .1 s. Alone a body may still rock
-// slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s. Other
-// thresholds (SleepThresholds) scale all of these alike.
+// slowly, so it must be nearly still for longer: kinetic energy over m g R below 2.5e-4 for .5 s. What is
+// larger, or under less gravity, must be so for longer (reference/rocking.h), and slower under less gravity.
+// Other thresholds (SleepThresholds) scale all of these alike.
 #pragma once
 
 #include <cmath>
 
 #include "lod/body.h"
+#include "reference/rocking.h"
 
 namespace lodestone {
 
@@ -33,7 +35,7 @@ class RestLaw {
 
   /// J/kg: with more kinetic energy a body is not still. `gravity` in m/s².
   double still_energy(bool among_others, double radius, double gravity) const {
-    const double speed = sleep_speed(radius);
+    const double speed = falling_speed_share(gravity) * sleep_speed(radius);
     return among_others ? 0.5 * speed * speed : alone_energy_ * gravity * radius;
   }
 
@@ -44,8 +46,10 @@ class RestLaw {
     return rising >= 0.5f * still_time && double(gain) > kSettingOut * gravity * double(rising);
   }
 
-  /// s: so long it must have been still.
-  float still_time(bool among_others) const { return among_others ? time_ : alone_time_; }
+  /// s: so long it must have been still. `gravity` in m/s².
+  float still_time(bool among_others, double radius, double gravity) const {
+    return (among_others ? time_ : alone_time_) * float(rocking_slowness(radius, gravity));
+  }
 
  private:
   static double square(double x) { return x * x; }

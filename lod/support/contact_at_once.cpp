@@ -14,7 +14,7 @@ namespace {
 
 /// What may touch within the step, and which plane.
 struct PointsOnPlanes {
-  static constexpr std::size_t kCapacity = 2 * kMaxGroundContacts;  // of two planes
+  static constexpr std::size_t kCapacity = kMostPlanesAtOnce * kMaxGroundContacts;
   std::array<GroundContact, kCapacity> contact;
   std::array<int, kCapacity> plane;
   std::size_t count = 0;

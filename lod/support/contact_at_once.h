@@ -8,7 +8,11 @@
 
 namespace lodestone {
 
-/// Moves a body that touches a plane by `time` seconds, in steps of at most SupportSettings::step_at_once.
+/// Of planes that a body may touch at once.
+inline constexpr int kMostPlanesAtOnce = 2;
+
+/// Moves a body that touches a plane, and is near no more than kMostPlanesAtOnce of them, by `time` seconds,
+/// in steps of at most SupportSettings::step_at_once.
 void move_on_planes_at_once(StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time,
                             const SupportSettings& settings, ContactTally& tally);
 

@@ -138,10 +138,10 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
   body.eased = std::max(0.0f, body.eased - float(time));
   const BodyProperties& own = properties_of(body);
   govern(body, own, time);
-  const double still_energy =
-      rest_law_.still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
-  if (!own.kinematic && rest_law_.still_time(among_others) > 0.0f &&
-      surely_moves_on(body, kind, still_energy)) {
+  const double gravity = settings_.gravity.norm(),
+               still_energy = rest_law_.still_energy(among_others, kind.shape->radius, gravity);
+  const float still_time = rest_law_.still_time(among_others && !body.on_edge, kind.shape->radius, gravity);
+  if (!own.kinematic && still_time > 0.0f && surely_moves_on(body, kind, still_energy)) {
     body.quiet_time = 0.0f;
     return;
   }
@@ -154,10 +154,8 @@ void SupportLevel::update_quiet(std::int32_t slot, std::span<const HalfSpace> fa
     if (settings_.sleeping && own.allow_sleep && energy == 0.0) put_to_sleep(body);
     return;
   }
-  const float still_time = rest_law_.still_time(among_others && !body.on_edge);
   if (!settings_.sleeping || !own.allow_sleep || body.quiet_time < still_time) return;
-  if (rest_law_.sets_out(body.speed - body.rising_from, body.rising_time, still_time,
-                         settings_.gravity.norm())) {
+  if (rest_law_.sets_out(body.speed - body.rising_from, body.rising_time, still_time, gravity)) {
     body.quiet_time = 0.0f;
     return;
   }

@@ -14,9 +14,10 @@ namespace {
 // On what is more slippery bodies rock on as they slide, and strike a third of a deviation too often.
 constexpr double kLeastFrictionAtOnce = 0.3;
 
+constexpr double kWithinReach = 1.2;  // over R
+
 // Off one of two walls that lean against each other a body that is lifted goes into the other.
 bool is_wedged(const Vec3& position, double radius, std::span<const HalfSpace> planes) {
-  constexpr double kWithinReach = 1.2;  // over R
   const auto is_near = [&](const HalfSpace& p) { return p.height_of(position) < kWithinReach * radius; };
   for (std::size_t i = 1; i < planes.size(); ++i)
     for (std::size_t j = 0; j < i && is_near(planes[i]); ++j)
@@ -24,14 +25,23 @@ bool is_wedged(const Vec3& position, double radius, std::span<const HalfSpace> p
   return false;
 }
 
-bool may_move_at_once(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world,
+// In the corner of a room it meets more planes than it has room for at once.
+bool is_in_corner(const StatisticalBody& body, double radius, std::span<const HalfSpace> planes,
+                  double time) {
+  const double reach = kWithinReach * radius + body.velocity.norm() * time;
+  const auto is_near = [&](const HalfSpace& p) { return p.height_of(body.position) < reach; };
+  return std::ranges::count_if(planes, is_near) > kMostPlanesAtOnce;
+}
+
+bool may_move_at_once(const StatisticalBody& body, const BodyKind& kind, const StepWorld& world, double time,
                       const SupportSettings& settings) {
   return settings.step_at_once > 0.0 && kind.angular && !world.solids &&
          std::ranges::all_of(world.planes,
                              [&](const HalfSpace& plane) {
                                return world.law(kind, plane).friction >= kLeastFrictionAtOnce;
                              }) &&
-         !is_wedged(body.position, kind.shape->radius, world.planes);
+         !is_wedged(body.position, kind.shape->radius, world.planes) &&
+         !is_in_corner(body, kind.shape->radius, world.planes, time);
 }
 
 // Whether the vertex that is lowest at the step's end touches already: then nothing strikes, the body only
@@ -96,7 +106,7 @@ bool touches_already(const HullFlight& flight, const StatisticalBody& body, cons
   }
   if (left > 0.0) {
     body.spin -= world.turning * left;
-    const bool at_once = may_move_at_once(body, kind, world, settings);
+    const bool at_once = may_move_at_once(body, kind, world, left, settings);
     (at_once ? move_on_planes_at_once : move_on_ground)(body, kind, world, left, settings, tally);
   }
   return tally;

@@ -16,6 +16,12 @@ constexpr std::int64_t kLanes = 16;
 // those of a column that lands do. `speed` is that of the first against the second, `own` its own.
 LODESTONE_INLINE float if_one_stops(float speed, float own) { return least(speed, least(own, speed - own)); }
 
+// m/s: what of `speed` a pair strikes with. One that only may meet once a third stops it is held apart, and
+// does not bounce before it touches.
+LODESTONE_INLINE float striking_speed(float speed, float gap, float time, float touching) {
+  return choose(gap + speed * time > touching, most(speed, 0.0f), speed);
+}
+
 // Squared cosine of 45°: what stands steeper beside another does not lie on it.
 constexpr float kLying = 0.5f;
 
@@ -90,7 +96,7 @@ struct TouchLoop {
         }
         const float speed = ux[i] * normal.x + uy[i] * normal.y + uz[i] * normal.z;
         nx[i] = normal.x, ny[i] = normal.y, nz[i] = normal.z;
-        gap[i] = between, closing[i] = speed;
+        gap[i] = between, closing[i] = striking_speed(speed, between, c.time, limit[i]);
         float may_close = speed;
         if constexpr (Oriented)
           may_close = if_one_stops(speed, wx[i] * normal.x + wy[i] * normal.y + wz[i] * normal.z);
@@ -115,7 +121,8 @@ struct TouchLoop {
           const float down = dot(normal, {c.gx, c.gy, c.gz});
           const bool lies = choose(found.flush, down * down, 0.0f) > lying;
           face_x[k] = normal.x, face_y[k] = normal.y, face_z[k] = normal.z, face_gap[k] = found.gap,
-          face_closing[k] = speed, face_flush[k] = choose(lies, 0, kNotFlush);
+          face_closing[k] = striking_speed(speed, found.gap, c.time, limit[i]),
+          face_flush[k] = choose(lies, 0, kNotFlush);
           const float may_close = if_one_stops(speed, wx[i] * normal.x + wy[i] * normal.y + wz[i] * normal.z);
           face_touches[k] = choose(found.gap + may_close * c.time > limit[i], 0, 1);
         }

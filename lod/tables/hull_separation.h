@@ -60,7 +60,7 @@ struct Passing {
   F3 way;      ///< m, of the first, seen from the second, in the time that is looked at
   float hair;  ///< m: an overlap that is none
 };
-/// The best of three separating axes, the line and the normals of the two faces, so that what lies on a face
+/// The best of four separating axes: the line and the normals of the two faces, so that what lies on a face
 /// is held by that face; or upwards, where that is better still, or keeps them apart to the end of the way.
 /// `unsteady` is that of the kinds (SphereKinds).
 LODESTONE_INLINE HullSeparation separate_hulls(const float* heights, const Row* faces, const float* unsteady,

@@ -36,7 +36,7 @@ void ContactArrays::make_room(std::size_t elements, bool one_kind) {
       array.reserve(size), array.resize(size);
     };  // not twice as long, as a resize by itself would
     grow(first), grow(second), grow(flush);
-    for (auto* array : {&nx, &ny, &nz, &gap, &closing, &impulse}) grow(*array);
+    for (auto* array : {&nx, &ny, &nz, &gap, &closing, &impulse, &recalled}) grow(*array);
   }
   if (!one_kind) restitution.resize(first.size()), friction.resize(first.size());
 }
@@ -204,6 +204,7 @@ void SphereContacts::recall(const Spheres& spheres, float bounce_velocity, const
     c.impulse[i] = impact || none ? 0.0f
                                   : constants.remembered * constants.time *
                                         known_force(spheres, c.first[i], c.second[i], nth);
+    c.recalled[i] = c.impulse[i];
     if (c.flush[i] == kNotFlush) continue;
     c.flush[i] = std::int32_t(c.flush_contacts.size());
     const bool is_new = impact || c.second[i] >= kGroundPlace;
@@ -286,18 +287,27 @@ void SphereContacts::make_room_to_remember(Spheres& spheres) {
   known_.resize(begin);
 }
 
+// N. A load grows step by step as bodies come to rest on each other; what a contact gave all at once passed a
+// blow on, and given again it would be one out of nothing.
+float SphereContacts::force_to_remember(const ContactArrays& c, std::size_t i,
+                                        const StepConstants& constants) const {
+  const float force = c.impulse[i] / constants.time;
+  if (!constants.hulls) return force;
+  return std::min(force, kLoadGrowth * c.recalled[i] / constants.time +
+                             kLoadAtOnce * constants.gravity * constants.heaviest);
+}
+
 // All contacts of a first body are in one part, one after the other.
 void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const StepConstants& constants,
                               const Part& part) {
-  const float per_time = 1.0f / constants.time;
   const ContactArrays& c = *part.run.arrays;
   std::uint32_t at = part.known_begin, last = ~0u;
   for (std::size_t i = part.run.begin; i < part.run.end; ++i) {
     const std::uint32_t a = c.first[i];
     if (a != last) spheres.known_begin[a] = at;
     last = a;
-    known_[at] = {owner_of(spheres, c.second[i]), c.impulse[i] * per_time};
-    const bool kept = is_support(c, i, bounce_velocity) & (spheres.known_count[a] < 255);
+    known_[at] = {owner_of(spheres, c.second[i]), force_to_remember(c, i, constants)};
+    const bool kept = is_support(c, i, bounce_velocity, constants.time) & (spheres.known_count[a] < 255);
     spheres.known_count[a] += kept;
     at += kept;
   }
@@ -306,14 +316,13 @@ void SphereContacts::remember(Spheres& spheres, float bounce_velocity, const Ste
 void SphereContacts::remember_apart(const Spheres& spheres, float bounce_velocity,
                                     const StepConstants& constants) {
   known_apart_.clear();
-  const float per_time = 1.0f / constants.time;
   for (std::size_t p = 0; p < used_parts_; ++p) {
     if (!is_apart(parts_[p].colour) || parts_[p].run.size() == 0) continue;
     const ContactArrays& c = *parts_[p].run.arrays;
     for (std::size_t i = parts_[p].run.begin; i < parts_[p].run.end; ++i)
-      if (is_support(c, i, bounce_velocity))
-        known_apart_.push_back(
-            {{spheres.owner[c.first[i]], owner_of(spheres, c.second[i])}, c.impulse[i] * per_time});
+      if (is_support(c, i, bounce_velocity, constants.time))
+        known_apart_.push_back({{spheres.owner[c.first[i]], owner_of(spheres, c.second[i])},
+                                force_to_remember(c, i, constants)});
   }
   std::ranges::sort(known_apart_, {}, &KnownApart::owners);
 }
@@ -325,7 +334,7 @@ void SphereContacts::remember_friction(const Spheres& spheres, float bounce_velo
   for (const ContactArrays& c : arrays_)
     for (const FlushContact& flush : c.flush_contacts) {
       const std::uint32_t second = c.second[flush.at];
-      if (second >= kGroundPlace || !is_support(c, flush.at, bounce_velocity)) continue;
+      if (second >= kGroundPlace || !is_support(c, flush.at, bounce_velocity, constants.time)) continue;
       const std::uint32_t owner = spheres.owner[c.first[flush.at]], other = spheres.owner[second];
       known_friction_.push_back({{std::min(owner, other), std::max(owner, other)},
                                  (owner < other ? per_time : -per_time) * flush.friction});

@@ -34,6 +34,7 @@ struct ContactArrays {
   std::vector<float> gap;                    // m, negative: overlap
   std::vector<float> closing;                // m/s at the start of the step, negative: nearing
   std::vector<float> impulse;                // N s
+  std::vector<float> recalled;               // N s: what of it was known from the last step
   std::vector<std::int32_t> flush;           // which of the flush_contacts it is; kNotFlush: none of them
   std::vector<FlushContact> flush_contacts;
   std::vector<float> restitution, friction;  // of the two materials; empty where all bodies are of one kind
@@ -43,7 +44,7 @@ struct ContactArrays {
   template <class Visit>
   void each_array(const Visit& visit) const {
     visit(first), visit(second), visit(nx), visit(ny), visit(nz), visit(gap), visit(closing), visit(impulse),
-        visit(flush), visit(restitution), visit(friction);
+        visit(recalled), visit(flush), visit(restitution), visit(friction);
   }
   /// Of all arrays at least.
   void make_room(std::size_t elements, bool one_kind);
@@ -193,10 +194,11 @@ class SphereContacts {
   static SphereContact contact_of(const ContactArrays& c, std::size_t i) {
     return {c.first[i], c.second[i], c.nx[i], c.ny[i], c.nz[i], c.gap[i], c.closing[i], c.impulse[i]};
   }
-  // A blow is none.
-  static bool is_support(const ContactArrays& c, std::size_t i, float bounce_velocity) {
-    return (c.impulse[i] > 0.0f) & (c.closing[i] >= -bounce_velocity);
+  // A blow is none, nor what keeps two apart until they touch.
+  static bool is_support(const ContactArrays& c, std::size_t i, float bounce_velocity, float time) {
+    return (c.impulse[i] > 0.0f) & (c.closing[i] >= -bounce_velocity) & (c.gap[i] <= bounce_velocity * time);
   }
+  float force_to_remember(const ContactArrays& c, std::size_t i, const StepConstants& constants) const;
   template <class Task>
   void run_by_colour(const JobRunner& jobs, const Task& task) {
     for (const auto& colour : of_colour_)

@@ -220,6 +220,7 @@ struct LieLoop {
     const double *lx = spheres.lx.data() + begin, *ly = spheres.ly.data() + begin,
                  *lz = spheres.lz.data() + begin;
     float* held = spheres.held.data() + begin;
+    const double* inverse_mass = spheres.inverse_mass.data() + begin;
     const std::int32_t *kind = numbers.kind, *pose = numbers.pose, *plane = numbers.plane,
                        *on_ground = numbers.on_ground, *flush = numbers.flush;
     std::int32_t* motion = numbers.motion;
@@ -298,7 +299,9 @@ struct LieLoop {
       const bool slides =
           lies & lies_flush & (slope[p] > 0.0f) & (available < needed) & (given_speed > least_load);
       s[i].x = turn.x, s[i].y = turn.y, s[i].z = turn.z, s[i].w = choose(slides, kSlides, moving);
-      held[i] = choose(lies & others, given_speed, 0.0f);
+      const float at_once = kLoadAtOnce * c.gravity * c.time * (c.heaviest * float(inverse_mass[i])),
+                  grown = choose(c.hulls, kLoadGrowth * held[i] + at_once, given_speed);
+      held[i] = choose(lies & others, least(given_speed, grown), 0.0f);
       motion[i] = choose(lies & !rests, int(Motion::dynamic), moves);
       // The ground has the last word: among others no sinking in; alone down onto it; out of it gradually.
       const float height = above + dot(v - u, n) * c.time + dot(out, n), sunk = most(0.0f, -above),

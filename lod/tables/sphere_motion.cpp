@@ -15,6 +15,7 @@ using namespace lane;
 constexpr float kCalming = 4.0f;                        // 1/s
 constexpr float kStopRate = 30.0f, kStopping = 0.005f;  // 1/s; J/kg over g R
 constexpr float kStruck = 0.08f;                        // J/kg over g R: .6 m/s at R = .2 m
+constexpr float kPressed = 0.01f;                       // of its weight: less is none
 constexpr int kLying = 110;                             // ms in a row on others: no passing blow in the air
 
 template <bool OneKind>
@@ -70,7 +71,8 @@ struct EndLoop {
                    solved_z = fallen_z + double(given.z), half = 0.5 * c.wide_time;
       // On others a near-still body just stops (3.4): so do the turns of the paper's spheres, which would go
       // on for ever, and what knows its hull once it is no faster than what a few rounds of contacts leave
-      // undone. A hull there resists rolling by its weight, however fast it turns.
+      // undone. A hull there resists rolling by its weight, however fast it turns, where anything
+      // presses it.
       // What has just been struck is not near-still.
       const float leaves = 0.5f * float(solved_x * solved_x + solved_y * solved_y + solved_z * solved_z);
       const bool lies = touches & (crowded > kLying) & (published | (leaves < kStruck * c.gravity * size[k]));
@@ -87,7 +89,8 @@ struct EndLoop {
           select(-std::int64_t(stops), select(-std::int64_t(slid > stop), slid, stop), 1.0);
       const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};
       const float turning = most(length(turned_to), 1e-20f),
-                  braked = most(0.0f, 1.0f - choose(touches, rolling * lever[k], 0.0f) / turning);
+                  pressing = choose(length(given) > kPressed * rolling, rolling, 0.0f),
+                  braked = most(0.0f, 1.0f - choose(touches, pressing * lever[k], 0.0f) / turning);
       const double kept = double(braked) * select(-std::int64_t(calms), calm, 1.0);
       const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)),
                    by_z = kept * (spun_z + double(s[i].z));

@@ -85,6 +85,10 @@ struct SphereStep {
   static Vec3 vector_of(lane::Row row) { return {double(row.x), double(row.y), double(row.z)}; }
 };
 
+/// What the next step begins with of an impulse: times what the step before began with, and in weights of the
+/// heaviest body. A load grows step by step, a blow comes at once.
+inline constexpr float kLoadGrowth = 2.0f, kLoadAtOnce = 4.0f;
+
 struct StepConstants {
   float time = 0.0f;                                                    // s
   float gx = 0.0f, gy = 0.0f, gz = 0.0f;                                // m/s²
@@ -96,6 +100,7 @@ struct StepConstants {
   float rubbed = 1.0f;           // of friction, face on face, likewise
   bool remembers = true;         // what contacts give in this step
   bool update_radius = true;     // of those in flight
+  float heaviest = 1.0f;         // kg: of those awake
   int ticks = 17;                // ms that the step is long, as whole ones: over many steps they add up
   bool one_kind = false;
   bool hulls = false;  // bodies that touch no other stand on their hulls

@@ -78,6 +78,14 @@ void TablesLevel::gather_open_contacts() {
     body.inverse_inertia = body.inverse_mass * (double(u.w) - 1.0) / (radius * radius) * Mat3::Identity();
     return number;
   };
+  // What moves is a body that nothing moves; what stands, as sleepers do, is none.
+  const auto number_of_ground = [&](std::uint32_t plane) {
+    const Vec3 velocity = planes_.velocity(plane);
+    if (velocity.isZero(0.0)) return std::int32_t(-1);
+    blown_places_.push_back(-1);
+    blow_bodies_.emplace_back().velocity = velocity;
+    return std::int32_t(blow_bodies_.size()) - 1;
+  };
   contacts_.each_place([&](ContactArrays& c, std::size_t i, bool of_ground) {
     const bool has_own_law = of_ground || !constants_.one_kind;
     const std::uint32_t a = c.first[i], b = c.second[i];
@@ -89,14 +97,14 @@ void TablesLevel::gather_open_contacts() {
                 ? ContactLaw{.restitution = double(c.restitution[i]), .friction = double(c.friction[i])}
                 : only_law;
     m.begin = std::uint32_t(blow_points_.size()), m.count = 1;
-    m.first = number_of(a), m.second = number_of(b);
+    m.first = number_of(a), m.second = of_ground ? number_of_ground(b - kGroundPlace) : number_of(b);
     CrowdPoint& point = blow_points_.emplace_back();
     point.arm_first = -double(spheres_.radius[a]) * m.normal;
-    if (m.second >= 0) point.arm_second = double(spheres_.radius[b]) * m.normal;
+    const bool on_body = m.second >= 0 && !of_ground;
+    if (on_body) point.arm_second = double(spheres_.radius[b]) * m.normal;
     // Contacts that a blow closes but for what is a touch bounce, too.
-    const float size = m.second < 0
-                           ? kinds_.radius[spheres_.kind[a]]
-                           : std::min(kinds_.radius[spheres_.kind[a]], kinds_.radius[spheres_.kind[b]]);
+    const float own = kinds_.radius[spheres_.kind[a]],
+                size = on_body ? std::min(own, kinds_.radius[spheres_.kind[b]]) : own;
     point.gap = double(c.gap[i] - contacts_.settings().touching * size);
     blow_contacts_.emplace_back(&c, i);
   });
@@ -113,6 +121,7 @@ void TablesLevel::pass_blows_on() {
   if (waves_.struck().empty()) return;
   waves_.add_impulses(blow_points_);
   for (std::size_t k = 0; k < blow_bodies_.size(); ++k) {
+    if (blown_places_[k] < 0) continue;
     const auto i = std::size_t(blown_places_[k]);
     const double radius = double(spheres_.radius[i]), softness = double(step_.u[i].w) - 1.0;
     const Vec3 by = blow_bodies_[k].velocity - blow_bodies_before_[k].velocity,

@@ -201,7 +201,8 @@ void TablesLevel::archive(StateArchive& a) {
 void TablesLevel::ease() {
   constexpr double kParting = 1e-3;  // over R: moved out of overlaps in a step
   if (eased_ == 0) return;
-  const int units = std::max(1, int(std::lround(constants_.wide_time / 0.008)));
+  const auto units_until = [](double time) { return std::int64_t(time / 0.008); };
+  const int units = int(units_until(elapsed_) - units_until(elapsed_ - constants_.wide_time));
   for (std::int64_t i = 0; i < spheres_.awake; ++i) {
     std::uint8_t& left = spheres_.eased[std::size_t(i)];
     const bool parts = step_.push_out(i).norm() > kParting * kind_of(i).shape->radius;
@@ -234,7 +235,8 @@ std::size_t TablesLevel::bytes() const {
       given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
       given_.bucket_count() * sizeof(void*);
   std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) +
-                      held(ground_friction_) + held(tallies_) + held(clips_) + held(plane_touches_);
+                      held(ground_friction_) + held(tallies_) + held(clips_) + held(plane_touches_) +
+                      held(strikers_) + held(striking_) + held(followed_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
   return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes();
 }

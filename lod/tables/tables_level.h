@@ -1,8 +1,8 @@
 // Bodies of `tables`, in dense arrays: towards each other hulls that meet in one point, along the best of
-// three separating axes (as published: spheres). A step: 1 start (radii, reaches), 2 near pairs (cells), 3
-// their contacts and who wakes, 4 the response of all these, one after the other, 5 those near bodies of
-// other rungs are moved among them (rungs/near_bodies.h), 6 the ground: impacts at their exact time answered
-// from the tables, and motion, 7 rest.
+// four separating axes (as published: spheres). Of stage 3: a start (radii, reaches); b near pairs (cells),
+// their contacts and who wakes; c the response of all these, one after the other; d those near bodies of
+// other rungs are moved among them (rungs/near_bodies.h); e the ground: impacts at their exact time answered
+// from the tables, and motion; f rest.
 #pragma once
 
 #include <algorithm>
@@ -93,7 +93,8 @@ class TablesLevel {
   /// Slots of those in this step that are at an edge of the ground or between parts of it that move, or,
   /// published, that parts of it hold several ways: planes do not tell how they go on.
   std::span<const std::int32_t> cornered() const { return cornered_; }
-  void respond(ContactTally& tally);
+  /// `guests`: who will be described and taken.
+  void respond(std::span<const Guest> guests, ContactTally& tally);
   /// Who it is in this step: after respond().
   void describe(Guest& guest) const;
   /// The body as it would go on, with what its contacts with spheres give it.
@@ -116,6 +117,13 @@ class TablesLevel {
     std::int64_t place = 0;
     Vec3 from = Vec3::Zero();  // m
     double speed = 0.0;
+  };
+  /// One that strikes the ground with others behind it, and has been moved.
+  struct Striker {
+    std::int64_t place = 0;
+    Vec3 normal = Vec3::Zero();  // of the ground
+    double leaves = 0.0;         // m/s, along it
+    double given = 0.0;          // m/s: what the ground gives it against those
   };
   struct NearFaces {
     std::int64_t place = 0;
@@ -221,6 +229,7 @@ class TablesLevel {
   Vec3 find_start_of(std::int64_t place) const;
   void give_pushes(double share);
   void start(double dt, std::span<const std::uint32_t> order);
+  float heaviest() const;
   double ground_reach(std::int64_t place, double speed) const;
   void find_near_faces(std::int64_t begin, std::int64_t end);
   bool find_planes_of(std::int64_t place);
@@ -233,6 +242,12 @@ class TablesLevel {
   bool find_blows();
   void gather_open_contacts();
   void pass_blows_on();
+  bool strikes_ground(std::int64_t place) const;
+  void find_followed();
+  void let_strikers_strike(std::span<const Guest> guests, ContactTally& tally);
+  void strike_first(std::int64_t place, ContactTally& tally);
+  void hold_strikers();
+  void finish_strikers();
   void note_paired();
   void find_further_planes();
   template <class Visit>
@@ -342,9 +357,12 @@ class TablesLevel {
       still_touches_,                            // place awake, slot asleep; then both places
       left_asleep_;                              // those of them that touch too gently to wake the sleeper
   std::vector<std::uint32_t> touched_sleepers_;  // slots, of contacts in their order, while guests wake
+  std::vector<Striker> strikers_;                // in this step
+  std::vector<std::uint32_t> striking_;          // places: who strikes the ground and touches others
+  std::vector<std::uint8_t> followed_;           // of each place awake, where any does
   BlowReach blows_;
   std::vector<std::int32_t> numbered_;      // of each place awake: its number there; −1: none
-  std::vector<std::int64_t> blown_places_;  // of each number
+  std::vector<std::int64_t> blown_places_;  // of each number; −1: ground that moves
   std::vector<std::uint32_t> struck_slots_;
   ImpactWaves waves_;
   std::vector<std::uint8_t> struck_;     // of each place awake

@@ -1,4 +1,4 @@
-// Stage 4 of TablesLevel's step: what touches answers, in rounds over all contacts, and what lies on the
+// Stage 3c, of TablesLevel: what touches answers, in rounds over all contacts, and what lies on the
 // ground is told from what strikes it.
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ int TablesLevel::sweeps() const {
   return int(usual * std::min(kMostUneven, 1.0 + std::sqrt(0.5 * (ratio - 1.0))));
 }
 
-void TablesLevel::respond(ContactTally& tally) {
+void TablesLevel::respond(std::span<const Guest> guests, ContactTally& tally) {
   tally.contacts += contacts_.count();
   if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
   const bool crowd = contacts_.count() > 0;
@@ -75,8 +75,10 @@ void TablesLevel::respond(ContactTally& tally) {
   give_pushes(1.0);
   give_ground_friction();
   rounds_ = 0;
+  strikers_.clear();
   if (!crowd) return;
   pass_blows_on();
+  let_strikers_strike(guests, tally);
   sweep_contacts();
   if (log_) write_contacts();
 }
@@ -103,6 +105,7 @@ void TablesLevel::sweep_contacts() {
         if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
         take_impulses(simd_, begin, end, step_);
       });
+    if (!last) hold_strikers();
   }
   if (!constants_.hulls || outcome.deepest <= settings.deep) return;
   for (int round = 0; round < settings.deep_rounds; ++round) {
@@ -151,7 +154,7 @@ void TablesLevel::write_ground() {
                .ground_material = under.material,
                .point = spheres_.position(i) - double(spheres_.radius[std::size_t(i)]) * under.normal,
                .normal = under.normal,
-               .impulse = std::max(pressing, double(spheres_.held[std::size_t(i)])) /
+               .impulse = std::max(pressing, double(step_.a[std::size_t(i)].w)) /
                           spheres_.inverse_mass[std::size_t(i)]});
   }
 }

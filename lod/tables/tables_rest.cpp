@@ -1,4 +1,4 @@
-// Stage 7 of TablesLevel's step: coming to rest, the second threshold of section 3.4.
+// Stage 3f, of TablesLevel: coming to rest, the second threshold of section 3.4.
 #include <algorithm>
 #include <cmath>
 
@@ -196,7 +196,9 @@ void TablesLevel::rest() {
     else if (!among_others || tips || !has_less_energy(i, kWedged * still_energy))
       spheres_.quiet[i] = 0.0f;
     const bool waits_less = among_others && !rolls_on_ground(i);
-    if (spheres_.quiet[i] < rest_law_.still_time(waits_less) || (!among_others && !stands(i))) continue;
+    if (spheres_.quiet[i] < rest_law_.still_time(waits_less, radius, gravity) ||
+        (!among_others && !stands(i)))
+      continue;
     fell_asleep_.push_back(spheres_.owner[std::size_t(i)]);
     lay_still(i);
   }

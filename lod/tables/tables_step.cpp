@@ -1,4 +1,5 @@
-// Of TablesLevel: its step but for rest, in loops over blocks of the dense arrays.
+// Stages 3a and 3e, of TablesLevel: its step but for response and rest, in loops over blocks of the dense
+// arrays.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -75,6 +76,7 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
                 .rubbed = float(known.of_forces),
                 .remembers = known.remembers,
                 .update_radius = plain_radius,
+                .heaviest = heaviest(),
                 .ticks = step_ticks,
                 .one_kind = all_kinds_.size() == 1 && one_mass_,
                 .hulls = !settings_.tables.as_published()};
@@ -91,6 +93,13 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   carried_guests_.clear(), leaning_.clear(), set_out_.clear();
   find_near_faces(0, spheres_.awake);
   each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
+}
+
+// kg, of those awake.
+float TablesLevel::heaviest() const {
+  if (spheres_.awake == 0) return 1.0f;
+  const auto inverse_masses = std::span(spheres_.inverse_mass).first(std::size_t(spheres_.awake));
+  return float(1.0 / (one_mass_ ? inverse_masses[0] : std::ranges::min(inverse_masses)));
 }
 
 void TablesLevel::start_block(std::int64_t begin, std::int64_t end, Simd simd) {
@@ -187,6 +196,7 @@ void TablesLevel::finish(ContactTally& tally) {
   });
   for (const ContactTally& t : tallies_) tally += t;
   remember_ground_friction();
+  finish_strikers();
   take_back_excess();
   keep_above_faces();
   stop_before_unseen();

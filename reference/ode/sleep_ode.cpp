@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "reference/ode/body_joints.h"
+#include "reference/rocking.h"
 
 namespace lodestone::ode {
 namespace {
@@ -29,8 +30,10 @@ void put_to_rest(const Body& body) {
 
 }  // namespace
 
-void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
+void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, const Vec3& gravity, double h) {
+  gravity_ = gravity;
   if (on_) find_carried(bodies, carried), find_pulled(bodies);
+  const double strength = gravity.norm();
   for (Body& body : bodies.slots()) {
     const bool was_put_to_rest = std::exchange(body.fell_asleep, false);
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
@@ -41,7 +44,8 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
     if (!on_ || dBodyGetNumJoints(body.body) == 0 || !body.properties.allow_sleep ||
         body.properties.kinematic)
       continue;
-    body.to_sleep_s = is_still(body) ? body.to_sleep_s - h : law_.time;
+    body.to_sleep_s =
+        is_still(body) ? body.to_sleep_s - h / rocking_slowness(body.reach, strength) : law_.time;
     if (body.to_sleep_s <= 0.0 && is_drawn(bodies, body)) body.to_sleep_s = kDrawn * law_.time;
     if (body.to_sleep_s > 0.0) continue;
     if (was_put_to_rest && is_dragged(body, h)) {
@@ -56,8 +60,9 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, double h) {
 
 bool Sleep::is_still(const Body& body) const {
   if (carried_.contains(body.body)) return false;
-  return squared_norm(dBodyGetLinearVel(body.body)) <= square(law_.speed) &&
-         squared_norm(dBodyGetAngularVel(body.body)) <= square(law_.turning_speed / body.reach);
+  const double share = falling_speed_share(gravity_.norm());
+  return squared_norm(dBodyGetLinearVel(body.body)) <= square(share * law_.speed) &&
+         squared_norm(dBodyGetAngularVel(body.body)) <= square(share * law_.turning_speed / body.reach);
 }
 
 namespace {
@@ -186,9 +191,7 @@ void Sleep::find_pulled(Bodies& bodies) {
     }
   }
   if (waiting_.empty()) return;
-  dVector3 gravity;
-  dWorldGetGravity(dBodyGetWorld(waiting_.front()), gravity);
-  const auto height = [&](dBodyID body) { return -to_vec3(gravity).dot(to_vec3(dBodyGetPosition(body))); };
+  const auto height = [&](dBodyID body) { return -gravity_.dot(to_vec3(dBodyGetPosition(body))); };
   while (!waiting_.empty()) {
     const dBodyID body = waiting_.back();
     waiting_.pop_back();

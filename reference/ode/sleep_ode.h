@@ -18,8 +18,9 @@ class Sleep {
   const SleepLaw& law() const { return law_; }
 
   /// `carried`: bodies on surfaces that move; they, those on joints to kinematic bodies that move, and what
-  /// hangs together with these by joints, those of contacts too, stay awake. `h`: the step to come, s.
-  void run(Bodies& bodies, std::span<const dBodyID> carried, double h);
+  /// hangs together with these by joints, those of contacts too, stay awake. `gravity` in m/s²; `h`: the step
+  /// to come, s.
+  void run(Bodies& bodies, std::span<const dBodyID> carried, const Vec3& gravity, double h);
 
  private:
   void find_carried(Bodies& bodies, std::span<const dBodyID> carried);
@@ -30,6 +31,7 @@ class Sleep {
 
   SleepLaw law_;
   bool on_;
+  Vec3 gravity_ = Vec3::Zero();  // m/s², in the last run
   std::unordered_set<dBodyID> carried_, grouped_, pulled_, unpulled_;
   std::vector<dBodyID> waiting_, joined_;
 };

@@ -264,6 +264,61 @@ TEST_F(OddGeoms, ABodyWithAFlatTrimeshIsNoError) {
   dGeomTriMeshDataDestroy(data);
 }
 
+// A sign on a truck: the truck is met all the same.
+TEST_F(OddGeoms, AFlatGeomLeavesTheOthersOfItsBodySolid) {
+  static const float corners[] = {-1, 0, 0, 1, 0, 0, 1, 0, 1, -1, 0, 1};
+  static const dTriIndex faces[] = {0, 1, 2, 0, 2, 3};
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    const dTriMeshDataID data = dGeomTriMeshDataCreate();
+    dGeomTriMeshDataBuildSingle(data, corners, 3 * sizeof(float), 4, faces, 6, 3 * sizeof(dTriIndex));
+    const dBodyID truck = dBodyCreate(world_);
+    const dGeomID bed = dCreateBox(space_, 2, 2, 0.4),
+                  sign = dCreateTriMesh(space_, data, nullptr, nullptr, nullptr);
+    dGeomSetBody(bed, truck), dGeomSetBody(sign, truck);
+    dGeomSetOffsetPosition(sign, 0, 0.9, 0.2);
+    dBodySetPosition(truck, 0, 0, 0.2);
+    dBodySetGravityMode(truck, 0);
+    dMass mass;
+    dMassSetBoxTotal(&mass, 2000, 2, 2, 0.4);
+    dBodySetMass(truck, &mass);
+    Manager& manager = start();
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    const BodyId crate = add_box({0, 0, 0.56}, level);
+    for (int i = 0; i < 60; ++i) manager.step(kFrame);
+    EXPECT_NEAR(manager.state(crate).position.z(), 0.55, 0.02);
+    manager_.reset();
+    dGeomDestroy(bed), dGeomDestroy(sign);
+    dBodyDestroy(truck);
+    dGeomTriMeshDataDestroy(data);
+  }
+}
+
+// What lay on the geom falls onto the next one: nothing that is known of the body as it was holds it.
+TEST_F(OddGeoms, WhatLiesOnAGeomThatIsDestroyedFalls) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    const dBodyID rack = dBodyCreate(world_);
+    const dGeomID foot = dCreateBox(space_, 2, 2, 0.4), shelf = dCreateBox(space_, 1, 1, 0.1);
+    dGeomSetBody(foot, rack), dGeomSetBody(shelf, rack);
+    dGeomSetOffsetPosition(shelf, 0, 0, 1);
+    dBodySetPosition(rack, 0, 0, 0.2);
+    dBodySetGravityMode(rack, 0);
+    dMass mass;
+    dMassSetBoxTotal(&mass, 2000, 2, 2, 0.4);
+    dBodySetMass(rack, &mass);
+    Manager& manager = start();
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    const BodyId crate = add_box({0, 0, 1.4}, level);
+    for (int i = 0; i < 6; ++i) manager.step(kFrame);
+    EXPECT_NEAR(manager.state(crate).position.z(), 1.4, 0.01);
+    dGeomDestroy(shelf);
+    for (int i = 0; i < 90; ++i) manager.step(kFrame);
+    EXPECT_NEAR(manager.state(crate).position.z(), 0.55, 0.02);
+    manager_.reset();
+    dGeomDestroy(foot);
+    dBodyDestroy(rack);
+  }
+}
+
 // What the caller made of one of his geoms that is no number is left out, until it is one again; the others,
 // and what lies on them, go on as if it were not there.
 TEST_F(OddGeoms, OneThatIsNoNumberIsLeftOutAndOthersNeverNotice) {

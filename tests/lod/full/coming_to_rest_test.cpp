@@ -1,6 +1,9 @@
 // Full bodies on a plane come to rest.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/prism.h"
@@ -89,6 +92,22 @@ TEST(FullComesToRest, AtRestitutionPointNine) {
                          LevelChoice::full));
   run(manager, 12.0);
   EXPECT_LE(std::ranges::count_if(bodies, [&](BodyId body) { return !manager.asleep(body); }), 1);
+}
+
+// On the moon it falls over slowly: two degrees beyond its balance it was put to sleep at 12.6°.
+TEST(FullComesToRest, NobodyLeaningOnNothingUnderLittleGravity) {
+  constexpr double kBeyond = 2.0 * std::numbers::pi / 180.0;  // rad
+  const Vec3 sides(0.1, 0.3, 0.6);                            // m
+  const double balance = std::atan2(sides.x(), sides.z()), tilt = balance + kBeyond;
+  Manager manager({.gravity = {0, 0, -1.62}, .signatures = no_signature});
+  manager.add_plane(Vec3::UnitZ(), 0.0);
+  manager.materials().replace(0, {.restitution = 0.4, .friction = 0.8});
+  RigidState leaning;
+  leaning.orientation = Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
+  leaning.position.z() = 0.5 * (sides.x() * std::sin(tilt) + sides.z() * std::cos(tilt));
+  const BodyId domino = add(manager, box_shape(sides), leaning, LevelChoice::full);
+  run(manager, 12.0);
+  EXPECT_NEAR(manager.state(domino).position.z(), 0.5 * sides.x(), 0.01);
 }
 
 }  // namespace

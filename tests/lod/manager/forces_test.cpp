@@ -342,5 +342,29 @@ TEST(Forces, ABodyWithoutGravityReboundsAsItShould) {
   }
 }
 
+// Two that touch, without gravity of their own or held up by a force: the step's fall, which they do not
+// have, is not taken from their rebound.
+TEST(Forces, WhoDoesNotFallBouncesAsItCame) {
+  constexpr double kDown = 0.5, kBall = 0.2;  // m/s, m
+  const auto ball = std::make_shared<const Shape>(make_sphere_shape(kBall));
+  for (const bool by_force : {false, true}) {
+    Manager manager = on_floor();
+    manager.materials().replace(0, {.restitution = 0.8, .friction = 0.0});
+    std::vector<BodyId> balls;
+    for (int i = 0; i < 2; ++i)
+      balls.push_back(manager.add_body({.shape = ball,
+                                        .state = testing::at({0.401 * i, 0, 0.5}, {0, 0, -kDown}),
+                                        .level = LevelChoice::support,
+                                        .properties = {.gravity = by_force}}));
+    for (int step = 0; step < 60; ++step) {
+      for (const BodyId body : balls)
+        if (by_force) manager.add_force(body, Vec3(0, 0, kGravity * manager.mass(body)));
+      manager.step(kFrame);
+    }
+    for (const BodyId body : balls)
+      EXPECT_NEAR(manager.state(body).velocity.z(), 0.8 * kDown, 0.01) << by_force;
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -3,11 +3,13 @@
 #include "lod/rungs/carried_bodies.h"
 
 #include <gtest/gtest.h>
+#include <ode/ode.h>
 
 #include <algorithm>
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "tests/lod/manager/manager_fixture.h"
 
@@ -297,6 +299,65 @@ TEST(CarriedBodies, WhatLiesOnAFullOneOnASlowLiftGoesAlong) {
               << int(above) << ' ' << is_ground << ' ' << k << " at step " << i;
       }
     }
+}
+
+// Ground that is put elsewhere step by step, without a velocity: its riders stand on it, not a step's way
+// off.
+TEST(CarriedBodies, WhatIsPutOnStepByStepHasItsRidersOnIt) {
+  constexpr double kGathers = 3.0;  // m/s²
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const bool callers : {false, true})
+      for (const double greatest : {-3.0, 3.0}) {
+        dInitODE2(0);
+        dAllocateODEDataForThread(dAllocateMaskAll);
+        const dWorldID world = dWorldCreate();
+        const dSpaceID space = dHashSpaceCreate(nullptr);
+        dWorldSetGravity(world, 0, 0, -kGravity);
+        {
+          Manager manager(world, space, {.signatures = coarse_signature});
+          manager.materials().replace(0, {.restitution = 0.0, .friction = 0.5});
+          const Vec3 sides(20, 20, 1), start(0, 0, -0.5);
+          const dGeomID geom = callers ? dCreateBox(space, sides.x(), sides.y(), sides.z()) : nullptr;
+          const GroundId ground =
+              callers ? GroundId() : manager.add_static_box(sides, start, Quat::Identity());
+          if (geom) dGeomSetPosition(geom, start.x(), start.y(), start.z());
+          const BodyId rider = add(manager, crate(), testing::at({0, 0, 0.5 * kCrate}), level);
+          double speed = 0.0, height = 0.0;  // m/s, m
+          for (int step = 0; step < 120; ++step) {
+            speed = std::clamp(greatest, speed - kGathers * kFrame, speed + kGathers * kFrame);
+            height += speed * kFrame;
+            if (geom)
+              dGeomSetPosition(geom, start.x(), start.y(), start.z() + height);
+            else
+              manager.move_ground(ground, testing::at(start + Vec3(0, 0, height)));
+            manager.step(kFrame);
+            if (step <= 3) continue;
+            EXPECT_NEAR(manager.state(rider).position.z() - height, 0.5 * kCrate, 2e-3)
+                << int(level) << ' ' << callers << ' ' << greatest << ' ' << step;
+          }
+        }
+        dSpaceDestroy(space);
+        dWorldDestroy(world);
+      }
+}
+
+// By Galilei as on one that stands: where it touches is where it is now.
+TEST(CarriedBodies, AFullStackOnAFastKinematicBodyStaysWhereItIs) {
+  constexpr double kFast = 12.0;  // m/s
+  Manager manager({.signatures = no_signature});
+  manager.materials().replace(0, {.restitution = 0.0, .friction = 0.5});
+  const BodyId slab = manager.add_body({.shape = box_shape({20, 20, 1}),
+                                        .state = testing::at({0, 0, -0.5}, {kFast, 0, 0}),
+                                        .mass = 1000,
+                                        .level = LevelChoice::support,
+                                        .properties = {.kinematic = true}});
+  std::vector<BodyId> stack;
+  for (int i = 0; i < 3; ++i)
+    stack.push_back(
+        add(manager, crate(), testing::at({0, 0, kCrate * (i + 0.5)}, {kFast, 0, 0}), LevelChoice::full));
+  run(manager, 5.0);
+  for (const BodyId body : stack)
+    EXPECT_NEAR(manager.state(body).position.x(), manager.state(slab).position.x(), 0.02);
 }
 
 }  // namespace

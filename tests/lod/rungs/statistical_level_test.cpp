@@ -166,7 +166,7 @@ TEST_P(Statistical, AWarmStepAllocatesNothing) {
     }
     return contacts;
   };
-  run(600);
+  run(900);
   const std::int64_t before = allocations();
   const int contacts = run(30);
   EXPECT_EQ(allocations() - before, 0);

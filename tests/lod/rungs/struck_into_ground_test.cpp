@@ -94,9 +94,12 @@ int pass_in_a_row(LevelChoice striker, LevelChoice level, bool is_ball, double s
     manager.sleep(rows.back()[1]), manager.sleep(rows.back()[2]);
   }
   for (int frame = 0; frame < 30; ++frame) manager.step(kFrame);
-  const auto x = [&](BodyId body) { return manager.state(body).position.x(); };
+  const auto has_passed = [&](BodyId behind, BodyId before) {  // and not beside it
+    const Vec3 way = manager.state(behind).position - manager.state(before).position;
+    return way.x() > 0.0 && std::abs(way.y()) < 2 * kRadius;
+  };
   return int(std::ranges::count_if(
-      rows, [&](const auto& row) { return x(row[0]) > x(row[1]) || x(row[1]) > x(row[2]); }));
+      rows, [&](const auto& row) { return has_passed(row[0], row[1]) || has_passed(row[1], row[2]); }));
 }
 
 TEST(StruckIntoOthers, NothingPassesAnother) {

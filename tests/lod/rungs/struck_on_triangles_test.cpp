@@ -47,5 +47,34 @@ TEST(StruckOnTriangles, ASleeperMovesOnceAStep) {
   EXPECT_GT(struck, 60);
 }
 
+// Ground that moves is met by each of its triangles; together they push a body out once.
+TEST(StruckOnTriangles, ADeckThatMovesPushesOutOnce) {
+  constexpr double kDeckCube = 0.4, kSunkBy = 0.03, kDeckCell = 0.1, kDeckSpeed = 0.5;  // m, m/s
+  Mesh deck;
+  constexpr int kDeckCells = 40;
+  for (int i = 0; i <= kDeckCells; ++i)
+    for (int k = 0; k <= kDeckCells; ++k)
+      deck.vertices.push_back({kDeckCell * (i - kDeckCells / 2), kDeckCell * (k - kDeckCells / 2), 0});
+  for (int i = 0; i < kDeckCells; ++i)
+    for (int k = 0; k < kDeckCells; ++k) {
+      const int a = i * (kDeckCells + 1) + k, b = a + kDeckCells + 1;
+      deck.faces.push_back({a, b, a + 1}), deck.faces.push_back({b, b + 1, a + 1});
+    }
+  Manager manager(testing::unmeasured());
+  const GroundId ground = manager.add_static_mesh(deck);
+  std::vector<BodyId> cubes;
+  for (int i = 0; i < 2; ++i)
+    cubes.push_back(
+        testing::add(manager, testing::box_shape({kDeckCube, kDeckCube, kDeckCube}),
+                     testing::at({kDeckCube * i, 0, 0.5 * kDeckCube - kSunkBy}, {kDeckSpeed, 0, 0}),
+                     LevelChoice::support));
+  for (int step = 0; step < 30; ++step) {
+    manager.move_ground(ground, testing::at({kDeckSpeed * step * testing::kFrame, 0, 0}, {kDeckSpeed, 0, 0}));
+    manager.step(testing::kFrame);
+    for (const BodyId cube : cubes)
+      EXPECT_LT(manager.state(cube).position.z(), 0.5 * kDeckCube + 0.005) << step;
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

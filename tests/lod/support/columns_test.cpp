@@ -1,4 +1,5 @@
-// Columns of flat boxes that fall onto each other at `support`: they end as high as they are thick together.
+// Columns of boxes that fall: at `support` they end as high as they are thick together, and on neither
+// statistical rung do they sink into themselves where the lowest strikes the ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,34 +61,39 @@ TEST(Columns, TallOnesOfThinPlatesDoNotStaySunkIn) {
 TEST(Columns, ThatStrikeAnyGroundDoNotSinkIntoThemselves) {
   constexpr double kCube = 0.3, kBetween = 0.02, kFalling = 10.0, kRising = 1.0;  // m, m/s
   const auto cube = testing::box_shape({kCube, kCube, kCube});
-  for (const std::string ground : {"plane", "box", "mesh", "lift"})
-    for (int phase = 0; phase < 4; ++phase) {
-      Manager manager(testing::unmeasured());
-      const RigidState below{.position = {0, 0, -0.5}};
-      if (ground == "plane") manager.add_plane(Vec3::UnitZ(), 0.0);
-      if (ground == "mesh") manager.add_static_mesh(testing::make_hills(20, 20));
-      GroundId box;
-      if (ground == "box" || ground == "lift")
-        box = manager.add_static_box({4, 4, 1}, below.position, below.orientation);
-      std::vector<BodyId> column;
-      for (int i = 0; i < 5; ++i)
-        column.push_back(manager.add_body(
-            {.shape = cube,
-             .state = {.position = {0.003 * i, 0, 0.65 + 0.04 * phase + i * (kCube + kBetween)},
-                       .velocity = {0, 0, -kFalling}},
-             .level = LevelChoice::support}));
-      double deepest = 0.0;  // m
-      for (int step = 1; step <= 15; ++step) {
-        if (ground == "lift")
-          manager.move_ground(box, {.position = below.position + Vec3(0, 0, kRising * step * testing::kFrame),
-                                    .velocity = {0, 0, kRising}});
-        manager.step(testing::kFrame);
-        for (std::size_t i = 1; i < column.size(); ++i)
-          deepest = std::max(deepest, kCube - manager.state(column[i]).position.z() +
-                                          manager.state(column[i - 1]).position.z());
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const std::string ground : {"plane", "box", "mesh", "lift"})
+      for (int phase = 0; phase < 4; ++phase) {
+        Manager manager({.signatures = testing::coarse_signature});
+        const RigidState below{.position = {0, 0, -0.5}};
+        if (ground == "plane") manager.add_plane(Vec3::UnitZ(), 0.0);
+        if (ground == "mesh" && level == LevelChoice::tables)
+          continue;  // at its edges it is a guest of hulls
+        if (ground == "mesh") manager.add_static_mesh(testing::make_hills(20, 20));
+        GroundId box;
+        if (ground == "box" || ground == "lift")
+          box = manager.add_static_box({4, 4, 1}, below.position, below.orientation);
+        std::vector<BodyId> column;
+        for (int i = 0; i < 5; ++i)
+          column.push_back(manager.add_body(
+              {.shape = cube,
+               .state = {.position = {0.003 * i, 0, 0.65 + 0.04 * phase + i * (kCube + kBetween)},
+                         .velocity = {0, 0, -kFalling}},
+               .level = level}));
+        double deepest = 0.0;  // m
+        for (int step = 1; step <= 15; ++step) {
+          if (ground == "lift")
+            manager.move_ground(box,
+                                {.position = below.position + Vec3(0, 0, kRising * step * testing::kFrame),
+                                 .velocity = {0, 0, kRising}});
+          manager.step(testing::kFrame);
+          for (std::size_t i = 1; i < column.size(); ++i)
+            deepest = std::max(deepest, kCube - manager.state(column[i]).position.z() +
+                                            manager.state(column[i - 1]).position.z());
+        }
+        const double bound = ground == "mesh" || level == LevelChoice::tables ? 0.06 : 0.02;
+        EXPECT_LT(deepest, bound) << ground << ' ' << phase << ' ' << int(level);
       }
-      EXPECT_LT(deepest, ground == "mesh" ? 0.06 : 0.02) << ground << ' ' << phase;  // it leans there
-    }
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "lod/support/support_model.h"
 #include "reference/random.h"
+#include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
 namespace {
@@ -132,6 +134,34 @@ TEST_P(ContactAtOnce, WhatStandsOnAnEdgeTipsToTheSideThatItLeansTo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Settings, ContactAtOnce, ::testing::Values(kFine, kCoarse));
+
+// The floor and both walls of a corner: what is pushed into it stays within all three.
+TEST(InTheCornerOfARoom, ABoxMeetsEachWall) {
+  for (const double push : {0.0, 500.0})  // N
+    for (const double yaw : {0.1, 0.6}) {
+      Manager manager(testing::unmeasured());
+      manager.add_plane(Vec3::UnitZ(), 0.0);
+      manager.add_plane(-Vec3::UnitX(), 0.0), manager.add_plane(-Vec3::UnitY(), 0.0);
+      const auto box = testing::box_shape({0.4, 0.4, 0.4});
+      const BodyId crate =
+          manager.add_body({.shape = box,
+                            .state = {.position = {-0.6, -0.7, 0.21},
+                                      .orientation = Quat(Eigen::AngleAxisd(yaw, Vec3::UnitZ())),
+                                      .velocity = {3, 3, 0}},
+                            .level = LevelChoice::support});
+      double deepest = 0.0;  // m
+      for (int step = 0; step < 120; ++step) {
+        if (push > 0.0) manager.add_force(crate, Vec3(push, push, 0.0));
+        manager.step(testing::kFrame);
+        const RigidState state = manager.state(crate);
+        for (const Vec3& corner : box->hull.vertices) {
+          const Vec3 at = state.position + state.orientation * corner;
+          deepest = std::max({deepest, at.x(), at.y(), -at.z()});
+        }
+      }
+      EXPECT_LT(deepest, 0.01) << push << ' ' << yaw;
+    }
+}
 
 }  // namespace
 }  // namespace lodestone

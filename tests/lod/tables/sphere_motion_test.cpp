@@ -109,26 +109,28 @@ TEST(SphereMotion, ATouchedBodyGoesWithWhatItsContactsGave) {
   EXPECT_EQ(scene.spheres.crowded_for[0], 0);
 }
 
-// A hull among others turns on its edges: its weight takes g t times the lever off its spin in each step,
-// along the spin, until there is none.
+// A hull among others turns on its edges: its weight takes g t times the lever off
+// its spin in each step, along the spin, until there is none. What touches it without pressing takes nothing.
 TEST(SphereMotion, AHullAmongOthersResistsRolling) {
   const auto box = box_shape({0.2, 0.2, 0.2});
   const double loss = find_rolling_lever(*box) * kGravity / 60.0;
   for (const bool hulls : {true, false})
-    for (const bool touches : {true, false}) {
+    for (const double pressed : {0.0, 0.05, 1.0, 3.0}) {  // times its weight
       SphereScene scene;
       scene.constants.hulls = hulls;
       scene.add(box, 1.0, at({0, 0, 9}, {0, 0, 0}, {3, 0, 4}));
       const Vec3 before = scene.spheres.spin(0);
       const auto step = [&] {
         scene.start();
-        scene.step.p[0].w = touches ? 1.0f : 0.0f;
+        scene.step.p[0].w = 1.0f;
+        scene.step.p[0].z += float(pressed * kGravity / 60.0);
         scene.end();
       };
       step();
-      const double expected = hulls && touches ? 1.0 - loss / before.norm() : 1.0;
+      const double share = pressed > 0.0 ? 1.0 : 0.0,
+                   expected = hulls ? 1.0 - share * loss / before.norm() : 1.0;
       EXPECT_LT((scene.spheres.spin(0) - expected * before).norm(), 1e-6 * before.norm());
-      if (!hulls || !touches) continue;
+      if (!hulls || pressed == 0.0) continue;
       for (int i = 0; i < int(before.norm() / loss); ++i) step();
       EXPECT_EQ(scene.spheres.spin(0), Vec3(Vec3::Zero()));
     }

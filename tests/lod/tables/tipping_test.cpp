@@ -64,8 +64,6 @@ TEST(Tipping, HeapsOfWhatIsLongOrFlatAreAboutAsHighAsThoseOfHulls) {
   }
 }
 
-// It takes potential energy away, which spheres among others may gain a little of as they part. From bin to
-// bin that differs tenfold.
 // Asleep it had no fall to tip by: it sank a little on the one post that was left, and hung there.
 TEST(Tipping, APlankFallsWhoseOtherPostIsTakenAway) {
   const auto post = box_shape({0.2, 0.2, 0.8});
@@ -90,6 +88,8 @@ TEST(Tipping, APlankFallsWhoseOtherPostIsTakenAway) {
   }
 }
 
+// It takes potential energy away, which spheres among others may gain a little of as they part. From bin to
+// bin that differs tenfold.
 TEST(Tipping, AddsNoEnergy) {
   constexpr int kBins = 12;
   for (const auto& [sides, bound] : {std::pair{Vec3(0.5, 0.3, 0.04), 7e-4}, {Vec3(0.2, 0.3, 0.4), 5e-4}}) {

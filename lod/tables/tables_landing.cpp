@@ -1,0 +1,104 @@
+// Of TablesLevel: who strikes the ground with others right behind it. Alone it would be moved after all
+// contacts, and those that follow would learn of it a step later, one after the other: a column would sink
+// into itself. So it is moved first, and in the rounds of contacts the ground holds it at the speed with
+// which it leaves.
+#include <algorithm>
+
+#include "lod/tables/tables_level.h"
+#include "reference/free_rotation.h"
+
+namespace lodestone {
+namespace {
+
+constexpr std::size_t kFewStrikers = 64;
+
+}  // namespace
+
+// Whether contacts with planes would find no impact, but this one.
+bool TablesLevel::strikes_ground(std::int64_t place) const {
+  if (step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::near) || !step_.touches(place))
+    return false;
+  const auto number = step_.plane[std::size_t(place)];
+  const Vec3 against = spheres_.velocity(place) - planes_.velocity(std::size_t(number));
+  return against.dot(plane(number).normal) < -double(bounce_velocity());
+}
+
+// Whom another would meet in this step once it stopped, with nothing that holds the two apart yet.
+void TablesLevel::find_followed() {
+  const auto awake = std::uint32_t(spheres_.awake);
+  const float bounce = bounce_velocity();
+  followed_.assign(std::size_t(awake), 0);
+  contacts_.each([&](const SphereContact& c) {
+    if (c.second >= awake || c.closing < -bounce || !is_unloaded(c.first, c.second, c.impulse)) return;
+    const auto along = [&](std::uint32_t place) {  // m/s
+      return float(spheres_.vx[place]) * c.nx + float(spheres_.vy[place]) * c.ny +
+             float(spheres_.vz[place]) * c.nz;
+    };
+    const auto note = [&](std::uint32_t first, float speed) {
+      if (speed > bounce && c.gap < speed * constants_.time) followed_[first] = 1;
+    };
+    note(c.second, -along(c.first)), note(c.first, along(c.second));
+  });
+}
+
+// `guests` are moved later, among hulls.
+void TablesLevel::let_strikers_strike(std::span<const Guest> guests, ContactTally& tally) {
+  if (!constants_.hulls || !has_planes()) return;
+  striking_.clear();
+  striking_.reserve(kFewStrikers), strikers_.reserve(kFewStrikers);
+  followed_.reserve(std::size_t(spheres_.awake));
+  step_.each(GroundState::near, 0, spheres_.awake, [&](std::int64_t i) {
+    if (strikes_ground(i)) striking_.push_back(std::uint32_t(i));
+  });
+  if (striking_.empty()) return;
+  find_followed();
+  for (const Guest& guest : guests) std::erase(striking_, std::uint32_t(place_of(guest.slot)));
+  for (const std::uint32_t place : striking_)
+    if (followed_[place] != 0) strike_first(place, tally);
+}
+
+void TablesLevel::strike_first(std::int64_t place, ContactTally& tally) {
+  thread_local std::vector<PlayingClip> joined;  // none: it touches others
+  joined.clear();
+  move_alone(place, tally, joined);
+  // Its contacts see it as it is now.
+  const auto i = std::size_t(place);
+  const StatisticalBody body = spheres_.body(place);
+  const Vec3 turning =
+      double(spheres_.radius[i]) * angular_velocity(body.orientation, body.spin, *kind_of(place).shape);
+  const auto set = [](lane::Row& row, const Vec3& v) {
+    row.x = float(v.x()), row.y = float(v.y()), row.z = float(v.z());
+  };
+  set(step_.p[i], body.velocity), set(step_.u[i], turning), set(step_.s[i], Vec3::Zero());
+  const Vec3& normal = plane(step_.plane[i]).normal;
+  strikers_.push_back({place, normal, body.velocity.dot(normal)});
+}
+
+// The ground's part of a round.
+void TablesLevel::hold_strikers() {
+  for (Striker& striker : strikers_) {
+    const double speed = step_.velocity(striker.place).dot(striker.normal),
+                 given = std::max(0.0, striker.given + striker.leaves - speed);
+    lane::Row& added = step_.a[std::size_t(striker.place)];
+    const Vec3 change = (given - striker.given) * striker.normal;
+    added.x += float(change.x()), added.y += float(change.y()), added.z += float(change.z());
+    striker.given = given;
+  }
+}
+
+// What its contacts gave it beside that, after it was moved.
+void TablesLevel::finish_strikers() {
+  hold_strikers();
+  for (const Striker& striker : strikers_) {
+    const std::int64_t i = striker.place;
+    StatisticalBody body = spheres_.body(i);
+    const Vec3 out = step_.push_out(i), velocity = step_.velocity(i);
+    body.position += constants_.wide_time * (velocity - body.velocity) + out -
+                     std::min(0.0, out.dot(striker.normal)) * striker.normal;
+    body.velocity = velocity;
+    body.spin += step_.added_spin(i);
+    spheres_.put(i, body);
+  }
+}
+
+}  // namespace lodestone
