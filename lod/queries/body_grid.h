@@ -102,13 +102,12 @@ template <class Found>
 void BodyGrid::find_along(const Vec3& from, const Vec3& direction, double length, double margin,
                           const Found& found) const {
   for (int level = 0; level < kLevels; ++level) {
-    const std::uint32_t bodies_here = of_level_[std::size_t(level)];
-    if (bodies_here == 0) continue;
+    if (of_level_[std::size_t(level)] == 0) continue;
     const double edge = edge_of(level);
     double left = length;
     constexpr double kFarthestCell = 1e9;            // along() knows no farther ones
     const double thick = 2.0 * margin / edge + 2.0;  // cells
-    const bool looks_at_more = margin > 0.0 ? thick * thick * (length / edge + thick) > double(bodies_here)
+    const bool looks_at_more = margin > 0.0 ? thick * thick * (length / edge + thick) > double(places_.size())
                                             : length / edge > 4.0 * double(cells_.size());
     if (!std::isfinite(length) || looks_at_more ||
         !(from.cwiseAbs().maxCoeff() < kFarthestCell * edge)) {  // farther than it is worth

@@ -29,7 +29,7 @@ bool is_wedged(const Vec3& position, double radius, std::span<const HalfSpace> p
 bool is_in_corner(const StatisticalBody& body, double radius, std::span<const HalfSpace> planes,
                   double time) {
   const double reach = kWithinReach * radius + body.velocity.norm() * time;
-  const auto is_near = [&](const HalfSpace& p) { return p.height_of(body.position) < reach; };
+  const auto is_near = [&](const HalfSpace& p) { return std::abs(p.height_of(body.position)) < reach; };
   return std::ranges::count_if(planes, is_near) > kMostPlanesAtOnce;
 }
 

@@ -294,7 +294,7 @@ float SphereContacts::force_to_remember(const ContactArrays& c, std::size_t i,
   const float force = c.impulse[i] / constants.time;
   if (!constants.hulls) return force;
   return std::min(force, kLoadGrowth * c.recalled[i] / constants.time +
-                             kLoadAtOnce * constants.gravity * constants.heaviest);
+                             kLoadAtOnce * constants.pressing * constants.heaviest);
 }
 
 // All contacts of a first body are in one part, one after the other.

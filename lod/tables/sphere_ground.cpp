@@ -299,7 +299,7 @@ struct LieLoop {
       const bool slides =
           lies & lies_flush & (slope[p] > 0.0f) & (available < needed) & (given_speed > least_load);
       s[i].x = turn.x, s[i].y = turn.y, s[i].z = turn.z, s[i].w = choose(slides, kSlides, moving);
-      const float at_once = kLoadAtOnce * c.gravity * c.time * (c.heaviest * float(inverse_mass[i])),
+      const float at_once = kLoadAtOnce * c.pressing * c.time * (c.heaviest * float(inverse_mass[i])),
                   grown = choose(c.hulls, kLoadGrowth * held[i] + at_once, given_speed);
       held[i] = choose(lies & others, least(given_speed, grown), 0.0f);
       motion[i] = choose(lies & !rests, int(Motion::dynamic), moves);

@@ -100,6 +100,7 @@ struct StepConstants {
   float rubbed = 1.0f;           // of friction, face on face, likewise
   bool remembers = true;         // what contacts give in this step
   bool update_radius = true;     // of those in flight
+  float pressing = 1.0f;         // m/s²: gravity, or 1 where there is less, since forces press, too
   float heaviest = 1.0f;         // kg: of those awake
   int ticks = 17;                // ms that the step is long, as whole ones: over many steps they add up
   bool one_kind = false;

@@ -143,7 +143,9 @@ void TablesLevel::pass_blows_on() {
       return body < 0 ? Vec3(Vec3::Zero()) : blow_bodies_[std::size_t(body)].velocity;
     };
     const auto [c, i] = blow_contacts_[k];
-    c->closing[i] = float((velocity_of(m.first) - velocity_of(m.second)).dot(m.normal));
+    const double speed = (velocity_of(m.first) - velocity_of(m.second)).dot(m.normal);
+    const bool meet = blow_points_[k].gap + speed * constants_.wide_time <= 0.0;  // else it is held apart
+    c->closing[i] = float(meet ? speed : std::max(0.0, speed));
   }
 }
 

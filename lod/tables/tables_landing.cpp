@@ -11,6 +11,7 @@ namespace lodestone {
 namespace {
 
 constexpr std::size_t kFewStrikers = 64;
+constexpr std::uint8_t kStrikes = 1, kFollowed = 2;
 
 }  // namespace
 
@@ -23,21 +24,23 @@ bool TablesLevel::strikes_ground(std::int64_t place) const {
   return against.dot(plane(number).normal) < -double(bounce_velocity());
 }
 
-// Whom another would meet in this step once it stopped, with nothing that holds the two apart yet.
+// Whom of those that strike another would meet in this step once it stopped, as the ground goes, with nothing
+// that holds the two apart yet.
 void TablesLevel::find_followed() {
   const auto awake = std::uint32_t(spheres_.awake);
   const float bounce = bounce_velocity();
   followed_.assign(std::size_t(awake), 0);
+  for (const std::uint32_t place : striking_) followed_[place] = kStrikes;
+  const auto note = [&](std::uint32_t place, std::uint32_t other, const SphereContact& c, float side) {
+    if (followed_[place] == 0) return;
+    const Vec3 against = spheres_.velocity(other) - planes_.velocity(std::size_t(step_.plane[place]));
+    const float speed =
+        side * (float(against.x()) * c.nx + float(against.y()) * c.ny + float(against.z()) * c.nz);
+    if (speed > bounce && c.gap < speed * constants_.time) followed_[place] = kFollowed;
+  };
   contacts_.each([&](const SphereContact& c) {
     if (c.second >= awake || c.closing < -bounce || !is_unloaded(c.first, c.second, c.impulse)) return;
-    const auto along = [&](std::uint32_t place) {  // m/s
-      return float(spheres_.vx[place]) * c.nx + float(spheres_.vy[place]) * c.ny +
-             float(spheres_.vz[place]) * c.nz;
-    };
-    const auto note = [&](std::uint32_t first, float speed) {
-      if (speed > bounce && c.gap < speed * constants_.time) followed_[first] = 1;
-    };
-    note(c.second, -along(c.first)), note(c.first, along(c.second));
+    note(c.second, c.first, c, -1.0f), note(c.first, c.second, c, 1.0f);
   });
 }
 
@@ -52,9 +55,10 @@ void TablesLevel::let_strikers_strike(std::span<const Guest> guests, ContactTall
   });
   if (striking_.empty()) return;
   find_followed();
-  for (const Guest& guest : guests) std::erase(striking_, std::uint32_t(place_of(guest.slot)));
+  for (const Guest& guest : guests)
+    if (const std::size_t place = place_of(guest.slot); place < followed_.size()) followed_[place] = 0;
   for (const std::uint32_t place : striking_)
-    if (followed_[place] != 0) strike_first(place, tally);
+    if (followed_[place] == kFollowed) strike_first(place, tally);
 }
 
 void TablesLevel::strike_first(std::int64_t place, ContactTally& tally) {
@@ -87,7 +91,7 @@ void TablesLevel::hold_strikers() {
 }
 
 // What its contacts gave it beside that, after it was moved.
-void TablesLevel::finish_strikers() {
+void TablesLevel::finish_strikers(ContactTally& tally) {
   hold_strikers();
   for (const Striker& striker : strikers_) {
     const std::int64_t i = striker.place;
@@ -98,6 +102,7 @@ void TablesLevel::finish_strikers() {
     body.velocity = velocity;
     body.spin += step_.added_spin(i);
     spheres_.put(i, body);
+    recover(i, tally);
   }
 }
 

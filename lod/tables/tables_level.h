@@ -247,7 +247,7 @@ class TablesLevel {
   void let_strikers_strike(std::span<const Guest> guests, ContactTally& tally);
   void strike_first(std::int64_t place, ContactTally& tally);
   void hold_strikers();
-  void finish_strikers();
+  void finish_strikers(ContactTally& tally);
   void note_paired();
   void find_further_planes();
   template <class Visit>

@@ -76,6 +76,7 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
                 .rubbed = float(known.of_forces),
                 .remembers = known.remembers,
                 .update_radius = plain_radius,
+                .pressing = std::max(1.0f, float(g.norm())),
                 .heaviest = heaviest(),
                 .ticks = step_ticks,
                 .one_kind = all_kinds_.size() == 1 && one_mass_,
@@ -196,7 +197,7 @@ void TablesLevel::finish(ContactTally& tally) {
   });
   for (const ContactTally& t : tallies_) tally += t;
   remember_ground_friction();
-  finish_strikers();
+  finish_strikers(tally);
   take_back_excess();
   keep_above_faces();
   stop_before_unseen();
