@@ -406,7 +406,7 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   StepWorld crowd_world = scene.world;
   // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
   if (!full_.empty()) crowd_world.bounce_velocity += settings_.gravity.norm() * (step.dt - time);
-  const float still_time = settings_.sleeping ? rest_law_.still_time(true, 0.0, 0.0) : 1e30f;  // s
+  const float still_time = settings_.sleeping ? rest_law_.least_still_time() : 1e30f;  // s
   const ContactScene crowd_scene{scene.bodies, scene.neighbors, kinds_, crowd_world};
   const auto touch = [&] {
     return CrowdTouch{.contacts = pairs_.contacts(),

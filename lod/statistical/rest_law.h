@@ -46,6 +46,8 @@ class RestLaw {
     return rising >= 0.5f * still_time && double(gain) > kSettingOut * gravity * double(rising);
   }
 
+  /// s, among others: no body less.
+  float least_still_time() const { return time_; }
   /// s: so long it must have been still. `gravity` in m/s².
   float still_time(bool among_others, double radius, double gravity) const {
     return (among_others ? time_ : alone_time_) * float(rocking_slowness(radius, gravity));

@@ -43,6 +43,24 @@ class OddGeoms : public ::testing::Test {
     return manager_->add_body({.shape = box, .state = s, .level = level});
   }
 
+  /// A body of two tons, .4 m high, which nothing pulls down; its centre is .2 m above the ground.
+  dBodyID add_bed() const {
+    const dBodyID bed = dBodyCreate(world_);
+    dGeomSetBody(dCreateBox(space_, 2, 2, 0.4), bed);
+    dBodySetPosition(bed, 0, 0, 0.2);
+    dBodySetGravityMode(bed, 0);
+    dMass mass;
+    dMassSetBoxTotal(&mass, 2000, 2, 2, 0.4);
+    dBodySetMass(bed, &mass);
+    return bed;
+  }
+  /// With its geoms, after the manager.
+  void destroy(dBodyID body) {
+    manager_.reset();
+    while (const dGeomID geom = dBodyGetFirstGeom(body)) dGeomDestroy(geom);
+    dBodyDestroy(body);
+  }
+
   dWorldID world_;
   dSpaceID space_;
   std::unique_ptr<Manager> manager_;
@@ -271,24 +289,16 @@ TEST_F(OddGeoms, AFlatGeomLeavesTheOthersOfItsBodySolid) {
   for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
     const dTriMeshDataID data = dGeomTriMeshDataCreate();
     dGeomTriMeshDataBuildSingle(data, corners, 3 * sizeof(float), 4, faces, 6, 3 * sizeof(dTriIndex));
-    const dBodyID truck = dBodyCreate(world_);
-    const dGeomID bed = dCreateBox(space_, 2, 2, 0.4),
-                  sign = dCreateTriMesh(space_, data, nullptr, nullptr, nullptr);
-    dGeomSetBody(bed, truck), dGeomSetBody(sign, truck);
+    const dBodyID truck = add_bed();
+    const dGeomID sign = dCreateTriMesh(space_, data, nullptr, nullptr, nullptr);
+    dGeomSetBody(sign, truck);
     dGeomSetOffsetPosition(sign, 0, 0.9, 0.2);
-    dBodySetPosition(truck, 0, 0, 0.2);
-    dBodySetGravityMode(truck, 0);
-    dMass mass;
-    dMassSetBoxTotal(&mass, 2000, 2, 2, 0.4);
-    dBodySetMass(truck, &mass);
     Manager& manager = start();
     manager.add_plane(Vec3::UnitZ(), 0.0);
     const BodyId crate = add_box({0, 0, 0.56}, level);
     for (int i = 0; i < 60; ++i) manager.step(kFrame);
     EXPECT_NEAR(manager.state(crate).position.z(), 0.55, 0.02);
-    manager_.reset();
-    dGeomDestroy(bed), dGeomDestroy(sign);
-    dBodyDestroy(truck);
+    destroy(truck);
     dGeomTriMeshDataDestroy(data);
   }
 }
@@ -296,15 +306,10 @@ TEST_F(OddGeoms, AFlatGeomLeavesTheOthersOfItsBodySolid) {
 // What lay on the geom falls onto the next one: nothing that is known of the body as it was holds it.
 TEST_F(OddGeoms, WhatLiesOnAGeomThatIsDestroyedFalls) {
   for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
-    const dBodyID rack = dBodyCreate(world_);
-    const dGeomID foot = dCreateBox(space_, 2, 2, 0.4), shelf = dCreateBox(space_, 1, 1, 0.1);
-    dGeomSetBody(foot, rack), dGeomSetBody(shelf, rack);
+    const dBodyID rack = add_bed();
+    const dGeomID shelf = dCreateBox(space_, 1, 1, 0.1);
+    dGeomSetBody(shelf, rack);
     dGeomSetOffsetPosition(shelf, 0, 0, 1);
-    dBodySetPosition(rack, 0, 0, 0.2);
-    dBodySetGravityMode(rack, 0);
-    dMass mass;
-    dMassSetBoxTotal(&mass, 2000, 2, 2, 0.4);
-    dBodySetMass(rack, &mass);
     Manager& manager = start();
     manager.add_plane(Vec3::UnitZ(), 0.0);
     const BodyId crate = add_box({0, 0, 1.4}, level);
@@ -313,9 +318,7 @@ TEST_F(OddGeoms, WhatLiesOnAGeomThatIsDestroyedFalls) {
     dGeomDestroy(shelf);
     for (int i = 0; i < 90; ++i) manager.step(kFrame);
     EXPECT_NEAR(manager.state(crate).position.z(), 0.55, 0.02);
-    manager_.reset();
-    dGeomDestroy(foot);
-    dBodyDestroy(rack);
+    destroy(rack);
   }
 }
 
