@@ -24,8 +24,12 @@ double depth_in_box(const Shape& shape, const RigidState& state, const Vec3& sid
   const Quat to_box = box.orientation.conjugate();
   const Vec3 half = 0.5 * sides, center = to_box * (state.position - box.position);
   const auto depth_of = [&](const Vec3& point) { return (half - point.cwiseAbs()).minCoeff(); };
+  if (shape.sphere_radius) {  // beside an edge or a corner it is farther away than from either face
+    const Vec3 outside = (center.cwiseAbs() - half).cwiseMax(0.0);
+    return *shape.sphere_radius + (outside.isZero(0.0) ? depth_of(center) : -outside.norm());
+  }
   const double deepest = depth_of(center) + shape.radius;  // of any of its points, at most
-  if (shape.sphere_radius || deepest <= 0.0) return deepest;
+  if (deepest <= 0.0) return deepest;
   const Quat turn = to_box * state.orientation;
   double depth = -shape.radius;
   for (const Vec3& vertex : shape.hull.vertices) depth = std::max(depth, depth_of(center + turn * vertex));

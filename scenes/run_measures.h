@@ -13,7 +13,8 @@ double kinetic_energy(const Shape& shape, double mass, const RigidState& state);
 /// above it.
 double depth_below(const Shape& shape, const RigidState& state, const Vec3& normal, double offset);
 
-/// How far the deepest vertex, or a sphere, is in a box, from its nearest face, m; not positive outside.
+/// How far the deepest vertex, or a sphere, is in a box (`sides`, m, about `box`), from where it would come
+/// out first, m; not positive outside.
 double depth_in_box(const Shape& shape, const RigidState& state, const Vec3& sides, const RigidState& box);
 
 bool is_finite(const RigidState& state);

@@ -62,8 +62,7 @@ TEST(IsFinite, FindsEachPart) {
   for (const RigidState& state : {a, b, c, d}) EXPECT_FALSE(is_finite(state));
 }
 
-// By the vertices that are inside, from the nearest face; of a ball to the bit, whichever way the box is
-// turned.
+// By the vertices that are inside, from the nearest face, whichever way the box is turned.
 TEST(Depth, InABoxIsThatOfTheDeepestVertex) {
   const Shape cube = make_shape("cube", make_box({0.2, 0.2, 0.2}));
   const Quat turned = rotation_from_vector({0.3, -0.5, 0.8});
@@ -76,6 +75,20 @@ TEST(Depth, InABoxIsThatOfTheDeepestVertex) {
   EXPECT_LT(depth_in_box(cube, at_height(0.61), sides, box), 0.0);
   EXPECT_LT(depth_in_box(cube, at_height(20.0), sides, box), 0.0);
   EXPECT_NEAR(depth_in_box(make_sphere_shape(0.1), at_height(0.56), sides, box), 0.04, 1e-12);
+}
+
+// Its surface at a distance d from an edge or a corner, along the way out between the faces: −d, and not what
+// it would be from one of them.
+TEST(Depth, OfABallBesideAnEdgeOrACornerIsItsDistance) {
+  const Shape ball = make_sphere_shape(0.5);
+  const Vec3 sides(2, 2, 2);
+  const auto depth_at = [&](const Vec3& position) {
+    return depth_in_box(ball, {.position = position}, sides, RigidState{});
+  };
+  EXPECT_NEAR(depth_at({1.3, 0, 1.4}), 0.0, 1e-12);
+  EXPECT_NEAR(depth_at({-1.6, 1.8, 0.9}), -0.5, 1e-12);
+  EXPECT_NEAR(depth_at({1.2, 1.1, -1.2}), 0.2, 1e-12);
+  EXPECT_NEAR(depth_at({0.9, 0, 0.8}), 0.6, 1e-12);  // its middle inside
 }
 
 }  // namespace
