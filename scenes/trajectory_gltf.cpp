@@ -14,6 +14,7 @@
 #include "scenes/framing.h"
 #include "scenes/gltf_stage.h"
 #include "scenes/trajectory.h"
+#include "signature/file_bytes.h"
 
 namespace lodestone {
 namespace {
@@ -187,19 +188,13 @@ void save_trajectory(const fs::path& file, const Trajectory& trajectory, const S
   check_that(trajectory.frames() > 0 && trajectory.bodies() == int(scene.bodies.size()),
              "a recorded trajectory of this scene");
   const TrajectoryWriter writer(trajectory, scene);
-  const fs::path part = file.string() + ".part";
-  errno = 0;
-  std::ofstream out(part, std::ios::binary);
-  const bool written =
-      out && tinygltf::TinyGLTF().WriteGltfSceneToStream(&writer.model(), out, false, true) && out.flush();
-  const int reason = written || errno == 0 ? EIO : errno;
-  out.close();
-  std::error_code error;
-  if (written) fs::rename(part, file, error);
-  if (written && !error) return;
-  const int found = error ? error.value() : reason;
-  fs::remove(part, error);
-  throw_file_error(file, found, "room for the trajectory");
+  write_atomically(file, [&](const fs::path& place) {
+    errno = 0;
+    std::ofstream out(place, std::ios::binary);
+    if (!out || !tinygltf::TinyGLTF().WriteGltfSceneToStream(&writer.model(), out, false, true) ||
+        !out.flush())
+      throw_file_error(place, errno == 0 ? EIO : errno, "room for the trajectory");
+  });
 }
 
 }  // namespace lodestone

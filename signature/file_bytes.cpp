@@ -84,15 +84,23 @@ MappedFile::~MappedFile() {
 }
 
 void write_atomically(std::span<const std::byte> bytes, const std::filesystem::path& file) {
-  if (is_special(file)) return write_to(file, bytes);
+  write_atomically(file, [&](const std::filesystem::path& place) { write_to(place, bytes); });
+}
+
+void write_atomically(const std::filesystem::path& file,
+                      const std::function<void(const std::filesystem::path&)>& write) {
+  if (is_special(file)) return write(file);
   const std::filesystem::path temporary = temporary_beside(file);
   std::error_code error;
   try {
-    write_to(temporary, bytes);
+    write(temporary);
   } catch (const InputError& fault) {
     std::filesystem::remove(temporary, error);
     const std::string message = fault.what(), name = temporary.string();
     throw InputError(message.starts_with(name) ? file.string() + message.substr(name.size()) : message);
+  } catch (...) {  // too little memory to put it together
+    std::filesystem::remove(temporary, error);
+    throw;
   }
   std::filesystem::rename(temporary, file, error);
   if (!error) return;

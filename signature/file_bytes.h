@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,5 +31,9 @@ class MappedFile {
 /// Straight to what is no file, such as a pipe, and to what a symbolic link leads to. Throws InputError where
 /// it cannot be written.
 void write_atomically(std::span<const std::byte> bytes, const std::filesystem::path& file);
+/// The same of what `write` writes to the place that it is given, which may be the temporary file's; it
+/// throws InputError where it cannot.
+void write_atomically(const std::filesystem::path& file,
+                      const std::function<void(const std::filesystem::path&)>& write);
 
 }  // namespace lodestone

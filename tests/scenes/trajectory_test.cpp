@@ -2,10 +2,12 @@
 
 #include <tiny_gltf.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <numbers>
+#include <thread>
 
 #include "tests/scenes/scene_fixture.h"
 
@@ -270,6 +272,33 @@ TEST_F(TrajectoryFile, OneFrameAndNoBodies) {
 
 TEST_F(TrajectoryFile, RefusesAPlaceThatCannotBeWritten) {
   EXPECT_THROW(save_trajectory(folder() / "missing" / "run.glb", record(), small_scene()), InputError);
+}
+
+// Runs into one folder: each one's file is whole, none is in another's way, and no part of one is left.
+TEST_F(TrajectoryFile, WritersAtOnceDoNotMix) {
+  const Trajectory trajectory = record();
+  const Scene scene = small_scene();
+  std::atomic<int> failures = 0;
+  std::vector<std::jthread> writers;
+  for (int writer = 0; writer < 4; ++writer)
+    writers.emplace_back([&] {
+      for (int i = 0; i < 25; ++i) try {
+          save_trajectory(folder() / "run.glb", trajectory, scene);
+        } catch (const InputError&) {
+          ++failures;
+        }
+    });
+  writers.clear();
+  EXPECT_EQ(failures, 0);
+  EXPECT_TRUE(Loaded(folder() / "run.glb").ok);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1);
+}
+
+TEST_F(TrajectoryFile, ASymbolicLinkIsWrittenThrough) {
+  std::filesystem::create_symlink("elsewhere.glb", folder() / "run.glb");
+  save_trajectory(folder() / "run.glb", record(), small_scene());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder() / "run.glb"));
+  EXPECT_TRUE(Loaded(folder() / "elsewhere.glb").ok);
 }
 
 TEST(Trajectory, BoundsItsSize) {
