@@ -80,15 +80,6 @@ void load_motion(const YamlCursor& place, BodyEntry& entry) {
   if (auto key = place.find("angular_velocity_rad_per_s")) state.angular_velocity = key->vector(kSpeed);
 }
 
-/// Of a body without a mass of its own: what its material and size come to.
-void check_mass_of_material(const YamlCursor& place, const BodyDefinition& body, const Scene& scene) {
-  try {
-    check_mass(body.mass.value_or(scene.materials[body.material].density * body.shape->volume));
-  } catch (const InputError& error) {
-    fail_at(place, error);
-  }
-}
-
 BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene,
                      const std::map<std::string, SceneShape>& shapes, const SceneLoadSettings& settings) {
   place.expect_keys({"shape", "position_m", "orientation", "velocity_m_per_s", "angular_velocity_rad_per_s",
@@ -103,7 +94,7 @@ BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene,
   body.mass = shape.mass;
   load_motion(place, entry);
   if (auto key = place.find("mass_kg")) body.mass = key->number(kMass);
-  check_mass_of_material(place.at("shape"), body, scene);
+  check_mass_at(place.at("shape"), body, scene);
   if (auto key = place.find("importance")) body.importance = key->number(kPositive);
   if (auto key = place.find("level")) body.level = load_level(*key);
   if (auto key = place.find("least_rung")) body.least_rung = load_rung(*key);
@@ -205,6 +196,14 @@ std::vector<KeepAbove> planes_of(const Scene& scene) {
 }  // namespace
 
 std::string_view name_of(LevelChoice level) { return kLevelNames[std::size_t(level)]; }
+
+void check_mass_at(const YamlCursor& place, const BodyDefinition& body, const Scene& scene) {
+  try {
+    check_mass(body.mass.value_or(scene.materials[body.material].density * body.shape->volume));
+  } catch (const InputError& error) {
+    fail_at(place, error);
+  }
+}
 
 void add_bodies(const YamlCursor& root, Scene& scene, const std::map<std::string, SceneShape>& shapes,
                 const SceneLoadSettings& settings) {

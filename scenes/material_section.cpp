@@ -29,6 +29,8 @@ void load_contact(const YamlCursor& place, Scene& scene, MaterialPairs& known) {
                    b = int(pair[1].choice(scene.material_names));
   if (!known.insert(std::minmax(a, b)).second)
     place.at("between").fail("a pair that has a law already", "each pair once");
+  if (!place.has("restitution") && !place.has("friction"))
+    place.fail("neither restitution nor friction", "one of them at least, of that pair's own");
   ContactLaw law = scene.materials.law(a, b);
   if (auto key = place.find("restitution")) law.restitution = key->number(kFraction);
   if (auto key = place.find("friction")) law.friction = key->number(kNotNegative);

@@ -70,7 +70,7 @@ std::shared_ptr<const Shape> limb_shape(const Limb& limb, double scale, Scene& s
   return shape;
 }
 
-void add_ragdoll(const Ragdoll& ragdoll, Scene& scene) {
+void add_ragdoll(const YamlCursor& place, const Ragdoll& ragdoll, Scene& scene) {
   const int torso = int(scene.bodies.size());
   std::vector<int>& group = scene.groups.emplace_back();
   for (const Limb& limb : kLimbs) {
@@ -80,6 +80,7 @@ void add_ragdoll(const Ragdoll& ragdoll, Scene& scene) {
                        .material = ragdoll.material,
                        .level = LevelChoice::full};
     body.definition.state.position = ragdoll.place(limb.middle);
+    check_mass_at(place, body.definition, scene);
     group.push_back(int(scene.bodies.size()));
     scene.bodies.push_back(std::move(body));
   }
@@ -97,7 +98,8 @@ void load_ragdolls(const YamlCursor& root, Scene& scene) {
   const auto section = root.find("ragdolls");
   if (!section) return;
   int index = 0;
-  for (const YamlCursor& place : section->items()) add_ragdoll(load_ragdoll(place, index++, scene), scene);
+  for (const YamlCursor& place : section->items())
+    add_ragdoll(place, load_ragdoll(place, index++, scene), scene);
 }
 
 }  // namespace lodestone

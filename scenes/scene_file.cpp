@@ -42,12 +42,11 @@ SceneViewpoint load_viewpoint(const YamlCursor& place) {
                                 corner.at("position_m").vector()});
     }
     if (viewpoint.path.empty()) key->fail("an empty list", "a list of {time_s, position_m}");
+    if (auto position = place.find("position_m")) position->fail("a position beside a path", "one of them");
     viewpoint.position_m = viewpoint.path.front().position_m;
+  } else {
+    viewpoint.position_m = place.at("position_m").vector();
   }
-  if (auto key = place.find("position_m"))
-    viewpoint.position_m = key->vector();
-  else if (viewpoint.path.empty())
-    place.at("position_m");
   return viewpoint;
 }
 

@@ -38,6 +38,9 @@ std::map<std::string, SceneShape> load_shapes(const YamlCursor& root, const Scen
 /// Puts what a mesh's maker found (`name: found …, expected …`) where the scene asked for the mesh.
 [[noreturn]] void fail_at(const YamlCursor& place, const InputError& error, const std::string& hint = "");
 
+/// Fails at `place` where the mass of `body`, its own or what its material and size come to, is out of range.
+void check_mass_at(const YamlCursor& place, const BodyDefinition& body, const Scene& scene);
+
 /// `search`: the scene's folder, then the mesh paths.
 std::vector<SceneGround> load_ground(const YamlCursor& root, const Scene& scene, const ShapeOptions& search);
 

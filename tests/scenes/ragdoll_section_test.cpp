@@ -45,6 +45,18 @@ TEST_F(Joints, RagdollsComeFirstWithTheirJointsAndGroups) {
   EXPECT_EQ(scene.joints[11].second, 14);
 }
 
+// As of other bodies: with its line, before anything runs.
+TEST_F(Joints, ARagdollsMaterialMayBeTooLight) {
+  const std::string error = error_of(R"(version: 1
+materials: {feather: {density_kg_per_m3: 1.0e-30}}
+ragdolls:
+  - {position_m: [0, 0, 0]}
+  - {position_m: [3, 0, 0], material: feather}
+bodies: []
+)");
+  EXPECT_NE(error.find(":5: ragdolls[1]: found 4.1"), std::string::npos) << error;
+}
+
 // The bodies of a joint see its anchor at the same place, after a second of falling, swinging and hanging.
 TEST_F(Joints, Hold) {
   const Scene scene = load(kDollAndDoor);

@@ -36,7 +36,7 @@ bodies:
   - {shape: ball, position_m: [3, 0, 2], angular_velocity_rad_per_s: [0, 0, 9], level: statistical, importance: 2, material: ice, mass_kg: 9}
   - {shape: rock, name: r, scatter: {count: 20, box_m: [[-5, -5, 1], [5, 5, 4]], seed: 3, spacing_m: 0.5}}
   - {shape: pin, scatter: {count: 5, cylinder: {base_m: [20, 0, 1], radius_m: 1, height_m: 3}}}
-viewpoints: [{position_m: [0, -6, 2], look_at_m: [0, 0, 1], path: [{time_s: 0, position_m: [0, -6, 2]}, {time_s: 2, position_m: [0, 6, 2]}]}]
+viewpoints: [{look_at_m: [0, 0, 1], path: [{time_s: 0, position_m: [0, -6, 2]}, {time_s: 2, position_m: [0, 6, 2]}]}]
 lod: {policy: budget, budget_ms: 3, most_full: 5, most_support: 0, hysteresis: 0.2, min_dwell_frames: 10, max_transitions_per_frame: 2, model: tables, tables: {published: false}}
 output: {trajectory: run.glb, every_n_steps: 3}
 check: {max_penetration_m: 0.02, max_tables_penetration_m: 0.2, all_asleep_by_s: 10}
@@ -286,6 +286,10 @@ TEST_F(SceneFile, TopLevelErrors) {
        "or"},
       {"viewpoints: [{look_at_m: [0, 0, 0]}]",
        "s.yaml:4: viewpoints[0].position_m: found no such key, expected"},
+      {"viewpoints: [{position_m: [0, 0, 0], path: [{time_s: 1, position_m: [0, 0, 0]}]}]",
+       "s.yaml:4: viewpoints[0].position_m: found a position beside a path, expected one of them"},
+      {"contacts: [{between: [default, default]}]",
+       "s.yaml:4: contacts[0]: found neither restitution nor friction, expected one of them at least"},
       {"viewpoints: [{path: [{time_s: 1, position_m: [0, 0, 0]}, {time_s: 1, position_m: [1, 0, 0]}]}]",
        "s.yaml:4: viewpoints[0].path[1].time_s: found 1, expected a number in (1,"},
       {"---\nversion: 1", "s.yaml:4: document: found a second document"},

@@ -45,10 +45,10 @@ json full_scene() {
       {"shape": "rock", "scatter": {"count": 2, "cylinder": {"base_m": [0, -4, 2], "radius_m": 1, "height_m": 1}, "on_ground": false, "lying": false}}],
     "ragdolls": [{"position_m": [8, 0, 0.1], "orientation": [1, 0, 0, 0], "velocity_m_per_s": [0, 0, 0], "height_m": 1.8, "material": "ice", "name": "doll"}],
     "joints": [{"ball": ["one", "two"], "at_m": [1, 0, 1]}, {"hinge": ["one"], "at_m": [0, 0, 1], "axis": [0, 1, 0]}],
-    "viewpoints": [{"position_m": [0, -6, 2], "look_at_m": [0, 0, 0], "height_px": 720, "path": [{"time_s": 0, "position_m": [0, 0, 1]}, {"time_s": 2, "position_m": [1, 0, 1]}]}],
+    "viewpoints": [{"position_m": [0, -6, 2], "look_at_m": [0, 0, 0], "height_px": 720}, {"path": [{"time_s": 0, "position_m": [0, 0, 1]}, {"time_s": 2, "position_m": [1, 0, 1]}]}],
     "lod": {"policy": "distance", "full_within_m": 2, "support_within_m": 8, "most_full": 10, "most_support": 20, "hysteresis": 0.1, "min_dwell_frames": 30, "max_transitions_per_frame": 4,
       "out_of_view_factor": 2, "look_ahead_s": 0.5, "contact_groups_together": true, "audit_ms": 0, "model": "auto",
-      "tables": {"interpolate": true, "draw_height": false, "radius_update_interval": 2, "rest_poses": true, "nearest_rest_pose": true, "paper_pair_rule": false}},
+      "tables": {"published": true, "interpolate": true, "draw_height": false, "radius_update_interval": 2, "rest_poses": true, "nearest_rest_pose": true, "paper_pair_rule": false}},
     "output": {"trajectory": "run.glb", "every_n_steps": 2},
     "check": {"max_penetration_m": 0.02, "max_tables_penetration_m": 0.2, "all_asleep_by_s": 10}})");
 }
