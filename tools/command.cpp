@@ -18,35 +18,58 @@
 namespace lodestone {
 namespace {
 
-constexpr const char* kWritten = "written";  // the name of a validator
+// The names of validators.
+constexpr const char* kWritten = "written";
+constexpr const char* kWrittenInto = "written into";
 
-bool is_written(CLI::Option& option) {
+bool has_mark(CLI::Option& option, const char* validator) {
   try {
-    option.get_validator(kWritten);
+    option.get_validator(validator);
     return true;
   } catch (const CLI::OptionNotFound&) {
     return false;
   }
 }
 
-void check_written(CLI::App& command) {
-  const auto given = [](const CLI::Option& option) {  // its default counts, too
-    return option.count() > 0 ? option.results() : std::vector{option.get_default_str()};
+/// Of an option that takes one word; its default counts, too.
+std::filesystem::path place_of(const CLI::Option& option) {
+  return option.count() > 0 ? option.results().front() : option.get_default_str();
+}
+
+/// That `file`, which `option` writes, is no other's.
+void check_own(const std::filesystem::path& file, CLI::Option& option, CLI::Option& other) {
+  const auto refuse = [&](const char* does) {
+    throw_input_error(file.string(), fmt::format("the file that {} {}", other.get_name(), does),
+                      fmt::format("another one for {}", option.get_name()));
   };
+  std::error_code error;  // there is none of that name
+  if (has_mark(other, kWritten)) {
+    const std::filesystem::path there = place_of(other);
+    const bool is_same = !there.empty() && std::filesystem::weakly_canonical(file, error) ==
+                                               std::filesystem::weakly_canonical(there, error);
+    // What is no file, such as /dev/null or a pipe, takes both.
+    const bool is_file =
+        !std::filesystem::exists(file, error) || std::filesystem::is_regular_file(file, error);
+    if (is_same && is_file) refuse("writes");
+    return;
+  }
+  for (const std::string& text : other.results())
+    if (std::filesystem::equivalent(text, file, error)) refuse("reads");
+}
+
+void check_written(CLI::App& command) {
   const std::vector<CLI::Option*> options = command.get_options();
   for (CLI::Option* option : options) {
-    if (!is_written(*option)) continue;
-    const std::string file = given(*option).front();
-    if (file.empty()) continue;
-    if (const std::string fault = find_writing_fault(file); !fault.empty())
-      throw_input_error(file, fault, "a file that can be written");
-    for (const CLI::Option* other : options) {
-      std::error_code error;  // there is none of that name
-      for (const std::string& text : other->results())
-        if (other != option && std::filesystem::equivalent(text, file, error))
-          throw_input_error(file, fmt::format("the file that {} reads", other->get_name()),
-                            fmt::format("another one for {}", option->get_name()));
-    }
+    const bool is_folder = has_mark(*option, kWrittenInto);
+    if (!is_folder && !has_mark(*option, kWritten)) continue;
+    const std::filesystem::path place = place_of(*option);
+    if (place.empty()) continue;
+    const std::string fault = find_writing_fault(is_folder ? place / "file" : place);
+    if (!fault.empty())
+      throw_input_error(place.string(), fault,
+                        is_folder ? "a folder for results" : "a file that can be written");
+    for (CLI::Option* other : options)
+      if (!is_folder && other != option) check_own(place, *option, *other);
   }
 }
 
@@ -227,6 +250,11 @@ Option& Option::words(int least, int most) {
 
 Option& Option::written() {
   option_->check(CLI::Validator([](std::string&) { return std::string(); }, "", kWritten));
+  return *this;
+}
+
+Option& Option::written_into() {
+  option_->check(CLI::Validator([](std::string&) { return std::string(); }, "", kWrittenInto));
   return *this;
 }
 

@@ -53,9 +53,11 @@ class Option {
   Option& several(char separator = ',');
   /// How many words it takes.
   Option& words(int least, int most);
-  /// A file that the command writes when it is done. What cannot be written, or is among the files that it
-  /// reads, is refused (InputError) before anything else is done.
+  /// A file that the command writes when it is done. What cannot be written, is among the files that it
+  /// reads, or is another such option's, too, is refused (InputError) before anything else is done.
   Option& written();
+  /// A folder that it writes files into; one that it cannot write into is refused likewise.
+  Option& written_into();
   Option& required();
   Option& needs(const Option& other);
   Option& excludes(const Option& other);

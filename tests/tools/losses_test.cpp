@@ -84,6 +84,46 @@ TEST_F(Losses, WhatCannotBeWrittenIsSaidAtOnce) {
     EXPECT_EQ(ended.exit_code, 3);
     EXPECT_NE(ended.out.find(std::string(file) + ": found "), std::string::npos) << ended.out;
   }
+  const std::string drops = "compare drop box:0.2,0.3,0.4 --trials 1000000 --out /dev/null/a";
+  for (const std::string& line :
+       {drops, std::string("compare scores --only materials --write /dev/null/a")}) {
+    const Ended ended = run(line);
+    EXPECT_EQ(ended.exit_code, 3) << line;
+    EXPECT_NE(ended.out.find("/dev/null/a: found not a directory, expected a f"), std::string::npos)
+        << ended.out;
+  }
+}
+
+// One of them would be lost.
+TEST_F(Losses, TwoResultsInOneFileAreRefused) {
+  const std::string small =
+      "sign sphere:0.1 --cell-trials 2 --height-trials 4 --settling-trials 2 --clips 0 ";
+  const Ended ended = run(small + "-o " + name("a") + " --export-trials " + name("./a"));
+  EXPECT_EQ(ended.exit_code, 3);
+  EXPECT_NE(ended.out.find("a: found the file that --export-trials writes, expected another one for -o"),
+            std::string::npos)
+      << ended.out;
+  EXPECT_FALSE(std::filesystem::exists(at("a")));
+  EXPECT_EQ(run(small + "-o /dev/null --export-trials /dev/null").exit_code, 0);
+}
+
+TEST_F(Losses, APageIsNotPutInPlaceOfAFutureThatItPlays) {
+  for (const char* file : {"run.play", "fork.play"}) {
+    std::filesystem::create_directories(at("run"));
+    std::ofstream(at("run") / file) << "kept";
+    const Ended ended = run("view " + name("run") + " -o " + name(std::string("run/") + file));
+    EXPECT_EQ(ended.exit_code, 3);
+    EXPECT_NE(ended.out.find("found the run that it is to play"), std::string::npos) << ended.out;
+  }
+}
+
+TEST_F(Losses, ScoresOfAPageAreNotMeasured) {
+  std::ofstream(at("page.md")) << "a page\n";
+  for (const char* other : {" --write /dev/null", " --only quick"}) {
+    const Ended ended = run("compare scores --page " + name("page.md") + other);
+    EXPECT_EQ(ended.exit_code, 2) << ended.out;
+    EXPECT_NE(ended.out.find("found it beside"), std::string::npos) << ended.out;
+  }
 }
 
 // Files may grow to a few kB, of a report of 200 steps.

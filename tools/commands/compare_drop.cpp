@@ -49,7 +49,7 @@ void add_compare_drop_command(Command& compare) {
   add_comparison_arguments(drop, arguments.comparison);
   drop.add_option("--speed-scale", arguments.speed_scale, "multiplies the starting speeds").within(0.0, 1e3);
   drop.add_option("--slope-deg", arguments.slope_deg, "of the plane").within(0.0, 80.0);
-  drop.add_option("--out", arguments.out, "folder for drops.csv, one line a drop");
+  drop.add_option("--out", arguments.out, "folder for drops.csv, one line a drop").written_into();
   add_table_arguments(drop, arguments.results, "file for the scores, one line a row");
 }
 

@@ -54,7 +54,8 @@ void add_compare_pile_command(Command& compare) {
       .several()
       .one_of(finer_truth_names());
   add_starts_arguments(pile, comparison.seed, comparison.threads);
-  pile.add_option("--out", arguments.out, "folder for piles.csv, one line a pile, and pile_energy.csv");
+  pile.add_option("--out", arguments.out, "folder for piles.csv, one line a pile, and pile_energy.csv")
+      .written_into();
   add_json_argument(pile, arguments.results);
 }
 

@@ -116,6 +116,9 @@ ExitCode compare_scores(const ScoresArguments& arguments) {
                   fmt::format("written {} ({} tables)\n", arguments.page.string(), page.tables));
     return ExitCode::done;
   }
+  if (!arguments.write.empty())  // minutes of measuring come first
+    if (const std::string fault = find_writing_fault(arguments.write); !fault.empty())
+      throw_input_error(arguments.write.string(), fault, "a file that can be written");
   const std::vector<ScoreRow> measured = with_progress(arguments, measure_chosen);
   std::vector<Checked> all;
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -137,17 +140,20 @@ void add_compare_scores_command(Command& compare) {
   auto [command, arguments] = compare.add<ScoresArguments>(
       "scores", "the scores that are kept, measured anew: each within its bound, or exit code 1",
       compare_scores);
-  command.add_option("--only", arguments.only, "some of the series, with commas")
-      .several()
-      .one_of(score_series_names());
+  Option only = command.add_option("--only", arguments.only, "some of the series, with commas")
+                    .several()
+                    .one_of(score_series_names());
   command.add_option(
       "--file", arguments.file,
       "the table of scores; without, tests/baselines/scores.csv as the program was built with");
-  command.add_option("--write", arguments.write,
-                     "file for the table with what was measured, each with a new bound; checks nothing");
-  command.add_option(
-      "--page", arguments.page,
-      "puts the tables of the scores that are kept into this page of Markdown; measures nothing");
+  Option write =
+      command.add_option("--write", arguments.write,
+                         "file for the table with what was measured, each with a new bound; checks nothing");
+  command
+      .add_option("--page", arguments.page,
+                  "puts the tables of the scores that are kept into this page of Markdown; measures nothing")
+      .excludes(only)
+      .excludes(write);
   command.add_option("--threads", arguments.threads, "0: all cores").within(0, 4096);
   add_json_argument(command, arguments.results);
 }

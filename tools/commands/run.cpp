@@ -44,9 +44,11 @@ void add_run_command(Command& program) {
       program.add<RunCommandArguments>("run", "run a scene without a window and say what happened", run);
   command.add_option("SCENE", arguments.run.scene, "a YAML file").required();
   add_run_arguments(command, arguments.run);
-  command.add_option("--out", arguments.run.running.out,
-                     "folder for run.play, which `lodestone view` plays, the trajectory (.glb) and the "
-                     "report of each step (.csv)");
+  command
+      .add_option("--out", arguments.run.running.out,
+                  "folder for run.play, which `lodestone view` plays, the trajectory (.glb) and the "
+                  "report of each step (.csv)")
+      .written_into();
   command.add_option("--fork", arguments.run.running.fork_step,
                      "after this step the world goes on twice: as the scene says, and with --level, "
                      "--model, --budget-… or --full-within-m, which are then for this second future alone");

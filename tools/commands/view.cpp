@@ -20,9 +20,11 @@ struct ViewArguments {
 
 void view(const ViewArguments& arguments) {
   for (const std::filesystem::path& run : arguments.runs) {
-    std::error_code error;  // one of them is not there
-    if (std::filesystem::equivalent(playback_of(run), arguments.page, error))
-      throw_input_error(arguments.page.string(), "the run that it is to play", "another file for the page");
+    for (const std::filesystem::path& file : {playback_of(run), fork_of(run)}) {
+      std::error_code error;  // one of them is not there
+      if (std::filesystem::equivalent(file, arguments.page, error))
+        throw_input_error(arguments.page.string(), "the run that it is to play", "another file for the page");
+    }
   }
   const std::string page = make_view_page(arguments.runs, arguments.blind);
   save_page(arguments.page, page);

@@ -29,16 +29,17 @@ ordered_json json_of(const Playback& playback) {
 }
 
 ordered_json load_run(const fs::path& run) {
-  const bool is_folder = fs::is_directory(run);
   ordered_json json = json_of(load_playback(playback_of(run)));
-  const fs::path fork = run / "fork.play";
-  json["fork"] = is_folder && fs::exists(fork) ? json_of(load_playback(fork)) : ordered_json(nullptr);
+  const fs::path fork = fork_of(run);
+  json["fork"] = fs::exists(fork) ? json_of(load_playback(fork)) : ordered_json(nullptr);
   return json;
 }
 
 }  // namespace
 
 fs::path playback_of(const fs::path& run) { return fs::is_directory(run) ? run / "run.play" : run; }
+
+fs::path fork_of(const fs::path& run) { return fs::is_directory(run) ? run / "fork.play" : fs::path(); }
 
 std::string make_view_page(std::span<const fs::path> runs, bool blind) {
   if (blind && runs.size() != 2)
