@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "reference/allowed_threads.h"
+#include "scenes/scene_sections.h"
 #include "tools/scene_signatures.h"
 #include "tools/shape_arguments.h"
 #include "tools/step_argument.h"
@@ -67,6 +68,28 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .within(0.0, 1e6);
   add_mesh_arguments(command, arguments.loading.mesh_paths, arguments.loading.untrusted);
   command.add_flag("--no-cache", arguments.no_cache, "measure the signatures anew and leave the cache alone");
+}
+
+std::string options_of(const RunArguments& arguments) {
+  const RunSettings& running = arguments.running;
+  std::string options;
+  const auto add = [&](const char* name, const auto& value) {
+    options += fmt::format(" {} {}", name, value);
+  };
+  const auto add_given = [&](const char* name, const auto& value) {
+    if (value) add(name, *value);
+  };
+  add_given("--steps", running.steps);
+  if (!arguments.step.empty()) add("--dt", arguments.step);
+  add_given("--seed", arguments.loading.seed);
+  if (running.threads != RunSettings().threads) add("--threads", running.threads);
+  if (running.level != LevelChoice::automatic) add("--level", name_of(running.level));
+  if (running.model) add("--model", name_of(rung_of(*running.model)));
+  add_given("--budget-ms", running.budget_ms);
+  add_given("--budget-work", running.budget_work);
+  add_given("--full-within-m", running.full_within_m);
+  add_given("--audit-ms", running.audit_ms);
+  return options;
 }
 
 RunSettings run_settings(const RunArguments& arguments, ProgressLine& line) {

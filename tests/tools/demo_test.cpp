@@ -24,6 +24,7 @@ TEST(DemoBudgets, AreThreeOfOneScene) {
   RunSettings settings;
   settings.out = "/nowhere";  // of the main scene's run alone
   settings.budget_work = 100.0;
+  settings.full_within_m = 3.0;  // likewise
   const auto budgets = run_budgets(two_crates(), settings, {});
   ASSERT_EQ(budgets.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -68,6 +69,32 @@ TEST(DemoReport, ShowsBudgetsAndThePictureWhereThereAreAny) {
   EXPECT_EQ(json["budgets"][0]["over"], 7);
   EXPECT_EQ(json["budgets"][0]["mean_full"], 10.0);
   EXPECT_EQ(json["mixed"]["in_picture"]["min_full"], 8);
+}
+
+TEST(DemoReport, TheBusyWindowEndsWithTheRun) {
+  std::vector<StepReport> reports(20);
+  reports[5].contacts = 3;
+  BusyWindow busy = find_busy_window(reports);
+  EXPECT_EQ(std::pair(busy.first, busy.steps), std::pair(5, 8));
+  reports[18].contacts = 4;
+  busy = find_busy_window(reports);
+  EXPECT_EQ(std::pair(busy.first, busy.steps), std::pair(12, 8));
+  busy = find_busy_window(std::span(reports).first(3));
+  EXPECT_EQ(std::pair(busy.first, busy.steps), std::pair(0, 3));
+}
+
+// Of three steps none is one that a budget is counted from.
+TEST(DemoReport, OfABudgetThatNoStepCountsForThereAreDashes) {
+  DemoResult result;
+  result.drop.shape = two_crates().bodies[0].definition.shape;
+  Scene scene = two_crates();
+  scene.default_steps = 3;
+  result.budgets = run_budgets(scene, {}, {});
+  const std::string text = text_of(result);
+  EXPECT_NE(text.find("\n        4          -       -           -           -          -             -"
+                      "            -\n"),
+            std::string::npos)
+      << text;
 }
 
 TEST(DemoReport, HasARowForEachStepOfEachRun) {

@@ -169,6 +169,29 @@ TEST(ReportData, FreshFiguresAreMarkedAndTakeThePlaceOfTheBaselinesRuns) {
   EXPECT_TRUE(data["budget"]["made"]["fresh"].get<bool>());
 }
 
+// A run of nine steps: nothing counts, nothing is said of it, and the page has a dash.
+TEST(ReportData, ARunThatEndsBeforeItsTenthStepHasNoFigures) {
+  ReportSettings settings = without_signatures();
+  FreshResults fresh;
+  for (int step = 1; step <= 9; ++step)
+    fresh.steps.rows.push_back({{"scene", "s.yaml"},
+                                {"budget_ms", 2.0},
+                                {"dt_s", 0.01},
+                                {"step", step},
+                                {"full", 1},
+                                {"support", 2},
+                                {"tables", 3},
+                                {"asleep", 0},
+                                {"processor_ms", 50.0}});
+  settings.fresh = fresh;
+  const ordered_json data = gather_report(settings), run = data["budget"]["runs"][0];
+  EXPECT_EQ(run["counted_steps"], 0);
+  for (const char* figure : {"p50_ms", "p99_ms", "max_ms", "over"})
+    EXPECT_TRUE(run[figure].is_null()) << figure;
+  for (const ordered_json& fact : data["headline"])
+    EXPECT_EQ(fact["text"].get<std::string>().find("s.yaml"), std::string::npos) << fact;
+}
+
 // Sentences follow the figures, also where these are bad.
 TEST(ReportData, TheHeadlineIsComputed) {
   ordered_json data = gather_report(without_signatures());

@@ -68,5 +68,17 @@ TEST(RunArguments, EveryLevelHasItsName) {
     EXPECT_EQ(run_asked(std::string("--level ") + name).running.level, level) << name;
 }
 
+// As they were given, so that whoever reads what a page says it was made by can make it again.
+TEST(RunArguments, AreSaidAgain) {
+  EXPECT_EQ(options_of(RunArguments{}), "");
+  RunArguments given;
+  given.step = "1/120", given.loading.seed = 7;
+  given.running.steps = 20, given.running.threads = 2, given.running.level = LevelChoice::statistical;
+  given.running.model = StatisticalModel::tables, given.running.full_within_m = 2.5;
+  EXPECT_EQ(
+      options_of(given),
+      " --steps 20 --dt 1/120 --seed 7 --threads 2 --level statistical --model tables --full-within-m 2.5");
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -27,8 +27,8 @@ Provenance provenance_of(const DemoArguments& arguments) {
   const std::string budgets = arguments.budget_scene.empty()
                                   ? ""
                                   : fmt::format(" --budget-scene {}", arguments.budget_scene.string());
-  return {.commands = {fmt::format("build/lodestone demo {}{} --trials {}", arguments.run.scene.string(),
-                                   budgets, arguments.trials)},
+  return {.commands = {fmt::format("build/lodestone demo {}{}{} --trials {}", arguments.run.scene.string(),
+                                   options_of(arguments.run), budgets, arguments.trials)},
           .commit = program_commit(),
           .machine = describe_machine(),
           .date = today(),
@@ -93,7 +93,7 @@ void add_demo_command(Command& program) {
   command.add_option("--trials", arguments.trials, "single drops for the accuracy").within(2, 1'000'000);
   command.add_option("--budget-scene", arguments.budget_scene,
                      "another YAML file, run under budgets of 4, 8 and 16 ms, such as scenes/heap.yaml");
-  command.add_option("--out", arguments.run.running.out, "folder for the trajectory");
+  command.add_option("--out", arguments.run.running.out, "folder for the trajectory").written_into();
   command
       .add_option("--steps-csv", arguments.steps_csv,
                   "file for every step of the mixed run and of those under a budget")

@@ -9,28 +9,22 @@
 namespace lodestone {
 namespace {
 
-constexpr int kBusySteps = 8;     // a step of a thousand trimeshes takes seconds
+constexpr int kBusySteps = 8;     // at most: a step of a thousand trimeshes takes seconds
 constexpr int kUntimedSteps = 2;  // in which ODE's bodies are made
 
-// Where the statistical level has the most contacts.
-int find_busy_step(const RunResult& result) {
-  const auto busiest = std::ranges::max_element(result.reports, {}, &StepReport::contacts);
-  return std::clamp(int(busiest - result.reports.begin()), 0, std::max(0, result.steps - kBusySteps));
-}
-
-TimeSummary summarize_window(const RunResult& result, int first) {
+TimeSummary summarize_window(const RunResult& result, const BusyWindow& busy) {
   std::vector<double> ms;
-  for (int i = first; i < std::min(first + kBusySteps, result.steps); ++i)
-    ms.push_back(result.reports[i].times.total_ms);
+  for (int i = busy.first; i < std::min(busy.first + busy.steps, result.steps); ++i)
+    ms.push_back(result.reports[std::size_t(i)].times.total_ms);
   return summarize(ms);
 }
 
-DemoRow make_row(std::string name, const RunResult& result, int busy_step) {
+DemoRow make_row(std::string name, const RunResult& result, const BusyWindow& busy) {
   const int most_full = std::ranges::max_element(result.reports, {}, &StepReport::full)->full;
   return {.name = std::move(name),
           .whole_ms = result.step_ms,
           .processor_ms = result.processor_ms,
-          .busy_ms = summarize_window(result, busy_step),
+          .busy_ms = summarize_window(result, busy),
           .most_full = most_full};
 }
 
@@ -52,14 +46,13 @@ class Demo {
  private:
   void measure_times(DemoResult& result) {
     const RunResult support = run_statistical(StatisticalModel::support);
-    result.busy_step = find_busy_step(support);
-    result.busy_steps = kBusySteps;
-    result.rows.push_back(make_row("statistical, support", support, result.busy_step));
+    result.busy = find_busy_window(support.reports);
+    result.rows.push_back(make_row("statistical, support", support, result.busy));
     result.rows.push_back(
-        make_row("statistical, tables", run_statistical(StatisticalModel::tables), result.busy_step));
+        make_row("statistical, tables", run_statistical(StatisticalModel::tables), result.busy));
     result.mixed = run_scene(scene_, reporting(settings_, "mixed"));
-    result.rows.push_back(make_row("mixed", result.mixed, result.busy_step));
-    result.rows.push_back(run_full(result.busy_step));
+    result.rows.push_back(make_row("mixed", result.mixed, result.busy));
+    result.rows.push_back(run_full(result.busy));
   }
 
   RunSettings reporting(RunSettings settings, const std::string& name) const {
@@ -83,14 +76,14 @@ class Demo {
     return run_scene(scene_, settings);
   }
 
-  DemoRow run_full(int busy_step) const {
+  DemoRow run_full(const BusyWindow& busy) const {
     RunSettings settings = at_level(LevelChoice::full, "full");
-    settings.steps = kUntimedSteps + kBusySteps;
-    const RunResult result = run_scene(scene_after(busy_step), settings);
+    settings.steps = kUntimedSteps + busy.steps;
+    const RunResult result = run_scene(scene_after(busy.first), settings);
     return {.name = "full",
             .whole_ms = std::nullopt,
             .processor_ms = std::nullopt,
-            .busy_ms = summarize_window(result, kUntimedSteps),
+            .busy_ms = summarize_window(result, {kUntimedSteps, busy.steps}),
             .most_full = result.bodies};
   }
 
@@ -129,6 +122,12 @@ class Demo {
 
 }  // namespace
 
+BusyWindow find_busy_window(std::span<const StepReport> reports) {
+  const int all = int(reports.size()), steps = std::min(kBusySteps, all);
+  const auto busiest = std::ranges::max_element(reports, {}, &StepReport::contacts);
+  return {std::min(int(busiest - reports.begin()), all - steps), steps};
+}
+
 DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials, const Progress& progress) {
   if (scene.bodies.empty())
     throw_input_error(scene.file.string() + ": bodies", "none", "one or more to drop");
@@ -138,7 +137,7 @@ DemoResult run_demo(const Scene& scene, const RunSettings& settings, int trials,
 std::vector<RunResult> run_budgets(const Scene& scene, RunSettings settings, const Progress& progress) {
   fetch_signatures(scene, settings);
   settings.out.clear();
-  settings.budget_work.reset();
+  settings.budget_work.reset(), settings.full_within_m.reset();  // of the main scene's run, too
   std::vector<RunResult> budgets;
   for (const double ms : kDemoBudgets) {
     settings.budget_ms = ms;

@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,19 @@ struct DemoRow {
   int most_full = 0;                        ///< bodies at the full level at once
 };
 
+/// Steps of a run.
+struct BusyWindow {
+  int first = 0;  ///< from 0
+  int steps = 0;
+};
+/// The busiest eight, or all where there are fewer: from the step with the most contacts on, if so many
+/// follow it.
+BusyWindow find_busy_window(std::span<const StepReport> reports);
+
 struct DemoResult {
   std::string scene;  ///< its file
   double dt_s = 0.0;
-  int busy_step = 0, busy_steps = 0;  ///< where the window of the most contacts begins, and its length
+  BusyWindow busy;
   std::vector<DemoRow> rows;
   RunResult mixed;  ///< the run whose trajectory is written
   DropJob drop;     ///< the scene's first shape, dropped alone

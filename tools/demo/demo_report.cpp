@@ -38,11 +38,16 @@ std::string text_of_times(const DemoResult& result) {
   return table.text();
 }
 
+// Dashes of a run that was too short for any step to count.
 std::string text_of_budgets(std::span<const RunResult> runs) {
   TextTable table({"budget ms", "median ms", "99 % ms", "longest ms", "steps over", "mean full",
                    "mean support", "mean tables"});
   for (const RunResult& run : runs) {
     const BudgetFigures& budget = run.budget.value();
+    if (budget.steps == 0) {
+      table.add_row({fmt::format("{:g}", *budget.budget_ms), "-", "-", "-", "-", "-", "-", "-"});
+      continue;
+    }
     const auto bodies = [&](Rung rung) {
       return fmt::format("{:.1f}", budget.mean_bodies[std::size_t(rung)]);
     };
@@ -101,7 +106,7 @@ std::string text_of(const DemoResult& result) {
                       1e3 * result.dt_s);
   text += "What a step costs\n\n" + text_of_times(result);
   text += fmt::format("\nbusy: steps {} to {}, those of the most contacts; full is run over these alone\n\n",
-                      result.busy_step + 1, result.busy_step + result.busy_steps);
+                      result.busy.first + 1, result.busy.first + result.busy.steps);
   if (const auto& picture = result.mixed.in_picture)
     text += fmt::format(
         "In the mixed run, from half a second on, at least {} full bodies are in the picture of the scene's "
@@ -120,8 +125,8 @@ std::string text_of(const DemoResult& result) {
 
 ordered_json json_of(const DemoResult& result) {
   ordered_json json;
-  json["busy_step"] = result.busy_step;
-  json["busy_steps"] = result.busy_steps;
+  json["busy_step"] = result.busy.first;
+  json["busy_steps"] = result.busy.steps;
   json["levels"] = level_rows_of(result);
   json["mixed"] = json_of(result.mixed);
   json["errors"] = json_of(result.errors);

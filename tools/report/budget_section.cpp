@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <span>
 
 #include "scenes/budget_figures.h"
 #include "tools/report/sections.h"
@@ -8,7 +9,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Rows of one run, in the order of their steps.
+// Rows of one run, in the order of their steps; figures of one that ended before any step counts are null.
 ordered_json run_of(const ordered_json& rows) {
   ordered_json run = {{"scene", rows.front()["scene"]},
                       {"budget_ms", rows.front()["budget_ms"]},
@@ -17,16 +18,17 @@ ordered_json run_of(const ordered_json& rows) {
     run[key] = ordered_json::array();
     for (const ordered_json& row : rows) run[key].push_back(row[key]);
   }
-  std::vector<double> ms = run["processor_ms"].get<std::vector<double>>();
-  ms.erase(ms.begin(),
-           ms.begin() + std::min<std::ptrdiff_t>(kFirstBudgetStep - 1, std::ptrdiff_t(ms.size()) - 1));
+  const std::vector<double> all = run["processor_ms"].get<std::vector<double>>();
+  const auto ms = std::span(all).subspan(std::min<std::size_t>(kFirstBudgetStep - 1, all.size()));
   const TimeSummary summary = summarize(ms);
+  const auto counted = [&](auto figure) { return ms.empty() ? ordered_json(nullptr) : ordered_json(figure); };
   run["counted_steps"] = ms.size();
-  run["p50_ms"] = summary.p50, run["p99_ms"] = summary.p99, run["max_ms"] = summary.max;
-  run["over"] = run["budget_ms"].is_null() ? ordered_json(nullptr)
-                                           : ordered_json(std::ranges::count_if(ms, [&](double x) {
-                                               return x > run["budget_ms"].get<double>();
-                                             }));
+  run["p50_ms"] = counted(summary.p50), run["p99_ms"] = counted(summary.p99);
+  run["max_ms"] = counted(summary.max);
+  run["over"] =
+      run["budget_ms"].is_null()
+          ? ordered_json(nullptr)
+          : counted(std::ranges::count_if(ms, [&](double x) { return x > run["budget_ms"].get<double>(); }));
   return run;
 }
 

@@ -114,7 +114,7 @@ void add_budget_fact(const ordered_json& runs, ordered_json& facts) {
   std::int64_t steps = 0, bodies = 0;
   std::string scene;
   for (const ordered_json& run : runs) {
-    if (run["budget_ms"].is_null()) continue;
+    if (run["budget_ms"].is_null() || run["over"].is_null()) continue;
     scene = run["scene"].get<std::string>(), bodies = 0;
     for (const char* rung : {"full", "support", "tables"}) bodies += run[rung].front().get<std::int64_t>();
     budgets.push_back(fmt::format("{:g}", run["budget_ms"].get<double>()));

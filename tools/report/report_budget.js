@@ -53,13 +53,14 @@ function stepConfig(run) {
   };
 }
 
-// From the tenth step on, as the program counts.
+// From the tenth step on, as the program counts; null where there is none.
 function meanOf(values) {
-  const counted = values.length > 9 ? values.slice(9) : values;
-  return counted.reduce((sum, value) => sum + value, 0) / counted.length;
+  const counted = values.slice(9);
+  return counted.length ? counted.reduce((sum, value) => sum + value, 0) / counted.length : null;
 }
 
 function budgetSummary(run) {
+  if (run.counted_steps === 0) return "Over before its tenth step, from which on steps are counted.";
   const bodies = rungNames.map(rung => shortNumber(meanOf(run[rung])) + " " + rung).join(", ");
   const kept = run.budget_ms === null ? "No budget of time: the scene's policy alone decides. " : run.over + " of " + run.counted_steps + " steps took longer than " + run.budget_ms + " ms, from the tenth on" + (run.over ? " (longest " + msText(run.max_ms) + ")" : "") + ". ";
   return kept + "Median step " + msText(run.p50_ms) + ", 99 % below " + msText(run.p99_ms) + "; on average " + bodies + ".";
@@ -76,7 +77,7 @@ function startBudget() {
     drawChart(steps, () => stepConfig(run), "Time of each step, " + runTitle(run) + ": " + budgetSummary(run));
   });
   byId("budget_table").append(makeTable("Each run; processor time and means from the tenth step on", ["run", "median", "99 %", "longest", "steps over", "mean full", "mean support", "mean tables"],
-    runs.map(run => ({cells: [runTitle(run), msText(run.p50_ms), msText(run.p99_ms), msText(run.max_ms), run.budget_ms === null ? "–" : run.over + " of " + run.counted_steps, ...rungNames.map(rung => shortNumber(meanOf(run[rung])))]}))));
+    runs.map(run => ({cells: [runTitle(run), msText(run.p50_ms), msText(run.p99_ms), msText(run.max_ms), run.over === null ? "–" : run.over + " of " + run.counted_steps, ...rungNames.map(rung => shortNumber(meanOf(run[rung])))]}))));
   for (const run of runs) {
     const every = Math.round(0.5 / run.dt_s), indices = run.full.map((_, i) => i).filter(i => (i + 1) % every === 0);
     byId("budget_table").append(makeTable(runTitle(run) + ": every half second", ["s", ...rungNames, "asleep", "ms"],
