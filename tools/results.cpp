@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "reference/output_file.h"
@@ -20,8 +21,12 @@ std::string quoted(const std::string& text) {
   return cell + '"';
 }
 
+bool is_blank(const ordered_json& value) {
+  return value.is_null() || (value.is_number_float() && !std::isfinite(value.get<double>()));
+}
+
 std::string cell_of(const ordered_json& value) {
-  if (value.is_null()) return "";
+  if (is_blank(value)) return "";
   if (value.is_string()) return quoted(value.get<std::string>());
   if (!value.is_array()) return value.dump();
   std::vector<std::string> elements;

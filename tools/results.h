@@ -30,8 +30,9 @@ nlohmann::ordered_json or_null(const std::optional<int>& value);
 /// One object on stdout; with `"incomplete": true` where a signal has ended what it is of.
 void print_json(nlohmann::ordered_json json);
 
-/// Rows as a CSV file: a line of the keys of `example`, and one for each of `rows`: null is an empty cell,
-/// the numbers of an array stand in one, with spaces. Throws InputError where the file cannot be written.
+/// Rows as a CSV file: a line of the keys of `example`, and one for each of `rows`: null and what is no
+/// number are empty cells, the numbers of an array stand in one, with spaces. Throws InputError where the
+/// file cannot be written.
 void save_csv(const nlohmann::ordered_json& rows, const nlohmann::ordered_json& example,
               const std::filesystem::path& file);
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "reference/random.h"
 #include "tests/temporary_folder.h"
 #include "tools/report/report_table.h"
@@ -24,6 +26,12 @@ TEST(Results, ACsvHasTheKeysAndALineARow) {
   rows.push_back({{"b", true}, {"a", "say \"no\", twice"}, {"list", ordered_json::array()}});
   EXPECT_EQ(csv_of(rows, example), "b,a,list\n0.5,,1 2 3\ntrue,\"say \"\"no\"\", twice\",\n");
   EXPECT_EQ(csv_of(ordered_json::array(), example), "b,a,list\n");
+}
+
+TEST(Results, WhatIsNoNumberIsAnEmptyCell) {
+  const ordered_json example = {{"a", 1}, {"b", 2}};
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(csv_of(ordered_json::array({{{"a", nan}, {"b", -inf}}}), example), "a,b\n,\n");
 }
 
 // What is saved is read again, whatever texts and numbers there are.

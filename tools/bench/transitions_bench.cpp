@@ -203,7 +203,7 @@ class TransitionsWatch {
 bool is_unseen(const TransitionFigures& figures) {
   return figures.changed.p99_px <= 1.0 &&
          std::max(figures.with_bodies.max, figures.with_ground.max) <= kMostOverlap &&
-         figures.gained_j <= kMostGain * figures.scene_j;
+         figures.gained_j <= kMostGain * std::max(0.0, figures.scene_j);
 }
 
 TransitionFigures bench_transitions(const Scene& scene, RunSettings settings, double from_s) {

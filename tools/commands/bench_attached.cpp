@@ -104,7 +104,8 @@ std::vector<AttachedRow> bench_attached(const BenchAttachedArguments& arguments)
 }
 
 ordered_json json_of(const BenchAttachedArguments& arguments, const std::vector<AttachedRow>& rows) {
-  ordered_json json = {{"boxes", arguments.boxes}, {"crates", arguments.crates}};
+  ordered_json json = {
+      {"boxes", arguments.boxes}, {"crates", arguments.crates}, {"rows", ordered_json::array()}};
   for (const AttachedRow& row : rows)
     json["rows"].push_back({{"space", row.space},
                             {"method", row.method},

@@ -37,7 +37,8 @@ nlohmann::ordered_json json_of(const DropJob& job, const BenchFullLevelArguments
                                const std::vector<FullLevelBenchRow>& rows) {
   nlohmann::ordered_json json = {{"shape", job.shape->name},
                                  {"faces", job.shape->mesh.faces.size()},
-                                 {"bodies", arguments.bench.bodies}};
+                                 {"bodies", arguments.bench.bodies},
+                                 {"rows", nlohmann::ordered_json::array()}};
   for (const FullLevelBenchRow& row : rows) {
     const bool measured = row.left_out.empty();
     const auto or_null = [&](double value) {

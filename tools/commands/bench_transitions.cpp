@@ -21,19 +21,26 @@ struct BenchTransitionsArguments {
   ResultArguments results;
 };
 
+// Null for a figure of which there is no sample.
 ordered_json json_of(const MovesBeyondMotion& moves) {
+  const auto seen = [&](double figure) {
+    return or_null(moves.moves > 0 ? std::optional(figure) : std::nullopt);
+  };
   return {{"moves", moves.moves},
-          {"p50_px", moves.p50_px},
-          {"p99_px", moves.p99_px},
-          {"max_px", moves.max_px},
-          {"within_pixel", moves.within_pixel}};
+          {"p50_px", seen(moves.p50_px)},
+          {"p99_px", seen(moves.p99_px)},
+          {"max_px", seen(moves.max_px)},
+          {"within_pixel", seen(moves.within_pixel)}};
 }
 
 ordered_json json_of(const OverlapsAtPromotion& overlaps) {
+  const auto seen = [&](double figure) {
+    return or_null(overlaps.promotions > 0 ? std::optional(figure) : std::nullopt);
+  };
   return {{"promotions", overlaps.promotions},
-          {"p50", overlaps.p50},
-          {"p99", overlaps.p99},
-          {"max", overlaps.max}};
+          {"p50", seen(overlaps.p50)},
+          {"p99", seen(overlaps.p99)},
+          {"max", seen(overlaps.max)}};
 }
 
 ordered_json json_of(const TransitionFigures& figures) {
@@ -47,25 +54,36 @@ ordered_json json_of(const TransitionFigures& figures) {
       {"unseen", is_unseen(figures)}};
 }
 
+std::vector<std::string> cells_of(const char* name, const MovesBeyondMotion& of) {
+  if (of.moves == 0) return {name, "0", "-", "-", "-", "-"};
+  return {name,
+          fmt::format("{}", of.moves),
+          fmt::format("{:.3f}", of.p50_px),
+          fmt::format("{:.3f}", of.p99_px),
+          fmt::format("{:.2f}", of.max_px),
+          fmt::format("{:.2f} %", 100 * of.within_pixel)};
+}
+
+std::vector<std::string> cells_of(const char* name, const OverlapsAtPromotion& of) {
+  if (of.promotions == 0) return {name, "0", "-", "-", "-"};
+  return {name, fmt::format("{}", of.promotions), fmt::format("{:.2f}", 100 * of.p50),
+          fmt::format("{:.2f}", 100 * of.p99), fmt::format("{:.2f}", 100 * of.max)};
+}
+
 std::string text_of(const TransitionFigures& figures) {
   TextTable moves({"in the picture", "moves", "median px", "99 % px", "most px", "within 1 px"});
-  for (const auto& [name, of] :
-       {std::pair("changed rung", figures.changed), {"others awake", figures.others}})
-    moves.add_row({name, fmt::format("{}", of.moves), fmt::format("{:.3f}", of.p50_px),
-                   fmt::format("{:.3f}", of.p99_px), fmt::format("{:.2f}", of.max_px),
-                   fmt::format("{:.2f} %", 100 * of.within_pixel)});
+  moves.add_row(cells_of("changed rung", figures.changed));
+  moves.add_row(cells_of("others awake", figures.others));
   TextTable overlaps({"overlap at promotion", "promotions", "median %", "99 %", "most %"});
-  for (const auto& [name, of] :
-       {std::pair("with bodies", figures.with_bodies), {"with ground", figures.with_ground}})
-    overlaps.add_row({name, fmt::format("{}", of.promotions), fmt::format("{:.2f}", 100 * of.p50),
-                      fmt::format("{:.2f}", 100 * of.p99), fmt::format("{:.2f}", 100 * of.max)});
+  overlaps.add_row(cells_of("with bodies", figures.with_bodies));
+  overlaps.add_row(cells_of("with ground", figures.with_ground));
   return fmt::format(
       "{} changes of rung; moves beyond a body's motion in a step, pixels of the viewpoint's picture; "
       "overlap over the body's size where it became full\n\n{}\n{}\n"
       "energy of changed bodies and those beside them in the step of the change: gained {:.4g} J, net {:.4g} "
-      "J, of {:.4g} J that the scene loses ({:.4f} %)\n",
+      "J, of {:.4g} J that the scene loses{}\n",
       figures.changes, moves.text(), overlaps.text(), figures.gained_j, figures.net_j, figures.scene_j,
-      100 * figures.gained_j / figures.scene_j);
+      figures.scene_j > 0 ? fmt::format(" ({:.4f} %)", 100 * figures.gained_j / figures.scene_j) : "");
 }
 
 ExitCode run_transitions(const BenchTransitionsArguments& arguments) {

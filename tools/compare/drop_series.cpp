@@ -17,8 +17,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// None where one of them was left out, or the first is no more off than can be told.
 std::optional<double> score_over(const DropRow& row, const DropRow& first) {
-  if (!row.score || !first.score) return {};
+  if (!row.score || !first.score || first.score->value.score <= 0.0) return {};
   return row.score->value.score / first.score->value.score;
 }
 
@@ -114,9 +115,10 @@ std::string text_of(const std::string& what, std::span<const DropCase> cases,
       std::ranges::move(cells_of(row), std::back_inserter(cells));
       if (row.score) {
         cells.insert(cells.begin() + 5, fmt::format("{:.3f}", series[i].floor.value.score));
-        if (over_first)
-          cells.insert(cells.begin() + 7,
-                       fmt::format("{:.2f}", score_over(row, series[0].rows[k]).value_or(0.0)));
+        if (over_first) {
+          const auto over = score_over(row, series[0].rows[k]);
+          cells.insert(cells.begin() + 7, over ? fmt::format("{:.2f}", *over) : "-");
+        }
       }
       table.add_row(std::move(cells));
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "reference/error.h"
 #include "tools/report/report_table.h"
@@ -28,7 +29,7 @@ Number number_of(const std::string& where, const std::string& text) {
   Number number{};
   const char* end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, number);
-  if (read.ec != std::errc() || read.ptr != end || number < Number(0))
+  if (read.ec != std::errc() || read.ptr != end || !(number >= Number(0)) || !std::isfinite(double(number)))
     throw InputError(fmt::format("{}: found \"{}\", expected a number from 0", where, text));
   return number;
 }

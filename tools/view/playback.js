@@ -110,7 +110,7 @@ class Playback {
   // Processor ms of the step that ended at a time; null where none did.
   stepMs(time) {
     const step = Math.round(time / this.header.dt_s) - this.header.from_step - 1;
-    return this.header.step_ms[Math.max(0, step)] ?? null;
+    return this.header.step_ms[step] ?? null;
   }
 
   // Where its rung changes: frames, the first among them.

@@ -100,5 +100,32 @@ TEST_F(TransitionsCommand, PrintsJsonAndSaysWhatIsSeen) {
   EXPECT_EQ(run("bench transitions " + name("none.yaml")).exit_code, 3);
 }
 
+// A ball that flies up, so that the scene's energy falls by nothing but rounding, and is full all the time:
+// no change, and no figure of one.
+TEST_F(TransitionsCommand, OfChangesThatThereAreNoneThereAreNoFigures) {
+  std::ofstream(at("scene.yaml")) << R"(version: 1
+step: {dt_s: 0.01, steps: 3, gravity_m_per_s2: [0, 0, 1]}
+shapes: {ball: {sphere_m: 0.1}}
+bodies: [{shape: ball, position_m: [0, 0, 1], velocity_m_per_s: [0, 0, 1], level: full}]
+viewpoints: [{position_m: [0, -5, 1]}]
+)";
+  const auto ended = run("bench transitions " + name("scene.yaml") + " --json --from-s 1");
+  EXPECT_EQ(ended.exit_code, 0) << ended.out;
+  const auto json = nlohmann::json::parse(ended.out);
+  EXPECT_EQ(json["changed"]["moves"], 0);
+  for (const char* figure : {"p50_px", "p99_px", "max_px", "within_pixel"})
+    EXPECT_TRUE(json["changed"][figure].is_null() && json["others"][figure].is_null()) << figure;
+  for (const char* figure : {"p50", "p99", "max"})
+    EXPECT_TRUE(json["overlap_over_size"]["bodies"][figure].is_null()) << figure;
+}
+
+TEST(TransitionFigures, ASceneThatGainsEnergyByItselfHasNoChangeToBlame) {
+  TransitionFigures none;
+  none.scene_j = -1e-12;
+  EXPECT_TRUE(is_unseen(none));
+  none.gained_j = 1e-15;
+  EXPECT_FALSE(is_unseen(none));
+}
+
 }  // namespace
 }  // namespace lodestone::transitions_test

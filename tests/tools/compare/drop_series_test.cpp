@@ -73,6 +73,20 @@ TEST(DropSeries, RowsBearTheNamesOfTheirCases) {
   EXPECT_NE(text_of("condition", cases, series, true).find("restitution=0"), std::string::npos);
 }
 
+// What the usual case does not tell apart from the truth is no measure for the others.
+TEST(DropSeries, NothingIsOverAScoreOfZeroOrOneThatIsLeftOut) {
+  const std::vector<DropCase> cases = {{"usual", box_job(), 0}, {"restitution=0", box_job(), 1}};
+  std::vector<DropComparison> series(2);
+  for (DropComparison& one : series) one.rows = {DropRow{}, DropRow{}};
+  for (DropComparison& one : series) one.rows[0].score.emplace();
+  series[1].rows[0].score->value.score = 0.5, series[1].rows[1].score.emplace();
+  const auto json = json_of("condition", cases, series, true);
+  for (const auto& row : json["rows"]) EXPECT_TRUE(row["score_over_first"].is_null()) << row;
+  const std::string text = text_of("condition", cases, series, true);
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+  EXPECT_EQ(text.find("inf"), std::string::npos) << text;
+}
+
 // The truth of small bodies is as fine in their own time.
 TEST(DropSeries, TheTruthOfASmallBodyTakesShorterSteps) {
   const DropJob usual = box_job();

@@ -37,6 +37,9 @@ TEST(ScoreRows, WhatIsNoRowIsNamedByItsLine) {
             "series,shape,condition,trials,method,step_s,score,floor,bound,commit");
   EXPECT_EQ(message("# about\n" + kHead + "drops,box,usual,many,support,.1,.1,.1,.1,abc\n"),
             "a.csv: line 3: found \"many\", expected a number from 0");
+  for (const std::string bound : {"nan", "inf"})
+    EXPECT_EQ(message(kHead + "drops,box,usual,2,support,.1,.1,.1," + bound + ",abc\n"),
+              "a.csv: line 2: found \"" + bound + "\", expected a number from 0");
   const std::string line = "drops,box,usual,9,support,.1,.1,.1,.1,abc\n";
   EXPECT_EQ(message(kHead + line + line),
             "a.csv: line 3: found the drops of a line above again, expected each once");

@@ -66,10 +66,11 @@ TEST_F(ViewPage, PlaysWhatTheRunWas) {
     const later = look();
     let moved = 0;
     for (let i = 0; i < later.length; i += 4) moved += later[i] !== first[i];
+    say([run.stepMs(0), run.stepMs(run.end()) > 0].join(" "));  // no step ends at 0
     say(colors.size > 20 && moved > 100 ? "picture" : "no picture: " + colors.size + " colours, " + moved + " moved");
   )");
   const Vec3 p = last_.states[0].position;
-  EXPECT_EQ(said, fmt::format("{:.3f} {:.3f} {:.3f}\n51 frames, full, near a viewpoint\npicture\n", p.x(),
+  EXPECT_EQ(said, fmt::format("{:.3f} {:.3f} {:.3f}\n51 frames, full, near a viewpoint\n true\npicture\n", p.x(),
                               p.y(), p.z() + 0.0));
 }
 
