@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 
+#include "reference/argument_error.h"
 #include "reference/error.h"
 #include "reference/mesh/simplified_shapes.h"
 
@@ -144,9 +145,14 @@ Shape make_mesh_shape(const std::string& name, const ShapeOptions& options, cons
 
 Shape make_shape_from_text(const std::string& text, const ShapeOptions& options, const MassOverride& mass,
                            MeshReport* report) {
-  for (const SolidForm& form : kForms)
-    if (text.starts_with(fmt::format("{}:", form.name)))
-      return make_solid(form.kind, parse_lengths(text, form), mass);
+  for (const SolidForm& form : kForms) {
+    if (!text.starts_with(fmt::format("{}:", form.name))) continue;
+    for (const auto& [name, given] :
+         {std::pair("size", options.size_m.has_value()), {"faces", options.faces.has_value()}})
+      if (given)
+        throw ArgumentError(fmt::format("{}: found it beside {}, expected a mesh there", name, text));
+    return make_solid(form.kind, parse_lengths(text, form), mass);
+  }
   const bool is_form_without_lengths =
       std::ranges::any_of(kForms, [&](const SolidForm& form) { return form.name == text; });
   if (text.empty() || is_form_without_lengths || (text.find(':') != text.npos && !fs::exists(text)))

@@ -45,7 +45,7 @@ Shape make_mesh_shape(const std::string& mesh, const ShapeOptions& options, cons
 std::filesystem::path find_mesh_file(const std::string& name, const ShapeOptions& options);
 
 /// Throws InputError saying what was found and which forms there are; for a missing mesh, where it was looked
-/// for.
+/// for. ArgumentError for a size or a number of faces of what is no mesh.
 Shape make_shape_from_text(const std::string& text, const ShapeOptions& options = {},
                            const MassOverride& mass = {}, MeshReport* report = nullptr);
 

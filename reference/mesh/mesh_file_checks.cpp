@@ -264,11 +264,25 @@ bool is_finite_number(std::string_view word) {
   return !number.empty() && end == number.c_str() + number.size() && std::isfinite(value);
 }
 
+/// To assimp a byte order mark is a part of the first word, which it then does not know: a vertex would be
+/// lost. Before a comment it does no harm.
+void check_mark(std::string_view text, std::string& where) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  if (!text.starts_with(kMark)) return;
+  text.remove_prefix(kMark.size());
+  const std::string_view word = take_word(text);
+  if (word.empty() || word[0] == '#' || word[0] == '\n') return;
+  where += ":1";
+  refuse(fmt::format("a byte order mark before '{}'", word.substr(0, word.find('\n')).substr(0, 40)),
+         "a file without it");
+}
+
 /// Lines v are three numbers that are finite, and lines f name vertices that there are: assimp passes over a
 /// vertex that is none, and says neither where it was nor which face has another than it should. `where` has
 /// the line of what is refused.
 void check_obj(std::string_view text, std::string& where) {
   const std::string file = where;
+  check_mark(text, where);
   int vertices = 0;
   for_each_obj_line(text, [&](int number, std::string_view line) {
     if (take_word(line) != "v") return;

@@ -35,6 +35,14 @@ TEST(ShapeArguments, SizeAndFacesAreThoseOfTheMesh) {
   EXPECT_EQ(report.components, 1);
 }
 
+// They would do nothing.
+TEST(ShapeArguments, ASolidHasNoSizeOrFacesToBeGiven) {
+  EXPECT_EQ(testing::message_of([&] { make_shape_from_arguments(shape_asked("box:1,2,3 --size 2")); }),
+            "size: found it beside box:1,2,3, expected a mesh there");
+  EXPECT_EQ(testing::message_of([&] { make_shape_from_arguments(shape_asked("sphere:1 --faces 20")); }),
+            "faces: found it beside sphere:1, expected a mesh there");
+}
+
 TEST(ShapeArguments, WhatIsOutOfRangeIsRefused) {
   for (const char* line :
        {"", "box:1,1,1 --restitution 1.1", "box:1,1,1 --restitution -0.1", "box:1,1,1 --friction -1",

@@ -151,6 +151,14 @@ TEST_F(MeshFile, ThatIsMissingOrNoFileIsRefused) {
   EXPECT_NE(error_of("").find("no such file"), std::string::npos);
 }
 
+// Assimp would lose the vertex behind it.
+TEST_F(MeshFile, WithAByteOrderMarkBeforeAVertexIsRefused) {
+  const std::string mark = "\xef\xbb\xbf", box = as_obj(make_box({1, 1, 1}));
+  EXPECT_EQ(error_in_line(write("mark.obj", mark + box)),
+            "1: found a byte order mark before 'v', expected a file without it");
+  expect_unit_box(load_mesh(write("comment.obj", mark + "# a box\n" + box)));
+}
+
 TEST_F(MeshFile, OfAnotherFormatIsRefused) {
   const std::string box = as_obj(make_box({1, 1, 1}));
   for (const char* name : {"box.fbx", "box.dae", "box", "box.", ".obj"})
