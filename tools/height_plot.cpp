@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/terminal.h"
+
 namespace lodestone {
 namespace {
 
@@ -55,9 +57,10 @@ std::vector<std::string> draw_rows(const CollisionHeights& heights, const Range&
   return rows;
 }
 
+// XML takes neither control characters nor what is no UTF-8.
 std::string escaped_svg(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     if (c == '<')
       out += "&lt;";
     else if (c == '&')

@@ -10,6 +10,7 @@
 #include "signature/signature_file.h"
 #include "tools/height_plot.h"
 #include "tools/results.h"
+#include "tools/terminal.h"
 #include "tools/text_table.h"
 
 namespace lodestone {
@@ -176,7 +177,7 @@ std::optional<double> settled_fraction(const Signature& signature) {
 std::string text_of(const Signature& signature, std::size_t bytes) {
   const SignatureSettings& settings = signature.settings;
   std::string text;
-  text += fmt::format("shape        {} ({:016x})\n", signature.shape_name, signature.shape_hash);
+  text += fmt::format("shape        {} ({:016x})\n", printable(signature.shape_name), signature.shape_hash);
   text += fmt::format("contact      restitution {}, friction {}\n", settings.law.restitution,
                       settings.law.friction);
   text += fmt::format(
@@ -232,7 +233,7 @@ ordered_json json_of(const Signature& signature, std::size_t bytes) {
 }
 
 std::string page_of(const Signature& signature, std::size_t bytes) {
-  std::string page = fmt::format("versions     {}\n", signature.versions);
+  std::string page = fmt::format("versions     {}\n", printable(signature.versions));
   page += text_of(signature, bytes) + "\n" + text_plot(signature.collision_heights) + "\n";
   return page + text_of(list_section_sizes(signature), bytes) + "\n" + comparison_of(signature, bytes);
 }

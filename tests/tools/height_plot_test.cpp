@@ -52,6 +52,12 @@ TEST(TextPlot, ADeviationIsAsWideAsItIs) {
   EXPECT_GT(share(b), 3.0 * share(a) + 1.0);
 }
 
+// As the names of files may have them; no XML has.
+TEST(SvgPlot, WhatIsNoTextIsWrittenOut) {
+  const std::string svg = svg_plot(rising(), "a\x1b[31m\xff.obj");
+  EXPECT_NE(svg.find("a\\x1b[31m\\xff.obj"), std::string::npos) << svg;
+}
+
 TEST(SvgPlot, IsOneDocumentWhosePointsAreInItsFrame) {
   const std::string svg = svg_plot(rising(), "a < b & c");
   EXPECT_TRUE(svg.starts_with("<svg "));

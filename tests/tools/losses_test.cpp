@@ -221,6 +221,15 @@ TEST_F(Messages, ControlCharactersAreNotObeyed) {
   EXPECT_EQ(usage.out.find('\x1b'), usage.out.npos) << usage.out;
 }
 
+TEST_F(Messages, ControlCharactersOfASignatureAreNotObeyed) {
+  std::ofstream(at("a\x1b[31m.obj"))
+      << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+  const Ended ended = run("sign " + name("a\x1b[31m.obj") +
+                          " --cell-trials 2 --height-trials 4 --settling-trials 2 --clips 0 --no-cache");
+  EXPECT_EQ(ended.exit_code, 0) << ended.out;
+  EXPECT_NE(ended.out.find("shape        a\\x1b[31m.obj ("), std::string::npos) << ended.out;
+}
+
 TEST_F(Messages, WhyAFileCannotBeRead) {
   std::filesystem::create_symlink("loop.yaml", at("loop.yaml"));
   const Ended loop = run("run " + name("loop.yaml"));
