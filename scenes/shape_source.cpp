@@ -122,9 +122,9 @@ fs::path find_mesh_file(const std::string& name, const ShapeOptions& options) {
   }
   std::vector<std::string> shown;
   for (const fs::path& folder : folders) shown.push_back(folder.empty() ? "." : folder.string());
-  throw InputError(
-      fmt::format("found no {} in {}, expected a mesh file there (--mesh-path DIR adds a folder)", name,
-                  fmt::join(shown, ", ")));
+  throw InputError(fmt::format("found no {} in {}, expected a mesh file there{}", name,
+                               fmt::join(shown, ", "),
+                               options.search.empty() ? "" : " (--mesh-path DIR adds a folder)"));
 }
 
 Shape make_mesh_shape(const std::string& name, const ShapeOptions& options, const MassOverride& mass,

@@ -48,6 +48,16 @@ TEST_F(ShapeSource, MeshFilesAreLookedUpInOrder) {
   EXPECT_NE(message.find("second"), std::string::npos) << message;
 }
 
+// Who gives no folders has no option for them.
+TEST_F(ShapeSource, SaysHowAFolderIsAddedWhereOneCanBe) {
+  const auto message = [](const ShapeOptions& options) {
+    return testing::message_of([&] { make_shape_from_text("none.obj", options); });
+  };
+  EXPECT_EQ(message({}), "found no none.obj in ., expected a mesh file there");
+  EXPECT_EQ(message({.search = {"."}}),
+            "found no none.obj in ., expected a mesh file there (--mesh-path DIR adds a folder)");
+}
+
 TEST_F(ShapeSource, SimplifiesAndScales) {
   const Shape bunny = make_shape_from_text("bunny", {.size_m = 0.4, .faces = 500});
   EXPECT_NEAR(bunny.size, 0.4, 1e-9);
