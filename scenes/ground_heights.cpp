@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "scenes/terrain.h"
+
 namespace lodestone {
 namespace {
 
@@ -24,12 +26,6 @@ std::optional<double> height_of_face(const Vec3& a, const Vec3& b, const Vec3& c
 
 void keep_higher(std::optional<double>& highest, std::optional<double> height) {
   if (height && (!highest || *height > *highest)) highest = height;
-}
-
-Mesh mesh_of(const GroundBox& box) {
-  Mesh mesh = make_box(box.sides_m);
-  for (Vec3& vertex : mesh.vertices) vertex = box.position_m + box.orientation * vertex;
-  return mesh;
 }
 
 }  // namespace
@@ -73,7 +69,7 @@ GroundHeights::GroundHeights(std::span<const SceneGround> ground) {
     if (const auto* plane = std::get_if<GroundPlane>(&part))
       planes_.push_back(*plane);
     else if (const auto* box = std::get_if<GroundBox>(&part))
-      grids_.emplace_back(mesh_of(*box));
+      grids_.emplace_back(make_ground_mesh(*box));
     else
       grids_.emplace_back(std::get<GroundMesh>(part).mesh);
   }

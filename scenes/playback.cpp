@@ -13,6 +13,7 @@
 #include "reference/error.h"
 #include "reference/mesh/simplified_shapes.h"
 #include "scenes/framing.h"
+#include "scenes/terrain.h"
 #include "signature/file_bytes.h"
 
 namespace lodestone {
@@ -248,11 +249,8 @@ class Header {
   }
 
   static Mesh mesh_of(const SceneGround& ground) {
-    if (const auto* given = std::get_if<GroundMesh>(&ground)) return given->mesh;
-    const auto& box = std::get<GroundBox>(ground);
-    Mesh mesh = make_box(box.sides_m);
-    for (Vec3& v : mesh.vertices) v = box.position_m + box.orientation * v;
-    return mesh;
+    const auto* given = std::get_if<GroundMesh>(&ground);
+    return given ? given->mesh : make_ground_mesh(std::get<GroundBox>(ground));
   }
 
   void add_viewpoints() {

@@ -58,4 +58,10 @@ std::vector<GroundBox> make_stairs(const Stairs& stairs) {
   return boxes;
 }
 
+Mesh make_ground_mesh(const GroundBox& box) {
+  Mesh mesh = make_box(box.sides_m);
+  for (Vec3& vertex : mesh.vertices) vertex = box.position_m + box.orientation * vertex;
+  return mesh;
+}
+
 }  // namespace lodestone

@@ -41,4 +41,7 @@ struct Stairs {
 /// A box for each step, down to the foot of the stairs.
 std::vector<GroundBox> make_stairs(const Stairs& stairs);
 
+/// The box where it is, m.
+Mesh make_ground_mesh(const GroundBox& box);
+
 }  // namespace lodestone

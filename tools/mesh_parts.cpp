@@ -3,8 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <vector>
+
+#include "reference/disjoint_sets.h"
 
 namespace lodestone {
 namespace {
@@ -14,29 +15,15 @@ struct Part {
   Eigen::AlignedBox3d box;
 };
 
-// Sets of vertices that faces join, by union and find.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int vertex) {
-    while (parent_[std::size_t(vertex)] != vertex)
-      vertex = parent_[std::size_t(vertex)] = parent_[std::size_t(parent_[std::size_t(vertex)])];
-    return vertex;
-  }
-  void join(int a, int b) { parent_[std::size_t(root(a))] = root(b); }
-
- private:
-  std::vector<int> parent_;
-};
-
 std::vector<Part> parts_of(const Mesh& mesh) {
-  Joined joined(mesh.vertices.size());
+  DisjointSets joined;  // vertices, by faces
+  joined.set_all_apart(mesh.vertices.size());
   for (const auto& face : mesh.faces) joined.join(face[0], face[1]), joined.join(face[1], face[2]);
   std::map<int, Part> by_root;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    by_root[joined.root(mesh.faces[f][0])].faces.push_back(int(f));
+    by_root[joined.root_of(mesh.faces[f][0])].faces.push_back(int(f));
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (const auto part = by_root.find(joined.root(int(v))); part != by_root.end()) {
+    if (const auto part = by_root.find(joined.root_of(int(v))); part != by_root.end()) {
       part->second.corners.push_back(int(v));
       part->second.box.extend(mesh.vertices[v]);
     }
