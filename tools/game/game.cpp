@@ -320,6 +320,9 @@ int main(int argc, char** argv) {
     exit_code = game::run(*arguments);
   } catch (const lodestone::InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
+  } catch (const lodestone::SimulationError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    exit_code = game::kDiverged;
   }
   dCloseODE();
   return exit_code;
