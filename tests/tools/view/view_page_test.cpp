@@ -70,8 +70,8 @@ TEST_F(ViewPage, PlaysWhatTheRunWas) {
     say(colors.size > 20 && moved > 100 ? "picture" : "no picture: " + colors.size + " colours, " + moved + " moved");
   )");
   const Vec3 p = last_.states[0].position;
-  EXPECT_EQ(said, fmt::format("{:.3f} {:.3f} {:.3f}\n51 frames, full, near a viewpoint\n true\npicture\n", p.x(),
-                              p.y(), p.z() + 0.0));
+  EXPECT_EQ(said, fmt::format("{:.3f} {:.3f} {:.3f}\n51 frames, full, near a viewpoint\n true\npicture\n",
+                              p.x(), p.y(), p.z() + 0.0));
 }
 
 TEST_F(ViewPage, ObeysTheKeyboard) {
