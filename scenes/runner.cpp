@@ -180,6 +180,7 @@ RunResult run_forked(const Scene& scene, const RunSettings& settings, int steps,
   RunResult result = first.finish();
   if (forked->mean_distance_m.empty()) return result;  // it diverged before
   forked->result = second.finish();
+  if (result.write_error.empty()) result.write_error = forked->result.write_error;
   result.fork = forked;
   return result;
 }

@@ -116,9 +116,10 @@ std::string text_of(const ForkedRun& fork) {
   const StepReport& last = fork.result.last();
   return fmt::format(
       "fork         after step {}: {} full, {} support, {} tables, {} asleep at the end; bodies on average "
-      "{:.4g} m from where they are else; processor ms median {}; state hash {:016x}\n",
+      "{:.4g} m from where they are else; processor ms median {}; state hash {:016x}\n{}",
       fork.step, last.full, last.support, last.tables, last.asleep, fork.mean_distance_m.back(),
-      text_of_ms(fork.result.processor_ms.p50), fork.result.state_hash);
+      text_of_ms(fork.result.processor_ms.p50), fork.result.state_hash,
+      fork.result.finite ? "" : "DIVERGED: a state of the fork was not finite\n");
 }
 
 ordered_json json_of(const TimeSummary& ms) {
@@ -259,7 +260,7 @@ ordered_json json_of(const RunResult& result) {
 }
 
 ExitCode exit_code_of(const RunResult& result) {
-  if (!result.finite) return ExitCode::diverged;
+  if (!result.finite || (result.fork && !result.fork->result.finite)) return ExitCode::diverged;
   if (!result.write_error.empty()) return ExitCode::bad_input;
   if (result.incomplete) return interrupted_exit_code();
   const bool all_hold = std::ranges::all_of(result.checks, &CheckResult::pass);

@@ -153,6 +153,11 @@ output: {every_n_steps: 1}
   EXPECT_EQ(other.fork->result.last().support, 2);
   EXPECT_EQ(load_playback(folder() / "out/fork.play").header["times_s"][0], 0.1);
   EXPECT_EQ(load_playback(folder() / "out/fork.play").header["label"], "s: level support");
+  std::filesystem::remove(folder() / "out/fork.play");
+  std::filesystem::create_directories(folder() / "out/fork.play/in the way");
+  const RunResult lost =
+      run_scene(scene, {.level = LevelChoice::support, .fork_step = 10, .out = folder() / "out"});
+  EXPECT_NE(lost.write_error.find("fork.play: found "), std::string::npos) << lost.write_error;
   EXPECT_THROW(run_scene(scene, {.level = LevelChoice::full, .fork_step = 60}), InputError);
   EXPECT_THROW(run_scene(scene, {.fork_step = 10}), InputError);
 }

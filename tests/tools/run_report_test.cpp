@@ -127,6 +127,19 @@ TEST(RunReport, ExitCodes) {
   EXPECT_EQ(exit_code_of(result), ExitCode::diverged);
 }
 
+TEST(RunReport, AForkThatDivergesIsSaidToo) {
+  RunResult result = three_steps();
+  ForkedRun fork;
+  fork.result = three_steps();
+  fork.mean_distance_m = {0.5};
+  result.fork = std::make_shared<const ForkedRun>(fork);
+  EXPECT_EQ(exit_code_of(result), ExitCode::done);
+  fork.result.finite = false;
+  result.fork = std::make_shared<const ForkedRun>(fork);
+  EXPECT_EQ(exit_code_of(result), ExitCode::diverged);
+  EXPECT_NE(text_of(result).find("\nDIVERGED: a state of the fork was not finite\n"), std::string::npos);
+}
+
 TEST(RunReport, TextLeavesOutCountersAtZero) {
   const std::string text = text_of(three_steps());
   EXPECT_NE(text.find("energy_clamps 7"), std::string::npos);
