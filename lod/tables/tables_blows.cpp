@@ -11,19 +11,10 @@ constexpr std::uint8_t kStruck = 1, kHeld = 2;  // of a body: in a heap, or no b
 
 }  // namespace
 
-// Whether a contact that carries so much, N s, carries nothing to a blow.
-bool TablesLevel::is_unloaded(std::uint32_t first, std::uint32_t second, float impulse) const {
-  const auto inverse_mass = [&](std::uint32_t place) {
-    return std::int64_t(place) < spheres_.awake ? float(spheres_.inverse_mass[place]) : 0.0f;
-  };
-  return impulse * (inverse_mass(first) + inverse_mass(second)) <=
-         float(ImpactWaves::kUnloaded) * bounce_velocity();
-}
-
 // Whether a ball that is struck touches another with nothing between them yet.
 bool TablesLevel::find_blows() {
   const auto awake = std::uint32_t(spheres_.awake);
-  const float bounce = bounce_velocity();
+  const float bounce = scene_.bounce_velocity();
   const auto is_ball = [&](std::uint32_t place) {
     return place >= awake || kinds_.is_ball(spheres_.kind[place]);
   };
@@ -41,7 +32,8 @@ bool TablesLevel::find_blows() {
   });
   // Heaps, whose bodies bear each other, take blows as a whole.
   contacts_.each([&](const SphereContact& c) {
-    if (c.second >= kGroundPlace || c.closing < -bounce || is_unloaded(c.first, c.second, c.impulse)) return;
+    if (c.second >= kGroundPlace || c.closing < -bounce || scene_.is_unloaded(c.first, c.second, c.impulse))
+      return;
     struck_[c.first] = kHeld;
     if (c.second < awake) struck_[c.second] = kHeld;
   });
@@ -49,7 +41,7 @@ bool TablesLevel::find_blows() {
   contacts_.each([&](const SphereContact& c) {
     const int first = struck_[c.first], second = c.second < awake ? struck_[c.second] : 0;
     if (c.closing < -bounce || first == kHeld || second == kHeld) return;
-    goes_on |= (first == kStruck || second == kStruck) && is_unloaded(c.first, c.second, c.impulse);
+    goes_on |= (first == kStruck || second == kStruck) && scene_.is_unloaded(c.first, c.second, c.impulse);
   });
   return goes_on;
 }
@@ -58,7 +50,7 @@ bool TablesLevel::find_blows() {
 // surface changes most (as in contact_loops.h).
 void TablesLevel::gather_open_contacts() {
   const auto awake = std::uint32_t(spheres_.awake);
-  const float bounce = bounce_velocity();
+  const float bounce = scene_.bounce_velocity();
   const ContactLaw only_law = materials_.law(kinds_.material[0], kinds_.material[0]);
   blow_bodies_.clear(), blow_manifolds_.clear(), blow_points_.clear();
   blow_contacts_.clear(), blown_places_.clear();
@@ -90,7 +82,7 @@ void TablesLevel::gather_open_contacts() {
     const bool has_own_law = of_ground || !constants_.one_kind;
     const std::uint32_t a = c.first[i], b = c.second[i];
     if (struck_[a] == kHeld || (b < awake && struck_[b] == kHeld)) return;
-    if (c.closing[i] >= -bounce && !is_unloaded(a, b, c.impulse[i])) return;
+    if (c.closing[i] >= -bounce && !scene_.is_unloaded(a, b, c.impulse[i])) return;
     CrowdManifold& m = blow_manifolds_.emplace_back();
     m.normal = Vec3(double(c.nx[i]), double(c.ny[i]), double(c.nz[i]));
     m.law = has_own_law
@@ -117,7 +109,7 @@ void TablesLevel::pass_blows_on() {
   gather_open_contacts();
   blow_bodies_before_ = blow_bodies_;
   waves_.pass_on(blow_bodies_, blow_manifolds_, blow_points_, constants_.wide_time,
-                 {.bounce_velocity = double(bounce_velocity())});
+                 {.bounce_velocity = double(scene_.bounce_velocity())});
   if (waves_.struck().empty()) return;
   waves_.add_impulses(blow_points_);
   for (std::size_t k = 0; k < blow_bodies_.size(); ++k) {

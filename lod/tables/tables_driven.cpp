@@ -85,8 +85,9 @@ void TablesLevel::find_awake_near(const Vec3& center, double reach, std::vector<
 double TablesLevel::find_way_to_ground(const Driven& driven, const Vec3& way) const {
   const double radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
   if (!ground_.has_parts() || way.norm() + radius <= ground_reach(driven.place, driven.speed)) return 1.0;
-  return find_free_way(ground_, driven.from, way, radius,
-                       [&](const Vec3& direction) { return double(ground_height(driven.place, direction)); });
+  return find_free_way(ground_, driven.from, way, radius, [&](const Vec3& direction) {
+    return double(scene_.ground_height(driven.place, direction));
+  });
 }
 
 // m: where it was when the step began.
@@ -135,7 +136,7 @@ double TablesLevel::find_way_to(const Driven& driven, const Vec3& way, std::int6
   for (int i = 0; i < kMostSteps && gone < 1.0; ++i) {
     spheres_.set_position(self, driven.from + gone * relative);
     spheres_.set_position(other, start);
-    const auto [normal, gap] = separate(self, other);
+    const auto [normal, gap] = scene_.separate(self, other);
     const double closing = -relative.dot(normal);  // m, on all of the way
     if (closing <= 0.0) break;
     if (gap <= kTouching * radius) {

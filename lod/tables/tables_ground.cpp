@@ -26,7 +26,7 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
     const Vec3 center = spheres_.position(i);
     near.clear();
     const std::size_t first = faces_.size();
-    const bool alone = is_alone(i), only_planes = alone && find_planes_of(i);
+    const bool alone = scene_.is_alone(i), only_planes = alone && find_planes_of(i);
     const PairBody hull{kind_of(i).shape.get(), center, spheres_.orientation(i)};
     if (!only_planes) find_ground_near(ground_, center, reach, 0.0, near, constants_.hulls ? &hull : nullptr);
     const bool bridges = !alone && find_bridged_plane(i, near);
@@ -68,7 +68,7 @@ bool TablesLevel::find_bridged_plane(std::int64_t place, std::span<const GroundN
   const Vec3 up = -settings_.gravity / strength, u = up.unitOrthogonal(), v = up.cross(u);
   const auto is_below = [&](const GroundNear& n) { return !n.at_edge && n.normal.dot(up) > kUpright; };
   if (std::ranges::any_of(near, is_below)) return false;
-  if (double(ground_height(place, -up)) > kFlat * kind.shape->radius) return false;
+  if (double(scene_.ground_height(place, -up)) > kFlat * kind.shape->radius) return false;
   const StatisticalBody body = spheres_.body(place);
   thread_local std::vector<SolidContact> contacts;
   contacts.clear();
@@ -97,7 +97,7 @@ bool TablesLevel::find_bridged_plane(std::int64_t place, std::span<const GroundN
   if (ways.size() < 3) return false;
   normal.normalize();
   // Over it the map of its heights, which is coarse, is to tell that gap.
-  const double height = double(ground_height(place, -normal)) + gap;
+  const double height = double(scene_.ground_height(place, -normal)) + gap;
   faces_.push_back({normal, normal.dot(body.position) - height, contacts.front().part->material,
                     contacts.front().part->id});
   return true;
@@ -113,7 +113,7 @@ bool TablesLevel::is_cornered(std::int64_t place, std::span<const GroundNear> ne
   };
   if (!constants_.hulls) return is_held();
   const auto is_over_edge = [&](const GroundNear& n) {
-    return n.at_edge && n.height <= double(ground_height(place, -n.normal)) + margin;
+    return n.at_edge && n.height <= double(scene_.ground_height(place, -n.normal)) + margin;
   };
   if (std::ranges::any_of(near, is_over_edge) && !is_nearly_still(spheres_.body(place), kind_of(place), true))
     return true;
@@ -151,7 +151,7 @@ void TablesLevel::find_further_planes() {
     if (std::int32_t(number) == step_.plane[std::size_t(i)]) return;
     const HalfSpace& other = plane(std::int32_t(number));
     const Vec3 ground = planes_.velocity(number);
-    const float gap = float(other.height_of(spheres_.position(i))) - ground_height(i, -other.normal),
+    const float gap = float(other.height_of(spheres_.position(i))) - scene_.ground_height(i, -other.normal),
                 closing = float((spheres_.velocity(i) - ground).dot(other.normal));
     const BodyKind& kind = kind_of(i);
     if (gap + closing * constants_.time > contacts_.settings().touching * float(kind.shape->radius)) return;
@@ -162,12 +162,13 @@ void TablesLevel::find_further_planes() {
                               .velocity = {float(ground.x()), float(ground.y()), float(ground.z())},
                               .gap = gap,
                               .closing = closing,
-                              .flush = constants_.hulls && lies_flush(i, -other.normal),
+                              .flush = constants_.hulls && scene_.lies_flush(i, -other.normal),
                               .law = materials_.law(kind.material, other.material)});
   };
   auto near = near_faces_.begin();
   step_.each(GroundState::near, 0, spheres_.awake, [&](std::int64_t i) {
-    if (constants_.hulls && !paired_[std::size_t(i)] && is_alone(i)) return;  // its hull, on all of them
+    if (constants_.hulls && !paired_[std::size_t(i)] && scene_.is_alone(i))
+      return;  // its hull, on all of them
     for (std::uint32_t number = 0; number < everywhere.size(); ++number) look(i, number);
     while (near != near_faces_.end() && near->place < i) ++near;
     if (near == near_faces_.end() || near->place != i) return;
@@ -175,7 +176,7 @@ void TablesLevel::find_further_planes() {
       look(i, std::uint32_t(everywhere.size()) + std::uint32_t(face));
   });
   if (plane_touches_.empty()) return;
-  contacts_.add_ground(spheres_, plane_touches_, bounce_velocity(), constants_);
+  contacts_.add_ground(spheres_, plane_touches_, scene_.bounce_velocity(), constants_);
 }
 
 // Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way:
@@ -204,7 +205,7 @@ void TablesLevel::keep_above_planes(std::int64_t begin, std::int64_t end) {
                    height = plane.height_of(spheres_.position(i));
       if (height >= (1.0 - kDeepest) * radius) continue;
       const double least = std::max(least_height(*kind_of(i).shape),
-                                    double(ground_height(i, -plane.normal)) - kDeepest * radius);
+                                    double(scene_.ground_height(i, -plane.normal)) - kDeepest * radius);
       if (height < least) lift_out(i, plane, least - height);
     }
 }

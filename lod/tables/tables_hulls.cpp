@@ -20,21 +20,16 @@ bool is_sunk(const StatisticalBody& body, const Shape& shape, std::span<const Ha
 
 }  // namespace
 
-// Whether it moves on its hull, if nothing touches it.
-bool TablesLevel::is_alone(std::int64_t place) const {
-  return constants_.hulls && spheres_.since_crowded[std::size_t(place)] >= kLeaningTicks;
-}
-
 // Where the ground's parts are planes to that, here.
 bool TablesLevel::stands_when_alone(std::int64_t place) const {
-  if (!is_alone(place)) return false;
+  if (!scene_.is_alone(place)) return false;
   const NearFaces* near = near_faces_at(place);
   return !near || near->even;
 }
 
 // Where they are none, as a guest.
 bool TablesLevel::is_at_edge(std::int64_t place) const {
-  if (!is_alone(place)) return false;
+  if (!scene_.is_alone(place)) return false;
   const NearFaces* near = near_faces_at(place);
   return near && !near->even;
 }

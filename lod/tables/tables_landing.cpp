@@ -21,14 +21,14 @@ bool TablesLevel::strikes_ground(std::int64_t place) const {
     return false;
   const auto number = step_.plane[std::size_t(place)];
   const Vec3 against = spheres_.velocity(place) - planes_.velocity(std::size_t(number));
-  return against.dot(plane(number).normal) < -double(bounce_velocity());
+  return against.dot(plane(number).normal) < -double(scene_.bounce_velocity());
 }
 
 // Whom of those that strike another would meet in this step once it stopped, as the ground goes, with nothing
 // that holds the two apart yet.
 void TablesLevel::find_followed() {
   const auto awake = std::uint32_t(spheres_.awake);
-  const float bounce = bounce_velocity();
+  const float bounce = scene_.bounce_velocity();
   followed_.assign(std::size_t(awake), 0);
   for (const std::uint32_t place : striking_) followed_[place] = kStrikes;
   const auto note = [&](std::uint32_t place, std::uint32_t other, const SphereContact& c, float side) {
@@ -39,7 +39,7 @@ void TablesLevel::find_followed() {
     if (speed > bounce && c.gap < speed * constants_.time) followed_[place] = kFollowed;
   };
   contacts_.each([&](const SphereContact& c) {
-    if (c.second >= awake || c.closing < -bounce || !is_unloaded(c.first, c.second, c.impulse)) return;
+    if (c.second >= awake || c.closing < -bounce || !scene_.is_unloaded(c.first, c.second, c.impulse)) return;
     note(c.second, c.first, c, -1.0f), note(c.first, c.second, c, 1.0f);
   });
 }

@@ -247,7 +247,7 @@ void TablesLevel::describe(Guest& guest) const {
   const NearFaces* near = near_faces_at(i);
   const bool awake = i < spheres_.awake, touches = awake && step_.touches(i);
   guest.moved = constants_.hulls && awake && near && near->cornered;
-  guest.on_hull = guest.moved || (is_alone(i) && !touches);
+  guest.on_hull = guest.moved || (scene_.is_alone(i) && !touches);
 }
 
 StatisticalBody TablesLevel::guest_body(const Guest& guest) const {

@@ -27,6 +27,7 @@
 #include "lod/tables/guest.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_ground.h"
+#include "lod/tables/sphere_scene.h"
 #include "lod/tables/tipping.h"
 #include "reference/disjoint_sets.h"
 #include "reference/state_archive.h"
@@ -184,9 +185,6 @@ class TablesLevel {
   const StillGrid& still() const { return sleepers_.of(StatisticalModel::tables); }
   const BodyKind& kind_of(std::int64_t place) const { return all_kinds_[spheres_.kind[std::size_t(place)]]; }
   float radius_at_ground(const StatisticalBody& body, const BodyKind& kind) const;
-  float bounce_velocity() const {
-    return float(world().bounce_velocity) + constants_.gravity * constants_.time;
-  }  // with what gravity adds in a step
   void lay_still(std::int64_t place);
   void forget_all_given();
   void ease();
@@ -238,7 +236,6 @@ class TablesLevel {
   void update_radii_one_by_one();
   void find_still_contacts();
   void wake_struck();
-  bool is_unloaded(std::uint32_t first, std::uint32_t second, float impulse) const;
   bool find_blows();
   void gather_open_contacts();
   void pass_blows_on();
@@ -259,12 +256,6 @@ class TablesLevel {
   bool touches_further_planes(std::int64_t place) const;
   int sweeps() const;
   void sweep_contacts();
-  float ground_height(std::int64_t place, const Vec3& direction) const;
-  bool lies_flush(std::int64_t place, const Vec3& direction) const;
-  double exit_distance(std::int64_t place, const Vec3& direction) const;
-  Vec3 meeting_point(std::int64_t first, std::int64_t second) const;
-  float read_heights(const std::vector<float>& heights, std::int64_t place, const Vec3& direction) const;
-  std::pair<Vec3, double> separate(std::int64_t first, std::int64_t second) const;
   void respond_as_paper(ContactTally& tally);
   void start_block(std::int64_t begin, std::int64_t end, Simd simd);
   void sort_ground();
@@ -273,7 +264,6 @@ class TablesLevel {
   void choose_hulls(std::int64_t begin, std::int64_t end);
   bool lies_at_clips_end(std::int64_t place) const;
   void move_alone(std::int64_t place, ContactTally& tally, std::vector<PlayingClip>& joined);
-  bool is_alone(std::int64_t place) const;
   bool stands_when_alone(std::int64_t place) const;
   bool is_at_edge(std::int64_t place) const;
   bool is_nearly_still(const StatisticalBody& body, const BodyKind& kind, bool among_others) const;
@@ -327,6 +317,8 @@ class TablesLevel {
   std::vector<std::int32_t> drawn_, drawn_off_;  // places awake, in finish()
   DisjointSets riders_;                          // of the places awake, and what nothing stops
   StepConstants constants_;
+  const SphereScene scene_{settings_, ground_,    materials_, all_kinds_, rest_law_,
+                           kinds_,    constants_, spheres_,   contacts_,  step_};
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;

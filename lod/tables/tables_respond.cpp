@@ -98,8 +98,8 @@ void TablesLevel::sweep_contacts() {
   for (rounds_ = 0; !last;) {
     ++rounds_;
     last = rounds_ >= most || (rounds_ >= usual && outcome.changed <= solved);
-    outcome = contacts_.sweep(spheres_, kinds_, materials_, bounce_velocity(), constants_, last, eased_ > 0,
-                              simd_, step_, jobs_);
+    outcome = contacts_.sweep(spheres_, kinds_, materials_, scene_.bounce_velocity(), constants_, last,
+                              eased_ > 0, simd_, step_, jobs_);
     if (!last)
       each_block([&](std::int64_t begin, std::int64_t end) {
         if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
@@ -125,17 +125,18 @@ void TablesLevel::write_contact(const SphereContact& c) {
   const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
   if (c.second >= kGroundPlace) {
     const HalfSpace& under = plane(std::int32_t(c.second - kGroundPlace));
-    return log_->add({.first = spheres_.owner[c.first],
-                      .ground = under.id,
-                      .ground_material = under.material,
-                      .point = spheres_.position(c.first) - double(ground_height(c.first, -normal)) * normal,
-                      .normal = normal,
-                      .impulse = double(c.impulse),
-                      .approach = std::max(0.0, -double(c.closing))});
+    return log_->add(
+        {.first = spheres_.owner[c.first],
+         .ground = under.id,
+         .ground_material = under.material,
+         .point = spheres_.position(c.first) - double(scene_.ground_height(c.first, -normal)) * normal,
+         .normal = normal,
+         .impulse = double(c.impulse),
+         .approach = std::max(0.0, -double(c.closing))});
   }
   log_->add({.first = spheres_.owner[c.first],
              .second = spheres_.owner[c.second],
-             .point = meeting_point(c.first, c.second),
+             .point = scene_.meeting_point(c.first, c.second),
              .normal = normal,
              .impulse = double(c.impulse),
              .approach = std::max(0.0, -double(c.closing))});
@@ -184,7 +185,8 @@ void TablesLevel::sort_ground() {
   each_block([&](std::int64_t begin, std::int64_t end) {
     if (constants_.hulls) choose_hulls(begin, end);
     if (!has_planes()) return clear_added(begin, end, step_);
-    sort_near_ground(spheres_, kinds_, planes_, constants_, bounce_velocity(), simd_, begin, end, step_);
+    sort_near_ground(spheres_, kinds_, planes_, constants_, scene_.bounce_velocity(), simd_, begin, end,
+                     step_);
     step_.each(GroundState::settles, begin, end, [&](std::int64_t i) { choose_rest_pose(i); });
     for (auto carried = std::ranges::lower_bound(carried_, begin, {}, &Carried::place);
          carried != carried_.end() && carried->place < end; ++carried) {

@@ -34,7 +34,7 @@ void TablesLevel::find_still_contacts() {
   for (const auto& [place, slot] : still_touches_) {
     const std::int64_t at = spheres_.place_of_slot[slot];
     if (at < spheres_.awake) continue;
-    const auto [normal, gap] = separate(place, at);
+    const auto [normal, gap] = scene_.separate(place, at);
     const Vec3 velocity = spheres_.velocity(place);
     const bool touches = gap + velocity.dot(normal) * constants_.wide_time <=
                          0.01 * std::min(kind_of(place).shape->radius, kind_of(at).shape->radius);
@@ -91,7 +91,7 @@ void TablesLevel::wake_struck() {
   for (const auto& [place, slot] : left_asleep_) {
     const auto at = std::int64_t(place_of(int(slot)));
     if (slot != last_slot) last_slot = slot, last_number = add(at);
-    blows_.add_contact(number_of(place), last_number, separate(place, at).first, 0.0, 0.0);
+    blows_.add_contact(number_of(place), last_number, scene_.separate(place, at).first, 0.0, 0.0);
   }
   struck_slots_.clear();
   for (const std::int32_t number : blows_.find())

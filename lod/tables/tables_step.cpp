@@ -127,7 +127,7 @@ bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
   const std::int64_t were_awake = spheres_.awake;
   note_pushes();
   contacts_.set_pushes(pushes_by_place_);
-  contacts_.find(spheres_, kinds_, cells, bounce_velocity(), constants_, simd_, jobs_, others);
+  contacts_.find(spheres_, kinds_, cells, scene_.bounce_velocity(), constants_, simd_, jobs_, others);
   find_still_contacts();
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
     step_.resize(std::size_t(spheres_.awake));
@@ -136,7 +136,7 @@ bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
   }
   for (auto& touch : still_touches_) touch.second = spheres_.place_of_slot[touch.second];
   if (!still_touches_.empty())
-    contacts_.add(spheres_, kinds_, still_touches_, bounce_velocity(), constants_, simd_);
+    contacts_.add(spheres_, kinds_, still_touches_, scene_.bounce_velocity(), constants_, simd_);
   find_further_planes();
   return contacts_.any_near();
 }
@@ -145,7 +145,7 @@ void TablesLevel::find_ground_contacts() {
   forget_contacts();
   note_pushes();
   contacts_.set_pushes(pushes_by_place_);
-  contacts_.find(spheres_, kinds_, no_cells_, bounce_velocity(), constants_, simd_, jobs_, nullptr);
+  contacts_.find(spheres_, kinds_, no_cells_, scene_.bounce_velocity(), constants_, simd_, jobs_, nullptr);
   find_further_planes();
 }
 
@@ -174,7 +174,7 @@ void TablesLevel::finish(ContactTally& tally) {
   if (tips_) {
     tipping_.clear(std::size_t(spheres_.awake));
     contacts_.each_run(jobs_, [&](const ContactRun& run) {
-      add_torques(run, spheres_, kinds_, bounce_velocity(), tipping_);
+      add_torques(run, spheres_, kinds_, scene_.bounce_velocity(), tipping_);
     });
   }
   each_block([&](std::int64_t begin, std::int64_t end) {
@@ -289,7 +289,7 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Pl
     if (constants_.hulls && (step_.touches(i) || spheres_.since_crowded[i] < kLeaningTicks)) {
       // As high as its hull is over that plane; the others that it meets are among its contacts.
       around.planes = {&plane(step_.plane[i]), 1};
-      body.sphere_radius = ground_height(i, -around.planes[0].normal);
+      body.sphere_radius = scene_.ground_height(i, -around.planes[0].normal);
     }
     const BodyKind& kind = kind_of(i);
     const bool is_ball = constants_.hulls && kind.shape->sphere_radius;  // for which no table need stand
