@@ -13,6 +13,16 @@ bool SphereScene::is_unloaded(std::uint32_t first, std::uint32_t second, float i
          float(ImpactWaves::kUnloaded) * bounce_velocity();
 }
 
+// In coarse steps, or pressed by others as a sphere and held as a hull, it might go on for ever, by as little
+// as this.
+bool SphereScene::is_nearly_still(const StatisticalBody& body, const BodyKind& kind,
+                                  bool among_others) const {
+  constexpr double kNearlyStill = 4.0;  // times what is still
+  const double energy =
+      kNearlyStill * rest_law.still_energy(among_others, kind.shape->radius, settings.gravity.norm());
+  return 0.5 * body.velocity.squaredNorm() < energy && kinetic_energy(body, *kind.shape) < energy;
+}
+
 float SphereScene::ground_height(std::int64_t place, const Vec3& direction) const {
   if (!constants.hulls) return spheres.radius[std::size_t(place)];
   const Vec3 own = spheres.orientation(place).conjugate() * direction;

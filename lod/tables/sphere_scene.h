@@ -36,6 +36,7 @@ struct SphereScene {
   bool is_alone(std::int64_t place) const {
     return constants.hulls && spheres.since_crowded[std::size_t(place)] >= kLeaningTicks;
   }
+  bool is_nearly_still(const StatisticalBody& body, const BodyKind& kind, bool among_others) const;
   /// Whether a contact that carries so much, N s, carries nothing to a blow.
   bool is_unloaded(std::uint32_t first, std::uint32_t second, float impulse) const;
 

@@ -72,7 +72,7 @@ void TablesLevel::gather_open_contacts() {
   };
   // What moves is a body that nothing moves; what stands, as sleepers do, is none.
   const auto number_of_ground = [&](std::uint32_t plane) {
-    const Vec3 velocity = planes_.velocity(plane);
+    const Vec3 velocity = near_ground_.planes().velocity(plane);
     if (velocity.isZero(0.0)) return std::int32_t(-1);
     blown_places_.push_back(-1);
     blow_bodies_.emplace_back().velocity = velocity;

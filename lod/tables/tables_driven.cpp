@@ -84,7 +84,8 @@ void TablesLevel::find_awake_near(const Vec3& center, double reach, std::vector<
 // The part of the way, 0 to 1.
 double TablesLevel::find_way_to_ground(const Driven& driven, const Vec3& way) const {
   const double radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
-  if (!ground_.has_parts() || way.norm() + radius <= ground_reach(driven.place, driven.speed)) return 1.0;
+  if (!ground_.has_parts() || way.norm() + radius <= near_ground_.reach_of(driven.place, driven.speed))
+    return 1.0;
   return find_free_way(ground_, driven.from, way, radius, [&](const Vec3& direction) {
     return double(scene_.ground_height(driven.place, direction));
   });

@@ -64,7 +64,7 @@ void TablesLevel::end_rubbing(std::vector<GroundFriction>& rubs) const {
   for (GroundFriction& rub : rubs) {
     const std::size_t i = place_of(std::int32_t(rub.slot));
     const Row after = row_of(lanes_of(step_.p[i]) + lanes_of(step_.a[i]));
-    const Vec3& up = plane(step_.plane[i]).normal;
+    const Vec3& up = near_ground_.plane(step_.plane[i]).normal;
     const F3 n{float(up.x()), float(up.y()), float(up.z())},
         change = per_time * (F3{after.x, after.y, after.z} - rub.force);
     rub.force = change - dot(change, n) * n;

@@ -22,26 +22,12 @@ bool is_sunk(const StatisticalBody& body, const Shape& shape, std::span<const Ha
 
 // Where the ground's parts are planes to that, here.
 bool TablesLevel::stands_when_alone(std::int64_t place) const {
-  if (!scene_.is_alone(place)) return false;
-  const NearFaces* near = near_faces_at(place);
-  return !near || near->even;
+  return scene_.is_alone(place) && near_ground_.is_even(place);
 }
 
 // Where they are none, as a guest.
 bool TablesLevel::is_at_edge(std::int64_t place) const {
-  if (!scene_.is_alone(place)) return false;
-  const NearFaces* near = near_faces_at(place);
-  return near && !near->even;
-}
-
-// In coarse steps, or pressed by others as a sphere and held as a hull, it might go on for ever, by as little
-// as this.
-bool TablesLevel::is_nearly_still(const StatisticalBody& body, const BodyKind& kind,
-                                  bool among_others) const {
-  constexpr double kNearlyStill = 4.0;  // times what is still
-  const double energy =
-      kNearlyStill * rest_law_.still_energy(among_others, kind.shape->radius, settings_.gravity.norm());
-  return 0.5 * body.velocity.squaredNorm() < energy && kinetic_energy(body, *kind.shape) < energy;
+  return scene_.is_alone(place) && !near_ground_.is_even(place);
 }
 
 // Those that touched no other for a while stand on their hulls; the others are spheres.
@@ -121,9 +107,9 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   });
   const bool is_lively = std::ranges::any_of(
       around.planes, [&](const HalfSpace& p) { return around.law(kind_of(place), p).restitution > kLively; });
-  const HullMotionSettings& settings = !is_level || is_nearly_still(body, kind_of(place), false) ? fine
-                                       : is_lively                                               ? lively
-                                                                                                 : level;
+  const HullMotionSettings& settings = !is_level || scene_.is_nearly_still(body, kind_of(place), false) ? fine
+                                       : is_lively ? lively
+                                                   : level;
   const HullMotion moved = move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity,
                                         constants_.wide_time, may_settle, settings);
   body.eased = eased;
@@ -155,7 +141,7 @@ bool TablesLevel::overlaps_ground(const StatisticalBody& body, const BodyKind& k
 float TablesLevel::height_over_ground(std::int64_t place, const StatisticalBody& body) const {
   const double radius = kind_of(place).shape->radius;
   double height = radius;
-  for (const HalfSpace& plane : join_planes(ground_.planes(), faces_of(place)))
+  for (const HalfSpace& plane : near_ground_.planes_of(place))
     height = std::min(height, plane.height_of(body.position));
   return float(std::max(height, least_height(*kind_of(place).shape)));
 }
@@ -174,8 +160,7 @@ void TablesLevel::take_from_edge(std::int64_t place, const StatisticalBody& move
 
 bool TablesLevel::stands(std::int64_t place) const {
   if (spheres_.on_hull[std::size_t(place)] == HullStand::none || is_at_edge(place)) return true;
-  return stands_firmly(spheres_.body(place), *kind_of(place).shape,
-                       join_planes(ground_.planes(), faces_of(place)));
+  return stands_firmly(spheres_.body(place), *kind_of(place).shape, near_ground_.planes_of(place));
 }
 
 void TablesLevel::end_clip(std::int64_t place) {

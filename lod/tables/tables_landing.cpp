@@ -20,8 +20,8 @@ bool TablesLevel::strikes_ground(std::int64_t place) const {
   if (step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::near) || !step_.touches(place))
     return false;
   const auto number = step_.plane[std::size_t(place)];
-  const Vec3 against = spheres_.velocity(place) - planes_.velocity(std::size_t(number));
-  return against.dot(plane(number).normal) < -double(scene_.bounce_velocity());
+  const Vec3 against = spheres_.velocity(place) - near_ground_.planes().velocity(std::size_t(number));
+  return against.dot(near_ground_.plane(number).normal) < -double(scene_.bounce_velocity());
 }
 
 // Whom of those that strike another would meet in this step once it stopped, as the ground goes, with nothing
@@ -33,7 +33,8 @@ void TablesLevel::find_followed() {
   for (const std::uint32_t place : striking_) followed_[place] = kStrikes;
   const auto note = [&](std::uint32_t place, std::uint32_t other, const SphereContact& c, float side) {
     if (followed_[place] == 0) return;
-    const Vec3 against = spheres_.velocity(other) - planes_.velocity(std::size_t(step_.plane[place]));
+    const Vec3 against =
+        spheres_.velocity(other) - near_ground_.planes().velocity(std::size_t(step_.plane[place]));
     const float speed =
         side * (float(against.x()) * c.nx + float(against.y()) * c.ny + float(against.z()) * c.nz);
     if (speed > bounce && c.gap < speed * constants_.time) followed_[place] = kFollowed;
@@ -46,7 +47,7 @@ void TablesLevel::find_followed() {
 
 // `guests` are moved later, among hulls.
 void TablesLevel::let_strikers_strike(std::span<const Guest> guests, ContactTally& tally) {
-  if (!constants_.hulls || !has_planes()) return;
+  if (!constants_.hulls || !near_ground_.any()) return;
   striking_.clear();
   striking_.reserve(kFewStrikers), strikers_.reserve(kFewStrikers);
   followed_.reserve(std::size_t(spheres_.awake));
@@ -74,7 +75,7 @@ void TablesLevel::strike_first(std::int64_t place, ContactTally& tally) {
     row.x = float(v.x()), row.y = float(v.y()), row.z = float(v.z());
   };
   set(step_.p[i], body.velocity), set(step_.u[i], turning), set(step_.s[i], Vec3::Zero());
-  const Vec3& normal = plane(step_.plane[i]).normal;
+  const Vec3& normal = near_ground_.plane(step_.plane[i]).normal;
   strikers_.push_back({place, normal, body.velocity.dot(normal)});
 }
 

@@ -188,7 +188,7 @@ void TablesLevel::lay_still(std::int64_t place) {
 
 void TablesLevel::archive(StateArchive& a) {
   a(spheres_, contacts_, elapsed_, lengths_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_,
-    cornered_, given_, pushes_, clips_, loads_, ground_friction_);
+    near_ground_, given_, pushes_, clips_, loads_, ground_friction_);
   if (!a.reading()) return;
   kinds_ = {};
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());
@@ -226,7 +226,7 @@ void TablesLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
 
 double TablesLevel::count_traffic(bool pair_phase) const {
   return count_bytes_moved(
-      {spheres_, step_, contacts_, pair_phase, has_planes(), settings_.sleeping, rounds_});
+      {spheres_, step_, contacts_, pair_phase, near_ground_.any(), settings_.sleeping, rounds_});
 }
 
 std::size_t TablesLevel::bytes() const {
@@ -235,18 +235,17 @@ std::size_t TablesLevel::bytes() const {
       given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
       given_.bucket_count() * sizeof(void*);
   std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) +
-                      held(ground_friction_) + held(tallies_) + held(clips_) + held(plane_touches_) +
-                      held(strikers_) + held(striking_) + held(followed_);
+                      held(ground_friction_) + held(tallies_) + held(clips_) + held(strikers_) +
+                      held(striking_) + held(followed_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
-  return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes();
+  return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes() + further_planes_.bytes();
 }
 
 void TablesLevel::describe(Guest& guest) const {
   const auto i = std::int64_t(place_of(guest.slot));
   guest.resting = {spheres_.pose[std::size_t(i)]};
-  const NearFaces* near = near_faces_at(i);
   const bool awake = i < spheres_.awake, touches = awake && step_.touches(i);
-  guest.moved = constants_.hulls && awake && near && near->cornered;
+  guest.moved = constants_.hulls && awake && near_ground_.is_cornered(i);
   guest.on_hull = guest.moved || (scene_.is_alone(i) && !touches);
 }
 
@@ -322,7 +321,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
   wake_guests(guests);
   if (spheres_.awake > were_awake) {
     step_.resize(std::size_t(spheres_.awake));
-    find_near_faces(were_awake, spheres_.awake);
+    near_ground_.find_faces(were_awake, spheres_.awake);
     start_block(were_awake, spheres_.awake, simd_);
     clear_added(were_awake, spheres_.awake, step_);
   }

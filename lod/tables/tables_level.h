@@ -14,7 +14,6 @@
 
 #include "lod/broad_phase/cell_grid.h"
 #include "lod/contact/impact_waves.h"
-#include "lod/contact/solid_contacts.h"
 #include "lod/ground/ground.h"
 #include "lod/jobs.h"
 #include "lod/statistical/blow_reach.h"
@@ -24,9 +23,10 @@
 #include "lod/statistical/step_lengths.h"
 #include "lod/step_report.h"
 #include "lod/support/hull_motion.h"
+#include "lod/tables/further_planes.h"
 #include "lod/tables/guest.h"
+#include "lod/tables/near_ground.h"
 #include "lod/tables/sphere_contacts.h"
-#include "lod/tables/sphere_ground.h"
 #include "lod/tables/sphere_scene.h"
 #include "lod/tables/tipping.h"
 #include "reference/disjoint_sets.h"
@@ -90,10 +90,10 @@ class TablesLevel {
   /// In their place, where no sphere is near another body: those with further planes alone.
   void find_ground_contacts();
   /// In their place, where there are none.
-  void forget_contacts() { contacts_.clear(), plane_touches_.clear(), left_asleep_.clear(); }
+  void forget_contacts() { contacts_.clear(), further_planes_.clear(), left_asleep_.clear(); }
   /// Slots of those in this step that are at an edge of the ground or between parts of it that move, or,
   /// published, that parts of it hold several ways: planes do not tell how they go on.
-  std::span<const std::int32_t> cornered() const { return cornered_; }
+  std::span<const std::int32_t> cornered() const { return near_ground_.cornered(); }
   /// `guests`: who will be described and taken.
   void respond(std::span<const Guest> guests, ContactTally& tally);
   /// Who it is in this step: after respond().
@@ -126,13 +126,6 @@ class TablesLevel {
     double leaves = 0.0;         // m/s, along it
     double given = 0.0;          // m/s: what the ground gives it against those
   };
-  struct NearFaces {
-    std::int64_t place = 0;
-    std::int32_t begin = 0, end = 0;  // in faces_
-    bool even = false;                // planes stand for all that its hull may meet of the ground's parts
-    bool cornered = false;            // planes do not tell how it goes on
-    bool above = false;               // its centre was, of all, where the step began, and none moves
-  };
   /// What hulls press onto a body that touches its own rung, too.
   struct Load {
     std::uint32_t slot = 0, owner = 0;
@@ -148,10 +141,6 @@ class TablesLevel {
   struct GivenFriction {
     std::int64_t place = 0;
     lane::F3 velocity;  // m/s
-  };
-  struct Carried {
-    std::int64_t place = 0;
-    Vec3 velocity, angular_velocity;  // of the ground below
   };
   struct PlayingClip {
     ClipPlayback playback = {};
@@ -174,13 +163,6 @@ class TablesLevel {
   void write_contact(const SphereContact& contact);
   void write_ground();
   std::size_t place_of(int slot) const { return spheres_.place_of_slot[std::size_t(slot)]; }
-  bool has_planes() const { return !ground_.planes().empty() || !faces_.empty(); }
-  const HalfSpace& plane(std::int32_t number) const {
-    const auto own = std::int32_t(ground_.planes().size());
-    return number < own ? ground_.planes()[std::size_t(number)] : faces_[std::size_t(number - own)];
-  }
-  const NearFaces* near_faces_at(std::int64_t place) const;
-  std::span<const HalfSpace> faces_of(std::int64_t place) const;
   StillGrid& still() { return sleepers_.of(StatisticalModel::tables); }
   const StillGrid& still() const { return sleepers_.of(StatisticalModel::tables); }
   const BodyKind& kind_of(std::int64_t place) const { return all_kinds_[spheres_.kind[std::size_t(place)]]; }
@@ -211,9 +193,6 @@ class TablesLevel {
   void apply_pushes(double dt, ContactTally& tally);
   void note_pushes();
   void take_back_excess();
-  void lift_out(std::int64_t place, const HalfSpace& plane, double lift);
-  void keep_above_planes(std::int64_t begin, std::int64_t end);
-  void keep_above_faces();
   void note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const;
   void stop_before_unseen();
   void stop_before_unseen(const Driven& driven);
@@ -228,11 +207,6 @@ class TablesLevel {
   void give_pushes(double share);
   void start(double dt, std::span<const std::uint32_t> order);
   float heaviest() const;
-  double ground_reach(std::int64_t place, double speed) const;
-  void find_near_faces(std::int64_t begin, std::int64_t end);
-  bool find_planes_of(std::int64_t place);
-  bool find_bridged_plane(std::int64_t place, std::span<const GroundNear> near);
-  bool is_cornered(std::int64_t place, std::span<const GroundNear> near, double margin) const;
   void update_radii_one_by_one();
   void find_still_contacts();
   void wake_struck();
@@ -245,15 +219,12 @@ class TablesLevel {
   void strike_first(std::int64_t place, ContactTally& tally);
   void hold_strikers();
   void finish_strikers(ContactTally& tally);
-  void note_paired();
-  void find_further_planes();
   template <class Visit>
   void each_pressed(const Visit& visit);
   void press();
   void take_back_pressing();
   const Load* load_of(std::int64_t place) const;
   void keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after);
-  bool touches_further_planes(std::int64_t place) const;
   int sweeps() const;
   void sweep_contacts();
   void respond_as_paper(ContactTally& tally);
@@ -266,7 +237,6 @@ class TablesLevel {
   void move_alone(std::int64_t place, ContactTally& tally, std::vector<PlayingClip>& joined);
   bool stands_when_alone(std::int64_t place) const;
   bool is_at_edge(std::int64_t place) const;
-  bool is_nearly_still(const StatisticalBody& body, const BodyKind& kind, bool among_others) const;
   bool overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const;
   float height_over_ground(std::int64_t place, const StatisticalBody& body) const;
   void take_from_edge(std::int64_t place, const StatisticalBody& moved);
@@ -302,15 +272,10 @@ class TablesLevel {
   SphereKinds kinds_;
   Spheres spheres_;
   SphereContacts contacts_;
-  SphereGround planes_;
   SphereStep step_;
   TippingStep tipping_;
-  bool tips_ = false;                   // whether anybody may tip over in this step
-  int rounds_ = 0;                      // of contacts, in the last step
-  std::vector<HalfSpace> faces_;        // of this step: of the ground's parts, each for the sphere near it
-  std::vector<NearFaces> near_faces_;   // by place
-  std::vector<std::int32_t> cornered_;  // slots
-  std::vector<Carried> carried_;        // by place: near ground that moves
+  bool tips_ = false;  // whether anybody may tip over in this step
+  int rounds_ = 0;     // of contacts, in the last step
   std::vector<std::int64_t> carried_guests_,
       leaning_;                                  // places: of guests; of those on their hulls that touch
   std::vector<std::int64_t> set_out_;            // of these, who gains speed
@@ -319,6 +284,8 @@ class TablesLevel {
   StepConstants constants_;
   const SphereScene scene_{settings_, ground_,    materials_, all_kinds_, rest_law_,
                            kinds_,    constants_, spheres_,   contacts_,  step_};
+  NearGround near_ground_{scene_};
+  FurtherPlanes further_planes_{scene_, near_ground_};
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;
@@ -364,8 +331,6 @@ class TablesLevel {
   std::vector<CrowdPoint> blow_points_;
   std::vector<std::pair<ContactArrays*, std::size_t>> blow_contacts_;  // where each manifold's contact is
   std::vector<SphereContact> passed_;  // in this step: those through which a blow went on, with what it gave
-  std::vector<PlaneTouch> plane_touches_;  // of this step
-  std::vector<char> paired_;               // of each place: whether it has contacts with others
   std::vector<ContactTally> tallies_;
 };
 

@@ -102,15 +102,17 @@ void TablesLevel::sweep_contacts() {
                               eased_ > 0, simd_, step_, jobs_);
     if (!last)
       each_block([&](std::int64_t begin, std::int64_t end) {
-        if (has_planes()) sweep_ground(planes_, constants_, simd_, begin, end, step_);
+        if (near_ground_.any()) sweep_ground(near_ground_.planes(), constants_, simd_, begin, end, step_);
         take_impulses(simd_, begin, end, step_);
       });
     if (!last) hold_strikers();
   }
   if (!constants_.hulls || outcome.deepest <= settings.deep) return;
   for (int round = 0; round < settings.deep_rounds; ++round) {
-    if (has_planes())
-      each_block([&](std::int64_t begin, std::int64_t end) { keep_on_ground(planes_, begin, end, step_); });
+    if (near_ground_.any())
+      each_block([&](std::int64_t begin, std::int64_t end) {
+        keep_on_ground(near_ground_.planes(), begin, end, step_);
+      });
     contacts_.move_apart(spheres_, kinds_, step_, jobs_);
   }
 }
@@ -124,7 +126,7 @@ void TablesLevel::write_contact(const SphereContact& c) {
   if (c.impulse <= 0.0f) return;
   const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
   if (c.second >= kGroundPlace) {
-    const HalfSpace& under = plane(std::int32_t(c.second - kGroundPlace));
+    const HalfSpace& under = near_ground_.plane(std::int32_t(c.second - kGroundPlace));
     return log_->add(
         {.first = spheres_.owner[c.first],
          .ground = under.id,
@@ -147,7 +149,7 @@ void TablesLevel::write_ground() {
   for (std::int64_t i = 0; i < spheres_.awake; ++i) {
     const std::uint8_t state = step_.on_ground[std::size_t(i)];
     if (state != std::uint8_t(GroundState::lies) && state != std::uint8_t(GroundState::settles)) continue;
-    const HalfSpace& under = plane(step_.plane[std::size_t(i)]);
+    const HalfSpace& under = near_ground_.plane(step_.plane[std::size_t(i)]);
     const double pressing =
         std::max(0.0, -settings_.gravity.dot(under.normal)) * constants_.wide_time;  // m/s
     log_->add({.first = spheres_.owner[std::size_t(i)],
@@ -184,12 +186,13 @@ void TablesLevel::sort_ground() {
   end_clips_of_touched();
   each_block([&](std::int64_t begin, std::int64_t end) {
     if (constants_.hulls) choose_hulls(begin, end);
-    if (!has_planes()) return clear_added(begin, end, step_);
-    sort_near_ground(spheres_, kinds_, planes_, constants_, scene_.bounce_velocity(), simd_, begin, end,
-                     step_);
+    if (!near_ground_.any()) return clear_added(begin, end, step_);
+    sort_near_ground(spheres_, kinds_, near_ground_.planes(), constants_, scene_.bounce_velocity(), simd_,
+                     begin, end, step_);
     step_.each(GroundState::settles, begin, end, [&](std::int64_t i) { choose_rest_pose(i); });
-    for (auto carried = std::ranges::lower_bound(carried_, begin, {}, &Carried::place);
-         carried != carried_.end() && carried->place < end; ++carried) {
+    const auto all_carried = near_ground_.carried();
+    for (auto carried = std::ranges::lower_bound(all_carried, begin, {}, &NearGround::Carried::place);
+         carried != all_carried.end() && carried->place < end; ++carried) {
       std::uint8_t& state = step_.on_ground[std::size_t(carried->place)];
       const bool among_others = state >= std::uint8_t(GroundState::lies) && step_.touches(carried->place);
       if (state != std::uint8_t(GroundState::stands) && !among_others)
@@ -198,21 +201,17 @@ void TablesLevel::sort_ground() {
   });
 }
 
-bool TablesLevel::touches_further_planes(std::int64_t place) const {
-  return std::ranges::binary_search(plane_touches_, std::uint32_t(place), {}, &PlaneTouch::place);
-}
-
 // The rest pose that needs the smallest rotation (3.4), unless it has one that holds it. What knows its hull
 // lies in a wedge as it came.
 void TablesLevel::choose_rest_pose(std::int64_t i) {
-  if (constants_.hulls && touches_further_planes(i)) {
+  if (constants_.hulls && further_planes_.touches(i)) {
     spheres_.motion[i] = Motion::dynamic;
     step_.on_ground[i] = std::uint8_t(GroundState::lies);
     return;
   }
   const Quat orientation = spheres_.orientation(i);
   const BodyKind& kind = kind_of(i);
-  const HalfSpace& under = plane(step_.plane[i]);
+  const HalfSpace& under = near_ground_.plane(step_.plane[i]);
   if (spheres_.motion[i] == Motion::settling &&
       holds_pose(orientation, kind, spheres_.pose[i], under, world()))
     return;

@@ -20,7 +20,7 @@ constexpr double kCarries = 0.05;  // sine of a plane's angle to the vertical: a
 
 // Who is moved, directly or through others, by what nothing stops: as CarriedBodies are. False: nobody.
 bool TablesLevel::find_riders() {
-  if (carried_.empty() && carried_guests_.empty()) return false;
+  if (near_ground_.carried().empty() && carried_guests_.empty()) return false;
   join_touching();
   join_carried();
   return true;
@@ -35,16 +35,18 @@ void TablesLevel::join_touching() {
 
 void TablesLevel::join_carried() {
   const auto nothing_stops = std::int32_t(spheres_.awake);
-  for (const Carried& carried : carried_) riders_.join(std::int32_t(carried.place), nothing_stops);
+  for (const NearGround::Carried& carried : near_ground_.carried())
+    riders_.join(std::int32_t(carried.place), nothing_stops);
   for (const std::int64_t place : carried_guests_) riders_.join(std::int32_t(place), nothing_stops);
 }
 
 // Of the plane that it may touch; of none more than any.
 double TablesLevel::ground_friction(std::int64_t place) const {
-  if (!has_planes() || place >= spheres_.awake ||
+  if (!near_ground_.any() || place >= spheres_.awake ||
       step_.on_ground[std::size_t(place)] == std::uint8_t(GroundState::free))
     return kUnbounded;
-  return materials_.law(kind_of(place).material, plane(step_.plane[std::size_t(place)]).material).friction;
+  return materials_.law(kind_of(place).material, near_ground_.plane(step_.plane[std::size_t(place)]).material)
+      .friction;
 }
 
 // What lies near-still on others is brought to a stop in the world, but not with what carries it, and not
@@ -62,7 +64,8 @@ void TablesLevel::let_driven_go() {
     if (aside.norm() > std::min(held, kDraws) * strength)
       (aside.norm() > held * strength ? drawn_off_ : drawn_).push_back(place);
   }
-  if (drawn_.empty() && drawn_off_.empty() && carried_.empty() && carried_guests_.empty()) return;
+  if (drawn_.empty() && drawn_off_.empty() && near_ground_.carried().empty() && carried_guests_.empty())
+    return;
   join_touching();
   const auto driven = std::int32_t(spheres_.awake);
   const auto let_go = [&](std::span<const std::int32_t> places, LetGo how) {
@@ -95,7 +98,8 @@ void TablesLevel::note_who_falls() {
   for (std::int64_t i = 0; i < spheres_.awake; ++i) {
     const auto state = GroundState(step_.on_ground[std::size_t(i)]);
     const bool alone = state == GroundState::moved;  // on its hull
-    if (alone || (state != GroundState::free && is_below(plane(step_.plane[std::size_t(i)]).normal)))
+    if (alone ||
+        (state != GroundState::free && is_below(near_ground_.plane(step_.plane[std::size_t(i)]).normal)))
       riders_.join(std::int32_t(i), carries);
   }
   for (std::int64_t i = 0; i < spheres_.awake; ++i)

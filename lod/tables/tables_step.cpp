@@ -85,14 +85,9 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   step_.resize(std::size_t(spheres_.awake));
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0)
     update_radii_one_by_one();
-  planes_.clear(kinds_.size());
-  for (const HalfSpace& plane : ground_.planes()) planes_.add(plane, materials_, kinds_, settings_.gravity);
-  faces_.clear();
-  near_faces_.clear();
-  cornered_.clear();
-  carried_.clear();
+  near_ground_.begin_step();
   carried_guests_.clear(), leaning_.clear(), set_out_.clear();
-  find_near_faces(0, spheres_.awake);
+  near_ground_.find_faces(0, spheres_.awake);
   each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
 }
 
@@ -105,15 +100,7 @@ float TablesLevel::heaviest() const {
 
 void TablesLevel::start_block(std::int64_t begin, std::int64_t end, Simd simd) {
   start_step(spheres_, kinds_, constants_, simd, begin, end, step_, spheres_);
-  for (std::size_t p = 0; p < ground_.planes().size(); ++p)
-    find_near_ground(spheres_, kinds_, planes_, ground_.planes()[p], std::int32_t(p), constants_, simd, begin,
-                     end, step_);
-  const auto first = std::ranges::lower_bound(near_faces_, begin, {}, &NearFaces::place);
-  for (auto near = first; near != near_faces_.end() && near->place < end; ++near)
-    for (std::int32_t face = near->begin; face < near->end; ++face)
-      find_near_ground(spheres_, kinds_, planes_, faces_[std::size_t(face)],
-                       std::int32_t(ground_.planes().size()) + face, constants_, Simd::portable, near->place,
-                       near->place + 1, step_);
+  near_ground_.find_near(begin, end, simd);
 }
 
 void TablesLevel::update_radii_one_by_one() {
@@ -131,13 +118,13 @@ bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
   find_still_contacts();
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
     step_.resize(std::size_t(spheres_.awake));
-    find_near_faces(were_awake, spheres_.awake);
+    near_ground_.find_faces(were_awake, spheres_.awake);
     start_block(were_awake, spheres_.awake, simd_);
   }
   for (auto& touch : still_touches_) touch.second = spheres_.place_of_slot[touch.second];
   if (!still_touches_.empty())
     contacts_.add(spheres_, kinds_, still_touches_, scene_.bounce_velocity(), constants_, simd_);
-  find_further_planes();
+  further_planes_.find();
   return contacts_.any_near();
 }
 
@@ -146,22 +133,13 @@ void TablesLevel::find_ground_contacts() {
   note_pushes();
   contacts_.set_pushes(pushes_by_place_);
   contacts_.find(spheres_, kinds_, no_cells_, scene_.bounce_velocity(), constants_, simd_, jobs_, nullptr);
-  find_further_planes();
-}
-
-// Who has contacts with others.
-void TablesLevel::note_paired() {
-  paired_.assign(std::size_t(spheres_.awake), 0);
-  contacts_.each([&](const SphereContact& c) {
-    paired_[c.first] = 1;
-    if (c.second < paired_.size()) paired_[c.second] = 1;
-  });
+  further_planes_.find();
 }
 
 // Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts,
 // motion.
 void TablesLevel::finish(ContactTally& tally) {
-  const bool ground = has_planes();
+  const bool ground = near_ground_.any();
   take_back_pressing();
   take_back_ground_friction();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
@@ -182,24 +160,24 @@ void TablesLevel::finish(ContactTally& tally) {
     std::vector<PlayingClip>& joined = joined_[std::size_t(begin / kBlock)];
     note_driven(begin, end, driven_[std::size_t(begin / kBlock)]);
     if (ground) {
-      sweep_ground(planes_, constants_, simd_, begin, end, step_);
+      sweep_ground(near_ground_.planes(), constants_, simd_, begin, end, step_);
       begin_rubbing(begin, end, rubs_[std::size_t(begin / kBlock)]);
-      lie_on_ground(spheres_, kinds_, planes_, constants_, simd_, begin, end, step_);
+      lie_on_ground(spheres_, kinds_, near_ground_.planes(), constants_, simd_, begin, end, step_);
       end_rubbing(rubs_[std::size_t(begin / kBlock)]);
       step_.each(GroundState::near, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
       if (constants_.hulls)
         step_.each(GroundState::stands, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
     }
     end_block(begin, end);
-    if (tips_) tip(spheres_, kinds_, planes_, constants_, step_, begin, end, tipping_);
-    keep_above_planes(begin, end);
+    if (tips_) tip(spheres_, kinds_, near_ground_.planes(), constants_, step_, begin, end, tipping_);
+    near_ground_.keep_above_planes(begin, end);
     step_.each(GroundState::unsound, begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
   remember_ground_friction();
   finish_strikers(tally);
   take_back_excess();
-  keep_above_faces();
+  near_ground_.keep_above_faces();
   stop_before_unseen();
   update_clips();
   if (log_ && ground) write_ground();
@@ -271,9 +249,9 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Pl
   body.position += step_.push_out(i);
   RestingRecord resting{spheres_.pose[i]};
   StepWorld around = world();
-  around.planes = join_planes(ground_.planes(), faces_of(i));
-  const auto carried = std::ranges::lower_bound(carried_, i, {}, &Carried::place);
-  const bool rides = carried != carried_.end() && carried->place == i;
+  around.planes = near_ground_.planes_of(i);
+  const NearGround::Carried* carried = near_ground_.carrying(i);
+  const bool rides = carried != nullptr;
   if (rides) body.velocity -= carried->velocity;
   if (!step_.touches(i) && constants_.hulls) {
     const ActingForce& force = acting_.of(std::int32_t(spheres_.slot[i]));
@@ -288,7 +266,7 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Pl
     become_sphere(i, body);
     if (constants_.hulls && (step_.touches(i) || spheres_.since_crowded[i] < kLeaningTicks)) {
       // As high as its hull is over that plane; the others that it meets are among its contacts.
-      around.planes = {&plane(step_.plane[i]), 1};
+      around.planes = {&near_ground_.plane(step_.plane[i]), 1};
       body.sphere_radius = scene_.ground_height(i, -around.planes[0].normal);
     }
     const BodyKind& kind = kind_of(i);

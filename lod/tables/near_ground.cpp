@@ -1,33 +1,49 @@
-// Of TablesLevel: the ground that its bodies are near, or come to be near within the step.
+#include "lod/tables/near_ground.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "lod/contact/hull_contacts.h"
-#include "lod/tables/tables_level.h"
 
 namespace lodestone {
 
-// m: how far from its centre a body of that speed (m/s) looks for the ground.
-double TablesLevel::ground_reach(std::int64_t place, double speed) const {
+void NearGround::begin_step() {
+  planes_.clear(kinds_.size());
+  for (const HalfSpace& plane : ground_.planes()) planes_.add(plane, materials_, kinds_, settings_.gravity);
+  faces_.clear(), near_.clear(), cornered_.clear(), carried_.clear();
+}
+
+void NearGround::find_near(std::int64_t begin, std::int64_t end, Simd simd) {
+  for (std::size_t p = 0; p < ground_.planes().size(); ++p)
+    find_near_ground(spheres_, kinds_, planes_, ground_.planes()[p], std::int32_t(p), constants_, simd, begin,
+                     end, step_);
+  const auto first = std::ranges::lower_bound(near_, begin, {}, &Near::place);
+  for (auto near = first; near != near_.end() && near->place < end; ++near)
+    for (std::int32_t face = near->begin; face < near->end; ++face)
+      find_near_ground(spheres_, kinds_, planes_, faces_[std::size_t(face)],
+                       std::int32_t(ground_.planes().size()) + face, constants_, Simd::portable, near->place,
+                       near->place + 1, step_);
+}
+
+double NearGround::reach_of(std::int64_t place, double speed) const {
   constexpr double kMargin = 1.01;
   const double time = constants_.wide_time;
   return kMargin * double(kinds_.radius[spheres_.kind[std::size_t(place)]]) + speed * time +
          0.5 * settings_.gravity.norm() * time * time;
 }
 
-// Of the spheres at places [begin, end): what they are near of the ground's parts, as planes.
-void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
+void NearGround::find_faces(std::int64_t begin, std::int64_t end) {
   if (!ground_.has_parts()) return;
   const double time = constants_.wide_time;
   thread_local std::vector<GroundNear> near;
   for (std::int64_t i = begin; i < end; ++i) {
-    const double reach = ground_reach(i, spheres_.velocity(i).norm());
+    const double reach = reach_of(i, spheres_.velocity(i).norm());
     const Vec3 center = spheres_.position(i);
     near.clear();
     const std::size_t first = faces_.size();
     const bool alone = scene_.is_alone(i), only_planes = alone && find_planes_of(i);
-    const PairBody hull{kind_of(i).shape.get(), center, spheres_.orientation(i)};
+    const PairBody hull{scene_.kind_of(i).shape.get(), center, spheres_.orientation(i)};
     if (!only_planes) find_ground_near(ground_, center, reach, 0.0, near, constants_.hulls ? &hull : nullptr);
     const bool bridges = !alone && find_bridged_plane(i, near);
     if (bridges) near.clear();
@@ -41,12 +57,11 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
                   part ? part->pose.angular_velocity : Vec3(Vec3::Zero()));
     }
     const double margin = reach - double(kinds_.radius[spheres_.kind[std::size_t(i)]]);
-    const bool cornered = by_hull || (!bridges && is_cornered(i, near, margin));
+    const bool cornered = by_hull || (!bridges && is_in_corner(i, near, margin));
     const bool above = std::ranges::none_of(near, [](const GroundNear& n) { return n.part->moves(); }) &&
                        std::all_of(faces_.begin() + std::ptrdiff_t(first), faces_.end(),
                                    [&](const HalfSpace& face) { return face.height_of(center) >= 0.0; });
-    near_faces_.push_back(
-        {i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered, above});
+    near_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered, above});
     const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
       return n.part->moves() && n.height < double(spheres_.radius[i]) + margin;
     });
@@ -59,10 +74,10 @@ void TablesLevel::find_near_faces(std::int64_t begin, std::int64_t end) {
 
 // Where nothing is straight below a body, but parts of the ground on different sides of it are under its
 // hull, as under a plank on two blocks, the plane that they hold it by. False: there is none.
-bool TablesLevel::find_bridged_plane(std::int64_t place, std::span<const GroundNear> near) {
+bool NearGround::find_bridged_plane(std::int64_t place, std::span<const GroundNear> near) {
   constexpr double kUpright = 0.98;  // cosine, of what holds it
   constexpr double kFlat = 0.3;  // over R: what reaches down so far is not looked at, since that takes long
-  const BodyKind& kind = kind_of(place);
+  const BodyKind& kind = scene_.kind_of(place);
   const double strength = settings_.gravity.norm();
   if (!constants_.hulls || strength == 0.0 || kind.shape->sphere_radius) return false;
   const Vec3 up = -settings_.gravity / strength, u = up.unitOrthogonal(), v = up.cross(u);
@@ -106,7 +121,7 @@ bool TablesLevel::find_bridged_plane(std::int64_t place, std::span<const GroundN
 // Among others, of what is nearer than it reaches, `margin` m around. A published sphere meets one plane; one
 // that knows its hull meets as many as there are, but over edges its hull tips as long as it moves, and what
 // moves holds it.
-bool TablesLevel::is_cornered(std::int64_t place, std::span<const GroundNear> near, double margin) const {
+bool NearGround::is_in_corner(std::int64_t place, std::span<const GroundNear> near, double margin) const {
   const auto is_held = [&] {
     return is_held_several_ways(near, ground_.planes(), spheres_.position(place),
                                 double(spheres_.radius[std::size_t(place)]) + margin);
@@ -115,74 +130,53 @@ bool TablesLevel::is_cornered(std::int64_t place, std::span<const GroundNear> ne
   const auto is_over_edge = [&](const GroundNear& n) {
     return n.at_edge && n.height <= double(scene_.ground_height(place, -n.normal)) + margin;
   };
-  if (std::ranges::any_of(near, is_over_edge) && !is_nearly_still(spheres_.body(place), kind_of(place), true))
+  if (std::ranges::any_of(near, is_over_edge) &&
+      !scene_.is_nearly_still(spheres_.body(place), scene_.kind_of(place), true))
     return true;
   return std::ranges::any_of(near, [](const GroundNear& n) { return n.part->moves(); }) && is_held();
 }
 
 // Of one that may stand on its hull. Who stands does until an edge is near, who does not waits until it is
 // farther away: else one at rest there would go on to change.
-bool TablesLevel::find_planes_of(std::int64_t place) {
+bool NearGround::find_planes_of(std::int64_t place) {
   constexpr double kSlack = 0.1;  // over R
-  const BodyKind& kind = kind_of(place);
+  const BodyKind& kind = scene_.kind_of(place);
   const double slack =
       spheres_.on_hull[std::size_t(place)] == HullStand::none ? kSlack * kind.shape->radius : 0.0;
   return find_planes_below(spheres_.body(place), kind, ground_, slack, constants_.wide_time, faces_);
 }
 
-const TablesLevel::NearFaces* TablesLevel::near_faces_at(std::int64_t place) const {
-  const auto near = std::ranges::lower_bound(near_faces_, place, {}, &NearFaces::place);
-  return near == near_faces_.end() || near->place != place ? nullptr : &*near;
+const NearGround::Near* NearGround::find(std::int64_t place) const {
+  const auto near = std::ranges::lower_bound(near_, place, {}, &Near::place);
+  return near == near_.end() || near->place != place ? nullptr : &*near;
 }
 
-std::span<const HalfSpace> TablesLevel::faces_of(std::int64_t place) const {
-  const NearFaces* near = near_faces_at(place);
-  if (!near) return {};
-  return std::span(faces_).subspan(std::size_t(near->begin), std::size_t(near->end - near->begin));
+std::span<const HalfSpace> NearGround::planes_of(std::int64_t place) const {
+  const Near* near = find(place);
+  if (!near) return join_planes(ground_.planes(), {});
+  return join_planes(ground_.planes(), std::span(faces_).subspan(std::size_t(near->begin),
+                                                                 std::size_t(near->end - near->begin)));
 }
 
-// A body meets the plane that carries it as ground; in a corner it touches more, and is held by each.
-void TablesLevel::find_further_planes() {
-  const std::span<const HalfSpace> everywhere = ground_.planes();
-  plane_touches_.clear();
-  if (everywhere.size() + faces_.size() < 2) return;
-  if (constants_.hulls) note_paired();
-  const auto look = [&](std::int64_t i, std::uint32_t number) {
-    if (std::int32_t(number) == step_.plane[std::size_t(i)]) return;
-    const HalfSpace& other = plane(std::int32_t(number));
-    const Vec3 ground = planes_.velocity(number);
-    const float gap = float(other.height_of(spheres_.position(i))) - scene_.ground_height(i, -other.normal),
-                closing = float((spheres_.velocity(i) - ground).dot(other.normal));
-    const BodyKind& kind = kind_of(i);
-    if (gap + closing * constants_.time > contacts_.settings().touching * float(kind.shape->radius)) return;
-    const Vec3& n = other.normal;
-    plane_touches_.push_back({.place = std::uint32_t(i),
-                              .plane = number,
-                              .normal = {float(n.x()), float(n.y()), float(n.z())},
-                              .velocity = {float(ground.x()), float(ground.y()), float(ground.z())},
-                              .gap = gap,
-                              .closing = closing,
-                              .flush = constants_.hulls && scene_.lies_flush(i, -other.normal),
-                              .law = materials_.law(kind.material, other.material)});
-  };
-  auto near = near_faces_.begin();
-  step_.each(GroundState::near, 0, spheres_.awake, [&](std::int64_t i) {
-    if (constants_.hulls && !paired_[std::size_t(i)] && scene_.is_alone(i))
-      return;  // its hull, on all of them
-    for (std::uint32_t number = 0; number < everywhere.size(); ++number) look(i, number);
-    while (near != near_faces_.end() && near->place < i) ++near;
-    if (near == near_faces_.end() || near->place != i) return;
-    for (std::int32_t face = near->begin; face < near->end; ++face)
-      look(i, std::uint32_t(everywhere.size()) + std::uint32_t(face));
-  });
-  if (plane_touches_.empty()) return;
-  contacts_.add_ground(spheres_, plane_touches_, scene_.bounce_velocity(), constants_);
+bool NearGround::is_even(std::int64_t place) const {
+  const Near* near = find(place);
+  return !near || near->even;
+}
+
+bool NearGround::is_cornered(std::int64_t place) const {
+  const Near* near = find(place);
+  return near && near->cornered;
+}
+
+const NearGround::Carried* NearGround::carrying(std::int64_t place) const {
+  const auto carried = std::ranges::lower_bound(carried_, place, {}, &Carried::place);
+  return carried == carried_.end() || carried->place != place ? nullptr : &*carried;
 }
 
 // Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way:
 // out of a half-space it would come back slowly, beyond the middle of a slab it would leave by the other
 // side.
-void TablesLevel::lift_out(std::int64_t place, const HalfSpace& plane, double lift) {
+void NearGround::lift_out(std::int64_t place, const HalfSpace& plane, double lift) {
   const auto i = std::size_t(place);
   const Vec3 out = lift * plane.normal;
   Vec3 velocity = spheres_.velocity(place);
@@ -195,7 +189,7 @@ void TablesLevel::lift_out(std::int64_t place, const HalfSpace& plane, double li
 }
 
 // Its hull, but for what contacts undo themselves. What somebody brought from another rung goes slowly.
-void TablesLevel::keep_above_planes(std::int64_t begin, std::int64_t end) {
+void NearGround::keep_above_planes(std::int64_t begin, std::int64_t end) {
   constexpr double kDeepest = 0.1;  // over R
   if (!constants_.hulls) return;
   for (const HalfSpace& plane : ground_.planes())
@@ -204,16 +198,16 @@ void TablesLevel::keep_above_planes(std::int64_t begin, std::int64_t end) {
       const double radius = double(kinds_.radius[spheres_.kind[std::size_t(i)]]),
                    height = plane.height_of(spheres_.position(i));
       if (height >= (1.0 - kDeepest) * radius) continue;
-      const double least = std::max(least_height(*kind_of(i).shape),
+      const double least = std::max(least_height(*scene_.kind_of(i).shape),
                                     double(scene_.ground_height(i, -plane.normal)) - kDeepest * radius);
       if (height < least) lift_out(i, plane, least - height);
     }
 }
 
-void TablesLevel::keep_above_faces() {
-  for (const NearFaces& near : near_faces_) {
+void NearGround::keep_above_faces() {
+  for (const Near& near : near_) {
     if (!near.above || near.place >= spheres_.awake || !step_.touches(near.place)) continue;
-    const double least = least_height(*kind_of(near.place).shape);
+    const double least = least_height(*scene_.kind_of(near.place).shape);
     for (std::int32_t face = near.begin; face < near.end; ++face) {
       const HalfSpace& plane = faces_[std::size_t(face)];
       const double height = plane.height_of(spheres_.position(near.place));
