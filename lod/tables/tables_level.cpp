@@ -188,7 +188,7 @@ void TablesLevel::lay_still(std::int64_t place) {
 
 void TablesLevel::archive(StateArchive& a) {
   a(spheres_, contacts_, elapsed_, lengths_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_,
-    near_ground_, given_, pushes_, clips_, loads_, ground_friction_);
+    near_ground_, given_, pushes_, clips_, loads_, rubbing_);
   if (!a.reading()) return;
   kinds_ = {};
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());
@@ -235,10 +235,10 @@ std::size_t TablesLevel::bytes() const {
       given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
       given_.bucket_count() * sizeof(void*);
   std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) +
-                      held(ground_friction_) + held(tallies_) + held(clips_) + held(strikers_) +
-                      held(striking_) + held(followed_);
+                      held(tallies_) + held(clips_) + held(strikers_) + held(striking_) + held(followed_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
-  return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes() + further_planes_.bytes();
+  return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes() + further_planes_.bytes() +
+         rubbing_.bytes();
 }
 
 void TablesLevel::describe(Guest& guest) const {

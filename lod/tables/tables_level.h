@@ -24,6 +24,7 @@
 #include "lod/step_report.h"
 #include "lod/support/hull_motion.h"
 #include "lod/tables/further_planes.h"
+#include "lod/tables/ground_rubbing.h"
 #include "lod/tables/guest.h"
 #include "lod/tables/near_ground.h"
 #include "lod/tables/sphere_contacts.h"
@@ -134,14 +135,6 @@ class TablesLevel {
     Vec3 place = Vec3::Zero();   // m, of its centre, at the step's end
     double moved = 1e300;        // m, since the end of the one before
   };
-  struct GroundFriction {
-    std::uint32_t slot = 0, owner = 0;
-    lane::F3 force;  // m/s², over the mass
-  };
-  struct GivenFriction {
-    std::int64_t place = 0;
-    lane::F3 velocity;  // m/s
-  };
   struct PlayingClip {
     ClipPlayback playback = {};
     std::int32_t slot = 0;
@@ -176,12 +169,6 @@ class TablesLevel {
   void join_carried();
   void let_driven_go();
   void note_who_falls();
-  bool rubs_on_ground(std::int64_t place) const;
-  void give_ground_friction();
-  void take_back_ground_friction();
-  void begin_rubbing(std::int64_t begin, std::int64_t end, std::vector<GroundFriction>& rubs) const;
-  void end_rubbing(std::vector<GroundFriction>& rubs) const;
-  void remember_ground_friction();
   bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
   void note_moved();
   bool stays_in_place(std::int64_t place) const;
@@ -286,6 +273,7 @@ class TablesLevel {
                            kinds_,    constants_, spheres_,   contacts_,  step_};
   NearGround near_ground_{scene_};
   FurtherPlanes further_planes_{scene_, near_ground_};
+  GroundRubbing rubbing_{scene_, near_ground_};
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;
@@ -298,9 +286,6 @@ class TablesLevel {
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
   std::vector<Load> loads_, new_loads_;                  // of the last step's guests, by slot; of this one's
-  std::vector<GroundFriction> ground_friction_;          // of the last step, by slot
-  std::vector<GivenFriction> given_friction_;            // of that, in this step
-  std::vector<std::vector<GroundFriction>> rubs_;        // in this step, by block
   std::vector<Push> pushes_;
   ActingForces acting_;                           // in this step; bodies begin it with what they give in all
   std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act

@@ -73,7 +73,7 @@ void TablesLevel::respond(std::span<const Guest> guests, ContactTally& tally) {
   give_pushes(-1.0);  // what presses a body to the ground does not throw it there
   sort_ground();
   give_pushes(1.0);
-  give_ground_friction();
+  rubbing_.give();
   rounds_ = 0;
   strikers_.clear();
   if (!crowd) return;

@@ -141,12 +141,11 @@ void TablesLevel::find_ground_contacts() {
 void TablesLevel::finish(ContactTally& tally) {
   const bool ground = near_ground_.any();
   take_back_pressing();
-  take_back_ground_friction();
+  rubbing_.take_back();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
   joined_.resize(std::max(joined_.size(), tallies_.size()));
   driven_.resize(std::max(driven_.size(), tallies_.size()));
-  rubs_.resize(std::max(rubs_.size(), tallies_.size()));
-  for (std::size_t block = ground ? tallies_.size() : 0; block < rubs_.size(); ++block) rubs_[block].clear();
+  rubbing_.begin_blocks(ground ? tallies_.size() : 0);
   let_driven_go();
   tips_ = constants_.hulls && kinds_.any_tips() && contacts_.count() > 0;
   if (tips_) {
@@ -161,9 +160,9 @@ void TablesLevel::finish(ContactTally& tally) {
     note_driven(begin, end, driven_[std::size_t(begin / kBlock)]);
     if (ground) {
       sweep_ground(near_ground_.planes(), constants_, simd_, begin, end, step_);
-      begin_rubbing(begin, end, rubs_[std::size_t(begin / kBlock)]);
+      rubbing_.begin_round(std::size_t(begin / kBlock), begin, end);
       lie_on_ground(spheres_, kinds_, near_ground_.planes(), constants_, simd_, begin, end, step_);
-      end_rubbing(rubs_[std::size_t(begin / kBlock)]);
+      rubbing_.end_round(std::size_t(begin / kBlock));
       step_.each(GroundState::near, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
       if (constants_.hulls)
         step_.each(GroundState::stands, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
@@ -174,7 +173,7 @@ void TablesLevel::finish(ContactTally& tally) {
     step_.each(GroundState::unsound, begin, end, [&](std::int64_t i) { recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
-  remember_ground_friction();
+  rubbing_.remember();
   finish_strikers(tally);
   take_back_excess();
   near_ground_.keep_above_faces();
