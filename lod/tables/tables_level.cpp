@@ -264,36 +264,15 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
   }
   if (i < spheres_.awake && step_.touches(i)) {
     body.velocity = step_.velocity(i) - settings_.gravity * constants_.wide_time;
-    if (const Load* load = load_of(i)) {
-      body.velocity -= load->steady * constants_.wide_time;
-      body.borne_up = !load->steady.isZero(0.0);
+    if (const Vec3* steady = loads_.steady_on(i)) {
+      body.velocity -= *steady * constants_.wide_time;
+      body.borne_up = !steady->isZero(0.0);
     }
     body.spin += step_.added_spin(i);
     body.position += step_.push_out(i);
   }
   if (spheres_.clip[std::size_t(i)] >= 0) body.motion = Motion::dynamic;
   return body;
-}
-
-// What is there in two steps running; and where the hulls press up or down less than was expected, what bore
-// the body must not fling it. Along the ground, and where nothing weighs anything, momentum is kept. What a
-// blow gives up or down is no load.
-void TablesLevel::keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after) {
-  const Load* known = load_of(place);
-  const Vec3 up = -settings_.gravity.normalized(),
-             last = (after.velocity - before) / constants_.wide_time - settings_.gravity,
-             lasts = after.struck ? Vec3(last - last.dot(up) * up) : last,
-             earlier = known ? known->last : Vec3(Vec3::Zero()),
-             expected = known ? known->steady : Vec3(Vec3::Zero());
-  Vec3 steady = Vec3::Zero();
-  for (int axis = 0; axis < 3; ++axis)
-    if (lasts[axis] * earlier[axis] > 0.0)
-      steady[axis] = std::abs(lasts[axis]) < std::abs(earlier[axis]) ? lasts[axis] : earlier[axis];
-  new_loads_.push_back(
-      {std::uint32_t(spheres_.slot[std::size_t(place)]), spheres_.owner[std::size_t(place)], lasts, steady});
-  const double borne = expected.dot(up);
-  if (borne != 0.0)
-    after.velocity += std::max(0.0, 1.0 - last.dot(up) / borne) * borne * constants_.wide_time * up;
 }
 
 // Contacts with sleepers have their places, which change where others wake.
@@ -335,7 +314,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     if (guest.touched && !guest.carried && body.velocity.squaredNorm() > before[k].velocity.squaredNorm())
       driven_guests_.push_back({std::int64_t(i), before[k].position, before[k].velocity.norm()});
     if (guest.touched && !guest.on_hull && step_.touches(std::int64_t(i)))
-      keep_load(std::int64_t(i), before[k].velocity, body);
+      loads_.keep(std::int64_t(i), before[k].velocity, body);
     end_clip(std::int64_t(i));
     if (guest.on_hull) {
       take_from_edge(std::int64_t(i), body);

@@ -26,6 +26,7 @@
 #include "lod/tables/further_planes.h"
 #include "lod/tables/ground_rubbing.h"
 #include "lod/tables/guest.h"
+#include "lod/tables/hull_loads.h"
 #include "lod/tables/near_ground.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_scene.h"
@@ -127,14 +128,6 @@ class TablesLevel {
     double leaves = 0.0;         // m/s, along it
     double given = 0.0;          // m/s: what the ground gives it against those
   };
-  /// What hulls press onto a body that touches its own rung, too.
-  struct Load {
-    std::uint32_t slot = 0, owner = 0;
-    Vec3 last = Vec3::Zero();    // m/s², in the last step
-    Vec3 steady = Vec3::Zero();  // m/s²: what of it was there in the step before, too
-    Vec3 place = Vec3::Zero();   // m, of its centre, at the step's end
-    double moved = 1e300;        // m, since the end of the one before
-  };
   struct PlayingClip {
     ClipPlayback playback = {};
     std::int32_t slot = 0;
@@ -170,8 +163,6 @@ class TablesLevel {
   void let_driven_go();
   void note_who_falls();
   bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
-  void note_moved();
-  bool stays_in_place(std::int64_t place) const;
   double moving_speed(std::int64_t place) const;
   bool hangs(std::int64_t place) const;
   bool rolls_on_ground(std::int64_t place) const;
@@ -206,12 +197,6 @@ class TablesLevel {
   void strike_first(std::int64_t place, ContactTally& tally);
   void hold_strikers();
   void finish_strikers(ContactTally& tally);
-  template <class Visit>
-  void each_pressed(const Visit& visit);
-  void press();
-  void take_back_pressing();
-  const Load* load_of(std::int64_t place) const;
-  void keep_load(std::int64_t place, const Vec3& before, StatisticalBody& after);
   int sweeps() const;
   void sweep_contacts();
   void respond_as_paper(ContactTally& tally);
@@ -274,6 +259,7 @@ class TablesLevel {
   NearGround near_ground_{scene_};
   FurtherPlanes further_planes_{scene_, near_ground_};
   GroundRubbing rubbing_{scene_, near_ground_};
+  HullLoads loads_{scene_};
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;
@@ -285,7 +271,6 @@ class TablesLevel {
 
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
-  std::vector<Load> loads_, new_loads_;                  // of the last step's guests, by slot; of this one's
   std::vector<Push> pushes_;
   ActingForces acting_;                           // in this step; bodies begin it with what they give in all
   std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act

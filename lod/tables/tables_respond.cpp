@@ -12,41 +12,6 @@ constexpr double kMostUneven = 12.0;  // times the rounds of contacts of like bo
 
 }  // namespace
 
-const TablesLevel::Load* TablesLevel::load_of(std::int64_t place) const {
-  const auto slot = std::uint32_t(spheres_.slot[std::size_t(place)]);
-  const auto load = std::ranges::lower_bound(loads_, slot, {}, &Load::slot);
-  const bool known =
-      load != loads_.end() && load->slot == slot && load->owner == spheres_.owner[std::size_t(place)];
-  return known ? &*load : nullptr;
-}
-
-template <class Visit>
-void TablesLevel::each_pressed(const Visit& visit) {
-  for (const Load& load : loads_) {
-    if (load.slot >= spheres_.place_of_slot.size()) continue;
-    const std::size_t i = spheres_.place_of_slot[load.slot];
-    if (std::int64_t(i) < spheres_.awake && step_.touches(std::int64_t(i)) &&
-        load_of(std::int64_t(i)) == &load)
-      visit(i, Vec3(load.steady * constants_.wide_time));
-  }
-}
-
-// Contacts with hulls are answered after those of spheres: what hulls pressed with in the last step these are
-// to bear now, else what lies on a heap sinks into it at the speed that gravity gives it in a step.
-void TablesLevel::press() {
-  each_pressed([&](std::size_t i, const Vec3& by) { step_.add_velocity(std::int64_t(i), by); });
-}
-
-// From whom no hull has moved after all, so that momentum is kept. What goes up or down stays: the ground
-// bore it, and who bore it last must not be flung.
-void TablesLevel::take_back_pressing() {
-  const Vec3 up = -settings_.gravity.normalized();
-  each_pressed([&](std::size_t i, const Vec3& by) {
-    if (step_.on_ground[i] != std::uint8_t(GroundState::moved))
-      step_.add_velocity(std::int64_t(i), by.dot(up) * up - by);
-  });
-}
-
 // A round passes on to a light body a share of what a heavy one on top of it weighs: the more unlike they
 // are, the more rounds, as UnevenIslands.
 int TablesLevel::sweeps() const {
@@ -69,7 +34,7 @@ void TablesLevel::respond(std::span<const Guest> guests, ContactTally& tally) {
   if (contacts_.count() > 0 && settings_.tables.paper_pair_rule) respond_as_paper(tally);
   const bool crowd = contacts_.count() > 0;
   if (crowd) contacts_.begin(spheres_, kinds_, materials_, constants_, step_, jobs_);
-  if (crowd) press();
+  if (crowd) loads_.press();
   give_pushes(-1.0);  // what presses a body to the ground does not throw it there
   sort_ground();
   give_pushes(1.0);

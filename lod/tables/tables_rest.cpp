@@ -119,22 +119,6 @@ bool TablesLevel::has_less_energy(std::int64_t place, double energy) const {
          kinetic_energy(spheres_.body(place), *kind_of(place).shape) < energy;
 }
 
-// Of those whom hulls press.
-void TablesLevel::note_moved() {
-  for (Load& load : new_loads_) {
-    const std::int64_t place = spheres_.place_of_slot[load.slot];
-    load.place = spheres_.position(place);
-    if (const Load* before = load_of(place)) load.moved = (load.place - before->place).norm();
-  }
-}
-
-// Who is pressed by hulls and lies on its like: the two are answered one after the other, and leave it a part
-// of gravity's step, by which it does not move.
-bool TablesLevel::stays_in_place(std::int64_t place) const {
-  const Load* load = load_of(place);
-  return load && load->moved < rest_law_.sleep_speed(kind_of(place).shape->radius) * constants_.wide_time;
-}
-
 // m/s, in this step, out of overlaps too.
 double TablesLevel::moving_speed(std::int64_t place) const {
   return (step_.velocity(place) + step_.push_out(place) / constants_.wide_time).norm();
@@ -150,10 +134,7 @@ void TablesLevel::rest() {
   ++steps_;
   ease();
   note_who_falls();
-  std::ranges::sort(new_loads_, {}, &Load::slot);
-  note_moved();
-  loads_.swap(new_loads_);
-  new_loads_.clear();
+  loads_.finish();
   if (!settings_.sleeping) return;
   std::ranges::sort(leaning_);
   std::ranges::sort(set_out_);
@@ -180,8 +161,8 @@ void TablesLevel::rest() {
     const bool among_others =
         spheres_.since_crowded[i] < kLeaningTicks || std::ranges::binary_search(leaning_, i);
     const double still_energy = rest_law_.still_energy(among_others, radius, gravity);
-    const bool still =
-        has_less_energy(i, still_energy) || (has_less_energy(i, kWedged * still_energy) && stays_in_place(i));
+    const bool still = has_less_energy(i, still_energy) ||
+                       (has_less_energy(i, kWedged * still_energy) && loads_.stays_in_place(i));
     // While it slides, or is still being taken out of an overlap, its time hardly counts; one that is pressed
     // in again as far as it is taken out stays where it is. In a wedge it may go to and fro for ever: the
     // time in which it then stands still adds up.

@@ -140,7 +140,7 @@ void TablesLevel::find_ground_contacts() {
 // motion.
 void TablesLevel::finish(ContactTally& tally) {
   const bool ground = near_ground_.any();
-  take_back_pressing();
+  loads_.take_back();
   rubbing_.take_back();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
   joined_.resize(std::max(joined_.size(), tallies_.size()));
