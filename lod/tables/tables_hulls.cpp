@@ -1,6 +1,8 @@
 // Of TablesLevel: bodies that touch no other move over planes on their hulls, as those of `support` do,
 // with fewer and coarser contact steps. Departs from the paper's sphere of the mean height (3.3.1), which is
 // blind to the orientation: its first impulse is off by 36 to 47 %, and single drops by three times as much.
+#include <algorithm>
+
 #include "lod/contact/hull_contacts.h"
 #include "lod/tables/tables_level.h"
 
@@ -50,27 +52,27 @@ void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
 // It has come to rest, does not sleep, and its ground is what it was. Where touches are written down, it goes
 // on to touch.
 bool TablesLevel::lies_at_clips_end(std::int64_t place) const {
-  const std::int32_t clip = spheres_.clip[std::size_t(place)];
-  if (clip < 0 || log_ || step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::stands))
+  const SphereClips::Playing* playing = clips_.of(place);
+  if (!playing || log_ || step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::stands))
     return false;
-  const PlayingClip& playing = clips_[std::size_t(clip)];
-  const HalfSpace& ground = playing.playback.ground;
-  return playing.state == PlayingClip::over && std::ranges::any_of(ground_.planes(), [&](const HalfSpace& p) {
+  const HalfSpace& ground = playing->playback.ground;
+  return playing->state == SphereClips::Playing::over &&
+         std::ranges::any_of(ground_.planes(), [&](const HalfSpace& p) {
            return p.normal == ground.normal && p.offset == ground.offset;
          });
 }
 
 void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
-  const auto i = std::size_t(place);
-  spheres_.on_hull[i] = HullStand::none;
-  if (spheres_.clip[i] < 0) return;
-  clips_[std::size_t(spheres_.clip[i])].state = PlayingClip::ended;
+  spheres_.on_hull[std::size_t(place)] = HullStand::none;
+  SphereClips::Playing* playing = clips_.of(place);
+  if (!playing) return;
+  playing->state = SphereClips::Playing::ended;
   body.motion = Motion::dynamic;
 }
 
 // The sphere that others would meet is as high as the body stands.
 ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
-                                           bool rides, std::vector<PlayingClip>& joined) {
+                                           bool rides, std::vector<SphereClips::Playing>& joined) {
   static const SupportSettings coarse{
       .coarse = true,
       .contact_step = 0.1,
@@ -95,12 +97,12 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
     stand = is_sunk(body, shape, around.planes) ? HullStand::rises : HullStand::stands;
   const float eased = body.eased;
   if (stand == HullStand::rises) body.eased = std::max(eased, 1.0f);
-  const std::int32_t clip = spheres_.clip[i];
+  SphereClips::Playing* under_way = clips_.of(place);
   const bool may_settle = !rides && stand == HullStand::stands;
-  if (clip < 0 || !may_settle)
+  if (!under_way || !may_settle)
     body.motion = Motion::dynamic;  // it may have turned into a rest pose as a sphere
-  PlayingClip begun{.slot = spheres_.slot[i]};
-  PlayingClip& playing = clip < 0 ? begun : clips_[std::size_t(clip)];
+  SphereClips::Playing begun{.slot = spheres_.slot[i]};
+  SphereClips::Playing& playing = under_way ? *under_way : begun;
   const double farthest = 1.01 * radius + body.velocity.norm() * constants_.wide_time;  // m
   const bool is_level = std::ranges::all_of(around.planes, [&](const HalfSpace& p) {
     return around.is_horizontal(p) || p.height_of(body.position) > farthest;
@@ -113,10 +115,10 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   const HullMotion moved = move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity,
                                         constants_.wide_time, may_settle, settings);
   body.eased = eased;
-  playing.state = !moved.plays_clip ? PlayingClip::ended
-                  : moved.clip_over ? PlayingClip::over
-                                    : PlayingClip::plays;
-  if (moved.plays_clip && clip < 0) joined.push_back(begun);
+  playing.state = !moved.plays_clip ? SphereClips::Playing::ended
+                  : moved.clip_over ? SphereClips::Playing::over
+                                    : SphereClips::Playing::plays;
+  if (moved.plays_clip && !under_way) joined.push_back(begun);
   double height = radius;  // m
   for (const HalfSpace& p : around.planes) height = std::min(height, p.height_of(body.position));
   const bool touches = moved.plays_clip || moved.tally.touched_plane >= 0;
@@ -161,46 +163,6 @@ void TablesLevel::take_from_edge(std::int64_t place, const StatisticalBody& move
 bool TablesLevel::stands(std::int64_t place) const {
   if (spheres_.on_hull[std::size_t(place)] == HullStand::none || is_at_edge(place)) return true;
   return stands_firmly(spheres_.body(place), *kind_of(place).shape, near_ground_.planes_of(place));
-}
-
-void TablesLevel::end_clip(std::int64_t place) {
-  const std::int32_t clip = std::exchange(spheres_.clip[std::size_t(place)], -1);
-  if (clip < 0) return;
-  if (std::size_t(clip) + 1 < clips_.size()) {
-    clips_[std::size_t(clip)] = clips_.back();
-    spheres_.clip[place_of(clips_[std::size_t(clip)].slot)] = clip;
-  }
-  clips_.pop_back();
-  Motion& motion = spheres_.motion[std::size_t(place)];
-  if (motion == Motion::settling) motion = Motion::dynamic;
-}
-
-void TablesLevel::end_all_clips() {
-  while (!clips_.empty()) end_clip(std::int64_t(place_of(clips_.back().slot)));
-}
-
-// Who is struck goes on as a sphere: a clip has no rest pose for it.
-void TablesLevel::end_clips_of_touched() {
-  for (auto clip = std::ssize(clips_) - 1; clip >= 0; --clip) {
-    const auto place = std::int64_t(place_of(clips_[std::size_t(clip)].slot));
-    if (step_.touches(place)) end_clip(place);
-  }
-}
-
-// After the bodies have moved, on any threads: by block, so that the order does not depend on these.
-void TablesLevel::update_clips() {
-  for (auto clip = std::ssize(clips_) - 1; clip >= 0; --clip) {
-    const PlayingClip& played = clips_[std::size_t(clip)];
-    if (played.state == PlayingClip::ended) end_clip(std::int64_t(place_of(played.slot)));
-  }
-  for (std::vector<PlayingClip>& joined : joined_) {
-    for (const PlayingClip& clip : joined) {
-      if (clips_.size() == clips_.capacity()) clips_.reserve(clips_.size() + clips_.size() / 8 + 16);
-      spheres_.clip[place_of(clip.slot)] = std::int32_t(clips_.size());
-      clips_.push_back(clip);
-    }
-    joined.clear();
-  }
 }
 
 }  // namespace lodestone

@@ -63,7 +63,7 @@ void TablesLevel::let_strikers_strike(std::span<const Guest> guests, ContactTall
 }
 
 void TablesLevel::strike_first(std::int64_t place, ContactTally& tally) {
-  thread_local std::vector<PlayingClip> joined;  // none: it touches others
+  thread_local std::vector<SphereClips::Playing> joined;  // none: it touches others
   joined.clear();
   move_alone(place, tally, joined);
   // Its contacts see it as it is now.

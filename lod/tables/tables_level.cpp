@@ -67,7 +67,7 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
   const Vec3 position = spheres_.position(place);
   eased_ -= spheres_.eased[std::size_t(place)] > 0;
   if (asleep(slot)) still().remove(gone, position, kind_of(place).shape->radius);
-  end_clip(place);
+  clips_.end(place);
   const std::int64_t last_place = spheres_.place_of_slot[last];
   const bool renamed = gone != last, last_sleeps = renamed && last_place >= spheres_.awake;
   const Vec3 last_position = spheres_.position(last_place);
@@ -76,8 +76,7 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
   spheres_.remove(gone);
   if (last_sleeps) still().insert(gone, last_position, last_radius);
   if (renamed)
-    if (const std::int32_t clip = spheres_.clip[spheres_.place_of_slot[gone]]; clip >= 0)
-      clips_[std::size_t(clip)].slot = slot;
+    if (SphereClips::Playing* clip = clips_.of(std::int64_t(place_of(slot)))) clip->slot = slot;
   std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
   for (Push& push : pushes_)
     if (push.slot == std::int32_t(last)) push.slot = slot;
@@ -130,7 +129,7 @@ RigidState TablesLevel::state(int slot) const {
 void TablesLevel::set_state(int slot, const RigidState& state) {
   wake(slot);
   const std::int64_t place = spheres_.place_of_slot[std::size_t(slot)];
-  end_clip(place);
+  clips_.end(place);
   StatisticalBody body = spheres_.body(place);
   body.position = state.position;
   body.orientation = state.orientation;
@@ -169,7 +168,7 @@ void TablesLevel::set_gravity(const Vec3& gravity) {
   for (std::int64_t i = 0; i < spheres_.awake; ++i)
     if (spheres_.motion[std::size_t(i)] == Motion::settling)
       spheres_.motion[std::size_t(i)] = Motion::dynamic;
-  end_all_clips();  // they were recorded under another
+  clips_.end_all();  // they were recorded under another
 }
 
 void TablesLevel::take_woke(std::vector<std::uint32_t>& owners) {
@@ -180,7 +179,7 @@ void TablesLevel::take_woke(std::vector<std::uint32_t>& owners) {
 void TablesLevel::lay_still(std::int64_t place) {
   still().insert(std::uint32_t(spheres_.slot[place]), spheres_.position(place), kind_of(place).shape->radius);
   given_.erase(std::uint32_t(spheres_.slot[place]));
-  end_clip(place);
+  clips_.end(place);
   spheres_.on_hull[std::size_t(place)] = HullStand::none;
   spheres_.put_to_sleep(place);
   searched_ = 0;
@@ -193,7 +192,7 @@ void TablesLevel::archive(StateArchive& a) {
   kinds_ = {};
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());
   if (!settings_.tables.as_published()) return;
-  end_all_clips();  // of a level that had them
+  clips_.end_all();  // of a level that had them
   std::ranges::fill(spheres_.on_hull, HullStand::none);
 }
 
@@ -235,7 +234,7 @@ std::size_t TablesLevel::bytes() const {
       given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
       given_.bucket_count() * sizeof(void*);
   std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) +
-                      held(tallies_) + held(clips_) + held(strikers_) + held(striking_) + held(followed_);
+                      held(tallies_) + held(strikers_) + held(striking_) + held(followed_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
   return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes() + further_planes_.bytes() +
          rubbing_.bytes();
@@ -315,7 +314,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
       driven_guests_.push_back({std::int64_t(i), before[k].position, before[k].velocity.norm()});
     if (guest.touched && !guest.on_hull && step_.touches(std::int64_t(i)))
       loads_.keep(std::int64_t(i), before[k].velocity, body);
-    end_clip(std::int64_t(i));
+    clips_.end(std::int64_t(i));
     if (guest.on_hull) {
       take_from_edge(std::int64_t(i), body);
     } else {

@@ -28,6 +28,7 @@
 #include "lod/tables/guest.h"
 #include "lod/tables/hull_loads.h"
 #include "lod/tables/near_ground.h"
+#include "lod/tables/sphere_clips.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_scene.h"
 #include "lod/tables/tipping.h"
@@ -128,15 +129,6 @@ class TablesLevel {
     double leaves = 0.0;         // m/s, along it
     double given = 0.0;          // m/s: what the ground gives it against those
   };
-  struct PlayingClip {
-    ClipPlayback playback = {};
-    std::int32_t slot = 0;
-    enum State : std::int32_t {
-      plays,
-      over,   // the body rests
-      ended,  // the body moves on without it
-    } state = plays;
-  };
   struct Push {
     std::int32_t slot;
     Vec3 force, torque;
@@ -206,7 +198,7 @@ class TablesLevel {
   void end_block(std::int64_t begin, std::int64_t end);
   void choose_hulls(std::int64_t begin, std::int64_t end);
   bool lies_at_clips_end(std::int64_t place) const;
-  void move_alone(std::int64_t place, ContactTally& tally, std::vector<PlayingClip>& joined);
+  void move_alone(std::int64_t place, ContactTally& tally, std::vector<SphereClips::Playing>& joined);
   bool stands_when_alone(std::int64_t place) const;
   bool is_at_edge(std::int64_t place) const;
   bool overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const;
@@ -214,11 +206,7 @@ class TablesLevel {
   void take_from_edge(std::int64_t place, const StatisticalBody& moved);
   void become_sphere(std::int64_t place, StatisticalBody& body);
   ContactTally move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
-                                bool rides, std::vector<PlayingClip>& joined);
-  void end_clip(std::int64_t place);
-  void end_all_clips();
-  void end_clips_of_touched();
-  void update_clips();
+                                bool rides, std::vector<SphereClips::Playing>& joined);
   bool stands(std::int64_t place) const;
   void recover(std::int64_t place, ContactTally& tally);
   static constexpr std::int64_t kBlock = 1024;  // bodies of a job
@@ -260,6 +248,7 @@ class TablesLevel {
   FurtherPlanes further_planes_{scene_, near_ground_};
   GroundRubbing rubbing_{scene_, near_ground_};
   HullLoads loads_{scene_};
+  SphereClips clips_{scene_};
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;
@@ -274,8 +263,6 @@ class TablesLevel {
   std::vector<Push> pushes_;
   ActingForces acting_;                           // in this step; bodies begin it with what they give in all
   std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act
-  std::vector<PlayingClip> clips_;                // those of `spheres_.clip`
-  std::vector<std::vector<PlayingClip>> joined_;  // in this step, by block
   std::vector<std::vector<Driven>> driven_;       // likewise
   std::vector<Driven> driven_guests_;             // in this step, by hulls
   enum class LetGo : std::uint8_t { no, on, off };

@@ -148,7 +148,7 @@ void TablesLevel::respond_as_paper(ContactTally& tally) {
 }
 
 void TablesLevel::sort_ground() {
-  end_clips_of_touched();
+  clips_.end_of_touched();
   each_block([&](std::int64_t begin, std::int64_t end) {
     if (constants_.hulls) choose_hulls(begin, end);
     if (!near_ground_.any()) return clear_added(begin, end, step_);

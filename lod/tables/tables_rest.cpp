@@ -152,8 +152,8 @@ void TablesLevel::rest() {
   const double gravity = settings_.gravity.norm();
   for (std::int64_t i = spheres_.awake - 1; i >= 0;
        --i) {  // from the end: the last one takes the place of one that falls asleep
-    if (const std::int32_t clip = spheres_.clip[std::size_t(i)]; clip >= 0) {
-      if (clips_[std::size_t(clip)].state == PlayingClip::over)
+    if (const SphereClips::Playing* clip = clips_.of(i)) {
+      if (clip->state == SphereClips::Playing::over)
         fell_asleep_.push_back(spheres_.owner[std::size_t(i)]), lay_still(i);
       continue;
     }

@@ -26,7 +26,7 @@ void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
   acting_.clear();
   for (const Push& push : pushes_) {
     const std::int64_t place = spheres_.place_of_slot[std::size_t(push.slot)];
-    end_clip(place);  // it knows no force but gravity
+    clips_.end(place);  // it knows no force but gravity
     StatisticalBody body = spheres_.body(place);
     const double impulse = dt * spheres_.inverse_mass[std::size_t(place)];
     body.velocity += impulse * push.force;
@@ -143,7 +143,7 @@ void TablesLevel::finish(ContactTally& tally) {
   loads_.take_back();
   rubbing_.take_back();
   tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
-  joined_.resize(std::max(joined_.size(), tallies_.size()));
+  clips_.begin_blocks(tallies_.size());
   driven_.resize(std::max(driven_.size(), tallies_.size()));
   rubbing_.begin_blocks(ground ? tallies_.size() : 0);
   let_driven_go();
@@ -156,7 +156,7 @@ void TablesLevel::finish(ContactTally& tally) {
   }
   each_block([&](std::int64_t begin, std::int64_t end) {
     ContactTally& own = tallies_[std::size_t(begin / kBlock)];
-    std::vector<PlayingClip>& joined = joined_[std::size_t(begin / kBlock)];
+    std::vector<SphereClips::Playing>& joined = clips_.joined(std::size_t(begin / kBlock));
     note_driven(begin, end, driven_[std::size_t(begin / kBlock)]);
     if (ground) {
       sweep_ground(near_ground_.planes(), constants_, simd_, begin, end, step_);
@@ -178,7 +178,7 @@ void TablesLevel::finish(ContactTally& tally) {
   take_back_excess();
   near_ground_.keep_above_faces();
   stop_before_unseen();
-  update_clips();
+  clips_.update();
   if (log_ && ground) write_ground();
 }
 
@@ -234,7 +234,7 @@ void TablesLevel::end_block(std::int64_t begin, std::int64_t end) {
 }
 
 // A body that meets the ground by itself, after the impulses of its contacts with others.
-void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<PlayingClip>& joined) {
+void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<SphereClips::Playing>& joined) {
   if (lies_at_clips_end(i)) {
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
     return;
