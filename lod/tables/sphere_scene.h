@@ -16,6 +16,8 @@
 namespace lodestone {
 
 struct SphereScene {
+  static constexpr std::int64_t kBlock = 1024;  // bodies of a job
+
   const StatisticalSettings& settings;
   const Ground& ground;
   const MaterialTable& materials;
@@ -26,6 +28,10 @@ struct SphereScene {
   Spheres& spheres;
   SphereContacts& contacts;
   SphereStep& step;
+
+  /// Of those awake: of so many bodies each.
+  std::size_t blocks() const { return std::size_t((spheres.awake + kBlock - 1) / kBlock); }
+  static std::size_t block_of(std::int64_t place) { return std::size_t(place / kBlock); }
 
   std::size_t place_of(int slot) const { return spheres.place_of_slot[std::size_t(slot)]; }
   const BodyKind& kind_of(std::int64_t place) const { return all_kinds[spheres.kind[std::size_t(place)]]; }

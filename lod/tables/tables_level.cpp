@@ -311,7 +311,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     StatisticalBody body = bodies[k];
     // What nothing stops would only go through it.
     if (guest.touched && !guest.carried && body.velocity.squaredNorm() > before[k].velocity.squaredNorm())
-      driven_guests_.push_back({std::int64_t(i), before[k].position, before[k].velocity.norm()});
+      driven_.add_guest(std::int64_t(i), before[k].position, before[k].velocity.norm());
     if (guest.touched && !guest.on_hull && step_.touches(std::int64_t(i)))
       loads_.keep(std::int64_t(i), before[k].velocity, body);
     clips_.end(std::int64_t(i));

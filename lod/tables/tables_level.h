@@ -23,6 +23,7 @@
 #include "lod/statistical/step_lengths.h"
 #include "lod/step_report.h"
 #include "lod/support/hull_motion.h"
+#include "lod/tables/driven_spheres.h"
 #include "lod/tables/further_planes.h"
 #include "lod/tables/ground_rubbing.h"
 #include "lod/tables/guest.h"
@@ -116,12 +117,6 @@ class TablesLevel {
   double count_traffic(bool pair_phase) const;
 
  private:
-  /// One that its contacts made faster, where it was, and how fast it was (m/s).
-  struct Driven {
-    std::int64_t place = 0;
-    Vec3 from = Vec3::Zero();  // m
-    double speed = 0.0;
-  };
   /// One that strikes the ground with others behind it, and has been moved.
   struct Striker {
     std::int64_t place = 0;
@@ -163,17 +158,6 @@ class TablesLevel {
   void apply_pushes(double dt, ContactTally& tally);
   void note_pushes();
   void take_back_excess();
-  void note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const;
-  void stop_before_unseen();
-  void stop_before_unseen(const Driven& driven);
-  double find_way_to_ground(const Driven& driven, const Vec3& way) const;
-  double find_way_to_others(const Driven& driven, const Vec3& way);
-  void sort_by_x();
-  void find_awake_near(const Vec3& center, double reach, std::vector<std::int64_t>& found) const;
-  bool leaves_its_reach(const Driven& driven) const;
-  double farthest_reach(std::int64_t place) const;
-  double find_way_to(const Driven& driven, const Vec3& way, std::int64_t other);
-  Vec3 find_start_of(std::int64_t place) const;
   void give_pushes(double share);
   void start(double dt, std::span<const std::uint32_t> order);
   float heaviest() const;
@@ -209,13 +193,13 @@ class TablesLevel {
                                 bool rides, std::vector<SphereClips::Playing>& joined);
   bool stands(std::int64_t place) const;
   void recover(std::int64_t place, ContactTally& tally);
-  static constexpr std::int64_t kBlock = 1024;  // bodies of a job
   template <class Task>
   void each_block(const Task& task) const {
-    const std::int64_t count = spheres_.awake;
-    if (count == 0) return;
-    jobs_((count + kBlock - 1) / kBlock,
-          TaskRef([&](std::int64_t block) { task(block * kBlock, std::min(count, (block + 1) * kBlock)); }));
+    constexpr std::int64_t kBlock = SphereScene::kBlock;
+    if (spheres_.awake == 0) return;
+    jobs_(std::int64_t(scene_.blocks()), TaskRef([&](std::int64_t block) {
+            task(block * kBlock, std::min(spheres_.awake, (block + 1) * kBlock));
+          }));
   }
 
   StatisticalSettings settings_;
@@ -249,6 +233,7 @@ class TablesLevel {
   GroundRubbing rubbing_{scene_, near_ground_};
   HullLoads loads_{scene_};
   SphereClips clips_{scene_};
+  DrivenSpheres driven_{scene_, near_ground_, sleepers_.of(StatisticalModel::tables)};
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;
@@ -263,12 +248,8 @@ class TablesLevel {
   std::vector<Push> pushes_;
   ActingForces acting_;                           // in this step; bodies begin it with what they give in all
   std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act
-  std::vector<std::vector<Driven>> driven_;       // likewise
-  std::vector<Driven> driven_guests_;             // in this step, by hulls
   enum class LetGo : std::uint8_t { no, on, off };
-  std::vector<LetGo> let_go_;                          // of each place awake, by let_driven_go()
-  std::vector<std::int64_t> in_the_way_;               // places
-  std::vector<std::pair<double, std::int64_t>> by_x_;  // m, and place: those awake, in the order of x
+  std::vector<LetGo> let_go_;  // of each place awake, by let_driven_go()
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
       still_touches_,                            // place awake, slot asleep; then both places
       left_asleep_;                              // those of them that touch too gently to wake the sleeper

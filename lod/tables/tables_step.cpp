@@ -142,9 +142,9 @@ void TablesLevel::finish(ContactTally& tally) {
   const bool ground = near_ground_.any();
   loads_.take_back();
   rubbing_.take_back();
-  tallies_.assign(std::size_t((spheres_.awake + kBlock - 1) / kBlock), {});
+  tallies_.assign(scene_.blocks(), {});
   clips_.begin_blocks(tallies_.size());
-  driven_.resize(std::max(driven_.size(), tallies_.size()));
+  driven_.begin_blocks(tallies_.size());
   rubbing_.begin_blocks(ground ? tallies_.size() : 0);
   let_driven_go();
   tips_ = constants_.hulls && kinds_.any_tips() && contacts_.count() > 0;
@@ -155,14 +155,15 @@ void TablesLevel::finish(ContactTally& tally) {
     });
   }
   each_block([&](std::int64_t begin, std::int64_t end) {
-    ContactTally& own = tallies_[std::size_t(begin / kBlock)];
-    std::vector<SphereClips::Playing>& joined = clips_.joined(std::size_t(begin / kBlock));
-    note_driven(begin, end, driven_[std::size_t(begin / kBlock)]);
+    const std::size_t block = SphereScene::block_of(begin);
+    ContactTally& own = tallies_[block];
+    std::vector<SphereClips::Playing>& joined = clips_.joined(block);
+    driven_.note(block, begin, end);
     if (ground) {
       sweep_ground(near_ground_.planes(), constants_, simd_, begin, end, step_);
-      rubbing_.begin_round(std::size_t(begin / kBlock), begin, end);
+      rubbing_.begin_round(block, begin, end);
       lie_on_ground(spheres_, kinds_, near_ground_.planes(), constants_, simd_, begin, end, step_);
-      rubbing_.end_round(std::size_t(begin / kBlock));
+      rubbing_.end_round(block);
       step_.each(GroundState::near, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
       if (constants_.hulls)
         step_.each(GroundState::stands, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
@@ -177,7 +178,7 @@ void TablesLevel::finish(ContactTally& tally) {
   finish_strikers(tally);
   take_back_excess();
   near_ground_.keep_above_faces();
-  stop_before_unseen();
+  driven_.stop_before_unseen();
   clips_.update();
   if (log_ && ground) write_ground();
 }

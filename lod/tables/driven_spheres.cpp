@@ -1,10 +1,8 @@
-// Of TablesLevel: who is struck within a step may come to what was out of its reach when the ground and
-// others were looked for, and would be behind it before anybody looks again. It stops there, and strikes it
-// in the next step.
+#include "lod/tables/driven_spheres.h"
+
 #include <algorithm>
 
 #include "lod/contact/free_way.h"
-#include "lod/tables/tables_level.h"
 
 namespace lodestone {
 namespace {
@@ -13,8 +11,13 @@ constexpr double kDrivenFar = 0.25;  // over R: whoever is driven less far passe
 
 }  // namespace
 
-// Of the spheres at places [begin, end): whom contacts made faster.
-void TablesLevel::note_driven(std::int64_t begin, std::int64_t end, std::vector<Driven>& driven) const {
+void DrivenSpheres::begin_blocks(std::size_t blocks) {
+  blocks_ = blocks;
+  driven_.resize(std::max(driven_.size(), blocks));
+}
+
+void DrivenSpheres::note(std::size_t block, std::int64_t begin, std::int64_t end) {
+  std::vector<Driven>& driven = driven_[block];
   driven.clear();
   for (std::int64_t i = begin; i < end; ++i) {
     if (!step_.touches(i)) continue;
@@ -26,49 +29,50 @@ void TablesLevel::note_driven(std::int64_t begin, std::int64_t end, std::vector<
 }
 
 // m: of what it has to others.
-double TablesLevel::farthest_reach(std::int64_t place) const {
+double DrivenSpheres::farthest_reach(std::int64_t place) const {
   return double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[std::size_t(place)]]
                                  : spheres_.radius[std::size_t(place)]);
 }
 
 // Within which all were looked for that it might touch.
-bool TablesLevel::leaves_its_reach(const Driven& driven) const {
+bool DrivenSpheres::leaves_its_reach(const Driven& driven) const {
   const double way = (spheres_.position(driven.place) - driven.from).norm(),
                radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
   return way > kDrivenFar * radius &&
          way + farthest_reach(driven.place) > double(step_.reach[std::size_t(driven.place)]);
 }
 
-void TablesLevel::stop_before_unseen() {
+void DrivenSpheres::stop_before_unseen() {
   constexpr std::ptrdiff_t kFew = 32;  // for whom it is not worth while to sort all
-  const auto of_step = std::span(driven_).first(tallies_.size());
+  const auto of_step = std::span(driven_).first(blocks_);
   const auto count_leaving = [&](std::span<const Driven> all) {
     return std::ranges::count_if(all, [&](const Driven& driven) { return leaves_its_reach(driven); });
   };
-  std::ptrdiff_t leaving = count_leaving(driven_guests_);
+  std::ptrdiff_t leaving = count_leaving(guests_);
   for (const std::vector<Driven>& of_block : of_step) leaving += count_leaving(of_block);
   by_x_.clear();
   if (leaving > kFew) sort_by_x();
   for (const std::vector<Driven>& of_block : of_step)
     for (const Driven& driven : of_block) stop_before_unseen(driven);
-  for (const Driven& driven : driven_guests_) stop_before_unseen(driven);
-  driven_guests_.clear();
+  for (const Driven& driven : guests_) stop_before_unseen(driven);
+  guests_.clear();
 }
 
-void TablesLevel::stop_before_unseen(const Driven& driven) {
+void DrivenSpheres::stop_before_unseen(const Driven& driven) {
   const Vec3 way = spheres_.position(driven.place) - driven.from;
   double free = find_way_to_ground(driven, way);
   if (leaves_its_reach(driven)) free = std::min(free, find_way_to_others(driven, way));
   if (free < 1.0) spheres_.set_position(driven.place, driven.from + free * way);
 }
 
-void TablesLevel::sort_by_x() {
+void DrivenSpheres::sort_by_x() {
   for (std::int64_t i = 0; i < spheres_.awake; ++i) by_x_.emplace_back(spheres_.x[std::size_t(i)], i);
   std::ranges::sort(by_x_);
 }
 
 // And others. (The cells are gone by then.)
-void TablesLevel::find_awake_near(const Vec3& center, double reach, std::vector<std::int64_t>& found) const {
+void DrivenSpheres::find_awake_near(const Vec3& center, double reach,
+                                    std::vector<std::int64_t>& found) const {
   const double least = center.x() - reach - kinds_.most_reach, most = center.x() + reach + kinds_.most_reach;
   if (by_x_.empty()) {
     for (std::int64_t i = 0; i < spheres_.awake; ++i)
@@ -82,7 +86,7 @@ void TablesLevel::find_awake_near(const Vec3& center, double reach, std::vector<
 }
 
 // The part of the way, 0 to 1.
-double TablesLevel::find_way_to_ground(const Driven& driven, const Vec3& way) const {
+double DrivenSpheres::find_way_to_ground(const Driven& driven, const Vec3& way) const {
   const double radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
   if (!ground_.has_parts() || way.norm() + radius <= near_ground_.reach_of(driven.place, driven.speed))
     return 1.0;
@@ -92,25 +96,24 @@ double TablesLevel::find_way_to_ground(const Driven& driven, const Vec3& way) co
 }
 
 // m: where it was when the step began.
-Vec3 TablesLevel::find_start_of(std::int64_t place) const {
+Vec3 DrivenSpheres::find_start_of(std::int64_t place) const {
   if (place >= spheres_.awake) return spheres_.position(place);
-  if (const auto guest = std::ranges::find(driven_guests_, place, &Driven::place);
-      guest != driven_guests_.end())
+  if (const auto guest = std::ranges::find(guests_, place, &Driven::place); guest != guests_.end())
     return guest->from;
-  const std::vector<Driven>& of_block = driven_[std::size_t(place / kBlock)];
+  const std::vector<Driven>& of_block = driven_[SphereScene::block_of(place)];
   const auto driven = std::ranges::lower_bound(of_block, place, {}, &Driven::place);
   if (driven != of_block.end() && driven->place == place) return driven->from;
   return spheres_.position(place) - constants_.wide_time * spheres_.velocity(place);
 }
 
-double TablesLevel::find_way_to_others(const Driven& driven, const Vec3& way) {
+double DrivenSpheres::find_way_to_others(const Driven& driven, const Vec3& way) {
   const std::int64_t self = driven.place;
   const Vec3 middle = driven.from + 0.5 * way;
   const double reach = 0.5 * way.norm() + farthest_reach(self);
   in_the_way_.clear();
   find_awake_near(middle, reach, in_the_way_);
-  still().find_near(middle, reach,
-                    [&](std::uint32_t slot) { in_the_way_.push_back(spheres_.place_of_slot[slot]); });
+  still_.find_near(middle, reach,
+                   [&](std::uint32_t slot) { in_the_way_.push_back(spheres_.place_of_slot[slot]); });
   const auto may_be_met = [&](std::int64_t other) {
     const double limit = reach + farthest_reach(other);
     return other != self && (spheres_.position(other) - middle).squaredNorm() < limit * limit &&
@@ -125,7 +128,7 @@ double TablesLevel::find_way_to_others(const Driven& driven, const Vec3& way) {
 
 // By conservative advancement of both (Mirtich, Impulse-based dynamic simulation of rigid body systems,
 // 1996); what it touches where it begins only if it would go deep into that.
-double TablesLevel::find_way_to(const Driven& driven, const Vec3& way, std::int64_t other) {
+double DrivenSpheres::find_way_to(const Driven& driven, const Vec3& way, std::int64_t other) {
   constexpr int kMostSteps = 12;
   constexpr double kTouching = 0.01;  // over the lesser R
   const std::int64_t self = driven.place;
