@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "lod/broad_phase/cell_grid.h"
-#include "lod/contact/impact_waves.h"
 #include "lod/ground/ground.h"
 #include "lod/jobs.h"
 #include "lod/statistical/blow_reach.h"
@@ -29,6 +28,7 @@
 #include "lod/tables/guest.h"
 #include "lod/tables/hull_loads.h"
 #include "lod/tables/near_ground.h"
+#include "lod/tables/sphere_blows.h"
 #include "lod/tables/sphere_clips.h"
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_scene.h"
@@ -164,9 +164,6 @@ class TablesLevel {
   void update_radii_one_by_one();
   void find_still_contacts();
   void wake_struck();
-  bool find_blows();
-  void gather_open_contacts();
-  void pass_blows_on();
   bool strikes_ground(std::int64_t place) const;
   void find_followed();
   void let_strikers_strike(std::span<const Guest> guests, ContactTally& tally);
@@ -230,6 +227,7 @@ class TablesLevel {
                            kinds_,    constants_, spheres_,   contacts_,  step_};
   NearGround near_ground_{scene_};
   FurtherPlanes further_planes_{scene_, near_ground_};
+  SphereBlows blows_{scene_, near_ground_};
   GroundRubbing rubbing_{scene_, near_ground_};
   HullLoads loads_{scene_};
   SphereClips clips_{scene_};
@@ -257,18 +255,10 @@ class TablesLevel {
   std::vector<Striker> strikers_;                // in this step
   std::vector<std::uint32_t> striking_;          // places: who strikes the ground and touches others
   std::vector<std::uint8_t> followed_;           // of each place awake, where any does
-  BlowReach blows_;
+  BlowReach blow_reach_;
   std::vector<std::int32_t> numbered_;      // of each place awake: its number there; −1: none
   std::vector<std::int64_t> blown_places_;  // of each number; −1: ground that moves
   std::vector<std::uint32_t> struck_slots_;
-  ImpactWaves waves_;
-  std::vector<std::uint8_t> struck_;     // of each place awake
-  std::vector<SolverBody> blow_bodies_,  // what may be struck, in the order of `blown_places_`
-      blow_bodies_before_;               // the blows
-  std::vector<CrowdManifold> blow_manifolds_;
-  std::vector<CrowdPoint> blow_points_;
-  std::vector<std::pair<ContactArrays*, std::size_t>> blow_contacts_;  // where each manifold's contact is
-  std::vector<SphereContact> passed_;  // in this step: those through which a blow went on, with what it gave
   std::vector<ContactTally> tallies_;
 };
 

@@ -42,7 +42,7 @@ void TablesLevel::respond(std::span<const Guest> guests, ContactTally& tally) {
   rounds_ = 0;
   strikers_.clear();
   if (!crowd) return;
-  pass_blows_on();
+  blows_.pass_on();
   let_strikers_strike(guests, tally);
   sweep_contacts();
   if (log_) write_contacts();
@@ -84,7 +84,7 @@ void TablesLevel::sweep_contacts() {
 
 void TablesLevel::write_contacts() {
   contacts_.each([&](const SphereContact& c) { write_contact(c); });
-  for (const SphereContact& c : passed_) write_contact(c);
+  for (const SphereContact& c : blows_.passed()) write_contact(c);
 }
 
 void TablesLevel::write_contact(const SphereContact& c) {

@@ -68,22 +68,22 @@ void TablesLevel::wake_struck() {
       if (const double height = plane.height_of(spheres_.position(place)); height < least)
         least = height, ground = plane.normal;
     blown_places_.push_back(place);
-    return blows_.add_body({.mass = 1.0 / spheres_.inverse_mass[std::size_t(place)],
-                            .wake_speed = rest_law_.wake_speed(radius),
-                            .asleep = place >= spheres_.awake,
-                            .ground = ground});
+    return blow_reach_.add_body({.mass = 1.0 / spheres_.inverse_mass[std::size_t(place)],
+                                 .wake_speed = rest_law_.wake_speed(radius),
+                                 .asleep = place >= spheres_.awake,
+                                 .ground = ground});
   };
   const auto number_of = [&](std::int64_t place) {
     std::int32_t& number = numbered_[std::size_t(place)];
     return number < 0 ? number = add(place) : number;
   };
-  blows_.clear();
+  blow_reach_.clear();
   contacts_.each([&](const SphereContact& c) {
     if (c.second >= std::uint32_t(spheres_.awake)) return;
     const MaterialId first = kind_of(c.first).material, second = kind_of(c.second).material;
-    blows_.add_contact(number_of(c.first), number_of(c.second),
-                       Vec3(double(c.nx), double(c.ny), double(c.nz)), -double(c.closing),
-                       materials_.law(first, second).restitution);
+    blow_reach_.add_contact(number_of(c.first), number_of(c.second),
+                            Vec3(double(c.nx), double(c.ny), double(c.nz)), -double(c.closing),
+                            materials_.law(first, second).restitution);
   });
   std::int32_t last_number = -1;
   std::uint32_t last_slot = ~0u;
@@ -91,10 +91,10 @@ void TablesLevel::wake_struck() {
   for (const auto& [place, slot] : left_asleep_) {
     const auto at = std::int64_t(place_of(int(slot)));
     if (slot != last_slot) last_slot = slot, last_number = add(at);
-    blows_.add_contact(number_of(place), last_number, scene_.separate(place, at).first, 0.0, 0.0);
+    blow_reach_.add_contact(number_of(place), last_number, scene_.separate(place, at).first, 0.0, 0.0);
   }
   struck_slots_.clear();
-  for (const std::int32_t number : blows_.find())
+  for (const std::int32_t number : blow_reach_.find())
     struck_slots_.push_back(std::uint32_t(spheres_.slot[std::size_t(blown_places_[std::size_t(number)])]));
   std::erase_if(left_asleep_, [&](const auto& touch) {
     return std::ranges::find(struck_slots_, touch.second) != struck_slots_.end();

@@ -1,8 +1,6 @@
-// Of TablesLevel: blows that go on through balls which touch. (What is a sphere for lack of a hull takes them
-// as a whole: passed on, they made poured boxes overlap by half of their size and rest a fifth later.)
-#include <algorithm>
+#include "lod/tables/sphere_blows.h"
 
-#include "lod/tables/tables_level.h"
+#include <algorithm>
 
 namespace lodestone {
 namespace {
@@ -12,7 +10,7 @@ constexpr std::uint8_t kStruck = 1, kHeld = 2;  // of a body: in a heap, or no b
 }  // namespace
 
 // Whether a ball that is struck touches another with nothing between them yet.
-bool TablesLevel::find_blows() {
+bool SphereBlows::find() {
   const auto awake = std::uint32_t(spheres_.awake);
   const float bounce = scene_.bounce_velocity();
   const auto is_ball = [&](std::uint32_t place) {
@@ -48,22 +46,22 @@ bool TablesLevel::find_blows() {
 
 // Contacts that strike or carry nothing, between spheres with the inertia under which an impulse at their
 // surface changes most (as in contact_loops.h).
-void TablesLevel::gather_open_contacts() {
+void SphereBlows::gather_open_contacts() {
   const auto awake = std::uint32_t(spheres_.awake);
   const float bounce = scene_.bounce_velocity();
   const ContactLaw only_law = materials_.law(kinds_.material[0], kinds_.material[0]);
-  blow_bodies_.clear(), blow_manifolds_.clear(), blow_points_.clear();
-  blow_contacts_.clear(), blown_places_.clear();
+  bodies_.clear(), manifolds_.clear(), points_.clear();
+  found_.clear(), places_.clear();
   numbered_.assign(std::size_t(awake), -1);
   const auto number_of = [&](std::uint32_t place) {
     if (place >= awake) return std::int32_t(-1);
     std::int32_t& number = numbered_[place];
     if (number >= 0) return number;
-    number = std::int32_t(blow_bodies_.size());
-    blown_places_.push_back(std::int64_t(place));
+    number = std::int32_t(bodies_.size());
+    places_.push_back(std::int64_t(place));
     const lane::Row &p = step_.p[place], &u = step_.u[place];
     const double radius = double(spheres_.radius[place]);
-    SolverBody& body = blow_bodies_.emplace_back();
+    SolverBody& body = bodies_.emplace_back();
     body.velocity = Vec3(double(p.x), double(p.y), double(p.z));
     body.angular_velocity = Vec3(double(u.x), double(u.y), double(u.z)) / radius;
     body.inverse_mass = spheres_.inverse_mass[place];
@@ -74,23 +72,23 @@ void TablesLevel::gather_open_contacts() {
   const auto number_of_ground = [&](std::uint32_t plane) {
     const Vec3 velocity = near_ground_.planes().velocity(plane);
     if (velocity.isZero(0.0)) return std::int32_t(-1);
-    blown_places_.push_back(-1);
-    blow_bodies_.emplace_back().velocity = velocity;
-    return std::int32_t(blow_bodies_.size()) - 1;
+    places_.push_back(-1);
+    bodies_.emplace_back().velocity = velocity;
+    return std::int32_t(bodies_.size()) - 1;
   };
   contacts_.each_place([&](ContactArrays& c, std::size_t i, bool of_ground) {
     const bool has_own_law = of_ground || !constants_.one_kind;
     const std::uint32_t a = c.first[i], b = c.second[i];
     if (struck_[a] == kHeld || (b < awake && struck_[b] == kHeld)) return;
     if (c.closing[i] >= -bounce && !scene_.is_unloaded(a, b, c.impulse[i])) return;
-    CrowdManifold& m = blow_manifolds_.emplace_back();
+    CrowdManifold& m = manifolds_.emplace_back();
     m.normal = Vec3(double(c.nx[i]), double(c.ny[i]), double(c.nz[i]));
     m.law = has_own_law
                 ? ContactLaw{.restitution = double(c.restitution[i]), .friction = double(c.friction[i])}
                 : only_law;
-    m.begin = std::uint32_t(blow_points_.size()), m.count = 1;
+    m.begin = std::uint32_t(points_.size()), m.count = 1;
     m.first = number_of(a), m.second = of_ground ? number_of_ground(b - kGroundPlace) : number_of(b);
-    CrowdPoint& point = blow_points_.emplace_back();
+    CrowdPoint& point = points_.emplace_back();
     point.arm_first = -double(spheres_.radius[a]) * m.normal;
     const bool on_body = m.second >= 0 && !of_ground;
     if (on_body) point.arm_second = double(spheres_.radius[b]) * m.normal;
@@ -98,45 +96,53 @@ void TablesLevel::gather_open_contacts() {
     const float own = kinds_.radius[spheres_.kind[a]],
                 size = on_body ? std::min(own, kinds_.radius[spheres_.kind[b]]) : own;
     point.gap = double(c.gap[i] - contacts_.settings().touching * size);
-    blow_contacts_.emplace_back(&c, i);
+    found_.emplace_back(&c, i);
   });
 }
 
-// What the contacts are answered with next knows of these blows no more.
-void TablesLevel::pass_blows_on() {
+void SphereBlows::pass_on() {
   passed_.clear();
-  if (!constants_.hulls || !kinds_.any_balls() || !find_blows()) return;
+  if (!constants_.hulls || !kinds_.any_balls() || !find()) return;
   gather_open_contacts();
-  blow_bodies_before_ = blow_bodies_;
-  waves_.pass_on(blow_bodies_, blow_manifolds_, blow_points_, constants_.wide_time,
+  bodies_before_ = bodies_;
+  waves_.pass_on(bodies_, manifolds_, points_, constants_.wide_time,
                  {.bounce_velocity = double(scene_.bounce_velocity())});
   if (waves_.struck().empty()) return;
-  waves_.add_impulses(blow_points_);
-  for (std::size_t k = 0; k < blow_bodies_.size(); ++k) {
-    if (blown_places_[k] < 0) continue;
-    const auto i = std::size_t(blown_places_[k]);
+  waves_.add_impulses(points_);
+  give_to_bodies();
+  note_passed();
+}
+
+void SphereBlows::give_to_bodies() {
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (places_[k] < 0) continue;
+    const auto i = std::size_t(places_[k]);
     const double radius = double(spheres_.radius[i]), softness = double(step_.u[i].w) - 1.0;
-    const Vec3 by = blow_bodies_[k].velocity - blow_bodies_before_[k].velocity,
-               turns = radius * (blow_bodies_[k].angular_velocity - blow_bodies_before_[k].angular_velocity);
+    const Vec3 by = bodies_[k].velocity - bodies_before_[k].velocity,
+               turns = radius * (bodies_[k].angular_velocity - bodies_before_[k].angular_velocity);
     const auto add = [](lane::Row& row, const Vec3& v) {
       row.x += float(v.x()), row.y += float(v.y()), row.z += float(v.z());
     };
     add(step_.p[i], by), add(step_.u[i], turns);
     if (softness > 0.0) add(step_.s[i], radius / softness * turns);
   }
+}
+
+// And what is left of the speed at which contacts close in.
+void SphereBlows::note_passed() {
   for (const std::uint32_t k : waves_.struck()) {
-    const auto [c, i] = blow_contacts_[k];
+    const auto [c, i] = found_[k];
     passed_.push_back({c->first[i], c->second[i], c->nx[i], c->ny[i], c->nz[i], c->gap[i], c->closing[i],
-                       float(blow_points_[k].impulse.dot(blow_manifolds_[k].normal))});
+                       float(points_[k].impulse.dot(manifolds_[k].normal))});
   }
-  for (std::size_t k = 0; k < blow_contacts_.size(); ++k) {
-    const CrowdManifold& m = blow_manifolds_[k];
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    const CrowdManifold& m = manifolds_[k];
     const auto velocity_of = [&](std::int32_t body) {
-      return body < 0 ? Vec3(Vec3::Zero()) : blow_bodies_[std::size_t(body)].velocity;
+      return body < 0 ? Vec3(Vec3::Zero()) : bodies_[std::size_t(body)].velocity;
     };
-    const auto [c, i] = blow_contacts_[k];
+    const auto [c, i] = found_[k];
     const double speed = (velocity_of(m.first) - velocity_of(m.second)).dot(m.normal);
-    const bool meet = blow_points_[k].gap + speed * constants_.wide_time <= 0.0;  // else it is held apart
+    const bool meet = points_[k].gap + speed * constants_.wide_time <= 0.0;  // else it is held apart
     c->closing[i] = float(meet ? speed : std::max(0.0, speed));
   }
 }
