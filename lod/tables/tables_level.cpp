@@ -233,11 +233,11 @@ std::size_t TablesLevel::bytes() const {
   const std::size_t given =
       given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
       given_.bucket_count() * sizeof(void*);
-  std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(still_touches_) +
-                      held(tallies_) + held(strikers_) + held(striking_) + held(followed_);
+  std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(tallies_) +
+                      held(strikers_) + held(striking_) + held(followed_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
   return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes() + further_planes_.bytes() +
-         rubbing_.bytes();
+         rubbing_.bytes() + clips_.bytes() + touched_sleepers_.bytes();
 }
 
 void TablesLevel::describe(Guest& guest) const {
@@ -284,12 +284,12 @@ void TablesLevel::wake_guests(std::span<const Guest> guests) {
       if (std::uint32_t& place = c.second[i]; place >= were_awake && place < kGroundPlace) visit(place);
     });
   };
-  touched_sleepers_.clear();
+  slots_of_sleepers_.clear();
   each_sleeper(
-      [&](std::uint32_t place) { touched_sleepers_.push_back(std::uint32_t(spheres_.slot[place])); });
+      [&](std::uint32_t place) { slots_of_sleepers_.push_back(std::uint32_t(spheres_.slot[place])); });
   for (const Guest& guest : guests)
     if (guest.moved) wake(guest.slot);
-  auto slot = touched_sleepers_.begin();
+  auto slot = slots_of_sleepers_.begin();
   each_sleeper([&](std::uint32_t& place) { place = std::uint32_t(spheres_.place_of_slot[*slot++]); });
 }
 

@@ -15,7 +15,6 @@
 #include "lod/broad_phase/cell_grid.h"
 #include "lod/ground/ground.h"
 #include "lod/jobs.h"
-#include "lod/statistical/blow_reach.h"
 #include "lod/statistical/rest_law.h"
 #include "lod/statistical/sleepers.h"
 #include "lod/statistical/statistical_settings.h"
@@ -33,6 +32,7 @@
 #include "lod/tables/sphere_contacts.h"
 #include "lod/tables/sphere_scene.h"
 #include "lod/tables/tipping.h"
+#include "lod/tables/touched_sleepers.h"
 #include "reference/disjoint_sets.h"
 #include "reference/state_archive.h"
 
@@ -94,7 +94,9 @@ class TablesLevel {
   /// In their place, where no sphere is near another body: those with further planes alone.
   void find_ground_contacts();
   /// In their place, where there are none.
-  void forget_contacts() { contacts_.clear(), further_planes_.clear(), left_asleep_.clear(); }
+  void forget_contacts() {
+    contacts_.clear(), further_planes_.clear(), touched_sleepers_.forget_left_asleep();
+  }
   /// Slots of those in this step that are at an edge of the ground or between parts of it that move, or,
   /// published, that parts of it hold several ways: planes do not tell how they go on.
   std::span<const std::int32_t> cornered() const { return near_ground_.cornered(); }
@@ -162,8 +164,6 @@ class TablesLevel {
   void start(double dt, std::span<const std::uint32_t> order);
   float heaviest() const;
   void update_radii_one_by_one();
-  void find_still_contacts();
-  void wake_struck();
   bool strikes_ground(std::int64_t place) const;
   void find_followed();
   void let_strikers_strike(std::span<const Guest> guests, ContactTally& tally);
@@ -227,6 +227,7 @@ class TablesLevel {
                            kinds_,    constants_, spheres_,   contacts_,  step_};
   NearGround near_ground_{scene_};
   FurtherPlanes further_planes_{scene_, near_ground_};
+  TouchedSleepers touched_sleepers_{scene_, sleepers_.of(StatisticalModel::tables)};
   SphereBlows blows_{scene_, near_ground_};
   GroundRubbing rubbing_{scene_, near_ground_};
   HullLoads loads_{scene_};
@@ -247,18 +248,11 @@ class TablesLevel {
   ActingForces acting_;                           // in this step; bodies begin it with what they give in all
   std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act
   enum class LetGo : std::uint8_t { no, on, off };
-  std::vector<LetGo> let_go_;  // of each place awake, by let_driven_go()
-  std::vector<std::pair<std::uint32_t, std::uint32_t>>
-      still_touches_,                            // place awake, slot asleep; then both places
-      left_asleep_;                              // those of them that touch too gently to wake the sleeper
-  std::vector<std::uint32_t> touched_sleepers_;  // slots, of contacts in their order, while guests wake
-  std::vector<Striker> strikers_;                // in this step
-  std::vector<std::uint32_t> striking_;          // places: who strikes the ground and touches others
-  std::vector<std::uint8_t> followed_;           // of each place awake, where any does
-  BlowReach blow_reach_;
-  std::vector<std::int32_t> numbered_;      // of each place awake: its number there; −1: none
-  std::vector<std::int64_t> blown_places_;  // of each number; −1: ground that moves
-  std::vector<std::uint32_t> struck_slots_;
+  std::vector<LetGo> let_go_;                     // of each place awake, by let_driven_go()
+  std::vector<std::uint32_t> slots_of_sleepers_;  // slots, of contacts in their order, while guests wake
+  std::vector<Striker> strikers_;                 // in this step
+  std::vector<std::uint32_t> striking_;           // places: who strikes the ground and touches others
+  std::vector<std::uint8_t> followed_;            // of each place awake, where any does
   std::vector<ContactTally> tallies_;
 };
 

@@ -146,9 +146,7 @@ void TablesLevel::rest() {
   const auto is_drawn_off = [&](std::int64_t place) {
     return std::size_t(place) < let_go_.size() && let_go_[std::size_t(place)] == LetGo::off;
   };
-  std::erase_if(left_asleep_, [&](const auto& touch) {
-    return !rides(std::int64_t(touch.first)) && !is_drawn_off(std::int64_t(touch.first));
-  });
+  touched_sleepers_.keep_left_asleep([&](std::int64_t place) { return rides(place) || is_drawn_off(place); });
   const double gravity = settings_.gravity.norm();
   for (std::int64_t i = spheres_.awake - 1; i >= 0;
        --i) {  // from the end: the last one takes the place of one that falls asleep
@@ -187,8 +185,7 @@ void TablesLevel::rest() {
     fell_asleep_.push_back(spheres_.owner[std::size_t(i)]);
     lay_still(i);
   }
-  for (const auto& [_, slot] : left_asleep_) wake(int(slot));
-  left_asleep_.clear();
+  touched_sleepers_.wake_left_asleep(TaskRef([&](std::int64_t slot) { wake(int(slot)); }));
 }
 
 }  // namespace lodestone

@@ -115,15 +115,14 @@ bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
   note_pushes();
   contacts_.set_pushes(pushes_by_place_);
   contacts_.find(spheres_, kinds_, cells, scene_.bounce_velocity(), constants_, simd_, jobs_, others);
-  find_still_contacts();
+  touched_sleepers_.find(TaskRef([&](std::int64_t slot) { wake(int(slot)); }));
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
     step_.resize(std::size_t(spheres_.awake));
     near_ground_.find_faces(were_awake, spheres_.awake);
     start_block(were_awake, spheres_.awake, simd_);
   }
-  for (auto& touch : still_touches_) touch.second = spheres_.place_of_slot[touch.second];
-  if (!still_touches_.empty())
-    contacts_.add(spheres_, kinds_, still_touches_, scene_.bounce_velocity(), constants_, simd_);
+  if (!touched_sleepers_.pairs().empty())
+    contacts_.add(spheres_, kinds_, touched_sleepers_.pairs(), scene_.bounce_velocity(), constants_, simd_);
   further_planes_.find();
   return contacts_.any_near();
 }
