@@ -233,11 +233,10 @@ std::size_t TablesLevel::bytes() const {
   const std::size_t given =
       given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
       given_.bucket_count() * sizeof(void*);
-  std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(tallies_) +
-                      held(strikers_) + held(striking_) + held(followed_);
+  std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(tallies_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
   return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes() + further_planes_.bytes() +
-         rubbing_.bytes() + clips_.bytes() + touched_sleepers_.bytes();
+         rubbing_.bytes() + clips_.bytes() + touched_sleepers_.bytes() + strikers_.bytes();
 }
 
 void TablesLevel::describe(Guest& guest) const {

@@ -24,6 +24,7 @@
 #include "lod/tables/driven_spheres.h"
 #include "lod/tables/further_planes.h"
 #include "lod/tables/ground_rubbing.h"
+#include "lod/tables/ground_strikers.h"
 #include "lod/tables/guest.h"
 #include "lod/tables/hull_loads.h"
 #include "lod/tables/near_ground.h"
@@ -119,13 +120,6 @@ class TablesLevel {
   double count_traffic(bool pair_phase) const;
 
  private:
-  /// One that strikes the ground with others behind it, and has been moved.
-  struct Striker {
-    std::int64_t place = 0;
-    Vec3 normal = Vec3::Zero();  // of the ground
-    double leaves = 0.0;         // m/s, along it
-    double given = 0.0;          // m/s: what the ground gives it against those
-  };
   struct Push {
     std::int32_t slot;
     Vec3 force, torque;
@@ -164,12 +158,7 @@ class TablesLevel {
   void start(double dt, std::span<const std::uint32_t> order);
   float heaviest() const;
   void update_radii_one_by_one();
-  bool strikes_ground(std::int64_t place) const;
-  void find_followed();
   void let_strikers_strike(std::span<const Guest> guests, ContactTally& tally);
-  void strike_first(std::int64_t place, ContactTally& tally);
-  void hold_strikers();
-  void finish_strikers(ContactTally& tally);
   int sweeps() const;
   void sweep_contacts();
   void respond_as_paper(ContactTally& tally);
@@ -227,6 +216,7 @@ class TablesLevel {
                            kinds_,    constants_, spheres_,   contacts_,  step_};
   NearGround near_ground_{scene_};
   FurtherPlanes further_planes_{scene_, near_ground_};
+  GroundStrikers strikers_{scene_, near_ground_};
   TouchedSleepers touched_sleepers_{scene_, sleepers_.of(StatisticalModel::tables)};
   SphereBlows blows_{scene_, near_ground_};
   GroundRubbing rubbing_{scene_, near_ground_};
@@ -250,9 +240,6 @@ class TablesLevel {
   enum class LetGo : std::uint8_t { no, on, off };
   std::vector<LetGo> let_go_;                     // of each place awake, by let_driven_go()
   std::vector<std::uint32_t> slots_of_sleepers_;  // slots, of contacts in their order, while guests wake
-  std::vector<Striker> strikers_;                 // in this step
-  std::vector<std::uint32_t> striking_;           // places: who strikes the ground and touches others
-  std::vector<std::uint8_t> followed_;            // of each place awake, where any does
   std::vector<ContactTally> tallies_;
 };
 

@@ -48,6 +48,15 @@ void TablesLevel::respond(std::span<const Guest> guests, ContactTally& tally) {
   if (log_) write_contacts();
 }
 
+void TablesLevel::let_strikers_strike(std::span<const Guest> guests, ContactTally& tally) {
+  thread_local std::vector<SphereClips::Playing> joined;  // none: they touch others
+  joined.clear();
+  for (const std::uint32_t place : strikers_.find(guests)) {
+    move_alone(place, tally, joined);
+    strikers_.add(place);
+  }
+}
+
 // Those of hulls as long as a round changes what bodies close in at; what is deep in each other is then taken
 // out faster than the last round alone would.
 void TablesLevel::sweep_contacts() {
@@ -70,7 +79,7 @@ void TablesLevel::sweep_contacts() {
         if (near_ground_.any()) sweep_ground(near_ground_.planes(), constants_, simd_, begin, end, step_);
         take_impulses(simd_, begin, end, step_);
       });
-    if (!last) hold_strikers();
+    if (!last) strikers_.hold();
   }
   if (!constants_.hulls || outcome.deepest <= settings.deep) return;
   for (int round = 0; round < settings.deep_rounds; ++round) {

@@ -174,7 +174,8 @@ void TablesLevel::finish(ContactTally& tally) {
   });
   for (const ContactTally& t : tallies_) tally += t;
   rubbing_.remember();
-  finish_strikers(tally);
+  strikers_.finish();
+  for (const GroundStrikers::Striker& striker : strikers_.all()) recover(striker.place, tally);
   take_back_excess();
   near_ground_.keep_above_faces();
   driven_.stop_before_unseen();

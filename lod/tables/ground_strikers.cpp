@@ -1,10 +1,7 @@
-// Of TablesLevel: who strikes the ground with others right behind it. Alone it would be moved after all
-// contacts, and those that follow would learn of it a step later, one after the other: a column would sink
-// into itself. So it is moved first, and in the rounds of contacts the ground holds it at the speed with
-// which it leaves.
+#include "lod/tables/ground_strikers.h"
+
 #include <algorithm>
 
-#include "lod/tables/tables_level.h"
 #include "reference/free_rotation.h"
 
 namespace lodestone {
@@ -16,7 +13,7 @@ constexpr std::uint8_t kStrikes = 1, kFollowed = 2;
 }  // namespace
 
 // Whether contacts with planes would find no impact, but this one.
-bool TablesLevel::strikes_ground(std::int64_t place) const {
+bool GroundStrikers::strikes(std::int64_t place) const {
   if (step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::near) || !step_.touches(place))
     return false;
   const auto number = step_.plane[std::size_t(place)];
@@ -26,7 +23,7 @@ bool TablesLevel::strikes_ground(std::int64_t place) const {
 
 // Whom of those that strike another would meet in this step once it stopped, as the ground goes, with nothing
 // that holds the two apart yet.
-void TablesLevel::find_followed() {
+void GroundStrikers::find_followed() {
   const auto awake = std::uint32_t(spheres_.awake);
   const float bounce = scene_.bounce_velocity();
   followed_.assign(std::size_t(awake), 0);
@@ -45,32 +42,27 @@ void TablesLevel::find_followed() {
   });
 }
 
-// `guests` are moved later, among hulls.
-void TablesLevel::let_strikers_strike(std::span<const Guest> guests, ContactTally& tally) {
-  if (!constants_.hulls || !near_ground_.any()) return;
+std::span<const std::uint32_t> GroundStrikers::find(std::span<const Guest> guests) {
+  if (!constants_.hulls || !near_ground_.any()) return {};
   striking_.clear();
   striking_.reserve(kFewStrikers), strikers_.reserve(kFewStrikers);
   followed_.reserve(std::size_t(spheres_.awake));
   step_.each(GroundState::near, 0, spheres_.awake, [&](std::int64_t i) {
-    if (strikes_ground(i)) striking_.push_back(std::uint32_t(i));
+    if (strikes(i)) striking_.push_back(std::uint32_t(i));
   });
-  if (striking_.empty()) return;
+  if (striking_.empty()) return {};
   find_followed();
   for (const Guest& guest : guests)
-    if (const std::size_t place = place_of(guest.slot); place < followed_.size()) followed_[place] = 0;
-  for (const std::uint32_t place : striking_)
-    if (followed_[place] == kFollowed) strike_first(place, tally);
+    if (const std::size_t place = scene_.place_of(guest.slot); place < followed_.size()) followed_[place] = 0;
+  std::erase_if(striking_, [&](std::uint32_t place) { return followed_[place] != kFollowed; });
+  return striking_;
 }
 
-void TablesLevel::strike_first(std::int64_t place, ContactTally& tally) {
-  thread_local std::vector<SphereClips::Playing> joined;  // none: it touches others
-  joined.clear();
-  move_alone(place, tally, joined);
-  // Its contacts see it as it is now.
+void GroundStrikers::add(std::int64_t place) {
   const auto i = std::size_t(place);
   const StatisticalBody body = spheres_.body(place);
-  const Vec3 turning =
-      double(spheres_.radius[i]) * angular_velocity(body.orientation, body.spin, *kind_of(place).shape);
+  const Vec3 turning = double(spheres_.radius[i]) *
+                       angular_velocity(body.orientation, body.spin, *scene_.kind_of(place).shape);
   const auto set = [](lane::Row& row, const Vec3& v) {
     row.x = float(v.x()), row.y = float(v.y()), row.z = float(v.z());
   };
@@ -79,8 +71,7 @@ void TablesLevel::strike_first(std::int64_t place, ContactTally& tally) {
   strikers_.push_back({place, normal, body.velocity.dot(normal)});
 }
 
-// The ground's part of a round.
-void TablesLevel::hold_strikers() {
+void GroundStrikers::hold() {
   for (Striker& striker : strikers_) {
     const double speed = step_.velocity(striker.place).dot(striker.normal),
                  given = std::max(0.0, striker.given + striker.leaves - speed);
@@ -91,9 +82,8 @@ void TablesLevel::hold_strikers() {
   }
 }
 
-// What its contacts gave it beside that, after it was moved.
-void TablesLevel::finish_strikers(ContactTally& tally) {
-  hold_strikers();
+void GroundStrikers::finish() {
+  hold();
   for (const Striker& striker : strikers_) {
     const std::int64_t i = striker.place;
     StatisticalBody body = spheres_.body(i);
@@ -103,7 +93,6 @@ void TablesLevel::finish_strikers(ContactTally& tally) {
     body.velocity = velocity;
     body.spin += step_.added_spin(i);
     spheres_.put(i, body);
-    recover(i, tally);
   }
 }
 
