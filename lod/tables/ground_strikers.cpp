@@ -82,7 +82,7 @@ void GroundStrikers::hold() {
   }
 }
 
-void GroundStrikers::finish() {
+void GroundStrikers::finish(ContactTally& tally) {
   hold();
   for (const Striker& striker : strikers_) {
     const std::int64_t i = striker.place;
@@ -93,6 +93,7 @@ void GroundStrikers::finish() {
     body.velocity = velocity;
     body.spin += step_.added_spin(i);
     spheres_.put(i, body);
+    scene_.recover(i, tally);
   }
 }
 

@@ -15,14 +15,6 @@ namespace lodestone {
 
 class GroundStrikers {
  public:
-  /// One that has been moved.
-  struct Striker {
-    std::int64_t place = 0;
-    Vec3 normal = Vec3::Zero();  // of the ground
-    double leaves = 0.0;         // m/s, along it
-    double given = 0.0;          // m/s: what the ground gives it against those behind it
-  };
-
   GroundStrikers(const SphereScene& scene, const NearGround& ground) : scene_(scene), near_ground_(ground) {}
 
   void clear() { strikers_.clear(); }
@@ -33,8 +25,7 @@ class GroundStrikers {
   /// The ground's part of a round.
   void hold();
   /// Once all have moved: what its contacts gave each beside that, after it was moved.
-  void finish();
-  std::span<const Striker> all() const { return strikers_; }
+  void finish(ContactTally& tally);
 
   std::size_t bytes() const {
     return strikers_.capacity() * sizeof strikers_[0] + striking_.capacity() * sizeof striking_[0] +
@@ -42,6 +33,14 @@ class GroundStrikers {
   }
 
  private:
+  /// One that has been moved.
+  struct Striker {
+    std::int64_t place = 0;
+    Vec3 normal = Vec3::Zero();  // of the ground
+    double leaves = 0.0;         // m/s, along it
+    double given = 0.0;          // m/s: what the ground gives it against those behind it
+  };
+
   bool strikes(std::int64_t place) const;
   void find_followed();
 

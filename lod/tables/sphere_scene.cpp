@@ -1,9 +1,22 @@
 #include "lod/tables/sphere_scene.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "lod/contact/impact_waves.h"
 #include "lod/tables/hull_separation.h"
 
 namespace lodestone {
+namespace {
+
+bool is_turned(const StatisticalBody& body) { return std::abs(body.orientation.squaredNorm() - 1.0) < 1e-6; }
+
+}  // namespace
+
+bool is_sound(const StatisticalBody& body, const Shape& shape) {
+  return is_turned(body) && is_within_limit(body.position) && is_within_limit(body.velocity) &&
+         is_within_limit(angular_velocity(body.orientation, body.spin, shape));
+}
 
 bool SphereScene::is_unloaded(std::uint32_t first, std::uint32_t second, float impulse) const {
   const auto inverse_mass = [&](std::uint32_t place) {
@@ -78,6 +91,21 @@ std::pair<Vec3, double> SphereScene::separate(std::int64_t first, std::int64_t s
       heights, kinds.pair_face.data(), kinds.unsteady.data(), one, other, line, float(distance),
       lane::separate_along_line(heights, one, other, line, float(distance)), {up, {}, 0.0f});
   return {Vec3(double(found.normal.x), double(found.normal.y), double(found.normal.z)), double(found.gap)};
+}
+
+void SphereScene::recover(std::int64_t place, ContactTally& tally) const {
+  StatisticalBody body = spheres.body(place);
+  if (is_sound(body, *kind_of(place).shape)) {
+    spheres.put(place, body);
+    return;
+  }
+  for (double& x : body.position) x = std::isfinite(x) ? std::clamp(x, -kStateLimit, kStateLimit) : 0.0;
+  if (!is_turned(body)) body.orientation = Quat::Identity();
+  body.velocity.setZero();
+  body.spin.setZero();
+  spheres.put(place, body);
+  spheres.known_count[place] = 0;
+  ++tally.states_recovered;
 }
 
 }  // namespace lodestone

@@ -15,6 +15,9 @@
 
 namespace lodestone {
 
+/// Whether its state can be.
+bool is_sound(const StatisticalBody& body, const Shape& shape);
+
 struct SphereScene {
   static constexpr std::int64_t kBlock = 1024;  // bodies of a job
 
@@ -56,6 +59,8 @@ struct SphereScene {
   Vec3 meeting_point(std::int64_t first, std::int64_t second) const;
   /// The way from the second to the first along which they are apart the most, and how far, m.
   std::pair<Vec3, double> separate(std::int64_t first, std::int64_t second) const;
+  /// What is no number must not spread.
+  void recover(std::int64_t place, ContactTally& tally) const;
 };
 
 }  // namespace lodestone

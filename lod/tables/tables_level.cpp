@@ -15,13 +15,6 @@ namespace {
 constexpr auto kEasedUnits = std::uint8_t(125.0f * kEasedTime);  // of 8 ms
 static_assert(125.0f * kEasedTime < 256.0f);
 
-bool is_turned(const StatisticalBody& body) { return std::abs(body.orientation.squaredNorm() - 1.0) < 1e-6; }
-
-bool is_sound(const StatisticalBody& body, const Shape& shape) {
-  return is_turned(body) && is_within_limit(body.position) && is_within_limit(body.velocity) &&
-         is_within_limit(angular_velocity(body.orientation, body.spin, shape));
-}
-
 }  // namespace
 
 TablesLevel::TablesLevel(const StatisticalSettings& settings, const Ground& ground,
@@ -77,9 +70,8 @@ std::optional<std::uint32_t> TablesLevel::remove(int slot) {
   if (last_sleeps) still().insert(gone, last_position, last_radius);
   if (renamed)
     if (SphereClips::Playing* clip = clips_.of(std::int64_t(place_of(slot)))) clip->slot = slot;
-  std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
-  for (Push& push : pushes_)
-    if (push.slot == std::int32_t(last)) push.slot = slot;
+  forces_.forget(slot);
+  forces_.rename(int(last), slot);
   given_.erase(gone);
   if (auto moved = given_.extract(last)) {
     moved.key() = gone;
@@ -157,7 +149,7 @@ void TablesLevel::let_tip(int slot) { spheres_.tipping_credit[place_of(slot)] = 
 
 void TablesLevel::put_to_sleep(int slot) {
   if (asleep(slot)) return;
-  std::erase_if(pushes_, [&](const Push& push) { return push.slot == slot; });
+  forces_.forget(slot);
   lay_still(std::int64_t(place_of(slot)));
 }
 
@@ -187,7 +179,7 @@ void TablesLevel::lay_still(std::int64_t place) {
 
 void TablesLevel::archive(StateArchive& a) {
   a(spheres_, contacts_, elapsed_, lengths_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_,
-    near_ground_, given_, pushes_, clips_, loads_, rubbing_);
+    near_ground_, given_, forces_, clips_, loads_, rubbing_);
   if (!a.reading()) return;
   kinds_ = {};
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());
@@ -220,7 +212,7 @@ void TablesLevel::forget_all_given() {
 
 void TablesLevel::add_force(int slot, const Vec3& force, const Vec3& torque) {
   wake(slot);
-  pushes_.push_back({slot, force, torque});
+  forces_.push(slot, force, torque);
 }
 
 double TablesLevel::count_traffic(bool pair_phase) const {
@@ -233,10 +225,11 @@ std::size_t TablesLevel::bytes() const {
   const std::size_t given =
       given_.size() * (sizeof(std::pair<const std::uint32_t, RigidState>) + 2 * sizeof(void*)) +
       given_.bucket_count() * sizeof(void*);
-  std::size_t bytes = held(spheres_.place_of_slot) + given + held(pushes_) + held(tallies_);
+  std::size_t bytes = held(spheres_.place_of_slot) + given + held(tallies_);
   spheres_.each_array([&](const auto& array) { bytes += held(array); });
-  return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes() + further_planes_.bytes() +
-         rubbing_.bytes() + clips_.bytes() + touched_sleepers_.bytes() + strikers_.bytes();
+  return bytes + step_.bytes() + tipping_.bytes() + contacts_.bytes() + forces_.bytes() +
+         further_planes_.bytes() + rubbing_.bytes() + clips_.bytes() + touched_sleepers_.bytes() +
+         strikers_.bytes();
 }
 
 void TablesLevel::describe(Guest& guest) const {
@@ -334,22 +327,6 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     step_.a[i] = step_.s[i] = step_.d[i] = {};
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
   }
-}
-
-// What is no number must not spread.
-void TablesLevel::recover(std::int64_t place, ContactTally& tally) {
-  StatisticalBody body = spheres_.body(place);
-  if (is_sound(body, *kind_of(place).shape)) {
-    spheres_.put(place, body);
-    return;
-  }
-  for (double& x : body.position) x = std::isfinite(x) ? std::clamp(x, -kStateLimit, kStateLimit) : 0.0;
-  if (!is_turned(body)) body.orientation = Quat::Identity();
-  body.velocity.setZero();
-  body.spin.setZero();
-  spheres_.put(place, body);
-  spheres_.known_count[place] = 0;
-  ++tally.states_recovered;
 }
 
 }  // namespace lodestone

@@ -31,6 +31,7 @@
 #include "lod/tables/sphere_blows.h"
 #include "lod/tables/sphere_clips.h"
 #include "lod/tables/sphere_contacts.h"
+#include "lod/tables/sphere_forces.h"
 #include "lod/tables/sphere_scene.h"
 #include "lod/tables/tipping.h"
 #include "lod/tables/touched_sleepers.h"
@@ -120,11 +121,6 @@ class TablesLevel {
   double count_traffic(bool pair_phase) const;
 
  private:
-  struct Push {
-    std::int32_t slot;
-    Vec3 force, torque;
-  };
-
   StepWorld world() const {
     return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, nullptr, log_};
   }
@@ -151,10 +147,6 @@ class TablesLevel {
   bool rolls_on_ground(std::int64_t place) const;
   double ground_friction(std::int64_t place) const;
 
-  void apply_pushes(double dt, ContactTally& tally);
-  void note_pushes();
-  void take_back_excess();
-  void give_pushes(double share);
   void start(double dt, std::span<const std::uint32_t> order);
   float heaviest() const;
   void update_radii_one_by_one();
@@ -178,7 +170,6 @@ class TablesLevel {
   ContactTally move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
                                 bool rides, std::vector<SphereClips::Playing>& joined);
   bool stands(std::int64_t place) const;
-  void recover(std::int64_t place, ContactTally& tally);
   template <class Task>
   void each_block(const Task& task) const {
     constexpr std::int64_t kBlock = SphereScene::kBlock;
@@ -214,6 +205,7 @@ class TablesLevel {
   StepConstants constants_;
   const SphereScene scene_{settings_, ground_,    materials_, all_kinds_, rest_law_,
                            kinds_,    constants_, spheres_,   contacts_,  step_};
+  SphereForces forces_{scene_};
   NearGround near_ground_{scene_};
   FurtherPlanes further_planes_{scene_, near_ground_};
   GroundStrikers strikers_{scene_, near_ground_};
@@ -234,9 +226,6 @@ class TablesLevel {
 
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
-  std::vector<Push> pushes_;
-  ActingForces acting_;                           // in this step; bodies begin it with what they give in all
-  std::vector<Eigen::Vector3f> pushes_by_place_;  // m/s: that, where any act
   enum class LetGo : std::uint8_t { no, on, off };
   std::vector<LetGo> let_go_;                     // of each place awake, by let_driven_go()
   std::vector<std::uint32_t> slots_of_sleepers_;  // slots, of contacts in their order, while guests wake

@@ -35,9 +35,9 @@ void TablesLevel::respond(std::span<const Guest> guests, ContactTally& tally) {
   const bool crowd = contacts_.count() > 0;
   if (crowd) contacts_.begin(spheres_, kinds_, materials_, constants_, step_, jobs_);
   if (crowd) loads_.press();
-  give_pushes(-1.0);  // what presses a body to the ground does not throw it there
+  forces_.give(-1.0);  // what presses a body to the ground does not throw it there
   sort_ground();
-  give_pushes(1.0);
+  forces_.give(1.0);
   rubbing_.give();
   rounds_ = 0;
   strikers_.clear();

@@ -56,7 +56,7 @@ void TablesLevel::let_driven_go() {
   drawn_.clear(), drawn_off_.clear();
   let_go_.assign(std::size_t(spheres_.awake), LetGo::no);
   const double strength = settings_.gravity.norm();
-  for (const ActingForce& force : acting_.all()) {
+  for (const ActingForce& force : forces_.acting().all()) {
     const Vec3 aside = strength > 0.0 ? Vec3(force.acceleration.cross(settings_.gravity) / strength)
                                       : Vec3(force.acceleration);  // as long as what is across gravity
     const auto place = std::int32_t(place_of(force.slot));

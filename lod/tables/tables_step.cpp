@@ -18,30 +18,8 @@ constexpr int kOrderInterval = 16;  // steps between looks at how far bodies hav
 void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally) {
   forget_all_given();
   fell_asleep_.clear();
-  apply_pushes(dt, tally);
+  forces_.apply(dt, clips_, tally);
   start(dt, order);
-}
-
-void TablesLevel::apply_pushes(double dt, ContactTally& tally) {
-  acting_.clear();
-  for (const Push& push : pushes_) {
-    const std::int64_t place = spheres_.place_of_slot[std::size_t(push.slot)];
-    clips_.end(place);  // it knows no force but gravity
-    StatisticalBody body = spheres_.body(place);
-    const double impulse = dt * spheres_.inverse_mass[std::size_t(place)];
-    body.velocity += impulse * push.force;
-    body.spin += impulse * push.torque;
-    body.motion = Motion::dynamic;
-    spheres_.put(place, body);
-    if (body.velocity.dot(push.force) > impulse * push.force.squaredNorm())  // it gives way: at no rest
-      spheres_.crowded_for[std::size_t(place)] = 0, spheres_.quiet[std::size_t(place)] = 0.0f;
-    if (!is_within_limit(body.velocity) || !is_within_limit(body.spin))
-      recover(place, tally);
-    else
-      acting_.add({push.slot, (impulse / dt) * push.force, (impulse / dt) * push.torque});
-  }
-  pushes_.clear();
-  acting_.put_in_order();
 }
 
 void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
@@ -112,8 +90,7 @@ void TablesLevel::update_radii_one_by_one() {
 
 bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
   const std::int64_t were_awake = spheres_.awake;
-  note_pushes();
-  contacts_.set_pushes(pushes_by_place_);
+  contacts_.set_pushes(forces_.by_place());
   contacts_.find(spheres_, kinds_, cells, scene_.bounce_velocity(), constants_, simd_, jobs_, others);
   touched_sleepers_.find(TaskRef([&](std::int64_t slot) { wake(int(slot)); }));
   if (spheres_.awake > were_awake) {  // those that were woken start their step now
@@ -129,8 +106,7 @@ bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
 
 void TablesLevel::find_ground_contacts() {
   forget_contacts();
-  note_pushes();
-  contacts_.set_pushes(pushes_by_place_);
+  contacts_.set_pushes(forces_.by_place());
   contacts_.find(spheres_, kinds_, no_cells_, scene_.bounce_velocity(), constants_, simd_, jobs_, nullptr);
   further_planes_.find();
 }
@@ -170,46 +146,16 @@ void TablesLevel::finish(ContactTally& tally) {
     end_block(begin, end);
     if (tips_) tip(spheres_, kinds_, near_ground_.planes(), constants_, step_, begin, end, tipping_);
     near_ground_.keep_above_planes(begin, end);
-    step_.each(GroundState::unsound, begin, end, [&](std::int64_t i) { recover(i, own); });
+    step_.each(GroundState::unsound, begin, end, [&](std::int64_t i) { scene_.recover(i, own); });
   });
   for (const ContactTally& t : tallies_) tally += t;
   rubbing_.remember();
-  strikers_.finish();
-  for (const GroundStrikers::Striker& striker : strikers_.all()) recover(striker.place, tally);
-  take_back_excess();
+  strikers_.finish(tally);
+  forces_.take_back_excess();
   near_ground_.keep_above_faces();
   driven_.stop_before_unseen();
   clips_.update();
   if (log_ && ground) write_ground();
-}
-
-// Of bodies that flew through the whole step: a force acted through it, not at its beginning.
-void TablesLevel::take_back_excess() {
-  for (const ActingForce& force : acting_.all()) {
-    const std::size_t i = place_of(force.slot);
-    if (step_.on_ground[i] != std::uint8_t(GroundState::free) || step_.touches(std::int64_t(i))) continue;
-    const Vec3 too_far = 0.5 * constants_.wide_time * constants_.wide_time * force.acceleration;
-    spheres_.x[i] -= too_far.x(), spheres_.y[i] -= too_far.y(), spheres_.z[i] -= too_far.z();
-  }
-}
-
-// For contacts(): what presses together does not strike.
-void TablesLevel::note_pushes() {
-  pushes_by_place_.clear();
-  if (acting_.empty()) return;
-  pushes_by_place_.assign(std::size_t(spheres_.awake), Eigen::Vector3f::Zero());
-  for (const ActingForce& force : acting_.all()) {
-    pushes_by_place_[place_of(force.slot)] = (constants_.wide_time * force.acceleration).cast<float>();
-  }
-}
-
-// m/s, times `share`.
-void TablesLevel::give_pushes(double share) {
-  for (const ActingForce& force : acting_.all()) {
-    const std::size_t i = place_of(force.slot);
-    const Vec3 push = share * constants_.wide_time * force.acceleration;
-    spheres_.vx[i] += push.x(), spheres_.vy[i] += push.y(), spheres_.vz[i] += push.z();
-  }
 }
 
 // The orientations of slender bodies, and of those that turn far in a step, follow by splitting, one by one.
@@ -254,7 +200,7 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Sp
   const bool rides = carried != nullptr;
   if (rides) body.velocity -= carried->velocity;
   if (!step_.touches(i) && constants_.hulls) {
-    const ActingForce& force = acting_.of(std::int32_t(spheres_.slot[i]));
+    const ActingForce& force = forces_.acting().of(std::int32_t(spheres_.slot[i]));
     body.velocity -= constants_.wide_time * force.acceleration;
     body.spin -= constants_.wide_time * force.turning;
     around.gravity += force.acceleration;  // for what moves alone, as good as a gravity of its own
