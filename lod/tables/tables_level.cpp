@@ -299,7 +299,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     const Guest& guest = guests[k];
     if (!guest.moved) continue;
     const std::size_t i = place_of(guest.slot);
-    if (guest.carried) carried_guests_.push_back(std::int64_t(i));
+    if (guest.carried) carried_.add_guest(std::int64_t(i));
     StatisticalBody body = bodies[k];
     // What nothing stops would only go through it.
     if (guest.touched && !guest.carried && body.velocity.squaredNorm() > before[k].velocity.squaredNorm())

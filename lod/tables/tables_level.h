@@ -21,6 +21,7 @@
 #include "lod/statistical/step_lengths.h"
 #include "lod/step_report.h"
 #include "lod/support/hull_motion.h"
+#include "lod/tables/carried_spheres.h"
 #include "lod/tables/driven_spheres.h"
 #include "lod/tables/further_planes.h"
 #include "lod/tables/ground_rubbing.h"
@@ -35,7 +36,6 @@
 #include "lod/tables/sphere_scene.h"
 #include "lod/tables/tipping.h"
 #include "lod/tables/touched_sleepers.h"
-#include "reference/disjoint_sets.h"
 #include "reference/state_archive.h"
 
 namespace lodestone {
@@ -136,16 +136,9 @@ class TablesLevel {
   void forget_all_given();
   void ease();
   void wake_guests(std::span<const Guest> guests);
-  bool find_riders();
-  void join_touching();
-  void join_carried();
-  void let_driven_go();
-  void note_who_falls();
   bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
-  double moving_speed(std::int64_t place) const;
-  bool hangs(std::int64_t place) const;
+  bool comes_to_rest(std::int64_t place);
   bool rolls_on_ground(std::int64_t place) const;
-  double ground_friction(std::int64_t place) const;
 
   void start(double dt, std::span<const std::uint32_t> order);
   float heaviest() const;
@@ -195,13 +188,10 @@ class TablesLevel {
   SphereContacts contacts_;
   SphereStep step_;
   TippingStep tipping_;
-  bool tips_ = false;  // whether anybody may tip over in this step
-  int rounds_ = 0;     // of contacts, in the last step
-  std::vector<std::int64_t> carried_guests_,
-      leaning_;                                  // places: of guests; of those on their hulls that touch
-  std::vector<std::int64_t> set_out_;            // of these, who gains speed
-  std::vector<std::int32_t> drawn_, drawn_off_;  // places awake, in finish()
-  DisjointSets riders_;                          // of the places awake, and what nothing stops
+  bool tips_ = false;                  // whether anybody may tip over in this step
+  int rounds_ = 0;                     // of contacts, in the last step
+  std::vector<std::int64_t> leaning_;  // places of guests on their hulls that touch
+  std::vector<std::int64_t> set_out_;  // of these, who gains speed
   StepConstants constants_;
   const SphereScene scene_{settings_, ground_,    materials_, all_kinds_, rest_law_,
                            kinds_,    constants_, spheres_,   contacts_,  step_};
@@ -210,6 +200,7 @@ class TablesLevel {
   FurtherPlanes further_planes_{scene_, near_ground_};
   GroundStrikers strikers_{scene_, near_ground_};
   TouchedSleepers touched_sleepers_{scene_, sleepers_.of(StatisticalModel::tables)};
+  CarriedSpheres carried_{scene_, near_ground_, forces_};
   SphereBlows blows_{scene_, near_ground_};
   GroundRubbing rubbing_{scene_, near_ground_};
   HullLoads loads_{scene_};
@@ -226,8 +217,6 @@ class TablesLevel {
 
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
-  enum class LetGo : std::uint8_t { no, on, off };
-  std::vector<LetGo> let_go_;                     // of each place awake, by let_driven_go()
   std::vector<std::uint32_t> slots_of_sleepers_;  // slots, of contacts in their order, while guests wake
   std::vector<ContactTally> tallies_;
 };

@@ -64,7 +64,8 @@ void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
   if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0)
     update_radii_one_by_one();
   near_ground_.begin_step();
-  carried_guests_.clear(), leaning_.clear(), set_out_.clear();
+  carried_.begin_step();
+  leaning_.clear(), set_out_.clear();
   near_ground_.find_faces(0, spheres_.awake);
   each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
 }
@@ -121,7 +122,7 @@ void TablesLevel::finish(ContactTally& tally) {
   clips_.begin_blocks(tallies_.size());
   driven_.begin_blocks(tallies_.size());
   rubbing_.begin_blocks(ground ? tallies_.size() : 0);
-  let_driven_go();
+  carried_.let_go();
   tips_ = constants_.hulls && kinds_.any_tips() && contacts_.count() > 0;
   if (tips_) {
     tipping_.clear(std::size_t(spheres_.awake));
