@@ -308,7 +308,7 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
       loads_.keep(std::int64_t(i), before[k].velocity, body);
     clips_.end(std::int64_t(i));
     if (guest.on_hull) {
-      take_from_edge(std::int64_t(i), body);
+      hulls_.take_from_edge(std::int64_t(i), body);
     } else {
       spheres_.on_hull[i] = HullStand::none;
       spheres_.put(std::int64_t(i), body);

@@ -20,7 +20,6 @@
 #include "lod/statistical/statistical_settings.h"
 #include "lod/statistical/step_lengths.h"
 #include "lod/step_report.h"
-#include "lod/support/hull_motion.h"
 #include "lod/tables/carried_spheres.h"
 #include "lod/tables/driven_spheres.h"
 #include "lod/tables/further_planes.h"
@@ -28,6 +27,7 @@
 #include "lod/tables/ground_strikers.h"
 #include "lod/tables/guest.h"
 #include "lod/tables/hull_loads.h"
+#include "lod/tables/lone_hulls.h"
 #include "lod/tables/near_ground.h"
 #include "lod/tables/sphere_blows.h"
 #include "lod/tables/sphere_clips.h"
@@ -124,9 +124,6 @@ class TablesLevel {
   StepWorld world() const {
     return {settings_.gravity, ground_.planes(), &materials_, settings_.seed, nullptr, log_};
   }
-  void write_contacts();
-  void write_contact(const SphereContact& contact);
-  void write_ground();
   std::size_t place_of(int slot) const { return spheres_.place_of_slot[std::size_t(slot)]; }
   StillGrid& still() { return sleepers_.of(StatisticalModel::tables); }
   const StillGrid& still() const { return sleepers_.of(StatisticalModel::tables); }
@@ -151,18 +148,7 @@ class TablesLevel {
   void sort_ground();
   void choose_rest_pose(std::int64_t place);
   void end_block(std::int64_t begin, std::int64_t end);
-  void choose_hulls(std::int64_t begin, std::int64_t end);
-  bool lies_at_clips_end(std::int64_t place) const;
   void move_alone(std::int64_t place, ContactTally& tally, std::vector<SphereClips::Playing>& joined);
-  bool stands_when_alone(std::int64_t place) const;
-  bool is_at_edge(std::int64_t place) const;
-  bool overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const;
-  float height_over_ground(std::int64_t place, const StatisticalBody& body) const;
-  void take_from_edge(std::int64_t place, const StatisticalBody& moved);
-  void become_sphere(std::int64_t place, StatisticalBody& body);
-  ContactTally move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
-                                bool rides, std::vector<SphereClips::Playing>& joined);
-  bool stands(std::int64_t place) const;
   template <class Task>
   void each_block(const Task& task) const {
     constexpr std::int64_t kBlock = SphereScene::kBlock;
@@ -205,6 +191,7 @@ class TablesLevel {
   GroundRubbing rubbing_{scene_, near_ground_};
   HullLoads loads_{scene_};
   SphereClips clips_{scene_};
+  LoneHulls hulls_{scene_, near_ground_, clips_};
   DrivenSpheres driven_{scene_, near_ground_, sleepers_.of(StatisticalModel::tables)};
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lod/tables/sphere_log.h"
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
@@ -45,7 +46,7 @@ void TablesLevel::respond(std::span<const Guest> guests, ContactTally& tally) {
   blows_.pass_on();
   let_strikers_strike(guests, tally);
   sweep_contacts();
-  if (log_) write_contacts();
+  if (log_) write_contacts(scene_, near_ground_, blows_.passed(), *log_);
 }
 
 void TablesLevel::let_strikers_strike(std::span<const Guest> guests, ContactTally& tally) {
@@ -91,51 +92,6 @@ void TablesLevel::sweep_contacts() {
   }
 }
 
-void TablesLevel::write_contacts() {
-  contacts_.each([&](const SphereContact& c) { write_contact(c); });
-  for (const SphereContact& c : blows_.passed()) write_contact(c);
-}
-
-void TablesLevel::write_contact(const SphereContact& c) {
-  if (c.impulse <= 0.0f) return;
-  const Vec3 normal(double(c.nx), double(c.ny), double(c.nz));
-  if (c.second >= kGroundPlace) {
-    const HalfSpace& under = near_ground_.plane(std::int32_t(c.second - kGroundPlace));
-    return log_->add(
-        {.first = spheres_.owner[c.first],
-         .ground = under.id,
-         .ground_material = under.material,
-         .point = spheres_.position(c.first) - double(scene_.ground_height(c.first, -normal)) * normal,
-         .normal = normal,
-         .impulse = double(c.impulse),
-         .approach = std::max(0.0, -double(c.closing))});
-  }
-  log_->add({.first = spheres_.owner[c.first],
-             .second = spheres_.owner[c.second],
-             .point = scene_.meeting_point(c.first, c.second),
-             .normal = normal,
-             .impulse = double(c.impulse),
-             .approach = std::max(0.0, -double(c.closing))});
-}
-
-// Of those that lie on it; impacts are written where they are answered.
-void TablesLevel::write_ground() {
-  for (std::int64_t i = 0; i < spheres_.awake; ++i) {
-    const std::uint8_t state = step_.on_ground[std::size_t(i)];
-    if (state != std::uint8_t(GroundState::lies) && state != std::uint8_t(GroundState::settles)) continue;
-    const HalfSpace& under = near_ground_.plane(step_.plane[std::size_t(i)]);
-    const double pressing =
-        std::max(0.0, -settings_.gravity.dot(under.normal)) * constants_.wide_time;  // m/s
-    log_->add({.first = spheres_.owner[std::size_t(i)],
-               .ground = under.id,
-               .ground_material = under.material,
-               .point = spheres_.position(i) - double(spheres_.radius[std::size_t(i)]) * under.normal,
-               .normal = under.normal,
-               .impulse = std::max(pressing, double(step_.a[std::size_t(i)].w)) /
-                          spheres_.inverse_mass[std::size_t(i)]});
-  }
-}
-
 // The paper's rule (3.3.2): each body of a pair responds by itself, as to an immovable plane, and then moves
 // as if alone.
 void TablesLevel::respond_as_paper(ContactTally& tally) {
@@ -159,7 +115,7 @@ void TablesLevel::respond_as_paper(ContactTally& tally) {
 void TablesLevel::sort_ground() {
   clips_.end_of_touched();
   each_block([&](std::int64_t begin, std::int64_t end) {
-    if (constants_.hulls) choose_hulls(begin, end);
+    if (constants_.hulls) hulls_.choose(begin, end);
     if (!near_ground_.any()) return clear_added(begin, end, step_);
     sort_near_ground(spheres_, kinds_, near_ground_.planes(), constants_, scene_.bounce_velocity(), simd_,
                      begin, end, step_);

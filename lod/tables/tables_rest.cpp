@@ -52,7 +52,7 @@ bool TablesLevel::comes_to_rest(std::int64_t i) {
     spheres_.quiet[i] = 0.0f;
   const bool waits_less = among_others && !rolls_on_ground(i);
   return spheres_.quiet[i] >= rest_law_.still_time(waits_less, radius, gravity) &&
-         (among_others || stands(i));
+         (among_others || hulls_.stands(i));
 }
 
 void TablesLevel::rest() {

@@ -6,6 +6,7 @@
 
 #include "lod/contact/hull_contacts.h"
 #include "lod/statistical/flight.h"
+#include "lod/tables/sphere_log.h"
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
@@ -156,7 +157,7 @@ void TablesLevel::finish(ContactTally& tally) {
   near_ground_.keep_above_faces();
   driven_.stop_before_unseen();
   clips_.update();
-  if (log_ && ground) write_ground();
+  if (log_ && ground) write_lying(scene_, near_ground_, *log_);
 }
 
 // The orientations of slender bodies, and of those that turn far in a step, follow by splitting, one by one.
@@ -183,7 +184,7 @@ void TablesLevel::end_block(std::int64_t begin, std::int64_t end) {
 
 // A body that meets the ground by itself, after the impulses of its contacts with others.
 void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<SphereClips::Playing>& joined) {
-  if (lies_at_clips_end(i)) {
+  if (!log_ && hulls_.lies_at_clips_end(i)) {  // where touches are written down, it goes on to touch
     step_.on_ground[i] = std::uint8_t(GroundState::moved);
     return;
   }
@@ -208,9 +209,9 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Sp
     around.turning = force.turning;
   }
   if (step_.on_ground[i] == std::uint8_t(GroundState::stands)) {
-    tally += move_over_ground(i, body, around, rides, joined);
+    tally += hulls_.move(i, body, around, rides, joined);
   } else {
-    become_sphere(i, body);
+    hulls_.become_sphere(i, body);
     if (constants_.hulls && (step_.touches(i) || spheres_.since_crowded[i] < kLeaningTicks)) {
       // As high as its hull is over that plane; the others that it meets are among its contacts.
       around.planes = {&near_ground_.plane(step_.plane[i]), 1};

@@ -1,10 +1,8 @@
-// Of TablesLevel: bodies that touch no other move over planes on their hulls, as those of `support` do,
-// with fewer and coarser contact steps. Departs from the paper's sphere of the mean height (3.3.1), which is
-// blind to the orientation: its first impulse is off by 36 to 47 %, and single drops by three times as much.
+#include "lod/tables/lone_hulls.h"
+
 #include <algorithm>
 
 #include "lod/contact/hull_contacts.h"
-#include "lod/tables/tables_level.h"
 
 namespace lodestone {
 namespace {
@@ -23,17 +21,16 @@ bool is_sunk(const StatisticalBody& body, const Shape& shape, std::span<const Ha
 }  // namespace
 
 // Where the ground's parts are planes to that, here.
-bool TablesLevel::stands_when_alone(std::int64_t place) const {
+bool LoneHulls::stands_when_alone(std::int64_t place) const {
   return scene_.is_alone(place) && near_ground_.is_even(place);
 }
 
 // Where they are none, as a guest.
-bool TablesLevel::is_at_edge(std::int64_t place) const {
+bool LoneHulls::is_at_edge(std::int64_t place) const {
   return scene_.is_alone(place) && !near_ground_.is_even(place);
 }
 
-// Those that touched no other for a while stand on their hulls; the others are spheres.
-void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
+void LoneHulls::choose(std::int64_t begin, std::int64_t end) {
   constexpr auto kFree = std::uint8_t(GroundState::free), kNear = std::uint8_t(GroundState::near);
   constexpr auto kWithin = std::uint8_t(GroundState::within);
   for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
@@ -49,12 +46,9 @@ void TablesLevel::choose_hulls(std::int64_t begin, std::int64_t end) {
   }
 }
 
-// It has come to rest, does not sleep, and its ground is what it was. Where touches are written down, it goes
-// on to touch.
-bool TablesLevel::lies_at_clips_end(std::int64_t place) const {
+bool LoneHulls::lies_at_clips_end(std::int64_t place) const {
   const SphereClips::Playing* playing = clips_.of(place);
-  if (!playing || log_ || step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::stands))
-    return false;
+  if (!playing || step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::stands)) return false;
   const HalfSpace& ground = playing->playback.ground;
   return playing->state == SphereClips::Playing::over &&
          std::ranges::any_of(ground_.planes(), [&](const HalfSpace& p) {
@@ -62,7 +56,7 @@ bool TablesLevel::lies_at_clips_end(std::int64_t place) const {
          });
 }
 
-void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
+void LoneHulls::become_sphere(std::int64_t place, StatisticalBody& body) {
   spheres_.on_hull[std::size_t(place)] = HullStand::none;
   SphereClips::Playing* playing = clips_.of(place);
   if (!playing) return;
@@ -70,9 +64,8 @@ void TablesLevel::become_sphere(std::int64_t place, StatisticalBody& body) {
   body.motion = Motion::dynamic;
 }
 
-// The sphere that others would meet is as high as the body stands.
-ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& body, const StepWorld& around,
-                                           bool rides, std::vector<SphereClips::Playing>& joined) {
+const HullMotionSettings& LoneHulls::motion_settings(const StatisticalBody& body, const BodyKind& kind,
+                                                     const StepWorld& around) const {
   static const SupportSettings coarse{
       .coarse = true,
       .contact_step = 0.1,
@@ -89,8 +82,21 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
       .clips = {.energy_limit = .8, .distance_over_energy = 1.2f, .greatest_distance = .5f}};
   static const HullMotionSettings lively{.support = coarse};
   static const HullMotionSettings fine{.support = SupportSettings::of_tables()};
+  const double farthest = 1.01 * kind.shape->radius + body.velocity.norm() * constants_.wide_time;  // m
+  const bool is_level = std::ranges::all_of(around.planes, [&](const HalfSpace& p) {
+    return around.is_horizontal(p) || p.height_of(body.position) > farthest;
+  });
+  if (!is_level || scene_.is_nearly_still(body, kind, false)) return fine;
+  const bool is_lively = std::ranges::any_of(
+      around.planes, [&](const HalfSpace& p) { return around.law(kind, p).restitution > kLively; });
+  return is_lively ? lively : level;
+}
+
+ContactTally LoneHulls::move(std::int64_t place, StatisticalBody& body, const StepWorld& around, bool rides,
+                             std::vector<SphereClips::Playing>& joined) {
   const auto i = std::size_t(place);
-  const Shape& shape = *kind_of(place).shape;
+  const BodyKind& kind = scene_.kind_of(place);
+  const Shape& shape = *kind.shape;
   const double radius = shape.radius;
   HullStand& stand = spheres_.on_hull[i];
   if (stand != HullStand::stands)
@@ -103,17 +109,9 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
     body.motion = Motion::dynamic;  // it may have turned into a rest pose as a sphere
   SphereClips::Playing begun{.slot = spheres_.slot[i]};
   SphereClips::Playing& playing = under_way ? *under_way : begun;
-  const double farthest = 1.01 * radius + body.velocity.norm() * constants_.wide_time;  // m
-  const bool is_level = std::ranges::all_of(around.planes, [&](const HalfSpace& p) {
-    return around.is_horizontal(p) || p.height_of(body.position) > farthest;
-  });
-  const bool is_lively = std::ranges::any_of(
-      around.planes, [&](const HalfSpace& p) { return around.law(kind_of(place), p).restitution > kLively; });
-  const HullMotionSettings& settings = !is_level || scene_.is_nearly_still(body, kind_of(place), false) ? fine
-                                       : is_lively ? lively
-                                                   : level;
-  const HullMotion moved = move_on_hull(body, playing.playback, kind_of(place), around, settings_.gravity,
-                                        constants_.wide_time, may_settle, settings);
+  const HullMotion moved =
+      move_on_hull(body, playing.playback, kind, around, settings_.gravity, constants_.wide_time, may_settle,
+                   motion_settings(body, kind, around));
   body.eased = eased;
   playing.state = !moved.plays_clip ? SphereClips::Playing::ended
                   : moved.clip_over ? SphereClips::Playing::over
@@ -123,12 +121,12 @@ ContactTally TablesLevel::move_over_ground(std::int64_t place, StatisticalBody& 
   for (const HalfSpace& p : around.planes) height = std::min(height, p.height_of(body.position));
   const bool touches = moved.plays_clip || moved.tally.touched_plane >= 0;
   if (!touches) height = std::min(height, double(body.sphere_radius));
-  body.sphere_radius = float(std::max(height, least_height(*kind_of(place).shape)));
+  body.sphere_radius = float(std::max(height, least_height(shape)));
   return moved.tally;
 }
 
 // From its edges a hull that was a sphere parts slowly, as from a plane.
-bool TablesLevel::overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const {
+bool LoneHulls::overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const {
   thread_local std::vector<SolidContact> contacts;
   thread_local std::vector<HalfSpace> planes;
   contacts.clear();
@@ -140,29 +138,28 @@ bool TablesLevel::overlaps_ground(const StatisticalBody& body, const BodyKind& k
 }
 
 // m, as high as it stands, for the sphere that others would meet.
-float TablesLevel::height_over_ground(std::int64_t place, const StatisticalBody& body) const {
-  const double radius = kind_of(place).shape->radius;
+float LoneHulls::height_over_ground(std::int64_t place, const StatisticalBody& body) const {
+  const double radius = scene_.kind_of(place).shape->radius;
   double height = radius;
   for (const HalfSpace& plane : near_ground_.planes_of(place))
     height = std::min(height, plane.height_of(body.position));
-  return float(std::max(height, least_height(*kind_of(place).shape)));
+  return float(std::max(height, least_height(*scene_.kind_of(place).shape)));
 }
 
-// Of a guest that was moved on its hull.
-void TablesLevel::take_from_edge(std::int64_t place, const StatisticalBody& moved) {
+void LoneHulls::take_from_edge(std::int64_t place, const StatisticalBody& moved) {
   const auto i = std::size_t(place);
   HullStand& stand = spheres_.on_hull[i];
   if (stand != HullStand::stands)
-    stand = overlaps_ground(moved, kind_of(place)) ? HullStand::rises : HullStand::stands;
+    stand = overlaps_ground(moved, scene_.kind_of(place)) ? HullStand::rises : HullStand::stands;
   StatisticalBody body = moved;
   body.sphere_radius = height_over_ground(place, body);
   spheres_.put(place, body);
   spheres_.held[i] = 0.0f;
 }
 
-bool TablesLevel::stands(std::int64_t place) const {
+bool LoneHulls::stands(std::int64_t place) const {
   if (spheres_.on_hull[std::size_t(place)] == HullStand::none || is_at_edge(place)) return true;
-  return stands_firmly(spheres_.body(place), *kind_of(place).shape, near_ground_.planes_of(place));
+  return stands_firmly(spheres_.body(place), *scene_.kind_of(place).shape, near_ground_.planes_of(place));
 }
 
 }  // namespace lodestone
