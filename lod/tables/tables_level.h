@@ -137,7 +137,13 @@ class TablesLevel {
   bool comes_to_rest(std::int64_t place);
   bool rolls_on_ground(std::int64_t place) const;
 
-  void start(double dt, std::span<const std::uint32_t> order);
+  void put_near_together(std::span<const std::uint32_t> order);
+  StepConstants next_constants(double dt);
+  // Whether radii follow from how bodies move, in one loop.
+  bool has_plain_radius() const {
+    return settings_.tables.interpolate && !settings_.tables.draw_height &&
+           settings_.tables.radius_update_interval <= 1;
+  }
   float heaviest() const;
   void update_radii_one_by_one();
   void let_strikers_strike(std::span<const Guest> guests, ContactTally& tally);
@@ -145,8 +151,10 @@ class TablesLevel {
   void sweep_contacts();
   void respond_as_paper(ContactTally& tally);
   void start_block(std::int64_t begin, std::int64_t end, Simd simd);
+  void start_woken(std::int64_t begin);
   void sort_ground();
   void choose_rest_pose(std::int64_t place);
+  void finish_block(std::int64_t begin, std::int64_t end);
   void end_block(std::int64_t begin, std::int64_t end);
   void move_alone(std::int64_t place, ContactTally& tally, std::vector<SphereClips::Playing>& joined);
   template <class Task>

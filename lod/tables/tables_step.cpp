@@ -20,55 +20,57 @@ void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, Co
   forget_all_given();
   fell_asleep_.clear();
   forces_.apply(dt, clips_, tally);
-  start(dt, order);
-}
-
-void TablesLevel::start(double dt, std::span<const std::uint32_t> order) {
-  // Bodies near each other should lie near each other in memory, too.
-  if (steps_ % kOrderInterval == 0 && searched_ == spheres_.awake &&
-      searched_ == std::int64_t(order.size()) && !std::ranges::is_sorted(order)) {
-    step_.resize(std::size_t(spheres_.awake));
-    spheres_.reorder_awake(order, step_.s.data());  // the rows of the last step serve no more
-  }
-  searched_ = spheres_.awake;
-  const auto ticks = [](double time) { return std::int64_t(1000.0 * time); };
-  const int step_ticks = int(std::min<std::int64_t>(255, ticks(elapsed_ + dt) - ticks(elapsed_)));
-  elapsed_ += dt;
-  const bool plain_radius = settings_.tables.interpolate && !settings_.tables.draw_height &&
-                            settings_.tables.radius_update_interval <= 1;
-  const Vec3& g = settings_.gravity;
-  const StepLengths::Shares known = lengths_.begin(dt);
-  const float remembered = settings_.tables.as_published() ? contacts_.settings().remembered
-                                                           : contacts_.settings().hull_remembered;
-  constants_ = {.time = float(dt),
-                .gx = float(g.x()),
-                .gy = float(g.y()),
-                .gz = float(g.z()),
-                .wide_time = dt,
-                .wide_gx = g.x(),
-                .wide_gy = g.y(),
-                .wide_gz = g.z(),
-                .gravity = float(g.norm()),
-                .resting_energy = float(tables_.resting_energy),
-                .remembered = remembered * float(known.of_forces),
-                .held = remembered * float(known.of_impulses),
-                .rubbed = float(known.of_forces),
-                .remembers = known.remembers,
-                .update_radius = plain_radius,
-                .pressing = std::max(1.0f, float(g.norm())),
-                .heaviest = heaviest(),
-                .ticks = step_ticks,
-                .one_kind = all_kinds_.size() == 1 && one_mass_,
-                .hulls = !settings_.tables.as_published()};
+  put_near_together(order);
+  constants_ = next_constants(dt);
   kinds_.take_friction(all_kinds_, materials_);
   step_.resize(std::size_t(spheres_.awake));
-  if (!plain_radius && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0)
+  if (!has_plain_radius() && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0)
     update_radii_one_by_one();
   near_ground_.begin_step();
   carried_.begin_step();
   leaning_.clear(), set_out_.clear();
   near_ground_.find_faces(0, spheres_.awake);
   each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
+}
+
+// Bodies near each other should lie near each other in memory, too.
+void TablesLevel::put_near_together(std::span<const std::uint32_t> order) {
+  if (steps_ % kOrderInterval == 0 && searched_ == spheres_.awake &&
+      searched_ == std::int64_t(order.size()) && !std::ranges::is_sorted(order)) {
+    step_.resize(std::size_t(spheres_.awake));
+    spheres_.reorder_awake(order, step_.s.data());  // the rows of the last step serve no more
+  }
+  searched_ = spheres_.awake;
+}
+
+StepConstants TablesLevel::next_constants(double dt) {
+  const auto ticks = [](double time) { return std::int64_t(1000.0 * time); };
+  const int step_ticks = int(std::min<std::int64_t>(255, ticks(elapsed_ + dt) - ticks(elapsed_)));
+  elapsed_ += dt;
+  const Vec3& g = settings_.gravity;
+  const StepLengths::Shares known = lengths_.begin(dt);
+  const float remembered = settings_.tables.as_published() ? contacts_.settings().remembered
+                                                           : contacts_.settings().hull_remembered;
+  return {.time = float(dt),
+          .gx = float(g.x()),
+          .gy = float(g.y()),
+          .gz = float(g.z()),
+          .wide_time = dt,
+          .wide_gx = g.x(),
+          .wide_gy = g.y(),
+          .wide_gz = g.z(),
+          .gravity = float(g.norm()),
+          .resting_energy = float(tables_.resting_energy),
+          .remembered = remembered * float(known.of_forces),
+          .held = remembered * float(known.of_impulses),
+          .rubbed = float(known.of_forces),
+          .remembers = known.remembers,
+          .update_radius = has_plain_radius(),
+          .pressing = std::max(1.0f, float(g.norm())),
+          .heaviest = heaviest(),
+          .ticks = step_ticks,
+          .one_kind = all_kinds_.size() == 1 && one_mass_,
+          .hulls = !settings_.tables.as_published()};
 }
 
 // kg, of those awake.
@@ -90,16 +92,19 @@ void TablesLevel::update_radii_one_by_one() {
           float(find_sphere_radius(spheres_.body(i), kind_of(i), settings_.tables, settings_.seed));
 }
 
+// Those from that place on start their step now.
+void TablesLevel::start_woken(std::int64_t begin) {
+  step_.resize(std::size_t(spheres_.awake));
+  near_ground_.find_faces(begin, spheres_.awake);
+  start_block(begin, spheres_.awake, simd_);
+}
+
 bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
   const std::int64_t were_awake = spheres_.awake;
   contacts_.set_pushes(forces_.by_place());
   contacts_.find(spheres_, kinds_, cells, scene_.bounce_velocity(), constants_, simd_, jobs_, others);
   touched_sleepers_.find(TaskRef([&](std::int64_t slot) { wake(int(slot)); }));
-  if (spheres_.awake > were_awake) {  // those that were woken start their step now
-    step_.resize(std::size_t(spheres_.awake));
-    near_ground_.find_faces(were_awake, spheres_.awake);
-    start_block(were_awake, spheres_.awake, simd_);
-  }
+  if (spheres_.awake > were_awake) start_woken(were_awake);
   if (!touched_sleepers_.pairs().empty())
     contacts_.add(spheres_, kinds_, touched_sleepers_.pairs(), scene_.bounce_velocity(), constants_, simd_);
   further_planes_.find();
@@ -113,8 +118,6 @@ void TablesLevel::find_ground_contacts() {
   further_planes_.find();
 }
 
-// Block by block, while it is in the cache: the last round of the ground's contacts, friction on it, impacts,
-// motion.
 void TablesLevel::finish(ContactTally& tally) {
   const bool ground = near_ground_.any();
   loads_.take_back();
@@ -131,25 +134,7 @@ void TablesLevel::finish(ContactTally& tally) {
       add_torques(run, spheres_, kinds_, scene_.bounce_velocity(), tipping_);
     });
   }
-  each_block([&](std::int64_t begin, std::int64_t end) {
-    const std::size_t block = SphereScene::block_of(begin);
-    ContactTally& own = tallies_[block];
-    std::vector<SphereClips::Playing>& joined = clips_.joined(block);
-    driven_.note(block, begin, end);
-    if (ground) {
-      sweep_ground(near_ground_.planes(), constants_, simd_, begin, end, step_);
-      rubbing_.begin_round(block, begin, end);
-      lie_on_ground(spheres_, kinds_, near_ground_.planes(), constants_, simd_, begin, end, step_);
-      rubbing_.end_round(block);
-      step_.each(GroundState::near, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
-      if (constants_.hulls)
-        step_.each(GroundState::stands, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
-    }
-    end_block(begin, end);
-    if (tips_) tip(spheres_, kinds_, near_ground_.planes(), constants_, step_, begin, end, tipping_);
-    near_ground_.keep_above_planes(begin, end);
-    step_.each(GroundState::unsound, begin, end, [&](std::int64_t i) { scene_.recover(i, own); });
-  });
+  each_block([&](std::int64_t begin, std::int64_t end) { finish_block(begin, end); });
   for (const ContactTally& t : tallies_) tally += t;
   rubbing_.remember();
   strikers_.finish(tally);
@@ -158,6 +143,27 @@ void TablesLevel::finish(ContactTally& tally) {
   driven_.stop_before_unseen();
   clips_.update();
   if (log_ && ground) write_lying(scene_, near_ground_, *log_);
+}
+
+// While it is in the cache: the last round of the ground's contacts, friction on it, impacts, motion.
+void TablesLevel::finish_block(std::int64_t begin, std::int64_t end) {
+  const std::size_t block = SphereScene::block_of(begin);
+  ContactTally& own = tallies_[block];
+  std::vector<SphereClips::Playing>& joined = clips_.joined(block);
+  driven_.note(block, begin, end);
+  if (near_ground_.any()) {
+    sweep_ground(near_ground_.planes(), constants_, simd_, begin, end, step_);
+    rubbing_.begin_round(block, begin, end);
+    lie_on_ground(spheres_, kinds_, near_ground_.planes(), constants_, simd_, begin, end, step_);
+    rubbing_.end_round(block);
+    step_.each(GroundState::near, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
+    if (constants_.hulls)
+      step_.each(GroundState::stands, begin, end, [&](std::int64_t i) { move_alone(i, own, joined); });
+  }
+  end_block(begin, end);
+  if (tips_) tip(spheres_, kinds_, near_ground_.planes(), constants_, step_, begin, end, tipping_);
+  near_ground_.keep_above_planes(begin, end);
+  step_.each(GroundState::unsound, begin, end, [&](std::int64_t i) { scene_.recover(i, own); });
 }
 
 // The orientations of slender bodies, and of those that turn far in a step, follow by splitting, one by one.
