@@ -17,37 +17,8 @@ namespace {
 
 constexpr double kLongestPart = 0.1;  // s, of a step
 
-JobRunner runner_of(const ManagerSettings& settings) {
-  return settings.jobs ? settings.jobs : make_job_runner(settings.threads);
-}
-
-std::shared_ptr<CallersJobs> callers_of(const ManagerSettings& settings) {
-  return settings.jobs ? std::make_shared<CallersJobs>(settings.jobs) : nullptr;
-}
-
-JobRunner in_steps(const std::shared_ptr<JobRunner>& jobs, const std::shared_ptr<CallersJobs>& callers) {
-  if (callers) return [callers](std::int64_t count, TaskRef task) { (*callers)(count, task); };
-  return [jobs](std::int64_t count, TaskRef task) { (*jobs)(count, task); };
-}
-
-StatisticalSettings statistical_settings(const ManagerSettings& settings, JobRunner jobs,
-                                         const Vec3& gravity) {
-  return {.gravity = gravity,
-          .seed = settings.seed,
-          .threads = settings.threads,
-          .jobs = std::move(jobs),
-          .tables = settings.tables,
-          .sleeping = settings.sleeping,
-          .sleep = settings.sleep};
-}
-
-FullSettings full_settings(const ManagerSettings& settings) {
-  return {.gravity = settings.gravity,
-          .seed = settings.seed,
-          .substeps = settings.full_substeps,
-          .sleeping = settings.sleeping,
-          .sleep = settings.sleep};
-}
+// Whether costs are learnt, and bound.
+bool is_budgeted(const PolicySettings& policy) { return !limits_of(policy); }
 
 /// Of a statistical stage that took `ms` in all.
 void add_statistical(const Levels& levels, double ms, StepMeasurement& measured) {
@@ -59,49 +30,6 @@ void add_statistical(const Levels& levels, double ms, StepMeasurement& measured)
 }
 
 }  // namespace
-
-Manager::Impl::Impl(const ManagerSettings& s)
-    : jobs(std::make_shared<JobRunner>(runner_of(s))),
-      callers_jobs(callers_of(s)),
-      levels(statistical_settings(s, in_steps(jobs, callers_jobs), s.gravity), full_settings(s),
-             SignatureStore(s.signatures, s.signature_timing)),
-      choose(levels, s.policy, s.model),
-      audit(levels, full_settings(s), s.audit_ms),
-      events(levels, s.events) {
-  set_up(s);
-}
-Manager::Impl::Impl(dxWorld* world, dxSpace* space, const ManagerSettings& s)
-    : jobs(std::make_shared<JobRunner>(runner_of(s))),
-      callers_jobs(callers_of(s)),
-      levels(world, space, statistical_settings(s, in_steps(jobs, callers_jobs), callers::gravity(world)),
-             full_settings(s), SignatureStore(s.signatures, s.signature_timing)),
-      choose(levels, s.policy, s.model),
-      audit(levels, full_settings(s), s.audit_ms),
-      events(levels, s.events),
-      callers_world(world) {
-  set_up(s);
-}
-
-// What the statistical level, made later, refers to here.
-void Manager::Impl::set_up(const ManagerSettings& settings) {
-  levels.statistical_settings.properties = &levels.bodies.own_properties();
-  if (!settings.pair_filter) return;
-  levels.statistical_settings.pair_filter = [filter = settings.pair_filter, &bodies = levels.bodies](
-                                                std::uint32_t a, std::uint32_t b) {
-    const bool own = a < bodies.indices() && b < bodies.indices();  // the caller's bodies are beyond
-    return !own || filter(bodies.id(a), bodies.id(b));
-  };
-  levels.full.set_pair_filter(levels.statistical_settings.pair_filter);
-}
-
-Manager::Manager(const ManagerSettings& settings) : impl_(std::make_unique<Impl>(checked(settings))) {}
-Manager::Manager(dxWorld* world, dxSpace* space, const ManagerSettings& settings) {
-  if (!world || !space) throw_input_error("world and space", "a null one", "the caller's own");
-  impl_ = std::make_unique<Impl>(world, space, checked(settings));
-}
-Manager::~Manager() = default;
-Manager::Manager(Manager&&) noexcept = default;
-Manager& Manager::operator=(Manager&&) noexcept = default;
 
 const StepReport& Manager::step(double dt) {
   check_step(dt);
@@ -219,6 +147,51 @@ void Manager::Impl::step_part(double dt, double since) {
   changes.take_part();
 }
 
+void Manager::Impl::begin_stages(double dt, double since, WorldStepBy by) {
+  begin_report(dt);
+  const StageTimer timer(report.times.total_ms);
+  follow_caller(dt, since);
+  const std::optional<RungChanges> rung_changes = choose_rungs();  // 1
+  if (rung_changes) move_bodies.run(*rung_changes, report);        // 2
+  if (is_budgeted(choose.policy())) choose.count_meetings();
+  underway->measured.others_ms += underway->laps.lap_ms();
+  step_statistical(dt, by);  // 3
+}
+
+void Manager::Impl::end_stages() {
+  take_over_full();  // of 4
+  finish_report();   // 5
+  levels.bodies.reuse_indices();
+}
+
+void Manager::Impl::begin_report(double dt) {
+  report = {.step = report.step + 1, .times = {}, .counters = report.counters};
+  levels.now = report.step;
+  const PolicySettings& policy = choose.policy();
+  const bool clocked = is_budgeted(policy) && !counts_work(policy);
+  if (levels.statistical) levels.statistical->set_clocked(clocked);
+  step_log.begin_step(report.counters);
+  underway.emplace(Underway{dt, ThreadLaps(clocked)});
+}
+
+// What he has put, moved or taken away since the last step.
+void Manager::Impl::follow_caller(double dt, double since) {
+  levels.follow_callers_space(dt, since);
+  levels.ground.begin_step(dt, since, [&](const Eigen::AlignedBox3d& box) { levels.wake_piled_in(box); });
+  left_places.wake(levels);
+  audit.begin_step();
+}
+
+// 1 choose rungs
+std::optional<RungChanges> Manager::Impl::choose_rungs() {
+  move_bodies.count_down_retries();
+  move_bodies.supply_signatures();
+  if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::awake, report);
+  std::optional<RungChanges> rung_changes = choose.run(report, costs);
+  if (rung_changes) find_signatures(*rung_changes);
+  return rung_changes;
+}
+
 // Before anything is moved: they may not be there.
 void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
   std::vector<std::uint32_t> to_full;
@@ -236,58 +209,37 @@ void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
       find_signature(levels, newcomers[i].index, newcomers[i].rung);
 }
 
-void Manager::Impl::begin_stages(double dt, double since, WorldStepBy by) {
-  report = {.step = report.step + 1, .times = {}, .counters = report.counters};
-  levels.now = report.step;
-  const PolicySettings& policy = choose.policy();
-  const bool budgeted = !limits_of(policy), clocked = budgeted && !counts_work(policy);
-  if (levels.statistical) levels.statistical->set_clocked(clocked);
-  step_log.begin_step(report.counters);
-  underway.emplace(Underway{dt, ThreadLaps(clocked)});
-  auto& [_, laps, measured] = *underway;
-  const StageTimer timer(report.times.total_ms);
-  levels.follow_callers_space(dt, since);
-  levels.ground.begin_step(dt, since, [&](const Eigen::AlignedBox3d& box) { levels.wake_piled_in(box); });
-  left_places.wake(levels);
-  audit.begin_step();
-  // 1 choose rungs
-  move_bodies.count_down_retries();
-  move_bodies.supply_signatures();
-  if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::awake, report);
-  const std::optional<RungChanges> rung_changes = choose.run(report, costs);
-  if (rung_changes) find_signatures(*rung_changes);
-  // 2 transfer
-  if (rung_changes) move_bodies.run(*rung_changes, report);
-  if (budgeted) choose.count_meetings();
-  measured.others_ms += laps.lap_ms();
-  // 3 statistical rungs and their contacts with full bodies
+// 3 statistical rungs and their contacts with full bodies
+void Manager::Impl::step_statistical(double dt, WorldStepBy by) {
   if (levels.statistical) levels.statistical->set_log(events.log());
   step_levels.step_statistical(dt, by, report);
   if (levels.statistical) choose.note_carriers(levels.statistical->carriers());
   if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::as_it_slept, report);
-  add_statistical(levels, laps.lap_ms(), measured);
+  add_statistical(levels, underway->laps.lap_ms(), underway->measured);
   // for 4: ODE is to tell of touches that events want
   if (levels.full.world()) levels.full.world()->record_touches(events.wanted());
 }
 
-void Manager::Impl::end_stages() {
-  auto& [dt, laps, measured] = *underway;
-  measured.rungs_ms[std::size_t(Rung::full)] = laps.lap_ms();
+// 4 full level: what it has told of its step
+void Manager::Impl::take_over_full() {
+  underway->measured.rungs_ms[std::size_t(Rung::full)] = underway->laps.lap_ms();
   report.times.total_ms += report.times.full_ms;
   events.take_full_touches();
-  // 5 report
+}
+
+// 5 report
+void Manager::Impl::finish_report() {
   report_bodies(levels, report);
   report.predicted_error_pixels = choose.predicted_error();
   const PolicySettings& policy = choose.policy();
-  if (!limits_of(policy)) {
+  if (is_budgeted(policy)) {
     step_levels.note_touching();
-    measured.others_ms += laps.lap_ms();
-    report_cost(levels, choose.counts(), measured,
+    underway->measured.others_ms += underway->laps.lap_ms();
+    report_cost(levels, choose.counts(), underway->measured,
                 counts_work(policy) ? std::nullopt : std::optional(budget_of(policy)), costs, report);
   }
-  audit.end_step(dt, report);
+  audit.end_step(underway->dt, report);
   step_log.end_step(report);
-  levels.bodies.reuse_indices();
 }
 
 }  // namespace lodestone

@@ -86,6 +86,12 @@ struct Manager::Impl {
   void begin_stages(double dt, double since, WorldStepBy by);
   /// What stage 4 leaves to be taken over, and stage 5.
   void end_stages();
+  void begin_report(double dt);
+  void follow_caller(double dt, double since);
+  std::optional<RungChanges> choose_rungs();
+  void step_statistical(double dt, WorldStepBy by);
+  void take_over_full();
+  void finish_report();
   void begin_lists();
   const StepReport& finish_lists(double dt, WorldStepBy by);
   void find_signatures(const RungChanges& changes);
