@@ -71,23 +71,8 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
   }
   {
     const StageTimer timer(times.flight_ms);
-    const std::span<const std::int32_t> awake = support.awake_with_guests();
-    for (const std::int32_t index : awake) {
-      StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-      body.crowded = body.on_solid = body.alone_on_solid = body.in_great_heap = body.on_edge = false;
-    }
-    find_ground_solids(step, awake, 0.0, dt, SolidSearch::one_of_a_part);
-    if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
-    plan_.make(step.scene, pairs_, solid_contacts_, faces_, dt, near_);
-    support.end_search();
-    choose_movers(support, 0);
-    for (const std::int32_t index : movers_) {
-      StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-      body.alone_on_solid = body.on_solid && !body.is_sphere();
-    }
-    std::erase_if(movers_,
-                  [&](std::int32_t index) { return step.scene.bodies[std::size_t(index)].is_sphere(); });
-    move_alone(step, dt);
+    plan_substeps(step);
+    move_lone(step);
   }
   balls_.resize(step.scene.bodies.size());
   for (const std::int32_t index : near_.marked())
@@ -95,6 +80,38 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
   crowd_.begin_step(dt);
   for (const Pace pace : plan_.paces()) move_islands(step, pace);
   crowd_.end_step();
+  give_back(neighbors);
+  answer_hits(neighbors, crowd_.exchanges());
+  find_carriers(step.scene);
+}
+
+// Who may meet whom, and in how many substeps.
+void NearBodies::plan_substeps(const Step& step) {
+  const std::span<const std::int32_t> awake = step.support.awake_with_guests();
+  for (const std::int32_t index : awake) {
+    StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+    body.crowded = body.on_solid = body.alone_on_solid = body.in_great_heap = body.on_edge = false;
+  }
+  find_ground_solids(step, awake, 0.0, step.dt, SolidSearch::one_of_a_part);
+  if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
+  plan_.make(step.scene, pairs_, solid_contacts_, faces_, step.dt, near_);
+  step.support.end_search();
+}
+
+// Hulls that may meet nobody in the step: at once.
+void NearBodies::move_lone(const Step& step) {
+  choose_movers(step.support, 0);
+  for (const std::int32_t index : movers_) {
+    StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+    body.alone_on_solid = body.on_solid && !body.is_sphere();
+  }
+  std::erase_if(movers_,
+                [&](std::int32_t index) { return step.scene.bodies[std::size_t(index)].is_sphere(); });
+  move_alone(step, step.dt);
+}
+
+// What the step did to them.
+void NearBodies::give_back(std::span<FullNeighbor> neighbors) const {
   for (std::size_t i = 0; i < neighbors.size(); ++i) {
     neighbors[i].asleep = full_[i].asleep;
     neighbors[i].hit = full_[i].hit;
@@ -106,8 +123,6 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
     neighbors[i].carried = full_[i].carried;
     neighbors[i].end = full_[i].state;
   }
-  answer_hits(neighbors, crowd_.exchanges());
-  find_carriers(step.scene);
 }
 
 void NearBodies::find_carriers(const ContactScene& scene) {

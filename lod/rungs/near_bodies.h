@@ -71,6 +71,8 @@ class NearBodies {
     StageTimes& times;
     ContactTally& tally;
   };
+  void plan_substeps(const Step& step);
+  void move_lone(const Step& step);
   void move_islands(const Step& step, Pace pace);
   void find_touching(const Step& step, Pace pace, int substep);
   void choose_movers(const SupportLevel& support, Pace pace);
@@ -97,6 +99,7 @@ class NearBodies {
   void stop_before_unseen_ground(const Step& step);
   void take_crowded(const Step& step);
   void move_full_on(double time, int substep);
+  void give_back(std::span<FullNeighbor> neighbors) const;
   void find_carriers(const ContactScene& scene);
 
   StatisticalSettings settings_;

@@ -59,6 +59,10 @@ struct StatisticalLevel::Impl {
   void let_fall(StatisticalPlace place);
   void wake_touching(StatisticalPlace place);
   bool any_pairs(std::span<const FullNeighbor> neighbors) const;
+  void find_near(double dt, std::span<const FullNeighbor> neighbors, StageTimes& times);
+  void forget_near();
+  void move_hulls(double dt, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts,
+                  StageTimes& times, ContactTally& tally);
   void count_bodies();
 };
 
@@ -133,6 +137,37 @@ std::optional<std::uint32_t> StatisticalLevel::remove(StatisticalPlace place, bo
   return moved;
 }
 
+// 3b
+void StatisticalLevel::Impl::find_near(double dt, std::span<const FullNeighbor> neighbors,
+                                       StageTimes& times) {
+  {
+    const StageTimer timer(times.broad_phase_ms);
+    search.fill(dt, tables, support, neighbors);
+  }
+  const StageTimer timer(times.pairs_ms);
+  search.find(tables, support, neighbors);
+}
+
+void StatisticalLevel::Impl::forget_near() {
+  search.clear();
+  tables.forget_contacts();
+}
+
+// 3d
+void StatisticalLevel::Impl::move_hulls(double dt, std::span<FullNeighbor> neighbors,
+                                        std::span<const FullContact> full_contacts, StageTimes& times,
+                                        ContactTally& tally) {
+  guest_bodies.clear();
+  for (Guest& guest : search.guests()) {
+    tables.describe(guest);
+    guest_bodies.push_back(tables.guest_body(guest));
+  }
+  support.admit_guests(guest_bodies);
+  near_bodies.step(dt, support, search.guests(), search, neighbors, full_contacts, times, tally);
+  tables.take_guests(search.guests(), guest_bodies, support.bodies().subspan(std::size_t(support.size())));
+  support.dismiss_guests();
+}
+
 void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepReport& report,
                             std::span<const FullContact> full_contacts) {
   Impl& s = *impl_;
@@ -151,17 +186,10 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   // 3b near pairs, and the contacts of spheres
   const bool pair_phase = s.any_pairs(neighbors);
   report.counters.pair_phases += pair_phase;
-  if (pair_phase) {
-    {
-      const StageTimer timer(times.broad_phase_ms);
-      search.fill(dt, tables, support, neighbors);
-    }
-    const StageTimer timer(times.pairs_ms);
-    search.find(tables, support, neighbors);
-  } else {
-    search.clear();
-    tables.forget_contacts();
-  }
+  if (pair_phase)
+    s.find_near(dt, neighbors, times);
+  else
+    s.forget_near();
   search.invite_cornered(tables, support);
   // 3c spheres answer
   {
@@ -170,20 +198,10 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   }
   // 3d hulls and their guests
   const double hulls_from = s.clock();
-  if (!support.awake().empty() || !search.pairs().empty() || !search.guests().empty()) {
-    s.guest_bodies.clear();
-    for (Guest& guest : search.guests()) {
-      tables.describe(guest);
-      s.guest_bodies.push_back(tables.guest_body(guest));
-    }
-    support.admit_guests(s.guest_bodies);
-    s.near_bodies.step(dt, support, search.guests(), search, neighbors, full_contacts, times, tally);
-    tables.take_guests(search.guests(), s.guest_bodies,
-                       support.bodies().subspan(std::size_t(support.size())));
-    support.dismiss_guests();
-  } else {
+  if (!support.awake().empty() || !search.pairs().empty() || !search.guests().empty())
+    s.move_hulls(dt, neighbors, full_contacts, times, tally);
+  else
     s.near_bodies.forget_pairs();
-  }
   const double hulls_until = s.clock();
   // 3e spheres move
   {
