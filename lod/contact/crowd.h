@@ -85,6 +85,15 @@ class Crowd {
     double farthest = 0.0;
   };
 
+  /// Of a manifold, as bodies are moved out of it.
+  struct Overlap {
+    Participant one, other;
+    double radius = 0.0;     ///< m, by which it is judged
+    double deep = 0.0;       ///< m: what is deeper is a good part of the thinner one's thickness
+    double by_others = 0.0;  ///< m, by which other contacts with that ground have moved the first out
+    bool eased = false;      ///< brought from another rung
+  };
+
   /// One that is so deep in another that it is not at rest, and where it was before it is moved out.
   struct Insider {
     std::int32_t body = 0;
@@ -130,6 +139,13 @@ class Crowd {
   bool is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouch& touch) const;
   void give_to_full(const ContactScene& scene, const CrowdTouch& touch);
   void move_apart(const ContactScene& scene, const CrowdTouch& touch);
+  void note_overlap(const ContactScene& scene, const CrowdTouch& touch, const CrowdManifold& m,
+                    const CrowdPoint& point, const Overlap& overlap);
+  void undo_overlap(const ContactScene& scene, const CrowdTouch& touch, const CrowdManifold& m,
+                    const CrowdPoint& point, const Overlap& overlap);
+  bool can_move(std::int32_t solver_body) const;
+  void shift(const ContactScene& scene, std::int32_t solver_body, const Vec3& by);
+  void part_slowly(std::int32_t solver_body, const Vec3& by, double farthest);
   Vec3 shift_of(std::int32_t solver_body) const {
     return solver_body < 0 ? Vec3(Vec3::Zero()) : shifts_[std::size_t(solver_body)];
   }

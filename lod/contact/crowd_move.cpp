@@ -141,89 +141,109 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) {
 // Overlaps are undone by moving apart, the lighter body farther; those among full bodies are the full level's
 // matter.
 void Crowd::move_apart(const ContactScene& scene, const CrowdTouch& touch) {
-  constexpr double kOfOne = 0.4;  // of the speed at which two come apart
-  const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
-    return index < 0
-               ? Vec3(Vec3::Zero())
-               : Vec3(solver_bodies_[index].velocity + solver_bodies_[index].angular_velocity.cross(arm));
-  };
-  const auto can_move = [&](std::int32_t index) {
-    return index >= 0 && solver_bodies_[index].inverse_mass > 0.0;
-  };
-  const auto move = [&](std::int32_t index, const Vec3& by) {
-    if (!can_move(index)) return;
-    const Participant p = participants_[index];
-    scene.position(p) += by;
-    shifts_[std::size_t(index)] += by;
-    if (p.is_full()) scene.neighbor(p).shift += by;
-  };
   shifts_.assign(solver_bodies_.size(), Vec3::Zero());
   partings_.clear();
   insiders_.clear();
   parting_of_.assign(solver_bodies_.size(), -1);
-  const auto part_slowly = [&](std::int32_t index, const Vec3& by, double farthest) {
-    if (!can_move(index)) return;
-    std::int32_t& place = parting_of_[std::size_t(index)];
-    if (place < 0) {
-      place = std::int32_t(partings_.size());
-      partings_.push_back({index, Vec3::Zero(), farthest});
-    }
-    Parting& parting = partings_[std::size_t(place)];
-    parting.by += by, parting.farthest = std::min(parting.farthest, farthest);
-  };
   for (const CrowdManifold& m : manifolds_) {
     const Participant one = participants_[std::size_t(m.first)],
                       other = m.second < 0 ? Participant::ground() : participants_[std::size_t(m.second)];
     if (!one.is_statistical() && !other.is_statistical()) continue;
-    const double radius = radius_of_pair(scene, one, other);
-    const bool eased = is_eased(scene, one) || is_eased(scene, other);
     const double first = solver_bodies_[m.first].inverse_mass,
                  second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
     if (first + second == 0.0) continue;
-    const double deep = deep_overlap_of(scene, one, other);
-    // A face of the ground has a contact of each triangle: together they push it out once.
-    const double by_others = other.is_ground() ? std::max(0.0, shift_of(m.first).dot(m.normal)) : 0.0;
+    const Overlap overlap{
+        .one = one,
+        .other = other,
+        .radius = radius_of_pair(scene, one, other),
+        .deep = deep_overlap_of(scene, one, other),
+        // A face of the ground has a contact of each triangle: together they push it out once.
+        .by_others = other.is_ground() ? std::max(0.0, shift_of(m.first).dot(m.normal)) : 0.0,
+        .eased = is_eased(scene, one) || is_eased(scene, other)};
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
-      if (push_out_overlap(point.gap, radius) == 0.0) continue;
-      const float placed = std::max(placed_time(scene, one), placed_time(scene, other));
-      const bool inside = point.gap < -(placed > 0.0f ? kBroughtOverlap : kWakingOverlap) * radius &&
-                          !is_sphere(scene, one) && !is_sphere(scene, other);
-      for (const std::int32_t index : {m.first, m.second}) {
-        const Participant p = index < 0 ? Participant::ground() : participants_[std::size_t(index)];
-        if (is_eased(scene, p) && point.gap < -kBroughtOverlap * radius)
-          scene.body(p).eased = kEasedTime;  // for as long as there is some
-        if (inside && p.is_statistical())
-          insiders_.push_back({index, scene.position(p) - shift_of(index),
-                               touch.parting * push_out_overlap(point.gap, radius), placed});
-      }
-      const double parting =
-          (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
-      double overlap =
-          point.gap + std::max(0.0, parting) * touch.time;  // the rest is undone by the motion itself
-      // Up through a column of thin bodies one after the other: all at once, those in its midst, pushed from
-      // both sides, would hardly move. Of shallower ones it would raise heaps, by 5 % for plates.
-      if (point.gap < -deep)
-        overlap += (shift_of(m.first) - shift_of(m.second)).dot(m.normal);
-      else
-        overlap += by_others;
-      const double distance = touch.parting * push_out_overlap(overlap, radius) / double(m.count);
-      const Vec3 of_first = distance * first / (first + second) * m.normal,
-                 of_second = -distance * second / (first + second) * m.normal;
-      if (eased) {
-        const double farthest = kOfOne * parting_speed(radius, scene.world.gravity_strength()) * touch.time;
-        part_slowly(m.first, of_first, farthest), part_slowly(m.second, of_second, farthest);
-      } else {
-        move(m.first, of_first), move(m.second, of_second);
-      }
+      if (push_out_overlap(point.gap, overlap.radius) == 0.0) continue;
+      note_overlap(scene, touch, m, point, overlap);
+      undo_overlap(scene, touch, m, point, overlap);
     }
   }
   // What the overlaps of a body that came with some ask for together, not each of them, is slow: the greatest
   // prevails over those that others keep up.
   for (const auto& [body, by, farthest] : partings_) {
     const double length = by.norm();
-    move(body, length > farthest ? Vec3(farthest / length * by) : by);
+    shift(scene, body, length > farthest ? Vec3(farthest / length * by) : by);
   }
   keep_full_apart(scene);
+}
+
+// Who came with it, and who is inside another.
+void Crowd::note_overlap(const ContactScene& scene, const CrowdTouch& touch, const CrowdManifold& m,
+                         const CrowdPoint& point, const Overlap& overlap) {
+  const Participant one = overlap.one, other = overlap.other;
+  const float placed = std::max(placed_time(scene, one), placed_time(scene, other));
+  const bool inside = point.gap < -(placed > 0.0f ? kBroughtOverlap : kWakingOverlap) * overlap.radius &&
+                      !is_sphere(scene, one) && !is_sphere(scene, other);
+  for (const std::int32_t index : {m.first, m.second}) {
+    const Participant p = index < 0 ? Participant::ground() : participants_[std::size_t(index)];
+    if (is_eased(scene, p) && point.gap < -kBroughtOverlap * overlap.radius)
+      scene.body(p).eased = kEasedTime;  // for as long as there is some
+    if (inside && p.is_statistical())
+      insiders_.push_back({index, scene.position(p) - shift_of(index),
+                           touch.parting * push_out_overlap(point.gap, overlap.radius), placed});
+  }
+}
+
+void Crowd::undo_overlap(const ContactScene& scene, const CrowdTouch& touch, const CrowdManifold& m,
+                         const CrowdPoint& point, const Overlap& overlap) {
+  constexpr double kOfOne = 0.4;  // of the speed at which two come apart
+  const auto velocity_of = [&](std::int32_t index, const Vec3& arm) {
+    return index < 0
+               ? Vec3(Vec3::Zero())
+               : Vec3(solver_bodies_[index].velocity + solver_bodies_[index].angular_velocity.cross(arm));
+  };
+  const double parting =
+      (velocity_of(m.first, point.arm_first) - velocity_of(m.second, point.arm_second)).dot(m.normal);
+  double left = point.gap + std::max(0.0, parting) * touch.time;  // the rest is undone by the motion itself
+  // Up through a column of thin bodies one after the other: all at once, those in its midst, pushed from
+  // both sides, would hardly move. Of shallower ones it would raise heaps, by 5 % for plates.
+  if (point.gap < -overlap.deep)
+    left += (shift_of(m.first) - shift_of(m.second)).dot(m.normal);
+  else
+    left += overlap.by_others;
+  const double first = solver_bodies_[m.first].inverse_mass,
+               second = m.second < 0 ? 0.0 : solver_bodies_[m.second].inverse_mass;
+  const double distance = touch.parting * push_out_overlap(left, overlap.radius) / double(m.count);
+  const Vec3 of_first = distance * first / (first + second) * m.normal,
+             of_second = -distance * second / (first + second) * m.normal;
+  if (overlap.eased) {
+    const double farthest =
+        kOfOne * parting_speed(overlap.radius, scene.world.gravity_strength()) * touch.time;
+    part_slowly(m.first, of_first, farthest), part_slowly(m.second, of_second, farthest);
+  } else {
+    shift(scene, m.first, of_first), shift(scene, m.second, of_second);
+  }
+}
+
+bool Crowd::can_move(std::int32_t index) const {
+  return index >= 0 && solver_bodies_[std::size_t(index)].inverse_mass > 0.0;
+}
+
+void Crowd::shift(const ContactScene& scene, std::int32_t index, const Vec3& by) {
+  if (!can_move(index)) return;
+  const Participant p = participants_[std::size_t(index)];
+  scene.position(p) += by;
+  shifts_[std::size_t(index)] += by;
+  if (p.is_full()) scene.neighbor(p).shift += by;
+}
+
+void Crowd::part_slowly(std::int32_t index, const Vec3& by, double farthest) {
+  if (!can_move(index)) return;
+  std::int32_t& place = parting_of_[std::size_t(index)];
+  if (place < 0) {
+    place = std::int32_t(partings_.size());
+    partings_.push_back({index, Vec3::Zero(), farthest});
+  }
+  Parting& parting = partings_[std::size_t(place)];
+  parting.by += by, parting.farthest = std::min(parting.farthest, farthest);
 }
 
 // What was moved must not be moved into what holds it up: ODE would throw it back, the faster the shorter its
