@@ -73,6 +73,31 @@ std::optional<double> find_touch(const StatisticalBody& body, const HalfSpace& p
   return time >= 0.0 && time <= left ? std::optional(time) : std::nullopt;
 }
 
+struct FirstTouch {
+  int plane = -1;     // none: −1
+  double time = 0.0;  // s; else all that is left
+};
+
+FirstTouch find_first_touch(const StatisticalBody& body, const StepWorld& world, double left) {
+  FirstTouch first{.time = left};
+  for (int i = 0; i < int(world.planes.size()); ++i)
+    if (const auto t = find_touch(body, world.planes[i], world.gravity, first.time);
+        t && (first.plane < 0 || *t < first.time))
+      first = {i, *t};
+  return first;
+}
+
+// After its answer; `approach` before it, m/s.
+void write_touch(const StatisticalBody& body, const HalfSpace& plane, double approach, ContactLog& log) {
+  log.add({.first = body.owner,
+           .ground = plane.id,
+           .ground_material = plane.material,
+           .point = body.position - body.sphere_radius * plane.normal,
+           .normal = plane.normal,
+           .impulse = body.mass * std::max(0.0, approach + body.velocity.dot(plane.normal)),
+           .approach = std::max(0.0, approach)});
+}
+
 // The resting condition's pose: the one that needs the smallest rotation (3.4).
 int find_nearest_rest_pose(const Signature& signature, const Vec3& normal_in_body) {
   int best = -1;
@@ -292,12 +317,7 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
       settings.blend_time * std::sqrt(shape.radius / std::max(1e-9, world.gravity_strength()));
   double left = time;
   for (int hit = 0; left > 0.0; ++hit) {
-    int touched = -1;
-    double touch = left;
-    for (int i = 0; i < int(world.planes.size()); ++i)
-      if (const auto t = find_touch(body, world.planes[i], world.gravity, touch);
-          t && (touched < 0 || *t < touch))
-        touched = i, touch = *t;
+    const auto [touched, touch] = find_first_touch(body, world, left);
     advance_flight(body, kind, world.gravity, touch);
     left -= touch;
     if (touched < 0) {
@@ -321,14 +341,7 @@ ContactTally step_tables_body(StatisticalBody& body, RestingRecord& resting, con
     const bool rolls = sloped && kind.round && presses && body.motion == Motion::dynamic;
     if (!rolls && (body.motion != Motion::settling || !presses))
       respond_from_tables(body, kind, plane.normal, world, law, settings.options, tally);
-    if (world.log)
-      world.log->add({.first = body.owner,
-                      .ground = plane.id,
-                      .ground_material = plane.material,
-                      .point = body.position - body.sphere_radius * plane.normal,
-                      .normal = plane.normal,
-                      .impulse = body.mass * std::max(0.0, approach + body.velocity.dot(plane.normal)),
-                      .approach = std::max(0.0, approach)});
+    if (world.log) write_touch(body, plane, approach, *world.log);
     if (body.motion == Motion::dynamic && energy_before < settings.resting_energy * energy_unit) {
       resting = find_resting(body.orientation, kind, plane, world, energy_before - 0.5 * approach * approach,
                              settings.options);
