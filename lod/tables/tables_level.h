@@ -45,6 +45,8 @@ class TablesLevel {
   /// All but the settings must outlive the level.
   TablesLevel(const StatisticalSettings& settings, const Ground& ground, const MaterialTable& materials,
               const Kinds& kinds, Sleepers& sleepers, const JobRunner& jobs);
+  TablesLevel(const TablesLevel&) = delete;  // its stages point at it
+  TablesLevel& operator=(const TablesLevel&) = delete;
 
   /// Returns the slot. `arrives`: from another rung, at the height that its hull has.
   int add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep,
@@ -131,12 +133,8 @@ class TablesLevel {
   float radius_at_ground(const StatisticalBody& body, const BodyKind& kind) const;
   void lay_still(std::int64_t place);
   void forget_all_given();
-  void ease();
-  void wake_guests(std::span<const Guest> guests);
-  bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
-  bool comes_to_rest(std::int64_t place);
-  bool rolls_on_ground(std::int64_t place) const;
 
+  // 3a
   void put_near_together(std::span<const std::uint32_t> order);
   StepConstants next_constants(double dt);
   // Whether radii follow from how bodies move, in one loop.
@@ -146,17 +144,27 @@ class TablesLevel {
   }
   float heaviest() const;
   void update_radii_one_by_one();
+  void start_block(std::int64_t begin, std::int64_t end, Simd simd);
+  void start_woken(std::int64_t begin);
+  // 3c
+  void respond_as_paper(ContactTally& tally);
+  void sort_ground();
+  void choose_rest_pose(std::int64_t place);
   void let_strikers_strike(std::span<const Guest> guests, ContactTally& tally);
   int sweeps() const;
   void sweep_contacts();
-  void respond_as_paper(ContactTally& tally);
-  void start_block(std::int64_t begin, std::int64_t end, Simd simd);
-  void start_woken(std::int64_t begin);
-  void sort_ground();
-  void choose_rest_pose(std::int64_t place);
+  // 3d
+  void wake_guests(std::span<const Guest> guests);
+  // 3e
   void finish_block(std::int64_t begin, std::int64_t end);
-  void end_block(std::int64_t begin, std::int64_t end);
   void move_alone(std::int64_t place, ContactTally& tally, std::vector<SphereClips::Playing>& joined);
+  void end_block(std::int64_t begin, std::int64_t end);
+  // 3f
+  void ease();
+  bool has_less_energy(std::int64_t place, double energy) const;  // kinetic over mass, J/kg
+  bool rolls_on_ground(std::int64_t place) const;
+  bool comes_to_rest(std::int64_t place);
+
   template <class Task>
   void each_block(const Task& task) const {
     constexpr std::int64_t kBlock = SphereScene::kBlock;
@@ -177,33 +185,37 @@ class TablesLevel {
   RestLaw rest_law_;
   ContactLog* log_ = nullptr;
 
+  // What the stages of a step share.
   SphereKinds kinds_;
   Spheres spheres_;
   SphereContacts contacts_;
   SphereStep step_;
-  TippingStep tipping_;
-  bool tips_ = false;                  // whether anybody may tip over in this step
-  int rounds_ = 0;                     // of contacts, in the last step
-  std::vector<std::int64_t> leaning_;  // places of guests on their hulls that touch
-  std::vector<std::int64_t> set_out_;  // of these, who gains speed
   StepConstants constants_;
   const SphereScene scene_{settings_, ground_,    materials_, all_kinds_, rest_law_,
                            kinds_,    constants_, spheres_,   contacts_,  step_};
+
+  // Their parts.
   SphereForces forces_{scene_};
   NearGround near_ground_{scene_};
+  TouchedSleepers touched_sleepers_{scene_, still()};
   FurtherPlanes further_planes_{scene_, near_ground_};
-  GroundStrikers strikers_{scene_, near_ground_};
-  TouchedSleepers touched_sleepers_{scene_, sleepers_.of(StatisticalModel::tables)};
-  CarriedSpheres carried_{scene_, near_ground_, forces_};
-  SphereBlows blows_{scene_, near_ground_};
-  GroundRubbing rubbing_{scene_, near_ground_};
   HullLoads loads_{scene_};
+  GroundRubbing rubbing_{scene_, near_ground_};
+  SphereBlows blows_{scene_, near_ground_};
+  GroundStrikers strikers_{scene_, near_ground_};
   SphereClips clips_{scene_};
   LoneHulls hulls_{scene_, near_ground_, clips_};
-  DrivenSpheres driven_{scene_, near_ground_, sleepers_.of(StatisticalModel::tables)};
+  DrivenSpheres driven_{scene_, near_ground_, still()};
+  TippingStep tipping_;
+  bool tips_ = false;  // whether anybody may tip over in this step
+  CarriedSpheres carried_{scene_, near_ground_, forces_};
+  std::vector<std::int64_t> leaning_;  // places of guests on their hulls that touch
+  std::vector<std::int64_t> set_out_;  // of these, who gains speed
+
   double elapsed_ = 0.0;  // s, over all steps
   StepLengths lengths_;   // of steps
   std::int64_t steps_ = 0;
+  int rounds_ = 0;          // of contacts, in the last step
   bool one_mass_ = true;    // all bodies have, since there last were none
   std::int64_t eased_ = 0;  // bodies that are, asleep or not
   const CellGrid no_cells_{Simd::portable};
@@ -212,8 +224,8 @@ class TablesLevel {
 
   // States that were set since the last step are read back to the bit.
   std::unordered_map<std::uint32_t, RigidState> given_;  // by slot
-  std::vector<std::uint32_t> slots_of_sleepers_;  // slots, of contacts in their order, while guests wake
-  std::vector<ContactTally> tallies_;
+  std::vector<std::uint32_t> slots_of_sleepers_;         // of contacts in their order, while guests wake
+  std::vector<ContactTally> tallies_;                    // in this step, by block
 };
 
 }  // namespace lodestone
