@@ -3,6 +3,7 @@
 // with the tables level; all others are near pairs of hulls, and spheres among them become guests there.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -76,6 +77,8 @@ class NearSearch {
   }
 
  private:
+  static constexpr double kBall = 1.02;  // over R: of the ball about a hull
+
   /// A body by its place, which is how they are put in order.
   struct Placed {
     double x, y, z;  // m
@@ -103,8 +106,15 @@ class NearSearch {
   void add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables);
   bool meet(std::uint32_t first, std::uint32_t second) const;
   bool lets_meet(std::uint32_t first, std::uint32_t second) const;
+  // Those from that one on that may not meet, by owner(participant), are none.
   template <class Owner>
-  void filter_pairs(std::size_t from, const Owner& owner);
+  void filter_pairs(std::size_t from, const Owner& owner) {
+    if (!pair_filter_ && (!properties_ || properties_->empty())) return;
+    const auto kept = std::remove_if(
+        pairs_.begin() + std::ptrdiff_t(from), pairs_.end(),
+        [&](const NearPair& pair) { return !lets_meet(owner(pair.first), owner(pair.second)); });
+    pairs_.erase(kept, pairs_.end());
+  }
   void find_partners(const Vec3& center, double reach, const SupportLevel& support);
   Participant participant(std::uint32_t ball, const TablesLevel& tables);
   Participant guest(std::int32_t slot);
