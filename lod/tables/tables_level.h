@@ -2,7 +2,7 @@
 // four separating axes (as published: spheres). Of stage 3: a start (radii, reaches); b near pairs (cells),
 // their contacts and who wakes; c the response of all these, one after the other; d those near bodies of
 // other rungs are moved among them (rungs/near_bodies.h); e the ground: impacts at their exact time answered
-// from the tables, and motion; f rest.
+// by their hulls (as published: from the tables), and motion; f rest.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@
 #include "lod/tables/ground_strikers.h"
 #include "lod/tables/guest.h"
 #include "lod/tables/hull_loads.h"
-#include "lod/tables/lone_hulls.h"
+#include "lod/tables/hulls_on_ground.h"
 #include "lod/tables/near_ground.h"
 #include "lod/tables/sphere_blows.h"
 #include "lod/tables/sphere_clips.h"
@@ -204,7 +204,7 @@ class TablesLevel {
   SphereBlows blows_{scene_, near_ground_};
   GroundStrikers strikers_{scene_, near_ground_};
   SphereClips clips_{scene_};
-  LoneHulls hulls_{scene_, near_ground_, clips_};
+  HullsOnGround hulls_{scene_, near_ground_, clips_};
   DrivenSpheres driven_{scene_, near_ground_, still()};
   TippingStep tipping_;
   bool tips_ = false;  // whether anybody may tip over in this step

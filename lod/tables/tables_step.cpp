@@ -218,15 +218,9 @@ void TablesLevel::move_alone(std::int64_t i, ContactTally& tally, std::vector<Sp
     tally += hulls_.move(i, body, around, rides, joined);
   } else {
     hulls_.become_sphere(i, body);
-    if (constants_.hulls && (step_.touches(i) || spheres_.since_crowded[i] < kLeaningTicks)) {
-      // As high as its hull is over that plane; the others that it meets are among its contacts.
-      around.planes = {&near_ground_.plane(step_.plane[i]), 1};
-      body.sphere_radius = scene_.ground_height(i, -around.planes[0].normal);
-    }
-    const BodyKind& kind = kind_of(i);
-    const bool is_ball = constants_.hulls && kind.shape->sphere_radius;  // for which no table need stand
-    tally += is_ball ? step_support_body(body, kind, around, constants_.wide_time, SupportSettings{})
-                     : step_tables_body(body, resting, kind, around, constants_.wide_time, tables_);
+    tally += constants_.hulls
+                 ? hulls_.strike(i, body, around)
+                 : step_tables_body(body, resting, kind_of(i), around, constants_.wide_time, tables_);
   }
   if (rides) {
     body.velocity += carried->velocity;

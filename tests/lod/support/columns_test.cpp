@@ -96,5 +96,33 @@ TEST(Columns, ThatStrikeAnyGroundDoNotSinkIntoThemselves) {
       }
 }
 
+// What strikes the ground among others does so on its hull: flat, it is not set spinning.
+TEST(Columns, ThatLandFlatStayUpright) {
+  constexpr double kCube = 0.3, kTilted = 0.03;  // m, 1 - cosine of 14°
+  const auto cube = testing::box_shape({kCube, kCube, kCube});
+  for (const double falling : {2.0, 4.0, 8.0})
+    for (const bool rises : {false, true}) {
+      Manager manager({.signatures = testing::coarse_signature});
+      const RigidState below{.position = {0, 0, -0.5}};
+      const GroundId box = manager.add_static_box({4, 4, 1}, below.position, below.orientation);
+      std::vector<BodyId> column;
+      for (int i = 0; i < 3; ++i)
+        column.push_back(
+            manager.add_body({.shape = cube,
+                              .state = {.position = {0, 0, 0.8 + i * kCube}, .velocity = {0, 0, -falling}},
+                              .level = LevelChoice::tables}));
+      double tilt = 0.0;
+      for (int step = 1; step <= 60; ++step) {
+        if (rises)
+          manager.move_ground(
+              box, {.position = below.position + Vec3(0, 0, step * testing::kFrame), .velocity = {0, 0, 1}});
+        manager.step(testing::kFrame);
+        for (const BodyId body : column)
+          tilt = std::max(tilt, 1.0 - (manager.state(body).orientation * Vec3::UnitZ()).z());
+      }
+      EXPECT_LT(tilt, kTilted) << falling << ' ' << rises;
+    }
+}
+
 }  // namespace
 }  // namespace lodestone

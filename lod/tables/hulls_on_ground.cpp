@@ -1,4 +1,4 @@
-#include "lod/tables/lone_hulls.h"
+#include "lod/tables/hulls_on_ground.h"
 
 #include <algorithm>
 
@@ -21,16 +21,16 @@ bool is_sunk(const StatisticalBody& body, const Shape& shape, std::span<const Ha
 }  // namespace
 
 // Where the ground's parts are planes to that, here.
-bool LoneHulls::stands_when_alone(std::int64_t place) const {
+bool HullsOnGround::stands_when_alone(std::int64_t place) const {
   return scene_.is_alone(place) && near_ground_.is_even(place);
 }
 
 // Where they are none, as a guest.
-bool LoneHulls::is_at_edge(std::int64_t place) const {
+bool HullsOnGround::is_at_edge(std::int64_t place) const {
   return scene_.is_alone(place) && !near_ground_.is_even(place);
 }
 
-void LoneHulls::choose(std::int64_t begin, std::int64_t end) {
+void HullsOnGround::choose(std::int64_t begin, std::int64_t end) {
   constexpr auto kFree = std::uint8_t(GroundState::free), kNear = std::uint8_t(GroundState::near);
   constexpr auto kWithin = std::uint8_t(GroundState::within);
   for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
@@ -46,7 +46,7 @@ void LoneHulls::choose(std::int64_t begin, std::int64_t end) {
   }
 }
 
-bool LoneHulls::lies_at_clips_end(std::int64_t place) const {
+bool HullsOnGround::lies_at_clips_end(std::int64_t place) const {
   const SphereClips::Playing* playing = clips_.of(place);
   if (!playing || step_.on_ground[std::size_t(place)] != std::uint8_t(GroundState::stands)) return false;
   const HalfSpace& ground = playing->playback.ground;
@@ -56,7 +56,7 @@ bool LoneHulls::lies_at_clips_end(std::int64_t place) const {
          });
 }
 
-void LoneHulls::become_sphere(std::int64_t place, StatisticalBody& body) {
+void HullsOnGround::become_sphere(std::int64_t place, StatisticalBody& body) {
   spheres_.on_hull[std::size_t(place)] = HullStand::none;
   SphereClips::Playing* playing = clips_.of(place);
   if (!playing) return;
@@ -64,8 +64,8 @@ void LoneHulls::become_sphere(std::int64_t place, StatisticalBody& body) {
   body.motion = Motion::dynamic;
 }
 
-const HullMotionSettings& LoneHulls::motion_settings(const StatisticalBody& body, const BodyKind& kind,
-                                                     const StepWorld& around) const {
+const HullMotionSettings& HullsOnGround::motion_settings(const StatisticalBody& body, const BodyKind& kind,
+                                                         const StepWorld& around) const {
   static const SupportSettings coarse{
       .coarse = true,
       .contact_step = 0.1,
@@ -92,8 +92,8 @@ const HullMotionSettings& LoneHulls::motion_settings(const StatisticalBody& body
   return is_lively ? lively : level;
 }
 
-ContactTally LoneHulls::move(std::int64_t place, StatisticalBody& body, const StepWorld& around, bool rides,
-                             std::vector<SphereClips::Playing>& joined) {
+ContactTally HullsOnGround::move(std::int64_t place, StatisticalBody& body, const StepWorld& around,
+                                 bool rides, std::vector<SphereClips::Playing>& joined) {
   const auto i = std::size_t(place);
   const BodyKind& kind = scene_.kind_of(place);
   const Shape& shape = *kind.shape;
@@ -125,8 +125,29 @@ ContactTally LoneHulls::move(std::int64_t place, StatisticalBody& body, const St
   return moved.tally;
 }
 
+ContactTally HullsOnGround::strike(std::int64_t place, StatisticalBody& body, StepWorld around) {
+  static const SupportSettings coarse{.coarse = true,
+                                      .contact_step = 0.1,
+                                      .step_at_once = 0.2,
+                                      .solver = {.sweeps = 4, .tolerance = 1e-2},
+                                      .impact_tolerance = 2e-4};
+  const auto i = std::size_t(place);
+  const BodyKind& kind = scene_.kind_of(place);
+  // The other planes that it meets are among its contacts.
+  if (step_.touches(place) || spheres_.since_crowded[i] < kLeaningTicks)
+    around.planes = {&near_ground_.plane(step_.plane[i]), 1};
+  if (kind.shape->sphere_radius) {
+    body.sphere_radius = scene_.ground_height(place, -around.planes[0].normal);
+    return step_support_body(body, kind, around, constants_.wide_time, SupportSettings{});
+  }
+  body.sphere_radius = 0.0f;
+  const ContactTally tally = step_support_body(body, kind, around, constants_.wide_time, coarse);
+  body.sphere_radius = height_over_ground(place, body);
+  return tally;
+}
+
 // From its edges a hull that was a sphere parts slowly, as from a plane.
-bool LoneHulls::overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const {
+bool HullsOnGround::overlaps_ground(const StatisticalBody& body, const BodyKind& kind) const {
   thread_local std::vector<SolidContact> contacts;
   thread_local std::vector<HalfSpace> planes;
   contacts.clear();
@@ -138,7 +159,7 @@ bool LoneHulls::overlaps_ground(const StatisticalBody& body, const BodyKind& kin
 }
 
 // m, as high as it stands, for the sphere that others would meet.
-float LoneHulls::height_over_ground(std::int64_t place, const StatisticalBody& body) const {
+float HullsOnGround::height_over_ground(std::int64_t place, const StatisticalBody& body) const {
   const double radius = scene_.kind_of(place).shape->radius;
   double height = radius;
   for (const HalfSpace& plane : near_ground_.planes_of(place))
@@ -146,7 +167,7 @@ float LoneHulls::height_over_ground(std::int64_t place, const StatisticalBody& b
   return float(std::max(height, least_height(*scene_.kind_of(place).shape)));
 }
 
-void LoneHulls::take_from_edge(std::int64_t place, const StatisticalBody& moved) {
+void HullsOnGround::take_from_edge(std::int64_t place, const StatisticalBody& moved) {
   const auto i = std::size_t(place);
   HullStand& stand = spheres_.on_hull[i];
   if (stand != HullStand::stands)
@@ -157,7 +178,7 @@ void LoneHulls::take_from_edge(std::int64_t place, const StatisticalBody& moved)
   spheres_.held[i] = 0.0f;
 }
 
-bool LoneHulls::stands(std::int64_t place) const {
+bool HullsOnGround::stands(std::int64_t place) const {
   if (spheres_.on_hull[std::size_t(place)] == HullStand::none || is_at_edge(place)) return true;
   return stands_firmly(spheres_.body(place), *scene_.kind_of(place).shape, near_ground_.planes_of(place));
 }

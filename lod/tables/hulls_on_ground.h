@@ -1,6 +1,7 @@
 // Bodies that touch no other move over planes on their hulls, as those of `support` do, with fewer and
-// coarser contact steps. Departs from the paper's sphere of the mean height (3.3.1), which is blind to the
-// orientation: its first impulse is off by 36 to 47 %, and single drops by three times as much.
+// coarser contact steps, and so do others in a step in which they strike the ground. Departs from the paper's
+// sphere of the mean height (3.3.1), which is blind to the orientation: its first impulse is off by 36 to 47
+// %, and single drops by three times as much.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +14,9 @@
 
 namespace lodestone {
 
-class LoneHulls {
+class HullsOnGround {
  public:
-  LoneHulls(const SphereScene& scene, const NearGround& ground, SphereClips& clips)
+  HullsOnGround(const SphereScene& scene, const NearGround& ground, SphereClips& clips)
       : scene_(scene), near_ground_(ground), clips_(clips) {}
 
   /// Of spheres at places [begin, end): those that touched no other for a while stand on their hulls; the
@@ -29,6 +30,9 @@ class LoneHulls {
   /// that it begins goes to `joined`.
   ContactTally move(std::int64_t place, StatisticalBody& body, const StepWorld& around, bool rides,
                     std::vector<SphereClips::Playing>& joined);
+  /// Of one that is among others, or was a little before, and strikes the ground. (Drawn from the tables, the
+  /// impulse would set spinning what lands flat.)
+  ContactTally strike(std::int64_t place, StatisticalBody& body, StepWorld around);
   /// Of a guest that was moved on its hull.
   void take_from_edge(std::int64_t place, const StatisticalBody& moved);
   /// Whether it may come to rest as it stands.
