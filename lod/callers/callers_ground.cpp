@@ -126,7 +126,7 @@ GroundPose CallersGround::pose_of(const MirroredGeom& geom, double dt, double mo
   const double rim = (geom.bounds.center() - geom.position).norm() + 0.5 * geom.bounds.sizes().norm();
   const GroundPose put = put_from({geom.previous_position, geom.previous_orientation}, pose, rim, moved_in);
   const bool is_probed = geom.kind == GeomKind::height_field || geom.kind == GeomKind::other;
-  return is_probed ? put : coming_to(put, dt);
+  return is_probed ? put : coming_to(put, moved_in, dt);
 }
 
 dxGeom* CallersGround::geom_of(GroundId id) const {

@@ -109,6 +109,10 @@ void FullLevel::remove_ground(GroundId id) {
   piece_of_.erase(id.index);
 }
 
+void FullLevel::go_on(double gone) {
+  if (world_) world_->go_on(gone);
+}
+
 GroundId FullLevel::ground_of(OdeGroundId id) const {
   const auto known = id_of_laid_.find(id.value);
   return known == id_of_laid_.end() ? GroundId{} : known->second;

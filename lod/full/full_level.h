@@ -52,6 +52,7 @@ class FullLevel {
   void add_static_mesh(GroundId id, const Mesh& mesh, MaterialId material);
   void move_ground(GroundId id, const RigidState& state);
   void remove_ground(GroundId id);
+  void go_on(double gone);  ///< OdeWorld::go_on
   /// Null for ground of the caller's.
   GroundId ground_of(OdeGroundId id) const;
 

@@ -68,6 +68,12 @@ GroundPose coming_to(const GroundPose& put, double dt) {
   return coming;
 }
 
+GroundPose coming_to(const GroundPose& put, double dt, double part) {
+  GroundPose coming = coming_to(put, dt);
+  if (coming.goes_on_s > 0.0) coming.goes_on_s = part;
+  return coming;
+}
+
 GroundId Ground::new_id(Entry entry) {
   if (free_entries_.empty()) {
     free_entries_.push_back(std::uint32_t(entries_.size()));
@@ -155,8 +161,10 @@ void Ground::move_plane(GroundId id, const HalfSpace& plane) {
 }
 
 void Ground::move_part(GroundId id, const GroundPose& pose) {
-  if (pose.comes_back) note_put(*parts_[std::size_t(entries_[id.index].part)], pose);
-  stand(std::size_t(entries_[id.index].part), pose);
+  const auto index = std::size_t(entries_[id.index].part);
+  if (pose.comes_back) note_put(*parts_[index], pose);
+  stand(index, pose);
+  if (pose.comes_back && parts_[index]->moves()) moved_.push_back(id);
 }
 
 void Ground::stand(std::size_t index, const GroundPose& pose) {
@@ -181,7 +189,13 @@ void Ground::note_put(GroundPart& part, const GroundPose& pose) {
 }
 
 void Ground::begin_step(double dt, double since, const std::function<void(const Box&)>& stands_again) {
-  if (since > 0.0 && !put_on_.empty()) go_as_put(dt, since, stands_again);
+  put_on_before_.clear();
+  if (since > 0.0) {
+    std::swap(going_, moved_);
+    moved_.clear();
+    note_put_on();
+    if (!put_on_.empty()) go_as_put(dt, since, stands_again);
+  }
   if (moving_ == 0) return;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (!parts_[i] || !parts_[i]->pose.comes_back || !parts_[i]->moves()) continue;
@@ -189,6 +203,46 @@ void Ground::begin_step(double dt, double since, const std::function<void(const 
     parts_[i]->pose.goes_on_s = dt;
     hold_anew(std::int32_t(i));
   }
+}
+
+void Ground::go_on() {
+  const auto move = [&](std::size_t index) {
+    const GroundPose& pose = parts_[index]->pose;
+    stand(index, pose_after(pose, pose.goes_on_s));
+  };
+  std::ranges::sort(going_, {}, &GroundId::index);
+  const auto twice = std::ranges::unique(going_, {}, &GroundId::index);
+  going_.erase(twice.begin(), twice.end());
+  const bool first = was_put_.empty();
+  for (const GroundId id : going_) {
+    if (!valid(id)) continue;
+    const auto index = std::size_t(entries_[id.index].part);
+    if (first) was_put_.emplace_back(id, parts_[index]->pose);
+    move(index);
+  }
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (parts_[i] && !parts_[i]->pose.comes_back && parts_[i]->pose.goes_on_s > 0.0) move(i);
+}
+
+void Ground::come_back() {
+  for (const auto& [id, pose] : was_put_)
+    if (valid(id)) stand(std::size_t(entries_[id.index].part), pose);
+  was_put_.clear();
+}
+
+void Ground::note_put_on() {
+  for (const GroundId id : put_on_)
+    if (valid(id)) put_on_before_.push_back({id, *part(id).put_on, part(id).pose});
+}
+
+void Ground::undo_step() {
+  for (const Noted& noted : put_on_before_) {
+    if (!valid(noted.id)) continue;
+    const auto index = std::size_t(entries_[noted.id.index].part);
+    if (!std::exchange(parts_[index]->put_on, noted.put_on)) put_on_.push_back(noted.id);
+    stand(index, noted.pose);
+  }
+  keep_step();
 }
 
 void Ground::go_as_put(double dt, double since, const std::function<void(const Box&)>& stands_again) {
@@ -199,7 +253,7 @@ void Ground::go_as_put(double dt, double since, const std::function<void(const B
     const bool has_own_velocity = held.pose.comes_back && held.moves();
     if (!has_own_velocity && held.put_on->moved) {
       const auto [pose, speed] = pose_put_on(held, since);
-      stand(index, held.shape.probe ? pose : coming_to(pose, dt));
+      stand(index, held.shape.probe ? pose : coming_to(pose, since, dt));
       held.put_on = {.from = pose, .moved = false, .last_speed = speed};
       return false;
     }

@@ -52,6 +52,8 @@ struct GroundPose {
 GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt);
 /// `put`, which goes, as it comes to stand there within `dt` s: what lies on it goes along.
 GroundPose coming_to(const GroundPose& put, double dt);
+/// The same of a step that is divided, at the beginning of its first part, of `part` s.
+GroundPose coming_to(const GroundPose& put, double dt, double part);
 
 /// Of a part that was put elsewhere without a velocity, since the last step began or before that.
 struct PutOn {
@@ -123,6 +125,14 @@ class Ground {
   /// bounds of those that did so until now; 0: they go on as in the part of a step before this one.
   void begin_step(double dt, double since,
                   const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
+  /// Before a later part of a divided step: what was moved for that step stands where it has gone in the part
+  /// before. Belts, which are not moved, begin anew.
+  void go_on();
+  /// After the last part: what comes back stands where it was put.
+  void come_back();
+  /// What begin_step knew of what was put on, again: that step was none. Until keep_step().
+  void undo_step();
+  void keep_step() { put_on_before_.clear(); }
   const GroundPart& part(GroundId id) const { return *parts_[std::size_t(entries_[id.index].part)]; }
   const HalfSpace& plane(GroundId id) const { return planes_[std::size_t(entries_[id.index].plane)]; }
   /// Of a part, where it stands now.
@@ -150,6 +160,7 @@ class Ground {
   GroundId new_id(Entry entry);
   void note_put(GroundPart& part, const GroundPose& pose);
   void stand(std::size_t part, const GroundPose& pose);
+  void note_put_on();
   void go_as_put(double dt, double since,
                  const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
   void hold(std::int32_t part);
@@ -169,6 +180,14 @@ class Ground {
   std::vector<std::int32_t> free_parts_;
   std::size_t parts_used_ = 0, moving_ = 0;
   std::vector<GroundId> put_on_;  // parts with such a note
+  struct Noted {
+    GroundId id;
+    PutOn put_on;
+    GroundPose pose;
+  };
+  std::vector<Noted> put_on_before_;     // the step that begin_step began
+  std::vector<GroundId> moved_, going_;  // with a velocity: for the step to come, and for this one
+  std::vector<std::pair<GroundId, GroundPose>> was_put_;  // what has gone on and comes back
   mutable std::uint32_t numbers_ = 0;
 
   // Most parts stand in a tree, built now and then; those that came or moved since are looked at one by one.

@@ -108,11 +108,30 @@ void Manager::Impl::follow_gravity() {
   levels.set_gravity(gravity);
 }
 
+namespace {
+
+// Ground that was moved for a step goes on through its parts, and after the last is back.
+class GoingGround {
+ public:
+  explicit GoingGround(Levels& levels) : levels_(levels) {}
+  ~GoingGround() { levels_.ground.come_back(), levels_.full.go_on(0.0); }
+  GoingGround(const GoingGround&) = delete;
+  GoingGround& operator=(const GoingGround&) = delete;
+  void go_on(double gone) const { levels_.ground.go_on(), levels_.full.go_on(gone); }
+
+ private:
+  Levels& levels_;
+};
+
+}  // namespace
+
 // The report is that of all parts together. Forces last as long as all of them.
 void Manager::Impl::step_divided(double dt, int parts) {
   const BodyTable::Forces forces = levels.bodies.forces();
+  const GoingGround ground(levels);
   StepReport sum;
   for (int i = 0; i < parts; ++i) {
+    if (i > 0) ground.go_on(i * (dt / parts));
     if (i > 0) levels.bodies.hold(forces);
     if (i > 0 && callers_world) levels.full.world()->repeat_callers_forces();
     step_part(dt / parts, i == 0 ? dt : 0.0);
@@ -129,10 +148,14 @@ void Manager::Impl::step_divided(double dt, int parts) {
 }
 
 Manager::Impl::Undo::~Undo() {
-  if (std::uncaught_exceptions() == exceptions_) return;
+  if (std::uncaught_exceptions() == exceptions_) {
+    impl_.levels.ground.keep_step();
+    return;
+  }
   impl_.report = before_;
   impl_.levels.now = before_.step;
   impl_.levels.look_away();
+  impl_.levels.ground.undo_step();
   BodyTable& bodies = impl_.levels.bodies;
   // they are looked at anew in the step to come
   for (std::uint32_t body = 0; body < bodies.indices(); ++body)

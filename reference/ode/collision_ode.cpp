@@ -191,17 +191,29 @@ void Collision::put(Ground& ground, const RigidState& state) {
 
 void Collision::begin_step(Bodies& bodies, double dt) {
   for (Ground& ground : ground_) {
-    if (!ground.id || !ground.moves || !ground.moved) continue;
+    if (gone_ == 0.0) ground.goes = ground.moved;
+    if (!ground.id || !ground.moves || !ground.goes) continue;
     const Eigen::AlignedBox3d before = bounds_of(ground.geom);
-    put(ground, moved_on(ground.put, dt));
+    put(ground, moved_on(ground.put, gone_ + dt));
     broad_phase_.wake_ours(bodies, before.merged(bounds_of(ground.geom)));
-    put(ground, ground.put);
+    put_after(ground, 0.0);
   }
 }
 
 void Collision::move_on(double after) {
   for (Ground& ground : ground_)
-    if (ground.id && ground.moves) put(ground, after > 0.0 ? moved_on(ground.put, after) : ground.put);
+    if (ground.id && ground.moves) put_after(ground, after);
+}
+
+// s, from the beginning of this step, or part of one.
+void Collision::put_after(Ground& ground, double after) {
+  const double way = (ground.goes ? gone_ : 0.0) + after;
+  put(ground, way > 0.0 ? moved_on(ground.put, way) : ground.put);
+}
+
+void Collision::go_on(double gone) {
+  gone_ = gone;
+  move_on(0.0);
 }
 
 void Collision::end_step() {

@@ -28,6 +28,7 @@ struct Ground {
   RigidState before = {};  ///< where it was put at the end of the step before
   double last_way = 0.0;   ///< m, by which it was moved before that step
   bool moved = false;      ///< before this step
+  bool goes = false;       ///< was moved before it, or before the step that it is a part of: no belt
   bool moves = false;      ///< its state has a velocity
 
   double way() const;  ///< m, by which it was moved before this step, no point of it more
@@ -54,6 +55,8 @@ class Collision {
   void begin_step(Bodies& bodies, double dt);
   /// Puts ground that moves where it is `after` s from the step's beginning.
   void move_on(double after);
+  /// The next steps are parts of one that began `gone` s ago: what was moved for that has gone on since.
+  void go_on(double gone);
   /// Ground that is not moved again stands where it was put.
   void end_step();
   /// Finds the contacts of every awake body and gives them to `joints`; `h` is the step to come, s.
@@ -66,6 +69,7 @@ class Collision {
 
  private:
   void put(Ground& ground, const RigidState& state);
+  void put_after(Ground& ground, double after);
   void mark_company(Bodies& bodies, std::span<const Candidate> candidates);
   void note_callers_planes();
   void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);
@@ -100,7 +104,8 @@ class Collision {
   const SpaceMirror* callers_;
   CallersShapes callers_shapes_;
   TrimeshCache& trimeshes_;
-  PlaneStep step_;  // the one to come
+  PlaneStep step_;     // the one to come
+  double gone_ = 0.0;  // s, since the beginning of the step that the next one is a part of
   std::int64_t dropped_ = 0, swallowed_ = 0;
 };
 

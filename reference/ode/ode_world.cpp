@@ -104,6 +104,8 @@ void OdeWorld::move_ground(OdeGroundId ground, const RigidState& state) {
 }
 void OdeWorld::remove_ground(OdeGroundId ground) { impl_->collision.remove_ground(ground, impl_->bodies); }
 
+void OdeWorld::go_on(double gone) { impl_->collision.go_on(gone); }
+
 OdeBodyId OdeWorld::add_body(const OdeBodyDefinition& definition) {
   impl_->joints.check_known(definition.material);
   prepare();

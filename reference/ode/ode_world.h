@@ -194,6 +194,9 @@ class OdeWorld {
   /// next. A plane cannot be moved.
   void move_ground(OdeGroundId ground, const RigidState& state);
   void remove_ground(OdeGroundId ground);  ///< wakes what is near it
+  /// The next steps are parts of one that began `gone` s ago (0: no more): ground that was moved for that has
+  /// gone on since.
+  void go_on(double gone);
 
   /// Throws InputError where mass ≤ 0 or the state is not finite or beyond 1e8 m. The first body of a shape
   /// builds its trimesh data, shared by the rest.

@@ -202,6 +202,66 @@ TEST(ManagerGround, PutOnInStepsOfAnyLengthItCarriesWhatLiesOnIt) {
     }
 }
 
+// Each part of a step that was divided began where the whole step did.
+TEST(ManagerGround, ThroughAHitchALiftCarriesWhatLiesOnIt) {
+  struct Case {
+    LevelChoice level;
+    bool with_velocity;
+  };
+  for (const Case c : {Case{LevelChoice::full, true},
+                       {LevelChoice::support, true},
+                       {LevelChoice::tables, true},
+                       {LevelChoice::support, false},
+                       {LevelChoice::tables, false}})
+    for (const double speed : {1.0, 4.0}) {
+      Manager manager({.signatures = coarse_signature});
+      const GroundId lift = manager.add_static_box({3, 3, 0.2}, {0, 0, -0.1}, Quat::Identity());
+      const BodyId cube = add(manager, box_shape({0.3, 0.3, 0.3}), testing::at({0, 0, 0.15}), c.level);
+      double at = 0.0;  // m
+      const auto go = [&](double dt) {
+        if (!c.with_velocity) at += speed * dt;
+        RigidState state = testing::at({0, 0, at - 0.1});
+        if (c.with_velocity) state.velocity.z() = speed;
+        manager.move_ground(lift, state);
+        manager.step(dt);
+        if (c.with_velocity) at += speed * dt;
+      };
+      for (int i = 0; i < 30; ++i) go(1.0 / 60.0);
+      go(0.5);
+      EXPECT_NEAR(manager.state(cube).position.z() - at, 0.15, 0.02)
+          << int(c.level) << ", " << speed << " m/s";
+      go(1.0 / 60.0);
+      EXPECT_NEAR(manager.state(cube).position.z() - at, 0.15, 0.02)
+          << int(c.level) << ", " << speed << " m/s";
+    }
+}
+
+// What was put on for a step that was refused is put on for the next.
+TEST(ManagerGround, ARefusedStepForgetsNothing) {
+  const auto run = [](bool refused) {
+    const Shape odd = *box_shape({0.31, 0.3, 0.3});
+    const auto source = [&](const Shape& shape, const ContactLaw& law) {
+      return shape.volume == odd.volume ? nullptr : coarse_signature(shape, law);
+    };
+    Manager manager({.signatures = source, .signature_timing = SignatureTiming::in_step});
+    const GroundId slab = manager.add_static_box({6, 2, 0.2}, {0, 0, -0.1}, Quat::Identity());
+    const BodyId cube =
+        add(manager, box_shape({0.3, 0.3, 0.3}), testing::at({0, 0, 0.15}), LevelChoice::tables);
+    for (int i = 0; i < 30; ++i) {
+      manager.move_ground(slab, testing::at({0.03 * i, 0, -0.1}));
+      if (refused && i == 20) {
+        const BodyId bad =
+            add(manager, std::make_shared<const Shape>(odd), testing::at({0, 0, 5}), LevelChoice::tables);
+        EXPECT_THROW(manager.step(1.0 / 60.0), InputError);
+        manager.remove_body(bad);
+      }
+      manager.step(1.0 / 60.0);
+    }
+    return manager.state(cube).position.x();
+  };
+  EXPECT_EQ(run(true), run(false));
+}
+
 INSTANTIATE_TEST_SUITE_P(All, GroundPutOn,
                          ::testing::Combine(::testing::Values(LevelChoice::full, LevelChoice::support,
                                                               LevelChoice::tables),
