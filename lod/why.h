@@ -17,7 +17,7 @@ enum class Rule : std::uint8_t {
   far,                ///< from every viewpoint, or small in its picture
   within_hysteresis,  ///< only just past the limit
   dwell,              ///< the policy wants another rung, and it changed too recently
-  queued,             ///< … and max_transitions_per_frame others go first
+  queued,             ///< … and others go first: as many as may in a step, or for a place
   over_budget,        ///< nearer bodies, or those that gain more, use up the budget
   in_budget,          ///< it is among those that fit the budget
   most_reached,       ///< most_full or most_support

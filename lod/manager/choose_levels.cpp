@@ -39,6 +39,11 @@ Target target_by_limits(const LevelCandidate& c, double distance, const Limits& 
   return at(Rung::tables, c.view_factor > 1.0 ? Rule::out_of_view : Rule::far);
 }
 
+/// How many of the places on a rung it takes: those of `support` are for bodies that are awake.
+std::int64_t places_of(const LevelCandidate& c, Rung rung) {
+  return rung == Rung::support && c.asleep ? 0 : c.bodies;
+}
+
 /// What a budget leaves, in its unit: above what all cost on their lowest rungs.
 struct BudgetRoom {
   double keep = 0.0, grow = 0.0;  // for those that are on a higher rung; for more of them
@@ -112,6 +117,7 @@ class Chooser {
         pairs_(candidates.size()),
         goes_down_(candidates.size()) {
     decision_.reasons.resize(candidates.size());
+    count_limits();
   }
 
   LevelDecision by(const Limits& limits) {
@@ -149,7 +155,6 @@ class Chooser {
             .push_back({rank_distance(c, views_, settings_.hysteresis), i});
     }
     share_out(room, std::move(may_be_full), std::move(others));
-    count_limits();
     grant();
     return std::move(decision_);
   }
@@ -178,7 +183,6 @@ class Chooser {
           {to < c.present() ? 1.0 / std::max(1e-9, c.error_at(to) - c.error_at(c.present())) : nearness, i},
           {to, reason, room.over()});
     }
-    count_limits();
     grant();
     return std::move(decision_);
   }
@@ -278,12 +282,9 @@ class Chooser {
     for (const auto& [rung, most] :
          {std::pair{Rung::full, settings_.most_full}, {Rung::support, settings_.most_support}}) {
       std::vector<Ranked> wanted;
-      std::int64_t there = 0;
       for (std::size_t k = 0; k < ranked.size(); ++k) {
         const LevelCandidate& c = candidate(ranked[k]);
-        if (c.decided()) continue;
-        if (!c.newcomer && c.rung == rung) there += c.bodies;
-        if (targets[k].rung == rung && c.open.lowest() < rung)
+        if (!c.decided() && targets[k].rung == rung && c.open.lowest() < rung)
           wanted.push_back({rank_distance(c, views_, settings_.hysteresis, measure), std::int32_t(k)});
       }
       const auto bodies = [&](std::int32_t k) {
@@ -291,10 +292,8 @@ class Chooser {
       };
       for (const Ranked& w : std::span(wanted).subspan(keep_nearest(wanted, most, bodies)))
         targets[std::size_t(w.index)] = {
-            candidate(ranked[std::size_t(w.index)]).open.at_most(Rung(int(rung) - 1)), Rule::most_reached,
-            there > most};
+            candidate(ranked[std::size_t(w.index)]).open.at_most(Rung(int(rung) - 1)), Rule::most_reached};
     }
-    count_limits();
   }
 
   /// How many more the policy may put on each rung.
@@ -303,7 +302,33 @@ class Chooser {
     places_[std::size_t(Rung::support)] =
         settings_.most_support < kUnlimited ? settings_.most_support : kNoLimit;
     for (const LevelCandidate& c : candidates_)
-      if (!c.decided() && !c.newcomer) places_[std::size_t(c.rung)] -= c.bodies;
+      if (!c.decided() && !c.newcomer) places_[std::size_t(c.rung)] -= places_of(c, c.rung);
+  }
+  bool has_place(const Ranked& wish) const {
+    const std::int64_t needed = places_of(candidate(wish), wish.to);
+    return needed == 0 || places_[std::size_t(wish.to)] >= needed;
+  }
+  bool is_one_too_many(const LevelCandidate& c) const {
+    return places_of(c, c.rung) > 0 && places_[std::size_t(c.rung)] < 0;
+  }
+  /// On its lowest rung whatever the limit.
+  bool can_fall(const Ranked& wish) const {
+    return wish.to == candidate(wish).open.lowest() || has_place(wish);
+  }
+  /// Whether each goes where the other comes from, and only so has a place.
+  bool can_exchange(const Ranked& fall, const Ranked& rise) {
+    const LevelCandidate &falls = candidate(fall), &rises = candidate(rise);
+    if (falls.rung != rise.to || rises.rung != fall.to) return false;
+    note_price_of_pairs(rise);
+    const auto fit = [this](const LevelCandidate& comes, const LevelCandidate& goes, Rung rung) {
+      return places_[std::size_t(rung)] + places_of(goes, rung) >= places_of(comes, rung);
+    };
+    return fit(rises, falls, rise.to) && fit(falls, rises, fall.to) && cost_of(fall) + cost_of(rise) <= room_;
+  }
+  /// Whether others make room once their dwell is over.
+  bool leaves_place_later(const Ranked& wish) const {
+    return places_[std::size_t(wish.to)] + held_by_dwell_[std::size_t(wish.to)] >=
+           places_of(candidate(wish), wish.to);
   }
 
   /// Notes why a body has its rung, and its wish for a change.
@@ -321,7 +346,7 @@ class Chooser {
       reason = Rule::overlap_put_off;
     } else if (c.decided()) {
       (up ? decision_.promote : decision_.demote).push_back({wish.index, wish.to});
-    } else if (c.newcomer || must_leave(c) || (target.at_once && !up)) {
+    } else if (c.newcomer || must_leave(c) || (!up && (target.at_once || is_one_too_many(c)))) {
       (up ? promote_at_once_ : demote_at_once_).push_back(wish);
     } else {
       hold_or_queue(wish, up ? promote_ : demote_);
@@ -332,10 +357,10 @@ class Chooser {
   static bool must_leave(const LevelCandidate& c) { return !c.open.has(c.present()); }
 
   void hold_or_queue(const Ranked& wish, std::vector<Ranked>& queue) {
-    if (candidate(wish).frames_since_change < settings_.min_dwell_frames)
-      decision_.reasons[std::size_t(wish.index)] = Rule::dwell;
-    else
-      queue.push_back(wish);
+    const LevelCandidate& c = candidate(wish);
+    if (c.frames_since_change >= settings_.min_dwell_frames) return queue.push_back(wish);
+    decision_.reasons[std::size_t(wish.index)] = Rule::dwell;
+    held_by_dwell_[std::size_t(c.rung)] += places_of(c, c.rung);
   }
 
   /// Lets wishes come true, as long as there is room, and no more changes than the cap; the rest are queued.
@@ -348,18 +373,18 @@ class Chooser {
     });
     for (Ranked& wish : demote_at_once_) {
       const LevelCandidate& c = candidate(wish);
-      if (!must_leave(c) && room_ >= 0.0 && places_[std::size_t(c.rung)] >= 0) {  // enough went down
+      if (!must_leave(c) && room_ >= 0.0 && !is_one_too_many(c)) {  // enough went down
         hold_or_queue(wish, demote_);
         continue;
       }
-      if (places_[std::size_t(wish.to)] <= 0) wish.to = candidate(wish).open.lowest();
+      if (!has_place(wish)) wish.to = c.open.lowest();
       make(wish, decision_.demote);
     }
     const auto turns = std::size_t(std::max(0, settings_.max_transitions_per_frame));
-    const std::size_t in_order = std::min(turns + kPassedOver, promote_.size());
+    const std::size_t in_order = std::min(turns + kPassedOver, promote_.size()),
+                      falls_in_order = std::min(turns + kPassedOver, demote_.size());
     std::ranges::partial_sort(promote_, promote_.begin() + std::ptrdiff_t(in_order), nearer);
-    std::ranges::partial_sort(demote_, demote_.begin() + std::ptrdiff_t(std::min(turns, demote_.size())),
-                              farther);
+    std::ranges::partial_sort(demote_, demote_.begin() + std::ptrdiff_t(falls_in_order), farther);
     // Those that stay full for now are met, too, wanted or not.
     for (std::int32_t i = 0; i < count(); ++i)
       if (const LevelCandidate& c = candidates_[std::size_t(i)];
@@ -373,22 +398,34 @@ class Chooser {
 
     std::size_t up = 0, down = 0;
     std::size_t left = turns;
+    const auto may_fall = [this](const Ranked& wish) { return can_fall(wish); };
+    const auto takes_its_place = [&](const Ranked& wish) { return can_exchange(demote_[down], wish); };
     for (; left > 0; --left) {
       for (; up < in_order && places_[std::size_t(promote_[up].to)] > 0 && !fits(promote_[up]) &&
              fits_but_for_pairs(promote_[up]);
            ++up)
         decision_.reasons[std::size_t(promote_[up].index)] = Rule::queued;
-      const bool can_rise = up < in_order && fits(promote_[up]),
-                 can_fall = down < demote_.size() && places_[std::size_t(demote_[down].to)] > 0;
-      if (can_rise && (up <= down || !can_fall))
+      const bool rises = up < in_order && fits(promote_[up]),
+                 falls = bring_forward(demote_, down, falls_in_order, may_fall);
+      if (rises && (up <= down || !falls)) {
         make(promote_[up++], decision_.promote);
-      else if (can_fall)
+      } else if (falls) {
         make(demote_[down++], decision_.demote);
-      else
+      } else if (down == demote_.size() || (left == 1 && turns > 1)) {
         break;
+      } else if (left > 1 && bring_forward(promote_, up, in_order, takes_its_place)) {
+        make(demote_[down++], decision_.demote);
+        make(promote_[up++], decision_.promote);
+        --left;
+      } else if (leaves_place_later(demote_[down])) {
+        break;
+      } else {
+        demote_[down].to = candidate(demote_[down]).open.lowest();
+        make(demote_[down++], decision_.demote);
+      }
     }
     // The nearest may wait for a place that another leaves by rising farther.
-    if (up < in_order && places_[std::size_t(promote_[up].to)] < candidate(promote_[up]).bodies)
+    if (up < in_order && !has_place(promote_[up]))
       for (std::size_t k = up + 1; k < in_order && left > 0; ++k)
         if (promote_[k].to != promote_[up].to && fits(promote_[k])) {
           make(promote_[k], decision_.promote);
@@ -400,6 +437,20 @@ class Chooser {
     for (; down < demote_.size(); ++down) decision_.reasons[std::size_t(demote_[down].index)] = Rule::queued;
   }
 
+  /// Moves the first that may to the place `at` of those that are in order.
+  template <class May>
+  static bool bring_forward(std::vector<Ranked>& wishes, std::size_t at, std::size_t in_order,
+                            const May& may) {
+    const std::size_t end = std::min(at + 1 + kPassedOver, in_order);
+    for (std::size_t k = at; k < end; ++k) {
+      if (!may(wishes[k])) continue;
+      std::rotate(wishes.begin() + std::ptrdiff_t(at), wishes.begin() + std::ptrdiff_t(k),
+                  wishes.begin() + std::ptrdiff_t(k + 1));
+      return true;
+    }
+    return false;
+  }
+
   double cost_of(const Ranked& wish) const {
     const LevelCandidate& c = candidate(wish);
     const double pairs = double(pairs_[std::size_t(wish.index)]);
@@ -407,21 +458,25 @@ class Chooser {
     return c.cost_at(wish.to) - c.cost_at(c.present()) + change_of_pairs +
            double(c.bodies) * overhead_.change[std::size_t(wish.to)];
   }
-  bool fits(const Ranked& wish) {
+  void note_price_of_pairs(const Ranked& wish) {
     if (wish.to == Rung::full)
       pairs_[std::size_t(wish.index)] = float(stays_full_.price_of_pairs(candidate(wish)));
-    return places_[std::size_t(wish.to)] >= candidate(wish).bodies && cost_of(wish) <= room_;
+  }
+  bool fits(const Ranked& wish) {
+    note_price_of_pairs(wish);
+    return has_place(wish) && cost_of(wish) <= room_;
   }
   bool fits_but_for_pairs(const Ranked& wish) const {
     return wish.to == Rung::full && cost_of(wish) - double(pairs_[std::size_t(wish.index)]) <= room_;
   }
   void make(const Ranked& wish, std::vector<LevelDecision::Change>& changes) {
+    const LevelCandidate& c = candidate(wish);
     changes.push_back({wish.index, wish.to});
     room_ -= cost_of(wish);
-    places_[std::size_t(wish.to)] -= candidate(wish).bodies;
-    if (!candidate(wish).newcomer) places_[std::size_t(candidate(wish).rung)] += candidate(wish).bodies;
+    places_[std::size_t(wish.to)] -= places_of(c, wish.to);
+    if (!c.newcomer) places_[std::size_t(c.rung)] += places_of(c, c.rung);
     if (wish.to == Rung::full)
-      stays_full_.add(candidate(wish));
+      stays_full_.add(c);
     else
       goes_down_[std::size_t(wish.index)] = true;
   }
@@ -436,6 +491,7 @@ class Chooser {
   LevelDecision decision_;
   double room_ = kInfinity;                                                // of the budget
   std::array<std::int64_t, kRungs> places_{kNoLimit, kNoLimit, kNoLimit};  // for more bodies on each rung
+  std::array<std::int64_t, kRungs> held_by_dwell_{};  // bodies on each rung that leave it after their dwell
   std::vector<Ranked> promote_at_once_, demote_at_once_, promote_, demote_;
 };
 

@@ -32,9 +32,10 @@ struct LevelDecision {
     Rung to = Rung::support;
     friend bool operator==(const Change&, const Change&) = default;
   };
-  /// Forced ones, newcomers and demotions that bring the cost back within the budget (of bodies awake, then
-  /// of sleepers, farthest first) come first and are not limited; of the rest at most
-  /// max_transitions_per_frame, promotions (nearest first) and demotions (farthest first) by turns.
+  /// Forced ones, newcomers and demotions that bring the cost back within the budget, or those on a rung
+  /// within their limit (of bodies awake, then of sleepers, farthest first), come first and are not limited;
+  /// of the rest at most max_transitions_per_frame, promotions (nearest first) and demotions (farthest first)
+  /// by turns, and as exchanges where each waits for the other's place.
   std::vector<Change> promote, demote;
   std::vector<Rule> reasons;  ///< one per candidate
 };

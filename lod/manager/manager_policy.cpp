@@ -141,7 +141,7 @@ std::string_view text_of(Rule rule) {
     case Rule::dwell:
       return "it changed too recently to change again";
     case Rule::queued:
-      return "it waits its turn: this step has made all the changes it may";
+      return "it waits its turn: others change first";
     case Rule::over_budget:
       return "nearer bodies use up the budget";
     case Rule::in_budget:

@@ -332,6 +332,111 @@ TEST(Policy, OfGroupsTheMostOnARungAreCountedByTheirBodies) {
   }
 }
 
+// As many as may be are full and far, as many others `support` and near: each waits for a place that another
+// has.
+TEST(Policy, WhereBothRungsAreTakenTheNearTakeThePlacesOfTheFar) {
+  for (const bool budget : {false, true})
+    for (const int most : {1, 3})
+      for (const int turns : {1, 2, 4})
+        for (const bool asleep : {false, true}) {
+          PolicySettings settings = with_most(most, most, budget);
+          settings.max_transitions_per_frame = turns;
+          std::vector<LevelCandidate> candidates;
+          for (int i = 0; i < 2 * most; ++i) {
+            candidates.push_back(i < most ? on_ladder(21 + i, Rung::full) : on_ladder(1 + i, Rung::support));
+            candidates.back().asleep = asleep;
+          }
+          for (int frame = 0; frame < 20; ++frame) {
+            const auto decision = choose(candidates, settings);
+            ASSERT_LE(decision.promote.size() + decision.demote.size(), std::size_t(turns));
+            make_changes(decision, candidates);
+            ASSERT_LE(count_on(Rung::full, candidates), most);
+            ASSERT_TRUE(asleep || count_on(Rung::support, candidates) <= most);
+          }
+          for (int i = 0; i < 2 * most; ++i)
+            EXPECT_EQ(candidates[std::size_t(i)].rung, i < most ? Rung::support : Rung::full)
+                << budget << ' ' << most << ' ' << turns << ' ' << asleep;
+        }
+}
+
+TEST(Policy, ATakenPlaceIsExchangedInOneStep) {
+  for (const bool budget : {false, true}) {
+    PolicySettings settings = with_most(1, 1, budget);
+    settings.max_transitions_per_frame = 2;
+    const auto decision = choose({on_ladder(21, Rung::full), on_ladder(1, Rung::support)}, settings);
+    EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{0, Rung::support}}));
+    EXPECT_EQ(decision.promote, (std::vector<LevelDecision::Change>{{1, Rung::full}}));
+  }
+}
+
+// Four bodies in the place of two and two.
+TEST(Policy, AGroupThatFitsInNoOtherPlaceGoesByTheLowestRung) {
+  for (const bool budget : {false, true}) {
+    const PolicySettings settings = with_most(4, 4, budget);
+    std::vector<LevelCandidate> groups{on_ladder(21, Rung::full), on_ladder(1, Rung::support),
+                                       on_ladder(2, Rung::support)};
+    groups[0].bodies = 4, groups[1].bodies = groups[2].bodies = 2;
+    EXPECT_EQ(choose(groups, settings).demote, (std::vector<LevelDecision::Change>{{0, Rung::tables}}));
+    for (int frame = 0; frame < 5; ++frame) make_changes(choose(groups, settings), groups);
+    EXPECT_EQ(groups[0].rung, Rung::support);
+    EXPECT_EQ(groups[1].rung, Rung::full);
+    EXPECT_EQ(groups[2].rung, Rung::full);
+  }
+}
+
+TEST(Policy, APlaceIsWaitedForThatAnotherLeavesAfterItsDwell) {
+  PolicySettings settings = with_most(1, 1, false);
+  settings.min_dwell_frames = 10;
+  std::vector<LevelCandidate> candidates{on_ladder(21, Rung::full), on_ladder(22, Rung::support),
+                                         on_ladder(1)};
+  candidates[1].frames_since_change = 5;
+  for (int frame = 0; frame < 5; ++frame) {
+    const auto decision = choose(candidates, settings);
+    EXPECT_TRUE(decision.demote.empty() && decision.promote.empty());
+    EXPECT_EQ(decision.reasons, (std::vector{Rule::queued, Rule::dwell, Rule::queued}));
+    make_changes(decision, candidates);
+  }
+  make_changes(choose(candidates, settings), candidates);
+  EXPECT_EQ(candidates[0].rung, Rung::support);
+  EXPECT_EQ(candidates[1].rung, Rung::tables);
+  EXPECT_EQ(candidates[2].rung, Rung::full);
+}
+
+TEST(Policy, ASleeperTakesNoPlaceAtSupport) {
+  PolicySettings settings = with_most(1, 1, false);
+  settings.min_dwell_frames = 10;
+  std::vector<LevelCandidate> candidates{on_ladder(21, Rung::full), on_ladder(22, Rung::support),
+                                         on_ladder(1)};
+  candidates[1].frames_since_change = 5;
+  candidates[1].asleep = true;
+  const auto decision = choose(candidates, settings);
+  EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{0, Rung::support}}));
+  EXPECT_EQ(decision.promote, (std::vector<LevelDecision::Change>{{2, Rung::full}}));
+}
+
+// Whatever dwell and cap, under each policy; also of bodies that it wants lower anyhow.
+TEST(Policy, ALimitThatIsExceededIsKeptAtOnce) {
+  std::vector<LevelCandidate> candidates;
+  for (int i = 0; i < 20; ++i) {
+    candidates.push_back(at(5 + i, Rung::full));
+    candidates.back().error = {30.0f, 20.0f, 10.0f};
+    candidates.back().frames_since_change = 0;
+  }
+  PolicySettings settings;
+  settings.max_transitions_per_frame = 2, settings.most_full = 3;
+  for (const decltype(PolicySettings::policy)& policy :
+       {decltype(PolicySettings::policy)(DistancePolicy{100.0}),
+        decltype(PolicySettings::policy)(DistancePolicy{4.0}),
+        decltype(PolicySettings::policy)(BudgetPolicy{1e6}),
+        decltype(PolicySettings::policy)(ErrorBudgetPolicy{1e6})}) {
+    settings.policy = policy;
+    std::vector<LevelCandidate> after = candidates;
+    make_changes(choose(candidates, settings), after);
+    EXPECT_EQ(count_on(Rung::full, after), 3) << policy.index();
+    EXPECT_EQ(after[2].rung, Rung::full) << policy.index();
+  }
+}
+
 TEST(BudgetPolicy, TheNearestAreFullTheNextSupportTheRestTables) {
   std::vector<LevelCandidate> candidates;
   for (int i = 0; i < 200; ++i) candidates.push_back(on_ladder(1 + i));

@@ -103,6 +103,28 @@ TEST(Choose, CapsAreNeverExceededAndTheNearestGoFirst) {
   }
 }
 
+// The camera goes from the one to the other, whose places they have to exchange.
+TEST(Choose, WhoIsFarMakesRoomForWhoIsNearThoughBothRungsAreTaken) {
+  for (const bool budget : {false, true})
+    for (const bool sleeping : {false, true}) {
+      PolicySettings policy = at_once(DistancePolicy{50.0, 100.0});
+      if (budget) policy.policy = WorkPolicy{1e6};
+      policy.most_full = policy.most_support = 1;
+      Manager manager = on_floor({.sleeping = sleeping, .policy = policy, .signatures = coarse_signature});
+      const auto box = box_shape({0.2, 0.3, 0.4});
+      const BodyId here = add(manager, box, testing::at({0, 0, 0.2})),
+                   there = add(manager, box, testing::at({20, 0, 0.2}));
+      view_from(manager, {0, 0, 1});
+      run(manager, 2.0);
+      EXPECT_EQ(manager.rung(here), Rung::full);
+      EXPECT_EQ(manager.rung(there), Rung::support);
+      view_from(manager, {20, 0, 1});
+      run(manager, 0.1);
+      EXPECT_EQ(manager.rung(there), Rung::full) << budget << sleeping << manager.why(there);
+      EXPECT_EQ(manager.rung(here), Rung::support) << budget << sleeping << manager.why(here);
+    }
+}
+
 // A few changes a frame, and each body no sooner again than its dwell; counted against a list of our own.
 TEST(Choose, ChangesKeepTheDwellAndTheCap) {
   PolicySettings policy = at_once(DistancePolicy{3.0});
