@@ -18,9 +18,14 @@ GroupId Groups::make(std::span<const std::uint32_t> bodies, GroupJoints joints) 
   if (members.empty() || twice ||
       std::ranges::any_of(members, [&](std::uint32_t body) { return group_of_.contains(body); }))
     return {};
-  const auto free = std::ranges::find_if(groups_, [](const Group& group) { return group.members.empty(); });
-  const auto index = std::size_t(free - groups_.begin());
-  if (free == groups_.end()) groups_.emplace_back();
+  std::size_t index = groups_.size();
+  if (free_.empty()) {
+    groups_.emplace_back();
+  } else {
+    std::ranges::pop_heap(free_, std::ranges::greater{});
+    index = free_.back();
+    free_.pop_back();
+  }
   Group& group = groups_[index];
   const std::uint32_t generation = std::max(1u, group.generation + 1);
   group = {};
@@ -45,7 +50,9 @@ void Groups::archive_detached(StateArchive& a) const {
 void Groups::archive(StateArchive& a) {
   const std::vector<Group> before = a.reading() ? groups_ : std::vector<Group>();
   a(groups_, group_of_);
+  if (a.reading()) free_.clear();
   for (std::size_t i = 0; i < groups_.size() && a.reading(); ++i) {
+    if (groups_[i].members.empty()) free_.push_back(std::uint32_t(i));  // in order, which is a heap
     const bool known = i < before.size() && before[i].generation == groups_[i].generation;
     groups_[i].joints = known ? before[i].joints : GroupJoints{};
   }
@@ -58,7 +65,13 @@ bool Groups::valid(GroupId group) const {
 
 void Groups::dissolve(GroupId id) {
   for (const std::uint32_t body : members(id)) group_of_.erase(body);
-  groups_[id.index].clear();
+  set_free(id.index);
+}
+
+void Groups::set_free(std::size_t index) {
+  groups_[index].clear();
+  free_.push_back(std::uint32_t(index));
+  std::ranges::push_heap(free_, std::ranges::greater{});
 }
 
 void Groups::forget(std::uint32_t body) {
@@ -68,7 +81,7 @@ void Groups::forget(std::uint32_t body) {
   const auto place = std::ranges::find(group.members, body);
   if (!group.poses.empty()) group.poses.erase(group.poses.begin() + (place - group.members.begin()));
   group.members.erase(place);
-  if (group.members.empty()) group.clear();
+  if (group.members.empty()) set_free(found->second);
   group_of_.erase(found);
 }
 

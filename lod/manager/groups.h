@@ -75,7 +75,10 @@ class Groups {
   bool joined_outside(const Group& group, std::uint32_t body) const;
 
   Levels& levels_;
+  void set_free(std::size_t index);
+
   std::vector<Group> groups_;
+  std::vector<std::uint32_t> free_;  // indices without a group: a heap, the least on top
   std::unordered_map<std::uint32_t, std::uint32_t> group_of_;
 };
 

@@ -176,6 +176,40 @@ TEST(Groups, ARemovedMemberLeaves) {
   EXPECT_THROW(manager.dissolve_group(group), InputError);
 }
 
+// Whoever freed them; also after a snapshot, in this manager or another.
+TEST(Groups, TheLeastFreeHandleIsGivenAgain) {
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  Manager manager = on_floor(unmeasured()), other = on_floor(unmeasured());
+  std::vector<BodyId> bodies;
+  std::vector<GroupId> groups;
+  for (int i = 0; i < 6; ++i) {
+    bodies.push_back(add(manager, box, at({1.0 * i, 0, 0.1})));
+    groups.push_back(manager.make_group({&bodies.back(), 1}));
+  }
+  manager.dissolve_group(groups[4]);
+  manager.remove_body(bodies[3]);
+  manager.dissolve_group(groups[1]);
+  const std::vector<std::byte> snapshot = manager.snapshot();
+  const auto make_again = [&](Manager& in) {
+    std::vector<GroupId> again;
+    for (int i = 0; i < 4; ++i) {
+      const BodyId body = add(in, box, at({1.0 * i, 5, 0.1}));
+      again.push_back(in.make_group({&body, 1}));
+    }
+    return again;
+  };
+  const std::vector<GroupId> again = make_again(manager);
+  for (const auto& [made, index, generation] :
+       {std::tuple(0, 1U, 2U), {1, 3U, 2U}, {2, 4U, 2U}, {3, 6U, 1U}}) {
+    EXPECT_EQ(again[std::size_t(made)].index, index);
+    EXPECT_EQ(again[std::size_t(made)].generation, generation);
+  }
+  other.restore(snapshot, {&box, 1});
+  EXPECT_EQ(make_again(other), again);
+  manager.restore(snapshot, {&box, 1});
+  EXPECT_EQ(make_again(manager), again);
+}
+
 TEST(Groups, WrongMembersAreRefused) {
   Manager manager = on_floor(unmeasured());
   const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}), at({0, 0, 0.1}));
