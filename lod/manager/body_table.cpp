@@ -69,9 +69,12 @@ void BodyTable::reuse_indices() {
 }
 
 void BodyTable::archive(StateArchive& a) {
-  a(records_, levels_, free_, removed_, shapes_, free_shapes_, newcomers_, forces_, pushed_, rare_,
+  std::vector<std::uint32_t> pushed = this->pushed();
+  a(records_, levels_, free_, removed_, shapes_, free_shapes_, newcomers_, forces_, pushed, rare_,
     properties_, births_, counts_, greatest_importance_);
   if (!a.reading()) return;
+  pushed_ = std::move(pushed);
+  for (std::size_t i = 0; i < pushed_.size(); ++i) forces_[pushed_[i]].place = i;
   newcomers_gone_ = 0;
   for (std::size_t i = 0; i < newcomers_.size(); ++i) newcomers_gone_ += !waits_at(i);
   number_of_shape_.clear();
@@ -116,17 +119,33 @@ void BodyTable::add_force(std::uint32_t index, const Force& force) {
   if (!sum.force.allFinite() || !sum.torque.allFinite())
     throw_input_error("force", "a sum with those given before that is not finite", "a finite one");
   const auto [held, fresh] = forces_.try_emplace(index);
-  if (fresh) pushed_.push_back(index);
-  held->second = sum;
+  if (fresh) {
+    held->second.place = pushed_.size();
+    pushed_.push_back(index);
+  }
+  held->second.sum = sum;
 }
 
+// Its place stays, until there are more such places than others.
 void BodyTable::drop_force(std::uint32_t index) {
-  if (forces_.erase(index) > 0) std::erase(pushed_, index);
+  const auto held = forces_.find(index);
+  if (held == forces_.end()) return;
+  pushed_[held->second.place] = kDropped;
+  forces_.erase(held);
+  if (pushed_.size() < kRoomKept || 2 * forces_.size() > pushed_.size()) return;
+  pushed_ = pushed();
+  for (std::size_t i = 0; i < pushed_.size(); ++i) forces_[pushed_[i]].place = i;
+}
+
+std::vector<std::uint32_t> BodyTable::pushed() const {
+  std::vector<std::uint32_t> bodies = pushed_;
+  std::erase(bodies, kDropped);
+  return bodies;
 }
 
 BodyTable::Forces BodyTable::forces() const {
   Forces all;
-  for (const std::uint32_t body : pushed_) all.held.emplace_back(body, force(body));
+  for (const std::uint32_t body : pushed()) all.held.emplace_back(body, force(body));
   return all;
 }
 
@@ -147,7 +166,7 @@ void BodyTable::set_properties(std::uint32_t index, const BodyProperties& proper
 BodyTable::Force BodyTable::force(std::uint32_t index) const {
   if (forces_.empty()) return {};
   const auto held = forces_.find(index);
-  return held == forces_.end() ? Force{} : held->second;
+  return held == forces_.end() ? Force{} : held->second.sum;
 }
 
 void BodyTable::clear_forces() {

@@ -121,7 +121,7 @@ class BodyTable {
   void drop_force(std::uint32_t index);
   Force force(std::uint32_t index) const;
   /// Bodies with a force, in the order in which they got the first.
-  const std::vector<std::uint32_t>& pushed() const { return pushed_; }
+  std::vector<std::uint32_t> pushed() const;
   void clear_forces();
   /// All that are held, to be held again for the next part of a step that is divided.
   struct Forces {
@@ -170,8 +170,14 @@ class BodyTable {
   std::unordered_map<const Shape*, std::uint32_t> number_of_shape_;
   std::vector<Newcomer> newcomers_;
   std::size_t newcomers_gone_ = 0;  // of these, removed since
-  std::unordered_map<std::uint32_t, Force> forces_;
-  std::vector<std::uint32_t> pushed_;
+  struct Held {
+    Force sum;
+    std::size_t place = 0;  // in pushed_
+    void archive(StateArchive& a) { a(sum); }
+  };
+  static constexpr std::uint32_t kDropped = ~std::uint32_t(0);
+  std::unordered_map<std::uint32_t, Held> forces_;
+  std::vector<std::uint32_t> pushed_;  // bodies with a force, and kDropped where one was dropped
   std::unordered_map<std::uint32_t, Rare> rare_;
   OwnProperties properties_;
   std::uint64_t births_ = 0;

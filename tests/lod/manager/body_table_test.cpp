@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "reference/error.h"
@@ -85,6 +86,35 @@ TEST_F(TableOfBodies, ForcesAddUpUntilTheStepIsDone) {
   EXPECT_EQ(table_.force(b.index).force, Vec3(2, 1, 0));
   table_.drop_force(b.index);
   EXPECT_EQ(table_.pushed(), (std::vector<std::uint32_t>{a.index}));
+}
+
+// Far more are dropped than are left; one gets another force, after all others.
+TEST_F(TableOfBodies, ForcesKeepTheirOrderAsOthersAreDropped) {
+  std::vector<std::uint32_t> bodies, left;
+  for (int i = 0; i < 300; ++i) {
+    bodies.push_back(add().index);
+    table_.add_force(bodies.back(), {{double(i), 0, 0}, {0, 0, 0}});
+  }
+  for (int i = 0; i < 300; ++i)
+    if (i % 10 != 7)
+      table_.drop_force(bodies[std::size_t(299 - i)]);
+    else
+      left.insert(left.begin(), bodies[std::size_t(299 - i)]);
+  table_.drop_force(bodies[0]);  // it has none
+  table_.drop_force(left.front());
+  table_.add_force(left.front(), {{1, 0, 0}, {0, 0, 0}});
+  std::rotate(left.begin(), left.begin() + 1, left.end());
+  EXPECT_EQ(table_.pushed(), left);
+  StateArchive written;
+  table_.archive(written);
+  BodyTable read;
+  StateArchive bytes(written.bytes(), {ball_});
+  read.archive(bytes);
+  EXPECT_EQ(read.pushed(), left);
+  read.drop_force(left[1]);
+  left.erase(left.begin() + 1);
+  EXPECT_EQ(read.pushed(), left);
+  for (const std::uint32_t body : left) EXPECT_EQ(read.force(body).force, table_.force(body).force);
 }
 
 TEST_F(TableOfBodies, ASumThatIsNotFiniteIsRefusedAndChangesNothing) {
