@@ -29,6 +29,19 @@ void add_statistical(const Levels& levels, double ms, StepMeasurement& measured)
   measured.others_ms += std::max(0.0, ms - measured.total_of_rungs_ms());
 }
 
+// Ground that was moved for a step goes on through its parts, and after the last is back.
+class GoingGround {
+ public:
+  explicit GoingGround(Levels& levels) : levels_(levels) {}
+  ~GoingGround() { levels_.ground.come_back(), levels_.full.go_on(0.0); }
+  GoingGround(const GoingGround&) = delete;
+  GoingGround& operator=(const GoingGround&) = delete;
+  void go_on(double gone) const { levels_.ground.go_on(), levels_.full.go_on(gone); }
+
+ private:
+  Levels& levels_;
+};
+
 }  // namespace
 
 const StepReport& Manager::step(double dt) {
@@ -108,23 +121,6 @@ void Manager::Impl::follow_gravity() {
   levels.set_gravity(gravity);
 }
 
-namespace {
-
-// Ground that was moved for a step goes on through its parts, and after the last is back.
-class GoingGround {
- public:
-  explicit GoingGround(Levels& levels) : levels_(levels) {}
-  ~GoingGround() { levels_.ground.come_back(), levels_.full.go_on(0.0); }
-  GoingGround(const GoingGround&) = delete;
-  GoingGround& operator=(const GoingGround&) = delete;
-  void go_on(double gone) const { levels_.ground.go_on(), levels_.full.go_on(gone); }
-
- private:
-  Levels& levels_;
-};
-
-}  // namespace
-
 // The report is that of all parts together. Forces last as long as all of them.
 void Manager::Impl::step_divided(double dt, int parts) {
   const BodyTable::Forces forces = levels.bodies.forces();
@@ -176,6 +172,7 @@ void Manager::Impl::begin_stages(double dt, double since, WorldStepBy by) {
   follow_caller(dt, since);
   const std::optional<RungChanges> rung_changes = choose_rungs();  // 1
   if (rung_changes) move_bodies.run(*rung_changes, report);        // 2
+  changes.note_promoted();
   if (is_budgeted(choose.policy())) choose.count_meetings();
   underway->measured.others_ms += underway->laps.lap_ms();
   step_statistical(dt, by);  // 3

@@ -20,6 +20,14 @@ void StepChanges::add(std::uint32_t body) {
   lies_at_.resize(slept_.size(), Vec3::Zero());
 }
 
+// Where one lies that comes to the full level asleep was not known there.
+void StepChanges::note_promoted() {
+  for (; noted_changes_ < levels_.rung_changes.size(); ++noted_changes_)
+    if (const RungChange& change = levels_.rung_changes[noted_changes_];
+        change.to == Rung::full && levels_.bodies.valid(change.body))
+      lies_at_[change.body.index] = levels_.state(change.body.index).position;
+}
+
 void StepChanges::take_part() {
   noted_.insert(noted_.end(), levels_.woken.begin(), levels_.woken.end());
   levels_.woken.clear();
@@ -55,6 +63,7 @@ void StepChanges::finish() {
   noted_.clear();
   std::swap(rung_changes_, levels_.rung_changes);
   levels_.rung_changes.clear();
+  noted_changes_ = 0;
   moved_known_ = false;
 }
 

@@ -17,6 +17,8 @@ class StepChanges {
 
   /// A step begins: nothing has changed yet.
   void begin();
+  /// After the changes of rung of a part, before anything moves.
+  void note_promoted();
   /// After each part of a step that is divided.
   void take_part();
   void finish();
@@ -28,7 +30,7 @@ class StepChanges {
   /// Forgets the last step where it reads.
   void archive(StateArchive& a) {
     a(slept_, noted_, lies_at_, levels_.rung_changes);
-    if (a.reading()) begin();
+    if (a.reading()) noted_changes_ = 0, begin();
   }
 
   std::span<const BodyId> moved() const;
@@ -48,6 +50,7 @@ class StepChanges {
   std::vector<char> slept_;    // at the end of the last step, by index
   std::vector<Vec3> lies_at_;  // m, by index: where full ones were; ODE may wake one within the step, and lay
                                // it to sleep again
+  std::size_t noted_changes_ = 0;       // of rung, by note_promoted()
   std::vector<std::uint32_t> noted_;    // who may have woken or fallen asleep since
   std::vector<std::uint32_t> settled_;  // who fell asleep in some part of the step
   std::vector<BodyId> fell_asleep_, woke_;

@@ -212,5 +212,24 @@ TEST(StepChanges, TheLastStatisticalBodyFallsAsleepOnce) {
   }
 }
 
+// It lay elsewhere when it was full before.
+TEST(StepChanges, WhoIsPromotedAsleepDidNotMove) {
+  Manager manager =
+      on_floor(unmeasured({.policy = DistancePolicy{.full_within = 3.0}, .min_dwell_frames = 0}));
+  const BodyId box = add(manager, box_shape({0.2, 0.3, 0.4}), at({1, 0, 0.21}));
+  for (int i = 0; i < 3; ++i) {
+    view_from(manager, {100, 0, 0});
+    manager.set_state(box, at({1.0 + 0.3 * i, 0, 0.21}));
+    run(manager, 3.0);
+    ASSERT_TRUE(manager.asleep(box));
+    ASSERT_NE(manager.rung(box), Rung::full);
+    view_from(manager, {0, 0, 1});
+    manager.step(kFrame);
+    ASSERT_TRUE(manager.asleep(box));
+    ASSERT_EQ(manager.rung(box), Rung::full);
+    EXPECT_TRUE(manager.moved().empty());
+  }
+}
+
 }  // namespace
 }  // namespace lodestone::step_changes_test
