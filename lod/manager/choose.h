@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -64,8 +65,9 @@ class Choose {
   /// see done().
   std::optional<RungChanges> run(StepReport& report, CostModel& costs);
   void done() { look_at_all_ = false; }
-  /// Bodies at `support` whose signature has come, of those that waited for it: a few in each step.
-  std::vector<std::uint32_t> take_supplied();
+  /// Of the bodies that wait for their signature, those for whom it has come, a few in each step: `supply` is
+  /// called with those at `support`. One for whom it throws waits on.
+  void supply_waiting(const std::function<void(std::uint32_t)>& supply);
 
   /// Bodies that it saw, on the rungs that they have after its decision.
   const StepCounts& counts() const { return counts_; }

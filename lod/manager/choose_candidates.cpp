@@ -127,9 +127,8 @@ void Choose::note_waiting(std::uint32_t body) {
   waiting_.push_back(body);
 }
 
-std::vector<std::uint32_t> Choose::take_supplied() {
+void Choose::supply_waiting(const std::function<void(std::uint32_t)>& supply) {
   constexpr std::size_t kAskedAbout = 128;
-  std::vector<std::uint32_t> supplied;
   for (std::size_t left = std::min(kAskedAbout, waiting_.size()); left > 0; --left) {
     if (next_waiting_ >= waiting_.size()) next_waiting_ = 0;
     const std::uint32_t body = waiting_[next_waiting_];
@@ -139,15 +138,20 @@ std::vector<std::uint32_t> Choose::take_supplied() {
       ++next_waiting_;
       continue;
     }
+    if (!gone) {
+      BodyLevel& level = levels_.bodies.level(body);
+      level.waits_for_signature = false;
+      try {
+        if (!level.newcomer && level.rung == Rung::support) supply(body);
+      } catch (...) {
+        level.waits_for_signature = true;
+        throw;
+      }
+      note(body);
+    }
     waiting_[next_waiting_] = waiting_.back();
     waiting_.pop_back();
-    if (gone) continue;
-    BodyLevel& level = levels_.bodies.level(body);
-    level.waits_for_signature = false;
-    note(body);
-    if (!level.newcomer && level.rung == Rung::support) supplied.push_back(body);
   }
-  return supplied;
 }
 
 double Choose::pixels(const LevelCandidate& seen) const {

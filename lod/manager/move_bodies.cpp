@@ -33,12 +33,12 @@ void MoveBodies::bring_back_woken(Groups::Return how, StepReport& report) {
 }
 
 void MoveBodies::supply_signatures() {
-  for (const std::uint32_t body : choose_.take_supplied()) {
+  choose_.supply_waiting([this](std::uint32_t body) {
     const std::int64_t changed_at = levels_.bodies.level(body).changed_at;
     find_signature(levels_, body, Rung::support);
     transfer(levels_, body, Rung::support);
     levels_.bodies.level(body).changed_at = changed_at;
-  }
+  });
 }
 
 void MoveBodies::run(const RungChanges& changes, StepReport& report) {

@@ -151,6 +151,41 @@ TEST(SignatureTiming, ASignatureThatCannotBeHadIsSaidByTheStep) {
       InputError);
 }
 
+// Both come in one step, one after the other: who waited for the first has its clips, as soon as the other is
+// gone.
+TEST(SignatureTiming, OneThatCannotBeHadTakesNoOtherFromThoseWhoWait) {
+  const auto box = box_shape({0.2, 0.3, 0.4}), ball = sphere_shape(0.2);
+  std::atomic<bool> go = false;
+  std::atomic<int> answered = 0;
+  const auto source = [&](const Shape& shape, const ContactLaw& law) {
+    while (!go) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (++answered == 2) throw InputError("no room");
+    return coarse_signature(shape, law);
+  };
+  Manager manager = on_floor({.signatures = source, .signature_timing = SignatureTiming::in_background}),
+          without_clips = on_floor();
+  std::vector<BodyId> bodies, others;
+  BodyId bad;
+  for (int i = 0; i < 40; ++i) {
+    const RigidState state = at({2.0 * i, 0, 1.0 + 0.02 * i}, {0, 0, 0}, {0.1 * i, 3, 0});
+    bodies.push_back(add(manager, box, state));
+    // Asked about last: the places of those who wait no longer are filled from the back.
+    if (i == 0) bad = add(manager, ball, at({0, 9, 1}));
+  }
+  for (const BodyId body : bodies) others.push_back(add(without_clips, box, manager.state(body)));
+  manager.step(kFrame), without_clips.step(kFrame);
+  go = true;
+  while (answered < 2) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // for the answer to be there
+  EXPECT_THROW(manager.step(kFrame), InputError);
+  manager.remove_body(bad);
+  run(manager, 3.0), run(without_clips, 3.0);
+  int with_clips = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    with_clips += (manager.state(bodies[i]).position - without_clips.state(others[i]).position).norm() > 1e-3;
+  EXPECT_GT(with_clips, 0);
+}
+
 // The default source, which measures: the manager goes away in the middle of it, soon, and without a
 // signature in the cache.
 TEST(SignatureTiming, AManagerDoesNotWaitForWhatItMeasures) {
