@@ -145,7 +145,8 @@ class Manager {
   void set_properties(BodyId body, const BodyProperties& properties);
 
   /// N and N m about the centre of mass, over the whole of the next step, on top of those given before; wakes
-  /// it. Their sum must be finite.
+  /// it. Their sum must be finite. A new body that this step holds back (StepReport's counter
+  /// `bodies_held_back`) feels none of it.
   void add_force(BodyId body, const Vec3& force, const Vec3& torque = Vec3::Zero());
   /// N, at a point of the world (m) as the body is now.
   void add_force_at(BodyId body, const Vec3& force, const Vec3& point);

@@ -50,12 +50,28 @@ void Groups::archive_detached(StateArchive& a) const {
 void Groups::archive(StateArchive& a) {
   const std::vector<Group> before = a.reading() ? groups_ : std::vector<Group>();
   a(groups_, group_of_);
-  if (a.reading()) free_.clear();
+  if (a.reading()) free_.clear(), to_join_.clear();
   for (std::size_t i = 0; i < groups_.size() && a.reading(); ++i) {
     if (groups_[i].members.empty()) free_.push_back(std::uint32_t(i));  // in order, which is a heap
     const bool known = i < before.size() && before[i].generation == groups_[i].generation;
     groups_[i].joints = known ? before[i].joints : GroupJoints{};
+    if (known && before[i].detached && !groups_[i].detached) to_join_.push_back(id_of(i));
   }
+}
+
+void Groups::note_put(std::uint32_t body) {
+  const auto found = group_of_.find(body);
+  if (found == group_of_.end()) return;
+  Group& group = groups_[found->second];
+  if (group.poses.empty()) return;
+  const auto place = std::ranges::find(group.members, body) - group.members.begin();
+  group.poses[std::size_t(place)] = levels_.state(body);
+}
+
+void Groups::join_restored() {
+  for (const GroupId id : to_join_)
+    if (const auto& join = groups_[id.index].joints.after_promotion) join(id);
+  to_join_.clear();
 }
 
 bool Groups::valid(GroupId group) const {

@@ -51,6 +51,11 @@ class Groups {
     as_it_slept,  ///< at the poses in which it slept, with the velocities that it was given in this step
   };
   bool detached(GroupId group) const { return groups_[group.index].detached; }
+  /// The caller put a body elsewhere, or to sleep: it slept there, from now on.
+  void note_put(std::uint32_t body);
+  /// After all is as in the snapshot: has the caller join those whose joints were off before and are on in
+  /// it.
+  void join_restored();
   /// Moves it to the full level and has the caller join it. Returns how many bodies changed.
   int bring_back(GroupId group, Return how);
 
@@ -77,6 +82,7 @@ class Groups {
   Levels& levels_;
   void set_free(std::size_t index);
 
+  std::vector<GroupId> to_join_;  // join_restored()
   std::vector<Group> groups_;
   std::vector<std::uint32_t> free_;  // indices without a group: a heap, the least on top
   std::unordered_map<std::uint32_t, std::uint32_t> group_of_;

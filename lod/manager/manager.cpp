@@ -79,6 +79,7 @@ void Manager::before_world_step(double dt) {
   impl.begin_stages(dt, dt, WorldStepBy::caller);  // 1 to 3; 4 is the caller's own world step
   impl.step_levels.begin_callers_step(dt);
   impl.waits_for_world_step = true;
+  impl.queries.begin_callers_step();
 }
 
 const StepReport& Manager::after_world_step() {

@@ -92,6 +92,7 @@ void Manager::set_state(BodyId body, const RigidState& state) {
   const RigidState sound = checked(state);
   impl_->changes.keep_moved();
   impl_->levels.set_state(index, sound);
+  impl_->choose.groups().note_put(index);
   impl_->queries.touch();
   impl_->choose.note(index);
   impl_->recorder.note(Call::set_state, body, state);
@@ -136,6 +137,7 @@ void Manager::sleep(BodyId body) {
   const std::uint32_t index = impl_->index_of(body);
   impl_->changes.keep_moved();
   impl_->levels.put_to_sleep(index);
+  impl_->choose.groups().note_put(index);
   impl_->changes.note(index);
   impl_->left_places.note_place(impl_->levels, body);
   impl_->queries.lay_down(index);

@@ -61,9 +61,6 @@ PolicySettings read_policy(StateArchive& chunk, const PolicySettings& readers) {
   RecordedPolicy recorded;
   chunk(recorded);
   PolicySettings& policy = recorded.settings;
-  if (policy.policy.index() >= std::variant_size_v<decltype(policy.policy)>)
-    throw_input_error("recording", fmt::format("a policy of kind {}", policy.policy.index()),
-                      fmt::format("0 … {}", std::variant_size_v<decltype(policy.policy)> - 1));
   const auto check = [](bool has, std::string_view what) {
     if (!has)
       throw_input_error("recording", fmt::format("a policy with a function for `{}`", what),

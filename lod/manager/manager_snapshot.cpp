@@ -28,7 +28,7 @@ struct Circumstances {
 
 struct Header {
   std::array<char, 8> magic = {'L', 'O', 'D', 'E', 'S', 'N', 'A', 'P'};
-  std::uint32_t format = 16, version = LODESTONE_VERSION;
+  std::uint32_t format = 17, version = LODESTONE_VERSION;
   // Sizes of what goes as it lies in memory: a build with other ones is no reader.
   std::array<std::uint16_t, 8> layout = {sizeof(void*),           sizeof(BodyRecord),   sizeof(BodyLevel),
                                          sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport),
@@ -223,6 +223,7 @@ void Manager::restore(std::span<const std::byte> snapshot,
   levels.look_away();
   impl_->archive(state, signatures);
   check_that(state.at_end(), "a snapshot is read to its end");
+  impl_->choose.groups().join_restored();
   if (impl_->recorder.on())
     impl_->recorder.note(Call::begin, std::vector<std::byte>(snapshot.begin(), snapshot.end()));
 }

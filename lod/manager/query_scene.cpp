@@ -41,7 +41,7 @@ QueryHit hit_of(const ContactSide& who, const SurfaceHit& hit) {
 }  // namespace
 
 void QueryScene::finish(std::span<const BodyId> fell_asleep, std::span<const BodyId> moved_and_slept) {
-  stale_ = true;
+  stale_ = true, under_way_ = false;
   for (const auto& list : {fell_asleep, moved_and_slept})
     for (const BodyId body : list) lay_down(body.index);
 }
@@ -82,7 +82,7 @@ void QueryScene::update_grid() {
   }
   slept_.clear();
   in_use_ = true;
-  stale_ = false;
+  stale_ = under_way_;
 }
 
 bool QueryScene::passes(std::uint32_t body, const QueryFilter& filter) const {

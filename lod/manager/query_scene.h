@@ -21,6 +21,8 @@ class QueryScene {
 
   /// Something moved, came or went.
   void touch() { stale_ = true; }
+  /// Until finish() bodies move that nobody tells of.
+  void begin_callers_step() { stale_ = under_way_ = true; }
   void forget(std::uint32_t body) { grid_.forget(body), stale_ = true; }
   /// Where it is now it was laid to sleep.
   void lay_down(std::uint32_t body);
@@ -56,7 +58,7 @@ class QueryScene {
   QueryCallers callers_;
   ShapeTrees trees_;
   BodyGrid grid_;
-  bool in_use_ = false, stale_ = true;
+  bool in_use_ = false, stale_ = true, under_way_ = false;
   std::vector<std::uint32_t> slept_;  // fell asleep since the grid was last brought up to date
   std::mutex access_;
 };

@@ -2,16 +2,21 @@
 // in order, and for each step what came of it.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "lod/manager/levels.h"
 #include "lod/policy.h"
 #include "lod/record.h"
+#include "reference/error.h"
 #include "reference/state_archive.h"
 
 namespace lodestone {
@@ -81,9 +86,36 @@ struct RecordedPolicy {
   PolicySettings settings;
   bool visible = false, significance = false;
   void archive(StateArchive& a) {
-    a(settings.policy, settings.hysteresis, settings.min_dwell_frames, settings.max_transitions_per_frame,
-      settings.most_full, settings.most_support, settings.out_of_view_factor);
+    archive_kind(a, settings.policy);
+    a(settings.hysteresis, settings.min_dwell_frames, settings.max_transitions_per_frame, settings.most_full,
+      settings.most_support, settings.out_of_view_factor);
     a(settings.look_ahead_s, settings.contact_groups_together, visible, significance);
+  }
+
+ private:
+  /// By values: bytes that none has may be those of a policy before.
+  template <class... Kinds>
+  static void archive_kind(StateArchive& a, std::variant<Kinds...>& policy) {
+    auto index = std::uint64_t(policy.index());
+    a(index);
+    if (index >= sizeof...(Kinds))
+      throw_input_error("recording", fmt::format("a policy of kind {}", index),
+                        fmt::format("0 … {}", sizeof...(Kinds) - 1));
+    if (a.reading()) {
+      const std::array<std::variant<Kinds...>, sizeof...(Kinds)> fresh{Kinds{}...};
+      policy = fresh[index];
+    }
+    std::visit([&](auto& kind) { archive_values(a, kind); }, policy);
+  }
+  template <class Kind>
+  static void archive_values(StateArchive& a, Kind& kind) {
+    a(kind);
+  }
+  static void archive_values(StateArchive& a, ErrorBudgetPolicy& kind) {
+    bool in_work = kind.budget_work.has_value();
+    double work = kind.budget_work.value_or(0.0);
+    a(kind.budget_ms, in_work, work);
+    kind.budget_work = in_work ? std::optional(work) : std::nullopt;
   }
 };
 

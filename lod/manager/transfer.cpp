@@ -176,13 +176,19 @@ bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uin
   const RigidState state = levels.state(body);
   const Shape& shape = *levels.bodies.shape(body);
   const BodyProperties& own = levels.bodies.properties(body);
-  if (overlaps_ground({levels.ground, own}, shape, state)) return true;
+  // Nothing pushes what is kinematic, out of the ground or out of its like.
+  if (!own.kinematic && overlaps_ground({levels.ground, own}, shape, state)) return true;
+  const auto may_push = [&](std::uint32_t other) {
+    const BodyProperties& its = levels.bodies.properties(other);
+    const auto& may_pair = levels.statistical_settings.pair_filter;
+    return !(own.kinematic && its.kinematic) && may_meet(own, its) && (!may_pair || may_pair(body, other));
+  };
   const auto overlaps_body = [&](std::uint32_t other, const RigidState& there) {
     const Shape& other_shape = *levels.bodies.shape(other);
     const double reach = shape.radius + other_shape.radius,
                  allowed = kOverlapAllowed * std::min(shape.radius, other_shape.radius);
     return other != body && std::ranges::find(but, other) == but.end() &&
-           (there.position - state.position).squaredNorm() <= reach * reach &&
+           (there.position - state.position).squaredNorm() <= reach * reach && may_push(other) &&
            measure_pair_overlap(shape, state, other_shape, there, allowed) > allowed;
   };
   std::vector<std::uint32_t> near;

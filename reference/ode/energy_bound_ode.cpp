@@ -9,6 +9,7 @@ namespace {
 // Over what there is and what contacts may give: ODE's law of friction and restitution gains up to half of a
 // body's energy in a single hit at a restitution of 1.
 constexpr double kMost = 2.0;
+constexpr double kDeep = 0.02;      // over R: in what stands still no body comes to be so by itself
 constexpr double kUnsteady = 1e-3;  // of what forces would give: what they do not hold quite still
 
 // Of which nothing is asked: a kinematic body is a surface that moves.
@@ -93,7 +94,7 @@ void EnergyBound::count_bodies(const Bodies& bodies) {
 /// `push`: m/s.
 void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, double push) {
   Vec3 driven = contact.velocity;  // m/s, of what nothing pushes
-  double mass = 0.0;               // kg, of what is driven
+  double mass = 0.0, size = 0.0;   // kg and m, of what is driven
   Island* island = nullptr;
   for (const OdeBodyId id : {contact.first, contact.second}) {
     if (!id) continue;
@@ -101,7 +102,7 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
     if (dBodyIsKinematic(body.body))
       driven += velocity_at(body, contact.point);
     else
-      mass = std::max(mass, body.mass()), island = &island_of(slot_of(id));
+      mass = std::max(mass, body.mass()), size = body.shape->radius, island = &island_of(slot_of(id));
   }
   if (!island) return;
   if (island->bodies > 1)
@@ -110,6 +111,9 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
     island->squared_pushes = std::max(island->squared_pushes, push * push);
   island->driven += 2.0 * mass * driven.squaredNorm();  // at twice its speed
   island->moved |= contact.moves || !driven.isZero(0.0);
+  if (island->bodies > 1 || contact.depth < kDeep * size) return;
+  if (island->out.isZero(0.0)) island->out = contact.normal;
+  island->squeezed |= island->out.dot(contact.normal) < 0.0;
 }
 
 void EnergyBound::sum_up(const Bodies& bodies) {

@@ -21,7 +21,7 @@ class EnergyBound {
   void note(const Bodies& bodies, std::span<const OdeContact> contacts, const Vec3& gravity, double pushing,
             double h);
   /// Whether they have no more energy now than they may. A body that touches nothing but what stands still is
-  /// not asked.
+  /// not asked, unless that pushes it out of itself from sides that face each other.
   bool is_kept(const Bodies& bodies);
   /// Of those that have more: takes so much of how they move against each other, or all alike, that they have
   /// what there was, and lets them go on so from where they were.
@@ -38,10 +38,14 @@ class EnergyBound {
     double squared_pushes = 0.0;  ///< m²/s², of all contacts; of a body by itself the greatest
     int bodies = 0;
     bool jointed = false;
-    bool moved = false;  ///< by what moves, or was moved
+    bool moved = false;       ///< by what moves, or was moved
+    bool squeezed = false;    ///< a body by itself, deep in what stands still, by contacts against each other
+    Vec3 out = Vec3::Zero();  ///< the first of these that is deep
     double given() const;
     double most() const;
-    bool is_asked() const { return !jointed && (bodies > 1 || moved); }  ///< alone: the truth's own
+    bool is_asked() const {
+      return !jointed && (bodies > 1 || moved || squeezed);
+    }  ///< alone: the truth's own
   };
   Island& island_of(std::size_t slot) { return islands_[std::size_t(sets_.root_of(std::int32_t(slot)))]; }
   /// How one began, and what acts on it.

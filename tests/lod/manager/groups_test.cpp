@@ -123,6 +123,39 @@ TEST(Groups, ASnapshotOfOneWhoseJointsAreOffGoesWhereItsFunctionsAre) {
   EXPECT_EQ(dBodyGetNumJoints(second.manager.ode_body(first.right)), 1);
 }
 
+// The joints stayed off, and nobody was told.
+TEST(Groups, JoinedInASnapshotItIsJoinedAgainThoughItsJointsAreOffNow) {
+  const auto box = box_shape({0.5, 0.5, 0.5});
+  JointedPair pair(box);
+  run(pair.manager, 0.5);
+  const std::vector<std::byte> snapshot = pair.manager.snapshot();
+  pair.leave();
+  ASSERT_NE(pair.manager.rung(pair.left), Rung::full);
+  pair.manager.restore(snapshot, {&box, 1});
+  ASSERT_EQ(pair.manager.rung(pair.right), Rung::full);
+  EXPECT_EQ(dBodyGetNumJoints(pair.manager.ode_body(pair.right)), 1);
+}
+
+// What struck it next put it back to where it had slept when its joints went off.
+TEST(Groups, PutElsewhereWhileItsJointsAreOffItStaysThere) {
+  const auto box = box_shape({0.5, 0.5, 0.5});
+  JointedPair pair(box);
+  pair.leave();
+  ASSERT_NE(pair.manager.rung(pair.left), Rung::full);
+  for (const BodyId body : {pair.left, pair.right}) {
+    RigidState state = pair.manager.state(body);
+    state.position.y() += 10.0;
+    pair.manager.set_state(body, state);
+  }
+  for (const BodyId body : {pair.left, pair.right}) pair.manager.sleep(body);
+  run(pair.manager, 0.2);
+  const BodyId falls = add(pair.manager, box, at({0, 10, 1.2}), LevelChoice::support);
+  run(pair.manager, 1.0);
+  EXPECT_EQ(pair.manager.rung(pair.left), Rung::full);
+  EXPECT_NEAR(pair.manager.state(pair.left).position.y(), 10.0, 0.5);
+  EXPECT_GT(pair.manager.state(falls).position.z(), 0.2);
+}
+
 // Of a group whose members are gone its snapshot asked for functions that no reader could have.
 TEST(Groups, OneWhoseJointsAreOffMayBeRemovedWhole) {
   const auto box = box_shape({0.5, 0.5, 0.5});

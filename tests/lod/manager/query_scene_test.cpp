@@ -296,6 +296,35 @@ TEST(QueryScene, FindsWhatWasPutElsewhereAndLaidToSleep) {
   }
 }
 
+// What the step has moved so far, and what the caller's world step moves.
+TEST(QueryScene, BetweenTheHalvesOfAStepBodiesAreFoundWhereTheyAre) {
+  dWorldID world = dWorldCreate();
+  dSpaceID space = dHashSpaceCreate(nullptr);
+  {
+    Manager manager(world, space, unmeasured());
+    const auto cube = box_shape({0.3, 0.3, 0.3});
+    const auto fast = [](double y) { return testing::at({0, y, 0}, {100, 0, 0}); };
+    const BodyId bodies[] = {add(manager, cube, fast(0), LevelChoice::support),
+                             add(manager, cube, fast(5), LevelChoice::full)};
+    const auto is_found = [&](BodyId body) {
+      const Vec3 place = manager.state(body).position;
+      const auto hit =
+          manager.cast_ray({.from = place + Vec3(0, 0, 2), .direction = {0, 0, -1}, .length = 4});
+      return hit && hit->who.body == body;
+    };
+    for (int i = 0; i < 3; ++i) {
+      for (const BodyId body : bodies) EXPECT_TRUE(is_found(body));
+      manager.before_world_step(kFrame);
+      for (const BodyId body : bodies) EXPECT_TRUE(is_found(body));
+      dWorldStep(world, kFrame);
+      for (const BodyId body : bodies) EXPECT_TRUE(is_found(body));
+      manager.after_world_step();
+    }
+  }
+  dSpaceDestroy(space);
+  dWorldDestroy(world);
+}
+
 // The rows of tiles of a world that is streamed.
 TEST(QueryScene, KeepsNoTreesOfGroundThatIsGone) {
   std::weak_ptr<const Shape> first;

@@ -436,5 +436,34 @@ TEST(Transfer, T12ChangeAtTheFrameOfAnImpact) {
     }
 }
 
+// A promotion waits until what could throw the body is out of the way, and for nothing else.
+TEST(Transfer, WhatCannotPushABodyDoesNotKeepItFromFull) {
+  const auto cube = box_shape({0.3, 0.3, 0.3});
+  const auto goes_up = [](Manager& manager, BodyId body) {
+    manager.set_level(body, LevelChoice::full);
+    manager.step(kFrame);
+    return manager.rung(body) == Rung::full;
+  };
+  for (const bool by_filter : {true, false}) {
+    ManagerSettings settings = unmeasured();
+    if (by_filter) settings.pair_filter = [](BodyId, BodyId) { return false; };
+    Manager manager = on_floor(settings);
+    const BodyProperties ghost{.category = 2, .collide = by_filter ? ~0u : 1u};
+    std::vector<BodyId> bodies;
+    for (const double x : {0.0, 0.1})
+      bodies.push_back(manager.add_body({.shape = cube,
+                                         .state = testing::at({x, 0, 0.15}),
+                                         .level = LevelChoice::support,
+                                         .properties = ghost}));
+    run(manager, 0.1);
+    for (const BodyId body : bodies) EXPECT_TRUE(goes_up(manager, body)) << by_filter;
+  }
+  Manager manager = on_floor();
+  const BodyId slab = manager.add_body(
+      {.shape = box_shape({2, 2, 0.2}), .level = LevelChoice::support, .properties = {.kinematic = true}});
+  manager.step(kFrame);
+  EXPECT_TRUE(goes_up(manager, slab));
+}
+
 }  // namespace
 }  // namespace lodestone::transfer_test
