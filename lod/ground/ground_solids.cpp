@@ -1,9 +1,11 @@
 #include "lod/ground/ground_solids.h"
 
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "lod/ground/box_hierarchy.h"
+#include "reference/error.h"
 #include "reference/hull/convex_pieces.h"
 #include "reference/mesh/mesh_edges.h"
 
@@ -38,6 +40,15 @@ bool is_convex(const Mesh& mesh, double tolerance) {
   return true;
 }
 
+// None of a sheet that is closed, seen from both sides.
+std::optional<Hull> hull_unless_flat(std::span<const Vec3> points) {
+  try {
+    return make_hull(points);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 void GroundSolids::add(GroundSolid solid, const Box& bounds) {
@@ -65,9 +76,10 @@ void GroundSolids::add_mesh(const Mesh& mesh) {
   const double size = bounds_of(mesh.vertices).diagonal().norm();
   constexpr std::size_t kFewFaces = 2000;  // among which convexity is tested face by face
   if (!is_closed(mesh) || mesh.faces.size() > kFewFaces) return add_surface(mesh);
-  const Hull hull = make_hull(mesh.vertices);
-  if (is_convex(mesh, 1e-9 * size)) return add_hull(hull.vertices);
-  const std::vector<Hull> pieces = find_convex_pieces(mesh, hull);
+  const std::optional<Hull> hull = hull_unless_flat(mesh.vertices);
+  if (!hull) return add_surface(mesh);
+  if (is_convex(mesh, 1e-9 * size)) return add_hull(hull->vertices);
+  const std::vector<Hull> pieces = find_convex_pieces(mesh, *hull);
   if (pieces.empty()) return add_surface(mesh);
   for (const Hull& piece : pieces) add_hull(piece.vertices);
 }

@@ -15,17 +15,12 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 
 constexpr double kDepth = 0.02;  // of the solids, at most, over the diagonal of the surface's bounding box
+constexpr double kBelow = 1e-9;  // over that diagonal: so far under a triangle a ray begins
 constexpr double kRidgeSine = 0.05;  // an edge whose faces fall away by more than this (3°) stands out
 
 // Of the face's area, twice.
 Vec3 area_vector(const Mesh& mesh, const std::array<int, 3>& f) {
   return (mesh.vertices[f[1]] - mesh.vertices[f[0]]).cross(mesh.vertices[f[2]] - mesh.vertices[f[0]]);
-}
-
-bool has_area(const Mesh& mesh, const std::array<int, 3>& f) {
-  const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
-  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  return area_vector(mesh, f).norm() > 1e-9 * longest * longest;
 }
 
 // Whether the surface falls away at an edge, or ends there.
@@ -61,6 +56,18 @@ Vec3 unit_normal(const std::array<Vec3, 3>& corner) {
   return (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
 }
 
+// As shares of a triangle's corners: no likely places of others' edges.
+constexpr std::size_t kPlaces = 4;
+const std::array<Vec3, kPlaces>& places_within() {
+  static const std::array<Vec3, kPlaces> places{Vec3(0.90, 0.06, 0.04), Vec3(0.04, 0.90, 0.06),
+                                                Vec3(0.06, 0.04, 0.90), Vec3(0.35, 0.33, 0.32)};
+  return places;
+}
+
+Vec3 point_in(const std::array<Vec3, 3>& corner, const Vec3& share) {
+  return share[0] * corner[0] + share[1] * corner[1] + share[2] * corner[2];
+}
+
 // Of its corners, and of what lies below them.
 Box bounds_of(const std::array<Vec3, 3>& corner, const std::array<Vec3, 3>& below) {
   Box box;
@@ -69,6 +76,12 @@ Box bounds_of(const std::array<Vec3, 3>& corner, const std::array<Vec3, 3>& belo
 }
 
 }  // namespace
+
+bool has_area(const Mesh& mesh, const std::array<int, 3>& f) {
+  const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
+  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  return area_vector(mesh, f).norm() > 1e-9 * longest * longest;
+}
 
 struct SurfaceSolids::Tree : BoxHierarchy {
   using BoxHierarchy::BoxHierarchy;
@@ -185,7 +198,7 @@ void SurfaceSolids::find_reversed() {
 // open, as a landscape is, or a room without an outer skin: there it is the triangle's own alone. `size_`: to
 // no end.
 double SurfaceSolids::find_thickness_at(const Vec3& point, const Vec3& normal) const {
-  const Vec3 from = point - 1e-9 * size_ * normal;
+  const Vec3 from = point - kBelow * size_ * normal;
   int within = 0;                                              // so many
   thread_local std::vector<std::pair<double, int>> crossings;  // m; how many more it is in from there on
   crossings.clear();
@@ -201,22 +214,30 @@ double SurfaceSolids::find_thickness_at(const Vec3& point, const Vec3& normal) c
   return size_;
 }
 
+// Whether the other side of a sheet lies in its plane all over it, however that is divided into triangles.
+bool SurfaceSolids::is_backed(const std::array<Vec3, 3>& corner, const Vec3& normal) const {
+  const double apart = kBelow * size_;
+  return std::ranges::all_of(places_within(), [&](const Vec3& share) {
+    bool there = false;
+    visit_crossings(point_in(corner, share) + apart * normal, -normal,
+                    [&](double at, bool in) { there = there || (!in && at <= 2.0 * apart); });
+    return there;
+  });
+}
+
 // m, below each corner: so that the plane through these ends lies nowhere beyond the other side, as seen by
-// rays from a few places in the triangle, which are no likely places of others' edges.
+// rays from a few places in the triangle.
 std::array<double, 3> SurfaceSolids::find_thickness(const std::array<Vec3, 3>& corner, const Vec3& normal,
                                                     bool reversed) const {
   if (one_way_) return {size_, size_, size_};
   constexpr double kThinnest = 2e-4;  // over the longest edge
-  static const std::array<Vec3, 4> places{Vec3(0.90, 0.06, 0.04), Vec3(0.04, 0.90, 0.06),
-                                          Vec3(0.06, 0.04, 0.90),
-                                          Vec3(0.35, 0.33, 0.32)};  // shares of the corners
+  const std::array<Vec3, kPlaces>& places = places_within();
   const double longest = std::max(
       {(corner[1] - corner[0]).norm(), (corner[2] - corner[1]).norm(), (corner[0] - corner[2]).norm()});
-  Vec3 thickness = Vec3::Constant(reversed ? 0.0 : size_);
-  std::array<double, places.size()> there;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const Vec3& share = places[i];
-    there[i] = find_thickness_at(share[0] * corner[0] + share[1] * corner[1] + share[2] * corner[2], normal);
+  Vec3 thickness = Vec3::Constant(reversed || is_backed(corner, normal) ? 0.0 : size_);
+  std::array<double, kPlaces> there;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    there[i] = find_thickness_at(point_in(corner, places[i]), normal);
     if (i < 3) thickness[int(i)] = std::min(thickness[int(i)], there[i]);
   }
   // Towards a sharp edge it goes on to shrink.
@@ -225,7 +246,7 @@ std::array<double, 3> SurfaceSolids::find_thickness(const std::array<Vec3, 3>& c
     for (int i = 0; i < 3; ++i) shares.row(i) = places[std::size_t(i)];
     thickness = thickness.cwiseMin(shares.inverse() * Vec3(there[0], there[1], there[2])).cwiseMax(0.0);
   }
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < kPlaces; ++i)
     if (const double at = places[i].dot(thickness); at > there[i]) thickness *= there[i] / at;
   thickness = thickness.cwiseMax(kThinnest * longest);
   return {thickness[0], thickness[1], thickness[2]};

@@ -13,6 +13,9 @@
 
 namespace lodestone {
 
+/// Whether it is more than a line, or a sliver of no width.
+bool has_area(const Mesh& mesh, const std::array<int, 3>& face);
+
 class SurfaceSolids {
  public:
   /// Faces counter-clockwise from outside, vertices in the part's frame, m. Faces without area are left out.
@@ -45,6 +48,7 @@ class SurfaceSolids {
   std::array<double, 3> find_thickness(const std::array<Vec3, 3>& corner, const Vec3& normal,
                                        bool reversed) const;
   double find_thickness_at(const Vec3& point, const Vec3& normal) const;
+  bool is_backed(const std::array<Vec3, 3>& corner, const Vec3& normal) const;
   template <class Visit>
   void visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const;
   GroundSolid make(const Triangle& triangle) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lod/ground/surface_solids.h"
 #include "reference/error.h"
 #include "reference/mass_bounds.h"
 
@@ -216,10 +217,7 @@ void check_ground_mesh(const Mesh& mesh) {
       if (i < 0 || i >= vertices)
         throw_input_error("face of a static mesh", fmt::format("vertex {}", i),
                           fmt::format("0 … {}", vertices - 1));
-    const Vec3& from = mesh.vertices[std::size_t(face[0])];
-    any_area = any_area || (mesh.vertices[std::size_t(face[1])] - from)
-                                   .cross(mesh.vertices[std::size_t(face[2])] - from)
-                                   .norm() > 0.0;
+    any_area = any_area || has_area(mesh, face);
   }
   if (mesh.faces.size() < 2 || !any_area)
     throw_input_error("static mesh",

@@ -262,6 +262,35 @@ TEST_F(OddGeoms, ABarrelRollsOverAHeightField) {
   dGeomHeightfieldDataDestroy(data);
 }
 
+// A sheet that has two sides, divided into triangles in two ways: full bodies lay on the caller's, others
+// fell through, and as the manager's it was refused.
+TEST_F(OddGeoms, AClosedSheetHoldsOnEachRung) {
+  const Mesh sheet{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
+                   {{0, 1, 2}, {0, 2, 3}, {3, 1, 0}, {3, 2, 1}}};
+  std::vector<double> corners;
+  std::vector<dTriIndex> indices;
+  for (const Vec3& v : sheet.vertices) corners.insert(corners.end(), {v.x(), v.y(), v.z()});
+  for (const auto& f : sheet.faces)
+    for (const int i : f) indices.push_back(dTriIndex(i));
+  const dTriMeshDataID data = dGeomTriMeshDataCreate();
+  dGeomTriMeshDataBuildDouble(data, corners.data(), 3 * sizeof(double), 4, indices.data(),
+                              int(indices.size()), 3 * sizeof(dTriIndex));
+  for (const bool of_caller : {true, false}) {
+    const dGeomID geom = of_caller ? dCreateTriMesh(space_, data, nullptr, nullptr, nullptr) : nullptr;
+    start();
+    if (!of_caller) manager_->add_static_mesh(sheet);
+    std::vector<BodyId> bodies;
+    for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+      bodies.push_back(add_box({0.8 * double(bodies.size()) - 0.9, 0.1, 0.5}, level));
+    testing::run(*manager_, 2.0);
+    for (const BodyId body : bodies)
+      EXPECT_NEAR(manager_->state(body).position.z(), 0.15, 0.01) << body.index << of_caller;
+    manager_.reset();
+    if (geom) dGeomDestroy(geom);
+  }
+  dGeomTriMeshDataDestroy(data);
+}
+
 TEST_F(OddGeoms, ABodyWithAFlatTrimeshIsNoError) {
   static const float corners[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   static const dTriIndex faces[] = {0, 1, 2, 0, 2, 3};

@@ -92,6 +92,17 @@ TEST(GroundSolids, FacesWithoutAreaAreLeftOut) {
   EXPECT_EQ(solids.size(), 1U);
 }
 
+TEST(GroundSolids, AClosedMeshThatIsFlatIsASheet) {
+  const std::vector<Vec3> corners{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
+  GroundSolids square, triangle;
+  square.add_mesh({corners, {{0, 1, 2}, {0, 2, 3}, {3, 1, 0}, {3, 2, 1}}});
+  triangle.add_mesh({{corners.begin(), corners.begin() + 3}, {{0, 1, 2}, {2, 1, 0}}});
+  EXPECT_EQ(square.size(), 4U);
+  EXPECT_EQ(triangle.size(), 2U);
+  for (const GroundSolids* solids : {&square, &triangle})
+    for (int i = 0; i < int(solids->size()); ++i) EXPECT_LT((*solids)[i].surface->depth, 2e-3) << i;
+}
+
 TEST(GroundSolids, WhatIsNearIsThatOfALookAtEach) {
   GroundSolids solids;
   RandomStream random(4, 0, 0);

@@ -128,6 +128,20 @@ TEST(SurfaceSolids, OfASheetThatIsThereBothWaysAreThin) {
   for (std::size_t i = 0; i < surface.size(); ++i) EXPECT_LT(surface[i].surface->depth, 1e-3);
 }
 
+// In a mesh that is not flat as a whole: a sheet 1 m over a box, and a pedestal that stands on that.
+TEST(SurfaceSolids, OfASheetWhoseSidesAreDividedOtherwiseAreThin) {
+  Mesh mesh = boxes({{{4, 4, 1}, {0, 0, -0.5}}, {{1, 1, 0.5}, {0.1, 0.2, 0.25}}});
+  const int first = int(mesh.vertices.size());
+  for (const Vec3& v : {Vec3(-2, -2, 1), Vec3(2, -2, 1), Vec3(2, 2, 1), Vec3(-2, 2, 1)})
+    mesh.vertices.push_back(v);
+  for (const auto& f : {std::array{0, 1, 2}, {0, 2, 3}, {3, 1, 0}, {3, 2, 1}})
+    mesh.faces.push_back({first + f[0], first + f[1], first + f[2]});
+  const SurfaceSolids surface(mesh);
+  EXPECT_LT(depth_of(surface, Vec3::UnitZ(), 1.0), 2e-3);
+  EXPECT_LT(depth_of(surface, -Vec3::UnitZ(), -1.0), 2e-3);
+  EXPECT_GT(depth_of(surface, Vec3::UnitZ(), 0.0), 0.1);
+}
+
 TEST(SurfaceSolids, OfARoomWithoutAnOuterSkinAreDeep) {
   Mesh room = boxes({{{4, 4, 3}, {0, 0, 1.5}}});
   for (auto& f : room.faces) std::swap(f[1], f[2]);  // seen from inside

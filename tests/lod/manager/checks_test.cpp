@@ -184,6 +184,10 @@ TEST(Checks, GroundMeshesHaveFacesWithAreaAndSoundIndices) {
   mesh.faces = box.faces;
   EXPECT_EQ(message_of([&] { check_ground_mesh(mesh); }),
             "static mesh: found 12 faces without area, expected two or more, with an area");
+  // Of so little that they are no ground at `support` and `tables`.
+  const Mesh slivers{{{-1, 0, 0}, {1, 0, 0}, {0, 1e-10, 0}, {0, -1e-10, 0}}, {{0, 1, 2}, {1, 0, 3}}};
+  EXPECT_EQ(message_of([&] { check_ground_mesh(slivers); }),
+            "static mesh: found 2 faces without area, expected two or more, with an area");
 }
 
 TEST(Checks, NormalsAreOfUnitLengthWithinAThousandth) {
