@@ -145,7 +145,9 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   const GroupId group = groups_.of(body);
   if (group)
     for (const std::uint32_t member : groups_.members(group)) look_at(member, report);
-  if (level.rung == Rung::full || level.newcomer) note_waiting(body);
+  // What it has goes with it from one statistical rung to the other; a step waits for no other.
+  const bool may_need_signature = open_to(level, false).has(Rung::tables) && !levels_.own_signature(body);
+  if (level.rung == Rung::full || level.newcomer || may_need_signature) note_waiting(body);
   if (!model_ && level.tables_open < 0 && !level.waits_for_signature &&
       open_to(level, false).has(Rung::tables))
     ask_for_tables(body);

@@ -114,6 +114,7 @@ Activity Choose::activity(std::uint32_t body) const {
 void Choose::ask_for_tables(std::uint32_t body) {
   const BodyRecord& record = levels_.bodies[body];
   levels_.bodies.level(body).tables_open =
+      levels_.own_signature(body) ||
       levels_.signatures.find(*levels_.bodies.shape(body), levels_.ground_law(record.material)) != nullptr;
 }
 

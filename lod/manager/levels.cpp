@@ -17,6 +17,11 @@ ContactLaw Levels::ground_law(MaterialId material) const {
   return materials.law(material, ground.planes().empty() ? 0 : ground.planes().front().material);
 }
 
+const std::shared_ptr<const Signature>& Levels::own_signature(std::uint32_t body) const {
+  static const std::shared_ptr<const Signature> kNone;
+  return bodies[body].statistical ? statistical->signature(bodies[body].statistical) : kNone;
+}
+
 std::array<RungError, kRungs> Levels::errors_of(std::uint32_t body, Activity does) const {
   RungErrors errors = signatures.errors(*bodies.shape(body), ground_law(bodies[body].material));
   if (does == Activity::crowded) {

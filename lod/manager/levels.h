@@ -56,6 +56,9 @@ struct Levels {
   /// default material.
   ContactLaw ground_law(MaterialId material) const;
 
+  /// What a body on a statistical rung moves by; null: nothing, or it is on none.
+  const std::shared_ptr<const Signature>& own_signature(std::uint32_t body) const;
+
   /// Of a body's shape at each rung, by Rung; the drifts of one that touches others with their overlaps.
   std::array<RungError, kRungs> errors_of(std::uint32_t body, Activity does) const;
 

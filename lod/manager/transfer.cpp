@@ -1,6 +1,7 @@
 #include "lod/manager/transfer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "lod/ground/met_ground.h"
 #include "lod/statistical/parting.h"
@@ -26,30 +27,34 @@ void enter_full(Levels& levels, std::uint32_t body, const RigidState& state, boo
   levels.note_full(body);
 }
 
+// From one statistical rung to the other it keeps the one that it has: the ground's law may be another by
+// now, for which none is there yet, or ever.
+std::shared_ptr<const Signature> signature_of(Levels& levels, std::uint32_t body) {
+  if (const auto& own = levels.own_signature(body)) return own;
+  if (levels.bodies.level(body).waits_for_signature) return nullptr;  // it goes without
+  return levels.signatures.find(*levels.bodies.shape(body), levels.ground_law(levels.bodies[body].material));
+}
+
 void enter_statistical(Levels& levels, std::uint32_t body, StatisticalModel model, const RigidState& state,
-                       bool asleep, bool arrives) {
+                       bool asleep, bool arrives, std::shared_ptr<const Signature> signature) {
   BodyRecord& record = levels.bodies[body];
   const std::shared_ptr<const Shape>& shape = levels.bodies.shape(body);
   if (!levels.statistical)
     levels.statistical =
         std::make_unique<StatisticalLevel>(levels.statistical_settings, levels.ground, levels.materials);
-  record.statistical =
-      levels.statistical->add(model, body, shape, record.mass, record.material, state, asleep,
-                              levels.bodies.level(body).waits_for_signature
-                                  ? nullptr
-                                  : levels.signatures.find(*shape, levels.ground_law(record.material)),
-                              arrives);
+  record.statistical = levels.statistical->add(model, body, shape, record.mass, record.material, state,
+                                               asleep, std::move(signature), arrives);
 }
 
 /// `arrives`: from another rung.
-void enter(Levels& levels, std::uint32_t body, Rung rung, const RigidState& state, bool asleep,
-           bool arrives) {
+void enter(Levels& levels, std::uint32_t body, Rung rung, const RigidState& state, bool asleep, bool arrives,
+           std::shared_ptr<const Signature> signature) {
   if (rung == Rung::full)
     enter_full(levels, body, state, asleep);
   else
     enter_statistical(levels, body,
                       rung == Rung::tables ? StatisticalModel::tables : StatisticalModel::support, state,
-                      asleep, arrives);
+                      asleep, arrives, std::move(signature));
   levels.bodies.level(body).rung = rung;
   levels.bodies.level(body).changed_at = levels.now;
 }
@@ -128,11 +133,9 @@ void wake_sprung(Levels& levels, std::uint32_t body) {
 }  // namespace
 
 void find_signature(Levels& levels, std::uint32_t body, Rung rung) {
-  if (levels.bodies.level(body).waits_for_signature) return;  // it goes without
-  const Shape& shape = *levels.bodies.shape(body);
-  const auto signature = levels.signatures.find(shape, levels.ground_law(levels.bodies[body].material));
-  const std::string name = "signature of shape " + shape.name;
-  if (rung != Rung::tables) return;
+  const auto signature = signature_of(levels, body);
+  if (rung != Rung::tables || levels.bodies.level(body).waits_for_signature) return;
+  const std::string name = "signature of shape " + levels.bodies.shape(body)->name;
   if (!signature) throw_input_error(name, "none", "one, without which the body cannot be at tables");
   if (signature->collision_heights.mean.empty())
     throw_input_error(name, "no collision heights", "some, without which the body cannot be at tables");
@@ -140,7 +143,8 @@ void find_signature(Levels& levels, std::uint32_t body, Rung rung) {
 
 void place(Levels& levels, std::uint32_t body, Rung rung) {
   const RigidState given = levels.bodies.newcomer(body).state;
-  enter(levels, body, rung, given, levels.bodies.newcomer(body).asleep, false);
+  enter(levels, body, rung, given, levels.bodies.newcomer(body).asleep, false,
+        rung == Rung::full ? nullptr : signature_of(levels, body));
   levels.bodies[body].newcomer = -1;
   levels.bodies.level(body).newcomer = false;
   levels.bodies.level(body).changed_at = BodyLevel::kLongAgo;
@@ -150,6 +154,7 @@ void place(Levels& levels, std::uint32_t body, Rung rung) {
 void transfer(Levels& levels, std::uint32_t body, Rung to) {
   const RigidState state = levels.state(body);
   const bool asleep = levels.asleep(body);
+  auto signature = to == Rung::full ? nullptr : signature_of(levels, body);
   if (!asleep) {
     const Level from = level_of(levels.bodies.level(body).rung);
     levels.wake_near(body, level_of(to));
@@ -159,7 +164,7 @@ void transfer(Levels& levels, std::uint32_t body, Rung to) {
   const bool lies = to == Rung::full && levels.bodies[body].statistical &&
                     (asleep || lies_among_others(levels, body, state));
   leave(levels, body, asleep);
-  enter(levels, body, to, state, asleep, true);
+  enter(levels, body, to, state, asleep, true, std::move(signature));
   if (lies) {
     const Shape& shape = *levels.bodies.shape(body);
     levels.eased.add(body, levels.bodies[body].ode, state.position, shape.radius, find_gap_below(shape));

@@ -307,6 +307,11 @@ void StatisticalLevel::find_sleepers(const Vec3& center, double reach,
   });
 }
 
+const std::shared_ptr<const Signature>& StatisticalLevel::signature(StatisticalPlace place) const {
+  const std::uint32_t kind = impl_->at(place, [&](const auto& level) { return level.kind(place.slot); });
+  return impl_->kinds[kind].signature;
+}
+
 std::vector<KindSignature> StatisticalLevel::signatures() const { return impl_->kinds.signatures(); }
 
 void StatisticalLevel::archive(StateArchive& a,

@@ -119,6 +119,8 @@ class StatisticalLevel {
   /// Appends the contacts of the last step in which one of the two bodies met as a hull.
   void find_contacts(std::vector<PairContact>& contacts) const;
 
+  /// What a body moves by; null: none.
+  const std::shared_ptr<const Signature>& signature(StatisticalPlace place) const;
   /// What its bodies move by, each once, and all that its next steps depend on, with these: see Kinds.
   std::vector<KindSignature> signatures() const;
   void archive(StateArchive& a, std::span<const std::shared_ptr<const Signature>> signatures);

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "reference/error.h"
 #include "reference/random.h"
 #include "tests/lod/manager/manager_fixture.h"
 #include "tests/message_of.h"
@@ -334,6 +335,31 @@ TEST(ManagerBodies, WhatIsKinematicIsNeitherDampedNorHeldBack) {
     EXPECT_NEAR(manager.state(body).velocity.x(), 2.0, 1e-12);
     EXPECT_NEAR(manager.state(body).angular_velocity.y(), 4.0, 1e-12);
   }
+}
+
+// One for whom the source has no other since a plane of another material is there: it keeps what it moves by.
+TEST(ManagerBodies, PropertiesAreSetUnderALawThatIsNotMeasured) {
+  double measured = -1.0;  // friction
+  Manager manager(
+      {.signatures = [&](const Shape& shape, const ContactLaw& law) -> std::shared_ptr<const Signature> {
+        if (measured < 0.0) measured = law.friction;
+        if (law.friction != measured) throw InputError("of no other ground");
+        return coarse_signature(shape, law);
+      }});
+  const MaterialId ice = manager.materials().add({.friction = 0.0});
+  const GroundId floor = manager.add_plane(Vec3::UnitZ(), 0.0);
+  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 0.5}), LevelChoice::tables);
+  run(manager, 1.0);
+  ASSERT_EQ(manager.rung(body), Rung::tables);
+  manager.remove_ground(floor);
+  manager.add_plane(Vec3::UnitZ(), 0.0, ice);
+  manager.set_properties(body, {.linear_damping = 0.1});
+  EXPECT_EQ(manager.rung(body), Rung::support);
+  run(manager, 0.5);
+  EXPECT_NEAR(manager.state(body).position.z(), 0.2, 0.1);
+  manager.set_properties(body, {});
+  run(manager, 0.1);
+  EXPECT_EQ(manager.rung(body), Rung::tables);
 }
 
 }  // namespace

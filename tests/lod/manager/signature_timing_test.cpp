@@ -207,5 +207,62 @@ TEST(SignatureTiming, AManagerDoesNotWaitForWhatItMeasures) {
     ::unsetenv("XDG_CACHE_HOME");
 }
 
+// The ground's law changes, for which nothing is measured yet. `has_first`: under the first law there was
+// one; else the body comes to `tables` only under the second.
+void change_law(bool has_first) {
+  const std::thread::id stepping = std::this_thread::get_id();
+  std::atomic<bool> done = false, asked_in_step = false;
+  std::atomic<double> first = -1.0;  // friction
+  ManagerSettings settings{
+      .policy = {.policy = DistancePolicy{.full_within = 0.0}, .min_dwell_frames = 0},
+      .signatures = [&](const Shape& shape, const ContactLaw& law) -> std::shared_ptr<const Signature> {
+        if (first < 0.0) first = law.friction;
+        if (law.friction == first) return has_first ? coarse_signature(shape, law) : nullptr;
+        if (std::this_thread::get_id() == stepping) asked_in_step = true;
+        while (!done && !asked_in_step) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return coarse_signature(shape, law);
+      },
+      .signature_timing = SignatureTiming::in_background};
+  const PolicySettings three_rungs{.policy = DistancePolicy{.full_within = 0.0, .support_within = 10.0},
+                                   .min_dwell_frames = 0};
+  if (has_first) settings.policy = three_rungs;
+  Manager manager(settings);
+  const MaterialId ice = manager.materials().add({.friction = 0.1});
+  const GroundId floor = manager.add_plane(Vec3::UnitZ(), 0.0);
+  view_from(manager, {1000, 0, 0});
+  const BodyId body = add(manager, box_shape({0.2, 0.3, 0.4}), at({0, 0, 0.5}));
+  const auto comes_to = [&](Rung rung) {
+    for (int i = 0; i < 60'000 && manager.rung(body) != rung; ++i) {
+      manager.step(kFrame);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return manager.rung(body) == rung;
+  };
+  if (has_first)
+    ASSERT_TRUE(comes_to(Rung::tables));
+  else
+    for (int i = 0; i < 50 || first < 0.0; ++i)  // the source has answered before the last of them
+      manager.step(kFrame), std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  manager.remove_ground(floor);
+  manager.add_plane(Vec3::UnitZ(), 0.0, ice);
+  if (has_first) {
+    view_from(manager, {1, 0, 0});
+    run(manager, 0.2);
+    EXPECT_EQ(manager.rung(body), Rung::support);
+  } else {
+    manager.set_policy(three_rungs);
+    run(manager, 0.2);
+    EXPECT_EQ(manager.rung(body), Rung::support);
+    done = true;
+    EXPECT_TRUE(comes_to(Rung::tables));
+  }
+  EXPECT_FALSE(asked_in_step);
+  done = true;
+}
+
+TEST(SignatureTiming, NoStepWaitsWhereTheGroundsLawHasChanged) { change_law(true); }
+
+TEST(SignatureTiming, NoStepWaitsToKnowWhetherTablesIsOpen) { change_law(false); }
+
 }  // namespace
 }  // namespace lodestone::testing
