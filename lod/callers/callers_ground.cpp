@@ -129,6 +129,19 @@ GroundPose CallersGround::pose_of(const MirroredGeom& geom, double dt, double mo
   return is_probed ? put : coming_to(put, moved_in, dt);
 }
 
+// By where they stand: a space gives out first what was moved last.
+void CallersGround::archive(StateArchive& a, const SpaceMirror& mirror) {
+  std::vector<GeomPlace> places;
+  for (const std::uint32_t slot : moving_)
+    if (!mirror.geoms()[slot].body) places.push_back(mirror.place_of(slot));
+  a(places);
+  if (!a.reading()) return;
+  std::erase_if(moving_, [&](std::uint32_t slot) { return !mirror.geoms()[slot].body; });
+  for (const GeomPlace& place : places)
+    if (const auto slot = mirror.find_at(place, moving_)) moving_.push_back(*slot);
+  std::ranges::sort(moving_);
+}
+
 dxGeom* CallersGround::geom_of(GroundId id) const {
   return ground_.valid(id) && id.index < geoms_.size() ? geoms_[id.index] : nullptr;
 }

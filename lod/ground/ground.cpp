@@ -358,18 +358,27 @@ void Ground::archive(StateArchive& a) {
   struct Put {
     GroundId id;
     PutOn on;
+    GroundPose pose;  // as it goes, of which its caller knows nothing
   };
   std::vector<Put> put;
   for (const GroundId id : put_on_)
-    if (valid(id)) put.push_back({id, *part(id).put_on});
+    if (valid(id)) put.push_back({id, *part(id).put_on, part(id).pose});
   a(first, numbers, put);
   if (!a.reading()) return;
-  for (const GroundId id : put_on_)
-    if (valid(id)) parts_[std::size_t(entries_[id.index].part)]->put_on.reset();
-  std::erase_if(put, [&](const Put& p) { return !valid(p.id); });
+  for (const GroundId id : put_on_) {  // the reader's own: each stands where it was put last
+    if (!valid(id)) continue;
+    const auto index = std::size_t(entries_[id.index].part);
+    const std::optional<PutOn> on = std::exchange(parts_[index]->put_on, std::nullopt);
+    if (!parts_[index]->pose.comes_back && parts_[index]->moves())
+      stand(index, {on->from.position, on->from.orientation});
+  }
+  std::erase_if(put, [&](const Put& p) { return !valid(p.id) || is_plane(p.id); });
   put_on_.clear();
-  for (const Put& p : put)
-    put_on_.push_back(p.id), parts_[std::size_t(entries_[p.id.index].part)]->put_on = p.on;
+  for (const Put& p : put) {
+    const auto index = std::size_t(entries_[p.id.index].part);
+    put_on_.push_back(p.id), parts_[index]->put_on = p.on;
+    stand(index, p.pose);
+  }
   for (std::size_t i = 0; i < std::min(first.size(), parts_.size()); ++i) {
     if (!parts_[i]) continue;
     if (first[i] == kNone) {

@@ -167,7 +167,9 @@ void Manager::Impl::archive(StateArchive& a, std::span<const std::shared_ptr<con
   a(gravity);
   if (a.reading() && !callers_world) levels.use_gravity(gravity);
   a(levels.ground);
-  levels.callers.bodies.archive(a, levels.full.world() ? levels.full.world()->callers_space() : nullptr);
+  const SpaceMirror* const mirror = levels.full.world() ? levels.full.world()->callers_space() : nullptr;
+  if (mirror) levels.callers.ground.archive(a, *mirror);
+  levels.callers.bodies.archive(a, mirror);
   a(levels.bodies, levels.now, levels.woken, levels.eased, report, costs, choose, move_bodies, step_levels,
     changes, left_places, events);
   if (a.reading()) queries.forget_all(), levels.forget_places(), audit.forget_watched();
@@ -219,7 +221,8 @@ void Manager::restore(std::span<const std::byte> snapshot,
                      find_shapes(body, header.shapes, shapes, levels.bodies));
   const auto signatures = archive_signatures(state, levels);
   impl_->choose.groups().archive_detached(state);
-  levels.follow_callers_space(kAnyStep, kAnyStep);  // contacts are remembered with the parts of his ground
+  // Contacts are remembered with the parts of his ground; twice, so that what was put back stands there.
+  for (int i = 0; i < 2; ++i) levels.follow_callers_space(kAnyStep, kAnyStep);
   levels.look_away();
   impl_->archive(state, signatures);
   check_that(state.at_end(), "a snapshot is read to its end");

@@ -251,6 +251,7 @@ void OdeWorld::archive(StateArchive& a) {
   if (a.reading())
     for (const Body& body : impl.bodies.slots())
       if (body.body) impl.collision.broad_phase().note_sleep(body);
+  if (impl.mirror) a(*impl.mirror);
   archive_boxes(a, impl.vacated);
   a(impl.joints, impl.collision, impl.quick_steps, impl.callers_attempt, impl.callers_calm);
   double cfm = dWorldGetCFM(impl.world);

@@ -8,6 +8,7 @@
 
 #include "reference/ode/box_tree.h"
 #include "reference/ode/geometry_ode.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -16,6 +17,7 @@ using namespace ode;
 namespace {
 
 constexpr double kEverywhere = 1e30;  // m
+constexpr double kRounding = 1e-9;    // m, of places that a caller puts his geoms back to
 
 /// What tells one geom from another, in ODE's own numbers.
 struct Identity {
@@ -489,6 +491,55 @@ double SpaceMirror::way_on(std::uint32_t slot) const {
       std::ranges::binary_search(impl_->moved, slot) && std::ranges::binary_search(impl_->moved_before, slot);
   return moves_on ? std::min(impl_->geoms[slot].last_way, way_of(impl_->geoms[slot])) : 0.0;
 }
+
+GeomPlace SpaceMirror::place_of(std::uint32_t slot) const {
+  const MirroredGeom& geom = impl_->geoms[slot];
+  return {geom.position, geom.bounds.min(), geom.bounds.max()};
+}
+
+std::optional<std::uint32_t> SpaceMirror::find_at(const GeomPlace& place,
+                                                  std::span<const std::uint32_t> but) const {
+  const auto alike = [](const Vec3& a, const Vec3& b) {  // to rounding, and where both are without end
+    return (a.array() == b.array() || (a - b).array().abs() <= kRounding).all();
+  };
+  for (std::uint32_t slot = 0; slot < impl_->geoms.size(); ++slot) {
+    const MirroredGeom& geom = impl_->geoms[slot];
+    if (geom.geom && !geom.body && alike(geom.position, place.position) &&
+        alike(geom.bounds.min(), place.low) && alike(geom.bounds.max(), place.high) &&
+        std::ranges::find(but, slot) == but.end())
+      return slot;
+  }
+  return std::nullopt;
+}
+
+void SpaceMirror::archive(StateArchive& a) {
+  struct Course {
+    GeomPlace at, from;
+    Quat turned_from = Quat::Identity();
+  };
+  std::vector<Course> courses;
+  std::vector<MirroredGeom>& geoms = impl_->geoms;
+  for (const std::uint32_t slot : impl_->moved) {
+    const MirroredGeom& geom = geoms[slot];
+    if (!geom.body)
+      courses.push_back({place_of(slot),
+                         {geom.previous_position, geom.previous_bounds.min(), geom.previous_bounds.max()},
+                         geom.previous_orientation});
+  }
+  a(courses);
+  if (!a.reading()) return;
+  impl_->moved.clear();
+  for (const Course& course : courses) {
+    const std::optional<std::uint32_t> slot = find_at(course.at, impl_->moved);
+    if (!slot) continue;
+    impl_->moved.push_back(*slot);
+    geoms[*slot].previous_position = course.from.position,
+    geoms[*slot].previous_orientation = course.turned_from,
+    geoms[*slot].previous_bounds = {course.from.low, course.from.high};
+  }
+  std::ranges::sort(impl_->moved);
+}
+
 std::span<const std::uint32_t> SpaceMirror::planes() const { return impl_->planes; }
 std::span<const std::uint32_t> SpaceMirror::bodied() const { return impl_->bodied; }
 std::span<const Eigen::AlignedBox3d> SpaceMirror::disturbed() const { return impl_->disturbed; }

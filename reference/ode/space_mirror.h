@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct dxSpace;  // dSpaceID is dxSpace*
 struct dxBody;
 
 namespace lodestone {
+
+class StateArchive;
 
 struct MirroredGeom {
   /// Null: removed; what else is known of it stays until its slot is taken again, a refresh later or more.
@@ -31,6 +34,11 @@ struct MirroredGeom {
   double last_way = 0.0;        ///< m, to the previous place, of no point of it more
   Vec3 normal = Vec3::UnitZ();  ///< of a plane: normal·x = offset, unit length
   double offset = 0.0;          ///< m
+};
+
+/// Where a geom stands, by which the reader of a snapshot finds it again.
+struct GeomPlace {
+  Vec3 position = Vec3::Zero(), low = Vec3::Zero(), high = Vec3::Zero();  ///< m; of its bounds
 };
 
 class SpaceMirror {
@@ -61,6 +69,12 @@ class SpaceMirror {
   /// How far one has moved on, m: the lesser of its last two ways where it moved before each of the last two
   /// refreshes; 0 where it was put elsewhere once.
   double way_on(std::uint32_t slot) const;
+  GeomPlace place_of(std::uint32_t slot) const;
+  /// The slot of a geom without a body that stands there, none of `but`.
+  std::optional<std::uint32_t> find_at(const GeomPlace& place, std::span<const std::uint32_t> but) const;
+  /// How the geoms without a body that the last refresh found moved came there. Where it reads, that refresh
+  /// found all where they were when it was written, and none moved.
+  void archive(StateArchive& a);
   /// Slots, ascending, of the planes.
   std::span<const std::uint32_t> planes() const;
   /// Slots, ascending, of those that have a body.

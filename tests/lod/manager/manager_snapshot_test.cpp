@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "reference/random.h"
 #include "tests/lod/callers/callers_scene.h"
 #include "tests/lod/manager/manager_fixture.h"
@@ -151,6 +153,47 @@ TEST(ManagerSnapshot, GroundThatWasMovedOnceStandsStillForItsReader) {
     ASSERT_EQ(reader.state_hash(), manager.state_hash()) << i;
   }
   EXPECT_TRUE(reader.asleep(crate));
+}
+
+// Put on up to the snapshot it stands from the next step on, which wakes who was laid to sleep on it; put on
+// since, and back, it does not go on.
+TEST(ManagerSnapshot, GroundThatWasPutOnStandsAgainForItsReader) {
+  struct World {
+    World() { manager.add_plane(Vec3::UnitZ(), 0.0); }
+    void put(double x) { manager.move_ground(platform, testing::at({x, 0, 0.3})); }
+    void go(double from, double to) {
+      for (int i = 9; i >= 0; --i) put(to - 0.1 * i * (to - from)), manager.step(testing::kFrame);
+    }
+    Manager manager{{.signatures = testing::coarse_signature}};
+    GroundId platform = manager.add_static_box({2, 2, 0.3}, {0, 0, 0.3}, Quat::Identity());
+  };
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const bool goes : {true, false}) {
+      World writer, another;
+      std::vector<BodyId> crates;
+      for (int i = 0; i < 4; ++i)
+        crates.push_back(testing::add(writer.manager, SavedWorld::shapes()[0],
+                                      testing::at({-0.6 + 0.4 * i, 0, 0.601}), level));
+      testing::run(writer.manager, 3.0);
+      const double at = goes ? 0.01 : 0.0;
+      if (goes) writer.go(0.0, at);
+      for (const BodyId body : crates) writer.manager.sleep(body);
+      const Bytes snapshot = writer.manager.snapshot();
+      const auto go_on = [&](World& world) {
+        if (!goes) world.manager.wake(crates[0]);
+        testing::run(world.manager, 0.1);
+        return world.manager.state_hash();
+      };
+      const std::uint64_t expected = go_on(writer);
+      EXPECT_FALSE(writer.manager.asleep(crates[0])) << int(level);
+      writer.go(at, at + 0.1), writer.go(at + 0.1, at);
+      if (goes) another.put(at);
+      for (World* reader : {&writer, &another}) {
+        reader->manager.restore(snapshot, SavedWorld::shapes());
+        EXPECT_EQ(go_on(*reader), expected)
+            << int(level) << (goes ? ", goes" : "") << (reader == &another ? ", another" : "");
+      }
+    }
 }
 
 TEST(ManagerSnapshot, IdsAreThoseOfTheSnapshot) {
@@ -336,6 +379,82 @@ TEST(ManagerSnapshot, InACallersWorldANewManagerGoesOnToTheBit) {
     reader.run(50, 110);
     EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash()) << steps_before;
   }
+}
+
+// Crates in a row on a platform of his, which he puts along by `way` m before each step, or none.
+struct HisPlatform {
+  explicit HisPlatform(LevelChoice level)
+      : manager(his.world, his.space, {.signatures = testing::coarse_signature}) {
+    dWorldSetGravity(his.world, 0, 0, -kGravity);
+    dCreatePlane(his.space, 0, 0, 1, 0);
+    platform = his.box({2, 2, 0.3}, {0, 0, 0.3});
+    for (int i = 0; i < 4; ++i)
+      crates.push_back(
+          testing::add(manager, SavedWorld::shapes()[0], testing::at({-0.6 + 0.4 * i, 0, 0.601}), level));
+  }
+  void put(double x) { dGeomSetPosition(platform, at = x, 0, 0.3); }
+  void run(int steps, double way) {
+    for (int i = 0; i < steps; ++i) {
+      if (way != 0.0) put(at + way);
+      manager.step(testing::kFrame);
+    }
+  }
+  int asleep() const {
+    return int(std::ranges::count_if(crates, [this](BodyId body) { return manager.asleep(body); }));
+  }
+  CallersScene his;
+  Manager manager;
+  dGeomID platform;
+  double at = 0.0;
+  std::vector<BodyId> crates;
+};
+
+constexpr LevelChoice kOfEachRung[] = {LevelChoice::full, LevelChoice::support, LevelChoice::tables};
+
+// As manager.h asks for. It woke who slept there.
+TEST(ManagerSnapshot, HisGroundThatWasPutBackHasNotMoved) {
+  for (const LevelChoice level : kOfEachRung)
+    for (const double away : {0.2, 5.0}) {
+      HisPlatform on(level);
+      on.run(300, 0.0);
+      ASSERT_EQ(on.asleep(), 4) << int(level);
+      const Bytes snapshot = on.manager.snapshot();
+      on.run(2, 0.0);
+      const std::uint64_t expected = on.manager.state_hash();
+      on.put(away);
+      on.run(3, 0.0);
+      on.put(0.0);
+      on.manager.restore(snapshot);
+      on.run(2, 0.0);
+      EXPECT_EQ(on.asleep(), 4) << int(level);
+      EXPECT_EQ(on.manager.state_hash(), expected) << int(level) << ", " << away << " m";
+    }
+}
+
+// Whether it goes on or stands from then on, which wakes who was laid to sleep on it; for another manager,
+// too.
+TEST(ManagerSnapshot, HisGroundThatWasPutOnGoesOnOrStandsAgain) {
+  for (const LevelChoice level : kOfEachRung)
+    for (const double then : {0.0, 0.01}) {
+      HisPlatform writer(level);
+      writer.run(60, 0.0), writer.run(20, 0.01);
+      if (then == 0.0)
+        for (const BodyId body : writer.crates) writer.manager.sleep(body);
+      const Bytes snapshot = writer.manager.snapshot();
+      const double at = writer.at;
+      writer.run(10, then);
+      const std::uint64_t expected = writer.manager.state_hash();
+      EXPECT_EQ(writer.asleep(), 0) << int(level);
+      writer.run(5, 0.02);
+      HisPlatform another(level);
+      for (HisPlatform* reader : {&writer, &another}) {
+        reader->put(at);
+        reader->manager.restore(snapshot);
+        reader->run(10, then);
+        EXPECT_EQ(reader->manager.state_hash(), expected)
+            << int(level) << ", " << then << " m" << (reader == &another ? ", another" : "");
+      }
+    }
 }
 
 TEST(ManagerSnapshot, InACallersWorldGravityIsHisToPutBack) {

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "reference/ode/box_tree.h"
+#include "reference/state_archive.h"
 #include "tests/reference/ode/space_fixture.h"
 
 namespace lodestone {
@@ -153,6 +154,34 @@ TEST_P(SpaceMirrorOf, TellsWhatCameWentAndMoved) {
   mirror.refresh();
   EXPECT_TRUE(mirror.added().empty() && mirror.removed().empty() && mirror.moved().empty());
   EXPECT_EQ(mirror.geoms()[third].previous_position, Vec3(6, 4, 0));
+}
+
+// Put back to where it was, it goes on from there; another mirror's may be in another slot.
+TEST_P(SpaceMirrorOf, AnArchiveTellsHowWhatMovedCameThere) {
+  const dGeomID still = ball(9), goes = ball(0);
+  SpaceMirror mirror(space);
+  const auto go_to = [&](double x) { dGeomSetPosition(goes, x, 0, 0), mirror.refresh(); };
+  for (const double x : {0.0, 0.1, 0.3}) go_to(x);
+  StateArchive written;
+  mirror.archive(written);
+  go_to(0.7);
+  dGeomSetPosition(still, 9, 1, 0);
+  go_to(5.0);
+  dGeomSetPosition(still, 9, 0, 0);
+  SpaceMirror another(space);
+  for (SpaceMirror* reader : {&mirror, &another}) {
+    dGeomSetPosition(goes, 0.3, 0, 0);
+    reader->refresh(), reader->refresh();
+    StateArchive read(written.bytes(), {});
+    reader->archive(read);
+    EXPECT_TRUE(read.at_end());
+    ASSERT_EQ(reader->moved().size(), 1U);
+    const std::uint32_t slot = reader->moved()[0];
+    EXPECT_EQ(reader->geoms()[slot].geom, goes);
+    dGeomSetPosition(goes, 0.8, 0, 0);
+    reader->refresh();
+    EXPECT_NEAR(reader->way_on(slot), 0.2, 1e-12);
+  }
 }
 
 TEST_P(SpaceMirrorOf, AnAddressUsedAgainIsAnotherGeom) {
