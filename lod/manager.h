@@ -290,7 +290,8 @@ class Manager {
 
   // ---- Queries (queries.h), of bodies and ground as they are now, and of the caller's bodies ----
   // Many at once go to the threads. The first one after a step, or after something was moved, costs in
-  // proportion to what is awake; the very first, to all bodies. Where the caller has dynamic bodies, each
+  // proportion to what is awake, as do all between before_world_step and after_world_step, where one thread
+  // may ask; the very first, to all bodies. Where the caller has dynamic bodies, each
   // call walks through his space, unless its filter leaves them out.
 
   /// The nearest; none: nothing is met.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lod/room.h"
+
 namespace lodestone {
 namespace {
 
@@ -70,6 +72,7 @@ struct ImpactWaves::Scene {
 // another body: heaps take blows as a whole.
 void ImpactWaves::find_blows(const Scene& scene) {
   blows_.clear();
+  make_room(state_, scene.manifolds.size()), make_room(in_heap_, scene.bodies.size());
   state_.assign(scene.manifolds.size(), 0);
   in_heap_.assign(scene.bodies.size(), 0);
   for (std::uint32_t i = 0; i < scene.manifolds.size(); ++i) {
@@ -101,8 +104,9 @@ void ImpactWaves::find_blows(const Scene& scene) {
 }
 
 void ImpactWaves::link(const Scene& scene) {
+  make_room(first_of_, scene.bodies.size());
   first_of_.assign(scene.bodies.size(), -1);
-  next_.resize(2 * scene.manifolds.size());
+  resize_in_room(next_, 2 * scene.manifolds.size());
   const auto add = [&](std::int32_t body, std::uint32_t at) {
     if (!scene.moves(body)) return;
     next_[at] = std::exchange(first_of_[std::size_t(body)], std::int32_t(at));
@@ -197,7 +201,7 @@ void ImpactWaves::find_next(const Scene& scene) {
 // Of a body's contacts that strike the first come first, and of those the fastest, as of bodies a hair apart,
 // with those that are as fast.
 void ImpactWaves::find_foremost(const Scene& scene) {
-  blow_on_.resize(scene.bodies.size());
+  resize_in_room(blow_on_, scene.bodies.size());
   const auto each_body = [&](std::uint32_t i, const auto& visit) {
     for (const std::int32_t body : {scene.manifolds[i].first, scene.manifolds[i].second})
       if (scene.moves(body)) visit(blow_on_[std::size_t(body)]);

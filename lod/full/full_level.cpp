@@ -110,6 +110,7 @@ void FullLevel::remove_ground(GroundId id) {
 }
 
 void FullLevel::go_on(double gone) {
+  gone_ = gone;
   if (world_) world_->go_on(gone);
 }
 
@@ -133,6 +134,7 @@ void FullLevel::filter_pairs() {
 void FullLevel::make_world() {
   world_.emplace(ode_settings_of(settings_), *materials_);
   for (Piece& piece : pieces_) lay(piece);
+  if (gone_ > 0.0) world_->go_on(gone_);
   if (pair_filter_) filter_pairs();
 }
 

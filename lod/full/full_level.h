@@ -113,6 +113,7 @@ class FullLevel {
   FullSettings settings_;
   const MaterialTable* materials_;
   std::optional<OdeWorld> world_;
+  double gone_ = 0.0;  // s, of go_on()
   std::function<bool(std::uint32_t, std::uint32_t)> pair_filter_;
   std::list<Piece> pieces_;                                                 // in the order in which they came
   std::unordered_map<std::uint32_t, std::list<Piece>::iterator> piece_of_;  // by GroundId::index

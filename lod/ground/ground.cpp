@@ -189,8 +189,9 @@ void Ground::note_put(GroundPart& part, const GroundPose& pose) {
 }
 
 void Ground::begin_step(double dt, double since, const std::function<void(const Box&)>& stands_again) {
-  put_on_before_.clear();
+  keep_step();
   if (since > 0.0) {
+    began_ = true;
     std::swap(going_, moved_);
     moved_.clear();
     note_put_on();
@@ -215,7 +216,7 @@ void Ground::go_on() {
   going_.erase(twice.begin(), twice.end());
   const bool first = was_put_.empty();
   for (const GroundId id : going_) {
-    if (!valid(id)) continue;
+    if (!valid(id) || !part(id).pose.comes_back || !part(id).moves()) continue;
     const auto index = std::size_t(entries_[id.index].part);
     if (first) was_put_.emplace_back(id, parts_[index]->pose);
     move(index);
@@ -242,6 +243,7 @@ void Ground::undo_step() {
     if (!std::exchange(parts_[index]->put_on, noted.put_on)) put_on_.push_back(noted.id);
     stand(index, noted.pose);
   }
+  if (began_) moved_.insert(moved_.begin(), going_.begin(), going_.end());
   keep_step();
 }
 
@@ -363,8 +365,9 @@ void Ground::archive(StateArchive& a) {
   std::vector<Put> put;
   for (const GroundId id : put_on_)
     if (valid(id)) put.push_back({id, *part(id).put_on, part(id).pose});
-  a(first, numbers, put);
+  a(first, numbers, put, moved_);
   if (!a.reading()) return;
+  std::erase_if(moved_, [&](GroundId id) { return !valid(id) || is_plane(id); });
   for (const GroundId id : put_on_) {  // the reader's own: each stands where it was put last
     if (!valid(id)) continue;
     const auto index = std::size_t(entries_[id.index].part);

@@ -132,7 +132,7 @@ class Ground {
   void come_back();
   /// What begin_step knew of what was put on, again: that step was none. Until keep_step().
   void undo_step();
-  void keep_step() { put_on_before_.clear(); }
+  void keep_step() { put_on_before_.clear(), began_ = false; }
   const GroundPart& part(GroundId id) const { return *parts_[std::size_t(entries_[id.index].part)]; }
   const HalfSpace& plane(GroundId id) const { return planes_[std::size_t(entries_[id.index].plane)]; }
   /// Of a part, where it stands now.
@@ -186,6 +186,7 @@ class Ground {
     GroundPose pose;
   };
   std::vector<Noted> put_on_before_;     // the step that begin_step began
+  bool began_ = false;                   // a step that may be undone
   std::vector<GroundId> moved_, going_;  // with a velocity: for the step to come, and for this one
   std::vector<std::pair<GroundId, GroundPose>> was_put_;  // what has gone on and comes back
   mutable std::uint32_t numbers_ = 0;

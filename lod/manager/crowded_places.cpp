@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kThinnest = 1e-3;         // of a body's radius: the ball inside counts as so large at least
 constexpr std::size_t kMembersSeen = 256;  // of the full level, the last
+constexpr int kMostAtAPlace = 8;           // crowds that do not meet each other
 constexpr std::int64_t kStepsBetween = 8;  // steps after which one more comes
 // How full a room (room_of) is: the volume of the bodies whose centres are in it over its own. It is crowded
 // where those that wait come to more than kCrowded, which touching cubes stay below however they lie in the
@@ -22,12 +23,13 @@ constexpr double kCrowded = 8.0, kDense = 2.0, kFilled = 1.0, kOverlapping = 0.9
 struct Place {
   std::array<std::int64_t, 3> cell{};
   int size = 0;
+  int which = 0;  // of those there whom the caller's filter lets through each other
   friend bool operator==(const Place&, const Place&) = default;
 };
 
 struct HashOfPlace {
   std::size_t operator()(const Place& place) const {
-    std::uint64_t hash = std::uint64_t(place.size);
+    std::uint64_t hash = std::uint64_t(place.size) + (std::uint64_t(place.which) << 32);
     for (const std::int64_t i : place.cell)
       hash = (hash ^ std::uint64_t(i)) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
     return hash;
@@ -58,12 +60,14 @@ double volume_of(const Place& room) { return std::ldexp(1.0, 3 * room.size); }  
 struct Crowd {
   Vec3 middle;         // m, of the first of them:
   const Shape* shape;  // whoever takes part within its radius is in their way
+  std::uint32_t first;
   int there;
 };
 
 using Crowds = std::unordered_map<Place, Crowd, HashOfPlace>;
 
 struct Room {
+  std::uint32_t first = 0;            // of those that wait
   double waiting = 0.0, there = 0.0;  // m³ of bodies
   bool overlap = false;               // of those that wait
   bool may_be_crowded(const Place& place) const {
@@ -105,11 +109,12 @@ class CrowdGrid {
         for (at.cell[2] = low.cell[2]; at.cell[2] <= high.cell[2]; ++at.cell[2])
           crowds_[at].push_back(&crowd);
   }
-  void count(const Vec3& position, const Place& room) {
+  template <class Meets>
+  void count(std::uint32_t body, const Vec3& position, const Place& room, const Meets& meets) {
     const auto crowds = crowds_.find(room);
     if (crowds == crowds_.end()) return;
     for (Crowd* crowd : crowds->second)
-      crowd->there += (crowd->middle - position).norm() < crowd->shape->radius;
+      crowd->there += (crowd->middle - position).norm() < crowd->shape->radius && meets(crowd->first, body);
   }
 
  private:
@@ -148,15 +153,36 @@ std::vector<std::uint32_t> find_held_back(const Levels& levels) {
       if (const std::uint32_t body = newcomers[i].index; bodies.waits_at(i) && counts(body))
         visit(body, levels.state(body).position, *bodies.shape(body));
   };
+  // Who meets the first at a place is of its crowd; who does not begins another. Beyond the most none is
+  // asked.
+  const auto meets = [&](std::uint32_t first, std::uint32_t body) {
+    const auto& may_pair = levels.statistical_settings.pair_filter;
+    return first == body || !may_pair || may_pair(first, body);
+  };
+  const auto find = [&](auto& map, Place place, std::uint32_t body) {
+    for (; place.which < kMostAtAPlace; ++place.which)
+      if (const auto at = map.find(place); at != map.end() && meets(at->second.first, body)) return at;
+    return map.end();
+  };
+  const auto find_or_begin = [&](auto& map, Place place, const auto& fresh) {
+    for (; place.which < kMostAtAPlace; ++place.which)
+      if (const auto at = map.try_emplace(place, fresh).first; meets(at->second.first, fresh.first))
+        return at;
+    return map.end();
+  };
   Crowds crowds;
   std::unordered_map<Place, Room, HashOfPlace> rooms;
-  each_newcomer([&](std::uint32_t, const Vec3& position, const Shape& shape) {
-    rooms[room_of(position, shape)].waiting += shape.volume;
-    ++crowds.try_emplace(place_of(position, shape), Crowd{position, &shape, 0}).first->second.there;
+  each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
+    const auto room = find_or_begin(rooms, room_of(position, shape), Room{.first = body});
+    if (room != rooms.end()) room->second.waiting += shape.volume;
+    const auto crowd = find_or_begin(crowds, place_of(position, shape), Crowd{position, &shape, body, 0});
+    if (crowd != crowds.end()) ++crowd->second.there;
   });
-  each_newcomer([&](std::uint32_t, const Vec3& position, const Shape& shape) {
+  each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
     const Place its = room_of(position, shape);
-    if (Room& room = rooms.at(its); !room.overlap && room.waiting > kFilled * volume_of(its))
+    const auto at = find(rooms, its, body);
+    if (at == rooms.end()) return;
+    if (Room& room = at->second; !room.overlap && room.waiting > kFilled * volume_of(its))
       room.overlap = overlaps_another(crowds, position, shape);
   });
   std::erase_if(crowds, [](const auto& crowd) { return crowd.second.there <= kBodiesOfAPlace; });
@@ -168,8 +194,8 @@ std::vector<std::uint32_t> find_held_back(const Levels& levels) {
     if (!counts(body) || bodies.level(body).newcomer) continue;
     const Vec3 position = levels.state(body).position;
     const Place its = room_of(position, *bodies.shape(body));
-    grid.count(position, its);
-    if (const auto room = rooms.find(its); room != rooms.end())
+    grid.count(body, position, its, meets);
+    if (const auto room = find(rooms, its, body); room != rooms.end())
       room->second.there += bodies.shape(body)->volume;
   }
   std::erase_if(rooms, [](const auto& room) { return !room.second.is_crowded(room.first); });
@@ -180,8 +206,8 @@ std::vector<std::uint32_t> find_held_back(const Levels& levels) {
         std::min(room.there, kFilled * (more ? std::nextafter(volume_of(place), 0.0) : volume_of(place)));
   std::vector<std::uint32_t> held;
   each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
-    const auto crowd = crowds.find(place_of(position, shape));
-    const auto room = rooms.find(room_of(position, shape));
+    const auto crowd = find(crowds, place_of(position, shape), body);
+    const auto room = find(rooms, room_of(position, shape), body);
     const bool waits = (crowd != crowds.end() && crowd->second.there >= kBodiesOfAPlace) ||
                        (room != rooms.end() && room->second.there >= kFilled * volume_of(room->first));
     if (waits) return held.push_back(body);

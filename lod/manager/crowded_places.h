@@ -17,9 +17,9 @@ inline constexpr int kBodiesOfAPlace = 4;
 
 /// The newcomers that wait, ascending: until less than kBodiesOfAPlace take part within a radius of them, and
 /// where they were given too densely until there is room for them in theirs. Whatever stays there (asleep, or
-/// let through by a filter), one more comes every eighth step. Those that meet none of their own kind never
-/// wait. Costs a look at every body in a step in which there are too many at a place or in a room, else one
-/// at the newcomers.
+/// let through by a filter), one more comes every eighth step. Those that meet none of their own kind
+/// never wait, and those that the pair filter lets through each other not for one another. Costs a look at
+/// every body in a step in which there are too many at a place or in a room, else one at the newcomers.
 std::vector<std::uint32_t> find_held_back(const Levels& levels);
 
 /// Whether a full body of `shape` at `position` (m) would be one too many, by the members that came last.

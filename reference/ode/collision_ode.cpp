@@ -191,7 +191,7 @@ void Collision::put(Ground& ground, const RigidState& state) {
 
 void Collision::begin_step(Bodies& bodies, double dt) {
   for (Ground& ground : ground_) {
-    if (gone_ == 0.0) ground.goes = ground.moved;
+    if (ground.moved || gone_ == 0.0) ground.goes = ground.moved;
     if (!ground.id || !ground.moves || !ground.goes) continue;
     const Eigen::AlignedBox3d before = bounds_of(ground.geom);
     put(ground, moved_on(ground.put, gone_ + dt));
@@ -232,14 +232,15 @@ void Collision::archive(StateArchive& a) {
   struct Course {
     RigidState before;
     double last_way;
+    bool moved;
   };
   std::vector<Course> courses;
-  for (const Ground& ground : ground_) courses.push_back({ground.before, ground.last_way});
+  for (const Ground& ground : ground_) courses.push_back({ground.before, ground.last_way, ground.moved});
   a(courses);
   if (!a.reading()) return;
   for (std::size_t i = 0; i < std::min(courses.size(), ground_.size()); ++i)
     ground_[i].before = courses[i].before, ground_[i].last_way = courses[i].last_way,
-    ground_[i].moved = false;
+    ground_[i].moved = courses[i].moved;
 }
 
 void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {

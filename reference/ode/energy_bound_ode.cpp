@@ -112,8 +112,10 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
   island->driven += 2.0 * mass * driven.squaredNorm();  // at twice its speed
   island->moved |= contact.moves || !driven.isZero(0.0);
   if (island->bodies > 1 || contact.depth < kDeep * size) return;
-  if (island->out.isZero(0.0)) island->out = contact.normal;
-  island->squeezed |= island->out.dot(contact.normal) < 0.0;
+  const bool is_first = contact.first && !dBodyIsKinematic(bodies.find(contact.first).body);
+  const Vec3 out = is_first ? contact.normal : Vec3(-contact.normal);
+  if (island->out.isZero(0.0)) island->out = out;
+  island->squeezed |= island->out.dot(out) < 0.0;
 }
 
 void EnergyBound::sum_up(const Bodies& bodies) {

@@ -43,9 +43,8 @@ class EnergyBound {
     Vec3 out = Vec3::Zero();  ///< the first of these that is deep
     double given() const;
     double most() const;
-    bool is_asked() const {
-      return !jointed && (bodies > 1 || moved || squeezed);
-    }  ///< alone: the truth's own
+    /// What a body does by itself is the truth's own.
+    bool is_asked() const { return !jointed && (bodies > 1 || moved || squeezed); }
   };
   Island& island_of(std::size_t slot) { return islands_[std::size_t(sets_.root_of(std::int32_t(slot)))]; }
   /// How one began, and what acts on it.

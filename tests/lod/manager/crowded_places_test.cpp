@@ -52,6 +52,26 @@ TEST(CrowdedPlaces, FewTakePartAtATimeAndAllInTheEnd) {
   }
 }
 
+// Debris hung in the air, though its pieces do not meet.
+TEST(CrowdedPlaces, WhomTheFilterLetsThroughEachOtherComeAtOnce) {
+  ManagerSettings settings = unmeasured();
+  settings.pair_filter = [](BodyId, BodyId) { return false; };
+  Manager manager = on_floor(settings);
+  const std::vector<BodyId> bodies = add_at_one_place(manager, 60, LevelChoice::support);
+  manager.step(kFrame);
+  EXPECT_EQ(placed(manager, bodies), 60);
+}
+
+// Nor does it matter to the others that the first meets none of them.
+TEST(CrowdedPlaces, OneThatMeetsNobodyLeavesTheOthersACrowd) {
+  ManagerSettings settings = unmeasured();
+  settings.pair_filter = [](BodyId a, BodyId b) { return a.index != 0 && b.index != 0; };
+  Manager manager = on_floor(settings);
+  const std::vector<BodyId> bodies = add_at_one_place(manager, 60, LevelChoice::support);
+  manager.step(kFrame);
+  EXPECT_EQ(placed(manager, bodies), 1 + kBodiesOfAPlace);
+}
+
 // Whoever was let in is pushed aside by less than its size a step: nobody comes before there is room.
 TEST(CrowdedPlaces, ThereIsRoomForThoseThatAreLetIn) {
   Manager manager = on_floor();

@@ -1,10 +1,11 @@
-// Ground that comes while bodies sleep.
+// Ground that comes while bodies sleep, that is put on, and that goes through a hitch.
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
 #include <tuple>
 #include <utility>
 
+#include "reference/error.h"
 #include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone {
@@ -238,7 +239,7 @@ TEST(ManagerGround, ThroughAHitchALiftCarriesWhatLiesOnIt) {
 
 // What was put on for a step that was refused is put on for the next.
 TEST(ManagerGround, ARefusedStepForgetsNothing) {
-  const auto run = [](bool refused) {
+  const auto run = [](bool refused, bool with_velocity, double dt) {
     const Shape odd = *box_shape({0.31, 0.3, 0.3});
     const auto source = [&](const Shape& shape, const ContactLaw& law) {
       return shape.volume == odd.volume ? nullptr : coarse_signature(shape, law);
@@ -247,19 +248,26 @@ TEST(ManagerGround, ARefusedStepForgetsNothing) {
     const GroundId slab = manager.add_static_box({6, 2, 0.2}, {0, 0, -0.1}, Quat::Identity());
     const BodyId cube =
         add(manager, box_shape({0.3, 0.3, 0.3}), testing::at({0, 0, 0.15}), LevelChoice::tables);
+    double way = 0.0;  // m
     for (int i = 0; i < 30; ++i) {
-      manager.move_ground(slab, testing::at({0.03 * i, 0, -0.1}));
+      const double time = i == 20 ? dt : kFrame;
+      RigidState state = testing::at({way, 0, -0.1});
+      if (with_velocity) state.velocity.x() = 1.0;
+      way += 1.0 * time;
+      manager.move_ground(slab, state);
       if (refused && i == 20) {
         const BodyId bad =
             add(manager, std::make_shared<const Shape>(odd), testing::at({0, 0, 5}), LevelChoice::tables);
-        EXPECT_THROW(manager.step(1.0 / 60.0), InputError);
+        EXPECT_THROW(manager.step(time), InputError);
         manager.remove_body(bad);
       }
-      manager.step(1.0 / 60.0);
+      manager.step(time);
     }
     return manager.state(cube).position.x();
   };
-  EXPECT_EQ(run(true), run(false));
+  for (const bool with_velocity : {false, true})
+    for (const double dt : {kFrame, 0.5})
+      EXPECT_EQ(run(true, with_velocity, dt), run(false, with_velocity, dt)) << with_velocity << ' ' << dt;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GroundPutOn,
