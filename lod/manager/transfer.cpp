@@ -181,12 +181,12 @@ bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uin
   const RigidState state = levels.state(body);
   const Shape& shape = *levels.bodies.shape(body);
   const BodyProperties& own = levels.bodies.properties(body);
-  // Nothing pushes what is kinematic, out of the ground or out of its like.
+  // The ground does not push what is kinematic.
   if (!own.kinematic && overlaps_ground({levels.ground, own}, shape, state)) return true;
   const auto may_push = [&](std::uint32_t other) {
     const BodyProperties& its = levels.bodies.properties(other);
     const auto& may_pair = levels.statistical_settings.pair_filter;
-    return !(own.kinematic && its.kinematic) && may_meet(own, its) && (!may_pair || may_pair(body, other));
+    return may_meet(own, its) && (!may_pair || may_pair(body, other));
   };
   const auto overlaps_body = [&](std::uint32_t other, const RigidState& there) {
     const Shape& other_shape = *levels.bodies.shape(other);

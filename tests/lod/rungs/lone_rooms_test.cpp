@@ -40,7 +40,7 @@ TEST_P(Rooms, ChangeNothing) {
   beside.position = far.position + Vec3(0.25, 0.0, 0.0);
   const int first = add(without, far, false), second = add(without, beside, false);
   const bool to_the_bit = GetParam() == StatisticalModel::support;
-  const int steps = to_the_bit ? 400 : 90;
+  const int steps = to_the_bit ? 400 : 60;
   int struck = 0;
   for (int step = 0; step < steps; ++step) {
     StepReport report;
