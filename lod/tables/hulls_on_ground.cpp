@@ -9,6 +9,16 @@ namespace {
 
 constexpr double kSunk = 0.01;  // over R
 
+// Contact steps fewer and longer than those of `support`.
+SupportSettings coarse_steps(bool energy_bounded) {
+  return {.coarse = true,
+          .contact_step = 0.1,
+          .step_at_once = 0.2,
+          .solver = {.sweeps = 4, .tolerance = 1e-2},
+          .energy_bounded = energy_bounded,
+          .impact_tolerance = 2e-4};
+}
+
 bool is_sunk(const StatisticalBody& body, const Shape& shape, std::span<const HalfSpace> planes) {
   return std::ranges::any_of(planes, [&](const HalfSpace& p) {
     const double height = p.height_of(body.position);
@@ -66,13 +76,8 @@ void HullsOnGround::become_sphere(std::int64_t place, StatisticalBody& body) {
 
 const HullMotionSettings& HullsOnGround::motion_settings(const StatisticalBody& body, const BodyKind& kind,
                                                          const StepWorld& around) const {
-  static const SupportSettings coarse{
-      .coarse = true,
-      .contact_step = 0.1,
-      .step_at_once = 0.2,
-      .solver = {.sweeps = 4, .tolerance = 1e-2},
-      .energy_bounded = false,  // in so long steps a bunny would lie down where it rocks
-      .impact_tolerance = 2e-4};
+  // Bounded, in so long steps a bunny would lie down where it rocks.
+  static const SupportSettings coarse = coarse_steps(false);
   // Clips are joined sooner than at `support`, by what is farther from them: they are what is cheap, single
   // drops score the same, and what the body is turned by meanwhile is not seen from where this rung is. Not
   // of lively materials: how often these bounce on hangs on all that was before.
@@ -126,11 +131,7 @@ ContactTally HullsOnGround::move(std::int64_t place, StatisticalBody& body, cons
 }
 
 ContactTally HullsOnGround::strike(std::int64_t place, StatisticalBody& body, StepWorld around) {
-  static const SupportSettings coarse{.coarse = true,
-                                      .contact_step = 0.1,
-                                      .step_at_once = 0.2,
-                                      .solver = {.sweeps = 4, .tolerance = 1e-2},
-                                      .impact_tolerance = 2e-4};
+  static const SupportSettings coarse = coarse_steps(true);
   const auto i = std::size_t(place);
   const BodyKind& kind = scene_.kind_of(place);
   // The other planes that it meets are among its contacts.
