@@ -215,19 +215,19 @@ std::optional<Vec3> find_velocity_of_ground(std::span<const SolidContact> of_bod
 bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,
                        double slack, double time, std::vector<HalfSpace>& planes) {
   const GroundSeeker seeker = seeker_of(body, *kind.shape, 0, time);
-  const double reach = seeker.reach() + slack;
+  const double reach = seeker.reach() + slack, from_half_way = reach + seeker.half_way(time).norm();
   thread_local std::vector<const GroundPart*> parts;
   thread_local std::vector<PlacedSolid> near;
   thread_local std::vector<SolidContact> uneven;
   parts.clear(), near.clear(), uneven.clear();
-  ground.find_parts(body.position, reach, parts);
+  ground.find_parts(body.position, from_half_way, parts);
   const std::size_t before = planes.size();
   const auto is_planes = [&](const GroundPart* part) {
     if (part->moves()) return false;
     if (part->shape.probe)
       find_probed_contacts(seeker, *part, time, uneven, planes);
     else
-      find_solids(*part, body.position, reach, 0.0, near);
+      find_solids(*part, body.position, from_half_way, 0.0, near);
     return uneven.empty();
   };
   if (std::ranges::all_of(parts, is_planes)) {

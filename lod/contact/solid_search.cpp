@@ -201,10 +201,10 @@ bool find_uneven_ground(const GroundSeeker& seeker, const MetGround& ground, dou
                         std::vector<PlacedSolid>& near, std::vector<SolidContact>& found,
                         std::vector<HalfSpace>& planes) {
   const Vec3& center = seeker.body.position;
-  const double reach = seeker.reach();
+  const double reach = seeker.reach(), from_half_way = reach + seeker.half_way(time).norm();
   thread_local std::vector<const GroundPart*> parts;
   parts.clear();
-  ground.find_parts(center, reach, parts);
+  ground.find_parts(center, from_half_way, parts);
   if (parts.empty()) return false;
   bool any_moves = false;
   for (const GroundPart* part : parts) {
@@ -212,7 +212,7 @@ bool find_uneven_ground(const GroundSeeker& seeker, const MetGround& ground, dou
     if (part->shape.probe)
       find_probed_contacts(seeker, *part, time, found, planes);
     else
-      find_solids(*part, center, reach, after, near);
+      find_solids(*part, center, from_half_way, after, near);
   }
   if (any_moves) return true;
   const std::size_t before = planes.size();

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "lod/ground/box_hierarchy.h"
-
 namespace lodestone {
 namespace {
 
@@ -43,10 +41,6 @@ std::pair<GroundPose, double> pose_put_on(const GroundPart& part, double since) 
 }
 
 }  // namespace
-
-struct Ground::Tree : BoxHierarchy {
-  using BoxHierarchy::BoxHierarchy;
-};
 
 GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt) {
   constexpr double kLeap = 50.0;    // m/s
@@ -306,20 +300,19 @@ void Ground::hold_anew(std::int32_t part) {
   if (std::exchange(in_tree_[std::size_t(part)], false)) loose_.push_back(part);
 }
 
-void Ground::rebuild() const {
-  std::vector<int> indices;
+void Ground::prepare_tree() const {
+  constexpr std::size_t kFewLoose = 16;
+  if (loose_.size() <= kFewLoose + standing_.size() / 8) return;
+  standing_.clear();
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     in_tree_[i] = bool(parts_[i]);
     if (!parts_[i]) continue;
-    indices.push_back(int(i));
+    standing_.push_back(std::int32_t(i));
     boxes.push_back(bounds_[i]);
   }
   loose_.clear();
-  tree_size_ = indices.size();
-  tree_ = indices.empty()
-              ? nullptr
-              : std::make_shared<const Tree>(indices.begin(), indices.end(), boxes.begin(), boxes.end());
+  tree_ = BoxHierarchy(boxes);
 }
 
 Eigen::AlignedBox3d Ground::bounds_of_parts() const {
@@ -333,22 +326,25 @@ Eigen::AlignedBox3d Ground::bounds_of_parts() const {
 
 void Ground::find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const {
   if (parts_used_ == 0) return;
-  constexpr std::size_t kFewLoose = 16;
-  if (loose_.size() > kFewLoose + tree_size_ / 8) rebuild();
+  if (!made_only_) prepare_tree();
   thread_local std::vector<int> near;
   near.clear();
   const auto add = [&](int i) {
     if (bounds_[std::size_t(i)].squaredExteriorDistance(center) <= reach * reach) near.push_back(i);
   };
-  if (tree_)
-    tree_->visit_near(center, reach, [&](int i) {
-      if (in_tree_[std::size_t(i)]) add(i);
-    });
+  tree_.visit_near(center, reach, [&](std::int32_t place) {
+    const std::int32_t i = standing_[std::size_t(place)];
+    if (in_tree_[std::size_t(i)]) add(i);
+  });
   for (const std::int32_t i : loose_) add(i);
   std::ranges::sort(near);
   for (const int i : near) {
-    if (parts_[std::size_t(i)]->shape.make) solids_of(i);
-    found.push_back(parts_[std::size_t(i)].get());
+    const GroundPart& part = *parts_[std::size_t(i)];
+    if (part.shape.make && !part.solids) {
+      if (made_only_) continue;
+      solids_of(i);
+    }
+    found.push_back(&part);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "lod/ground/half_space.h"
 #include "lod/ground_id.h"
 #include "reference/body_properties.h"
+#include "reference/mesh/box_hierarchy.h"
 #include "reference/state_archive.h"
 
 namespace lodestone {
@@ -149,8 +150,22 @@ class Ground {
   /// Of all parts, m, world. Not for several threads at once, as it keeps what it found.
   Eigen::AlignedBox3d bounds_of_parts() const;
   /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making.
-  /// Not for several threads at once, as it makes solids.
+  /// Not for several threads at once, as it makes solids, but where MadeOnly is.
   void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const;
+  /// While it is there find_parts is for several threads, and passes over parts whose solids are not made
+  /// yet: whoever may come near them finds them before.
+  class MadeOnly {
+   public:
+    explicit MadeOnly(const Ground& ground) : ground_(ground) {
+      ground_.prepare_tree(), ground_.made_only_ = true;
+    }
+    ~MadeOnly() { ground_.made_only_ = false; }
+    MadeOnly(const MadeOnly&) = delete;
+    MadeOnly& operator=(const MadeOnly&) = delete;
+
+   private:
+    const Ground& ground_;
+  };
 
  private:
   struct Entry {
@@ -168,7 +183,7 @@ class Ground {
   void hold_anew(std::int32_t part);
   void take_bounds(std::int32_t part);
   void forget_bounds(std::int32_t part);
-  void rebuild() const;
+  void prepare_tree() const;
   const GroundSolids& solids_of(std::int32_t part) const;
 
   std::vector<Entry> entries_;
@@ -191,12 +206,13 @@ class Ground {
   std::vector<std::pair<GroundId, GroundPose>> was_put_;  // what has gone on and comes back
   mutable std::uint32_t numbers_ = 0;
 
+  mutable bool made_only_ = false;
+
   // Most parts stand in a tree, built now and then; those that came or moved since are looked at one by one.
-  struct Tree;
-  mutable std::shared_ptr<const Tree> tree_;
-  mutable std::vector<char> in_tree_;  // of each part
+  mutable BoxHierarchy tree_;
+  mutable std::vector<std::int32_t> standing_;  // which parts
+  mutable std::vector<char> in_tree_;           // of each part
   mutable std::vector<std::int32_t> loose_;
-  mutable std::size_t tree_size_ = 0;
   mutable std::optional<Eigen::AlignedBox3d> bounds_of_parts_;  // none since a part at their border left
 };
 

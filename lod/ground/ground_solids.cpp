@@ -1,10 +1,8 @@
 #include "lod/ground/ground_solids.h"
 
-#include <numeric>
 #include <optional>
 #include <span>
 
-#include "lod/ground/box_hierarchy.h"
 #include "reference/error.h"
 #include "reference/hull/convex_pieces.h"
 #include "reference/mesh/mesh_edges.h"
@@ -86,28 +84,18 @@ void GroundSolids::add_mesh(const Mesh& mesh) {
 
 void GroundSolids::add_surface(const Mesh& mesh) {
   surface_ = std::make_shared<const SurfaceSolids>(mesh);
-  for (std::size_t i = 0; i < surface_->size(); ++i) all_bounds_.extend(surface_->bounds(i));
+  all_bounds_.extend(surface_->bounds());
 }
 
-struct GroundSolids::Tree : BoxHierarchy {
-  using BoxHierarchy::BoxHierarchy;
-};
-
 void GroundSolids::prepare() {
-  if (tree_ || solids_.size() < 2) return;
-  std::vector<int> indices(solids_.size());
-  std::iota(indices.begin(), indices.end(), 0);
-  tree_ = std::make_shared<const Tree>(indices.begin(), indices.end(), bounds_.begin(), bounds_.end());
+  if (!tree_) tree_ = std::make_shared<const BoxHierarchy>(bounds_);
 }
 
 void GroundSolids::find_near(const Vec3& center, double reach, std::vector<int>& found) const {
   const auto add = [&](int i) {
     if (bounds_[std::size_t(i)].squaredExteriorDistance(center) <= reach * reach) found.push_back(i);
   };
-  if (tree_)
-    tree_->visit_near(center, reach, add);
-  else if (solids_.size() == 1)
-    add(0);
+  if (tree_) tree_->visit_near(center, reach, add);
   if (surface_) surface_->find_near(center, reach, int(solids_.size()), found);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lod/ground/surface_solids.h"
+#include "reference/mesh/box_hierarchy.h"
 
 namespace lodestone {
 
@@ -41,8 +42,7 @@ class GroundSolids {
   std::vector<Eigen::AlignedBox3d> bounds_;       // of these
   std::shared_ptr<const SurfaceSolids> surface_;  // behind those, shared by copies
   Eigen::AlignedBox3d all_bounds_;
-  struct Tree;
-  std::shared_ptr<const Tree> tree_;  // of `bounds_`, shared by copies; null for one solid alone
+  std::shared_ptr<const BoxHierarchy> tree_;  // of these, shared by copies; null: not made yet
 };
 
 }  // namespace lodestone

@@ -5,7 +5,6 @@
 #include <span>
 #include <utility>
 
-#include "lod/ground/box_hierarchy.h"
 #include "reference/mesh/mesh_edges.h"
 #include "reference/mesh/rays.h"
 
@@ -83,10 +82,6 @@ bool has_area(const Mesh& mesh, const std::array<int, 3>& f) {
   return area_vector(mesh, f).norm() > 1e-9 * longest * longest;
 }
 
-struct SurfaceSolids::Tree : BoxHierarchy {
-  using BoxHierarchy::BoxHierarchy;
-};
-
 SurfaceSolids::SurfaceSolids(const Mesh& mesh) : vertices_(mesh.vertices) {
   Box box;
   for (const Vec3& v : vertices_) box.extend(v);
@@ -104,37 +99,20 @@ SurfaceSolids::SurfaceSolids(const Mesh& mesh) : vertices_(mesh.vertices) {
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
     if (has_area(mesh, mesh.faces[i])) triangles_.push_back({mesh.faces[i], ridge[i], cosine[i]});
   solids_ = std::make_unique<std::atomic<const GroundSolid*>[]>(size());
-  bounds_.reserve(size());
-  for (const Triangle& triangle : triangles_) {
-    const std::array<Vec3, 3> corner = corners_of(triangle);
-    const Vec3 below = -depth_ * unit_normal(corner);
-    bounds_.push_back(bounds_of(corner, {below, below, below}));
-  }
-  if (size() < 2) return;
-  std::vector<int> indices(size());
-  std::iota(indices.begin(), indices.end(), 0);
-  tree_ = std::make_unique<const Tree>(indices.begin(), indices.end(), bounds_.begin(), bounds_.end());
-  one_way_ = looks_one_way();
-  if (one_way_) return;
+  std::vector<std::array<Vec3, 3>> corners;
+  for (const Triangle& triangle : triangles_) corners.push_back(corners_of(triangle));
+  const std::optional<OneWay> one_way = find_one_way();
+  deep_ = DeepTriangles(corners, depth_, one_way);
+  if (one_way) return;
   find_reversed();
-  std::vector<Box> bare;
-  for (const Triangle& triangle : triangles_)
-    bare.push_back(bounds_of(corners_of(triangle), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}));
-  bare_tree_ = std::make_unique<const Tree>(indices.begin(), indices.end(), bare.begin(), bare.end());
+  std::vector<Box> boxes;
+  for (const std::array<Vec3, 3>& corner : corners)
+    boxes.push_back(bounds_of(corner, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}));
+  tree_ = BoxHierarchy(boxes);
 }
 
 SurfaceSolids::~SurfaceSolids() {
   for (std::size_t i = 0; i < size(); ++i) delete solids_[i].load();
-}
-
-void SurfaceSolids::find_near(const Vec3& center, double reach, int first, std::vector<int>& found) const {
-  const auto add = [&](int i) {
-    if (bounds_[std::size_t(i)].squaredExteriorDistance(center) <= reach * reach) found.push_back(first + i);
-  };
-  if (tree_)
-    tree_->visit_near(center, reach, add);
-  else if (size() == 1)
-    add(0);
 }
 
 std::array<Vec3, 3> SurfaceSolids::corners_of(const Triangle& triangle) const {
@@ -145,7 +123,7 @@ std::array<Vec3, 3> SurfaceSolids::corners_of(const Triangle& triangle) const {
 // Where a ray crosses the surface, in no order: how far along it, m, and whether it goes in there.
 template <class Visit>
 void SurfaceSolids::visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const {
-  bare_tree_->visit_along(from, direction, size_, [&](int i) {
+  tree_.visit_along(from, direction, size_, [&](int i) {
     const std::array<Vec3, 3> corner = corners_of(triangles_[std::size_t(i)]);
     if (const auto in = meet_front(corner, from, direction, size_))
       visit(*in, true);
@@ -154,19 +132,18 @@ void SurfaceSolids::visit_crossings(const Vec3& from, const Vec3& direction, con
   });
 }
 
-// Whether the surface may have another side anywhere: not where all of it looks nearly one way, as a
-// landscape does.
-bool SurfaceSolids::looks_one_way() const {
+// None where a ray may meet another side of the surface.
+std::optional<OneWay> SurfaceSolids::find_one_way() const {
   constexpr double kApart = 0.71;  // cosine, of 45°: of no two are the normals more than 90° apart
-  Vec3 mean = Vec3::Zero();
+  OneWay way{.up = Vec3::Zero()};
   for (const Triangle& triangle : triangles_) {
     const std::array<Vec3, 3> corner = corners_of(triangle);
-    mean += (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    way.up += (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   }
-  mean.normalize();
-  return std::ranges::all_of(triangles_, [&](const Triangle& triangle) {
-    return unit_normal(corners_of(triangle)).dot(mean) > kApart;
-  });
+  way.up.normalize();
+  for (const Triangle& triangle : triangles_)
+    way.least_cosine = std::min(way.least_cosine, unit_normal(corners_of(triangle)).dot(way.up));
+  return way.least_cosine > kApart ? std::optional(way) : std::nullopt;
 }
 
 // Notes those triangles that are there again, seen from the other side: sheets that are solid to both.
@@ -229,7 +206,7 @@ bool SurfaceSolids::is_backed(const std::array<Vec3, 3>& corner, const Vec3& nor
 // rays from a few places in the triangle.
 std::array<double, 3> SurfaceSolids::find_thickness(const std::array<Vec3, 3>& corner, const Vec3& normal,
                                                     bool reversed) const {
-  if (one_way_) return {size_, size_, size_};
+  if (tree_.empty()) return {size_, size_, size_};
   constexpr double kThinnest = 2e-4;  // over the longest edge
   const std::array<Vec3, kPlaces>& places = places_within();
   const double longest = std::max(

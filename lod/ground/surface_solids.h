@@ -6,8 +6,10 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "lod/ground/deep_triangles.h"
 #include "lod/ground/ground_solid.h"
 #include "reference/mesh/mesh.h"
 
@@ -25,10 +27,11 @@ class SurfaceSolids {
   SurfaceSolids& operator=(const SurfaceSolids&) = delete;
 
   std::size_t size() const { return triangles_.size(); }
-  /// m: of what is solid, at most.
-  const Eigen::AlignedBox3d& bounds(std::size_t i) const { return bounds_[i]; }
-  /// Appends those whose bounds come within `reach` m of `center`, counted from `first`.
-  void find_near(const Vec3& center, double reach, int first, std::vector<int>& found) const;
+  const Eigen::AlignedBox3d& bounds() const { return deep_.bounds(); }  ///< m: of all that is solid, at most
+  /// Appends those that may be solid within `reach` m of `center`, counted from `first`.
+  void find_near(const Vec3& center, double reach, int first, std::vector<int>& found) const {
+    deep_.find_near(center, reach, first, found);
+  }
   /// For any thread at any time; stays where it is.
   const GroundSolid& operator[](std::size_t i) const;
   /// How many of them something has come near.
@@ -43,7 +46,7 @@ class SurfaceSolids {
   };
 
   std::array<Vec3, 3> corners_of(const Triangle& triangle) const;
-  bool looks_one_way() const;
+  std::optional<OneWay> find_one_way() const;
   void find_reversed();
   std::array<double, 3> find_thickness(const std::array<Vec3, 3>& corner, const Vec3& normal,
                                        bool reversed) const;
@@ -55,13 +58,10 @@ class SurfaceSolids {
 
   std::vector<Vec3> vertices_;  // m
   std::vector<Triangle> triangles_;
-  std::vector<Eigen::AlignedBox3d> bounds_;  // of each triangle
-  struct Tree;
-  std::unique_ptr<const Tree> tree_;       // of these; null for less than two
-  bool one_way_ = true;                    // no ray meets another side
-  std::unique_ptr<const Tree> bare_tree_;  // of the triangles themselves, for rays; null where none are cast
-  double size_ = 0.0;                      // m, the diagonal of all
-  double depth_ = 0.0;                     // m: so far below the surface each is solid, at most
+  DeepTriangles deep_;  // by number
+  BoxHierarchy tree_;   // of the triangles themselves, for rays; empty where none meets another side
+  double size_ = 0.0;   // m, the diagonal of all
+  double depth_ = 0.0;  // m: so far below the surface each is solid, at most
   std::unique_ptr<std::atomic<const GroundSolid*>[]> solids_;  // of each triangle; null: not made yet
 };
 

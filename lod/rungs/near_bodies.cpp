@@ -43,8 +43,6 @@ std::span<const SolidContact> from_slot(std::span<const SolidContact> contacts, 
   return contacts.subspan(std::size_t(first - contacts.begin()));
 }
 
-bool meets_solids(const BodyProperties& own) { return !own.kinematic && meets_ground(own); }
-
 }  // namespace
 
 void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests, NearSearch& search,
@@ -92,9 +90,9 @@ void NearBodies::plan_substeps(const Step& step) {
     StatisticalBody& body = step.scene.bodies[std::size_t(index)];
     body.crowded = body.on_solid = body.alone_on_solid = body.in_great_heap = body.on_edge = false;
   }
-  find_ground_solids(step, awake, 0.0, step.dt, SolidSearch::one_of_a_part);
+  solids_.find(step.scene, awake, 0.0, step.dt, SolidSearch::one_of_a_part);
   if (pairs_.size() > 0) pairs_.find_turning(step.scene, awake);
-  plan_.make(step.scene, pairs_, solid_contacts_, faces_, step.dt, near_);
+  plan_.make(step.scene, pairs_, solids_.contacts(), solids_.faces(), step.dt, near_);
   step.support.end_search();
 }
 
@@ -173,7 +171,7 @@ void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   if (!woken_.empty()) look_up_woken(step);
   if (substep > 0) pairs_.find_turning(step.scene, movers_);
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
-  find_ground_solids(step, movers_, substep * time, time);
+  solids_.find(step.scene, movers_, substep * time, time, SolidSearch::all);
   wake_touched(step, pace);
   meet_woken(step, pace, substep);
 }
@@ -192,7 +190,7 @@ void NearBodies::meet_woken(const Step& step, Pace pace, int substep) {
     choose_movers(step.support, pace);
     look_up_woken(step);
     pairs_.find_more_contacts(step.scene, time, near_, pace);
-    find_more_ground_solids(step, known_movers_, substep * time, time);
+    solids_.find_more(step.scene, movers_, known_movers_, substep * time, time);
   }
 }
 
@@ -200,71 +198,6 @@ void NearBodies::choose_movers(const SupportLevel& support, Pace pace) {
   movers_.clear();
   for (const std::int32_t index : support.awake_with_guests())
     if (near_.pace(Participant::statistical(std::size_t(index))) == pace) movers_.push_back(index);
-}
-
-// Parts of the ground that the bodies near: what nears an edge is solved with all that it touches.
-void NearBodies::find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after,
-                                    double time, SolidSearch search) {
-  solid_contacts_.clear();
-  faces_.faces.clear();
-  if (!ground_.has_parts()) return faces_.run.clear();
-  faces_.run.assign(step.scene.bodies.size(), {});  // who is woken last is asked about, too
-  for (const std::int32_t index : bodies) find_ground_solids_of(step, index, after, time, search);
-}
-
-// Of the movers, more than the `known` ones of whom they were found. What was found of these holds, though
-// who touched nothing has moved alone since then: to find a contact of his now would move him once more.
-void NearBodies::find_more_ground_solids(const Step& step, std::span<const std::int32_t> known, double after,
-                                         double time) {
-  if (!ground_.has_parts()) return;
-  std::swap(solid_contacts_, known_contacts_);
-  std::swap(faces_, known_faces_);
-  solid_contacts_.clear();
-  faces_.faces.clear();
-  faces_.run.assign(step.scene.bodies.size(), {});
-  place_of_known_.resize(step.scene.bodies.size(), -1);
-  std::int32_t place = 0;
-  const auto end = std::int32_t(known_contacts_.size());
-  const auto is_of = [&](std::int32_t i, std::int32_t body) {
-    return i < end && known_contacts_[std::size_t(i)].slot == body;
-  };
-  for (const std::int32_t body : known)
-    for (place_of_known_[std::size_t(body)] = place; is_of(place, body);) ++place;
-  for (const std::int32_t body : movers_) {
-    const std::int32_t first = place_of_known_[std::size_t(body)];
-    if (first < 0) {
-      find_ground_solids_of(step, body, after, time, SolidSearch::all);
-      continue;
-    }
-    for (std::int32_t i = first; is_of(i, body); ++i)
-      solid_contacts_.push_back(known_contacts_[std::size_t(i)]);
-    const std::span<const HalfSpace> faces = known_faces_.of(body);
-    const auto begin = std::int32_t(faces_.faces.size());
-    faces_.faces.insert(faces_.faces.end(), faces.begin(), faces.end());
-    faces_.run[std::size_t(body)] = {begin, begin + std::int32_t(faces.size())};
-  }
-  for (const std::int32_t body : known) place_of_known_[std::size_t(body)] = -1;
-}
-
-void NearBodies::find_ground_solids_of(const Step& step, std::int32_t index, double after, double time,
-                                       SolidSearch search) {
-  const ContactScene& scene = step.scene;
-  StatisticalBody& body = scene.bodies[std::size_t(index)];
-  const std::size_t before = solid_contacts_.size(), faces = faces_.faces.size();
-  if (const BodyProperties& own = scene.world.properties_of(body.owner); meets_solids(own)) {
-    const MetGround ground(ground_, own);
-    const BodyKind& kind = scene.kind_of(body);
-    const Vec3 velocity = body.velocity;
-    if (search == SolidSearch::one_of_a_part)  // of the whole step
-      body.velocity += time * scene.gravity(Participant::statistical(std::size_t(index)));
-    if (body.is_sphere())
-      find_sphere_contacts(body, kind, index, ground, after, time, solid_contacts_, faces_.faces);
-    else
-      find_solid_contacts(body, kind, index, ground, after, time, solid_contacts_, faces_.faces, search);
-    body.velocity = velocity;
-  }
-  faces_.run[std::size_t(index)] = {std::int32_t(faces), std::int32_t(faces_.faces.size())};
-  body.on_solid = solid_contacts_.size() > before;
 }
 
 // The movers that touch nobody.
@@ -299,40 +232,50 @@ void NearBodies::move_alone(const Step& step, double time) {
     }
   });
   for (const ContactTally& own : tallies_) step.tally += own;
-  // One after the other, as that makes the ground's solids.
-  std::span<const SolidContact> contacts = solid_contacts_;
+  move_on_solids(step, time);
+}
+
+// Those that touch the ground's parts alone. Where these go on, in the frame that goes with them, in which
+// they stand still; nobody sleeps there.
+void NearBodies::move_on_solids(const Step& step, double time) {
+  constexpr std::int64_t kBodiesOfAPiece = 4;
+  on_solids_.clear();
+  std::span<const SolidContact> contacts = solids_.contacts();
   for (const std::int32_t index : movers_) {
     const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
     if (!body.alone_on_solid || body.motion == Motion::asleep) continue;
     contacts = from_slot(contacts, index);
-    move_on_solids(step, index, first_run_of(contacts), time);
+    const Vec3 along = find_velocity_of_ground(first_run_of(contacts), time).value_or(Vec3(Vec3::Zero()));
+    on_solids_.emplace_back(index, along);
   }
-}
-
-// Where the ground goes on, in the frame that goes with it, in which it stands still; nobody sleeps there.
-void NearBodies::move_on_solids(const Step& step, std::int32_t index, std::span<const SolidContact> contacts,
-                                double time) {
-  StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-  const Vec3 along = find_velocity_of_ground(contacts, time).value_or(Vec3(Vec3::Zero()));
-  const bool goes_on = !along.isZero(0.0);
-  if (goes_on) body.velocity -= along;
-  ContactTally tally;
-  move_alone(step.support, step.guests, index, time, tally, nullptr);
-  step.tally += tally;
-  if (!goes_on) return;
-  body.velocity += along;
-  body.position += time * along;
-  const Participant p = Participant::statistical(std::size_t(index));
-  if (body.motion == Motion::asleep) step.support.wake(index);
-  keep_awake(step, p);
+  const auto count = std::int64_t(on_solids_.size());
+  tallies_.assign(std::size_t(count), {});
+  solids_.run_among(count, kBodiesOfAPiece, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+      const auto& [index, along] = on_solids_[i];
+      StatisticalBody& body = step.scene.bodies[std::size_t(index)];
+      const bool goes_on = !along.isZero(0.0);
+      if (goes_on) body.velocity -= along;
+      move_alone(step.support, step.guests, index, time, tallies_[i], nullptr);
+      if (goes_on) body.velocity += along, body.position += time * along;
+    }
+  });
+  for (std::size_t i = 0; i < on_solids_.size(); ++i) {
+    const auto& [index, along] = on_solids_[i];
+    step.tally += tallies_[i];
+    if (along.isZero(0.0)) continue;
+    if (step.scene.bodies[std::size_t(index)].motion == Motion::asleep) step.support.wake(index);
+    keep_awake(step, Participant::statistical(std::size_t(index)));
+  }
 }
 
 void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                             ContactTally& tally, const Quat* turned) const {
-  if (!support.is_guest(index)) return support.move_alone(index, faces_.of(index), time, tally, turned);
+  if (!support.is_guest(index))
+    return support.move_alone(index, solids_.faces().of(index), time, tally, turned);
   StatisticalBody& body = support.bodies()[std::size_t(index)];
   StepWorld around = world();
-  around.planes = join_planes(ground_.planes(), faces_.of(index));
+  around.planes = join_planes(ground_.planes(), solids_.faces().of(index));
   if (!body.is_sphere()) {
     if (body.alone_on_solid) around.solids = &ground_;
     tally = step_support_body(body, kinds_[body.kind], around, time, SupportSettings::of_tables());
@@ -367,7 +310,7 @@ void NearBodies::wake(const Step& step, Participant p, Pace pace) {
 void NearBodies::wake_touched(const Step& step, Pace pace) {
   const ContactScene& scene = step.scene;
   woken_.clear();
-  carried_.find(scene, pairs_.contacts(), solid_contacts_, step.full_contacts);
+  carried_.find(scene, pairs_.contacts(), solids_.contacts(), step.full_contacts);
   // Two hulls, one of which was put where the other is, are to part; no sleeper is to hold them together.
   inside_.clear();
   const auto is_pinned = [&](Participant p) { return p.is_statistical() && scene.body(p).pinned; };
@@ -404,7 +347,7 @@ void NearBodies::wake_touched(const Step& step, Pace pace) {
   blows_.find(scene, pairs_, rest_law_, struck_);
   for (const Participant p : struck_) wake(step, p, pace);
   if (!carried_.none())
-    for (const SolidContact& c : solid_contacts_)
+    for (const SolidContact& c : solids_.contacts())
       if (c.part->moves()) {
         keep_awake(step, Participant::statistical(std::size_t(c.slot)));
         scene.body(Participant::statistical(std::size_t(c.slot))).carried = true;
@@ -417,7 +360,7 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   constexpr std::size_t kFew = 256;  // contacts: of more a round costs too much
   const ContactScene& scene = step.scene;
   const double time = step.dt / pace;
-  if (pairs_.contacts().empty() && solid_contacts_.empty()) return;
+  if (pairs_.contacts().empty() && solids_.contacts().empty()) return;
   StepWorld crowd_world = scene.world;
   // A full neighbour is given what holds it up once a step: what gravity adds meanwhile is no impact.
   if (!full_.empty()) crowd_world.bounce_velocity += settings_.gravity.norm() * (step.dt - time);
@@ -425,9 +368,9 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   const ContactScene crowd_scene{scene.bodies, scene.neighbors, kinds_, crowd_world};
   const auto touch = [&] {
     return CrowdTouch{.contacts = pairs_.contacts(),
-                      .solid_contacts = solid_contacts_,
+                      .solid_contacts = solids_.contacts(),
                       .full_contacts = step.full_contacts,
-                      .faces = faces_,
+                      .faces = solids_.faces(),
                       .time = time,
                       .still_time = still_time,
                       .sweeps = sweeps_of(pace),
@@ -448,7 +391,7 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   for (const std::int32_t index : movers_)
     if (const StatisticalBody& body = scene.bodies[std::size_t(index)];
         body.is_solved_in_crowd() && body.motion != Motion::asleep && !step.support.is_guest(index))
-      step.support.update_quiet(index, faces_.of(index), time, step.tally);
+      step.support.update_quiet(index, solids_.faces().of(index), time, step.tally);
 }
 
 void NearBodies::note_ball(const Step& step, Participant p) {

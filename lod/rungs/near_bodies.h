@@ -12,6 +12,7 @@
 #include "lod/rungs/near_marks.h"
 #include "lod/rungs/near_pairs.h"
 #include "lod/rungs/near_search.h"
+#include "lod/rungs/near_solids.h"
 #include "lod/rungs/substep_plan.h"
 #include "lod/statistical/rest_law.h"
 #include "lod/step_report.h"
@@ -31,6 +32,7 @@ class NearBodies {
         kinds_(kinds),
         jobs_(jobs),
         pairs_(jobs),
+        solids_(ground, jobs),
         plan_(jobs),
         crowd_(jobs),
         rest_law_(settings.sleep) {
@@ -76,17 +78,10 @@ class NearBodies {
   void move_islands(const Step& step, Pace pace);
   void find_touching(const Step& step, Pace pace, int substep);
   void choose_movers(const SupportLevel& support, Pace pace);
-  void find_ground_solids(const Step& step, std::span<const std::int32_t> bodies, double after, double time,
-                          SolidSearch search = SolidSearch::all);
-  void find_ground_solids_of(const Step& step, std::int32_t index, double after, double time,
-                             SolidSearch search);
-  void find_more_ground_solids(const Step& step, std::span<const std::int32_t> known, double after,
-                               double time);
   void move_alone(const Step& step, double time);
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                   ContactTally& tally, const Quat* turned) const;
-  void move_on_solids(const Step& step, std::int32_t index, std::span<const SolidContact> contacts,
-                      double time);
+  void move_on_solids(const Step& step, double time);
   static void keep_awake(const Step& step, Participant p);
   void wake(const Step& step, Participant p, Pace pace);
   void wake_touched(const Step& step, Pace pace);
@@ -111,6 +106,7 @@ class NearBodies {
   ContactLog* log_ = nullptr;
 
   NearPairs pairs_;
+  NearSolids solids_;
   NearMarks near_;
   SubstepPlan plan_;
   Crowd crowd_;
@@ -125,11 +121,8 @@ class NearBodies {
   std::vector<NearSearch::Ball> balls_;           // of each statistical body that is near others, by index
   std::vector<Participant> inside_;               // others, so deep that these were added there
   std::vector<FullNeighbor> full_, full_before_;  // the neighbours, moved on between substeps
-  std::vector<SolidContact> solid_contacts_, known_contacts_;
-  FacesBelow faces_, known_faces_;
   std::vector<std::int32_t> known_movers_;
-  std::vector<std::int32_t> place_of_known_;  // of each slot in `known_contacts_`, −1 else: but while more
-                                              // bodies are added
+  std::vector<std::pair<std::int32_t, Vec3>> on_solids_;  // indices; m/s, of the ground there, if it goes on
   std::vector<CarriedFull> carriers_;
   std::vector<ContactTally> tallies_;
 };

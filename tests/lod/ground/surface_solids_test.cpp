@@ -36,7 +36,7 @@ TEST(SurfaceSolids, AreMadeWhereSomethingComesNear) {
   EXPECT_EQ(&surface[7], &solid);
   ASSERT_TRUE(solid.surface);
   EXPECT_EQ(solid.shape->hull.vertices.size(), 6U);
-  const Eigen::AlignedBox3d bounds = surface.bounds(7);
+  const Eigen::AlignedBox3d& bounds = surface.bounds();
   for (const Vec3& v : solid.shape->hull.vertices)
     EXPECT_LT(bounds.squaredExteriorDistance(solid.center + v), 1e-24);
 }
