@@ -217,8 +217,10 @@ void NearBodies::move_alone(const Step& step, double time) {
       int turning = 0;
       for (std::size_t i = 0; i < block.size(); ++i) {
         const StatisticalBody& body = step.scene.bodies[std::size_t(block[i])];
+        // Of one with a torque the spin is not yet what it turns by (step_support_body).
         const bool flies = moves(body) && body.motion == Motion::dynamic &&
-                           !step.support.is_guest(block[i]) && !kinds_[body.kind].isotropic;
+                           !step.support.is_guest(block[i]) && !kinds_[body.kind].isotropic &&
+                           step.support.forces().of(block[i]).turning.isZero(0.0);
         lane[i] = flies ? turning++ : -1;
         if (flies) turns.put(lane[i], body, kinds_[body.kind]);
       }

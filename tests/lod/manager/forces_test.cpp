@@ -60,6 +60,23 @@ TEST(Forces, WhatIsPressedToAWallHangsThere) {
   }
 }
 
+// By explicit Euler, which `support` once turned it by, it swings higher and higher.
+TEST(Forces, ATorsionSpringWithDampingComesToRest) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+    Manager manager({.gravity = Vec3::Zero(), .signatures = coarse_signature});
+    const BodyId plank = add(manager, box_shape({1.0, 0.3, 0.1}),
+                             testing::at({0, 0, 2}, Vec3::Zero(), Vec3(0.3, 0, 0)), level);  // .017 rad
+    const Mat3 inertia = manager.mass(plank) * manager.shape(plank).inertia_per_mass;
+    for (int i = 0; i < 240; ++i) {
+      const RigidState now = manager.state(plank);
+      manager.add_force(plank, Vec3::Zero(),
+                        -inertia * (600.0 * now.orientation.vec() + 4.0 * now.angular_velocity));
+      manager.step(kFrame);
+    }
+    EXPECT_LT(manager.state(plank).angular_velocity.norm(), 0.2) << int(level);
+  }
+}
+
 // What a full body is given as a force was not looked at where others near it were looked for.
 TEST(Forces, WhatOneThrowsInAStepMeetsWhatIsInItsWay) {
   for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
