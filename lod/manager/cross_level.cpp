@@ -72,14 +72,20 @@ std::optional<std::int32_t> second_of(const Levels& levels, const Neighborhood& 
 }
 
 // m/s, in the step to come, where ODE's contact knows that of the last one: of the part that is there, if no
-// other is.
-Vec3 velocity_of_ground(const Levels& levels, const BodyProperties& own, const OdeContact& contact) {
+// other is. What turns takes a body along the chord of its arc, in so far as that goes round with it, as in
+// ODE: what lies on the body would else go along the tangent, and walk outward on it.
+Vec3 velocity_of_ground(const Levels& levels, const FullNeighbor& body, const OdeContact& contact,
+                        double dt) {
   constexpr double kThere = 1e-3;  // m
   if (contact.callers_slot >= 0 || (!contact.moves && !levels.ground.any_moves())) return contact.velocity;
   thread_local std::vector<const GroundPart*> parts;
   parts.clear();
-  MetGround(levels.ground, own).find_parts(contact.point, kThere, parts);
-  return parts.size() == 1 ? parts.front()->velocity_at(contact.point) : contact.velocity;
+  MetGround(levels.ground, levels.bodies.properties(body.owner)).find_parts(contact.point, kThere, parts);
+  if (parts.size() != 1) return contact.velocity;
+  const GroundPart& part = *parts.front();
+  const Vec3 going_round = body.state.velocity - part.pose.velocity;
+  const Quat half_way = rotation_from_vector(0.5 * dt * part.pose.angular_velocity);
+  return part.velocity_at(contact.point) + half_way * going_round - going_round;
 }
 
 // Two bodies were moved since ODE found it: what they have parted by is a gap. What nothing moves takes along
@@ -91,7 +97,7 @@ std::optional<FullContact> full_contact_of(const Levels& levels, const Neighborh
   const FullNeighbor& body = neighborhood.bodies[std::size_t(first)];
   FullContact full{first, second, contact.point, contact.normal, -contact.depth};
   if (second < 0) {
-    full.velocity = velocity_of_ground(levels, levels.bodies.properties(body.owner), contact);
+    full.velocity = velocity_of_ground(levels, body, contact, dt);
     full.ground_material = contact.second_material;
   }
   const auto place_on = [&](std::int32_t neighbor, const Vec3& arm) {

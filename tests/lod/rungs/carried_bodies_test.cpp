@@ -221,6 +221,23 @@ TEST(CarriedBodies, ARiderOfATurntableStaysWhereItIs) {
       }
 }
 
+// The full one goes along the chord of its arc, in ODE; who lies on it went along the tangent, and .1 m
+// outward.
+TEST(CarriedBodies, WhoLiesOnAFullRiderOfATurntableStaysOnIt) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables})
+    for (const bool is_ground : {false, true}) {
+      OnTurntable on(LevelChoice::full, is_ground);
+      const auto add_rider = [&](double layer, LevelChoice rung) {
+        return add(on.manager, crate(), testing::at({1.5, 0, (layer + 0.5) * kCrate + 1e-4}), rung);
+      };
+      const BodyId below = add_rider(0, LevelChoice::full), above = add_rider(1, level);
+      run(on.manager, 1.0);
+      on.turn(1.0, 0.5, 8.0);
+      const Vec3 apart = on.manager.state(above).position - on.manager.state(below).position;
+      EXPECT_LT(apart.head<2>().norm(), 0.012) << int(level) << is_ground;
+    }
+}
+
 // A wall, kinematic, of either rung, that pushes a row. At `tables` among others its bodies give way a
 // little, and as nothing turns them back they leave it sideways after a while.
 TEST(CarriedBodies, AKinematicBodyPushesARow) {
