@@ -172,7 +172,10 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   if (pinned) candidate.decided_by = Rule::joined;
   if (carries) candidate.decided_by = Rule::carries_full;
   candidate.mesh = mesh;
-  if (by_error()) predict_errors(body, does, candidate);
+  // A sleeper keeps its rung by what it would save awake: in turn with those around it, that would wake each
+  // other as they go up and down.
+  const bool keeps = by_error() && does == Activity::asleep && candidate.present() > open.lowest();
+  if (by_error()) predict_errors(body, keeps ? Activity::crowded : does, candidate);
   if (budgeted()) candidate.cost = costs_->cost_of(does, costs_->full_share(mesh));
   if (budgeted() && open.one() && open.has(Rung::full) && !level.newcomer)
     candidate.cost[std::size_t(Rung::full)] =
@@ -181,9 +184,14 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
     candidate.cost[std::size_t(Rung::support)] = 0.0f;  // not all of them are looked at
   if (budgeted() && does == Activity::asleep && level.rung == Rung::support && open.has(Rung::tables))
     support_sleepers_.push_back(body);
-  if (budgeted() && !held && arrives(level, does))
-    candidate.cost[std::size_t(level.rung)] += float(
-        costs_->cost_of_arriving(level.rung) * (level.rung == Rung::full ? costs_->full_share(mesh) : 1.0));
+  const auto at = std::size_t(level.rung);
+  if (keeps)
+    candidate.passing = candidate.cost[at] - costs_->cost_of(Activity::crowded, costs_->full_share(mesh))[at];
+  if (budgeted() && !held && arrives(level, does)) {
+    candidate.passing = float(costs_->cost_of_arriving(level.rung) *
+                              (level.rung == Rung::full ? costs_->full_share(mesh) : 1.0));
+    candidate.cost[at] += candidate.passing;
+  }
   const bool limited = policy_.most_full < kUnlimited || policy_.most_support < kUnlimited;
   const bool may_hit = candidate.ahead.squaredNorm() > candidate.radius * candidate.radius;
   if (limits_ && !level.newcomer && !limited && !may_hit && !group && !policy_.contact_groups_together &&

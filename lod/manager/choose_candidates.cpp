@@ -164,7 +164,7 @@ double Choose::pixels(const LevelCandidate& seen) const {
 void Choose::predict_errors(std::uint32_t body, Activity does, LevelCandidate& candidate) const {
   const std::array<RungError, kRungs> errors = levels_.errors_of(body, does);
   const double weight = pixels(candidate) * candidate.importance / candidate.view_factor *
-                        (candidate.asleep ? kErrorOfSleepers : 1.0);
+                        (does == Activity::asleep ? kErrorOfSleepers : 1.0);
   for (std::size_t rung = 0; rung < kRungs; ++rung)
     candidate.error[rung] = float(weight * errors[rung].drift);
 }

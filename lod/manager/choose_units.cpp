@@ -72,6 +72,7 @@ void add(const LevelCandidate& member, const Views& views, Measure measure, Leve
   }
   for (std::size_t rung = 0; rung < kRungs; ++rung)
     unit.cost[rung] += member.cost[rung], unit.error[rung] += member.error[rung];
+  unit.passing += member.passing;
   unit.mesh = std::max(unit.mesh, member.mesh);  // one of them meets what is outside
   unit.asleep &= member.asleep;
   unit.frames_since_change = std::min(unit.frames_since_change, member.frames_since_change);

@@ -17,6 +17,9 @@ struct LevelCandidate {
   double importance = 1.0;
   /// Predicted for a step at each rung, in the unit of the budget; at the full level without pairs.
   std::array<float, kRungs> cost{};
+  /// Of its cost on the rung that it has: of coming there, or kept for when it wakes. No measure of what it
+  /// is worth to leave it there.
+  float passing = 0.0f;
   float mesh = 0.0f;              ///< weight of its mesh in pairs of full bodies (full_pairs.h)
   PairWeights pairs_within = {};  ///< of one that stands for several, when they are full
   bool asleep = false;

@@ -17,7 +17,8 @@ struct Upgrade {
 };
 
 double saved_per_cost(const LevelCandidate& c, Rung from, Rung to) {
-  return (c.error_at(from) - c.error_at(to)) / std::max(kLeastCost, c.cost_at(to) - c.cost_at(from));
+  const double lasting = c.cost_at(to) - (to == c.rung ? double(c.passing) : 0.0);
+  return (c.error_at(from) - c.error_at(to)) / std::max(kLeastCost, lasting - c.cost_at(from));
 }
 
 /// What saves nothing is left out. A rung that the body has already counts for more, so that none of two

@@ -179,6 +179,28 @@ TEST(Choose, AWorkBudgetIsFilledAndKept) {
 }
 
 // What the caller decides goes before any policy, and back.
+// Where sleepers lose their places to those awake, and who has just come looks dear, all go up and down by
+// turns, and wake each other for ever.
+TEST(Choose, AHeapUnderAnErrorBudgetFallsAsleep) {
+  Manager manager = on_floor(
+      {.policy = {.policy = ErrorBudgetPolicy{.budget_work = 1000.0}}, .signatures = coarse_signature});
+  view_from(manager, {0, -6, 2});
+  const auto box = box_shape({0.25, 0.2, 0.2});
+  RandomStream random(1, 0, 0);
+  for (int i = 0; i < 300; ++i)
+    add(manager, box,
+        testing::at({random.uniform(-2, 2), random.uniform(-2, 2), 0.5 + 0.02 * i}, Vec3::Zero(),
+                    random.uniform(0, 5) * random.direction()));
+  run(manager, 12.0);
+  EXPECT_GT(manager.report().asleep, 290);
+  int changes = 0;
+  for (int i = 0; i < 300; ++i) {
+    manager.step(kFrame);
+    changes += int(manager.rung_changes().size());
+  }
+  EXPECT_LT(changes, 10);
+}
+
 TEST(Choose, TheCallersChoiceGoesBeforeThePolicy) {
   std::vector<BodyId> bodies;
   Manager manager = grid_in_space(at_once(DistancePolicy{2.5}), 6, bodies);

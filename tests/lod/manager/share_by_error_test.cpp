@@ -51,6 +51,14 @@ TEST(ShareByError, NoMoreThanTheLimits) {
   EXPECT_EQ(rungs, (std::vector{Rung::full, Rung::support, Rung::tables}));
 }
 
+// It is paid already, and the other would have to pay it, too.
+TEST(ShareByError, WhatComingToARungCostIsNoReasonToLeaveIt) {
+  LevelCandidate arriving = body(10, 5, 1, Rung::support);
+  arriving.passing = 4;
+  arriving.cost[std::size_t(Rung::support)] += arriving.passing;
+  EXPECT_EQ(share({body(10, 5, 1), arriving}, 5.0), (std::vector{Rung::tables, Rung::support}));
+}
+
 TEST(ShareByError, OfTwoAlikeTheOneThatIsUpStaysUp) {
   EXPECT_EQ(share({body(10, 5, 1), body(10, 5, 1, Rung::support)}, 1.0),
             (std::vector{Rung::tables, Rung::support}));
