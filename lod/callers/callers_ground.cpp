@@ -8,15 +8,25 @@
 namespace lodestone {
 namespace {
 
-const Eigen::AlignedBox3d kEverywhere(Vec3::Constant(-1e9), Vec3::Constant(1e9));  // m
+using Box = Eigen::AlignedBox3d;
 
-Eigen::AlignedBox3d in_own_frame(const MirroredGeom& geom) {
+const Box kEverywhere(Vec3::Constant(-1e9), Vec3::Constant(1e9));  // m
+
+Box in_own_frame(const MirroredGeom& geom) {
   // A height field that repeats itself has no bounds.
-  const Eigen::AlignedBox3d bounds(geom.bounds.min().cwiseMax(-kStateLimit),
-                                   geom.bounds.max().cwiseMin(kStateLimit));
+  const Box bounds(geom.bounds.min().cwiseMax(-kStateLimit), geom.bounds.max().cwiseMin(kStateLimit));
   const Vec3 center = geom.orientation.conjugate() * (bounds.center() - geom.position);
   const Vec3 reach = geom.orientation.conjugate().toRotationMatrix().cwiseAbs() * (0.5 * bounds.sizes());
   return {center - reach, center + reach};
+}
+
+// However it is turned when it is first seen: a manager that is restored sees it later, and is to go on
+// alike.
+Box in_own_frame(const GeomShape& shape) {
+  const std::vector<Vec3> corners = shape.kind == GeomKind::trimesh ? shape.vertices : corners_of(shape);
+  Box bounds;
+  for (const Vec3& corner : corners) bounds.extend(corner);
+  return bounds;
 }
 
 HalfSpace plane_of(const MirroredGeom& geom) {
@@ -94,6 +104,9 @@ void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt)
         probed_.push_back(slot);
     } else {
       shape.make = [own = geom.geom] { return solids_of(read_geom(own)); };
+      const bool is_great = geom.kind == GeomKind::trimesh && !geom.body;  // read once somebody comes near
+      if (const Box own = is_great ? Box() : in_own_frame(read_geom(geom.geom)); !own.isEmpty())
+        shape.bounds = own;
     }
     ids_[slot] = ground_.add_part(shape, pose_of(geom, dt, 0.0), 0);
     if (geom.body) carried_.insert(std::ranges::lower_bound(carried_, slot), slot);

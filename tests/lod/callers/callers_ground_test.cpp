@@ -76,6 +76,19 @@ TEST_F(GroundOfCaller, IsWhatHisSpaceHolds) {
   }
 }
 
+// A manager that is restored first sees it as it is turned by then: what its bounds leave out is to be the
+// same, or it goes on otherwise.
+TEST_F(GroundOfCaller, ABoxHasTheSameBoundsHoweverItIsTurnedWhenFirstSeen) {
+  const dGeomID box = scene_.box({2, 1, 0.5}, {3, 0, 0});
+  dMatrix3 turned;
+  dRFromAxisAndAngle(turned, 1, 2, 3, 0.7);
+  dGeomSetRotation(box, turned);
+  follow();
+  const Eigen::AlignedBox3d bounds = part_at({3, 0, 0}).shape.bounds;
+  EXPECT_EQ(bounds.min(), Vec3(-1, -0.5, -0.25));
+  EXPECT_EQ(bounds.max(), Vec3(1, 0.5, 0.25));
+}
+
 TEST_F(GroundOfCaller, PlanesAreHalfSpaces) {
   const dGeomID plane = dCreatePlane(scene_.space, 0, 0, 1, 0.5);
   follow();
