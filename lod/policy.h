@@ -64,7 +64,8 @@ struct PolicySettings {
   /// rung that it may have.
   double out_of_view_factor = 1.0;
   /// Whether a sphere is in view (m, world); empty: whether it meets the frustum of any viewpoint. It is
-  /// asked in every step about each body for which that makes a difference.
+  /// asked in every step about each body for which that makes a difference, and must not change the manager,
+  /// no more than `significance` must.
   std::function<bool(const Vec3& center, double radius)> visible = {};
   /// Times a body's importance; cut to 1e-3 … 1. It is asked about the bodies that a step looks at: those
   /// that are full or awake, and a sleeper now and then.
