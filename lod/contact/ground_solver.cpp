@@ -40,6 +40,8 @@ class PairedMotion {
   Pair first_, middle_, last_;
 };
 
+constexpr double kMostTurn = 1.0;  // rad in a step, for contacts that keep their places
+
 /// The contacts of one solution, and what they begin with.
 class GroundSolver {
  public:
@@ -50,7 +52,9 @@ class GroundSolver {
         inverse_inertia_(inverse_inertia),
         contacts_(contacts),
         step_(step),
-        settings_(settings) {
+        settings_(settings),
+        along_chords_(settings.along_chords &&
+                      step * step * motion.angular_velocity.squaredNorm() < kMostTurn * kMostTurn) {
     for (GroundContact& c : contacts_) prepare(c);
   }
   void solve() {
@@ -62,9 +66,11 @@ class GroundSolver {
  private:
   /// m/s along `axis`, of the point at `arm`: −½ h ω × (ω × r), with which it stays in its place while the
   /// body turns about it. A velocity at right angles to the arm alone would carry the body along the tangent
-  /// of its arc, and the next step take from it what of its velocity is not along the next tangent.
+  /// of its arc, and the next step take from it what of its velocity is not along the next tangent. (Not so
+  /// where it turns far: ω then turns by as much, that of a needle that spins about itself away from its
+  /// arms.)
   double chord(const Vec3& axis, const Vec3& arm) const {
-    if (!settings_.along_chords) return 0.0;
+    if (!along_chords_) return 0.0;
     const Vec3& omega = before_.angular_velocity;
     return 0.5 * step_ * (omega.squaredNorm() * arm.dot(axis) - omega.dot(arm) * omega.dot(axis));
   }
@@ -90,6 +96,7 @@ class GroundSolver {
   std::span<GroundContact> contacts_;
   double step_;  // s
   const ContactSolverSettings& settings_;
+  bool along_chords_;
 };
 
 void GroundSolver::prepare(GroundContact& c) const {

@@ -99,5 +99,24 @@ TEST(GroundSolver, AlongChordsAContactKeepsItsPlace) {
   }
 }
 
+// A needle that spins about itself, an end on the ground: its angular velocity turns by as much as it does,
+// and the end does not go round with the one that it has at first. Needles were thrown off with eight times
+// their energy.
+TEST(GroundSolver, WhatTurnsTooFarInAStepKeepsNoPlace) {
+  const Shape needle = make_shape("needle", make_needle(0.2, 0.002));
+  const auto energy = [&](const GroundMotion& m) {  // J/kg
+    return 0.5 *
+           (m.velocity.squaredNorm() + m.angular_velocity.dot(needle.inertia_per_mass * m.angular_velocity));
+  };
+  for (const double spin : {-600.0, -400.0, 400.0, 600.0}) {  // rad/s
+    GroundMotion motion{Vec3::Zero(), Vec3(20.0, 0, spin)};
+    const GroundMotion before = motion;
+    std::array contacts{
+        GroundContact{.normal = Vec3::UnitX(), .arm = Vec3(-0.002, 0, 0.1), .law = {.friction = 0.0}}};
+    solve_ground_contacts(motion, needle.inverse_inertia_per_mass, contacts, 0.0065, {.along_chords = true});
+    EXPECT_LE(energy(motion), 1.001 * energy(before)) << spin;
+  }
+}
+
 }  // namespace
 }  // namespace lodestone::ground_solver_test
