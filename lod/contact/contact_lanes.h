@@ -336,6 +336,20 @@ struct ContactLanes<L>::PrepareLoop {
   ContactLanes& lanes;
   const CrowdContacts& contacts;
 
+  // m/s along an axis of an impulse of 1 along another, across the first: by how the bodies turn.
+  LODESTONE_INLINE static L turned_along(const BatchLanes<L>& batch, const PointLanes<L>& p,
+                                         const Vec3Lanes<L>& axis, const Vec3Lanes<L>& other) {
+    return dot(cross(p.arm_first, axis), batch.inertia_first * cross(p.arm_first, other)) +
+           dot(cross(p.arm_second, axis), batch.inertia_second * cross(p.arm_second, other));
+  }
+  LODESTONE_INLINE static void soften(const BatchLanes<L>& batch, PointLanes<L>& p,
+                                      const Vec3Lanes<L> (&axes)[3]) {
+    const L coupled[3] = {turned_along(batch, p, axes[0], axes[1]), turned_along(batch, p, axes[1], axes[2]),
+                          turned_along(batch, p, axes[2], axes[0])};
+    const L part = swing_of(p.effective_mass, coupled) < all<L>(1) ? all<L>(1) : all<L>(0.5);
+    for (L& mass : p.effective_mass) mass = mass * part;
+  }
+
   LODESTONE_INLINE void operator()(std::int64_t begin, std::int64_t end) const {
     using R = Real<L>;
     using V = Vec3Lanes<L>;
@@ -362,6 +376,7 @@ struct ContactLanes<L>::PrepareLoop {
               inverse_mass_along(batch.inverse_mass_second, batch.inertia_second, p.arm_second, axes[i]);
           p.effective_mass[i] = (used & (inverse > none)) ? R(1) / most(inverse, all<L>(kLeast)) : none;
         }
+        soften(batch, p, axes);
         const Mask<L> drives = batch.most_impulse < std::numeric_limits<R>::max();
         const L gap = p.target, approach = dot(velocity, n), asked = -gap / step,
                 closing = drives ? asked : least(none, asked);
