@@ -95,9 +95,12 @@ struct UnevenIslands::Work {
 
 // Sweeps by themselves carry a weight through a light body as many of them as the one is heavier. Those that
 // are led end with the velocities that are left to be mended: of a great weight's impulses a small part is
-// much for a light body.
+// much for a light body. Nothing says that these become less: where they are many times what they were, those
+// that are left go by themselves, and never gain.
 void UnevenIslands::Work::sweep_led(int sweeps, double enough, const JobRunner& jobs) {
-  double last = 0.0;
+  constexpr double kWorse = 100.0;
+  double first = 0.0, last = 0.0;
+  bool leads = true;
   for (LedPoint& point : led) std::ranges::fill(point.way, D4{});
   for (int i = 0; i < sweeps; ++i) {
     crowd.sweep(BoundedRelaxation{led.data()}, jobs);
@@ -107,6 +110,9 @@ void UnevenIslands::Work::sweep_led(int sweeps, double enough, const JobRunner& 
     const D4 &sums = changed.sum, &fastest = changed.fastest;
     const double size = (sums[0] + sums[1]) + (sums[2] + sums[3]);
     if (std::max({fastest[0], fastest[1], fastest[2], fastest[3]}) <= enough) return;
+    if (i == 0) first = size;
+    leads = leads && size <= kWorse * first;
+    if (!leads) continue;
     const D4 part = all<D4>(size <= last && last > 0.0 ? size / last : 0.0);
     crowd.sweep(Leading<D4, LedPoint>{led.data(), part}, jobs);
     last = size;
