@@ -84,6 +84,7 @@ class GroundSolver {
   }
   void prepare(GroundContact& c) const;
   void find_tangents(GroundContact& c) const;
+  static void soften(GroundContact& c);
   double share_across(const GroundContact& c) const;
   double relax(GroundContact& c, PairedMotion& motion);
   void start_from_guess(GroundContact& c);
@@ -119,6 +120,15 @@ void GroundSolver::find_tangents(GroundContact& c) const {
   const Mat3 frame = contact_frame(c.normal, before_.velocity_at(c.arm));
   c.share_across = share_across(c);
   for (int i = 1; i < 3; ++i) set_row(c.rows[std::size_t(i)], frame.col(i), c.arm);
+  soften(c);
+}
+
+void GroundSolver::soften(GroundContact& c) {
+  const auto coupled = [&](std::size_t i, std::size_t k) { return c.rows[i].lever.dot(c.rows[k].turning); };
+  const double mass[3] = {c.rows[0].effective_mass, c.rows[1].effective_mass, c.rows[2].effective_mass},
+               all_coupled[3] = {coupled(0, 1), coupled(1, 2), coupled(2, 0)};
+  if (swing_of(mass, all_coupled) < 1.0) return;
+  for (GroundContact::Row& row : c.rows) row.effective_mass *= 0.5;
 }
 
 // For what a torque drives alone.
