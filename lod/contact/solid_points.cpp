@@ -61,11 +61,9 @@ class PointSearch {
   void find_features(const PlacedSolid& solid, double ball_is_over);
   void add(std::int32_t vertex, const Vec3& point, const Vec3& normal, double gap, double least_gap,
            const PlacedSolid& solid, bool along_face = true) {
-    found_.points.push_back({vertex,
-                             point,
-                             {normal, normal.dot(point) - gap, solid.part->material, solid.part->id},
-                             least_gap,
-                             along_face});
+    const HalfSpace plane{normal, normal.dot(point) - gap, solid.part->material, solid.part->id};
+    if (seeker_.may_turn_into(plane, Vec3::Zero(), time_))
+      found_.points.push_back({vertex, point, plane, least_gap, along_face});
   }
   /// m, at the step's end, of a gap along `normal`.
   double gap_then(const Vec3& point, const Vec3& normal, double gap) const {

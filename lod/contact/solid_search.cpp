@@ -42,11 +42,18 @@ GroundSeeker seeker_of(const StatisticalBody& body, const Shape& shape, std::int
           slot};
 }
 
+bool GroundSeeker::may_turn_into(const HalfSpace& plane, const Vec3& velocity, double time) const {
+  const double approach = (velocity - body.velocity).dot(plane.normal);
+  return plane.height_of(body.position) - std::max(0.0, approach) * time <= shape.radius + touching;
+}
+
 bool closes(const PairContact& contact, const GroundPart& part, const GroundSeeker& seeker, double time) {
   const auto points = std::span(contact.manifold.points).first(std::size_t(contact.manifold.count));
   return std::ranges::any_of(points, [&](const ManifoldPoint& p) {
-    const Vec3 velocity = seeker.velocity_at(p.point) - part.velocity_at(p.point);
-    return p.gap + velocity.dot(contact.normal) * time <= seeker.touching;
+    const Vec3 of_part = part.velocity_at(p.point), velocity = seeker.velocity_at(p.point) - of_part;
+    const HalfSpace plane{contact.normal, contact.normal.dot(p.point) - 0.5 * p.gap};
+    return p.gap + velocity.dot(contact.normal) * time <= seeker.touching &&
+           (seeker.omega.isZero(0.0) || seeker.may_turn_into(plane, of_part, time));
   });
 }
 

@@ -24,6 +24,9 @@ struct GroundSeeker {
   Vec3 half_way(double time) const { return 0.5 * time * body.velocity; }
   /// m/s, world.
   Vec3 velocity_at(const Vec3& point) const { return body.velocity + omega.cross(point - body.position); }
+  /// Whether it may come to a plane that goes with `velocity` within `time` seconds, however it turns: that
+  /// takes no point of it out of the ball about its centre, as a tangent at the rim of what spins fast does.
+  bool may_turn_into(const HalfSpace& plane, const Vec3& velocity, double time) const;
 };
 
 /// For a step of `time` seconds.

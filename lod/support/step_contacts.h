@@ -94,7 +94,7 @@ void visit_vertices_near(const HalfSpace& plane, StatisticalBody& body, const Sh
   const Vec3 normal = on.rotation.transpose() * plane.normal;
   const GapChange change{drop, normal.cross(on.motion.angular_velocity) * time};
   const double reach = margin + fall + change.of_arm.norm() * shape.radius;
-  if (height > shape.radius + reach) return;
+  if (height > shape.radius + margin + fall) return;  // however it turns: see GroundSeeker::may_turn_into
   const double first =
       find_lowest_point(shape, body.orientation, plane.normal, height, body.support_hint).gap;
   const HullContacts low = first > least_margin
