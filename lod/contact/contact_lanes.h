@@ -346,7 +346,9 @@ struct ContactLanes<L>::PrepareLoop {
                                       const Vec3Lanes<L> (&axes)[3]) {
     const L coupled[3] = {turned_along(batch, p, axes[0], axes[1]), turned_along(batch, p, axes[1], axes[2]),
                           turned_along(batch, p, axes[2], axes[0])};
-    const L part = swing_of(p.effective_mass, coupled) < all<L>(1) ? all<L>(1) : all<L>(0.5);
+    L swing;
+    find_swing(p.effective_mass, coupled, swing);
+    const L part = swing < all<L>(1) ? all<L>(1) : all<L>(0.5);
     for (L& mass : p.effective_mass) mass = mass * part;
   }
 

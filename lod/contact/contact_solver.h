@@ -50,13 +50,15 @@ struct ContactSolverSettings {
 /// the others, too: from 1 on sweeps would swing ever wider, which friction bounds late or, a great one,
 /// never, and each is to go half as far. `mass`: 1 over the response K along each axis; `coupled`: K from the
 /// axes 0 to 1, 1 to 2, 2 to 0. (Sweeps never gain where 2 D − K, D being K's diagonal, is positive definite:
-/// this is 1 less its determinant over that of D. Where they go half as far it always is.)
+/// `swing` is 1 less its determinant over that of D. Where they go half as far it always is.) Numbers may be
+/// lanes, which are not returned: how depends on the instruction set.
 template <class Numbers>
-[[gnu::always_inline]] inline Numbers swing_of(const Numbers (&mass)[3], const Numbers (&coupled)[3]) {
+[[gnu::always_inline]] inline void find_swing(const Numbers (&mass)[3], const Numbers (&coupled)[3],
+                                              Numbers& swing) {
   const Numbers &a = coupled[0], &b = coupled[1], &c = coupled[2],
                 all = (a * mass[0]) * (b * mass[1]) * (c * mass[2]);
-  return (a * mass[0]) * (a * mass[1]) + (b * mass[1]) * (b * mass[2]) + (c * mass[2]) * (c * mass[0]) +
-         (all + all);
+  swing = (a * mass[0]) * (a * mass[1]) + (b * mass[1]) * (b * mass[2]) + (c * mass[2]) * (c * mass[0]) +
+          (all + all);
 }
 
 /// m/s along the normal at the end of a `step` that a body began with `approach` (negative, with the step's

@@ -127,7 +127,9 @@ void GroundSolver::soften(GroundContact& c) {
   const auto coupled = [&](std::size_t i, std::size_t k) { return c.rows[i].lever.dot(c.rows[k].turning); };
   const double mass[3] = {c.rows[0].effective_mass, c.rows[1].effective_mass, c.rows[2].effective_mass},
                all_coupled[3] = {coupled(0, 1), coupled(1, 2), coupled(2, 0)};
-  if (swing_of(mass, all_coupled) < 1.0) return;
+  double swing;
+  find_swing(mass, all_coupled, swing);
+  if (swing < 1.0) return;
   for (GroundContact::Row& row : c.rows) row.effective_mass *= 0.5;
 }
 

@@ -33,48 +33,95 @@ double NearGround::reach_of(std::int64_t place, double speed) const {
          0.5 * settings_.gravity.norm() * time * time;
 }
 
-void NearGround::find_faces(std::int64_t begin, std::int64_t end) {
+void NearGround::find_faces(std::int64_t begin, std::int64_t end, const JobRunner& jobs) {
   if (!ground_.has_parts()) return;
-  const double time = constants_.wide_time;
+  constexpr std::int64_t kOfAPiece = 16;
+  const std::int64_t count = end - begin;
+  looks_.resize(std::max(looks_.size(), std::size_t((count + kOfAPiece - 1) / kOfAPiece)));
+  const auto look = [&](std::int64_t first, std::int64_t last) {
+    Look& found = looks_[std::size_t(first / kOfAPiece)];
+    found.clear();
+    for (; first < last; ++first) look_below(begin + first, found);
+  };
+  const bool by_rays = make_ground(begin, end);
+  {
+    const Ground::MadeOnly made(ground_);
+    run_in_pieces(by_rays ? one_by_one_ : jobs, count, kOfAPiece, look);
+  }
+  for (std::int64_t first = 0; first < count; first += kOfAPiece)
+    take(looks_[std::size_t(first / kOfAPiece)]);
+}
+
+// On one thread, of all that the spheres may come near, as they look for it. Whether some of it is known by
+// rays, of which only that thread can cast any.
+bool NearGround::make_ground(std::int64_t begin, std::int64_t end) const {
+  thread_local std::vector<const GroundPart*> parts;
+  parts.clear();
+  for (std::int64_t i = begin; i < end; ++i)
+    ground_.find_parts(spheres_.position(i), 2.0 * reach_of(i, farthest_speed(i)), parts);
+  return std::ranges::any_of(parts, [](const GroundPart* part) { return bool(part->shape.probe); });
+}
+
+// m/s, of any of its points.
+double NearGround::farthest_speed(std::int64_t place) const {
+  const Shape& shape = *scene_.kind_of(place).shape;
+  return spheres_.velocity(place).norm() +
+         shape.radius * angular_velocity(spheres_.orientation(place), spheres_.spin(place), shape).norm();
+}
+
+void NearGround::look_below(std::int64_t place, Look& found) const {
   thread_local std::vector<GroundNear> near;
-  for (std::int64_t i = begin; i < end; ++i) {
-    const double reach = reach_of(i, spheres_.velocity(i).norm());
-    const Vec3 center = spheres_.position(i);
-    near.clear();
-    const std::size_t first = faces_.size();
-    const bool alone = scene_.is_alone(i), only_planes = alone && find_planes_of(i);
-    const PairBody hull{scene_.kind_of(i).shape.get(), center, spheres_.orientation(i)};
-    if (!only_planes) find_ground_near(ground_, center, reach, 0.0, near, constants_.hulls ? &hull : nullptr);
-    const bool bridges = !alone && find_bridged_plane(i, near);
-    if (bridges) near.clear();
-    for (const GroundNear& n : near) faces_.push_back(n.plane(center));
-    const bool by_hull = alone && !only_planes;
-    if (faces_.size() == first && !by_hull) continue;
-    for (std::size_t face = first; face < faces_.size(); ++face) {
-      const GroundPart* part = only_planes || bridges ? nullptr : near[face - first].part;  // which may move
-      planes_.add(faces_[face], materials_, kinds_, settings_.gravity,
-                  part ? part->carrying_velocity(center, time) : Vec3(Vec3::Zero()),
+  near.clear();
+  const double reach = reach_of(place, spheres_.velocity(place).norm());
+  const Vec3 center = spheres_.position(place);
+  const std::size_t first = found.faces.size();
+  const bool alone = scene_.is_alone(place), only_planes = alone && find_planes_of(place, found.faces);
+  const PairBody hull{scene_.kind_of(place).shape.get(), center, spheres_.orientation(place)};
+  if (!only_planes) find_ground_near(ground_, center, reach, 0.0, near, constants_.hulls ? &hull : nullptr);
+  const bool bridges = !alone && find_bridged_plane(place, near, found.faces);
+  if (bridges) near.clear();
+  for (const GroundNear& n : near) found.faces.push_back(n.plane(center));
+  const bool by_hull = alone && !only_planes;
+  if (found.faces.size() == first && !by_hull) return;
+  for (std::size_t face = first; face < found.faces.size(); ++face)
+    found.parts.push_back(only_planes || bridges ? nullptr : near[face - first].part);
+  const double margin = reach - double(kinds_.radius[spheres_.kind[std::size_t(place)]]);
+  const bool cornered = by_hull || (!bridges && is_in_corner(place, near, margin));
+  const bool above = std::ranges::none_of(near, [](const GroundNear& n) { return n.part->moves(); }) &&
+                     std::all_of(found.faces.begin() + std::ptrdiff_t(first), found.faces.end(),
+                                 [&](const HalfSpace& face) { return face.height_of(center) >= 0.0; });
+  found.near.push_back(
+      {place, std::int32_t(first), std::int32_t(found.faces.size()), only_planes, cornered, above});
+  const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
+    return n.part->moves() && n.height < double(spheres_.radius[std::size_t(place)]) + margin;
+  });
+  if (mover != near.end())
+    found.carried.push_back({place, mover->part->carrying_velocity(center, constants_.wide_time),
+                             mover->part->pose.angular_velocity});
+}
+
+void NearGround::take(const Look& found) {
+  const auto before = std::int32_t(faces_.size());
+  for (const Near& near : found.near) {
+    near_.push_back(near);
+    near_.back().begin += before, near_.back().end += before;
+    if (near.cornered) cornered_.push_back(spheres_.slot[std::size_t(near.place)]);
+    const Vec3 center = spheres_.position(near.place);
+    for (auto face = std::size_t(near.begin); face < std::size_t(near.end); ++face) {
+      const GroundPart* part = found.parts[face];
+      planes_.add(found.faces[face], materials_, kinds_, settings_.gravity,
+                  part ? part->carrying_velocity(center, constants_.wide_time) : Vec3(Vec3::Zero()),
                   part ? part->pose.angular_velocity : Vec3(Vec3::Zero()));
     }
-    const double margin = reach - double(kinds_.radius[spheres_.kind[std::size_t(i)]]);
-    const bool cornered = by_hull || (!bridges && is_in_corner(i, near, margin));
-    const bool above = std::ranges::none_of(near, [](const GroundNear& n) { return n.part->moves(); }) &&
-                       std::all_of(faces_.begin() + std::ptrdiff_t(first), faces_.end(),
-                                   [&](const HalfSpace& face) { return face.height_of(center) >= 0.0; });
-    near_.push_back({i, std::int32_t(first), std::int32_t(faces_.size()), only_planes, cornered, above});
-    const auto mover = std::ranges::find_if(near, [&](const GroundNear& n) {
-      return n.part->moves() && n.height < double(spheres_.radius[i]) + margin;
-    });
-    if (mover != near.end())
-      carried_.push_back(
-          {i, mover->part->carrying_velocity(center, time), mover->part->pose.angular_velocity});
-    if (cornered) cornered_.push_back(spheres_.slot[i]);
   }
+  faces_.insert(faces_.end(), found.faces.begin(), found.faces.end());
+  carried_.insert(carried_.end(), found.carried.begin(), found.carried.end());
 }
 
 // Where nothing is straight below a body, but parts of the ground on different sides of it are under its
 // hull, as under a plank on two blocks, the plane that they hold it by. False: there is none.
-bool NearGround::find_bridged_plane(std::int64_t place, std::span<const GroundNear> near) {
+bool NearGround::find_bridged_plane(std::int64_t place, std::span<const GroundNear> near,
+                                    std::vector<HalfSpace>& faces) const {
   constexpr double kUpright = 0.98;  // cosine, of what holds it
   constexpr double kFlat = 0.3;  // over R: what reaches down so far is not looked at, since that takes long
   const BodyKind& kind = scene_.kind_of(place);
@@ -87,10 +134,10 @@ bool NearGround::find_bridged_plane(std::int64_t place, std::span<const GroundNe
   const StatisticalBody body = spheres_.body(place);
   thread_local std::vector<SolidContact> contacts;
   contacts.clear();
-  const std::size_t faces = faces_.size();
+  const std::size_t before = faces.size();
   find_solid_contacts(body, kind, spheres_.slot[std::size_t(place)], ground_, 0.0, constants_.wide_time,
-                      contacts, faces_, SolidSearch::all);
-  faces_.resize(faces);
+                      contacts, faces, SolidSearch::all);
+  faces.resize(before);
   std::erase_if(contacts, [&](const SolidContact& c) {
     return c.part->moves() || c.contact.normal.dot(up) < kUpright;
   });
@@ -113,8 +160,8 @@ bool NearGround::find_bridged_plane(std::int64_t place, std::span<const GroundNe
   normal.normalize();
   // Over it the map of its heights, which is coarse, is to tell that gap.
   const double height = double(scene_.ground_height(place, -normal)) + gap;
-  faces_.push_back({normal, normal.dot(body.position) - height, contacts.front().part->material,
-                    contacts.front().part->id});
+  faces.push_back({normal, normal.dot(body.position) - height, contacts.front().part->material,
+                   contacts.front().part->id});
   return true;
 }
 
@@ -138,12 +185,12 @@ bool NearGround::is_in_corner(std::int64_t place, std::span<const GroundNear> ne
 
 // Of one that may stand on its hull. Who stands does until an edge is near, who does not waits until it is
 // farther away: else one at rest there would go on to change.
-bool NearGround::find_planes_of(std::int64_t place) {
+bool NearGround::find_planes_of(std::int64_t place, std::vector<HalfSpace>& faces) const {
   constexpr double kSlack = 0.1;  // over R
   const BodyKind& kind = scene_.kind_of(place);
   const double slack =
       spheres_.on_hull[std::size_t(place)] == HullStand::none ? kSlack * kind.shape->radius : 0.0;
-  return find_planes_below(spheres_.body(place), kind, ground_, slack, constants_.wide_time, faces_);
+  return find_planes_below(spheres_.body(place), kind, ground_, slack, constants_.wide_time, faces);
 }
 
 const NearGround::Near* NearGround::find(std::int64_t place) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lod/contact/solid_contacts.h"
+#include "lod/jobs.h"
 #include "lod/tables/sphere_ground.h"
 #include "lod/tables/sphere_scene.h"
 #include "reference/state_archive.h"
@@ -26,7 +27,7 @@ class NearGround {
   void begin_step();
   /// Of the spheres at places [begin, end): what they are near of the ground's parts, as planes. In ascending
   /// order.
-  void find_faces(std::int64_t begin, std::int64_t end);
+  void find_faces(std::int64_t begin, std::int64_t end, const JobRunner& jobs);
   /// And who may meet a plane or such a face in this step: find_near_ground(). From several threads.
   void find_near(std::int64_t begin, std::int64_t end, Simd simd);
 
@@ -73,8 +74,21 @@ class NearGround {
   };
 
   const Near* find(std::int64_t place) const;
-  bool find_planes_of(std::int64_t place);
-  bool find_bridged_plane(std::int64_t place, std::span<const GroundNear> near);
+  /// What some spheres are near, one after the other.
+  struct Look {
+    std::vector<HalfSpace> faces;
+    std::vector<const GroundPart*> parts;  // of each of these, where it may move
+    std::vector<Near> near;                // in these
+    std::vector<Carried> carried;
+    void clear() { faces.clear(), parts.clear(), near.clear(), carried.clear(); }
+  };
+  bool make_ground(std::int64_t begin, std::int64_t end) const;
+  double farthest_speed(std::int64_t place) const;
+  void look_below(std::int64_t place, Look& found) const;
+  void take(const Look& found);
+  bool find_planes_of(std::int64_t place, std::vector<HalfSpace>& faces) const;
+  bool find_bridged_plane(std::int64_t place, std::span<const GroundNear> near,
+                          std::vector<HalfSpace>& faces) const;
   bool is_in_corner(std::int64_t place, std::span<const GroundNear> near, double margin) const;
   void lift_out(std::int64_t place, const HalfSpace& plane, double lift);
 
@@ -92,6 +106,8 @@ class NearGround {
   std::vector<Near> near_;              // by place
   std::vector<std::int32_t> cornered_;  // slots
   std::vector<Carried> carried_;        // by place
+  std::vector<Look> looks_;
+  JobRunner one_by_one_ = make_job_runner(1);
 };
 
 }  // namespace lodestone

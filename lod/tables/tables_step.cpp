@@ -29,7 +29,7 @@ void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, Co
   near_ground_.begin_step();
   carried_.begin_step();
   leaning_.clear(), set_out_.clear();
-  near_ground_.find_faces(0, spheres_.awake);
+  near_ground_.find_faces(0, spheres_.awake, jobs_);
   each_block([&](std::int64_t begin, std::int64_t end) { start_block(begin, end, simd_); });
 }
 
@@ -95,7 +95,7 @@ void TablesLevel::update_radii_one_by_one() {
 // Those from that place on start their step now.
 void TablesLevel::start_woken(std::int64_t begin) {
   step_.resize(std::size_t(spheres_.awake));
-  near_ground_.find_faces(begin, spheres_.awake);
+  near_ground_.find_faces(begin, spheres_.awake, jobs_);
   start_block(begin, spheres_.awake, simd_);
 }
 

@@ -10,12 +10,12 @@
 namespace lodestone {
 namespace {
 
-using Corners = DeepTriangles::Corners;
+using ThreeCorners = DeepTriangles::Corners;
 
 // Cells of a metre, in waves of a slope of up to 22°.
-std::vector<Corners> wavy_cells(int across) {
+std::vector<ThreeCorners> wavy_cells(int across) {
   const auto at = [](int x, int y) { return Vec3(x, y, 0.3 * std::sin(1.3 * x) * std::cos(1.1 * y)); };
-  std::vector<Corners> triangles;
+  std::vector<ThreeCorners> triangles;
   for (int y = 0; y < across; ++y)
     for (int x = 0; x < across; ++x) {
       triangles.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1)});
@@ -24,10 +24,10 @@ std::vector<Corners> wavy_cells(int across) {
   return triangles;
 }
 
-Vec3 normal_to(const Corners& t) { return (t[1] - t[0]).cross(t[2] - t[0]).normalized(); }
+Vec3 normal_to(const ThreeCorners& t) { return (t[1] - t[0]).cross(t[2] - t[0]).normalized(); }
 
 // m: to what is solid down to `depth` below a triangle, as far beside it as above or below.
-double distance_to(const Corners& t, double depth, const Vec3& point) {
+double distance_to(const ThreeCorners& t, double depth, const Vec3& point) {
   const Vec3 normal = normal_to(t);
   const double height = normal.dot(point - t[0]), off = std::max({0.0, height, -height - depth});
   const Vec3 foot = point - height * normal;
@@ -42,7 +42,7 @@ double distance_to(const Corners& t, double depth, const Vec3& point) {
   return std::hypot(off, is_over ? 0.0 : beside);
 }
 
-void expect_all_near(const std::vector<Corners>& triangles, double depth, const DeepTriangles& deep,
+void expect_all_near(const std::vector<ThreeCorners>& triangles, double depth, const DeepTriangles& deep,
                      const Vec3& center, double reach, std::size_t most) {
   std::vector<int> found;
   deep.find_near(center, reach, 1000, found);
@@ -54,7 +54,7 @@ void expect_all_near(const std::vector<Corners>& triangles, double depth, const 
 }
 
 TEST(DeepTriangles, AreFoundAboveTheSurfaceAndFarBelowIt) {
-  const std::vector<Corners> triangles = wavy_cells(40);
+  const std::vector<ThreeCorners> triangles = wavy_cells(40);
   constexpr double kDeep = 6.0;
   const DeepTriangles one_way(triangles, kDeep, OneWay{.up = Vec3::UnitZ(), .least_cosine = 0.85}),
       any_way(triangles, kDeep, std::nullopt);
@@ -69,7 +69,7 @@ TEST(DeepTriangles, AreFoundAboveTheSurfaceAndFarBelowIt) {
 
 // Where their solids lean over the boxes around many more of them: they are told apart.
 TEST(DeepTriangles, OverALandscapeFewAreNear) {
-  const std::vector<Corners> triangles = wavy_cells(60);
+  const std::vector<ThreeCorners> triangles = wavy_cells(60);
   constexpr double kDeep = 14.0;
   const DeepTriangles deep(triangles, kDeep, OneWay{.up = Vec3::UnitZ(), .least_cosine = 0.85});
   for (int i = 0; i < 50; ++i) {
@@ -80,8 +80,8 @@ TEST(DeepTriangles, OverALandscapeFewAreNear) {
 }
 
 TEST(DeepTriangles, AreFoundFarFromTheOrigin) {
-  std::vector<Corners> triangles = wavy_cells(20);
-  for (Corners& t : triangles)
+  std::vector<ThreeCorners> triangles = wavy_cells(20);
+  for (ThreeCorners& t : triangles)
     for (Vec3& corner : t) corner += Vec3(1e5, -2e5, 3e4);
   const DeepTriangles deep(triangles, 1.0, OneWay{.up = Vec3::UnitZ(), .least_cosine = 0.85});
   for (int i = 0; i < 50; ++i)
