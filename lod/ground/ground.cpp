@@ -348,6 +348,13 @@ void Ground::find_parts(const Vec3& center, double reach, std::vector<const Grou
   }
 }
 
+bool Ground::make_near(const Vec3& center, double reach) const {
+  thread_local std::vector<const GroundPart*> parts;
+  parts.clear();
+  find_parts(center, reach, parts);
+  return std::ranges::any_of(parts, [](const GroundPart* part) { return bool(part->shape.probe); });
+}
+
 void Ground::archive(StateArchive& a) {
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> first;

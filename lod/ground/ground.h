@@ -152,8 +152,10 @@ class Ground {
   /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making.
   /// Not for several threads at once, as it makes solids, but where MadeOnly is.
   void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const;
+  /// Makes the solids of those parts. Whether any is known by rays, which only one thread may cast.
+  bool make_near(const Vec3& center, double reach) const;
   /// While it is there find_parts is for several threads, and passes over parts whose solids are not made
-  /// yet: whoever may come near them finds them before.
+  /// yet: for whom may come near them make_near() has made them.
   class MadeOnly {
    public:
     explicit MadeOnly(const Ground& ground) : ground_(ground) {

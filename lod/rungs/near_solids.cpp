@@ -8,7 +8,6 @@ namespace lodestone {
 namespace {
 
 constexpr std::int64_t kBodiesOfAPiece = 16;
-constexpr double kStruck = 3.0;  // over its reach if nothing strikes it
 
 }  // namespace
 
@@ -30,7 +29,7 @@ void NearSolids::find(const ContactScene& scene, std::span<const std::int32_t> b
   pieces_.resize(std::max(pieces_.size(), std::size_t((count + kBodiesOfAPiece - 1) / kBodiesOfAPiece)));
   const auto find_piece = [&](std::int64_t begin, std::int64_t end) {
     Piece& piece = pieces_[std::size_t(begin / kBodiesOfAPiece)];
-    piece.contacts.clear(), piece.faces.clear(), piece.ends.clear();
+    piece.clear();
     for (; begin < end; ++begin) find_of(scene, bodies[std::size_t(begin)], after, time, search, piece);
   };
   by_rays_ = make_ground(scene, bodies, time);
@@ -64,28 +63,27 @@ void NearSolids::find_more(const ContactScene& scene, std::span<const std::int32
       found_.append(slot, all.subspan(std::size_t(first), end - std::size_t(first)), known_.faces.of(slot));
       continue;
     }
-    Piece piece;
-    find_of(scene, slot, after, time, SolidSearch::all, piece);
-    found_.append(slot, piece.contacts, piece.faces);
+    more_.clear();
+    find_of(scene, slot, after, time, SolidSearch::all, more_);
+    found_.append(slot, more_.contacts, more_.faces);
   }
   for (const std::int32_t slot : known) place_of_known_[std::size_t(slot)] = -1;
 }
 
-// On one thread, of all that they may come near, whatever strikes them in that time. Whether some of it is
-// known by rays, of which only that thread can cast any.
+// All that they may come near, whatever strikes them in that time. Whether some of it is known by rays.
 bool NearSolids::make_ground(const ContactScene& scene, std::span<const std::int32_t> bodies,
                              double time) const {
-  thread_local std::vector<const GroundPart*> parts;
-  parts.clear();
+  constexpr double kStruck = 3.0;  // over its reach if nothing strikes it
+  bool by_rays = false;
   for (const std::int32_t slot : bodies) {
     const StatisticalBody& body = scene.bodies[std::size_t(slot)];
     if (!meets_solids(scene.world.properties_of(body.owner))) continue;
     const Shape& shape = *scene.kind_of(body).shape;
     const double way = seeker_of(body, shape, slot, time).way +
                        scene.acceleration(Participant::statistical(std::size_t(slot))).norm() * time * time;
-    ground_.find_parts(body.position, kStruck * (shape.radius + way), parts);
+    by_rays |= ground_.make_near(body.position, kStruck * (shape.radius + way));
   }
-  return std::ranges::any_of(parts, [](const GroundPart* part) { return bool(part->shape.probe); });
+  return by_rays;
 }
 
 void NearSolids::find_of(const ContactScene& scene, std::int32_t slot, double after, double time,

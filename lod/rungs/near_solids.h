@@ -50,6 +50,7 @@ class NearSolids {
     std::vector<SolidContact> contacts;
     std::vector<HalfSpace> faces;
     std::vector<std::pair<std::size_t, std::size_t>> ends;
+    void clear() { contacts.clear(), faces.clear(), ends.clear(); }
   };
   bool make_ground(const ContactScene& scene, std::span<const std::int32_t> bodies, double time) const;
   void find_of(const ContactScene& scene, std::int32_t slot, double after, double time, SolidSearch search,
@@ -60,6 +61,7 @@ class NearSolids {
   bool by_rays_ = false;
   Found found_, known_;
   std::vector<Piece> pieces_;
+  Piece more_;
   std::vector<std::int32_t> place_of_known_;  // of each slot in known_.contacts, −1 else: but while more
                                               // bodies are added
 };

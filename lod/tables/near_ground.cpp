@@ -52,14 +52,13 @@ void NearGround::find_faces(std::int64_t begin, std::int64_t end, const JobRunne
     take(looks_[std::size_t(first / kOfAPiece)]);
 }
 
-// On one thread, of all that the spheres may come near, as they look for it. Whether some of it is known by
-// rays, of which only that thread can cast any.
+// All that the spheres may come near, as they look for it. Whether some of it is known by rays.
 bool NearGround::make_ground(std::int64_t begin, std::int64_t end) const {
-  thread_local std::vector<const GroundPart*> parts;
-  parts.clear();
+  constexpr double kMost = 2.0;  // over what one looks for
+  bool by_rays = false;
   for (std::int64_t i = begin; i < end; ++i)
-    ground_.find_parts(spheres_.position(i), 2.0 * reach_of(i, farthest_speed(i)), parts);
-  return std::ranges::any_of(parts, [](const GroundPart* part) { return bool(part->shape.probe); });
+    by_rays |= ground_.make_near(spheres_.position(i), kMost * reach_of(i, farthest_speed(i)));
+  return by_rays;
 }
 
 // m/s, of any of its points.
