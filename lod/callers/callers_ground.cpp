@@ -104,7 +104,8 @@ void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt)
         probed_.push_back(slot);
     } else {
       shape.make = [own = geom.geom] { return solids_of(read_geom(own)); };
-      const bool is_great = geom.kind == GeomKind::trimesh && !geom.body;  // read once somebody comes near
+      const bool is_dear = geom.kind == GeomKind::trimesh || geom.kind == GeomKind::convex,
+                 is_great = is_dear && !geom.body;  // read once somebody comes near
       if (const Box own = is_great ? Box() : in_own_frame(read_geom(geom.geom)); !own.isEmpty())
         shape.bounds = own;
     }

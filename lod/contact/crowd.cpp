@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -185,8 +184,8 @@ void Crowd::pass_forces_on(const ContactScene& scene, const Sleeps& sleeps) {
         pushes_[std::size_t(to)].forced = any = true;
   };
   while (std::exchange(any, false)) {  // to and fro: rows stand in the manifolds' order, or against it
-    std::ranges::for_each(manifolds, pass_on);
-    std::ranges::for_each(manifolds | std::views::reverse, pass_on);
+    std::for_each(manifolds.begin(), manifolds.end(), pass_on);
+    std::for_each(manifolds.rbegin(), manifolds.rend(), pass_on);
   }
 }
 

@@ -231,7 +231,9 @@ void SmallIslands::Work::sweep_led(const Group& group, const Answer& answer, L& 
           mass > L{} ? 1.0F / most(mass, all<L>(1e-30F)) : L{};  // divides by no zero
     }
   });
-  L last{};
+  // Leading may go astray: then a lane goes on by itself.
+  constexpr float kWorse = 10.0F;  // over its first change
+  L first{}, last{}, leads = live;
   for (int i = 1;; ++i) {
     std::uint32_t rounds = 0;
     for (std::size_t lane = 0; lane < kWidth; ++lane)
@@ -240,7 +242,9 @@ void SmallIslands::Work::sweep_led(const Group& group, const Answer& answer, L& 
     lanes.sweep(Noted<Answer>{answer, led.data(), size}, group.begin, group.begin + rounds);
     live = size.fastest > kLedTolerance * struck ? live : L{};
     if (i == kMostLedSweeps || !any(live > L{})) return;  // within its bounds
-    const Mask<L> nears = (live > L{}) & (last > L{}) & (size.sum <= last);
+    if (i == 1) first = size.sum;
+    leads = size.sum <= kWorse * first ? leads : L{};
+    const Mask<L> nears = (leads > L{}) & (live > L{}) & (last > L{}) & (size.sum <= last);
     const L part = nears ? size.sum / (nears ? last : all<L>(1)) : L{};
     lanes.sweep(Leading<L, LedLanes>{led.data(), part}, group.begin, group.begin + rounds);
     last = size.sum;

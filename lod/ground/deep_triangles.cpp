@@ -35,12 +35,16 @@ DeepTriangles::DeepTriangles(std::span<const Corners> triangles, double depth,
     : depth_(float(depth)), one_way_(one_way.has_value()) {
   std::vector<Vec3> normals;
   std::vector<Eigen::AlignedBox3d> bare, deep;
+  Eigen::AlignedBox3d all;
+  for (const Corners& corner : triangles)
+    for (const Vec3& c : corner) all.extend(c);
+  if (!all.isEmpty()) middle_ = all.center();
   for (const Corners& corner : triangles) {
     normals.push_back((corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized());
     Eigen::AlignedBox3d& box = bare.emplace_back();
-    for (const Vec3& c : corner) box.extend(c);
+    for (const Vec3& c : corner) box.extend(c - middle_);
     deep.push_back(box), deep.back().extend(box.translated(-depth * normals.back()));
-    bounds_.extend(deep.back());
+    bounds_.extend(deep.back().translated(middle_));
   }
   if (one_way) up_ = floats_of(one_way->up), deepest_over_height_ = float(1.0 / one_way->least_cosine);
   tree_ = BoxHierarchy(one_way ? bare : deep);
@@ -48,7 +52,7 @@ DeepTriangles::DeepTriangles(std::span<const Corners> triangles, double depth,
   for (std::size_t place = 0; place < triangles.size(); ++place) {
     const auto i = std::size_t(tree_.number_at(std::int32_t(place)));
     flats_.push_back({floats_of(normals[i]),
-                      float(normals[i].dot(triangles[i][0])),
+                      float(normals[i].dot(triangles[i][0] - middle_)),
                       {floats_of(bare[i].min()), floats_of(bare[i].max())}});
   }
 }
@@ -74,8 +78,9 @@ bool DeepTriangles::may_be_near(const FloatBox& bare, const Floats& center, floa
 
 void DeepTriangles::find_near(const Vec3& around, double within, int first, std::vector<int>& found) const {
   constexpr float kRounding = 1e-6f;  // more than a float errs by in some sums
-  const Floats center = floats_of(around);
-  const Vec3 largest = bounds_.min().cwiseAbs().cwiseMax(bounds_.max().cwiseAbs()) + around.cwiseAbs();
+  const Vec3 from_middle = around - middle_;
+  const Floats center = floats_of(from_middle);
+  const Vec3 largest = bounds_.sizes() + from_middle.cwiseAbs();
   const float reach = float(within) + kRounding * float(largest.sum() + within);
   const auto add = [&](std::int32_t place) {
     if (is_near(flats_[std::size_t(place)], center, reach)) found.push_back(first + tree_.number_at(place));

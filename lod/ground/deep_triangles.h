@@ -39,7 +39,8 @@ class DeepTriangles {
   bool is_near(const Flat& triangle, const Floats& center, float reach) const;
   bool may_be_near(const FloatBox& bare, const Floats& center, float reach) const;
 
-  float depth_ = 0.0f;  // m
+  Vec3 middle_ = Vec3::Zero();  // m, of all: floats are from there
+  float depth_ = 0.0f;          // m
   bool one_way_ = false;
   Floats up_ = {};
   float deepest_over_height_ = 1.0f;

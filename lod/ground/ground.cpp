@@ -104,6 +104,7 @@ GroundId Ground::add_part(const GroundShape& shape, const GroundPose& pose, Mate
   const std::int32_t index = free_parts_.back();
   free_parts_.pop_back();
   moving_ += part->moves();
+  unmade_ += bool(shape.make), probed_ += bool(shape.probe);
   parts_[std::size_t(index)] = std::move(part);
   ++parts_used_;
   hold(index);
@@ -139,7 +140,9 @@ void Ground::remove(GroundId id) {
   } else {
     const std::int32_t index = entry.part;
     let_go(index);
-    moving_ -= parts_[std::size_t(index)]->moves();
+    const GroundPart& part = *parts_[std::size_t(index)];
+    moving_ -= part.moves();
+    unmade_ -= part.shape.make && !part.solids, probed_ -= bool(part.shape.probe);
     parts_[std::size_t(index)].reset();
     free_parts_.push_back(index);
     --parts_used_;
@@ -206,8 +209,8 @@ void Ground::go_on() {
     stand(index, pose_after(pose, pose.goes_on_s));
   };
   std::ranges::sort(going_, {}, &GroundId::index);
-  const auto twice = std::ranges::unique(going_, {}, &GroundId::index);
-  going_.erase(twice.begin(), twice.end());
+  const auto are_one = [](GroundId a, GroundId b) { return a.index == b.index; };
+  going_.erase(std::unique(going_.begin(), going_.end(), are_one), going_.end());
   const bool first = was_put_.empty();
   for (const GroundId id : going_) {
     if (!valid(id) || !part(id).pose.comes_back || !part(id).moves()) continue;
@@ -344,11 +347,13 @@ void Ground::find_parts(const Vec3& center, double reach, std::vector<const Grou
       if (made_only_) continue;
       solids_of(i);
     }
+    if (part.shape.probe && without_rays_) continue;
     found.push_back(&part);
   }
 }
 
 bool Ground::make_near(const Vec3& center, double reach) const {
+  if (unmade_ == 0 && probed_ == 0) return false;
   thread_local std::vector<const GroundPart*> parts;
   parts.clear();
   find_parts(center, reach, parts);
@@ -388,6 +393,7 @@ void Ground::archive(StateArchive& a) {
   for (std::size_t i = 0; i < std::min(first.size(), parts_.size()); ++i) {
     if (!parts_[i]) continue;
     if (first[i] == kNone) {
+      unmade_ += parts_[i]->shape.make && parts_[i]->solids;
       parts_[i]->solids.reset();  // to be numbered when they are next made
     } else if (parts_[i]->shape.make) {
       solids_of(std::int32_t(i));
@@ -402,6 +408,7 @@ const GroundSolids& Ground::solids_of(std::int32_t index) const {
   if (!part.solids) {
     part.solids = part.shape.make();
     part.solids->prepare();
+    --unmade_;
     part.first_number = numbers_;
     numbers_ += std::uint32_t(part.solids->size());
   }

@@ -100,8 +100,8 @@ struct PlacedSolid {
 /// times `reach` m meets nothing, and for other parts.
 std::optional<HalfSpace> probe_below(const GroundPart& part, const Vec3& center, double reach);
 
-/// Appends the solids of `part` whose bounding boxes come within `reach` of `center`, as they stand `after`
-/// seconds from the beginning of the step.
+/// Appends the solids of `part` that may come within `reach` of `center`, as they stand `after` seconds from
+/// the beginning of the step.
 void find_solids(const GroundPart& part, const Vec3& center, double reach, double after,
                  std::vector<PlacedSolid>& found);
 
@@ -158,10 +158,11 @@ class Ground {
   /// yet: for whom may come near them make_near() has made them.
   class MadeOnly {
    public:
-    explicit MadeOnly(const Ground& ground) : ground_(ground) {
-      ground_.prepare_tree(), ground_.made_only_ = true;
+    /// `by_rays`: one thread alone is at work, which may cast them.
+    MadeOnly(const Ground& ground, bool by_rays) : ground_(ground) {
+      ground_.prepare_tree(), ground_.made_only_ = true, ground_.without_rays_ = !by_rays;
     }
-    ~MadeOnly() { ground_.made_only_ = false; }
+    ~MadeOnly() { ground_.made_only_ = ground_.without_rays_ = false; }
     MadeOnly(const MadeOnly&) = delete;
     MadeOnly& operator=(const MadeOnly&) = delete;
 
@@ -208,7 +209,8 @@ class Ground {
   std::vector<std::pair<GroundId, GroundPose>> was_put_;  // what has gone on and comes back
   mutable std::uint32_t numbers_ = 0;
 
-  mutable bool made_only_ = false;
+  mutable std::size_t unmade_ = 0, probed_ = 0;  // parts without their solids; known by rays
+  mutable bool made_only_ = false, without_rays_ = false;
 
   // Most parts stand in a tree, built now and then; those that came or moved since are looked at one by one.
   mutable BoxHierarchy tree_;

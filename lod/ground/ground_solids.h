@@ -30,8 +30,8 @@ class GroundSolids {
     return place < solids_.size() ? solids_[place] : (*surface_)[place - solids_.size()];
   }
   const Eigen::AlignedBox3d& bounds() const { return all_bounds_; }
-  /// Appends the indices of the solids whose bounding boxes come within `reach` of `center`, both in the
-  /// part's frame.
+  /// Appends the indices of the solids that may come within `reach` of `center`, both in the part's frame: by
+  /// their bounding boxes, of a surface as DeepTriangles finds them.
   void find_near(const Vec3& center, double reach, std::vector<int>& found) const;
 
  private:

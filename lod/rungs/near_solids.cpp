@@ -93,14 +93,13 @@ void NearSolids::find_of(const ContactScene& scene, std::int32_t slot, double af
   if (const BodyProperties& own = scene.world.properties_of(body.owner); meets_solids(own)) {
     const MetGround ground(ground_, own);
     const BodyKind& kind = scene.kind_of(body);
-    const Vec3 velocity = body.velocity;
+    StatisticalBody seeker = body;
     if (search == SolidSearch::one_of_a_part)  // of the whole step
-      body.velocity += time * scene.gravity(Participant::statistical(std::size_t(slot)));
+      seeker.velocity += time * scene.gravity(Participant::statistical(std::size_t(slot)));
     if (body.is_sphere())
-      find_sphere_contacts(body, kind, slot, ground, after, time, piece.contacts, piece.faces);
+      find_sphere_contacts(seeker, kind, slot, ground, after, time, piece.contacts, piece.faces);
     else
-      find_solid_contacts(body, kind, slot, ground, after, time, piece.contacts, piece.faces, search);
-    body.velocity = velocity;
+      find_solid_contacts(seeker, kind, slot, ground, after, time, piece.contacts, piece.faces, search);
   }
   piece.ends.emplace_back(piece.contacts.size(), piece.faces.size());
   body.on_solid = piece.contacts.size() > before;

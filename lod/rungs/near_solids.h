@@ -31,7 +31,7 @@ class NearSolids {
   /// among them: on all threads, but where only this one can ask for the ground.
   template <class Body>
   void run_among(std::int64_t count, std::int64_t grain, const Body& body) const {
-    const Ground::MadeOnly made(ground_);
+    const Ground::MadeOnly made(ground_, by_rays_);
     run_in_pieces(by_rays_ ? one_by_one_ : jobs_, count, grain, body);
   }
 

@@ -45,7 +45,7 @@ void NearGround::find_faces(std::int64_t begin, std::int64_t end, const JobRunne
   };
   const bool by_rays = make_ground(begin, end);
   {
-    const Ground::MadeOnly made(ground_);
+    const Ground::MadeOnly made(ground_, by_rays);
     run_in_pieces(by_rays ? one_by_one_ : jobs, count, kOfAPiece, look);
   }
   for (std::int64_t first = 0; first < count; first += kOfAPiece)

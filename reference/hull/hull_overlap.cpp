@@ -54,7 +54,8 @@ Vec3 farthest_between(const PlacedHull& first, const PlacedHull& second, const V
 struct Corner {
   std::vector<Vec3> normals, edges;
 
-  Corner(const PlacedHull& body, const Vec3& direction) {
+  void find(const PlacedHull& body, const Vec3& direction) {
+    normals.clear(), edges.clear();
     if (body.shape->sphere_radius) return;
     const Hull& hull = body.shape->hull;
     const int vertex = body.farthest_vertex(direction);
@@ -84,7 +85,8 @@ class Walk {
   bool step() {
     const double before = best_.depth;
     const Vec3 from = best_.direction;
-    const Corner first(first_, -from), second(second_, from);
+    thread_local Corner first, second;
+    first.find(first_, -from), second.find(second_, from);
     for (const Vec3& normal : first.normals) consider(-normal, from);
     for (const Vec3& normal : second.normals) consider(normal, from);
     for (const Vec3& a : first.edges)

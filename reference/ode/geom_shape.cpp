@@ -1,5 +1,7 @@
 #include "reference/ode/geom_shape.h"
 
+#include <memory>
+
 #include "reference/error.h"
 #include "reference/hull/hull.h"
 #include "reference/ode/geometry_ode.h"
@@ -13,8 +15,8 @@ namespace {
 // A convex keeps its corners to itself, but its contacts with a plane are those of them that are below: a
 // plane through its middle and the same one turned round give all of them.
 std::vector<Vec3> corners_of(dGeomID convex) {
-  constexpr int kMost = 0xffff;  // as many as dCollide can give
-  std::vector<dContactGeom> found(kMost);
+  constexpr int kMost = 0xffff;                                              // as many as dCollide can give
+  const auto found = std::make_unique_for_overwrite<dContactGeom[]>(kMost);  // megabytes
   dReal b[6];
   dGeomGetAABB(convex, b);
   const double middle = 0.5 * (b[4] + b[5]);
@@ -24,7 +26,7 @@ std::vector<Vec3> corners_of(dGeomID convex) {
   std::vector<Vec3> corners;
   for (const double side : {1.0, -1.0}) {
     const dGeomID plane = dCreatePlane(nullptr, 0, 0, side, side * middle);
-    const int count = dCollide(convex, plane, kMost, found.data(), sizeof(dContactGeom));
+    const int count = dCollide(convex, plane, kMost, found.get(), sizeof(dContactGeom));
     dGeomDestroy(plane);
     for (int i = 0; i < count; ++i)
       corners.push_back(to_quat(q).conjugate() * (to_vec3(found[i].pos) - place));
