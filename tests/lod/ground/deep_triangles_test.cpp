@@ -86,7 +86,7 @@ TEST(DeepTriangles, AreFoundFarFromTheOrigin) {
   const DeepTriangles deep(triangles, 1.0, OneWay{.up = Vec3::UnitZ(), .least_cosine = 0.85});
   for (int i = 0; i < 50; ++i)
     expect_all_near(triangles, 1.0, deep, Vec3(1e5 + 2.0 + 0.3 * i, -2e5 + 5.0 + 0.2 * i, 3e4 + 0.02 * i),
-                    0.3, 80);
+                    0.3, 20);
 }
 
 }  // namespace
