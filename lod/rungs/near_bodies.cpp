@@ -240,7 +240,7 @@ void NearBodies::move_alone(const Step& step, double time) {
 // Those that touch the ground's parts alone. Where these go on, in the frame that goes with them, in which
 // they stand still; nobody sleeps there.
 void NearBodies::move_on_solids(const Step& step, double time) {
-  constexpr std::int64_t kBodiesOfAPiece = 4;
+  constexpr std::int64_t kFew = 4;  // bodies, that take long each
   on_solids_.clear();
   std::span<const SolidContact> contacts = solids_.contacts();
   for (const std::int32_t index : movers_) {
@@ -252,7 +252,7 @@ void NearBodies::move_on_solids(const Step& step, double time) {
   }
   const auto count = std::int64_t(on_solids_.size());
   tallies_.assign(std::size_t(count), {});
-  solids_.run_among(count, kBodiesOfAPiece, [&](std::int64_t begin, std::int64_t end) {
+  solids_.run_among(count, kFew, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
       const auto& [index, along] = on_solids_[i];
       StatisticalBody& body = step.scene.bodies[std::size_t(index)];

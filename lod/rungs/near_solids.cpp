@@ -1,15 +1,8 @@
 #include "lod/rungs/near_solids.h"
 
-#include <algorithm>
-
 #include "lod/contact/solid_search.h"
 
 namespace lodestone {
-namespace {
-
-constexpr std::int64_t kBodiesOfAPiece = 16;
-
-}  // namespace
 
 bool meets_solids(const BodyProperties& own) { return !own.kinematic && meets_ground(own); }
 
@@ -26,14 +19,10 @@ void NearSolids::find(const ContactScene& scene, std::span<const std::int32_t> b
   if (!ground_.has_parts()) return found_.begin(0);
   found_.begin(scene.bodies.size());  // who is woken last is asked about, too
   const auto count = std::int64_t(bodies.size());
-  pieces_.resize(std::max(pieces_.size(), std::size_t((count + kBodiesOfAPiece - 1) / kBodiesOfAPiece)));
-  const auto find_piece = [&](std::int64_t begin, std::int64_t end) {
-    Piece& piece = pieces_[std::size_t(begin / kBodiesOfAPiece)];
-    piece.clear();
-    for (; begin < end; ++begin) find_of(scene, bodies[std::size_t(begin)], after, time, search, piece);
-  };
   by_rays_ = make_ground(scene, bodies, time);
-  run_among(count, kBodiesOfAPiece, find_piece);
+  find_on_ground(ground_, jobs_, by_rays_, count, pieces_, [&](std::int64_t i, Piece& piece) {
+    find_of(scene, bodies[std::size_t(i)], after, time, search, piece);
+  });
   for (std::int64_t i = 0; i < count; ++i) {
     const Piece& piece = pieces_[std::size_t(i / kBodiesOfAPiece)];
     const auto place = std::size_t(i % kBodiesOfAPiece);

@@ -8,7 +8,7 @@
 
 #include "lod/contact/contact_scene.h"
 #include "lod/contact/solid_contacts.h"
-#include "lod/jobs.h"
+#include "lod/ground/ground_jobs.h"
 
 namespace lodestone {
 
@@ -31,8 +31,7 @@ class NearSolids {
   /// among them: on all threads, but where only this one can ask for the ground.
   template <class Body>
   void run_among(std::int64_t count, std::int64_t grain, const Body& body) const {
-    const Ground::MadeOnly made(ground_, by_rays_);
-    run_in_pieces(by_rays_ ? one_by_one_ : jobs_, count, grain, body);
+    run_on_ground(ground_, jobs_, by_rays_, count, grain, body);
   }
 
   std::span<const SolidContact> contacts() const { return found_.contacts; }  ///< body by body
@@ -57,7 +56,7 @@ class NearSolids {
                Piece& piece) const;
 
   const Ground& ground_;
-  JobRunner jobs_, one_by_one_ = make_job_runner(1);
+  JobRunner jobs_;
   bool by_rays_ = false;
   Found found_, known_;
   std::vector<Piece> pieces_;

@@ -35,21 +35,11 @@ double NearGround::reach_of(std::int64_t place, double speed) const {
 
 void NearGround::find_faces(std::int64_t begin, std::int64_t end, const JobRunner& jobs) {
   if (!ground_.has_parts()) return;
-  constexpr std::int64_t kOfAPiece = 16;
   const std::int64_t count = end - begin;
-  looks_.resize(std::max(looks_.size(), std::size_t((count + kOfAPiece - 1) / kOfAPiece)));
-  const auto look = [&](std::int64_t first, std::int64_t last) {
-    Look& found = looks_[std::size_t(first / kOfAPiece)];
-    found.clear();
-    for (; first < last; ++first) look_below(begin + first, found);
-  };
-  const bool by_rays = make_ground(begin, end);
-  {
-    const Ground::MadeOnly made(ground_, by_rays);
-    run_in_pieces(by_rays ? one_by_one_ : jobs, count, kOfAPiece, look);
-  }
-  for (std::int64_t first = 0; first < count; first += kOfAPiece)
-    take(looks_[std::size_t(first / kOfAPiece)]);
+  find_on_ground(ground_, jobs, make_ground(begin, end), count, looks_,
+                 [&](std::int64_t i, Look& found) { look_below(begin + i, found); });
+  for (std::int64_t first = 0; first < count; first += kBodiesOfAPiece)
+    take(looks_[std::size_t(first / kBodiesOfAPiece)]);
 }
 
 // All that the spheres may come near, as they look for it. Whether some of it is known by rays.

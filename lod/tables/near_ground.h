@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lod/contact/solid_contacts.h"
-#include "lod/jobs.h"
+#include "lod/ground/ground_jobs.h"
 #include "lod/tables/sphere_ground.h"
 #include "lod/tables/sphere_scene.h"
 #include "reference/state_archive.h"
@@ -107,7 +107,6 @@ class NearGround {
   std::vector<std::int32_t> cornered_;  // slots
   std::vector<Carried> carried_;        // by place
   std::vector<Look> looks_;
-  JobRunner one_by_one_ = make_job_runner(1);
 };
 
 }  // namespace lodestone
