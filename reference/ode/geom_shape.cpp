@@ -15,8 +15,9 @@ namespace {
 // A convex keeps its corners to itself, but its contacts with a plane are those of them that are below: a
 // plane through its middle and the same one turned round give all of them.
 std::vector<Vec3> corners_of(dGeomID convex) {
-  constexpr int kMost = 0xffff;                                              // as many as dCollide can give
-  const auto found = std::make_unique_for_overwrite<dContactGeom[]>(kMost);  // megabytes
+  constexpr int kMost = 0xffff;  // as many as dCollide can give
+
+  const auto found = std::make_unique_for_overwrite<dContactGeom[]>(kMost);  // megabytes: not set to 0
   dReal b[6];
   dGeomGetAABB(convex, b);
   const double middle = 0.5 * (b[4] + b[5]);

@@ -68,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
                                            Shipped{"boxes", 100}, Shipped{"l_shapes", 300},
                                            Shipped{"side_by_side", 100}, Shipped{"ten_thousand", 10000},
                                            Shipped{"forced", 1000}, Shipped{"heap", 2000},
-                                           Shipped{"hills", 400}, Shipped{"stairs", 240},
-                                           Shipped{"bins", 296}),
+                                           Shipped{"hills", 400}, Shipped{"landscape", 1000},
+                                           Shipped{"stairs", 240}, Shipped{"bins", 296}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(ShippedScenes, TheCityHasTenThousandBodiesOfFiveShapesAndFourRagdolls) {
