@@ -60,11 +60,12 @@ std::string text_of_validity(const Signature& s) {
 std::string text_of(const std::vector<NamedTable>& tables) {
   TextTable table({"table", "cells", "trials", "a cell", "std. error", "greatest", "held-out KS",
                    "held-out error", "into plane", "at first", "energy", "at first", "mean/dev. V"});
-  for (const auto& [name, cells, c] : tables) {
+  for (const NamedTable& named : tables) {
+    const TableCertificate& c = named.certificate;
     const auto known = [&](double figure, int digits) {
       return c.knows_first_impulse() ? fmt::format("{:.{}f}", figure, digits) : "-";
     };
-    table.add_row({std::string(name), fmt::format("{}", cells), fmt::format("{}", c.trials),
+    table.add_row({std::string(named.name), fmt::format("{}", named.cells), fmt::format("{}", c.trials),
                    c.fewest_trials == c.most_trials ? fmt::format("{}", c.most_trials)
                                                     : fmt::format("{}-{}", c.fewest_trials, c.most_trials),
                    fmt::format("{:.4f}", c.standard_error), fmt::format("{:.4f}", c.greatest_standard_error),

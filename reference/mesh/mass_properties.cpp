@@ -21,6 +21,7 @@ MassProperties measure_mass_properties(const Mesh& mesh) {
     second_moment +=
         det / 120.0 * (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
   }
+  if (volume == 0.0) return {0.0, middle, Mat3::Zero()};
   const Vec3 center = first_moment / volume;
   const Mat3 covariance = second_moment / volume - center * center.transpose();
   return {volume, middle + center, covariance.trace() * Mat3::Identity() - covariance};

@@ -14,7 +14,7 @@ struct MassProperties {
 };
 
 /// Of a solid of uniform density bounded by `mesh` (closed, outward faces). An open mesh gives a meaningless
-/// value: check MeshReport::closed() first.
+/// value: check MeshReport::closed() first. One without volume has its bounding box's middle and no inertia.
 MassProperties measure_mass_properties(const Mesh& mesh);
 
 /// Whether `inertia_per_mass` can belong to a rigid body: symmetric, positive definite, I1 + I2 ≥ I3 for its

@@ -30,10 +30,10 @@ class SphereLevel : public ::testing::Test {
   static int add(testing::OneRung& level, const RigidState& state, bool asleep = false) {
     return level.add(std::uint32_t(level.size()), box(), 24.0, 0, state, asleep, box_signature());
   }
-  // A heap that falls: `side` × `side` columns.
-  static void add_heap(testing::OneRung& level, int side, int layers) {
+  // A heap that falls: `side` × `side` columns. `heap`: which of those that begin otherwise.
+  static void add_heap(testing::OneRung& level, int side, int layers, std::uint32_t heap = 0) {
     for (int i = 0; i < side * side * layers; ++i) {
-      RandomStream random(5, std::uint64_t(i), 0);
+      RandomStream random(5, std::uint64_t(i), heap);
       RigidState s;
       s.position = {0.5 * (i % side), 0.5 * (i / side % side), 0.5 + 0.6 * (i / (side * side))};
       s.orientation = random.orientation();
@@ -162,7 +162,7 @@ TEST_F(SphereLevel, ContactsKeepMomentum) {
   EXPECT_GT(contacts, 500);
 }
 
-// The deepest of 96 spheres, over R, is .08 to .31 into another in a dozen heaps, .15 in the mean.
+// The deepest of 96 boxes, over R, is .009 to .064 in another in two dozen heaps, as published .005 to .014.
 TEST_F(SphereLevel, HeapsComeToRestWithoutSinkingIntoThemselves) {
   for (const bool as_paper : {true, false}) {
     settings_.tables.published = as_paper;
@@ -171,7 +171,7 @@ TEST_F(SphereLevel, HeapsComeToRestWithoutSinkingIntoThemselves) {
     for (int heap = 0; heap < kHeaps; ++heap) {
       settings_.seed = std::uint64_t(heap);
       testing::OneRung level = make();
-      add_heap(level, 4, 6);
+      add_heap(level, 4, 6, std::uint32_t(heap));
       run(level, 600);
       double worst = 0.0;
       for (int a = 0; a < level.size(); ++a) {
@@ -183,32 +183,31 @@ TEST_F(SphereLevel, HeapsComeToRestWithoutSinkingIntoThemselves) {
                                       : measure_hull_overlap(*box(), level.state(a), *box(), level.state(b)));
       }
       mean += worst / box()->radius / kHeaps;
-      EXPECT_LT(worst, 0.4 * box()->radius) << heap;
+      EXPECT_LT(worst, 0.15 * box()->radius) << heap;
       EXPECT_GT(level.asleep_count(), level.size() * 9 / 10);
     }
-    EXPECT_LT(mean, 0.2);
+    EXPECT_LT(mean, 0.06);
   }
 }
 
-// Of four bins of 96 boxes 332 are asleep after two and a half seconds; 177 where spheres roll on without
-// resistance, are answered in three rounds, and are pressed into walls by the last.
+// Of twelve bins of 96 boxes 1,077 are asleep after two and a half seconds (with clang 1,057); less than half
+// where spheres roll on without resistance, are answered in three rounds, and are pressed into walls by the
+// last.
 TEST_F(SphereLevel, ABinComesToRestInItsTime) {
   for (const Vec3& inward :
        {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(-Vec3::UnitY())})
     ground_.add_plane({inward, inward.sum() > 0.0 ? -0.3 : -1.8});
   int asleep = 0;
-  for (int heap = 0; heap < 4; ++heap) {
-    settings_.seed = std::uint64_t(heap);
+  for (int heap = 0; heap < 12; ++heap) {
     testing::OneRung level = make();
-    add_heap(level, 4, 6);
+    add_heap(level, 4, 6, std::uint32_t(heap));
     run(level, 150);
     asleep += int(level.asleep_count());
   }
-  EXPECT_GT(asleep, 290);
+  EXPECT_GT(asleep, 980);
 }
 
-// Of 96 boxes in eight narrow bins between boxes of the ground NN are asleep after five seconds; MM where
-// what two walls hold is moved as one sphere among hulls.
+// Of 96 boxes in eight narrow bins between boxes of the ground all are asleep after five seconds.
 TEST_F(SphereLevel, WhatWallsHoldSeveralWaysComesToRest) {
   constexpr double kWide = 0.8, kThick = 0.2, kHigh = 3.0, kApart = 3.0;  // m
   testing::OneRung level = make();

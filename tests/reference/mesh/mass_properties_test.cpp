@@ -67,6 +67,15 @@ TEST(MassProperties, OfAnIcosphereConvergeToTheSphere) {
   EXPECT_LT(previous, 3e-3);
 }
 
+// As a sheet that is closed by its own back.
+TEST(MassProperties, OfWhatHasNoVolumeAreItsMiddleAndNoInertia) {
+  const Mesh sheet{.vertices = {{0, 0, 1}, {2, 0, 1}, {0, 4, 1}}, .faces = {{0, 1, 2}, {0, 2, 1}}};
+  const MassProperties mass = measure_mass_properties(sheet);
+  EXPECT_EQ(mass.volume, 0.0);
+  EXPECT_EQ(mass.center_of_mass, Vec3(1, 2, 1));
+  EXPECT_FALSE(is_possible_inertia(mass.inertia_per_mass));
+}
+
 TEST(MassProperties, MoveAndTurnWithTheMesh) {
   const Mesh mesh = make_l(0.3, 0.2, 0.05, 0.1);
   const auto mass = measure_mass_properties(mesh);
