@@ -6,9 +6,9 @@
 namespace lodestone::ode {
 namespace {
 
-// Over what there is and what contacts may give: ODE's law of friction and restitution gains up to half of a
-// body's energy in a single hit at a restitution of 1.
-constexpr double kMost = 2.0;
+// Over what there is and what contacts may give. ODE's law of friction and restitution gains up to half of a
+// body's energy in a single hit at a restitution of 1; of more than two bodies it is not one hit that does.
+constexpr double kMost = 1.5, kMostOfMany = 1.1;
 constexpr double kDeep = 0.02;      // over R: in what stands still no body comes to be so by itself
 constexpr double kUnsteady = 1e-3;  // of what forces would give: what they do not hold quite still
 
@@ -36,12 +36,15 @@ Vec3 velocity_at(const Body& body, const Vec3& point) {
 
 }  // namespace
 
-// What pushes apart a column adds up from the lowest to the topmost, as far as a chain of few goes.
-double EnergyBound::Island::given() const { return energy + driven + 0.5 * mass * squared_pushes; }
+// What pushes apart a column adds up from the lowest to the topmost: of a chain of n that push alike the mean
+// square is n² / 3. No more than as far as one of twelve goes.
+double EnergyBound::Island::given() const {
+  return energy + driven + 0.5 * mass * std::min(pushes * pushes, 4.0 * squared_pushes);
+}
 
 // A force that presses gives what it moves its body by: a light one under a great load nearly nothing.
 double EnergyBound::Island::most() const {
-  return kMost * given() + std::max(0.0, work) + kUnsteady * forced;
+  return (bodies > 2 ? kMostOfMany : kMost) * given() + std::max(0.0, work) + kUnsteady * forced;
 }
 
 void EnergyBound::begin(const Bodies& bodies) {
@@ -51,7 +54,7 @@ void EnergyBound::begin(const Bodies& bodies) {
 }
 
 void EnergyBound::note(const Bodies& bodies, std::span<const OdeContact> contacts, const Vec3& gravity,
-                       double pushing, double h) {
+                       const Pushing& pushing, double h) {
   islands_.assign(bodies.slots().size(), {});
   sets_.set_all_apart(islands_.size());
   const auto is_pushed = [&](OdeBodyId id) { return id && !dBodyIsKinematic(bodies.find(id).body); };
@@ -59,7 +62,15 @@ void EnergyBound::note(const Bodies& bodies, std::span<const OdeContact> contact
     if (is_pushed(contact.first) && is_pushed(contact.second))
       sets_.join(std::int32_t(slot_of(contact.first)), std::int32_t(slot_of(contact.second)));
   count_bodies(bodies);
-  for (const OdeContact& contact : contacts) note_contact(bodies, contact, pushing * contact.depth);
+  // Those of the same two follow each other, and push them apart once.
+  for (auto begin = contacts.begin(), end = begin; begin != contacts.end(); begin = end) {
+    double fastest = 0.0;  // m/s
+    for (; end != contacts.end() && end->first == begin->first && end->second == begin->second; ++end) {
+      note_contact(bodies, *end);
+      fastest = std::max(fastest, pushing.speed_of(*end));
+    }
+    note_push(bodies, *begin, fastest);
+  }
   pulled_.resize(islands_.size());
   time_ = h;
   for (std::size_t slot = 0; slot < islands_.size(); ++slot) {
@@ -91,24 +102,26 @@ void EnergyBound::count_bodies(const Bodies& bodies) {
   }
 }
 
-/// `push`: m/s.
-void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, double push) {
+// Null: of none that can be pushed.
+EnergyBound::Island* EnergyBound::island_of(const Bodies& bodies, const OdeContact& contact) {
+  for (const OdeBodyId id : {contact.second, contact.first})
+    if (id && !dBodyIsKinematic(bodies.find(id).body)) return &island_of(slot_of(id));
+  return nullptr;
+}
+
+void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact) {
+  Island* island = island_of(bodies, contact);
+  if (!island) return;
   Vec3 driven = contact.velocity;  // m/s, of what nothing pushes
   double mass = 0.0, size = 0.0;   // kg and m, of what is driven
-  Island* island = nullptr;
   for (const OdeBodyId id : {contact.first, contact.second}) {
     if (!id) continue;
     const Body& body = bodies.find(id);
     if (dBodyIsKinematic(body.body))
       driven += velocity_at(body, contact.point);
     else
-      mass = std::max(mass, body.mass()), size = body.shape->radius, island = &island_of(slot_of(id));
+      mass = std::max(mass, body.mass()), size = body.shape->radius;
   }
-  if (!island) return;
-  if (island->bodies > 1)
-    island->squared_pushes += push * push;
-  else
-    island->squared_pushes = std::max(island->squared_pushes, push * push);
   island->driven += 2.0 * mass * driven.squaredNorm();  // at twice its speed
   island->moved |= contact.moves || !driven.isZero(0.0);
   if (island->bodies > 1 || contact.depth < kDeep * size) return;
@@ -116,6 +129,16 @@ void EnergyBound::note_contact(const Bodies& bodies, const OdeContact& contact, 
   const Vec3 out = is_first ? contact.normal : Vec3(-contact.normal);
   if (island->out.isZero(0.0)) island->out = out;
   island->squeezed |= island->out.dot(out) < 0.0;
+}
+
+/// `speed`: m/s. Of a body by itself the fastest counts.
+void EnergyBound::note_push(const Bodies& bodies, const OdeContact& contact, double speed) {
+  Island* island = island_of(bodies, contact);
+  if (!island) return;
+  const bool is_alone = island->bodies == 1;
+  island->pushes = is_alone ? std::max(island->pushes, speed) : island->pushes + speed;
+  island->squared_pushes =
+      is_alone ? std::max(island->squared_pushes, speed * speed) : island->squared_pushes + speed * speed;
 }
 
 void EnergyBound::sum_up(const Bodies& bodies) {

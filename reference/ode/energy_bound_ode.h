@@ -9,6 +9,7 @@
 
 #include "reference/disjoint_sets.h"
 #include "reference/ode/bodies_ode.h"
+#include "reference/ode/joints_ode.h"
 
 namespace lodestone::ode {
 
@@ -16,10 +17,10 @@ class EnergyBound {
  public:
   /// Before contacts are known. What hangs on joints may gain any energy, by their motors.
   void begin(const Bodies& bodies);
-  /// Before ODE's solver runs: `bodies` as they are, with the forces that act on them, and their contacts,
-  /// which push what overlaps apart at `pushing` (1/s) times its depth, in a step of `h` s.
-  void note(const Bodies& bodies, std::span<const OdeContact> contacts, const Vec3& gravity, double pushing,
-            double h);
+  /// Before ODE's solver runs: `bodies` as they are, with the forces that act on them, and their contacts, in
+  /// a step of `h` s.
+  void note(const Bodies& bodies, std::span<const OdeContact> contacts, const Vec3& gravity,
+            const Pushing& pushing, double h);
   /// Whether they have no more energy now than they may. A body that touches nothing but what stands still is
   /// not asked, unless that pushes it out of itself from sides that face each other.
   bool is_kept(const Bodies& bodies);
@@ -30,12 +31,13 @@ class EnergyBound {
  private:
   /// Of bodies that touch, directly or through others.
   struct Island {
-    double energy = 0.0;          ///< J, with what gravity gives
-    double driven = 0.0;          ///< J: at most, from surfaces that move
-    double forced = 0.0;          ///< J: what forces would give, were nothing in the way
-    double work = 0.0;            ///< J: what they have given, after the step
-    double mass = 0.0;            ///< kg
-    double squared_pushes = 0.0;  ///< m²/s², of all contacts; of a body by itself the greatest
+    double energy = 0.0;  ///< J, with what gravity gives
+    double driven = 0.0;  ///< J: at most, from surfaces that move
+    double forced = 0.0;  ///< J: what forces would give, were nothing in the way
+    double work = 0.0;    ///< J: what they have given, after the step
+    double mass = 0.0;    ///< kg
+    /// m/s and m²/s², the sums of what pushes two apart; of a body by itself the greatest.
+    double pushes = 0.0, squared_pushes = 0.0;
     int bodies = 0;
     bool jointed = false;
     bool moved = false;       ///< by what moves, or was moved
@@ -55,7 +57,9 @@ class EnergyBound {
   void count_bodies(const Bodies& bodies);
   void sum_up(const Bodies& bodies);
   void slow_down(Bodies& bodies, std::size_t root);
-  void note_contact(const Bodies& bodies, const OdeContact& contact, double push);
+  Island* island_of(const Bodies& bodies, const OdeContact& contact);
+  void note_contact(const Bodies& bodies, const OdeContact& contact);
+  void note_push(const Bodies& bodies, const OdeContact& contact, double speed);
 
   std::vector<bool> noted_;       // by slot: those that were awake
   std::vector<bool> jointed_;     // by slot

@@ -1,6 +1,7 @@
 // Contact joints: what ODE's solver is told about a contact.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -48,6 +49,16 @@ struct ContactSide {
 /// that lies on it.
 ContactSide side_of(dBodyID body, MaterialId material, OdeBodyId id, dGeomID callers_geom = nullptr);
 
+/// How fast what overlaps is pushed apart.
+struct Pushing {
+  double per_depth;  ///< 1/s
+  double most;       ///< m/s, but by ground that is put on
+  double speed_of(const OdeContact& contact) const {
+    const double speed = per_depth * contact.depth;
+    return contact.moves ? speed : std::min(speed, most);
+  }
+};
+
 /// The contact joints of one substep.
 class ContactJoints {
  public:
@@ -70,8 +81,7 @@ class ContactJoints {
   void tell(Touches* touches) { touches_ = touches; }
 
   const Vec3& gravity() const { return gravity_; }
-  /// 1/s: what overlaps is pushed apart at so many times its depth a second.
-  double pushing() const { return joint_.surface.soft_erp / h_; }
+  Pushing pushing() const { return {joint_.surface.soft_erp / h_, max_correcting_velocity_}; }
   ContactLaw law(MaterialId first, MaterialId second) const { return materials_->law(first, second); }
   void check_known(MaterialId material) const { materials_->check_known(material); }  ///< throws InputError
   std::span<const OdeContact> contacts() const { return contacts_; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "reference/ode/energy_bound_ode.h"
 #include "tests/reference/ode/ode_fixture.h"
@@ -26,11 +27,12 @@ struct TwoCubes {
     bodies.clear();
     dSpaceDestroy(space), dWorldDestroy(world);
   }
-  void note() {
-    const OdeContact contact{
-        .first = ids[1], .second = ids[0], .point = {0, 0, 0.1}, .normal = Vec3::UnitZ(), .depth = 0.0};
+  void note(double depth = 0.0, int contacts = 1) {
+    const std::vector<OdeContact> all(
+        std::size_t(contacts),
+        {.first = ids[1], .second = ids[0], .point = {0, 0, 0.1}, .normal = Vec3::UnitZ(), .depth = depth});
     bound.begin(bodies);
-    bound.note(bodies, {&contact, 1}, Vec3(0, 0, -kGravity), 50.0, kStep);
+    bound.note(bodies, all, Vec3(0, 0, -kGravity), {.per_depth = 50.0, .most = 1.0}, kStep);
   }
   Body& light() { return bodies.find(ids[0]); }
   Body& heavy() { return bodies.find(ids[1]); }
@@ -76,6 +78,18 @@ TEST(EnergyBound, WhoHasMoreIsSlowedDownWithItsMomentum) {
   const RigidState light = state_of(cubes.light().body), heavy = state_of(cubes.heavy().body);
   EXPECT_LT((light.velocity + 50.0 * heavy.velocity - Vec3(51, 0, 0)).norm(), 1e-9);
   EXPECT_LT((light.position - kStep * light.velocity).norm(), 1e-9);  // from where it was
+}
+
+// Two that overlap by 10 cm are pushed apart at 1 m/s at most, in however many points they touch.
+TEST(EnergyBound, AnOverlapGivesWhatItIsPushedApartBy) {
+  for (const int contacts : {1, 4, 16}) {
+    TwoCubes cubes;
+    cubes.note(0.1, contacts);
+    cubes.set_velocities({0, 0, -1.0}, {0, 0, 0.02});
+    EXPECT_TRUE(cubes.bound.is_kept(cubes.bodies)) << contacts;
+    cubes.set_velocities({0, 0, -5.0}, {0, 0, 1.5});
+    EXPECT_FALSE(cubes.bound.is_kept(cubes.bodies)) << contacts;
+  }
 }
 
 TEST(EnergyBound, WhatIsNoNumberIsPutBack) {
