@@ -23,6 +23,12 @@ void check(const Material& material) {
     throw_input_error("density", fmt::format("{} kg/m³", material.density), "a positive, finite number");
 }
 
+// √(ab), where ab is more than a double holds, too.
+double geometric_mean(double a, double b) {
+  const double product = a * b;
+  return std::isfinite(product) ? std::sqrt(product) : std::sqrt(a) * std::sqrt(b);
+}
+
 }  // namespace
 
 MaterialId MaterialTable::add(const Material& material) {
@@ -42,6 +48,8 @@ void MaterialTable::replace(MaterialId id, const Material& material) {
 void MaterialTable::set_law(MaterialId a, MaterialId b, const ContactLaw& law) {
   check_known(a), check_known(b);
   check_contact(law.restitution, law.friction);
+  std::erase_if(listed_,
+                [&](const Listed& known) { return std::minmax(known.a, known.b) == std::minmax(a, b); });
   listed_.push_back({a, b, law});
   rebuild();
 }
@@ -58,7 +66,7 @@ void MaterialTable::rebuild() {
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
       laws_[i * n + j] = {std::min(materials_[i].restitution, materials_[j].restitution),
-                          std::sqrt(materials_[i].friction * materials_[j].friction)};
+                          geometric_mean(materials_[i].friction, materials_[j].friction)};
   for (const auto& [a, b, law] : listed_) laws_[a * n + b] = laws_[b * n + a] = law;
 }
 

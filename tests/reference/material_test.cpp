@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "reference/error.h"
+#include "tests/allocations.h"
 
 namespace lodestone {
 namespace {
@@ -30,6 +32,28 @@ TEST(Materials, AListedPairIsListedBothWaysAndTheLastWordCounts) {
   table.set_law(other, 0, {.restitution = 0.1, .friction = 2.0});
   EXPECT_EQ(table.law(0, other), (ContactLaw{0.1, 2.0}));
   EXPECT_EQ(table.law(0, 0), (ContactLaw{0.4, 0.5}));
+}
+
+// As a game does that turns a knob in each frame.
+TEST(Materials, APairThatIsListedAgainTakesNoMoreRoom) {
+  MaterialTable table;
+  const MaterialId ice = table.add({});
+  table.set_law(0, ice, {});
+  const std::int64_t before = bytes_held();
+  for (int i = 1; i <= 1000; ++i)
+    table.set_law(i % 2 ? ice : 0, i % 2 ? 0 : ice, {.restitution = 0.0, .friction = 1e-3 * i});
+  EXPECT_EQ(bytes_held(), before);
+  EXPECT_EQ(table.law(0, ice).friction, 1.0);
+}
+
+TEST(Materials, FrictionAsGreatAsItGetsIsANumberOfAPairToo) {
+  const double greatest = std::numeric_limits<double>::max();
+  MaterialTable table;
+  table.replace(0, {.friction = greatest});
+  const MaterialId rough = table.add({.friction = 1e160});
+  EXPECT_NEAR(table.law(0, 0).friction / greatest, 1.0, 1e-15);
+  EXPECT_NEAR(table.law(rough, rough).friction / 1e160, 1.0, 1e-15);
+  EXPECT_TRUE(std::isfinite(table.law(0, rough).friction));
 }
 
 TEST(Materials, WhatIsListedStaysWhereOthersComeOrChange) {
