@@ -207,7 +207,7 @@ SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw&
 }
 
 MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Share& share,
-                             const SignatureSourceSettings& settings) {
+                             const SignatureSourceSettings& settings, const std::filesystem::path& file) {
   SignatureSettings measuring = settings.measuring;
   measuring.law = law;
   check_settings(measuring);
@@ -229,7 +229,9 @@ MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Sh
   part.seconds = journal ? journal->seconds() : watch.seconds();
   part.trials_resumed = journal ? journal->trials_found(measuring) : 0;
   part.trials_noted = journal ? journal->trials_noted() : 0;
-  if (journal && !settings.stop.stop_requested()) journal->remove();
+  if (settings.stop.stop_requested()) return part;
+  if (!file.empty()) save_part(part, file);
+  if (journal) journal->remove();
   return part;
 }
 

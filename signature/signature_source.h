@@ -51,10 +51,12 @@ struct SourcedSignature {
 SourcedSignature find_or_measure_signature(const Shape& shape, const ContactLaw& law,
                                            const SignatureSourceSettings& settings = {});
 
-/// One share of it, measured. An interrupted share goes on from where it was, unless the cache is not used.
-/// The signature of a measurement that is stopped is not made: check the stop token.
+/// One share of it, measured, and saved in `file` where one is given, unless it is stopped: check the stop
+/// token. A share that is interrupted, or that found no room in `file` (InputError), goes on from where it
+/// was the next time, unless the cache is not used.
 MeasurementPart measure_part(const Shape& shape, const ContactLaw& law, const Share& share,
-                             const SignatureSourceSettings& settings = {});
+                             const SignatureSourceSettings& settings = {},
+                             const std::filesystem::path& file = {});
 
 /// Where the errors of a signature's rungs are kept, beside its file in the cache.
 std::filesystem::path rung_errors_file(const Shape& shape, const ContactLaw& law,

@@ -50,6 +50,20 @@ TEST_F(Shard, APartIsNotWrittenOver) {
   EXPECT_EQ(testing::bytes_of(at("part1")), before);
 }
 
+// A share may have taken hours.
+TEST_F(Shard, APartThatFoundNoRoomIsNotMeasuredAgain) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const std::string share = kBox + "--json --shard 1/2 -o ";
+  const Ended full = run(share + "/dev/full");
+  EXPECT_EQ(full.exit_code, 3);
+  EXPECT_NE(full.out.find("/dev/full: found no space left on device"), std::string::npos) << full.out;
+  const auto json = nlohmann::json::parse(run(share + name("part")).out);
+  EXPECT_GT(json["trials"], 0);
+  EXPECT_EQ(json["trials_resumed"], json["trials"]);
+  const auto again = nlohmann::json::parse(run(share + name("part")).out);
+  EXPECT_EQ(again["trials_resumed"], 0) << "what is saved leaves nothing behind";
+}
+
 TEST_F(Shard, APartSaysWhatItMeasured) {
   std::uint64_t trials = 0;
   for (const std::string part : {"1/2", "2/2"}) {

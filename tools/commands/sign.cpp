@@ -166,11 +166,10 @@ void sign_share(const SignArguments& arguments, const Shape& shape) {
   std::stop_source stop;
   {
     ProgressLine line;
-    part =
-        measure_part(shape, arguments.shape.law(), *arguments.share, source_settings(arguments, line, stop));
+    part = measure_part(shape, arguments.shape.law(), *arguments.share,
+                        source_settings(arguments, line, stop), arguments.out);
   }
   if (stop.stop_requested()) return say_incomplete(arguments, shape, part.trials_resumed + part.trials_noted);
-  save_part(part, arguments.out);
   print_results(
       arguments.results, json_of(part, arguments.out),
       fmt::format("part {} of {}: {} trials in {:.1f} s, in {}\n", arguments.share->index + 1,
