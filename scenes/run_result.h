@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "reference/geometry.h"
+#include "reference/simulation_error.h"
 #include "scenes/budget_figures.h"
 #include "scenes/time_summary.h"
 
@@ -42,9 +43,11 @@ struct RunResult {
   StageTimes stage_ms;           ///< summed over the steps
   std::vector<StepReport> reports;        ///< one per step, with keep_steps
   std::vector<double> step_processor_ms;  ///< of each step, with keep_steps or a playback
-  bool incomplete = false;  ///< ended before its last step, by `stop` or by a file that could not be written
-  std::string write_error;  ///< the first file that could not be written, and why; empty: none
-  std::optional<BudgetFigures> budget;       ///< none without a budget
+  /// Ended before its last step: by `stop`, by a file that could not be written, or by ODE.
+  bool incomplete = false;
+  std::string write_error;                 ///< the first file that could not be written, and why; empty: none
+  std::optional<SimulationError> failure;  ///< ODE gave up in the step after the last that counts
+  std::optional<BudgetFigures> budget;     ///< none without a budget
   std::optional<PictureFigures> in_picture;  ///< none without a viewpoint, or where the run ended before
   std::int64_t transitions = 0, promotions = 0;
   double max_penetration_m = 0;  ///< deepest hull vertex in ground planes and boxes, over the run

@@ -49,16 +49,18 @@ class Run {
   }
 
   const RunObserver& observer() const { return observer_; }
+  const std::optional<SimulationError>& failure() const { return result_.failure; }
 
   /// Whether there is another step after `step` of them.
   bool goes_on(int step) {
-    if (step >= steps_ || !observer_.is_finite()) return false;
+    if (step >= steps_ || !observer_.is_finite() || result_.failure) return false;
     const bool is_stopped = result_.steps > 0 && settings_.stop && settings_.stop();
     result_.incomplete = result_.incomplete || is_stopped || !files_.fault().empty();
     return !result_.incomplete;
   }
 
-  void advance(int step) {
+  /// False where ODE gave up: the step does not count.
+  bool advance(int step) try {
     move_viewpoints(manager_, scene_, step * dt_s_);
     const auto start = Clock::now();
     const double signatures_before = result_.signature_seconds;
@@ -80,6 +82,10 @@ class Run {
                           .support = report.support,
                           .tables = report.tables,
                           .asleep = report.asleep});
+    return true;
+  } catch (const SimulationError& error) {
+    result_.failure = error, result_.incomplete = true;
+    return false;
   }
 
   RunResult finish() {
@@ -172,17 +178,22 @@ RunResult run_forked(const Scene& scene, const RunSettings& settings, int steps,
   if (first.goes_on(step)) second.fork_from(first, step);
   for (bool together = true; first.goes_on(step); ++step) {
     together = together && second.goes_on(step);
-    first.advance(step);
-    if (!together) continue;
-    second.advance(step);
+    if (!first.advance(step) || !together || !second.advance(step)) continue;
     forked->mean_distance_m.push_back(second.observer().mean_distance_m(first.observer()));
   }
   RunResult result = first.finish();
+  if (!result.failure) result.failure = second.failure();
   if (forked->mean_distance_m.empty()) return result;  // it diverged before
   forked->result = second.finish();
   if (result.write_error.empty()) result.write_error = forked->result.write_error;
   result.fork = forked;
   return result;
+}
+
+RunResult run_alone(const Scene& scene, const RunSettings& settings, int steps, double dt_s) {
+  Run run(scene, settings, steps, dt_s);
+  for (int step = 0; run.goes_on(step); ++step) run.advance(step);
+  return run.finish();
 }
 
 }  // namespace
@@ -191,10 +202,9 @@ RunResult run_scene(const Scene& scene, const RunSettings& settings) {
   const int steps = settings.steps.value_or(scene.default_steps);
   const double dt_s = settings.dt_s.value_or(scene.step.dt_s);
   check_settings(scene, steps, dt_s, settings);
-  if (settings.fork_step) return run_forked(scene, settings, steps, dt_s);
-  Run run(scene, settings, steps, dt_s);
-  for (int step = 0; run.goes_on(step); ++step) run.advance(step);
-  return run.finish();
+  RunResult result = (settings.fork_step ? run_forked : run_alone)(scene, settings, steps, dt_s);
+  if (result.failure) throw FailedRun(std::move(result));
+  return result;
 }
 
 }  // namespace lodestone

@@ -242,6 +242,7 @@ ordered_json json_of(const RunResult& result) {
   json["energy_end_j"] = number_or_null(result.energy_end_j);
   json["finite"] = result.finite;
   if (result.incomplete) json["incomplete"] = true;
+  if (result.failure) json["failure"] = result.failure->what();
   json["checks"] = ordered_json::array();
   for (const CheckResult& check : result.checks)
     json["checks"].push_back({{"name", check.name},
@@ -260,7 +261,8 @@ ordered_json json_of(const RunResult& result) {
 }
 
 ExitCode exit_code_of(const RunResult& result) {
-  if (!result.finite || (result.fork && !result.fork->result.finite)) return ExitCode::diverged;
+  if (!result.finite || result.failure || (result.fork && !result.fork->result.finite))
+    return ExitCode::diverged;
   if (!result.write_error.empty()) return ExitCode::bad_input;
   if (result.incomplete) return interrupted_exit_code();
   const bool all_hold = std::ranges::all_of(result.checks, &CheckResult::pass);

@@ -1,5 +1,7 @@
 #include "scenes/runner.h"
 
+#include <ode/ode.h>
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
@@ -272,6 +274,59 @@ TEST_F(Runner, StopsAfterAStep) {
   EXPECT_FALSE(run_scene(load(kFalling), {.steps = 3, .stop = [] { return false; }}).incomplete);
   const RunResult one = run_scene(load(kFalling), {.stop = [] { return true; }});
   EXPECT_EQ(one.steps, 1);
+}
+
+// ODE does not go on with a body of next to no mass under another.
+const char* const kStack = R"(version: 1
+shapes: {crate: {box_m: [0.3, 0.3, 0.3]}}
+ground: [{plane: {normal: [0, 0, 1], offset_m: 0}}]
+bodies:
+  - {shape: crate, position_m: [0, 0, 0.14], level: full}
+  - {shape: crate, position_m: [0.03, 0, 0.42], level: full}
+  - {shape: crate, position_m: [0.06, 0, 0.7], level: full}
+  - {shape: crate, position_m: [0.09, 0, 0.98], level: full}
+)";
+
+void lighten_third(const WatchedStep& step) {
+  dxBody* const third = step.manager.ode_body(step.bodies[2]);
+  if (!third) return;
+  dMass light;
+  dMassSetBoxTotal(&light, 1e-30, 0.3, 0.3, 0.3);
+  dBodySetMass(third, &light);
+}
+
+TEST_F(Runner, WhereOdeGivesUpWhatThereIsIsKept) {
+  const RunSettings settings{.steps = 300, .out = folder() / "out", .watch = lighten_third};
+  try {
+    run_scene(load(kStack), settings);
+    FAIL() << "ODE went on";
+  } catch (const FailedRun& failed) {
+    const RunResult& result = failed.result();
+    EXPECT_GE(result.steps, 1);
+    EXPECT_LT(result.steps, 300);
+    EXPECT_TRUE(result.incomplete);
+    ASSERT_TRUE(result.failure);
+    EXPECT_STREQ(result.failure->what(), failed.what());
+    EXPECT_EQ(result.last().full, 4);
+    const std::string csv = testing::bytes_of(folder() / "out/steps.csv");
+    EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + result.steps);
+    EXPECT_TRUE(std::filesystem::exists(result.playback));
+  }
+}
+
+TEST_F(Runner, WhereOdeGivesUpInASecondFutureTheFirstIsKept) {
+  const RunSettings settings{
+      .steps = 60, .level = LevelChoice::full, .fork_step = 20, .watch = lighten_third};
+  Scene scene = load(kStack);
+  for (SceneBody& body : scene.bodies) body.definition.level = LevelChoice::support;
+  try {
+    run_scene(scene, settings);
+    FAIL() << "ODE went on";
+  } catch (const FailedRun& failed) {
+    EXPECT_EQ(failed.result().steps, 60);
+    ASSERT_TRUE(failed.result().fork);
+    EXPECT_LT(failed.result().fork->result.steps, 40);
+  }
 }
 
 }  // namespace

@@ -31,6 +31,16 @@ TEST(RunReport, JsonSpeaksOfTheLastStep) {
   EXPECT_DOUBLE_EQ(json["stage_mean_ms"]["full"].get<double>(), 1.5);
 }
 
+TEST(RunReport, WhereOdeGaveUpIsSaidBesideWhatThereIs) {
+  RunResult result = three_steps();
+  EXPECT_FALSE(json_of(result).contains("failure"));
+  result.failure = SimulationError("ODE gave up"), result.incomplete = true;
+  EXPECT_EQ(json_of(result)["failure"], "ODE gave up");
+  EXPECT_EQ(json_of(result)["steps"], 3);
+  EXPECT_EQ(json_of(result)["incomplete"], true);
+  EXPECT_EQ(exit_code_of(result), ExitCode::diverged);
+}
+
 TEST(RunReport, RungsAddUp) {
   const auto levels = json_of(three_steps())["levels"];
   EXPECT_EQ(levels["support"].get<int>() + levels["tables"].get<int>(), levels["statistical"].get<int>());

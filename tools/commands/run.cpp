@@ -27,13 +27,18 @@ ExitCode run(const RunCommandArguments& arguments) {
     RunSettings settings = run_settings(arguments.run, line);
     settings.stop = is_interrupted;
     fetch_signatures(scene, settings);
-    result = run_scene(scene, settings);
+    try {
+      result = run_scene(scene, settings);
+    } catch (const FailedRun& failed) {
+      result = failed.result();
+    }
   }
   print_results(arguments.results, json_of(result),
                 fmt::format("{}: {} bodies, {} steps\n{}", arguments.run.scene.string(), result.bodies,
                             result.steps, text_of(result)));
   if (!result.write_error.empty())
     write_stderr(fmt::format("lodestone: {}\n", printable(result.write_error)));
+  if (result.failure) write_stderr(fmt::format("lodestone: {}\n", printable(result.failure->what())));
   return exit_code_of(result);
 }
 
